@@ -34,16 +34,18 @@ def machine_sentence() -> str:
 
 def table(problem: str, rows: Sequence[Row]) -> Iterator[str]:
     """Times at the target error with their ratios to the yardstick, or where there are none the rows as measured."""
-    if len({row.error for row in at_target_rows(rows)}) > 1:
+    targets = at_target_rows(rows)
+    if len({row.error for row in targets}) > 1:
         yield from decades_table(problem, rows)
         return
-    at_target = {row.solver: row.seconds for row in at_target_rows(rows)}
+    at_target = {row.solver: row.seconds for row in targets}
     if not at_target:
         yield problem
         for row in rows:
             yield f"  {row.solver:22} {row.setting:54} error {row.error:8.1e}  {row.seconds * 1e3:10.3f} ms"
         return
-    yield f"{problem}: time at an error of 1e-6, and its ratio to the yardstick"
+    ratios = ", and its ratio to the yardstick" if REFERENCE in at_target else ""
+    yield f"{problem}: time at an error of {targets[0].error:g}{ratios}"
     for solver, seconds in at_target.items():
         ratio = f"{seconds / at_target[REFERENCE]:8.2f}" if REFERENCE in at_target else ""
         yield f"  {solver:22} {seconds * 1e3:10.3f} ms {ratio}"

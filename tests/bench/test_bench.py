@@ -10,7 +10,7 @@ import pytest
 from click.testing import CliRunner
 
 import stiffmbs
-from stiffmbs.bench.benchmark import families
+from stiffmbs.bench.benchmark import Row, families
 from stiffmbs.bench.by_hand import andrews, cart_pendulum, chain, half_car
 from stiffmbs.bench.by_hand.ida import Run
 from stiffmbs.bench.contestant import Contestant, Failed
@@ -21,6 +21,7 @@ from stiffmbs.bench.problems import cart_pendulum as cart_problem
 from stiffmbs.bench.problems import chain as chain_problem
 from stiffmbs.bench.problems import half_car as half_car_problem
 from stiffmbs.bench.problems.cars.car_conditioning import RTOLS, Conditioning
+from stiffmbs.bench.report import table
 from stiffmbs.bench.sweep import at_target_rows
 from stiffmbs.commands.main import main
 
@@ -199,6 +200,13 @@ def test_the_time_at_an_error_is_read_from_a_line_through_the_sweep():
     assert found["one"] == pytest.approx(1e-4 * 1e-6**-0.2, rel=0.1)
     assert found["two"] == pytest.approx(2 * found["one"], rel=0.1)
     assert all(10**-7.6 < row.error < 10**-4.4 for row in rows)
+
+
+def test_a_table_names_its_error_and_a_ratio_where_there_is_a_yardstick():
+    alone = Row("bdf", "at error 0.0001", 1e-4, 0.1, False)
+    beside = [Row(name, "at error 1e-06", 1e-6, 0.1, name == "yardstick") for name in ("bdf", "yardstick")]
+    assert next(table("car", [alone])) == "car: time at an error of 0.0001"
+    assert next(table("car", beside)) == "car: time at an error of 1e-06, and its ratio to the yardstick"
 
 
 def test_contestants_that_never_arrive_are_left_out():
