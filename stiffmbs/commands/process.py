@@ -9,6 +9,7 @@ import signal
 import sys
 import threading
 import warnings
+from _thread import interrupt_main
 from collections.abc import Iterator
 from typing import Any
 
@@ -21,6 +22,8 @@ FAILED = 1
 OF_OUTPUT = (errno.ENOSPC, errno.EIO, errno.EBADF, errno.EPIPE, errno.EDQUOT)
 ASKING_TO_END = ("SIGINT", "SIGTERM")
 STANDARD_FILES = (0, 1, 2)
+AGAIN = 0.01
+"""Seconds after which an interrupt is raised again that met a callback."""
 
 
 class Process(click.Group):
@@ -32,7 +35,7 @@ class Process(click.Group):
     def main(self, *arguments: Any, **options: Any) -> Any:
         """Run the command that is asked for; see `click.Command.main`."""
         closed = _with_standard_files()
-        with _signals(), warnings.catch_warnings():
+        with _signals(), _no_interrupt_lost(), warnings.catch_warnings():
             # Numbers that overflow are told where they end up, in sentences.
             warnings.simplefilter("ignore", RuntimeWarning)
             status = 0
@@ -138,3 +141,28 @@ def _signals() -> Iterator[None]:
         own = sys.stdout is sys.__stdout__
         for number, handler in zip(numbers, before, strict=True):
             signal.signal(number, signal.SIG_IGN if own else handler)
+
+
+@contextlib.contextmanager
+def _no_interrupt_lost() -> Iterator[None]:
+    """Raise an interrupt again that meets a weak reference's callback: Python would print its traceback there and go on."""
+    before = sys.unraisablehook
+
+    def raised_again(unraisable: Any) -> None:
+        if issubclass(unraisable.exc_type, KeyboardInterrupt):
+            threading.Timer(AGAIN, _interrupt).start()  # the callback has to end first
+        else:
+            before(unraisable)
+
+    sys.unraisablehook = raised_again
+    try:
+        yield
+    finally:
+        sys.unraisablehook = before
+
+
+def _interrupt() -> None:
+    if hasattr(signal, "pthread_kill"):
+        signal.pthread_kill(threading.main_thread().ident or 0, signal.SIGINT)  # a real one, which wakes what sleeps
+    else:
+        interrupt_main()

@@ -6,13 +6,15 @@ import signal
 import subprocess
 import sys
 import time
+import weakref
 
+import click
 import numpy as np
 import pytest
 from click.testing import CliRunner
 
 from stiffmbs.commands.main import main
-from stiffmbs.commands.process import INTERRUPTED
+from stiffmbs.commands.process import INTERRUPTED, Process
 
 SCENE = "name: '%s'\nnotes: ['%s']\nbodies: {b: {mass: 1, inertia: 1}}\nrun: {duration: 0.1}\nfigure: {title: '%s', y: [b.x]}\n"
 COMMAND = [sys.executable, "-m", "stiffmbs"]
@@ -162,6 +164,24 @@ def test_ctrl_c_ends_without_a_traceback_at_any_moment(folder, delay):
     assert process.returncode in (0, INTERRUPTED, -signal.SIGINT)
     assert "Traceback" not in errors
     assert "Error" not in errors
+
+
+def test_ctrl_c_within_a_callback_is_not_lost(capfd):
+    @click.command(cls=Process, invoke_without_command=True)
+    def command():
+        def interrupt(_):
+            raise KeyboardInterrupt
+
+        short_lived = {0}
+        watched = weakref.ref(short_lived, interrupt)
+        del short_lived
+        assert watched() is None
+        time.sleep(10.0)
+
+    with pytest.raises(SystemExit) as ended:
+        command.main([])
+    assert ended.value.code == INTERRUPTED
+    assert capfd.readouterr().err.strip() == "stiffmbs: interrupted"
 
 
 @pytest.mark.long
