@@ -18,7 +18,8 @@ from ..describe.model_data import ModelData
 from ..describe.reading import read_scene
 from ..describe.settings import RunSettings
 from ..jobs.job import Job, prepare
-from ..solve import bdf, cost
+from ..solve import cost
+from ..solve.integrator import Integrator
 from ..solve.subsystems import Subsystem
 from .drives import CARS
 from .error_control import scene
@@ -91,7 +92,7 @@ def main() -> None:
         model, duration = make(), {"duration": LONGEST} if name.endswith(("_bushings", "_ideal")) else {}
         job, found = runs(model, solver="bdf", **duration)
         residual = np.array([1.0, cost.unknowns(job.dynamics)])
-        factors = bdf.Integrator(job.dynamics, RunSettings()).factors
+        factors = Integrator(job.dynamics, RunSettings()).factors
         matrix = np.array([job.dynamics.system.n_operations("tangent"), factors])
         for spent, counted in found:
             implicit[0].append(np.r_[1.0, counted["residuals"] * residual, counted["jacobians"] * matrix])

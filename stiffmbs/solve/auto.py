@@ -26,6 +26,7 @@ from .explicit.integration import Integration
 from .explicit.projected import TRAITS
 from .ida.engine import Reached
 from .initial import InitialValues
+from .integrator import Integrator
 from .segments import Segment, joined
 from .solver import Traits
 from .trajectory import Grid, Outcome, ProgressCallback, Trajectory, unwatched
@@ -96,7 +97,7 @@ class _Shared:
         self._dynamics, self._grid, self._watch = dynamics, grid, watch
         self._settings = settings.model_copy(update={"scheme": "dop853", "projection": True})
         self._explicit_step = cost.of_explicit_step(dynamics)
-        self._implicit: bdf.Integrator | None = None
+        self._implicit: Integrator | None = None
         self._costs = cost.ImplicitCost.of(dynamics)
         self._pace = _Pace(grid.start)
         self._explicit_cost = np.inf  # of a second of the motion, where stability holds it back
@@ -138,7 +139,7 @@ class _Shared:
         self._explicit_cost = self._explicit_step * rate / DOP853.stability
         left = (self._grid.end - t) * self._explicit_cost
         if self._implicit is None and left > WORTH_A_TRIAL * self._costs.start:
-            self._implicit = bdf.Integrator(self._dynamics, self._settings)
+            self._implicit = Integrator(self._dynamics, self._settings)
             self._costs = cost.ImplicitCost.of(self._dynamics, self._implicit.factors)
         return left > WORTH_A_TRIAL * self._costs.start, rate
 
@@ -190,7 +191,7 @@ class _Shared:
 
     def _implicit_segment(self, start: InitialValues, t: float) -> float | None:
         """Implicit steps from t on; the time at which they were left, or None at the end."""
-        self._implicit = self._implicit or bdf.Integrator(self._dynamics, self._settings)
+        self._implicit = self._implicit or Integrator(self._dynamics, self._settings)
         self._look_after = int(LOOK_AT_IMPLICIT * self._costs.memory / self._costs.step)
         self._implicit.engine.pause_after(self._look_after)
         self._spent, self._lost, self._next_look = self._spent_up_to(t), 0.0, self._implicit.steps() + self._look_after

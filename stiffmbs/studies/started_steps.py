@@ -8,10 +8,10 @@ from ..compile.inputs.features import InputFeatures
 from ..describe.settings import RunSettings
 from ..errors import SolverError
 from ..jobs.job import Job
-from ..solve.bdf import Integrator
 from ..solve.events.restart import just_after, just_before, restarted
 from ..solve.ida.engine import Reached
 from ..solve.ida.native_engine import NativeEngine
+from ..solve.integrator import Integrator
 from ..solve.settings import changed
 from ..solve.trajectory import Grid
 

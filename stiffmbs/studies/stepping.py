@@ -11,11 +11,11 @@ import numpy as np
 from ..errors import SolverError
 from ..jobs.job import Job
 from ..solve import SOLVERS
-from ..solve.bdf import Integrator
 from ..solve.events.restart import just_after, restarted
 from ..solve.ida.engine import Reached
 from ..solve.ida.native_engine import NativeEngine
 from ..solve.initial import InitialValues
+from ..solve.integrator import Integrator
 from ..solve.trajectory import Grid, Outcome
 from .started_steps import StartedSteps, sound
 

@@ -106,9 +106,9 @@ def test_every_solver_sees_a_short_input_after_a_long_rest(force, how):
 
 
 def test_the_fallback_engine_sees_it_too(monkeypatch):
-    from stiffmbs.solve import bdf
+    from stiffmbs.solve import integrator
 
-    monkeypatch.setattr(bdf, "available", lambda: (False, "not here"))
+    monkeypatch.setattr(integrator, "available", lambda: (False, "not here"))
     solution = stiffmbs.run(scene("1000*exp(-((t - 8)/0.5 ms)^2)"), duration=10.0, points=11, rtol=1e-6, solver="bdf")
     assert solution["b.vx"][-1] == pytest.approx(0.25 * np.sqrt(np.pi), rel=1e-4)
 

@@ -7,7 +7,7 @@ import stiffmbs
 from stiffmbs import AppliedForce, Body, Model, Prismatic, Revolute
 from stiffmbs.describe.model import FORCES
 from stiffmbs.jobs.run import prepare
-from stiffmbs.solve import bdf
+from stiffmbs.solve import integrator
 from stiffmbs.solve.dynamics import Dynamics
 from stiffmbs.solve.events.chattering import TRUSTED_EVENTS, WINDOW, Chattering
 from stiffmbs.solve.events.discontinuity import sliding
@@ -18,7 +18,7 @@ SOLVERS = ["bdf", "callbacks", "auto", "dop853", "dopri5"]
 
 def solve(model, solver, monkeypatch, **how):
     if solver == "callbacks":
-        monkeypatch.setattr(bdf, "available", lambda: (False, "not wanted here"))
+        monkeypatch.setattr(integrator, "available", lambda: (False, "not wanted here"))
     chosen = (
         {"solver": "projected", "scheme": solver}
         if solver.startswith("dop")

@@ -5,14 +5,14 @@ import pytest
 
 import stiffmbs
 from stiffmbs import AppliedForce, Body, Contact, Model, Prismatic
-from stiffmbs.solve import bdf
+from stiffmbs.solve import integrator
 from stiffmbs.solve.trajectory import Outcome
 
 
 @pytest.fixture(params=["native", "callbacks"])
 def engine(request, monkeypatch):
     if request.param == "callbacks":
-        monkeypatch.setattr(bdf, "available", lambda: (False, "not wanted here"))
+        monkeypatch.setattr(integrator, "available", lambda: (False, "not wanted here"))
 
 
 def block(law, velocity=0.0):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import stiffmbs
-from stiffmbs.solve import bdf
+from stiffmbs.solve import integrator
 
 RADIUS, MASS, PRESS = 0.1, 1.0, 1e6
 EXPLICIT = {"solver": "projected", "scheme": "dop853"}
@@ -57,7 +57,7 @@ def test_all_integrators_meet_the_same_impacts(engine, monkeypatch):
     scene = ball(0.3, (1, 0, 0), (0, -30, 5), "dissipation: 0.2, friction: 0.3, smooth_velocity: 0.01")
     exact = stiffmbs.run(scene, **EXPLICIT, rtol=1e-12)
     if engine == "through scikit-sundae":
-        monkeypatch.setattr(bdf, "available", lambda: (False, "found SUNDIALS 6, expected 7"))
+        monkeypatch.setattr(integrator, "available", lambda: (False, "found SUNDIALS 6, expected 7"))
     found = stiffmbs.run(scene, **ENGINES[engine])
     assert found.solver["events"] == exact.solver["events"] >= 4
     for name in ("ball.x", "ball.z", "ball.q0", "ball.q2", "ball.vx", "ball.wy"):

@@ -8,7 +8,7 @@ from stiffmbs import spatial
 from stiffmbs.bench.error_bars import PROBLEMS
 from stiffmbs.bench.evenness import evenness
 from stiffmbs.describe.spatial.orientation import matrix
-from stiffmbs.solve import bdf
+from stiffmbs.solve import integrator
 from stiffmbs.solve.error_control.error_test import CHOSEN, ErrorControl
 
 from ..spatial_closed_forms import matrices
@@ -85,7 +85,7 @@ COARSER = 5.0
 @pytest.mark.parametrize("scene", SCENES)
 def test_all_formulations_give_one_motion(scene, formulation, engine, exact, monkeypatch):
     if engine != "native":
-        monkeypatch.setattr(bdf, "available", lambda: (False, "found SUNDIALS 6, expected 7"))
+        monkeypatch.setattr(integrator, "available", lambda: (False, "found SUNDIALS 6, expected 7"))
     found = stiffmbs.run(SCENES[scene](), **SETTINGS, formulation=formulation)
     assert any("callbacks" in note for note in found.notes) == (engine != "native")
     motion, forces = off(found, exact[scene])
@@ -192,7 +192,7 @@ def bouncing_top():
 def test_corners_in_time_and_state_are_met_in_space(engine, monkeypatch):
     exact = stiffmbs.run(bouncing_top(), solver="projected", scheme="dop853", rtol=1e-12)
     if engine != "native":
-        monkeypatch.setattr(bdf, "available", lambda: (False, "found SUNDIALS 6, expected 7"))
+        monkeypatch.setattr(integrator, "available", lambda: (False, "found SUNDIALS 6, expected 7"))
     found = stiffmbs.run(bouncing_top())
     assert found.solver["events"] == exact.solver["events"] >= 4
     assert found.solver["breakpoints"] == exact.solver["breakpoints"] == 4

@@ -15,12 +15,12 @@ from ...compile.machine.routines import TERMS
 from ...compile.terms import TERM_SETS
 from ...describe.model_data import ModelData
 from ...jobs.job import Job, prepare
-from ...solve.bdf import Integrator
 from ...solve.error_control.error_test import CHOSEN
 from ...solve.formulations import FORMULATIONS
 from ...solve.ida.choice import PAIRED, fixed_cost
 from ...solve.ida.native_engine import NativeEngine
 from ...solve.ida.paired_columns import PairedColumns
+from ...solve.integrator import Integrator
 from ...solve.linear.elimination_order import elimination_order
 from ...solve.trajectory import Trajectory
 from ..benchmark import Row

@@ -9,13 +9,13 @@ import numpy as np
 
 from ...describe.settings import RunSettings
 from ...errors import SolverError
-from ..bdf import Integrator
 from ..dynamics import Dynamics
 from ..events.chattering import Chattering
 from ..events.restart import INDISTINCT
 from ..ida.engine import Reached
 from ..ida.native_engine import NativeEngine
 from ..initial import InitialValues
+from ..integrator import Integrator
 from ..trajectory import Grid
 
 BACK, FURTHEST = 1e-13, 1e-6

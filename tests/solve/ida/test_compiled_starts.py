@@ -6,10 +6,10 @@ import yaml
 
 import stiffmbs
 from stiffmbs.jobs.run import prepare
-from stiffmbs.solve.bdf import Integrator
 from stiffmbs.solve.events.restart import restarted
 from stiffmbs.solve.ida.ida import NativeIda
 from stiffmbs.solve.ida.native_engine import NativeEngine
+from stiffmbs.solve.integrator import Integrator
 
 SCENES = {
     "half_car": {"formulation": "SI1"},

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 import stiffmbs
-from stiffmbs.solve import bdf
+from stiffmbs.solve import integrator
 
 
 @pytest.fixture
 def without_libraries(monkeypatch):
-    monkeypatch.setattr(bdf, "available", lambda: (False, "found SUNDIALS 6, expected 7"))
+    monkeypatch.setattr(integrator, "available", lambda: (False, "found SUNDIALS 6, expected 7"))
 
 
 @pytest.mark.parametrize("name", ["cart_pendulum", "bouncing_ball", "half_car", "dead_centres"])

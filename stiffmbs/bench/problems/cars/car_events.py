@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from ....jobs.run import Job, prepare
-from ....solve.bdf import Integrator
 from ....solve.ida.engine import Engine, Reached
+from ....solve.integrator import Integrator
 from ...benchmark import Row
 from ...drives import CARS, SOLVERS, Car
 
