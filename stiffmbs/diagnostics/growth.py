@@ -9,7 +9,7 @@ import numpy as np
 from ..compile.reactions import reactions
 from ..compile.system import System
 from ..solve.dynamics import Dynamics, OutputRows
-from ..solve.events.divergence import SPEED_OF_LIGHT, UNBOUNDED_MOTION, exponential, reaches
+from ..solve.events.refusals import SPEED_OF_LIGHT, UNBOUNDED_MOTION, exponential, reaches
 from ..solve.storage import blocks, release
 from .glance import Glance
 

@@ -10,7 +10,7 @@ from .algebraic_states import no_value_ahead
 from .dynamics import Dynamics
 from .error_control.error_test import ErrorControl
 from .error_control.precision import SLOW, governed_by_rounding, too_fine
-from .events.divergence import FOLLOWED_STEPS, refuse_beyond_sense
+from .events.refusals import FOLLOWED_STEPS, refuse_beyond_sense
 from .formulations import READ_BY_FORMULATIONS
 from .ida.engine import Reached
 from .initial import InitialValues

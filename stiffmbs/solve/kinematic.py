@@ -14,8 +14,8 @@ from .algebraic_states import failure
 from .driven.states import Instant, states_after
 from .driven.velocities import IntegratedMotion
 from .dynamics import Dynamics
-from .events.limits import refuse_beyond_limits
 from .events.narrow_inputs import hidden_peak, narrower_than_output
+from .events.refusals import refuse_beyond_limits
 from .initial import InitialValues
 from .native.statuses import NO_BALANCE, NO_MEMORY, NO_STATE, NOT_FINITE
 from .solver import Traits

@@ -14,7 +14,7 @@ from stiffmbs.describe.model import FORCES, JOINTS
 from stiffmbs.results.energy_balance import Balance
 from stiffmbs.results.energy_balance_notes import within_steps
 from stiffmbs.show.report import report_page
-from stiffmbs.solve.events.divergence import exponential
+from stiffmbs.solve.events.refusals import exponential
 
 from ..conftest import EXAMPLES
 

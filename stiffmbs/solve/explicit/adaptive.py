@@ -12,8 +12,7 @@ from ...errors import SolverError
 from ..algebraic_states import no_value_ahead
 from ..dynamics import Dynamics
 from ..events.chattering import Chattering
-from ..events.divergence import FOLLOWED_STEPS, refuse_beyond_sense
-from ..events.limits import refuse_beyond_limits
+from ..events.refusals import FOLLOWED_STEPS, refuse_beyond_limits, refuse_beyond_sense
 from ..events.restart import just_after, just_before, restarted
 from ..events.velocity_jumps import VelocityJumps
 from ..initial import InitialValues

@@ -15,8 +15,8 @@ from ...errors import SolverError
 from ..dynamics import POSITION_TOLERANCE, Dynamics
 from ..events.chattering import jump_sentence
 from ..events.discontinuity import LARGER_MOVE, sliding
-from ..events.limits import refuse_beyond_limits
 from ..events.narrow_inputs import narrower_than_steps
+from ..events.refusals import refuse_beyond_limits
 from ..initial import InitialValues
 from ..trajectory import Ending, Grid, ProgressCallback, Rows, Trajectory
 from .integration import Integration

@@ -1,10 +1,11 @@
-"""Where a motion has left what mechanics describes: a run stops there in place of following it for ever."""
+"""Where a run is stopped: its motion has left what mechanics describes, or a force the limits within which its law holds."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from ...compile.system import System
+from ...compile.written_values import beyond
 from ...errors import SolverError
 from ..dynamics import Dynamics
 from ..suspect import suspect
@@ -93,3 +94,22 @@ def exponential(t: np.ndarray, reached: np.ndarray) -> bool:
     if not first < second - 1 < last:
         return False
     return bool(t[last] - t[second - 1] < FASTER * (t[second - 1] - t[first]))
+
+
+def refuse_beyond_limits(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> None:
+    """Stop a run whose state has passed the limits of a force, as the turns beyond which a spring cannot tell its angle.
+
+    Raises
+    ------
+    SolverError
+        Names the element.
+    """
+    system, state = dynamics.system, dynamics.state
+    first, end = system.first_limit, system.n_event_functions
+    if first == end:
+        return
+    state.q[:], state.u[:] = q, u
+    state.evaluate("event_function", t)
+    passed = np.flatnonzero(state.values["event_function"][first:end] <= 0)
+    if len(passed):
+        raise SolverError(f"stopped at t = {t:.9g} s: {beyond(system, first + int(passed[0]))}")
