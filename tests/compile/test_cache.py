@@ -93,6 +93,7 @@ def write_many(content):
         cache.write(NAME, content)
 
 
+@pytest.mark.long
 def test_two_processes_that_write_one_entry_leave_it_whole_at_all_times(directory):
     contents = b"a" * 200_000, b"b" * 150_000
     cache.write(NAME, contents[0])
@@ -209,6 +210,7 @@ def test_a_change_of_what_equations_call_makes_their_record_anew(monkeypatch, el
     assert record._entry(kind) != before
 
 
+@pytest.mark.long
 def test_sources_do_not_depend_on_the_order_of_sets():
     """Python orders sets by a seed of the process; sums in kernels must not follow it, or numbers change with a recompilation."""
     script = (

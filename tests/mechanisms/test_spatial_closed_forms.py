@@ -124,6 +124,7 @@ def test_slider_crank():
     np.testing.assert_allclose(total, total[0], atol=1e-10)
 
 
+@pytest.mark.long
 def test_governor_keeps_its_energy_without_damping_and_loses_it_with():
     t = np.linspace(0, 1, 51)
     for damping, worst in ((0.0, 1e-6), (4e4, np.inf)):

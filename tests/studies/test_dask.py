@@ -22,6 +22,7 @@ def client(tmp_path):
         yield found
 
 
+@pytest.mark.long
 def test_a_table_survives_a_worker_that_is_killed(examples, client):
     scene, k_b = examples / "half_car.yaml", np.logspace(5, 7, 24)
     outputs = ["peak(front_bushing.fx)", "chassis.y"]

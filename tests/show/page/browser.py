@@ -12,7 +12,7 @@ import urllib.request
 NAMES = ("chromium", "chromium-browser", "google-chrome")
 OPTIONS = (
     "--headless=new", "--no-sandbox", "--remote-debugging-port=0", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
-    "--remote-allow-origins=*", "--window-size=1280,1000", "--no-first-run", "--disable-extensions", "--hide-scrollbars",
+    "--remote-allow-origins=*", "--window-size=900,900", "--no-first-run", "--disable-extensions", "--hide-scrollbars",
 )  # fmt: skip
 
 

@@ -62,7 +62,7 @@ def coloured(image):
 @pytest.mark.parametrize(
     ("command", "scene", "options"),
     [
-        ("report", "cart_pendulum", ["--no-verify"]),
+        pytest.param("report", "cart_pendulum", ["--no-verify"], marks=pytest.mark.long),
         ("animate", "bricard", ["--duration", 1]),
         ("animate", "half_car", ["--duration", 1]),
     ],
