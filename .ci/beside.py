@@ -1,0 +1,133 @@
+"""Benchmark problems by two versions of the package in turn, so that what slows the machine for a while slows both.
+
+    python .ci/beside.py OTHER [PROBLEM]...
+
+OTHER is the folder of another checkout, as `git worktree add` makes one.  A line for each solver and tolerance: the median of the
+ratios of two solutions that follow each other, this version's time over the other's, and the least times of both.
+All problems with solvers of this package are taken, cars on their manoeuvres among them, where none is named.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import statistics
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+HERE = Path(__file__).resolve()
+RTOLS = (1e-3, 1e-4, 1e-6, 1e-8)
+SHORTEST, FEWEST, MOST = 1.0, 4, 60
+"""Time for a line, s, and pairs of solutions."""
+LONGEST = 25.0
+"""Time, s, after which a line ends with fewer pairs."""
+
+
+class Version:
+    """A process with one version of the package, which solves what it is asked for."""
+
+    def __init__(self, checkout: Path) -> None:
+        self._process = subprocess.Popen(
+            [sys.executable, str(HERE), "--serve"], env={**os.environ, "PYTHONPATH": str(checkout)}, cwd=checkout,
+            stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
+        )  # fmt: skip
+
+    def ask(self, *question: Any) -> Any:
+        """The answer of `answers`."""
+        assert self._process.stdin and self._process.stdout
+        self._process.stdin.write(json.dumps(question) + "\n")
+        self._process.stdin.flush()
+        return json.loads(self._process.stdout.readline())
+
+
+def compared(this: Version, other: Version, problem: str, solver: str, rtol: float) -> str:
+    """A line of the table."""
+    seconds: dict[Version, list[float]] = {this: [], other: []}
+    begun, pairs = time.monotonic(), 0
+    while pairs < FEWEST or (time.monotonic() - begun < SHORTEST and pairs < MOST):
+        for version in (this, other) if pairs % 2 else (other, this):
+            taken = version.ask(problem, solver, rtol)
+            if taken is None:
+                return f"{problem} {solver} {rtol:g}: does not come to its end"
+            seconds[version].append(taken)
+        pairs += 1
+        if time.monotonic() - begun > LONGEST:
+            break
+    ratio = statistics.median(a / b for a, b in zip(seconds[this], seconds[other], strict=True))
+    least = [1e3 * min(seconds[version]) for version in (this, other)]
+    return f"{problem} {solver} {rtol:g}: {ratio:.3f}, {least[0]:.2f} ms beside {least[1]:.2f} ms"
+
+
+def answers() -> None:
+    """Answer questions on standard input: the problems, the solvers of one, or the time of one of its solutions, s."""
+    from stiffmbs.bench.contestant import Failed
+
+    problems = dict(_problems())
+    known: dict[str, dict[str, Callable[[float], Callable[[], Any]]]] = {}
+    at_hand: tuple[Any, Callable[[], Any]] = (None, lambda: None)
+    for line in sys.stdin:
+        question = json.loads(line)
+        answer: Any = list(problems)
+        try:
+            if question:
+                name = question[0]
+                known[name] = known.get(name) or problems[name]()
+                answer = list(known[name])
+            if len(question) > 1:
+                if at_hand[0] != question:
+                    at_hand = question, known[question[0]][question[1]](question[2])
+                    at_hand[1]()
+                begun = time.perf_counter()
+                at_hand[1]()
+                answer = time.perf_counter() - begun
+        except Failed:
+            answer = None
+        print(json.dumps(answer), flush=True)
+
+
+def _problems() -> Any:
+    """Names, and what makes the solvers of each: functions of a tolerance that prepare a solution."""
+    from stiffmbs.bench.benchmark import families
+    from stiffmbs.bench.drives import SOLVERS
+    from stiffmbs.jobs.job import prepare
+
+    def driven(drive: Any) -> dict[str, Any]:
+        def at(how: dict[str, Any]) -> Callable[[float], Callable[[], Any]]:
+            return lambda rtol: prepare(drive.car.model(drive.manoeuvre), rtol=rtol, **how).integrate
+
+        return {solver: at(how) for solver, how in SOLVERS.items()}
+
+    for family in families().values():
+        for problem in family:
+            kind = type(problem).__name__  # classes may have moved between the versions
+            if kind == "Problem":
+                yield problem.name, lambda p=problem: {c.solver: c.at for c in p.contestants() if not c.peer}
+            elif kind == "Drive":
+                yield problem.name, lambda d=problem: driven(d)
+
+
+def main() -> None:
+    """Compare what the command line names."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("other", type=Path, help="folder of another checkout")
+    parser.add_argument("problems", nargs="*", metavar="PROBLEM")
+    asked = parser.parse_args()
+    this, other = Version(HERE.parents[1]), Version(asked.other.resolve())
+    both = [name for name in this.ask() if name in other.ask()]
+    for name in asked.problems:
+        if name not in both:
+            parser.error(f"found the problem '{name}', expected one of {', '.join(both)}")
+    for name in asked.problems or both:
+        solvers = other.ask(name)
+        for solver in this.ask(name):
+            for rtol in RTOLS if solver in solvers else ():
+                print(compared(this, other, name, solver, rtol), flush=True)
+
+
+if __name__ == "__main__":
+    answers() if sys.argv[1:] == ["--serve"] else main()
