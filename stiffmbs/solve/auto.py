@@ -41,8 +41,9 @@ LOOK_AT_IMPLICIT = 3.0
 MAY_LOSE = 0.45
 """The implicit integrator is left when it has fallen behind explicit steps by a start and such a part of what these still cost up to
 the end, by a start alone in further trials: vibrations that the start excites shorten its steps until they have died out, and then it makes up for what it lost."""
-WORTH_A_TRIAL = 7.0
-"""What is left for explicit steps must cost so many starts of the implicit integrator before one is made."""
+WORTH_A_TRIAL, AT_RTOL, MOST = 5.0, 1e-4, 7.0
+"""What is left for explicit steps must cost so many starts of the implicit integrator before one is made, at a tolerance and at the
+most: its steps are longer for looser tolerances, as rtol^(1/5), and those that stability holds back are not."""
 AMENDS = 3.0
 """After a trial that has failed, explicit steps must have cost so many times as much before the next is made, and twice
 as many times after each further one."""
@@ -99,6 +100,7 @@ class _Shared:
         self._explicit_step = cost.of_explicit_step(dynamics)
         self._implicit: Integrator | None = None
         self._costs = cost.ImplicitCost.of(dynamics)
+        self._starts = min(WORTH_A_TRIAL * (AT_RTOL / settings.rtol) ** 0.2, MOST)
         self._pace = _Pace(grid.start)
         self._explicit_cost = np.inf  # of a second of the motion, where stability holds it back
         self._amends = 0.0  # what explicit steps must have cost before the next trial
@@ -138,10 +140,10 @@ class _Shared:
         rate = fastest_rate(self._dynamics, t, q, u)
         self._explicit_cost = self._explicit_step * rate / DOP853.stability
         left = (self._grid.end - t) * self._explicit_cost
-        if self._implicit is None and left > WORTH_A_TRIAL * self._costs.start:
+        if self._implicit is None and left > self._starts * self._costs.start:
             self._implicit = Integrator(self._dynamics, self._settings)
             self._costs = cost.ImplicitCost.of(self._dynamics, self._implicit.factors)
-        return left > WORTH_A_TRIAL * self._costs.start, rate
+        return left > self._starts * self._costs.start, rate
 
     def _rest(self, t: float) -> Grid:
         """What is left of the grid."""
@@ -179,7 +181,7 @@ class _Shared:
         if seen.tried * self._explicit_step < self._amends:
             return False
         rest = (self._grid.end - seen.t) / (seen.t - before.t)
-        if rest * (seen.tried - before.tried) * self._explicit_step <= WORTH_A_TRIAL * self._costs.start:
+        if rest * (seen.tried - before.tried) * self._explicit_step <= self._starts * self._costs.start:
             return False  # nor is it by the rate, as no steps are longer than stability allows
         worth, rate = self._worth_a_trial(work.t, work.q, work.u)
         if worth:
