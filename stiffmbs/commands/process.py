@@ -149,7 +149,7 @@ def _no_interrupt_lost() -> Iterator[None]:
     before = sys.unraisablehook
 
     def raised_again(unraisable: Any) -> None:
-        if issubclass(unraisable.exc_type, KeyboardInterrupt):
+        if unraisable.exc_type is KeyboardInterrupt:  # and not one that ends a solution in time
             threading.Timer(AGAIN, _interrupt).start()  # the callback has to end first
         else:
             before(unraisable)

@@ -100,7 +100,7 @@ class _Shared:
         self._explicit_step = cost.of_explicit_step(dynamics)
         self._implicit: Integrator | None = None
         self._costs = cost.ImplicitCost.of(dynamics)
-        self._starts = min(WORTH_A_TRIAL * (AT_RTOL / settings.rtol) ** 0.2, MOST)
+        self._starts = min(WORTH_A_TRIAL * (AT_RTOL / settings.rtol) ** 0.2, MOST)  # that make a trial worth while
         self._pace = _Pace(grid.start)
         self._explicit_cost = np.inf  # of a second of the motion, where stability holds it back
         self._amends = 0.0  # what explicit steps must have cost before the next trial
