@@ -14,8 +14,8 @@ AS_MANY_AS = {"newton_iterations": "residuals", "factorizations": "jacobians"}
 """Counters that are told only where they differ from others."""
 IN_VAIN = {"error_test_failures": "failed the error test", "convergence_failures": "did not converge"}
 """Steps that were repeated, and why."""
-STARTS = {"breakpoints": "breakpoints of inputs", "events": "events"}
-"""Instants at which the solver stops and starts anew."""
+STARTS = {"breakpoints": ("breakpoint of inputs", "breakpoints of inputs"), "events": ("event", "events")}
+"""Instants at which the solver stops and starts anew: one, and several."""
 
 
 def solver_words(solver: Mapping[str, Any]) -> str:
@@ -58,6 +58,8 @@ def _asked_for(solver: Mapping[str, Any]) -> str:
 
 
 def _starts(solver: Mapping[str, Any]) -> Iterator[str]:
-    starts = [f"{solver[counter]} {what}" for counter, what in STARTS.items() if solver.get(counter)]
+    starts = [
+        f"{solver[counter]} {what[solver[counter] > 1]}" for counter, what in STARTS.items() if solver.get(counter)
+    ]
     if starts:
         yield f"started anew at {' and '.join(starts)}"

@@ -48,6 +48,9 @@ def test_explicit_steps_count_accelerations():
     assert solver_words(found) == (
         "projected; 56 steps (1 more refused); 851 accelerations; started anew at 2 breakpoints of inputs; 1.0 ms"
     )
+    assert "; started anew at 1 breakpoint of inputs and 1 event; " in solver_words(
+        found | {"breakpoints": 1, "events": 1}
+    )
 
 
 def test_every_counter_of_a_run_is_told_or_known_to_be_part_of_another():
