@@ -181,8 +181,8 @@ class _Shared:
         if seen.tried * self._explicit_step < self._amends:
             return False
         rest = (self._grid.end - seen.t) / (seen.t - before.t)
-        if rest * (seen.tried - before.tried) * self._explicit_step <= self._starts * self._costs.start:
-            return False  # nor is it by the rate, as no steps are longer than stability allows
+        if rest * (seen.tried - before.tried) * self._explicit_step <= MOST * self._costs.start:
+            return False  # rejected and short steps are among these: they cost more than the rate tells
         worth, rate = self._worth_a_trial(work.t, work.q, work.u)
         if worth:
             self._messages.append(
