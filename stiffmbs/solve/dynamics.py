@@ -192,7 +192,7 @@ class Dynamics:
         """The quicker way to accelerations that explicit steps take where it serves."""
         from .linear.eliminated import Eliminated
 
-        return Eliminated(self.state)
+        return Eliminated(self.state, self._accelerations.order.updates)
 
     def input_features(self, start: float, end: float) -> InputFeatures:
         """The features of the inputs between two instants, sought once for all runs within them."""

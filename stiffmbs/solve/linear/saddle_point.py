@@ -15,7 +15,7 @@ from ...compile.formulation import Block, Formulation, Product
 from ...compile.machine.native.tables import FACTORS
 from ...compile.machine.own_memory import packed_with_memory
 from ...compile.state import State
-from .elimination_order import elimination_order
+from .elimination_order import EliminationOrder, elimination_order
 from .factors import factors_of
 
 _SADDLE = (Block("u", "lam", "J.T"), Block("lam", "u", "J"))
@@ -90,13 +90,14 @@ def saddle_points(state: State, *formulations: Formulation) -> list[SaddlePoint]
     found: list[SaddlePoint] = []
     for each, table in zip(systems, tables, strict=True):
         like = next((known for known in found if _same_matrix(known.equations, each)), None)
-        found.append(SaddlePoint(each, table, like.factors if like else _factors(each)))
+        order = like.order if like else elimination_order(each)
+        found.append(SaddlePoint(each, table, order, like.factors if like else _factors(each, order)))
     return found
 
 
-def _factors(equations: Equations) -> tuple[np.ndarray, dict[str, Any]]:
+def _factors(equations: Equations, order: EliminationOrder) -> tuple[np.ndarray, dict[str, Any]]:
     """Memory of the factors, and their table."""
-    factors = factors_of(equations.n, *equations.pattern, elimination_order(equations))
+    factors = factors_of(equations.n, *equations.pattern, order)
     return packed_with_memory(FACTORS, factors), factors
 
 
@@ -117,6 +118,8 @@ class SaddlePoint:
     Attributes
     ----------
     equations : Equations
+    order : EliminationOrder
+        Of the LU.
     factors : tuple of ndarray of int and dict
         The table of the factors, which block systems with the same matrix share, and their memory.
     equations_table, factors_table : ndarrays of int
@@ -124,9 +127,10 @@ class SaddlePoint:
     """
 
     def __init__(
-        self, equations: Equations, table: tuple[np.ndarray, list[np.ndarray]], factors: tuple[np.ndarray, dict[str, Any]]
+        self, equations: Equations, table: tuple[np.ndarray, list[np.ndarray]], order: EliminationOrder,
+        factors: tuple[np.ndarray, dict[str, Any]],
     ) -> None:  # fmt: skip
-        self.equations, self.factors = equations, factors
+        self.equations, self.order, self.factors = equations, order, factors
         self.factors_table, _ = factors
         self.equations_table, self._slots = table
         self._cells = self.factors_table.view(FACTORS.cells)[0]
