@@ -192,7 +192,12 @@ class Dynamics:
         """The quicker way to accelerations that explicit steps take where it serves."""
         from .linear.eliminated import Eliminated
 
-        return Eliminated(self.state, self._accelerations.order.updates)
+        return Eliminated(self.state, self.lu_updates)
+
+    @property
+    def lu_updates(self) -> int:
+        """Multiplications of the LU of the block system of accelerations."""
+        return self._accelerations.order.updates
 
     def input_features(self, start: float, end: float) -> InputFeatures:
         """The features of the inputs between two instants, sought once for all runs within them."""
