@@ -38,6 +38,9 @@ ENERGIES = Routine(
     "void(int64, int64, float64*, float64*, int64, float64*, int64, int64*, int64, int64*, float64*, float64*, float64*)",
 )
 
+WORTH_ELIMINATING = 10_000
+"""Multiplications of the LU above which reports and restarts take the elimination: below, they save microseconds each, and a machine's
+first run would compile it for them, 1.4 s."""
 POSITION_TOLERANCE = 1e-12
 """Largest violation that a projection onto the positions leaves, in the equations' own units (m, rad), but for rounding."""
 
@@ -131,6 +134,8 @@ class Dynamics:
         for_output = system.turned("output")
         turned = for_output[~np.isin(for_output, system.turned("acceleration"))]
         self._turned_for_output = turned.astype(np.int64)
+        large = system.of_body.dimensions == 3 and self.lu_updates > WORTH_ELIMINATING
+        eliminates = large and self.eliminated.serves
         self.table = packed(
             DYNAMICS,
             {
@@ -149,6 +154,8 @@ class Dynamics:
                 **self._algebraic,
                 "n_turned_for_output": len(self._turned_for_output),
                 "turned_for_output": self._turned_for_output,
+                "eliminates": eliminates,
+                "eliminated": self.eliminated.within_reach() if eliminates else np.zeros(1, dtype=np.int64),
             },
         )
         self._at, self._cells = self.table.ctypes.data, self.table.view(DYNAMICS.cells)[0]

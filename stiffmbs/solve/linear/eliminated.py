@@ -8,6 +8,7 @@ import numpy as np
 
 from ...compile.equations import ABSENT, Equations
 from ...compile.machine.layout import arrays_of, fill, packed
+from ...compile.machine.routines import together
 from ...compile.state import State
 from ..native.tables.linear import BLOCK_ELIMINATION, ELIMINATED, ENTRY_ELIMINATION, PIN_ELIMINATION
 from .joint_blocks import Joints, block_lists
@@ -15,6 +16,9 @@ from .matrix_entries import entry_lists
 from .pins import pin_lists
 from .saddle_point import ACCELERATIONS
 
+ATTEMPT, MOVE = together(
+    "stiffmbs.solve.native.eliminated", attempt="int32(float64, float64*, int64*)", move="int32(float64*, int64*)"
+)
 MOST_MULTIPLICATIONS = 3
 """Of the elimination, relative to those of the LU of the whole, up to which it takes less time: measured on bodies that carry 2 to 120
 others.  Its blocks are dense and in order, while the LU follows lists of entries."""
@@ -77,6 +81,7 @@ class Eliminated:
             force = system.term("acceleration", "f")
             arrays = {
                 "f_source": force.source, "f_row": force.row, "scale": 1.0 / np.sqrt(system.mass), "a": np.zeros(system.n_u + 3),
+                "q_before": np.zeros(system.n_q), "u_before": np.zeros(system.n_u),
                 "lists": packed(layout, self._lists),
             }  # fmt: skip
             numbers = {
@@ -88,6 +93,11 @@ class Eliminated:
             }
             self._arrays = {**arrays_of(ELIMINATED, arrays), "state": state.table, "kept": 1.0, **numbers}
             fill(self.table, ELIMINATED, self._arrays)
+
+    def within_reach(self) -> np.ndarray:
+        """The table, with the addresses of its routines for compiled code that does not hold them itself."""
+        self._cells["attempt"], self._cells["move"] = ATTEMPT.address, MOVE.address
+        return self.table
 
     def forget(self) -> None:
         """Forget how many digits pivots have kept so far, so that a run's rounding does not depend on earlier runs."""

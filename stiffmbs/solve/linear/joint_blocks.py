@@ -130,7 +130,7 @@ def block_lists(joints: Joints, system: System, kept: np.ndarray) -> dict[str, A
     return {
         **arrays_of(BLOCK_ELIMINATION, lists), "n_full": len(lists["full"]), "n_diagonals": len(lists["straight"]), "n_gamma": len(solved), "n_first": len(np.unique(j.at)), "n_j": len(j.at),
         "n_pairs": len(pairs), "n_singles": len(singles), "n_forming": len(forming), "n_products": len(products),
-        "n_nodes": len(joints.sizes), "n_panels": joints.starts[-1], "n_x": joints.places[-1],
+        "n_nodes": len(joints.sizes), "n_panels": joints.starts[-1], "n_x": joints.places[-1], "n_pivots": sum(joints.sizes),
     }  # fmt: skip
 
 

@@ -5,8 +5,11 @@ Far faster than the LU of the whole where bodies carry few joints each; the mass
 
 from __future__ import annotations
 
+from math import log
+
 from stiffmbs.compile.machine.native.access import compiled, state_view
 from stiffmbs.compile.machine.native.evaluate import ACCELERATION, evaluate
+from stiffmbs.solve.native.calls import int32
 from stiffmbs.solve.native.elimination.by_blocks import accelerate_by_blocks, blocks_view, move_by_blocks
 from stiffmbs.solve.native.elimination.by_entries import accelerate_by_entries, entries_view, move_by_entries
 from stiffmbs.solve.native.elimination.by_pins import accelerate_by_pins, move_by_pins, pins_view
@@ -54,6 +57,34 @@ def smallest_move(r, s, violations):
     else:
         move_by_entries(r, entries_view(r.lists), s, violations)
     _scale(r)
+
+
+@compiled
+def log_determinant_by_blocks(r):
+    """log |det| of the block matrix [M J^T; J 0], as det M det(J M^-1 J^T)."""
+    b = blocks_view(r.lists)
+    total = 0.0
+    for k in range(b.n_pivots):
+        total += log(b.pivot[k])
+    for k in range(r.n_u):
+        total -= 2.0 * log(r.scale[k])
+    return total
+
+
+def attempt(t, acceleration, eliminated):
+    """`eliminated_accelerations` from other compiled code; accelerations are copied out."""
+    r = eliminated_view(eliminated)
+    done = eliminated_accelerations(r, state_view(r.state), t)
+    for k in range(r.n_u):
+        acceleration[k] = r.a[k]
+    return int32(done)
+
+
+def move(violations, eliminated):
+    """`smallest_move` from other compiled code."""
+    r = eliminated_view(eliminated)
+    smallest_move(r, state_view(r.state), violations)
+    return int32(0)
 
 
 def accelerate(t, acceleration, eliminated):

@@ -6,7 +6,7 @@ from math import isfinite
 
 from stiffmbs.compile.machine.native.access import compiled, factors_view, state_view
 from stiffmbs.compile.machine.native.orientation import add_rates, take_unit_length
-from stiffmbs.solve.native.dynamics import (
+from stiffmbs.solve.native.block_systems import (
     MOST_MOVES,
     to_accelerations,
     to_position_constraints,

@@ -6,7 +6,7 @@ from math import sin, sqrt
 
 from stiffmbs.compile.machine.native.access import compiled, shifted, state_view
 from stiffmbs.compile.machine.native.orientation import add_rates
-from stiffmbs.solve.native.dynamics import largest_of
+from stiffmbs.solve.native.block_systems import largest_of
 from stiffmbs.solve.native.explicit.stages import accelerated, copied
 from stiffmbs.solve.native.tables.views import dynamics_view
 

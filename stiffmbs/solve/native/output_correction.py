@@ -11,8 +11,8 @@ from __future__ import annotations
 
 from stiffmbs.compile.machine.native.access import compiled, equations_view, floats, state_view, view_of
 from stiffmbs.compile.machine.native.evaluate import add_entries, add_products, add_sizes, evaluate, load
+from stiffmbs.solve.native.block_systems import to_position_constraints
 from stiffmbs.solve.native.calls import call_int, copy_bytes, int32
-from stiffmbs.solve.native.dynamics import to_position_constraints
 from stiffmbs.solve.native.explicit.stages import copied
 from stiffmbs.solve.native.statuses import OK
 from stiffmbs.solve.native.tables.steps import OUTPUT_CORRECTION

@@ -5,7 +5,7 @@ from __future__ import annotations
 from stiffmbs.compile.machine.native.access import compiled, shifted
 from stiffmbs.compile.machine.native.evaluate import MOTION, POSITION, evaluate
 from stiffmbs.compile.machine.native.orientation import add_rates, take_unit_length
-from stiffmbs.solve.native.dynamics import (
+from stiffmbs.solve.native.block_systems import (
     COORDINATE_ROUNDING,
     MOST_MOVES,
     largest_of,

@@ -6,7 +6,7 @@ from stiffmbs.compile.machine.native.access import compiled, equations_view, fac
 from stiffmbs.compile.machine.native.evaluate import load
 from stiffmbs.solve.ida.native.start import UNFINISHED, begun, prepared, start_view
 from stiffmbs.solve.native.calls import call_int, int32
-from stiffmbs.solve.native.dynamics import to_accelerations, to_position_constraints, to_velocity_constraints
+from stiffmbs.solve.native.consistent import consistent_accelerations, to_constraints
 from stiffmbs.solve.native.explicit.stages import copied
 from stiffmbs.solve.native.ida_loop import clear_call, stepped
 from stiffmbs.solve.native.ida_memory import array_of, native_ida_view
@@ -23,18 +23,13 @@ restart_view = view_of("Restart", RESTART)
 @compiled
 def brought_back(s, m, t):
     """The state at hand on the constraints; 0 or a negative status."""
-    if s.n_c > 0:
-        status = to_position_constraints(s, m, t, POSITION_TOLERANCE, MOST_MOVES)
-        if status < 0:
-            return status
-        return to_velocity_constraints(s, m, t)
-    return 0
+    return to_constraints(s, m, t, POSITION_TOLERANCE, MOST_MOVES) if s.n_c > 0 else 0
 
 
 @compiled
 def accelerated(s, m, t):
     """New accelerations and multipliers of the state at hand; 0 or a negative status."""
-    status = to_accelerations(s, m, t)
+    status = consistent_accelerations(s, m, t)
     if status < 0:
         return status
     copied(s.a, factors_view(m.acceleration_factors).b, s.n_u)

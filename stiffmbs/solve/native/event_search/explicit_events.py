@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from stiffmbs.compile.machine.native.access import compiled, shifted, state_view
 from stiffmbs.compile.machine.native.evaluate import SWITCH, evaluate
+from stiffmbs.solve.native.block_systems import to_accelerations
 from stiffmbs.solve.native.calls import int32
-from stiffmbs.solve.native.dynamics import to_accelerations
 from stiffmbs.solve.native.event_search.bounds import (
     LOOKED_AT,
     event_search_view,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from stiffmbs.compile.machine.native.access import compiled, factors_view, state_view
 from stiffmbs.compile.machine.native.evaluate import SWITCH, evaluate
 from stiffmbs.compile.machine.native.orientation import add_rates, take_unit_length
-from stiffmbs.solve.native.dynamics import to_accelerations
+from stiffmbs.solve.native.consistent import consistent_accelerations
 from stiffmbs.solve.native.explicit.stages import copied
 from stiffmbs.solve.native.tables.views import dynamics_view
 
@@ -77,7 +77,7 @@ def side(t, size, interval, q, u, along_q, along_u, there, count, values, accele
     copied(there, s.q, s.n_q)
     copied(values, evaluate(s, SWITCH, t), count)
     add_rates(s, s.u, interval, there)
-    status = to_accelerations(s, m, t)
+    status = consistent_accelerations(s, m, t)
     if status < 0:
         return status
     copied(acceleration, factors_view(m.acceleration_factors).b, s.n_u)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from stiffmbs.compile.machine.native.access import compiled, factors_view, floats, shifted
 from stiffmbs.compile.machine.native.evaluate import ACCELERATION, evaluate
 from stiffmbs.compile.machine.native.orientation import add_rates
-from stiffmbs.solve.native.dynamics import to_accelerations
+from stiffmbs.solve.native.block_systems import to_accelerations
 from stiffmbs.solve.native.eliminated import eliminated_accelerations
 from stiffmbs.solve.native.tables.views import eliminated_view
 

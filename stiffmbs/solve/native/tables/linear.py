@@ -55,19 +55,23 @@ DYNAMICS = Layout({
     "n_behind": INT, "behind_source": INTS, "behind_row": INTS, "by_reactions": INT,
     "n_algebraic": INT, "algebraic": INTS, "algebraic_scale": FLOATS, "algebraic_before": FLOATS,
     "n_turned_for_output": INT, "turned_for_output": INTS,
+    "eliminates": INT, "eliminated": INTS, "by_elimination": INT_CELL,
 })  # fmt: skip
 """The tables of one state and its three block systems; `status` receives why no more instants could be reported;
 `behind` tells where the rates of counters of turns and states stand among the terms of accelerations, and `by_reactions` whether any of them
 depends on multipliers; then the coordinates that are algebraic states, sizes of them that matter, and their last values; and the
-bodies whose orientation output terms ask for beside those that accelerations do, by their first coordinates."""
+bodies whose orientation output terms ask for beside those that accelerations do, by their first coordinates.  At last whether
+accelerations are tried by elimination (`stiffmbs.solve.native.consistent`), its table, and whether it has found the last ones."""
 
 ELIMINATED = Layout({
     "state": INTS, "n_u": INT, "trees": INT, "by_blocks": INT, "by_pins": INT, "lists": INTS,
     "ready": INT_CELL, "kept": FLOAT_CELL, "most_kept": FLOAT_CELL,
     "n_f": INT, "f_source": INDICES, "f_row": INDICES, "scale": FLOATS, "a": FLOATS,
+    "attempt": INT_CELL, "move": INT_CELL, "q_before": FLOATS, "u_before": FLOATS,
 })  # fmt: skip
 """J M^-1 J^T (`stiffmbs.solve.linear.eliminated`): whether no joint closes a loop, whether it is factored by blocks or by pins, and the table of
-these or of the entries; whether there are factors, what their pivots keep, and have kept at the most; forces, M^-1/2, accelerations."""
+these or of the entries; whether there are factors, what their pivots keep, and have kept at the most; forces, M^-1/2, accelerations;
+the addresses of its routines, where other compiled code may ask for them, and memory of a state."""
 
 ENTRY_ELIMINATION = Layout({
     "n": INT, "n_gamma": INT, "n_j": INT, "n_slots": INT, "gamma_source": INDICES, "gamma_row": INDICES,
@@ -96,7 +100,7 @@ BLOCK_ELIMINATION = Layout({
     "n_pairs": INT, "pair": INDICES, "n_singles": INT, "single": INDICES,
     "n_forming": INT, "forming": INDICES, "n_products": INT, "product": INDICES,
     "n_nodes": INT, "node": INDICES, "n_panels": INT, "blocks": FLOATS, "update": INDICES, "right": INDICES,
-    "place": INTS, "pivot": FLOATS, "diagonal": FLOATS, "n_x": INT, "x": FLOATS, "y": FLOATS,
+    "place": INTS, "n_pivots": INT, "pivot": FLOATS, "diagonal": FLOATS, "n_x": INT, "x": FLOATS, "y": FLOATS,
 })  # fmt: skip
 """The same by dense blocks (`stiffmbs.solve.linear.joint_blocks`).  Velocities are taken by threes.  Rows of `full`, where
 each has an entry of J in all rows of a joint: how many these are, start and stride of the joint's panel, place in x, block of J for

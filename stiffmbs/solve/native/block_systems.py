@@ -1,0 +1,196 @@
+"""The block systems of a mechanism solved at its state: moves to the constraints of positions and velocities, accelerations."""
+
+from __future__ import annotations
+
+from math import isfinite
+
+from stiffmbs.compile.machine.native.access import compiled, equations_view, factors_view
+from stiffmbs.compile.machine.native.evaluate import (
+    ACCELERATION,
+    MOTION,
+    POSITION,
+    add_entries,
+    add_products,
+    evaluate,
+)
+from stiffmbs.compile.machine.native.factors import DONE, FULL, factored, solve
+from stiffmbs.compile.machine.native.orientation import take_unit_length
+from stiffmbs.solve.native.statuses import NO_BALANCE, NO_CONVERGENCE, NO_MEMORY, NO_STATE, NOT_FINITE, SINGULAR
+
+MOST_MOVES = 20
+"""Newton's moves back to the constraints, from a state that was near them."""
+COORDINATE_ROUNDING = 9e-16
+"""Part of the largest coordinate that no violation can be told below: four roundings."""
+ENTRY_ROUNDING = 4.4e-16
+"""Difference of two entries of block matrices, scaled to a diagonal of 1, that is none: two roundings of 1."""
+MOST_FRICTION_ITERATIONS = 40
+FRICTION_TOLERANCE = 1e-13
+"""Change of the multipliers, relative to the largest of them and of the applied forces, at which they are in balance with the friction that they press."""
+ROUNDED_OFF = 1e-9
+"""Change that is taken for balance all the same when no iteration brings it further down."""
+STATE_TOLERANCE, STATE_ROUNDED_OFF, SLOW = 1e-12, 1e-7, 0.25
+"""Change of algebraic states, relative to their values or scales, at which Newton's iteration has found them; and the one that
+will do where a move is no shorter than this part of the one before."""
+
+
+@compiled
+def largest_of(values, count):
+    """The largest magnitude; infinity where a number is not finite."""
+    largest = 0.0
+    for k in range(count):
+        if not isfinite(values[k]):
+            return float("inf")
+        largest = max(largest, abs(values[k]))
+    return largest
+
+
+@compiled
+def largest_open(s, violation):
+    """The largest violation of positions beyond what redundant equations may be off by."""
+    largest = 0.0
+    for row in range(s.n_c):
+        if not isfinite(violation[row]):
+            return float("inf")
+        largest = max(largest, abs(violation[row]) - s.left_open[row])
+    return largest
+
+
+@compiled
+def _is_as_factored(f):
+    """Whether the matrix is the one whose factors are known, as of velocities at the same pose, or of bodies without joints.
+
+    Term sets round the same terms in different ways: entries may differ by what they lose in the scaled matrix anyway.
+    """
+    for column in range(f.n):
+        for p in range(f.a_start[column], f.a_start[column + 1]):
+            if f.a[p] != f.factored[p] and not _rounded_alike(f, p, column):
+                return False
+    return True
+
+
+@compiled
+def _rounded_alike(f, p, column):
+    """Whether an entry is by rounding alone another one than that whose factors are known."""
+    return abs(f.a[p] - f.factored[p]) * f.scale[f.a_row[p]] * f.scale[column] <= ENTRY_ROUNDING
+
+
+@compiled
+def _solved(s, equations, factors, values):
+    """Fill in, factor and solve one block system; 0, with the solution in the factors' `b`, or a failure."""
+    e = equations_view(equations)
+    matrix = factors_view(factors)
+    add_entries(e, values, 0.0, matrix.a)
+    if not (matrix.ready and _is_as_factored(matrix)):
+        for k in range(matrix.a_start[matrix.n]):
+            matrix.factored[k] = matrix.a[k]
+        outcome = factored(factors)
+        if outcome == FULL:
+            return NO_MEMORY
+        if outcome != DONE:
+            return SINGULAR if isfinite(largest_of(matrix.a, matrix.a_start[matrix.n])) else NOT_FINITE
+    f = factors_view(factors)  # the memory may have grown
+    add_products(e, values, f.previous, f.previous, f.b)
+    solve(f, f.b)
+    return 0 if isfinite(largest_of(f.b, f.n)) else NOT_FINITE
+
+
+@compiled
+def to_position_constraints(s, m, t, tolerance, most):
+    """Newton's smallest moves until |C| <= tolerance, or rounding; the number of moves, or a negative status."""
+    for move in range(most):
+        values = evaluate(s, POSITION, t)
+        violation = largest_open(s, values)
+        if violation <= max(tolerance, COORDINATE_ROUNDING * largest_of(s.q, s.n_pose)):
+            return move
+        if not isfinite(violation):
+            return NOT_FINITE
+        status = _solved(s, m.positions, m.position_factors, values)
+        if status < 0:
+            return status
+        step = factors_view(m.position_factors).b
+        for k in range(s.n_q):
+            s.q[k] += step[k]
+        take_unit_length(s)
+    return NO_CONVERGENCE
+
+
+@compiled
+def to_velocity_constraints(s, m, t):
+    """The smallest correction of u in the mass matrix that brings J u + C_t to zero."""
+    values = evaluate(s, MOTION, t)
+    status = _solved(s, m.velocities, m.velocity_factors, values)
+    if status < 0:
+        return status
+    step = factors_view(m.velocity_factors).b
+    for k in range(s.n_u):
+        s.u[k] += step[k]
+    return 0
+
+
+@compiled
+def _largest_force(s, e, values):
+    """The largest applied force: multipliers that vanish beside it need no digits of their own."""
+    largest = 0.0
+    for k in range(e.n_plain):
+        if e.r_row[k] < s.n_u:
+            largest = max(largest, abs(values[e.r_source[k]]))
+    return largest
+
+
+@compiled
+def _algebraic_moved(s, m, e, f):
+    """Take over the new values of algebraic states; their largest change, relative to values or scales."""
+    moved = 0.0
+    for k in range(m.n_algebraic):
+        place = m.algebraic[k]
+        new = f.b[e.at_x[place]]
+        moved = max(moved, abs(new - s.q[place]) / max(abs(new), m.algebraic_scale[k]))
+        s.q[place] = new
+    return moved
+
+
+@compiled
+def _algebraic_back(s, m, status):
+    """The algebraic states as they were before an iteration that has failed, and why it has."""
+    for k in range(m.n_algebraic):
+        s.q[m.algebraic[k]] = m.algebraic_before[k]
+    return NO_STATE if m.n_algebraic > 0 and status != NO_MEMORY else status
+
+
+@compiled
+def to_accelerations(s, m, t):
+    """Accelerations (in the factors' `b`), multipliers (in lam) and algebraic states (in q) at the current state.
+
+    One linear solution; Newton's iteration from the values at hand where there are algebraic states, or forces hang on lam.
+    """
+    e = equations_view(m.accelerations)
+    f = factors_view(m.acceleration_factors)
+    iterated = e.n_with_y > e.n_plain
+    for k in range(m.n_algebraic):
+        m.algebraic_before[k] = s.q[m.algebraic[k]]
+    moved = 0.0
+    for _ in range(MOST_FRICTION_ITERATIONS):
+        for k in range(s.n_c):
+            if e.at_lam[k] >= 0:
+                f.previous[e.at_lam[k]] = s.lam[k]
+        for k in range(m.n_algebraic):
+            f.previous[e.at_x[m.algebraic[k]]] = s.q[m.algebraic[k]]
+        values = evaluate(s, ACCELERATION, t)
+        status = _solved(s, m.accelerations, m.acceleration_factors, values)
+        if status < 0:
+            return _algebraic_back(s, m, NO_BALANCE if iterated and status == SINGULAR else status)
+        before = moved
+        moved = _algebraic_moved(s, m, e, f)
+        found = moved <= STATE_TOLERANCE or (moved <= STATE_ROUNDED_OFF and moved >= SLOW * before)
+        change = 0.0
+        largest = _largest_force(s, e, values) if iterated else 0.0
+        for k in range(s.n_c):
+            new = f.b[e.at_lam[k]] if e.at_lam[k] >= 0 else 0.0
+            change = max(change, abs(new - s.lam[k]))
+            largest = max(largest, abs(new))
+            s.lam[k] = new
+        if not iterated or (found and change <= FRICTION_TOLERANCE * largest):
+            if m.by_reactions:
+                evaluate(s, ACCELERATION, t)
+            return 0
+    return 0 if found and change <= ROUNDED_OFF * largest else _algebraic_back(s, m, NO_BALANCE)

@@ -1,0 +1,90 @@
+"""States near the constraints made consistent: by elimination of velocities where that keeps its digits, else by the LU of the whole.
+
+The elimination's factors belong to one pose.  Moves with them close positions and velocities nearby as well, each up to what J has
+changed since; both are looked at again.
+"""
+
+from __future__ import annotations
+
+from stiffmbs.compile.machine.native.access import compiled, factors_view, shifted
+from stiffmbs.compile.machine.native.evaluate import ACCELERATION, MOTION, evaluate
+from stiffmbs.compile.machine.native.orientation import add_rates, take_unit_length
+from stiffmbs.solve.native.block_systems import (
+    COORDINATE_ROUNDING,
+    largest_of,
+    largest_open,
+    to_accelerations,
+    to_position_constraints,
+    to_velocity_constraints,
+)
+from stiffmbs.solve.native.calls import call_int
+from stiffmbs.solve.native.explicit.stages import copied
+from stiffmbs.solve.native.tables.views import eliminated_view
+
+KEPT = 1e-3
+"""Part that pivots have to keep: elimination then loses three digits of sixteen at the most, or the LU takes its place."""
+MOST_MOVES = 3
+"""With the same factors, of positions and of velocities: states of a run need one or two."""
+VELOCITY_ROUNDING = 9e-16
+"""Part of the largest velocity that no violation of velocities can be told below: four roundings."""
+
+
+@compiled
+def _eliminated(s, m, t):
+    """Accelerations (in the factors' `b`) and multipliers (in lam) by elimination; whether that is at hand, and pivots keep their digits."""
+    if not m.eliminates:
+        return False
+    r = eliminated_view(m.eliminated)
+    return call_int(r.attempt, (t, factors_view(m.acceleration_factors).b, m.eliminated)) != 0 and r.kept >= KEPT
+
+
+@compiled
+def consistent_accelerations(s, m, t):
+    """`stiffmbs.solve.native.block_systems.to_accelerations`, in less time where elimination serves; notes which way was taken."""
+    m.by_elimination = 1 if _eliminated(s, m, t) else 0
+    if not m.by_elimination:
+        return to_accelerations(s, m, t)
+    if m.by_reactions:
+        evaluate(s, ACCELERATION, t)
+    return 0
+
+
+@compiled
+def _closed(r, s, m, t, tolerance):
+    """Moves of q and u to both constraints by the factors at hand; whether they got there."""
+    moves = 0
+    while moves <= MOST_MOVES:
+        violations = evaluate(s, MOTION, t)
+        if largest_open(s, violations) <= max(tolerance, COORDINATE_ROUNDING * largest_of(s.q, s.n_pose)):
+            break
+        call_int(r.move, (violations, m.eliminated))
+        add_rates(s, r.a, 1.0, s.q)
+        take_unit_length(s)
+        moves += 1
+    if moves > MOST_MOVES:
+        return False
+    for _ in range(MOST_MOVES):
+        open_velocities = shifted(violations, s.n_c)
+        close = max(tolerance, VELOCITY_ROUNDING * largest_of(s.u, s.n_u))
+        if largest_open(s, open_velocities) <= close:
+            return True
+        call_int(r.move, (open_velocities, m.eliminated))
+        for k in range(s.n_u):
+            s.u[k] += r.a[k]
+        violations = evaluate(s, MOTION, t)
+    return largest_open(s, shifted(violations, s.n_c)) <= close
+
+
+@compiled
+def to_constraints(s, m, t, tolerance, most):
+    """Bring q and u of a state near the constraints to both; 0 or a negative status."""
+    if _eliminated(s, m, t):
+        r = eliminated_view(m.eliminated)
+        copied(r.q_before, s.q, s.n_q)
+        copied(r.u_before, s.u, s.n_u)
+        if _closed(r, s, m, t, tolerance):
+            return 0
+        copied(s.q, r.q_before, s.n_q)
+        copied(s.u, r.u_before, s.n_u)
+    status = to_position_constraints(s, m, t, tolerance, most)
+    return status if status < 0 else to_velocity_constraints(s, m, t)
