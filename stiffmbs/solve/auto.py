@@ -18,6 +18,7 @@ from ..describe.settings import RunSettings
 from ..errors import SolverError
 from . import bdf, cost
 from .dynamics import Dynamics
+from .error_control.tolerances import absolute_tolerances
 from .events.restart import just_after, just_before, restarted
 from .explicit import DOP853
 from .explicit.adaptive import AdaptiveRun, Leaving
@@ -44,6 +45,11 @@ the end, by a start alone in further trials: vibrations that the start excites s
 WORTH_A_TRIAL, AT_RTOL, MOST = 5.0, 1e-4, 7.0
 """What is left for explicit steps must cost so many starts of the implicit integrator before one is made, at a tolerance and at the
 most: its steps are longer for looser tolerances, as rtol^(1/5), and those that stability holds back are not."""
+QUIET, FEWER = 10.0, 0.5
+"""Change of a velocity, in tolerances, that accelerations at a start make in an explicit step: below, the start excites so little of
+vibrations that half as many starts make a trial worth while."""
+AT_REST, FEWEST = 1e-4, 1.5
+"""Such a change below which the start excites nothing, and starts of the implicit integrator that make a trial worth while then."""
 AMENDS = 3.0
 """After a trial that has failed, explicit steps must have cost so many times as much before the next is made, and twice
 as many times after each further one."""
@@ -130,20 +136,33 @@ class _Shared:
 
     def _is_stiff_at_once(self, start: InitialValues) -> bool:
         """Whether BDF is to be tried from the first on."""
-        worth, rate = self._worth_a_trial(self._grid.start, start.q, start.u)
+        worth, rate = self._worth_a_trial(self._grid.start, start.q, start.u, start.acceleration)
         if worth:
             self._messages.append(f"bdf, as the fastest rate is {rate:.3g} 1/s")
         return worth
 
-    def _worth_a_trial(self, t: float, q: np.ndarray, u: np.ndarray) -> tuple[bool, float]:
+    def _worth_a_trial(
+        self, t: float, q: np.ndarray, u: np.ndarray, acceleration: np.ndarray | None = None
+    ) -> tuple[bool, float]:
         """Whether steps as short as stability asks for at a state are so many that trying BDF costs little; the rate."""
         rate = fastest_rate(self._dynamics, t, q, u)
         self._explicit_cost = self._explicit_step * rate / DOP853.stability
         left = (self._grid.end - t) * self._explicit_cost
-        if self._implicit is None and left > self._starts * self._costs.start:
+        starts = self._starts if acceleration is None or not left else self._starts_from(u, acceleration, rate)
+        if self._implicit is None and left > starts * self._costs.start:
             self._implicit = Integrator(self._dynamics, self._settings)
             self._costs = cost.ImplicitCost.of(self._dynamics, self._implicit.factors)
-        return left > self._starts * self._costs.start, rate
+        return left > starts * self._costs.start, rate
+
+    def _starts_from(self, u: np.ndarray, acceleration: np.ndarray, rate: float) -> float:
+        """Starts of the implicit integrator that explicit steps must cost, by what accelerations excite."""
+        settings, n_q = self._settings, self._dynamics.system.n_q
+        tolerances = self._dynamics.kept(
+            "tolerances", settings, lambda: absolute_tolerances(self._dynamics.system, settings)
+        )
+        change = np.abs(acceleration) * (DOP853.stability / rate) / (tolerances[n_q:] + settings.rtol * np.abs(u))
+        excited = float(change.max(initial=0.0))
+        return FEWEST if excited < AT_REST else self._starts * (FEWER if excited < QUIET else 1.0)
 
     def _rest(self, t: float) -> Grid:
         """What is left of the grid."""
