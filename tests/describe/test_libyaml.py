@@ -62,7 +62,7 @@ LEFT = (
     "--- a\n--- b", "--- a", "a\n...\n", "a: !!int '3'", "a: !x 3", "a: !", "a: ! 3", "a: *x", "a: &x 1\nb: &x 2\nc: *x", "&a [&a b, *a]", "a: &a [*a]",
     "&b: c", "&b:30", "[&a :b, *a]", "a: &x 1\n*x:", "a: &x 1\nb: *x:", '["":b]', '{"a":1}', "[?,,b]", "? a\n: b", "? [a]\n: b", "1: a\ntrue: b", "a: x && y", "{a::b}",
     "|\n#", "a: |#\n  x\n", "a: |2#\n   x", "a: |-\n  \n   x\n", "a: |2\n   x", "=: 1", "a: =", "a: <<", "{<<: 1}", "{<<: [{a: 1}]}", "{<<: {a: 1}, <<: {b: 2}}",
-    "a: 2001-13-01", "a: " + "9" * 5000, "a: \x7f", "a: \U0001f600", "\ufeffa: 1", "a: 1\r\nb: 2", "a: [", "]", "a: b: c", "a: 'x", " a: 1\nb: 2",
+    "a: 2001-13-01", "a: " + "9" * 5000, "a: \x7f", "a: \U0001f600", "\ufeffa: 1", "a: 1\rb: 2", "a: [", "]", "a: b: c", "a: 'x", " a: 1\nb: 2",
     "[" * 42 + "]" * 42, "[" * 100_000, "{a: " * 100_000, "- " * 100_000, "[" * 100_000 + "]" * 100_000,
 )  # fmt: skip
 
@@ -70,6 +70,11 @@ LEFT = (
 @pytest.mark.parametrize("text", READ)
 def test_what_libyaml_reads_is_what_python_reads(text):
     assert assert_same(text)
+
+
+@pytest.mark.parametrize("text", READ)
+def test_lines_that_end_as_on_windows_are_read_as_others(text):
+    assert assert_same(text.replace("\n", "\r\n"))
 
 
 @pytest.mark.parametrize("text", LEFT, ids=lambda text: repr(text[:20]))

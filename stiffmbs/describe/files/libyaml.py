@@ -57,6 +57,7 @@ def read_by_libyaml(text: str) -> Any:
     NotSureError
         For a text that is to be read by Python, which also tells faults; for all of them where libyaml is not installed.
     """
+    text = text.replace("\r\n", "\n")  # YAML has no difference between them
     if not yaml.__with_libyaml__ or yaml._yaml.get_version() != COMPARED or _READ_OTHERWISE.search(text):
         raise NotSureError
     try:
