@@ -21,6 +21,7 @@ from .loads import Loads
 from .marker import MarkerReference
 
 if TYPE_CHECKING:
+    from .initial_pose import InitialPose
     from .model_data import ModelData
 
 Symbolic = Any
@@ -113,7 +114,7 @@ class Element(Described):
         """A field and what is wrong with the joint that it refers to, "found ..., expected ..."; nothing where all fit."""
         yield from ()
 
-    def invalid_placement(self, model: ModelData) -> Iterator[str]:
+    def invalid_placement(self, pose: InitialPose) -> Iterator[str]:
         """Why the element cannot act at the initial pose."""
         yield from ()
 

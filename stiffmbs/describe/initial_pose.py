@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
@@ -15,6 +16,31 @@ from .marker import MarkerReference
 
 if TYPE_CHECKING:
     from .model_data import ModelData
+
+SAME_POINT = 1e-13
+"""Of the mechanism's size, or of the coordinates where they are larger: what two ways to one point may differ by."""
+
+
+@dataclass(frozen=True)
+class InitialPose:
+    """A model as described, for all its elements that look whether they can stand in it.
+
+    Attributes
+    ----------
+    model : ModelData
+    """
+
+    model: ModelData
+
+    def at_one_place(self, i: MarkerReference, j: MarkerReference) -> bool:
+        """Whether two markers are at one point at the start, to rounding: the line through them has no direction."""
+        a, b = self.model.point(i), self.model.point(j)
+        return math.dist(a, b) <= SAME_POINT * max(self._size, *map(abs, (*a, *b)))
+
+    @cached_property
+    def _size(self) -> float:
+        """Worked out once, as it looks at all markers."""
+        return self.model.size()
 
 
 @dataclass(frozen=True)

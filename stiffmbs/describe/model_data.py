@@ -17,6 +17,7 @@ from .formula.formula import Formula
 from .formula.names import NAMES, FormulaNames
 from .formula.nodes import TIME
 from .formula.text import UNIT
+from .initial_pose import InitialPose
 from .joint_name import JointName
 from .marker import GROUND, MarkerReference
 from .parts.names import beginnings
@@ -40,8 +41,6 @@ from .states.state import StateValue
 if TYPE_CHECKING:
     from .requests.angle_counter import AngleCounter
 
-SAME_POINT = 1e-13
-"""Of the mechanism's size, or of the coordinates where they are larger: what two ways to one point may differ by."""
 RESERVED = (GROUND, "energy", "constraint", "time", TIME, UNIT)
 
 
@@ -143,8 +142,9 @@ class ModelData(Described):
         known = self.bodies, self.joints, self.markers, NAMES[self.dimensions], self.names_in_formulas()
         for where, element in placed.items():
             check_element(where, element, *known)
+        pose = InitialPose(self)
         for where, element in placed.items():  # which looks at all bodies and markers that elements name
-            for reason in element.invalid_placement(self):
+            for reason in element.invalid_placement(pose):
                 raise ValueError(f"{where}: {reason}")
 
     def check_requests(self) -> None:
@@ -212,8 +212,9 @@ class ModelData(Described):
     def size(self) -> float:
         """Diagonal of the box around all bodies and markers at the start, m; 1 where it is a single point."""
         points = [body.coordinates()[: self.dimensions] for body in self.bodies.values()]
-        for _, element in (*self.joints.items(), *self.forces.items()):
-            points += [self.point(marker) for _, marker in element.markers()]
+        elements = (*self.joints.values(), *self.forces.values())
+        markers = dict.fromkeys(marker for element in elements for _, marker in element.markers())
+        points += [self.point(marker) for marker in markers]
         widths = (max(p[k] for p in points) - min(p[k] for p in points) for k in range(self.dimensions))
         return math.hypot(*widths) or 1.0
 
@@ -224,11 +225,6 @@ class ModelData(Described):
     def point(self, marker: MarkerReference) -> tuple[float, ...]:
         """Where a marker is in ground axes at the start, m."""
         return tuple(float(x) for x in self.initial_marker(marker).point)
-
-    def at_one_place(self, i: MarkerReference, j: MarkerReference) -> bool:
-        """Whether two markers are at one point at the start, to rounding: the line through them has no direction."""
-        a, b = self.point(i), self.point(j)
-        return math.dist(a, b) <= SAME_POINT * max(self.size(), *map(abs, (*a, *b)))
 
     def place(self, marker: Any) -> Any:
         """Where a marker sits on its body, in the body's own axes."""

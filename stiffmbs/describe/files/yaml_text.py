@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from contextlib import suppress
 from io import StringIO
 from typing import Any
 
@@ -12,6 +13,8 @@ from .yaml_content import check_content
 
 _DECIMAL = re.compile(r"-?(0|[1-9][0-9]{0,14})(\.[0-9]{1,15})?")
 """Numbers that are read alike by YAML and Python."""
+LONG = 8000
+"""Characters of a text, from which on it pays to load libyaml."""
 _OTHER_ENDS = re.compile("[\x85\u2028\u2029]")
 """What ended a line in YAML 1.1; since 1.2 that is LF and CR alone."""
 
@@ -32,11 +35,27 @@ def read_yaml(text: str, source: str) -> Any:
     """
     if _DECIMAL.fullmatch(text):
         return float(text) if "." in text else int(text)
+    found = _content(_with_plain_ends(text), source)
+    check_content(found, source)
+    return found
+
+
+def _content(text: str, source: str) -> Any:
+    """What stands in a text; errors as for `read_yaml`."""
+    if len(text) >= LONG:
+        from .libyaml import NotSureError, read_by_libyaml
+
+        with suppress(NotSureError):
+            return read_by_libyaml(text)
+    return _read_by_python(text, source)
+
+
+def _read_by_python(text: str, source: str) -> Any:
     from ruamel.yaml import YAML
     from ruamel.yaml.error import MarkedYAMLError
 
     try:
-        found = YAML(typ="safe", pure=True).load(StringIO(_with_plain_ends(text)))
+        return YAML(typ="safe", pure=True).load(StringIO(text))
     except MarkedYAMLError as error:
         line = f", line {error.problem_mark.line + 1}" if error.problem_mark else ""
         raise InputError(f"{source}{line}: {_reason(error)}") from None
@@ -44,8 +63,6 @@ def read_yaml(text: str, source: str) -> Any:
         raise InputError(f"{source}: found values nested too deep, expected a scene") from None
     except Exception as error:  # a value that doesn't fit its tag (!!bool abc) raises whatever Python does
         raise InputError(f"{source}: {_unlocated(error)}") from None
-    check_content(found, source)
-    return found
 
 
 def _unlocated(error: Exception) -> str:

@@ -12,7 +12,7 @@ from ..formula.field import ForceOfMotion
 from ..marker import Marker, MarkerReference
 
 if TYPE_CHECKING:
-    from ..model_data import ModelData
+    from ..initial_pose import InitialPose
 
 M = TypeVar("M", bound=MarkerReference)
 
@@ -29,9 +29,9 @@ class ForceAlongLine(Force, Generic[M]):
         description="N, pushing the points apart where it is above zero: a number or a formula"
     )
 
-    def invalid_placement(self, model: ModelData) -> Iterator[str]:
+    def invalid_placement(self, pose: InitialPose) -> Iterator[str]:
         """Points at one place give the force no direction."""
-        if model.at_one_place(self.i, self.j):
+        if pose.at_one_place(self.i, self.j):
             yield "found both of its points at one place, where its force has no direction, expected them apart"
 
     def spins_with(self) -> dict[str, str]:

@@ -14,7 +14,7 @@ from ..units import si
 from .spring import Spring
 
 if TYPE_CHECKING:
-    from ..model_data import ModelData
+    from ..initial_pose import InitialPose
 
 M = TypeVar("M", bound=MarkerReference)
 
@@ -38,9 +38,9 @@ class LineSpring(Spring, Generic[M]):
     spring_law: ForceOfDeflection | None = Field(None, description="tension added over s = L - L0 (m), N")
     damper_law: ForceOfRate | None = Field(None, description="tension added over v = L' (m/s), N")
 
-    def invalid_placement(self, model: ModelData) -> Iterator[str]:
+    def invalid_placement(self, pose: InitialPose) -> Iterator[str]:
         """Points at one place give the spring's force no direction."""
-        if (self.free_length or self.preload) and model.at_one_place(self.i, self.j):
+        if (self.free_length or self.preload) and pose.at_one_place(self.i, self.j):
             yield (
                 "found both of its points at one place, where its force has no direction, expected them apart or "
                 "neither free_length nor preload"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
+from functools import lru_cache
 
 from ..marker import GROUND, MarkerReference
 from .names import MEASURES, REACTIONS
@@ -70,11 +71,17 @@ def measured_markers(node: ast.AST) -> tuple[MarkerReference, ...]:
     for argument in node.args:
         match argument:
             case ast.Name(body):
-                markers.append(MarkerReference(body=body))
+                markers.append(_reference(body))
             case ast.Attribute(ast.Name(body), marker):
-                markers.append(MarkerReference(body=body, marker=marker))
+                markers.append(_reference(body, marker))
             case _:
                 raise FormulaError(f"found '{ast.unparse(argument)}' in a measure, expected a body or body.marker")
     if len(markers) not in (1, 2, 3):
         raise FormulaError(f"found {len(markers)} markers in '{ast.unparse(node)}', expected one to three")
-    return tuple(markers) if len(markers) > 1 else (markers[0], MarkerReference(body=GROUND))
+    return tuple(markers) if len(markers) > 1 else (markers[0], _reference(GROUND))
+
+
+@lru_cache(10_000)
+def _reference(body: str, marker: str | None = None) -> MarkerReference:
+    """A marker by name; long formulas name the same ones again and again."""
+    return MarkerReference(body=body, marker=marker)

@@ -71,12 +71,13 @@ def check_size(tree: ast.expr, text: Callable[[], str], inserted: Sequence[ast.e
     ------
     FormulaError
     """
-    size = parts(tree) + sum(map(parts, inserted))
+    levels = [len(level) for level in _levels(tree)]
+    size = sum(levels) + sum(map(parts, inserted))
     if size > MOST_PARTS:
         raise FormulaError(
             f"found {size} numbers, names and operations in '{quoted(text())}', expected at most {MOST_PARTS}"
         )
-    if depth(tree) > DEEPEST:
+    if len(levels) - 1 > DEEPEST:
         raise FormulaError(
             f"found a formula nested deeper than {DEEPEST} in '{quoted(text())}', expected a flatter one"
         )

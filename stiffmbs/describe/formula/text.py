@@ -22,6 +22,15 @@ from .size import DEEPEST, MOST_PARTS, FormulaError, balanced, check_size
 UNIT = "unit"
 _NUMBER_AND_NAME = re.compile(r"(?<![\w.])((?>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?))(?=[A-Za-z_])")
 """A number that runs into a name, as in ``20deg``, which tokenizers since Python 3.12 refuse."""
+_NAMES_AND_NUMBERS = re.compile(
+    r"(?>[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*|(?<![\w.])(?>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(?![\w.])|[-+*/(), ])*+",
+    re.ASCII,
+)
+"""A formula that Python spells alike."""
+_WITHOUT_OPERATOR = re.compile(r"[\w.)] +[A-Za-z_]|\)[A-Za-z_]")
+"""A name behind a value, as in ``5 N m``."""
+_OWNER_OF_OWNER = re.compile(r"\.\s*\w+[\s)]*\.")
+"""Where two dots of a dotted name may be, as in ``front.left.x``."""
 LONGEST_TEXT = 50 * MOST_PARTS
 """Characters of a formula, which bound the time that it takes to see how many parts it has."""
 LARGEST_LITERAL = 1e300
@@ -55,7 +64,8 @@ def parse(text: str) -> ast.expr:
     if len(text) > LONGEST_TEXT:
         raise FormulaError(f"found a formula of {len(text)} characters, expected at most {LONGEST_TEXT}")
     try:
-        tree = ast.parse(_python_spelling(text), mode="eval").body
+        spelt = _python_spelling(text)
+        tree = ast.parse(spelt, mode="eval").body
         if len(text) > DEEPEST:  # shorter ones are within the bounds
             tree = balanced(tree)
             check_size(tree, lambda: text)
@@ -66,7 +76,7 @@ def parse(text: str) -> ast.expr:
             f"found '{quoted(text)}', expected a number or a formula such as '125 mm' or '0.6/2'"
         ) from None
     _check(tree, text)
-    checked: ast.expr = _Owners().visit(tree)
+    checked: ast.expr = _Owners().visit(tree) if _OWNER_OF_OWNER.search(spelt) else tree
     return checked
 
 
@@ -92,7 +102,10 @@ class _Owners(ast.NodeTransformer):
 
 def _python_spelling(text: str) -> str:
     """Rewrite ``5 N m/rad`` as ``(5*unit.N*unit.m)/rad`` and ``^`` as ``**``."""
-    spaced = _NUMBER_AND_NAME.sub(r"\1 ", text.strip().replace("^", "**"))
+    powers = text.strip().replace("^", "**")
+    if _NAMES_AND_NUMBERS.fullmatch(powers) and not _WITHOUT_OPERATOR.search(powers):
+        return powers
+    spaced = _NUMBER_AND_NAME.sub(r"\1 ", powers)
     read = tokenize.generate_tokens(io.StringIO(spaced).readline)
     tokens = [token.string for token in read if token.string.strip()]  # a formula may go over lines, indented or not
     words: list[str] = []

@@ -32,7 +32,7 @@ def with_variables(tree: ast.expr, variables: Mapping[str, ast.expr], own: Colle
     FormulaError
         When it becomes too large, or a variable uses a parameter that has one of the own names.
     """
-    named = [name for name in _names(tree) if name in variables and name not in own]
+    named = [name for name in _names(tree) if name in variables and name not in own] if variables else []
     if not named:
         return tree
     for name in dict.fromkeys(named):

@@ -7,7 +7,7 @@ from typing import Any
 
 from ...element import Symbolic
 from ...forces.torsion_spring import AngleSpring
-from ...model_data import ModelData
+from ...initial_pose import InitialPose
 from ..branches import initially_without_axis
 from ..marker import Marker
 from ..primitives import angle_about_z
@@ -26,8 +26,8 @@ class TorsionSpring(AngleSpring[Marker]):
     Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), sec. 11.2 (RSDA).
     """
 
-    def invalid_placement(self, model: ModelData) -> Iterator[str]:
-        yield from initially_without_axis(model, self.i, self.j)
+    def invalid_placement(self, pose: InitialPose) -> Iterator[str]:
+        yield from initially_without_axis(pose.model, self.i, self.j)
 
     @staticmethod
     def angle(e: Symbolic) -> Any:

@@ -8,6 +8,7 @@ from typing import Any, ClassVar, Literal, Self
 from pydantic import Field
 
 from ...element import Joint, Symbolic
+from ...initial_pose import InitialPose
 from ...model_data import ModelData
 from ..branches import initially_twisted
 from ..marker import Marker
@@ -44,8 +45,8 @@ class ConstantVelocity(Joint):
         same = model.initial_marker(self.i).z @ model.initial_marker(self.j).z > 0
         return self.model_copy(update={"axes": "same" if same else "opposite"})
 
-    def invalid_placement(self, model: ModelData) -> Iterator[str]:
-        yield from initially_twisted(model, self.i, self.j, self.at_initial_pose(model).axes == "opposite")
+    def invalid_placement(self, pose: InitialPose) -> Iterator[str]:
+        yield from initially_twisted(pose.model, self.i, self.j, self.at_initial_pose(pose.model).axes == "opposite")
 
     @staticmethod
     def position(e: Symbolic) -> Any:

@@ -9,8 +9,8 @@ from pydantic import Field
 
 from ...element import Joint, Symbolic
 from ...forces.friction import magnitude
+from ...initial_pose import InitialPose
 from ...loads import Loads
-from ...model_data import ModelData
 from ..branches import initially_apart
 from ..marker import Marker
 from ..primitives import ALIGN, ON_AXIS, align, along, angle_about_z, on_axis
@@ -35,8 +35,8 @@ class Cylindrical(Joint):
     i: Marker = Field(description="marker of the first body, on which the reaction is reported")
     j: Marker = Field(description="marker whose z axis is the line to slide along and to turn about")
 
-    def invalid_placement(self, model: ModelData) -> Iterator[str]:
-        yield from initially_apart(model, self.i, self.j)
+    def invalid_placement(self, pose: InitialPose) -> Iterator[str]:
+        yield from initially_apart(pose.model, self.i, self.j)
 
     def spins_with(self) -> dict[str, str]:
         return {"i": "z", "j": "z"}

@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 from pydantic import Field
 
 from ...element import Joint, Symbolic
-from ...model_data import ModelData
+from ...initial_pose import InitialPose
 from ..branches import initially_rotated
 from ..marker import Marker
 from ..primitives import ORIENT, orient
@@ -34,8 +34,8 @@ class Orientation(Joint):
     i: Marker = Field(description="marker of the first body, on which the reaction is reported")
     j: Marker = Field(description="marker of the second body")
 
-    def invalid_placement(self, model: ModelData) -> Iterator[str]:
-        yield from initially_rotated(model, self.i, self.j)
+    def invalid_placement(self, pose: InitialPose) -> Iterator[str]:
+        yield from initially_rotated(pose.model, self.i, self.j)
 
     @staticmethod
     def position(e: Symbolic) -> Any:

@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 from pydantic import Field
 
 from ...element import Joint, Symbolic
-from ...model_data import ModelData
+from ...initial_pose import InitialPose
 from ..branches import initially_aligned
 from ..marker import Marker
 from ..primitives import ACROSS, perpendicular
@@ -30,8 +30,8 @@ class Perpendicular(Joint):
     i: Marker = Field(description="marker of the first body, on which the reaction is reported")
     j: Marker = Field(description="marker of the second body")
 
-    def invalid_placement(self, model: ModelData) -> Iterator[str]:
-        yield from initially_aligned(model, self.i, self.j)
+    def invalid_placement(self, pose: InitialPose) -> Iterator[str]:
+        yield from initially_aligned(pose.model, self.i, self.j)
 
     @staticmethod
     def position(e: Symbolic) -> Any:

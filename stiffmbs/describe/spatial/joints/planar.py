@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 from pydantic import Field
 
 from ...element import Joint, Symbolic
-from ...model_data import ModelData
+from ...initial_pose import InitialPose
 from ..branches import initially_apart
 from ..marker import Marker
 from ..primitives import ALIGN, IN_PLANE, align, along
@@ -32,8 +32,8 @@ class Planar(Joint):
     i: Marker = Field(description="marker of the first body, on which the reaction is reported")
     j: Marker = Field(description="marker whose xy plane is the one to slide on")
 
-    def invalid_placement(self, model: ModelData) -> Iterator[str]:
-        yield from initially_apart(model, self.i, self.j)
+    def invalid_placement(self, pose: InitialPose) -> Iterator[str]:
+        yield from initially_apart(pose.model, self.i, self.j)
 
     @staticmethod
     def position(e: Symbolic) -> Any:

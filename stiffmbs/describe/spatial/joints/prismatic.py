@@ -9,8 +9,8 @@ from pydantic import Field
 
 from ...element import Joint, Symbolic
 from ...forces.friction import magnitude
+from ...initial_pose import InitialPose
 from ...loads import Loads
-from ...model_data import ModelData
 from ..branches import initially_askew
 from ..marker import Marker
 from ..primitives import ON_AXIS, ORIENT, along, on_axis, orient
@@ -34,8 +34,8 @@ class Prismatic(Joint):
     i: Marker = Field(description="marker of the sliding body, on which the reaction is reported")
     j: Marker = Field(description="marker whose z axis is the line to slide along")
 
-    def invalid_placement(self, model: ModelData) -> Iterator[str]:
-        yield from initially_askew(model, self.i, self.j)
+    def invalid_placement(self, pose: InitialPose) -> Iterator[str]:
+        yield from initially_askew(pose.model, self.i, self.j)
 
     @staticmethod
     def position(e: Symbolic) -> Any:

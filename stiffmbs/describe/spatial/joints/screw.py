@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import Any, ClassVar
 
 from ...element import Symbolic
-from ...model_data import ModelData
+from ...initial_pose import InitialPose
 from ..branches import initially_apart
 from ..primitives import ALIGN, ON_AXIS, align, along, angle_about_z, on_axis
 from .thread import Thread
@@ -29,8 +29,8 @@ class Screw(Thread):
     equations: ClassVar[tuple[str, ...]] = (*ON_AXIS, *ALIGN, *Thread.equations)
     coordinates: ClassVar[tuple[str, ...]] = ("displacement", "angle")
 
-    def invalid_placement(self, model: ModelData) -> Iterator[str]:
-        yield from initially_apart(model, self.i, self.j)
+    def invalid_placement(self, pose: InitialPose) -> Iterator[str]:
+        yield from initially_apart(pose.model, self.i, self.j)
 
     @classmethod
     def position(cls, e: Symbolic) -> Any:

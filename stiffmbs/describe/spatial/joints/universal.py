@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 from pydantic import Field
 
 from ...element import Joint, Symbolic
-from ...model_data import ModelData
+from ...initial_pose import InitialPose
 from ..branches import initially_aligned
 from ..marker import Marker
 from ..primitives import ACROSS, COINCIDE, coincide, perpendicular
@@ -34,8 +34,8 @@ class Universal(Joint):
     )
     j: Marker = Field(description="marker of the second body, z along its arm")
 
-    def invalid_placement(self, model: ModelData) -> Iterator[str]:
-        yield from initially_aligned(model, self.i, self.j)
+    def invalid_placement(self, pose: InitialPose) -> Iterator[str]:
+        yield from initially_aligned(pose.model, self.i, self.j)
 
     @staticmethod
     def position(e: Symbolic) -> Any:
