@@ -50,6 +50,9 @@ QUIET, FEWER = 10.0, 0.5
 vibrations that half as many starts make a trial worth while."""
 AT_REST, FEWEST = 1e-4, 1.5
 """Such a change below which the start excites nothing, and starts of the implicit integrator that make a trial worth while then."""
+DEARER = 1.5
+"""Times what the implicit integrator took for a second before it was left, from which on it is taken again, and so many times as much
+after each return: explicit steps may be held back by accuracy too, which the fastest rate does not tell."""
 AMENDS = 3.0
 """After a trial that has failed, explicit steps must have cost so many times as much before the next is made, and twice
 as many times after each further one."""
@@ -109,6 +112,8 @@ class _Shared:
         self._starts = min(WORTH_A_TRIAL * (AT_RTOL / settings.rtol) ** 0.2, MOST)  # that make a trial worth while
         self._pace = _Pace(grid.start)
         self._explicit_cost = np.inf  # of a second of the motion, where stability holds it back
+        self._implicit_cost = np.inf  # the same of BDF, before it was left
+        self._dearer = DEARER
         self._amends = 0.0  # what explicit steps must have cost before the next trial
         self._segments: list[Segment] = []
         self._messages: list[str] = []
@@ -194,6 +199,8 @@ class _Shared:
         if seen.steps == self._pace.steps:  # a look for the sake of output points alone
             return False
         before, self._pace = self._pace, seen
+        if self._is_dearer(before, seen):
+            return True
         held = (seen.held - before.held) / (seen.steps - before.steps)
         if held < HELD_BACK:
             return False
@@ -209,6 +216,16 @@ class _Shared:
                 f"(fastest rate {rate:.3g} 1/s)"
             )
         return worth
+
+    def _is_dearer(self, before: _Pace, seen: _Pace) -> bool:
+        """Whether explicit steps have come to cost far more than those of BDF did, for long enough that a start of it costs little beside."""
+        pace = (seen.tried - before.tried) * self._explicit_step / (seen.t - before.t)
+        saved = (self._grid.end - seen.t) * (pace - self._dearer * self._implicit_cost)
+        if not saved > self._costs.start:
+            return False
+        self._explicit_cost, self._dearer = pace, DEARER * self._dearer
+        self._messages.append(f"bdf from t = {seen.t:.4g} s on, as explicit steps cost more than its own had")
+        return True
 
     def _implicit_segment(self, start: InitialValues, t: float) -> float | None:
         """Implicit steps from t on; the time at which they were left, or None at the end."""
@@ -239,6 +256,7 @@ class _Shared:
         self._next_look = steps + self._look_after
         before, self._spent = self._spent, self._spent_up_to(reached.t)
         taken = self._spent.since(before)
+        self._implicit_cost = taken.cost / taken.t if taken.t else np.inf
         explicit = taken.t * self._explicit_cost + taken.restarts * cost.STEPS_OF_A_RESTART * self._explicit_step
         self._lost = max(self._lost + taken.cost - explicit, 0.0)
         left = (self._grid.end - reached.t) * self._explicit_cost

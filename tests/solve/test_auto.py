@@ -159,10 +159,28 @@ def test_output_points_within_one_explicit_step_do_not_ask_for_a_change_of_hands
 def test_the_rate_is_asked_for_once_where_explicit_steps_to_the_end_cost_less_than_trials(examples, monkeypatch):
     asked = []
     monkeypatch.setattr(auto, "fastest_rate", lambda *state: asked.append(state[1]) or fastest_rate(*state))
-    scene = stiffmbs.load_scene(examples / "half_car.yaml", [("k_b", "1e6")])
+    scene = stiffmbs.load_scene(examples / "half_car.yaml", [("k_b", "1e5")])
     solution = stiffmbs.run(scene, solver="auto", rtol=1e-4)
     assert solution.solver["name"] == "projected"
     assert asked == [0.0]
+
+
+@pytest.mark.parametrize(("height", "name"), [(-9.81e-6, "bdf"), (1e-3, "projected")])
+def test_bdf_is_tried_sooner_from_rest(height, name):
+    """Nothing excites the stiff vibration of a body in its balance; let fall, it would keep bdf's steps short."""
+    model = Model(gravity=(0, -9.81))
+    model.add("a", Body(mass=1, inertia=0.1, position=(0, height)))
+    model.add("bush", Bushing(i="a", j=stiffmbs.Marker(body="ground"), stiffness=(1e6, 1e6, 1e3)))
+    assert stiffmbs.run(model, solver="auto", duration=2.0, rtol=1e-4).solver["name"] == name
+
+
+def test_bdf_comes_back_where_explicit_steps_cost_more_than_its_own_had(examples):
+    """A rough road holds explicit steps back by accuracy, which the fastest rate at the change of hands did not tell."""
+    road = examples / "vehicles" / "quarter_car.yaml"
+    solution = stiffmbs.run(road, solver="auto", rtol=1e-3)
+    (note,) = (note for note in solution.notes if note.startswith("auto chose"))
+    assert "as explicit steps cost more than its own had" in note
+    assert solution.solver["steps"] > 0.8 * stiffmbs.run(road, solver="bdf", rtol=1e-3).solver["steps"]
 
 
 @pytest.mark.parametrize(("rtol", "name"), [(1e-3, "bdf"), (1e-6, "projected")])
