@@ -14,8 +14,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from ...compile.machine.layout import address
-from ...compile.machine.routines import Routine
 from ..dynamics import Dynamics
+from ..linear.eliminated import ACCELERATE
 from ..suspect import acceleration_name, suspect
 from .integration import Integration
 
@@ -35,7 +35,6 @@ PART = 1e-3
 GOVERNS = 0.03
 """Change of velocity over a step by such a jump of its acceleration, relative to the tolerance, that holds the steps back; 0.1 to 2
 where it does."""
-ELIMINATED = Routine("stiffmbs.solve.native.eliminated", "accelerate", "int64(float64, float64*, int64*)")
 
 
 class Rounding:
@@ -70,7 +69,7 @@ class Rounding:
         """Whether the elimination's accelerations are so far from those of the whole system that this holds steps back."""
         found, off = np.empty(len(work.u)), []
         for t in self._along(work, WITHIN * pace, FEW):
-            if ELIMINATED.call(t, address(found), address(self._dynamics.eliminated.table)):
+            if ACCELERATE.call(t, address(found), address(self._dynamics.eliminated.table)):
                 off.append(np.abs(found - self._dynamics.accelerate(t)[1]))
         self._dynamics.forget_pivots()
         return bool(off) and bool(np.any(pace * np.max(off, axis=0) > LOSES * self._tolerance(work)))

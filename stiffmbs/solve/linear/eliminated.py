@@ -16,8 +16,11 @@ from .matrix_entries import entry_lists
 from .pins import pin_lists
 from .saddle_point import ACCELERATIONS
 
-ATTEMPT, MOVE = together(
-    "stiffmbs.solve.native.eliminated", attempt="int32(float64, float64*, int64*)", move="int32(float64*, int64*)"
+ACCELERATE, ATTEMPT, MOVE = together(
+    "stiffmbs.solve.native.eliminated",
+    accelerate="int64(float64, float64*, int64*)",
+    attempt="int32(float64, float64*, int64*)",
+    move="int32(float64*, int64*)",
 )
 MOST_MULTIPLICATIONS = 3
 """Of the elimination, relative to those of the LU of the whole, up to which it takes less time: measured on bodies that carry 2 to 120

@@ -5,18 +5,16 @@ import pytest
 
 import stiffmbs
 from stiffmbs.bench.problems.chain_in_space import chain_in_space
-from stiffmbs.compile.machine.routines import Routine
 from stiffmbs.jobs.job import prepare
+from stiffmbs.solve.linear.eliminated import ACCELERATE
 from stiffmbs.solve.native.tables.linear import ELIMINATED as ELIMINATED_TABLE
 from stiffmbs.stress.random_space import random_space_tree
-
-ELIMINATED = Routine("stiffmbs.solve.native.eliminated", "accelerate", "int64(float64, float64*, int64*)")
 
 
 def both_ways(dynamics):
     """Accelerations and multipliers at the state at hand by elimination, and by the LU of the whole."""
     found = np.empty(dynamics.system.n_u)
-    served = ELIMINATED.call(0.0, found.ctypes.data, dynamics.eliminated.table.ctypes.data)
+    served = ACCELERATE.call(0.0, found.ctypes.data, dynamics.eliminated.table.ctypes.data)
     eliminated = np.concatenate([found, dynamics.state.lam])
     status, whole = dynamics.accelerate(0.0)
     assert served and status == 0
@@ -65,7 +63,7 @@ def test_pins_leave_no_trace_of_what_is_not_finite(examples):
     dynamics = prepare(stiffmbs.load_scene(examples / "chain.yaml")).dynamics
     dynamics.state.u[:] = np.nan
     found = np.empty(dynamics.system.n_u)
-    ELIMINATED.call(0.0, found.ctypes.data, dynamics.eliminated.table.ctypes.data)
+    ACCELERATE.call(0.0, found.ctypes.data, dynamics.eliminated.table.ctypes.data)
     assert not np.isfinite(found).all()
     dynamics.return_to_start()
     assert_equal(*both_ways(dynamics), 1e-12)
@@ -84,7 +82,7 @@ def test_what_is_not_finite_leaves_no_trace(examples):
     dynamics = prepare(stiffmbs.load_scene(examples / "spatial_slider_crank.yaml")).dynamics
     dynamics.state.u[:] = np.nan
     found = np.empty(dynamics.system.n_u)
-    ELIMINATED.call(0.0, found.ctypes.data, dynamics.eliminated.table.ctypes.data)
+    ACCELERATE.call(0.0, found.ctypes.data, dynamics.eliminated.table.ctypes.data)
     assert not np.isfinite(found).all()
     dynamics.return_to_start()
     assert_equal(*both_ways(dynamics), 1e-10)
