@@ -52,26 +52,23 @@ def consistent_accelerations(s, m, t):
 @compiled
 def _closed(r, s, m, t, tolerance):
     """Moves of q and u to both constraints by the factors at hand; whether they got there."""
-    moves = 0
-    while moves <= MOST_MOVES:
-        violations = evaluate(s, MOTION, t)
-        if largest_open(s, violations) <= max(tolerance, COORDINATE_ROUNDING * largest_of(s.q, s.n_pose)):
-            break
-        call_int(r.move, (violations, m.eliminated))
-        add_rates(s, r.a, 1.0, s.q)
-        take_unit_length(s)
-        moves += 1
-    if moves > MOST_MOVES:
-        return False
+    violations = evaluate(s, MOTION, t)
+    close = max(tolerance, COORDINATE_ROUNDING * largest_of(s.q, s.n_pose))
     for _ in range(MOST_MOVES):
-        open_velocities = shifted(violations, s.n_c)
-        close = max(tolerance, VELOCITY_ROUNDING * largest_of(s.u, s.n_u))
-        if largest_open(s, open_velocities) <= close:
-            return True
-        call_int(r.move, (open_velocities, m.eliminated))
-        for k in range(s.n_u):
-            s.u[k] += r.a[k]
-        violations = evaluate(s, MOTION, t)
+        if largest_open(s, violations) > close:
+            call_int(r.move, (violations, m.eliminated))
+            add_rates(s, r.a, 1.0, s.q)
+            take_unit_length(s)
+            violations = evaluate(s, MOTION, t)
+    if largest_open(s, violations) > close:
+        return False
+    close = max(tolerance, VELOCITY_ROUNDING * largest_of(s.u, s.n_u))
+    for _ in range(MOST_MOVES):
+        if largest_open(s, shifted(violations, s.n_c)) > close:
+            call_int(r.move, (shifted(violations, s.n_c), m.eliminated))
+            for k in range(s.n_u):
+                s.u[k] += r.a[k]
+            violations = evaluate(s, MOTION, t)
     return largest_open(s, shifted(violations, s.n_c)) <= close
 
 
