@@ -39,15 +39,15 @@ HELD_BACK = 0.05
 steps swing about its limit, and a tenth to a half shows it; elsewhere hardly one does."""
 LOOK_AT_IMPLICIT = 3.0
 """Starts of the implicit integrator, without their steps, that its steps between two looks cost: a look takes a tenth of one."""
-MAY_LOSE = 0.45
+MAY_LOSE = 0.55
 """The implicit integrator is left when it has fallen behind explicit steps by a start and such a part of what these still cost up to
 the end, by a start alone in further trials: vibrations that the start excites shorten its steps until they have died out, and then it makes up for what it lost."""
-WORTH_A_TRIAL, AT_RTOL, MOST = 5.0, 1e-4, 7.0
+WORTH_A_TRIAL, AT_RTOL, MOST = 7.0, 1e-4, 7.0
 """What is left for explicit steps must cost so many starts of the implicit integrator before one is made, at a tolerance and at the
 most: its steps are longer for looser tolerances, as rtol^(1/5), and those that stability holds back are not."""
-QUIET, FEWER = 10.0, 0.5
+QUIET, FEWER = 100.0, 1 / 3
 """Change of a velocity, in tolerances, that accelerations at a start make in an explicit step: below, the start excites so little of
-vibrations that half as many starts make a trial worth while."""
+vibrations that a third of so many starts makes a trial worth while."""
 AT_REST, FEWEST = 1e-4, 1.5
 """Such a change below which the start excites nothing, and starts of the implicit integrator that make a trial worth while then."""
 DEARER = 1.5
@@ -109,7 +109,7 @@ class _Shared:
         self._explicit_step = cost.of_explicit_step(dynamics)
         self._implicit: Integrator | None = None
         self._costs = cost.ImplicitCost.of(dynamics)
-        self._starts = min(WORTH_A_TRIAL * (AT_RTOL / settings.rtol) ** 0.2, MOST)  # that make a trial worth while
+        self._starts = WORTH_A_TRIAL * (AT_RTOL / settings.rtol) ** 0.2  # that make a trial worth while
         self._pace = _Pace(grid.start)
         self._explicit_cost = np.inf  # of a second of the motion, where stability holds it back
         self._implicit_cost = np.inf  # the same of BDF, before it was left
@@ -154,6 +154,7 @@ class _Shared:
         self._explicit_cost = self._explicit_step * rate / DOP853.stability
         left = (self._grid.end - t) * self._explicit_cost
         starts = self._starts if acceleration is None or not left else self._starts_from(u, acceleration, rate)
+        starts = min(starts, MOST)
         if self._implicit is None and left > starts * self._costs.start:
             self._implicit = Integrator(self._dynamics, self._settings)
             self._costs = cost.ImplicitCost.of(self._dynamics, self._implicit.factors)

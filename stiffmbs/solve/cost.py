@@ -30,7 +30,7 @@ START = (250.0, 3.5)
 """Consistent values and the integrators' memory, when a run switches integrator: for itself, and for an unknown."""
 STEPS_OF_A_START = 40
 """Of BDF, from order 1 on to where its own steps are."""
-STEPS_OF_A_RESTART = 16
+STEPS_OF_A_RESTART = 24
 """Explicit ones, rejected ones among them, more than stability asks for at a breakpoint or an event (5 to 24 on cars)."""
 
 
