@@ -39,7 +39,7 @@ HELD_BACK = 0.05
 steps swing about its limit, and a tenth to a half shows it; elsewhere hardly one does."""
 LOOK_AT_IMPLICIT = 3.0
 """Starts of the implicit integrator, without their steps, that its steps between two looks cost: a look takes a tenth of one."""
-MAY_LOSE = 0.55
+MAY_LOSE = 0.45
 """The implicit integrator is left when it has fallen behind explicit steps by a start and such a part of what these still cost up to
 the end, by a start alone in further trials: vibrations that the start excites shorten its steps until they have died out, and then it makes up for what it lost."""
 WORTH_A_TRIAL, AT_RTOL, MOST = 7.0, 1e-4, 7.0

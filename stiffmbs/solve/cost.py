@@ -30,8 +30,9 @@ START = (250.0, 3.5)
 """Consistent values and the integrators' memory, when a run switches integrator: for itself, and for an unknown."""
 STEPS_OF_A_START = 40
 """Of BDF, from order 1 on to where its own steps are."""
-STEPS_OF_A_RESTART = 24
-"""Explicit ones, rejected ones among them, more than stability asks for at a breakpoint or an event (5 to 24 on cars)."""
+STEPS_OF_A_RESTART = 27
+"""Explicit ones, rejected ones among them, more than stability asks for at a breakpoint or an event: 5 to 23 on cars, where one takes up to
+two starts, each as dear as two steps."""
 
 
 @dataclass(frozen=True)
