@@ -27,6 +27,8 @@ MOST_MULTIPLICATIONS = 3
 others.  Its blocks are dense and in order, while the LU follows lists of entries."""
 EVEN = 100.0
 """Times the square root of the smallest inertia, in the measure of masses, up to which pivots are those of the geometry."""
+LEAST = 1e-9
+"""What accelerations may leave of J u' = gamma in any case, m/s^2 or rad/s^2; relative to the size of mechanisms smaller than 1 m."""
 GROUND = -1
 
 
@@ -85,6 +87,7 @@ class Eliminated:
             arrays = {
                 "f_source": force.source, "f_row": force.row, "scale": 1.0 / np.sqrt(system.mass), "a": np.zeros(system.n_u + 3),
                 "q_before": np.zeros(system.n_q), "u_before": np.zeros(system.n_u),
+                "left": np.zeros(system.n_u + system.n_c), "sizes": np.zeros(system.n_u + system.n_c),
                 "lists": packed(layout, self._lists),
             }  # fmt: skip
             numbers = {
@@ -94,7 +97,13 @@ class Eliminated:
                 "by_pins": of_pins is not None,
                 "trees": _are_trees(joints.bodies),
             }
-            self._arrays = {**arrays_of(ELIMINATED, arrays), "state": state.table, "kept": 1.0, **numbers}
+            self._arrays = {
+                **arrays_of(ELIMINATED, arrays),
+                "state": state.table,
+                "kept": 1.0,
+                "least": LEAST * min(1.0, system.size),
+                **numbers,
+            }
             fill(self.table, ELIMINATED, self._arrays)
 
     def within_reach(self) -> np.ndarray:

@@ -6,8 +6,15 @@ changed since; both are looked at again.
 
 from __future__ import annotations
 
-from stiffmbs.compile.machine.native.access import compiled, factors_view, shifted
-from stiffmbs.compile.machine.native.evaluate import ACCELERATION, MOTION, evaluate
+from stiffmbs.compile.machine.native.access import compiled, equations_view, factors_view, floats, shifted
+from stiffmbs.compile.machine.native.evaluate import (
+    ACCELERATION,
+    MOTION,
+    add_entries,
+    add_products,
+    add_sizes,
+    evaluate,
+)
 from stiffmbs.compile.machine.native.orientation import add_rates, take_unit_length
 from stiffmbs.solve.native.block_systems import (
     COORDINATE_ROUNDING,
@@ -23,6 +30,8 @@ from stiffmbs.solve.native.tables.views import eliminated_view
 
 KEPT = 1e-3
 """Part that pivots have to keep: elimination then loses three digits of sixteen at the most, or the LU takes its place."""
+LEFT = 1e-10
+"""Part of the terms of J u' = gamma that accelerations may leave of it: those of a light body hold what forces round off, over its mass."""
 MOST_MOVES = 3
 """With the same factors, of positions and of velocities: states of a run need one or two."""
 VELOCITY_ROUNDING = 9e-16
@@ -39,9 +48,28 @@ def _eliminated(s, m, t):
 
 
 @compiled
+def _satisfy_joints(s, m):
+    """Whether accelerations that elimination has found satisfy J u' = gamma as those of the LU do, which pivots alone don't tell."""
+    r, e, f = eliminated_view(m.eliminated), equations_view(m.accelerations), factors_view(m.acceleration_factors)
+    values = floats(s.values[ACCELERATION])
+    add_entries(e, values, 0.0, f.a)
+    add_products(e, values, f.previous, f.previous, r.left)
+    add_sizes(e, values, f.previous, f.previous, r.sizes)
+    for column in range(s.n_u):
+        for p in range(f.a_start[column], f.a_start[column + 1]):
+            part = f.a[p] * f.b[column]
+            r.left[f.a_row[p]] -= part
+            r.sizes[f.a_row[p]] += abs(part)
+    beyond = 0
+    for row in range(s.n_u, f.n):
+        beyond += 0 if abs(r.left[row]) <= LEFT * r.sizes[row] + r.least else 1  # also where it is no number
+    return beyond == 0
+
+
+@compiled
 def consistent_accelerations(s, m, t):
     """`stiffmbs.solve.native.block_systems.to_accelerations`, in less time where elimination serves; notes which way was taken."""
-    m.by_elimination = 1 if _eliminated(s, m, t) else 0
+    m.by_elimination = 1 if _eliminated(s, m, t) and _satisfy_joints(s, m) else 0
     if not m.by_elimination:
         return to_accelerations(s, m, t)
     if m.by_reactions:

@@ -14,6 +14,10 @@ ELIMINATES = list(DYNAMICS).index("eliminates")
 IDEAL = next(car for car in CARS if car.name == "example_car_ideal")
 
 
+def chain_text():
+    return SCENE.format(rods=10)
+
+
 def chain():
     return prepare(chain_in_space(10)).dynamics
 
@@ -84,6 +88,28 @@ def test_where_pivots_lose_digits_the_lu_takes_over():
     found = reported(dynamics, dynamics.system.q, dynamics.system.u, True)
     assert dynamics.table.view(DYNAMICS.cells)[0]["by_elimination"] == 0
     np.testing.assert_array_equal(found.lam, whole.lam)
+
+
+BEAD = """
+  bead: {mass: 1e-9, inertia: [1e-13, 1e-13, 1e-13], position: [10, 0, 0], markers: {off: {point: [0.03, 0.01, 0.02]}}}
+joints:
+  tip: {type: fixed, i: bead, j: {body: link10, point: [L/2, 0, 0]}}"""
+PULL = """
+forces:
+  pull: {type: spring_damper, i: bead.off, j: {body: ground, point: [12, 1, 0.5]}, stiffness: 1e5, free_length: 1}
+run:"""
+
+
+def test_rounding_of_forces_on_a_light_body_is_left_to_the_lu():
+    """All pivots keep their digits; yet M^-1 (f - J^T lam) holds 1e5 N times the rounding over 1e-9 kg."""
+    text = chain_text().replace("\njoints:", BEAD, 1).replace("\nrun:", PULL, 1)
+    dynamics = prepare(read_scene(text), presolve=False).dynamics
+    assert dynamics.table[ELIMINATES]
+    at = reported(dynamics, dynamics.system.q, dynamics.system.u, True)
+    assert dynamics.table.view(DYNAMICS.cells)[0]["by_elimination"] == 0
+    assert dynamics.eliminated._cells["kept"] > 0.1
+    whole = reported(dynamics, at.q[0], at.u[0], False)
+    np.testing.assert_allclose(at.acceleration, whole.acceleration, atol=1e-6 * np.abs(whole.acceleration).max())
 
 
 def test_small_mechanisms_do_without_it(examples):

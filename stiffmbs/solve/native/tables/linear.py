@@ -67,11 +67,12 @@ ELIMINATED = Layout({
     "state": INTS, "n_u": INT, "trees": INT, "by_blocks": INT, "by_pins": INT, "lists": INTS,
     "ready": INT_CELL, "kept": FLOAT_CELL, "most_kept": FLOAT_CELL,
     "n_f": INT, "f_source": INDICES, "f_row": INDICES, "scale": FLOATS, "a": FLOATS,
-    "attempt": INT_CELL, "move": INT_CELL, "q_before": FLOATS, "u_before": FLOATS,
+    "attempt": INT_CELL, "move": INT_CELL, "q_before": FLOATS, "u_before": FLOATS, "left": FLOATS, "sizes": FLOATS, "least": FLOAT_CELL,
 })  # fmt: skip
 """J M^-1 J^T (`stiffmbs.solve.linear.eliminated`): whether no joint closes a loop, whether it is factored by blocks or by pins, and the table of
 these or of the entries; whether there are factors, what their pivots keep, and have kept at the most; forces, M^-1/2, accelerations;
-the addresses of its routines, where other compiled code may ask for them, and memory of a state."""
+the addresses of its routines, where other compiled code may ask for them, memory of a state, what the block system leaves and the sizes of its terms, and what may be left
+of small ones."""
 
 ENTRY_ELIMINATION = Layout({
     "n": INT, "n_gamma": INT, "n_j": INT, "n_slots": INT, "gamma_source": INDICES, "gamma_row": INDICES,
