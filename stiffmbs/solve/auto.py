@@ -141,33 +141,34 @@ class _Shared:
 
     def _is_stiff_at_once(self, start: InitialValues) -> bool:
         """Whether BDF is to be tried from the first on."""
-        worth, rate = self._worth_a_trial(self._grid.start, start.q, start.u, start.acceleration)
+        rate = self._rate_at(self._grid.start, start.q, start.u)
+        worth = self._worth_a_trial(self._grid.start, self._starts_from(start, rate))
         if worth:
             self._messages.append(f"bdf, as the fastest rate is {rate:.3g} 1/s")
         return worth
 
-    def _worth_a_trial(
-        self, t: float, q: np.ndarray, u: np.ndarray, acceleration: np.ndarray | None = None
-    ) -> tuple[bool, float]:
-        """Whether steps as short as stability asks for at a state are so many that trying BDF costs little; the rate."""
+    def _rate_at(self, t: float, q: np.ndarray, u: np.ndarray) -> float:
+        """The fastest rate at a state, by which explicit steps are counted from there on."""
         rate = fastest_rate(self._dynamics, t, q, u)
         self._explicit_cost = self._explicit_step * rate / DOP853.stability
-        left = (self._grid.end - t) * self._explicit_cost
-        starts = self._starts if acceleration is None or not left else self._starts_from(u, acceleration, rate)
-        starts = min(starts, MOST)
+        return rate
+
+    def _worth_a_trial(self, t: float, starts: float) -> bool:
+        """Whether steps as short as stability asks for cost more, up to the end, than so many starts of BDF."""
+        left, starts = (self._grid.end - t) * self._explicit_cost, min(starts, MOST)
         if self._implicit is None and left > starts * self._costs.start:
             self._implicit = Integrator(self._dynamics, self._settings)
             self._costs = cost.ImplicitCost.of(self._dynamics, self._implicit.factors)
-        return left > starts * self._costs.start, rate
+        return left > starts * self._costs.start
 
-    def _starts_from(self, u: np.ndarray, acceleration: np.ndarray, rate: float) -> float:
-        """Starts of the implicit integrator that explicit steps must cost, by what accelerations excite."""
-        settings, n_q = self._settings, self._dynamics.system.n_q
-        tolerances = self._dynamics.kept(
-            "tolerances", settings, lambda: absolute_tolerances(self._dynamics.system, settings)
-        )
-        change = np.abs(acceleration) * (DOP853.stability / rate) / (tolerances[n_q:] + settings.rtol * np.abs(u))
-        excited = float(change.max(initial=0.0))
+    def _starts_from(self, start: InitialValues, rate: float) -> float:
+        """Starts of BDF that explicit steps must cost where it is to be tried from a start, by what accelerations excite there."""
+        if not rate:
+            return self._starts
+        system, settings = self._dynamics.system, self._settings
+        tolerances = self._dynamics.kept("tolerances", settings, lambda: absolute_tolerances(system, settings))
+        change = np.abs(start.acceleration) * (DOP853.stability / rate)
+        excited = float((change / (tolerances[system.n_q :] + settings.rtol * np.abs(start.u))).max(initial=0.0))
         return FEWEST if excited < AT_REST else self._starts * (FEWER if excited < QUIET else 1.0)
 
     def _rest(self, t: float) -> Grid:
@@ -210,7 +211,8 @@ class _Shared:
         rest = (self._grid.end - seen.t) / (seen.t - before.t)
         if rest * (seen.tried - before.tried) * self._explicit_step <= MOST * self._costs.start:
             return False  # rejected and short steps are among these: they cost more than the rate tells
-        worth, rate = self._worth_a_trial(work.t, work.q, work.u)
+        rate = self._rate_at(work.t, work.q, work.u)
+        worth = self._worth_a_trial(work.t, self._starts)
         if worth:
             self._messages.append(
                 f"bdf from t = {work.t:.4g} s on, as stability held back {100 * held:.0f} % of the steps "
