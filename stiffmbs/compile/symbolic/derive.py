@@ -134,13 +134,12 @@ def _derived_joint(kind: Kind, symbols: Symbols) -> Derived:
     lam, mu = multipliers("lam", V.rows), multipliers("mu", V.rows)
     force = e.work_by_velocities(zip(lam, V, strict=True))
     turning = e.rate(V)
-    second = (
-        map(e.second_rate, C) if kind.dimensions == 3 else turning[: len(C), :]
-    )  # in the plane that has fewer products
+    in_time = map(e.second_rate, C) if kind.dimensions == 3 else turning[: len(C), :]  # in the plane that has fewer products
+    second = [*in_time, *turning[len(C) :, :]]
     power = power_of_joint(e, V, lam)
     terms = {
         "C": sp.Matrix([*C, *sp.zeros(len(rates), 1)]), "C_q": e.by_coordinates(C), "V": V, "J": J, "V_q": e.by_coordinates(V),
-        "gamma": -sp.Matrix([*second, *turning[len(C) :, :]]),
+        "gamma": -sp.Matrix(second),
         "G_lam": e.by_coordinates(force), "G_mu": _symmetric(e.by_coordinates(e.work_by_coordinates(zip(mu, C, strict=False)))),
         "gamma_u": -e.by_velocities(turning),
         "reaction": _reaction(stated, e, -force),
@@ -154,7 +153,7 @@ def _derived_joint(kind: Kind, symbols: Symbols) -> Derived:
     entries["G_mu"] = [entry for entry in entries["G_mu"] if entry.row < first_state]
     entries["A_q"] = [
         LateEntry(partial(e.by_coordinate, row, column), r, column)
-        for r, row in enumerate(J * e.a + turning)
+        for r, row in enumerate(e.by_accelerations(equation) + rest for equation, rest in zip(V, second, strict=True))
         for column in e.columns_of(row)
     ]
     for name in ("C", "V"):  # kept whole, zeros too: solvers find them by row

@@ -137,6 +137,19 @@ class SymbolicElement:
         rates |= dict(zip(self.states, self.state_rates, strict=False)) | {self.t: sp.Integer(1)}
         return self.derivatives.along(self.derivatives.along(x, rates), rates)
 
+    def by_accelerations(self, x: sp.Expr) -> sp.Expr:
+        """What accelerations add to the rate of a function of velocities: J a, with fewer products than by the entries of J."""
+        return self.derivatives.along(x, self._accelerations)
+
+    @cached_property
+    def _accelerations(self) -> dict[sp.Symbol, sp.Expr]:
+        """The rates that accelerations give what `velocities` names."""
+        rates: dict[sp.Symbol, sp.Expr] = {}
+        for a, way in zip(self.a, self._by_velocity, strict=True):
+            for symbol, much in way:
+                rates[symbol] = rates.get(symbol, sp.Integer(0)) + a * much
+        return {symbol: self.named(rate) for symbol, rate in rates.items()}
+
     def named(self, x: Any) -> Any:
         """An expression, or each of a matrix or list, by a name that stands for it: long ones are derived much sooner so."""
         if isinstance(x, sp.MatrixBase):
