@@ -176,7 +176,7 @@ def _entry(kind: Kind, *part: str) -> str | None:
     """The cache's name for everything that the record, or a part of its own, follows from; None where the element's source
     cannot be read."""
     classes = [kind.element, *(found for _, shape in kind.fields for found in _classes_in(shape))]
-    bases = [base for element in classes for base in element.__mro__ if issubclass(base, Element | Component)]
+    bases = [base for element in classes for base in element.__mro__ if _says_equations(base)]
     try:
         texts = _files(bases) if all(map(_is_shipped, bases)) else _equations(kind)
     except (OSError, TypeError):
@@ -200,6 +200,14 @@ def _entry(kind: Kind, *part: str) -> str | None:
         ),
         *part,
     )
+
+
+def _says_equations(base: type) -> bool:
+    """Whether a class of an element may state equations: not one such as ``Rod[Marker]``, which only gives a generic class its marker.
+
+    The module of such a class is the one that happened to ask for it first.
+    """
+    return issubclass(base, Element | Component) and base.__pydantic_generic_metadata__["origin"] is None
 
 
 def _classes_in(shape: Shape) -> Iterator[type]:

@@ -3,6 +3,8 @@
 import json
 import multiprocessing
 import os
+import pickle
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -173,12 +175,41 @@ def test_a_warm_run_imports_nothing_that_derives_or_compiles(examples, tmp_path,
     assert loaded_by_a_run(examples / "cart_pendulum.yaml", solver, kept.cache_directory(), tmp_path) == "[]"
 
 
+WARMED = """
+import sys
+from stiffmbs.compile.kernels import compile_usual
+from stiffmbs.compile.machine import cache
+from stiffmbs.jobs.warm import routines, usual_kinds
+
+read = cache.read
+def noted(name):
+    print(name)
+    return read(name)
+cache.read, cache.write = noted, lambda *_: sys.exit("found an entry that was not there")
+for kind in usual_kinds():
+    compile_usual(kind)
+for routine in routines():
+    routine.call
+"""
+"""Names every entry that warming makes, from a warm cache."""
+
+
 @pytest.mark.long
-def test_after_warming_first_runs_compile_nothing(examples, directory, tmp_path):
-    assert run_in_a_process(["-m", "stiffmbs", "cache", "warm"], directory).returncode == 0
+def test_after_warming_first_runs_compile_nothing(examples, tmp_path, monkeypatch):
+    """In a cache that holds what warming makes and nothing else, as other tests have filled the one at hand."""
+    at_hand = kept.cache_directory()
+    assert run_in_a_process(["-m", "stiffmbs", "cache", "warm"], at_hand).returncode == 0
+    warmed = run_in_a_process(["-c", WARMED], at_hand)
+    assert warmed.returncode == 0, warmed.stderr
+    from_there = cache.own_directory()
+    monkeypatch.setenv(kept.DIRECTORY_VARIABLE, str(tmp_path))
+    cache.own_directory().mkdir(parents=True)
+    shutil.copy(at_hand / kept.SECRET, tmp_path / kept.SECRET)  # entries are signed with it
+    for name in warmed.stdout.split():
+        shutil.copy(from_there / name, cache.own_directory() / name)
     entries = sorted(cache.own_directory().iterdir())
     for scene in ("cart_pendulum", "crank_slider", "chain", "four_bars", "stick_slip", "heavy_top", "spatial_chain"):
-        assert loaded_by_a_run(examples / f"{scene}.yaml", "auto", directory, tmp_path) == "[]"
+        assert loaded_by_a_run(examples / f"{scene}.yaml", "auto", tmp_path, tmp_path) == "[]"
     assert sorted(cache.own_directory().iterdir()) == entries
 
 
@@ -208,6 +239,22 @@ def test_a_change_of_what_equations_call_makes_their_record_anew(monkeypatch, el
     assert record._entry(kind) == before
     monkeypatch.setattr(Path, "read_bytes", lambda path: read(path) + (b"#" if path.name == called else b""))
     assert record._entry(kind) != before
+
+
+@pytest.mark.parametrize("first", ["shared", "revolute_spherical"])
+def test_the_name_of_a_record_does_not_depend_on_what_was_imported_first(tmp_path, first):
+    """Both modules ask for the same generic class of rods."""
+    model = spatial.Model()
+    model.add("block", spatial.Body(mass=1, inertia=(1, 1, 1)))
+    model.add("rod", spatial.Distance(i="block", j="ground", length=1.0))
+    described = model.data()
+    kind, _ = sorted_out("rod", described.joints["rod"], described)
+    script = (
+        f"import stiffmbs.describe.spatial.joints.{first}, pickle, sys\nfrom stiffmbs.compile.record import _entry\n"
+        "print(_entry(pickle.load(sys.stdin.buffer)))"
+    )
+    names = subprocess.run([sys.executable, "-c", script], input=pickle.dumps(kind), capture_output=True, check=True)
+    assert names.stdout.decode().strip() == record._entry(kind)
 
 
 @pytest.mark.long

@@ -134,8 +134,8 @@ def _derived_joint(kind: Kind, symbols: Symbols) -> Derived:
     lam, mu = multipliers("lam", V.rows), multipliers("mu", V.rows)
     force = e.work_by_velocities(zip(lam, V, strict=True))
     turning = e.rate(V)
-    in_time = map(e.second_rate, C) if kind.dimensions == 3 else turning[: len(C), :]  # in the plane that has fewer products
-    second = [*in_time, *turning[len(C) :, :]]
+    in_space = kind.dimensions == 3  # in the plane `turning` has fewer products
+    second = [*(map(e.second_rate, C) if in_space else turning[: len(C), :]), *turning[len(C) :, :]]
     power = power_of_joint(e, V, lam)
     terms = {
         "C": sp.Matrix([*C, *sp.zeros(len(rates), 1)]), "C_q": e.by_coordinates(C), "V": V, "J": J, "V_q": e.by_coordinates(V),
