@@ -36,9 +36,6 @@ TRUSTED = 10
 """States for which a measured rate serves, or what closing joints makes."""
 WORSE = 3.0
 """Times the measured figure that is reckoned with: it hangs on the direction of what is left."""
-FORESEEN = 0.5
-"""What the rate alone may promise to leave, in units of what may be left: a look is saved then.  On axles of 1e6 to 1e9 N/m the largest errors
-of forces are equal to 10 %; with 1 they are up to 29 % larger."""
 INFINITE = float("inf")
 
 output_correction_view = view_of("OutputCorrection", OUTPUT_CORRECTION)
@@ -138,7 +135,6 @@ def _is_balanced(b, s, e, t, ahead):
     """
     middle = 4.0 * ahead * (1.0 - ahead)
     part = _left(b, s, e, t)
-    b.part = part
     b.unseen = min(2 * b.unseen + 1, MOST_UNSEEN) if part < FAR_BELOW * middle else 0
     b.next_look = b.unseen
     return part <= 1.0
@@ -186,14 +182,11 @@ def _settled(b, s, e, t):
             if not rate < SLOWEST:
                 return size <= b.enough
             _note_rate(b, t, rate)
-        if rate * size <= b.enough or (k == 0 and rate * b.part <= FORESEEN):
+        if rate * size <= b.enough:
             return True
         before = size
         _look(b, s, e, t)
-        left = _left(b, s, e, t)
-        if left <= 1.0:
-            if k == 0 and b.part < INFINITE:
-                _note_rate(b, t, left / b.part)
+        if _left(b, s, e, t) <= 1.0:
             return True
     return False
 

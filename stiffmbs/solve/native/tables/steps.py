@@ -107,7 +107,7 @@ within which another one is the same, how many were passed, and the steps of the
 
 OUTPUT_CORRECTION = Layout({
     "factored": FLOAT_CELL, "current": FLOAT_CELL, "enough": FLOAT_CELL, "long": FLOAT_CELL,
-    "made": FLOAT_CELL, "growth": FLOAT_CELL, "since": INT_CELL, "part": FLOAT_CELL,
+    "made": FLOAT_CELL, "growth": FLOAT_CELL, "since": INT_CELL,
     "balanced": FLOAT_CELL, "unseen": INT_CELL, "next_look": INT_CELL, "force_end": INTS, "force_row": INTS,
     "local": FLOAT_CELL, "judged": INT_CELL, "n_joint_rows": INT, "joint_row": INTS, "dynamics": INTS, "pose": FLOATS,
     "memory": INT, "interpolate": INT, "weights": INT, "clear": INT, "setup": INT, "solve": INT,
@@ -119,9 +119,9 @@ OUTPUT_CORRECTION = Layout({
 
 Cells: cj of the factors (0 where there are none), cj of IDA's, the part of the tolerance that may be left, the step, s,
 beyond which states within it are corrected; the time at which the factors were made, what the rate of convergence
-grows by in a second from there (below 0: not known), states corrected since that was measured, and what the last state looked at
-left of the forces, in units of what may be left; the part of the largest force that may be left, states that are not looked at
-after one that is balanced, and those of them that are to come.  The rows of the equations of motion: those of forces, then those of moments, and where either end.  What closing joints left of the forces
+grows by in a second from there (below 0: not known), and states corrected since that was measured; the part of the largest
+force that may be left, states that are not looked at after one that is balanced, and those of them that are to come.  The rows of the
+equations of motion: those of forces, then those of moments, and where either end.  What closing joints left of the forces
 for an opening of 1 m, in units of what may be left, and for how many states that serves; the rows of position constraints, the system
 that joints are closed by, and memory for a pose."""
 
