@@ -8,6 +8,7 @@ import pytest
 from stiffmbs.bench.decades import error_of
 from stiffmbs.bench.peers import missing, peers
 from stiffmbs.bench.peers.trees.tree import GROUND, Link, Tree
+from stiffmbs.bench.problems.accelerations import InSpace
 from stiffmbs.bench.problems.trees_in_space import BENCHMARKS, tilted_chain
 
 PROBLEMS = {benchmark.name: benchmark for benchmark in BENCHMARKS}
@@ -37,6 +38,12 @@ def test_long_steps_pass_over_output_times():
     (mujoco,) = (peer for peer in peers(problem.in_space()) if peer.solver == "MuJoCo RK4")
     found = mujoco.at(0.02)()  # two times the spacing
     assert np.isnan(found[1]).all() and np.isfinite(found[2]).all()
+
+
+def test_all_tools_find_the_same_accelerations():
+    """The errors of a row are those of the centres' accelerations."""
+    for row in InSpace(10).glanced():
+        assert row.error < 1e-9, row.solver
 
 
 def test_hinges_of_a_tree_turn_what_they_carry():

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 from xml.etree import ElementTree as xml
 
@@ -48,6 +48,21 @@ def model_of(tree: Tree) -> Any:
             centre = _text(link.centre - link.hinge)
             xml.SubElement(body, "inertial", pos=centre, mass=repr(link.mass), fullinertia=_text(tensor))
     return mujoco.MjModel.from_xml_string(xml.tostring(root, encoding="unicode"))
+
+
+def at_start(tree: Tree) -> Callable[[], np.ndarray]:
+    """The accelerations of the hinges by `mj_forward`, at the start."""
+    import mujoco
+
+    model = model_of(tree)
+    data = mujoco.MjData(model)
+    data.qvel[:] = tree.rates
+
+    def accelerations() -> np.ndarray:
+        mujoco.mj_forward(model, data)
+        return np.asarray(data.qacc)
+
+    return accelerations
 
 
 def _text(numbers: np.ndarray) -> str:

@@ -23,6 +23,29 @@ def rates_of(tree: Tree) -> Callable[[float, np.ndarray], np.ndarray]:
     """``rates(t, y)`` for y = (hinge angles, their rates)."""
     import pinocchio as pin
 
+    model, n, damping = model_of(tree), len(tree.links), tree.damping
+    data = model.createData()
+
+    def rates(t: float, y: np.ndarray) -> np.ndarray:
+        v = y[n:]
+        return np.concatenate((v, pin.aba(model, data, y[:n], v, -damping * v)))
+
+    return rates
+
+
+def at_start(tree: Tree) -> Callable[[], np.ndarray]:
+    """The accelerations of the hinges by `aba`, at the start."""
+    import pinocchio as pin
+
+    model, v = model_of(tree), tree.rates
+    data, still, torques = model.createData(), np.zeros(len(v)), -tree.damping * v
+    return lambda: np.asarray(pin.aba(model, data, still, v, torques))
+
+
+def model_of(tree: Tree) -> Any:
+    """Pinocchio's model."""
+    import pinocchio as pin
+
     model = pin.Model()
     model.gravity.linear = tree.gravity
     for k, link in enumerate(tree.links):
@@ -31,13 +54,7 @@ def rates_of(tree: Tree) -> Callable[[float, np.ndarray], np.ndarray]:
         joint = model.addJoint(parent, pin.JointModelRevoluteUnaligned(link.axis), place, f"hinge{k}")
         inertia = pin.Inertia(link.mass, link.centre - link.hinge, link.inertia)
         model.appendBodyToJoint(joint, inertia, pin.SE3.Identity())
-    data, n, damping = model.createData(), len(tree.links), tree.damping
-
-    def rates(t: float, y: np.ndarray) -> np.ndarray:
-        v = y[n:]
-        return np.concatenate((v, pin.aba(model, data, y[:n], v, -damping * v)))
-
-    return rates
+    return model
 
 
 def marching(tree: Tree, method: Callable[..., np.ndarray], rtol: float) -> Solve:
