@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
 from typing import TYPE_CHECKING, TypeVar, cast
 
@@ -78,6 +78,13 @@ class OutputRows:
     drift: np.ndarray
     log_determinant: np.ndarray
     status: int
+
+    def at(self, instants: np.ndarray) -> OutputRows:
+        """Return the rows of some instants, by number."""
+        found = {each.name: getattr(self, each.name) for each in fields(self)}
+        return OutputRows(
+            **{name: each[instants] if isinstance(each, np.ndarray) else each for name, each in found.items()}
+        )
 
     @property
     def finite(self) -> bool:

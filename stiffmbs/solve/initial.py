@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..compile.gaps import position_gap
 from ..compile.written_values import values_of
 from ..errors import AssemblyError
 from .algebraic_states import failure
@@ -167,10 +168,11 @@ def _violation_sentence(dynamics: Dynamics, t: float) -> str:
     gaps = np.abs(state.vector("position", "C"))
     if not np.all(np.isfinite(gaps)):
         return _undefined_sentence(dynamics, t)
-    joint, equation = system.equations[int(np.argmax(gaps))]
+    row = int(np.argmax(gaps))
+    joint, equation = system.equations[row]
     return (
         f"the scene cannot be assembled: the largest gap is left in joint '{joint}' (equation {equation}, "
-        f"{gaps.max():.3g}, expected less than {POSITION_TOLERANCE:g})"
+        f"{position_gap(state, t, row)}, expected less than {POSITION_TOLERANCE:g})"
     )
 
 

@@ -96,7 +96,7 @@ class Integrator:
         t = grid.start
         self._jumps.clear()
         features = self.dynamics.input_features(grid.start, grid.end)
-        self.engine.see_inputs(features)
+        self.engine.see_inputs(features, grid.end - grid.start)
         self._of_inputs = features.note
         chattering = Chattering(self.dynamics, grid.end, self.settings.rtol)
         self._masked = MaskedEvents(self.dynamics, chattering)
@@ -159,7 +159,7 @@ class Integrator:
     def _ahead(self, reached: Reached, stop: float) -> float:
         """How far beyond an event others that come with it are passed."""
         last = self.engine.last_step() if reached.fired else None
-        ahead = straight_on(last[0], self.settings.rtol) if last else 0.0
+        ahead = straight_on(reached.t, last[0], self.settings.rtol) if last else 0.0
         return ahead if just_after(reached.t + ahead) < stop else 0.0
 
     def steps(self) -> int:

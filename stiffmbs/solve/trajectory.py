@@ -44,6 +44,10 @@ class Outcome(Enum):
     STOPPED = "the solver stopped early; the results up to there are kept"
 
 
+IN_DOUBT = "the end was reached, but the results are in doubt"
+"""What is said of a run in place of `Outcome.DONE` where notes on it say that its results may be wrong."""
+
+
 @dataclass(frozen=True)
 class History:
     """A solver's own steps.

@@ -18,6 +18,8 @@ from .steady_motion import SteadyMotion
 
 BALANCED, ROUNDING = 1e-10, 8
 """Imbalance of forces that counts as none, relative to the largest force; roundings of the coordinates that may be left in them."""
+SLOWEST = 1e-5
+"""Rate, rad/s: a force counts as none that moves its body by the mechanism's size, or 1 rad, in a day (1/SLOWEST)."""
 SLOW_STATE = 1e-3
 """Rate of a state beside itself, 1/s, of which the same part counts as none as of forces."""
 PASSED_ON = 1e-8
@@ -49,6 +51,8 @@ class Balance:
         In which this is so.
     speeds : FoundSpeeds, optional
         Its speeds that forces tell.
+    negligible : ndarray, shape (n_u,)
+        Forces that are none, where all forces vanish in equilibrium.
     """
 
     left: np.ndarray
@@ -61,12 +65,13 @@ class Balance:
     dragged: csc_array
     motion: SteadyMotion
     speeds: FoundSpeeds | None = None
+    negligible: np.ndarray | float = 0.0
 
     @property
     def imbalance(self) -> float:
-        """Of forces, relative to the largest."""
-        forces = self.left[: self.dragged.shape[1]]
-        return float(np.max(np.abs(forces), initial=0.0) / (self.largest or 1.0))
+        """Of forces that are not negligible, relative to the largest."""
+        forces = np.abs(self.left[: self.dragged.shape[1]])
+        return float(np.max(np.where(forces > self.negligible, forces, 0.0), initial=0.0) / (self.largest or 1.0))
 
     @property
     def balanced(self) -> bool:
@@ -101,17 +106,19 @@ def balance_at(dynamics: Dynamics, t: float, motion: SteadyMotion) -> Balance:
     rounding = ROUNDING * np.finfo(float).eps * (abs(stiffness) @ system.per_velocity(float(farthest), 1.0))
     roots = np.sqrt(system.mass)  # the balance is a projection in this metric, which passes on no more than there is
     passed_on = np.minimum(roots * np.max(rounding / roots, initial=0.0), PASSED_ON * largest)
+    negligible = system.mass * system.per_velocity(system.size, 1.0) * SLOWEST**2
     left = system.mass * _beside_the_constraints(acceleration - steady, system.mass, jacobian)
     found = Balance(
         left,
         lam,
         float(largest),
-        np.maximum.reduce([np.full(len(left), BALANCED * largest), rounding, passed_on]),
+        np.maximum.reduce([np.full(len(left), BALANCED * largest), rounding, passed_on, negligible]),
         stiffness,
         jacobian,
         jacobian.T,
         csc_array((0, len(left))),
         motion,
+        negligible=negligible,
     )
     if system.states:
         found = with_states(dynamics, found, rates, motion, t)

@@ -9,7 +9,7 @@ from collections import deque
 import numpy as np
 
 from ...compile.written_values import writer
-from ...errors import SolverError
+from ...errors import ChatteringError, SolverError
 from ..dynamics import Dynamics
 from .discontinuity import LARGER_MOVE, jumping, sliding
 
@@ -52,7 +52,7 @@ class Chattering:
 
         Raises
         ------
-        SolverError
+        ChatteringError
             Where a force drives the motion back from both sides of its jump; names the element.
         """
         if self._any:
@@ -63,8 +63,10 @@ class Chattering:
 
         Raises
         ------
+        ChatteringError
+            Where a force drives the motion back from both sides of its jump.
         SolverError
-            Where a force drives the motion back from both sides of its jump, or the steps are too short to arrive.
+            Where the steps are too short to arrive.
         """
         if self._any:
             self.refuse(t, sliding(self._dynamics, t, q, u, self._reach))
@@ -86,7 +88,7 @@ class Chattering:
 
         Raises
         ------
-        SolverError
+        ChatteringError
             When events follow each other so fast that the run would come to no end; names the element.
         """
         self._count += 1
@@ -101,7 +103,7 @@ class Chattering:
                 if event_function >= 0
                 else "a force"
             )
-            raise SolverError(
+            raise ChatteringError(
                 f"stopped at t = {t:.9g} s: {name} changes its law back and forth ever faster, {self._count} times so far and once in "
                 f"{(last - middle) / WINDOW:.3g} s: the run would come to no end; expected a force without a jump where the motion comes "
                 "to rest, a switch with hysteresis, or a force that does not drive the motion beyond all bounds"
@@ -122,7 +124,7 @@ class Chattering:
     def refuse(self, t: float, event_functions: np.ndarray) -> None:
         """Stop the run at the first of some event functions."""
         if len(event_functions):
-            raise SolverError(f"stopped at t = {t:.9g} s: {jump_sentence(self._dynamics, int(event_functions[0]))}")
+            raise ChatteringError(f"stopped at t = {t:.9g} s: {jump_sentence(self._dynamics, int(event_functions[0]))}")
 
 
 def jump_sentence(dynamics: Dynamics, event_function: int) -> str:

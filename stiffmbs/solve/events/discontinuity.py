@@ -175,16 +175,21 @@ def _driven_back(sides: tuple[_Side, _Side], event_functions: np.ndarray) -> np.
 
 
 def _slides(beside: _Beside, reach: float, event_function: int) -> bool:
-    """Whether the rates on both sides of an event function's zero differ as much however near the sides are to it."""
+    """Return True if the motion returns to an event function's zero from both sides, with rates that jump there.
+
+    The zero is a surface of sliding only where the event function is continuous. One that jumps through zero, as the load of a
+    damper does at a kink of its road, changes its sign at a surface that another event function describes.
+    """
     at_zero = beside.at_zero(reach, event_function)
-    change = []
+    values, rates = [], []
     for size in (LARGER_MOVE, SMALLER_MOVE):
         sides = at_zero.sides(size)
         if not _driven_back(sides, np.array([event_function]))[0]:
             return False
-        change.append(abs(sides[0].rates[event_function] - sides[1].rates[event_function]))
-    far, near = change
-    return bool(near > max(JUMPS * far, LEAST_JUMP))
+        values.append(abs(sides[0].values[event_function] - sides[1].values[event_function]))
+        rates.append(abs(sides[0].rates[event_function] - sides[1].rates[event_function]))
+    continuous = values[1] <= JUMPS * values[0]
+    return bool(continuous and rates[1] > max(JUMPS * rates[0], LEAST_JUMP))
 
 
 def direction_of(dynamics: Dynamics) -> tuple[np.ndarray, np.ndarray]:

@@ -9,8 +9,11 @@ from ...compile.machine.layout import fill
 from ...compile.state import State
 from ...compile.system import System
 from ...compile.terms import TERM_SETS
+from ...compile.written_values import writer
 from ..native.tables.steps import EVENT_SEARCH
 
+MOST_STEPS = 1_000_000
+"""Steps of a run that laws periodic in the state may ask for; one that turns faster is reported."""
 NODES = 8
 """States that describe a step: the interpolant of DOP853 is of degree 7, that of BDF of at most 5."""
 
@@ -37,7 +40,7 @@ class EventSearch:
     """
 
     def __init__(self, state: State) -> None:
-        system = state.system
+        self._system = system = state.system
         state.load("event_function")
         n, n_event_functions, n_state = (
             system.n_values("event_function"),
@@ -57,6 +60,7 @@ class EventSearch:
         angles = system.turning
         work = ("value_before", "rate_before", "value_after", "rate_after", "a", "a_rate", "b", "b_rate", "m", "m2", "left_low", "left_high", "noise", "zone_low", "zone_high", "apart")  # fmt: skip
         self._arrays = {
+            "longest": np.inf, "passage": np.inf, "n_turns": len(zones.turns), "turn": zones.turns,
             "n": n, "n_event_functions": n_event_functions, "masked": self.masked,
             "first_edge": zones.first, "edges": zones.edges, "overlap": zones.overlap, "period": zones.period, **{name: np.zeros(n) for name in work}, "found": self.found,
             "n_state": n_state, "n_nodes": NODES, "node": (1 - np.cos(place)) / 2, "weight": weight,
@@ -68,6 +72,22 @@ class EventSearch:
         """Forget the last step: the integrator starts anew."""
         self._cells["ready"] = 0
         self.found[:] = 0
+
+    def resolve(self, duration: float) -> None:
+        """Forget the last run, and bound the steps of one with this duration, s, by its arguments of sines."""
+        for cell, value in (("least", duration / MOST_STEPS), ("longest", np.inf), ("unresolved", 0)):
+            self._cells[cell] = value
+
+    def note(self) -> str:
+        """Return a sentence on a periodic law that repeats more often than steps are taken; empty for none."""
+        cells = self._cells
+        if not cells["unresolved"]:
+            return ""
+        name = writer(self._system, "event_function", int(cells["fastest"]))
+        return (
+            f"'{name}' has a law that repeats more than once within a step, first at t = {cells['first_unresolved']:.6g} s: it cannot be "
+            "resolved by this many steps; expected a longer period, a shorter run, or max_step far below the period"
+        )
 
 
 def _calls(system: System) -> dict[str, np.ndarray | int]:

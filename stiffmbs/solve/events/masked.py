@@ -16,9 +16,10 @@ from .discontinuity import jumping
 
 FEW_STEPS, TIMES_THE_WAIT = 4, 4
 """An event within so many steps of a start, and of the wait before, counts as one by rounding."""
-FIRST_WAIT, LONGER, MOST_IN_SUCCESSION = 8, 4, 4
-"""Steps for which an event function is left alone after its first event of that kind, times how many after each further one, up to
-so many: a start's first steps double from one to the next."""
+FIRST_WAIT, LONGER, MOST_IN_SUCCESSION = 8, 4, 5
+"""Steps for which an event function is left alone after its second event of that kind, times how many after each further one, up to
+so many: a start's first steps double from one to the next.  A single one may be an event that is met twice, as the start is brought
+back to the constraints."""
 TELLING = 3
 """Such events in succession from which on a force that jumps is told; the first may be those of a start at zero."""
 
@@ -69,7 +70,7 @@ class MaskedEvents:
         telling = again[self._in_succession[again] >= TELLING]
         if len(telling):
             self._chattering.refuse(t, np.intersect1d(telling, jumping(self._dynamics, t, q, u)))
-        self.steps = np.where(self._in_succession, FIRST_WAIT * LONGER ** np.maximum(self._in_succession - 1, 0), 0)
+        self.steps = np.where(self._in_succession > 1, FIRST_WAIT * LONGER ** np.maximum(self._in_succession - 2, 0), 0)
         self._quiet = not self._in_succession.any()
 
     def failed(self, t: float, q: np.ndarray, u: np.ndarray) -> str:

@@ -21,6 +21,8 @@ INDISTINCT = 4 * float(np.finfo(float).eps)
 """Part of a time within which another one is taken for the same, by IDA and for breakpoints, which rounding moves by as much."""
 
 
+HIDDEN = 1e-11
+"""Part of the time for which rounding may hide that an event function has changed: 10^5 roundings, as of a sine just below its top."""
 PASSED, LARGEST_RTOL = 1e-2, 1e-4
 """How far the motion goes straight on behind an event: part of the last step, times the relative tolerance or this at most.  What a
 law changes in that time is so much below the tolerance."""
@@ -36,9 +38,9 @@ def just_after(t: float) -> float:
     return t + INDISTINCT * abs(t)
 
 
-def straight_on(step: float, rtol: float) -> float:
-    """How far ahead of an event the motion may be taken for straight after a step of a length, s."""
-    return PASSED * min(rtol, LARGEST_RTOL) * step
+def straight_on(t: float, step: float, rtol: float) -> float:
+    """How far ahead of an event at t the motion may be taken for straight after a step of a length, s; at least what rounding may hide."""
+    return max(PASSED * min(rtol, LARGEST_RTOL) * step, HIDDEN * abs(t))
 
 
 def restarted(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, project: bool = True) -> InitialValues:

@@ -97,7 +97,7 @@ class AdaptiveRun:
             ending.message = f"{ending.message}; {stiff_sentence(work)}"
         history = History(np.concatenate([*work.step_times, np.empty(0)]), np.empty(0, dtype=int))
         statistics = {**self._statistics(), "seconds": ending.seconds}
-        note = "; ".join(filter(None, (self._note, self._jumps.sentence())))
+        note = "; ".join(filter(None, (self._note, self._jumps.sentence(), self.work.unresolved())))
         return Trajectory(
             *self._rows.stored,
             ending.outcome,

@@ -53,6 +53,7 @@ class Integration:
             "long_steps", len(memory.y), lambda: LongStepLog(dynamics.system, len(memory.y))
         )
         self._long_steps.forget()
+        self._watch.resolve(grid.end - grid.start)
         memory.renew(*addresses(self._watch.table, self.step_bound.table, self._long_steps.table))
         self.q, self.u, self.at = memory.y[:n_q], memory.y[n_q:], address(memory.table)
         self.atol = dynamics.kept("tolerances", settings, lambda: absolute_tolerances(dynamics.system, settings))
@@ -117,6 +118,10 @@ class Integration:
     def count(self, name: str) -> int:
         """A counter: ``steps``, ``rejected``, ``accelerations``, ``stiff_steps`` (those that stability held back)."""
         return int(self._cells[name])
+
+    def unresolved(self) -> str:
+        """Return a sentence on laws that repeat more often than steps are taken; empty for none."""
+        return self._watch.note()
 
     def long_steps(self) -> tuple[LongSteps, ...]:
         """Steps far longer than those before them."""

@@ -50,7 +50,7 @@ class Engine(Protocol):
     def forget(self) -> None:
         """Forget counters, history and pivots of an earlier run."""
 
-    def see_inputs(self, features: InputFeatures) -> None:
+    def see_inputs(self, features: InputFeatures, duration: float) -> None:
         """Take no step that might miss what the inputs do, from the next start on."""
 
     def leave_out(self, masked: np.ndarray) -> None:

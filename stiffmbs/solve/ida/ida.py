@@ -201,9 +201,14 @@ class NativeIda:
         """Do not look at each event function for so many steps from the next beginning on."""
         self._ida.masked[:] = masked
 
-    def see_inputs(self, features: InputFeatures) -> None:
+    def see_inputs(self, features: InputFeatures, duration: float) -> None:
         """Take no step that might miss what the inputs do."""
         self._ida.step_bound.follow(features)
+        self._ida.watch.resolve(duration)
+
+    def unresolved(self) -> str:
+        """Return a sentence on laws that repeat more often than steps are taken; empty for none."""
+        return self._ida.watch.note()
 
     def leave_to_newton(self, part: float) -> None:
         """Set the part of the error tolerance that Newton's iteration may leave, as `newton` does."""

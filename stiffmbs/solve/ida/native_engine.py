@@ -81,9 +81,9 @@ class NativeEngine:
         self._newton = 0.0
         self._counted = {"steps": 0, "convergence_failures": 0}
 
-    def see_inputs(self, features: InputFeatures) -> None:
+    def see_inputs(self, features: InputFeatures, duration: float) -> None:
         """Take no step that might miss what the inputs do."""
-        self._ida.see_inputs(features)
+        self._ida.see_inputs(features, duration)
 
     def leave_out(self, masked: np.ndarray) -> None:
         """Do not look at each event function for so many steps."""
@@ -258,7 +258,7 @@ class NativeEngine:
 
     def note(self) -> str:
         """What the user should know of the way it went."""
-        return self._order.note(self._ida.history.count)
+        return "; ".join(filter(None, (self._order.note(self._ida.history.count), self._ida.unresolved())))
 
     def steps(self) -> int:
         """Taken since the first start."""

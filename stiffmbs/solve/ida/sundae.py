@@ -179,7 +179,7 @@ class SundaeEngine:
     def forget(self) -> None:
         """Each run has a driver of its own."""
 
-    def see_inputs(self, features: InputFeatures) -> None:
+    def see_inputs(self, features: InputFeatures, duration: float) -> None:
         """Stop where a longer step might miss what the inputs do; IDA goes on from there with its history."""
         self._features = features
 

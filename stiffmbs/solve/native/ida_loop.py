@@ -5,6 +5,7 @@ from __future__ import annotations
 from stiffmbs.compile.machine.native.access import address_of, compiled, equations_view, floats, shifted, state_view
 from stiffmbs.compile.machine.native.evaluate import SWITCH, add_entries, add_products, evaluate, load
 from stiffmbs.solve.native.calls import call_int, copy_bytes, int32
+from stiffmbs.solve.native.event_search.bounds import event_search_view
 from stiffmbs.solve.native.event_search.event_signs import watched
 from stiffmbs.solve.native.ida_memory import array_of, native_ida_view
 from stiffmbs.solve.native.iteration import MADE, iteration_view
@@ -16,6 +17,8 @@ from stiffmbs.solve.native.tables.steps import HISTORY_WIDTH, MOST_STEPS, SAMPLE
 
 STRETCHED = 1.01
 """The last step may be this much longer than inputs allow, so that no tiny one is left."""
+FIRST_PART = 0.125
+"""Part of the following steps that the first one of order 1 may take of a law's passage: its error is not made good by them."""
 STEPS_APART = 4
 """The last states are kept as samples, one each few steps."""
 STALLED = -101
@@ -79,12 +82,28 @@ def event_functions(t, yy, yp, g, user_data):
 
 
 @compiled
+def _longest_to_see(c, bound, t):
+    """The longest step from t that misses nothing of inputs and of periodic or just entered laws."""
+    longest = longest_step(bound, t) if bound.n > 0 else float("inf")
+    if c.look_at_start:
+        w = event_search_view(c.watch)
+        longest = min(longest, w.longest)
+        if t < w.target:
+            longest = min(longest, w.target - t)
+        if t < w.passed:
+            longest = min(longest, w.passage if c.size > 0.0 else FIRST_PART * w.passage)
+    return max(longest, MOST_TINY * TINY_STEP * abs(t))
+
+
+@compiled
 def _see_inputs(c, stop):
-    """Have IDA stop where a longer step might miss what an input does; it goes on from there with its history."""
+    """Have IDA stop where a longer step might miss what an input or a law does; it goes on from there with its history."""
     bound = step_bound_view(c.step_bound)
-    if bound.n > 0:
+    if bound.n > 0 or c.look_at_start:
         t = c.internal
-        longest = longest_step(bound, t)
+        longest = _longest_to_see(c, bound, t)
+        if longest == float("inf") and c.stopping == stop:
+            return
         call_int(c.next_step_of, (c.memory, address_of(c.next_size)))
         first = c.size == 0.0
         cut = (first or c.next_size > longest) and t + STRETCHED * longest < stop
@@ -98,10 +117,10 @@ def stepped(c, ida, toward, stop):
     """One step; returns IDA's flag and notes the step's end, order and size in the history."""
     before = c.internal
     begun = c.returned
-    _see_inputs(c, stop)
     c.within = 0
     if c.look_at_start:
         call_int(c.look_at_start, (toward, ida))
+    _see_inputs(c, stop)
     flag = call_int(c.solve, (c.memory, toward, address_of(c.returned), c.y, c.yp, int32(ONE_STEP)))
     if flag == STOP_RETURN and c.returned < stop:
         flag = int32(OK)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -11,11 +12,50 @@ from ...compile.equations import ABSENT
 from ..dynamics import Dynamics, OutputRows
 from .block_system import BlockSystem, Change
 from .equations import VariationalEquations
-from .jumps import Jumps, Shifted
+from .jumps import BreakpointRates, Jump, Jumps, Shifted, State
 from .recorded import Recorder, Segment
+from .touches import Touches
 
-BreakpointRates = Callable[[float], np.ndarray]
-"""How a breakpoint at some time, s, moves in each direction, shape (directions,)."""
+
+@dataclass(frozen=True)
+class Side:
+    """One side of a breakpoint or an event at an output instant.
+
+    Attributes
+    ----------
+    row : OutputRows
+        Of one instant.
+    change : Change
+    values : ndarray, shape (directions, values)
+        How the output terms change.
+    """
+
+    row: OutputRows
+    change: Change
+    values: np.ndarray
+
+
+@dataclass(frozen=True)
+class Instant:
+    """How an output instant changes.
+
+    Attributes
+    ----------
+    number : int
+        Of the instant.
+    change, values
+        As for a side.
+    sides : tuple of Side
+        Those of a breakpoint or an event at this instant that moves; none elsewhere.
+    moved : ndarray of bool, shape (directions,)
+        In which directions it moves.
+    """
+
+    number: int
+    change: Change
+    values: np.ndarray
+    sides: tuple[Side, ...] = ()
+    moved: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=bool))
 
 
 class AlongRun:
@@ -37,12 +77,12 @@ class AlongRun:
         self._equations = recorder.equations
         self.block = BlockSystem(dynamics, directions)
         self._variations = VariationalEquations(recorder.equations, recorder.native.matrix, dynamics.state, directions)
-        self._jumps = Jumps(dynamics, recorder.equations, directions, breakpoint_rates, recorder.settings.rtol)
+        self._jumps = Jumps(
+            dynamics, recorder.equations, directions, self.block, breakpoint_rates, recorder.settings.rtol
+        )
 
-    def at(
-        self, rows: OutputRows, wanted: np.ndarray, start_q: np.ndarray, start_u: np.ndarray
-    ) -> Iterator[tuple[int, Change]]:
-        """How the state changes at some of the output instants.
+    def at(self, rows: OutputRows, wanted: np.ndarray, start_q: np.ndarray, start_u: np.ndarray) -> Iterator[Instant]:
+        """Yield how the state changes at some of the output instants.
 
         Parameters
         ----------
@@ -52,19 +92,15 @@ class AlongRun:
             The numbers of instants, increasing.
         start_q, start_u : ndarrays, shapes (directions, n_q), (directions, n_u)
             How the start changes.
-
-        Yields
-        ------
-        (int, Change)
-            The state of the dynamics is then that of the instant.
         """
         s, asked = Shifted(start_q, start_u, np.zeros(len(start_q))), list(wanted)
-        segments = [segment for segment in self._recorder.segments if len(segment.rows)]
+        segments = self._recorder.passed(rows.t[-1] - rows.t[0])
+        Touches(self._recorder).refuse(segments)
+        while asked and rows.t[asked[0]] <= segments[0].first[0]:
+            yield self._instant(rows, asked.pop(0), s)
         for segment, following in zip(segments, [*segments[1:], None], strict=True):
-            while asked and rows.t[asked[0]] <= segment.first[0]:
-                yield asked[0], self._change(rows, asked.pop(0), s)
             self._begin(segment, s)
-            end = following.first[0] if following else np.inf
+            end = segment.rows[-1, 0] if following else np.inf
             done = 0
             while asked and rows.t[asked[0]] < end:
                 k = asked.pop(0)
@@ -73,25 +109,47 @@ class AlongRun:
                 self._variations.advance(segment.rows[done:step])
                 done = step
                 at_instant = self._variations.within(self._row(rows, k, segment.rows[step, 1]))
-                yield k, self._change(rows, k, self._parts(at_instant, s.shift))
+                yield self._instant(rows, k, self._parts(at_instant, s.shift))
             if not asked or following is None:
                 return
             self._variations.advance(segment.rows[done:])
-            s = self._jumps.over(segment, following, self._parts(self._variations.last, s.shift))
+            jump = self._jumps.over(segment, following, self._parts(self._variations.last, s.shift))
+            while asked and rows.t[asked[0]] <= following.first[0]:
+                yield self._between(rows, asked.pop(0), jump)
+            s = jump.s
 
     def _parts(self, s: np.ndarray, shift: np.ndarray) -> Shifted:
         """Of q and u."""
         return Shifted(s[:, self._equations.at["q"]], s[:, self._equations.at["u"]], shift)
 
-    def _change(self, rows: OutputRows, k: int, s: Shifted) -> Change:
-        """How the state of an output instant changes."""
+    def _instant(self, rows: OutputRows, k: int, s: Shifted) -> Instant:
+        """Return how the state of an output instant changes."""
         t, q, u = rows.t[k], rows.q[k], rows.u[k]
         moved_q, moved_u = s.q, s.u
         if s.shift.any():
             self._dynamics.state.q[:], self._dynamics.state.u[:] = q, u
             _, acceleration = self._dynamics.accelerate(t)
             moved_q, moved_u = s.unshifted(self._dynamics.position_rates(q, u), acceleration)
-        return self.block.change(t, q, u, moved_q, moved_u, np.zeros(len(s.shift)))
+        return Instant(k, *self._changes(t, q, u, moved_q, moved_u))
+
+    def _between(self, rows: OutputRows, k: int, jump: Jump) -> Instant:
+        """Return how an output instant changes that a breakpoint or an event meets."""
+        found = self._instant(rows, k, jump.s)
+        if not jump.moved.any():
+            return found
+        sides = (self._side(jump.left, *jump.q_u_left), self._side(jump.right, *jump.q_u_right))
+        return replace(found, sides=sides, moved=jump.moved != 0.0)
+
+    def _side(self, at: State, moved_q: np.ndarray, moved_u: np.ndarray) -> Side:
+        row = self._dynamics.report(np.array([at.t]), at.q[None].copy(), at.u[None].copy(), False)
+        return Side(row, *self._changes(at.t, at.q, at.u, moved_q, moved_u))
+
+    def _changes(
+        self, t: float, q: np.ndarray, u: np.ndarray, moved_q: np.ndarray, moved_u: np.ndarray
+    ) -> tuple[Change, np.ndarray]:
+        """Return how a state and its output terms change."""
+        change = self.block.change(t, q, u, moved_q, moved_u, np.zeros(len(moved_q)))
+        return change, self.block.outputs(t, change)
 
     def _begin(self, segment: Segment, given: Shifted) -> None:
         """Start the variational equations at the start of a segment."""

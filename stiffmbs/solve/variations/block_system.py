@@ -1,4 +1,4 @@
-"""How accelerations and multipliers change with the state and with numbers: [M J^T; J 0][u'; lam] = [f; gamma], differentiated."""
+"""How accelerations, multipliers and algebraic states change with the state and with numbers: the block system differentiated."""
 
 from __future__ import annotations
 
@@ -7,11 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...compile.directional.direction import Direction, Numbers
+from ...compile.directional.direction import Direction, Numbers, unchanged
+from ...compile.directional.source import STATE
 from ...errors import SolverError
 from ..dynamics import Dynamics
 from ..failures import FAILURES
-from .saddle import saddle_solution
+from .saddle import acceleration_solution
 
 
 @dataclass(frozen=True)
@@ -21,6 +22,7 @@ class Change:
     Attributes
     ----------
     q, u : ndarrays, shapes (directions, n_q), (directions, n_u)
+        With algebraic states as their equations give them.
     acceleration, lam : ndarrays, shapes (directions, n_u), (directions, n_c)
     """
 
@@ -42,18 +44,20 @@ class BlockSystem:
     def __init__(self, dynamics: Dynamics, directions: Sequence[Numbers]) -> None:
         self._dynamics, self._numbers = dynamics, directions
         self._accelerations = [Direction(dynamics.state, "acceleration", numbers) for numbers in directions]
+        self._by_time = Direction(dynamics.state, "acceleration", unchanged(dynamics.system), STATE)
         self._outputs: list[Direction] = []
 
     def change(
         self, t: float, q: np.ndarray, u: np.ndarray, moved_q: np.ndarray, moved_u: np.ndarray, moved_t: np.ndarray
     ) -> Change:
-        """How accelerations and multipliers change at a state.
+        """Return how accelerations, multipliers and algebraic states change at a state.
 
         Parameters
         ----------
         t : float
         q, u : ndarrays, shapes (n_q,), (n_u,)
         moved_q, moved_u : ndarrays, shapes (directions, n_q), (directions, n_u)
+            Columns of algebraic states are not read.
         moved_t : ndarray, shape (directions,)
             How time changes.
 
@@ -62,22 +66,38 @@ class BlockSystem:
         SolverError
             When the state has no accelerations.
         """
+        return self._change(t, (q, u), self._accelerations, moved_q, moved_u, moved_t)
+
+    def motion(self, t: float, q: np.ndarray, u: np.ndarray, q_rates: np.ndarray, acceleration: np.ndarray) -> Change:
+        """Return the rates of all parts of a state along the motion, of one row; errors as for `change`."""
+        return self._change(t, (q, u), [self._by_time], q_rates[None], acceleration[None], np.ones(1))
+
+    def _change(
+        self, t: float, at: tuple[np.ndarray, np.ndarray], directions: Sequence[Direction],
+        moved_q: np.ndarray, moved_u: np.ndarray, moved_t: np.ndarray,
+    ) -> Change:  # fmt: skip
         state, system = self._dynamics.state, self._dynamics.system
-        state.q[:], state.u[:] = q, u
+        state.q[:], state.u[:] = at
         status, acceleration = self._dynamics.accelerate(t)
         if status < 0:
             raise SolverError(f"sensitivities: no accelerations were found at t = {t:.9g} s: {FAILURES[status]}")
         state.a[:] = acceleration
-        right = []
-        for direction, of_q, of_u, of_t in zip(self._accelerations, moved_q, moved_u, moved_t, strict=True):
+        algebraic, right = system.algebraic_coordinates, []
+        for direction, of_q, of_u, of_t in zip(directions, moved_q, moved_u, moved_t, strict=True):
             direction.q[:], direction.u[:] = of_q, of_u
+            direction.q[algebraic] = 0.0
             direction.evaluate(t, of_t)
             force = (
                 direction.vector("f") - direction.numbers.mass * acceleration - direction.product("J", state.lam, True)
             )
-            right.append(np.concatenate([force, direction.vector("gamma") - direction.product("J", acceleration)]))
-        solved = saddle_solution(state, "acceleration", np.array(right).T, friction=True).T
-        return Change(moved_q, moved_u, solved[:, : system.n_u], solved[:, system.n_u :])
+            constraints = direction.vector("gamma") - direction.product("J", acceleration)
+            right.append(np.concatenate([force, constraints, direction.vector("rate")[algebraic]]))
+        accelerations, lam, states = np.split(
+            acceleration_solution(state, np.array(right).T).T, [system.n_u, system.n_u + system.n_c], axis=1
+        )
+        found_q = moved_q.copy()
+        found_q[:, algebraic] = states
+        return Change(found_q, moved_u, accelerations, lam)
 
     def outputs(self, t: float, change: Change) -> np.ndarray:
         """How the output terms change at the state at hand, shape (directions, values)."""

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ...compile.directional.direction import Direction, Numbers
+from ...compile.directional.direction import Direction, Numbers, unchanged
 from ...compile.directional.source import NUMBER, TIME
 from ...compile.equations import Equations
 from ...compile.machine.layout import packed
@@ -60,8 +60,7 @@ class VariationalEquations:
         state.load(formulation.residual_set)
         state.load(formulation.matrix_set)
         self._parts = [_Part(equations, state, numbers, NUMBER) for numbers in directions]
-        still = Numbers(tuple(group.numbers for group in state.system.groups), frozenset(), np.zeros(state.system.n_u))
-        self._by_time, self._shift = _Part(equations, state, still, TIME), np.zeros(len(directions))
+        self._by_time, self._shift = _Part(equations, state, unchanged(state.system), TIME), np.zeros(len(directions))
         share = np.setdiff1d(state.system.turned(formulation.residual_set), state.system.turned(formulation.matrix_set))
         table, slots = equations.table()
         self._history, self._times = np.zeros((DEPTH, len(directions), n)), np.zeros(DEPTH)

@@ -12,26 +12,32 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...compile.directional.direction import Direction, Numbers
+from ...compile.directional.direction import Direction, Numbers, unchanged
+from ...compile.directional.source import STATE
 from ...compile.equations import Equations
-from ...compile.record import source_of
 from ...compile.written_values import writer
 from ...errors import SolverError
 from ..dynamics import Dynamics
 from ..failures import FAILURES
+from .block_system import BlockSystem
 from .recorded import Segment
 from .saddle import saddle_solution
 
+BreakpointRates = Callable[[float, bool], np.ndarray | None]
+"""How a breakpoint at some time, s, moves in each direction, shape (directions,); None where there is none.  Whether it is needed."""
 NO_JUMP = 100.0
 """Times the relative tolerance by which rates may differ on both sides of an instant without counting as a jump."""
 MUCH_LARGER = 2.0
 """Times by which positions may change more, seen from an event, for them to be integrated so."""
+ALIKE = 1e-6
+"""Part by which instants of simultaneous events may move differently for the same ones, and part of the state that a jump of rates makes
+at least for them to matter."""
 GRAZING = 1e-9
 """Part of an event function's change in the segment, over its time, below which its rate counts as zero."""
 
 
 @dataclass(frozen=True)
-class _State:
+class State:
     """One side of an instant: q, u, and their rates."""
 
     t: float
@@ -68,6 +74,44 @@ class Shifted:
         return Shifted(np.where(rows, self.q, q), np.where(rows, self.u, u), np.where(kept, self.shift, 0.0))
 
 
+@dataclass(frozen=True)
+class Jump:
+    """The instant between two segments.
+
+    Attributes
+    ----------
+    left, right : State
+        Both sides of it.
+    q_u_left, q_u_right : tuples of ndarrays, shapes (directions, n_q), (directions, n_u)
+        How the states of both sides change at a fixed instant.
+    moved : ndarray, shape (directions,)
+        dt_e/dp.
+    s : Shifted
+        How the state changes after it.
+    """
+
+    left: State
+    right: State
+    q_u_left: tuple[np.ndarray, np.ndarray]
+    q_u_right: tuple[np.ndarray, np.ndarray]
+    moved: np.ndarray
+    s: Shifted
+
+
+def _matters(left: State, right: State, duration: float) -> bool:
+    """Return True if the jump of rates, over the time of a segment, is more than rounding in the state."""
+    jumps = np.abs(right.q_rates - left.q_rates), np.abs(right.acceleration - left.acceleration)
+    return any(
+        bool(np.max(jump, initial=0.0) * duration > ALIKE * np.max(np.abs(size), initial=0.0))
+        for jump, size in zip(jumps, (left.q, left.u), strict=True)
+    )
+
+
+def _same(one: np.ndarray, other: np.ndarray) -> bool:
+    """Return True if two instants move alike in all directions."""
+    return bool(np.all(np.abs(one - other) <= ALIKE * np.maximum(np.abs(one), np.abs(other))))
+
+
 class Jumps:
     """What sensitivities jump by between two segments of a run.
 
@@ -77,6 +121,8 @@ class Jumps:
     equations : Equations
         Of the run.
     directions : sequence of Numbers
+    block : BlockSystem
+        In these directions.
     breakpoint_rates : callable
         How a breakpoint at some time moves in each direction.
     rtol : float
@@ -88,102 +134,119 @@ class Jumps:
         dynamics: Dynamics,
         equations: Equations,
         directions: Sequence[Numbers],
-        breakpoint_rates: Callable[[float], np.ndarray],
+        block: BlockSystem,
+        breakpoint_rates: BreakpointRates,
         rtol: float,
     ) -> None:
-        self._dynamics, self._equations = dynamics, equations
+        self._dynamics, self._equations, self._block = dynamics, equations, block
         self._numbers, self._breakpoint_rates = directions, breakpoint_rates
         self._small = NO_JUMP * rtol
         self._events: list[Direction] = []
         self._motions: list[Direction] = []
 
-    def over(self, before: Segment, after: Segment, s: Shifted) -> Shifted:
-        """How the state changes behind the start of a segment, given how it changes at the end of the one before."""
+    def over(self, before: Segment, after: Segment, s: Shifted) -> Jump:
+        """Return how the state changes after the start of a segment, given how it changes at the end of the one before."""
         left = self._end(before)
         right = self._start(after, after.first[0] - left.t)
         q, u = s.unshifted(left.q_rates, left.acceleration)
         moved = self._instants(before, left, right, q, u)
-        if moved is None:
-            moved = np.zeros(len(q))
         to_q, to_u = q + np.outer(moved, left.q_rates), u + np.outer(moved, left.acceleration)
         if self._dynamics.system.n_c:
             to_u = self._projected(left, right.t, to_q, to_u, moved)
         found = Shifted(to_q, to_u, moved)
         nearer = np.abs(to_q).max(axis=1) <= MUCH_LARGER * np.abs(q).max(axis=1)
-        return found.shifted_where(nearer & bool(before.fired), right.q_rates, right.acceleration)
+        there = found.shifted_where(nearer & bool(before.fired), right.q_rates, right.acceleration)
+        return Jump(left, right, (q, u), found.unshifted(right.q_rates, right.acceleration), moved, there)
 
-    def _instants(
-        self, before: Segment, left: _State, right: _State, q: np.ndarray, u: np.ndarray
-    ) -> np.ndarray | None:
-        """How the instant between two segments moves in each direction; None where it need not be known."""
+    def _instants(self, before: Segment, left: State, right: State, q: np.ndarray, u: np.ndarray) -> np.ndarray:
+        """Return how the instant between two segments moves in each direction; zero where no rate jumps and it is not determined."""
         jumps = self._counts(left.q_rates - right.q_rates, left.q_rates)
         jumps = jumps or self._counts(left.acceleration - right.acceleration, left.acceleration)
-        if not before.fired:
-            return self._breakpoint_rates(right.t) if jumps else None
-        changes, rates, largest = self._event(before, left, q, u)
-        if np.all(np.abs(rates) > GRAZING * max(largest, np.abs(rates).max())):
-            return np.asarray(-changes / rates)
-        if not jumps:
-            return None
-        name = writer(self._dynamics.system, "event_function", before.fired[0])
-        raise SolverError(
-            f"sensitivities: found that '{name}' only grazes its breakpoint at t = {left.t:.9g} s, where the motion is not "
-            "differentiable by parameters; expected an event that is passed"
-        )
+        by_input = self._breakpoint_rates(right.t, jumps and not before.fired)
+        moves = {} if by_input is None else {"an input": by_input}
+        if before.fired or (self._dynamics.system.n_event_functions and jumps):
+            moves = self._moves_of_events(before, left, right, q, u, jumps) | moves
+        if jumps and _matters(left, right, left.t - before.first[0]):
+            self._refuse_apart(moves, left.t)
+        return next(iter(moves.values()), np.zeros(len(q)))
 
-    def _end(self, segment: Segment) -> _State:
+    def _moves_of_events(
+        self, before: Segment, left: State, right: State, q: np.ndarray, u: np.ndarray, jumps: bool
+    ) -> dict[str, np.ndarray]:
+        """Return how the instants of the events between two states move, by the elements that they are of; first that which has fired."""
+        changes, rates, values = self._event(left, q, u)
+        state, system = self._dynamics.state, self._dynamics.system
+        state.q[:], state.u[:], state.lam[:] = right.q, right.u, right.lam
+        state.evaluate("event_function", right.t)
+        passed = values * state.values["event_function"][: len(values)] < 0
+        still = np.abs(rates) <= GRAZING * np.maximum(np.abs(values).max(), np.abs(rates))
+        if before.fired and still[before.fired[0]]:
+            if jumps:
+                name = writer(system, "event_function", before.fired[0])
+                raise SolverError(
+                    f"sensitivities: found that '{name}' only grazes its breakpoint at t = {left.t:.9g} s, where the motion is not "
+                    "differentiable by parameters; expected an event that is passed"
+                )
+            return {}
+        events = [*before.fired[:1], *np.flatnonzero(passed & ~still)]
+        names = [f"'{writer(system, 'event_function', int(event))}'" for event in events]
+        found: dict[str, np.ndarray] = {}
+        for name, event in zip(names, events, strict=True):
+            moved = -changes[:, event] / rates[event]
+            found.setdefault(name if name not in found or _same(found[name], moved) else f"{name} again", moved)
+        return found
+
+    @staticmethod
+    def _refuse_apart(moves: dict[str, np.ndarray], t: float) -> None:
+        """Refuse events at one instant that parameters move apart: which part of a jump belongs to which is not known."""
+        (first, *others), (moved, *rest) = list(moves) or [""], list(moves.values()) or [np.zeros(0)]
+        for name, other in zip(others, rest, strict=True):
+            if not _same(moved, other):
+                raise SolverError(
+                    f"sensitivities: found that {first} and {name} change their laws at the same instant t = {t:.9g} s, which the "
+                    "parameters move apart; expected events at separate instants"
+                )
+
+    def _end(self, segment: Segment) -> State:
         """The end of a segment, by the law that held there: the integrator's own y' has seen what follows."""
         at, n = self._equations.at, self._equations.n
         t, y = segment.rows[-1][0], segment.rows[-1][2 : 2 + n]
         return self._state(t, y[at["q"]], y[at["u"]])
 
-    def _start(self, segment: Segment, ahead: float) -> _State:
+    def _start(self, segment: Segment, ahead: float) -> State:
         """The start of a segment, by the law that holds from there on: a little ahead, as at the very instant any law may."""
         at = self._state(segment.first[0], segment.start.q, segment.start.u)
         return self._state(at.t + ahead, at.q + ahead * at.q_rates, at.u + ahead * at.acceleration)
 
-    def _state(self, t: float, q: np.ndarray, u: np.ndarray) -> _State:
+    def _state(self, t: float, q: np.ndarray, u: np.ndarray) -> State:
         dynamics = self._dynamics
         dynamics.state.q[:], dynamics.state.u[:] = q, u
         status, acceleration = dynamics.accelerate(t)
         if status < 0:
             raise SolverError(f"sensitivities: no accelerations were found at t = {t:.9g} s: {FAILURES[status]}")
         rates = dynamics.position_rates(q, u)
-        return _State(t, q, u, rates, acceleration, dynamics.state.lam.copy())
+        return State(t, q, u, rates, acceleration, dynamics.state.lam.copy())
 
-    def _event(
-        self, segment: Segment, left: _State, q: np.ndarray, u: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray, float]:
-        """How the event function that has fired changes in each direction, and with time; and the largest of all of them."""
-        state = self._dynamics.state
-        self._events = self._events or [Direction(state, "event_function", numbers) for numbers in self._numbers]
-        state.q[:], state.u[:], state.lam[:] = left.q, left.u, left.lam
-        (event, *_), found = segment.fired, []
-        self._refuse_reactions(event, left.t)
-        for direction, of_q, of_u in zip(self._events, q, u, strict=True):
-            direction.q[:], direction.u[:] = of_q, of_u
-            direction.evaluate(left.t)
-            change = direction.values[event]
-            direction.q += left.q_rates
-            direction.u += left.acceleration
-            direction.evaluate(left.t, 1.0)
-            found.append((change, direction.values[event] - change))
-        changes, rates = np.array(found).T
-        largest = np.abs(state.values["event_function"][: self._dynamics.system.n_event_functions]).max()
-        return changes, rates, float(largest)
-
-    def _refuse_reactions(self, event: int, t: float) -> None:
-        system = self._dynamics.system
-        name = writer(system, "event_function", event)
-        group = next(group for group in system.groups if name in group.names)
-        if "lam[" in (source_of(group.kind, "event_function") or ""):
-            raise SolverError(
-                f"sensitivities: found that a breakpoint of '{name}' at t = {t:.9g} s depends on a reaction, expected one that "
-                "depends on positions, velocities and time"
-            )
+    def _event(self, left: State, q: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return how event functions change in each direction, shape (directions, n), and with time, and their values."""
+        state, system = self._dynamics.state, self._dynamics.system
+        if not self._events:
+            by_time = Direction(state, "event_function", unchanged(system), STATE)
+            self._events = [*(Direction(state, "event_function", numbers) for numbers in self._numbers), by_time]
+        parts = (
+            self._block.change(left.t, left.q, left.u, q, u, np.zeros(len(q))),
+            self._block.motion(left.t, left.q, left.u, left.q_rates, left.acceleration),
+        )
+        found, n = [], system.n_event_functions
+        moves = [np.concatenate(pair) for pair in zip(*((p.q, p.u, p.acceleration, p.lam) for p in parts), strict=True)]
+        for k, direction in enumerate(self._events):
+            direction.q[:], direction.u[:], direction.a[:], direction.lam[:] = (move[k] for move in moves)
+            direction.evaluate(left.t, float(k == len(q)))
+            found.append(direction.values[:n].copy())
+        return np.array(found[:-1]), found[-1], state.values["event_function"][:n].copy()
 
     def _projected(
-        self, left: _State, t: float, q: np.ndarray, u: np.ndarray, moved: np.ndarray
+        self, left: State, t: float, q: np.ndarray, u: np.ndarray, moved: np.ndarray
     ) -> np.ndarray:  # fmt: skip
         """How velocities change once they are brought to the constraints by the smallest correction in the mass matrix."""
         state, system = self._dynamics.state, self._dynamics.system

@@ -7,8 +7,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ...compile.equations import ABSENT
 from ...describe.settings import RunSettings
-from ...errors import SolverError
+from ...errors import ChatteringError, SolverError
 from ..dynamics import Dynamics
 from ..events.chattering import Chattering
 from ..events.restart import INDISTINCT
@@ -21,6 +22,10 @@ from ..trajectory import Grid
 BACK, FURTHEST = 1e-13, 1e-6
 """Part of the time, or of the time since the start before, by which the end of a segment is moved back at first, and at the most: the
 instant of an event is known to some roundings."""
+SHORTEST = 1e-13
+"""Part of the run below which a segment has no length: an event that rounding finds twice."""
+SUDDEN, JUMP = 1e-9, 1e-3
+"""Part of the run in which no force changes smoothly, and part of the largest acceleration that a jump in a step so short has at least."""
 MOST_NUMBERS = 2e8
 """Numbers that are kept of a run, 1.6 GB."""
 
@@ -58,6 +63,8 @@ class Recorder(Integrator):
     Attributes
     ----------
     segments : list of Segment
+    chatters : bool
+        Whether a run has stopped where a force jumps back and forth.
     """
 
     def __init__(self, dynamics: Dynamics, settings: RunSettings) -> None:
@@ -68,7 +75,42 @@ class Recorder(Integrator):
             )
         self.native: NativeEngine = self.engine
         self.segments: list[Segment] = []
+        self.chatters = False
         self._numbers = 0
+
+    def passed(self, duration: float) -> list[Segment]:
+        """Return the segments of some length.
+
+        Raises
+        ------
+        SolverError
+            When accelerations jump within one.
+        """
+        found = [each for each in self.segments if len(each.rows)]
+        found = [each for each in found if each.rows[-1, 0] - each.first[0] > SHORTEST * duration] or found
+        for segment in found:
+            self._refuse_jumps_within(segment, SUDDEN * duration)
+        return found
+
+    def _refuse_jumps_within(self, segment: Segment, sudden: float) -> None:
+        """Refuse a force that jumps where it declares no breakpoint: steps become as short as rounding allows there."""
+        n, at = self.equations.n, self.equations.at["u"]
+        t, a = segment.rows[:, 0], segment.rows[:, 2 + n + at]
+        least = JUMP * np.abs(a).max(axis=0)
+        short = (np.diff(t) < sudden) & np.any(np.abs(np.diff(a, axis=0)) > least, axis=1)
+        for k in np.flatnonzero(short):
+            there = [self._accelerations(row[0], row[2 : 2 + n]) for row in segment.rows[k : k + 2]]
+            if np.any(np.abs(there[1] - there[0]) > least):
+                raise SolverError(
+                    f"sensitivities: found that accelerations jump at t = {t[k]:.9g} s, where no force declares a breakpoint (a spring "
+                    "that passes its anchor, a Python function with a jump): the motion is not differentiated there; expected forces "
+                    "without such jumps"
+                )
+
+    def _accelerations(self, t: float, y: np.ndarray) -> np.ndarray:
+        """Return the accelerations at a state."""
+        self.dynamics.state.q[:], self.dynamics.state.u[:] = self.split(y)
+        return self.dynamics.accelerate(t)[1].copy()
 
     def _anew(
         self, q: np.ndarray, u: np.ndarray, before: float, t: float, ahead: float, chattering: Chattering
@@ -99,10 +141,12 @@ class Recorder(Integrator):
         rows[-1, 2 : 2 + n] = y - back * yp
 
     def _value(self, event: int, t: float, y: np.ndarray) -> float:
-        """An event function at a state."""
-        state = self.dynamics.state
+        """Return an event function at a state."""
+        state, lam = self.dynamics.state, self.equations.at["lam"]
+        solved = lam != ABSENT
         with state.unchanged():
             state.q[:], state.u[:] = self.split(y)
+            state.lam[solved] = y[lam[solved]]
             state.evaluate("event_function", t)
             return float(state.values["event_function"][event])
 
@@ -113,6 +157,9 @@ class Recorder(Integrator):
             for reached in super().run(start, grid):
                 self._keep(reached)
                 yield reached
+        except ChatteringError:
+            self.chatters = True
+            raise
         finally:
             self.native.keep_steps(False)
 

@@ -1,19 +1,22 @@
-"""Solutions of [M J^T; J 0] [x; w] = [a; b] for several right sides at once."""
+"""Solutions of the block systems for several right sides at once."""
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Iterator
 
 import numpy as np
 
 from ...compile.state import State
+from ...compile.system import System
 
 DENSE_UP_TO = 200
 """Unknowns up to which a full matrix is solved sooner than a sparse one is put together."""
+Entries = tuple[np.ndarray, np.ndarray, np.ndarray]
+"""Rows, columns and values."""
 
 
-def saddle_solution(state: State, term_set: str, right: np.ndarray, friction: bool = False) -> np.ndarray:
-    """The solution at the state whose terms have just been computed; multipliers of redundant equations are zero.
+def saddle_solution(state: State, term_set: str, right: np.ndarray) -> np.ndarray:
+    """Return the solution of [M J^T; J 0] [x; w] = right at the state whose terms have just been computed.
 
     Parameters
     ----------
@@ -21,48 +24,74 @@ def saddle_solution(state: State, term_set: str, right: np.ndarray, friction: bo
     term_set : str
         One that J is in.
     right : ndarray, shape (n_u + n_c, k)
-    friction : bool
-        Whether forces that depend on multipliers are taken to the left side: J^T - f_lam in place of J^T.
+
+    Returns
+    -------
+    ndarray, shape (n_u + n_c, k)
+        Multipliers of redundant equations are zero.
+    """
+    return _solved(state.system, list(_saddle(state, term_set)), right)
+
+
+def acceleration_solution(state: State, right: np.ndarray) -> np.ndarray:
+    """Return how accelerations, multipliers and algebraic states follow from changes of their equations.
+
+    The matrix is [M J^T-f_lam -f_x; J 0 0; 0 -z_lam -z_x]: forces, and the equations z of algebraic states, depend on
+    multipliers and on algebraic states.
+
+    Parameters
+    ----------
+    state : State
+        The terms of the set ``acceleration`` have just been computed.
+    right : ndarray, shape (n_u + n_c + algebraic states, k)
     """
     system = state.system
-    active = np.flatnonzero(system.active)
-    kept = np.concatenate([np.arange(system.n_u), system.n_u + active])
-    found = np.zeros_like(right)
-    solved = _dense if len(kept) <= DENSE_UP_TO else _by_sparse_factors
-    found[kept] = solved(state, term_set, active, friction, np.ascontiguousarray(right[kept]))
-    return found
+    places = np.full(system.n_q, -1)
+    places[system.algebraic_coordinates] = np.arange(len(system.algebraic_coordinates))
+    of_lam, of_x = system.n_u, system.n_u + system.n_c
+    blocks = list(_saddle(state, "acceleration"))
+    row, column, value = _term(state, "acceleration", "f_lam")
+    blocks.append((row, of_lam + column, -value))
+    row, column, value = _term(state, "acceleration", "f_alg")
+    blocks.append((row, of_x + places[column], -value))
+    for name, first, numbers in (("rate_lam", of_lam, np.arange(system.n_c)), ("rate_alg", of_x, places)):
+        row, column, value = _term(state, "acceleration", name)
+        own = places[row] >= 0
+        blocks.append((of_x + places[row[own]], first + numbers[column[own]], -value[own]))
+    return _solved(system, blocks, right)
 
 
-def _dense(state: State, term_set: str, active: np.ndarray, friction: bool, right: np.ndarray) -> np.ndarray:
-    system = state.system
-    n_u, n = system.n_u, len(right)
-    matrix = np.zeros((n, n))
-    np.fill_diagonal(matrix[:n_u, :n_u], system.mass)
-    if len(active):
-        J = state.matrix(term_set, "J")[active]
-        matrix[n_u:, :n_u], matrix[:n_u, n_u:] = J, J.T
-        if friction:
-            matrix[:n_u, n_u:] -= state.matrix(term_set, "f_lam")[:, active]
-    return np.asarray(np.linalg.solve(matrix, right))
+def _saddle(state: State, term_set: str) -> Iterator[Entries]:
+    """Yield M, J^T and J."""
+    n_u = state.system.n_u
+    row, column, value = _term(state, term_set, "J")
+    yield np.arange(n_u), np.arange(n_u), state.system.mass
+    yield column, n_u + row, value
+    yield n_u + row, column, value
 
 
-def _by_sparse_factors(
-    state: State, term_set: str, active: np.ndarray, friction: bool, right: np.ndarray
-) -> np.ndarray:
-    from scipy.sparse import block_array, csc_array, diags_array
-    from scipy.sparse.linalg import splu
-
-    system = state.system
-    mass, J = diags_array(system.mass), _sparse(state, term_set, "J", (system.n_c, system.n_u))[active]
-    by_lam = J.T
-    if friction:
-        by_lam = by_lam - _sparse(state, term_set, "f_lam", (system.n_u, system.n_c))[:, active]
-    matrix = block_array([[mass, by_lam], [J, None]]) if len(active) else mass
-    return np.asarray(splu(csc_array(matrix)).solve(right))
-
-
-def _sparse(state: State, term_set: str, name: str, shape: tuple[int, int]) -> Any:
-    from scipy.sparse import coo_array
-
+def _term(state: State, term_set: str, name: str) -> Entries:
     term = state.system.term(term_set, name)
-    return coo_array((state.values[term_set][term.source], (term.row, term.column)), shape=shape).tocsr()
+    return term.row, term.column, state.values[term_set][term.source]
+
+
+def _solved(system: System, blocks: list[Entries], right: np.ndarray) -> np.ndarray:
+    """Solve without the redundant equations and their multipliers, which are zero."""
+    kept = np.ones(len(right), dtype=bool)
+    kept[system.n_u : system.n_u + system.n_c] = system.active
+    place, n = np.cumsum(kept) - 1, int(kept.sum())
+    row, column, value = (np.concatenate(parts) for parts in zip(*blocks, strict=True))
+    used = kept[row] & kept[column]
+    row, column, value = place[row[used]], place[column[used]], value[used]
+    found = np.zeros_like(right)
+    if n <= DENSE_UP_TO:
+        matrix = np.zeros((n, n))
+        np.add.at(matrix, (row, column), value)
+        found[kept] = np.linalg.solve(matrix, right[kept])
+    else:
+        from scipy.sparse import coo_array, csc_array
+        from scipy.sparse.linalg import splu
+
+        factors = splu(csc_array(coo_array((value, (row, column)), shape=(n, n))))
+        found[kept] = factors.solve(np.ascontiguousarray(right[kept]))
+    return found

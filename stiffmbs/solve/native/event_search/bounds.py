@@ -22,7 +22,7 @@ STEEP = 8.0
 WIDER = 2.0
 """Times the change and the rates in a step that no bound lies further from its ends (those of `_bound` lie within 1.8 of them)."""
 TURNED = 1.0
-"""rad, by which a body may turn in a step without a look inside: rates at the ends tell nothing of whole turns."""
+"""rad, by which a body or the argument of a sine may turn in a step without a look inside: rates at the ends tell nothing of whole turns."""
 
 event_search_view = view_of("EventSearch", EVENT_SEARCH)
 
@@ -138,11 +138,51 @@ def reaches(w, k, start, start_rate, end, end_rate, missed):
 
 @compiled
 def turned(w, q_before, q_after, most):
-    """Whether a body has turned by more than an angle."""
-    farthest = 0.0
+    """Whether a body, or the argument of a sine, has turned by more than an angle."""
+    if w.n_turns == w.n:
+        return False
+    farthest = turned_arguments(w, w.value_before, w.value_after)
     for k in range(w.n_angles):
         farthest = max(farthest, abs(q_after[w.angle[k]] - q_before[w.angle[k]]))
     return farthest > most
+
+
+@compiled
+def turned_arguments(w, before, after):
+    """The largest change of an argument of a sine, rad."""
+    farthest = 0.0
+    for i in range(w.n_turns):
+        farthest = max(farthest, abs(after[w.turn[i]] - before[w.turn[i]]))
+    return farthest
+
+
+@compiled
+def longest_by_turns(w, rate, most):
+    """The longest step in which no argument of a sine turns by more than an angle; infinite where that would take too many steps."""
+    fastest = fastest_turn(w, rate)
+    longest = most / fastest if fastest > 0.0 else float("inf")
+    return longest if longest > w.least else float("inf")
+
+
+@compiled
+def fastest_turn(w, rate):
+    """The largest rate of an argument of a sine, rad/s."""
+    fastest = 0.0
+    for i in range(w.n_turns):
+        fastest = max(fastest, abs(rate[w.turn[i]]))
+    return fastest
+
+
+@compiled
+def note_unresolved(w, t, before, after):
+    """Note that arguments of sines turned too far in a step, and which one turned farthest in the first such step."""
+    if w.unresolved == 0:
+        farthest = turned_arguments(w, before, after)
+        for i in range(w.n_turns):
+            if abs(after[w.turn[i]] - before[w.turn[i]]) == farthest:
+                w.fastest = w.turn[i]
+        w.first_unresolved = t
+    w.unresolved += 1
 
 
 @compiled

@@ -4,15 +4,29 @@ from __future__ import annotations
 
 from stiffmbs.compile.machine.native.access import compiled, shifted, state_view
 from stiffmbs.compile.machine.native.evaluate import SWITCH, evaluate
+from stiffmbs.compile.machine.native.orientation import add_rates
 from stiffmbs.solve.native.block_systems import to_accelerations
 from stiffmbs.solve.native.calls import int32
 from stiffmbs.solve.native.event_search.bounds import (
     LOOKED_AT,
     event_search_view,
+    longest_by_turns,
+    note_unresolved,
     noted,
     noted_rates,
     shift_ends,
     suspicious,
+    turned_arguments,
+)
+from stiffmbs.solve.native.event_search.from_zero import (
+    JUST_BEYOND,
+    LONGER,
+    LONGEST,
+    SHORTEST,
+    begin_sides,
+    leave_zero,
+    leaves_zero,
+    note_sides,
 )
 from stiffmbs.solve.native.event_search.nearby import note_zones
 from stiffmbs.solve.native.event_search.within_step import DIFFERENCE, first_event, keep_row
@@ -31,7 +45,10 @@ BEFORE_END, ALL = 1.0, 2.0
 """Which stages must not have seen another law: those at the end of a step that has been cut to a change may be just behind it."""
 AT_ANOTHER_LAW, IN_ANOTHER_ZONE = 1, 2
 """What a step has ended at: an event that integrators start anew from, or an edge of a law's zone, where they go on."""
-MOST_ERROR, LEAST_FACTOR, RETRIED, NO_EVENT = 1.0, 0.2, 1, 2
+MOST_TURNED = 2.0
+"""rad, by which an argument of a sine may turn in a step (no part of a period, or each step would see the same); one that has turned by
+twice that is taken again."""
+MOST_ERROR, LEAST_FACTOR, RETRIED, NO_EVENT, TURNED_TOO_FAR = 1.0, 0.2, 1, 2, 3
 """A step that is taken again up to an event is as exact as any other, or a shorter one is tried."""
 
 
@@ -52,8 +69,11 @@ def _values(x, s, y, t):
 
 @compiled
 def _has_changed(x, values, k):
-    """Whether an event function has left the side on which it was at the step's start; from zero it may go either way."""
-    return x.signs[k] * values[k] < 0.0 or (values[k] == 0.0 and x.signs[k] != 0.0)
+    """Return True if an event function has left the side on which it was at the step's start; one that was zero there may return to zero."""
+    sign, value = x.signs[k], values[k]
+    if sign == 0.0:
+        return False
+    return abs(sign) > JUST_BEYOND if value == 0.0 else (sign > 0.0) != (value > 0.0)
 
 
 @compiled
@@ -75,12 +95,61 @@ def _note_changed(x, values):
 
 
 @compiled
+def _values_ahead(x, s, ahead):
+    """The event functions where the accelerations at the start of the step take the motion in a time."""
+    for i in range(x.n):
+        x.difference[i] = x.y_before[i] + ahead * x.k[i]
+    add_rates(s, shifted(x.k, s.n_q), 0.5 * ahead * ahead, x.difference)
+    return _values(x, s, x.difference, x.t_before + ahead)
+
+
+@compiled
+def _note_sides_at_start(x, s):
+    """Find the sides to which functions go that are zero at the start of the step and not at its end."""
+    w = event_search_view(x.watch)
+    count = x.n_event_functions
+    if not leaves_zero(x.signs, w.value_after, count):
+        return
+    load_state(s, x.y_before)
+    begin_sides(w.m, w.m2, count)
+    ahead = max(SHORTEST * x.span, ROUNDINGS * abs(x.t))
+    while ahead <= LONGEST * x.span and note_sides(x.signs, _values_ahead(x, s, ahead), w.m, w.m2, count) > 0:
+        ahead *= LONGER
+
+
+@compiled
 def _note_rates(x, s, y, rates, t, ahead, value, rate):
     """Rates of all event functions at a state with these values, taken over a time `ahead`, which may be negative."""
     w = event_search_view(x.watch)
     for i in range(x.n):
         x.difference[i] = y[i] + ahead * rates[i]
     noted_rates(rate, value, _values(x, s, x.difference, t + ahead), ahead, w.n)
+
+
+@compiled
+def _note_start(x, s, w, small):
+    """Values and rates at the start of the step, those over a small time, where they are not those at the end of the step before."""
+    if not (w.ready and w.begun == x.t_before):
+        noted(w.value_before, _values(x, s, x.y_before, x.t_before), w.n)
+        leave_zero(w.value_before, x.signs, x.n_event_functions)
+        _note_rates(x, s, x.y_before, x.k, x.t_before, small, w.value_before, w.rate_before)
+        w.begun = x.t_before
+        w.ready = 1
+
+
+@compiled
+def _turned_too_far(x, s, w):
+    """Whether an argument of a sine has made more than a turn in the step, which is noted where no shorter step is allowed."""
+    if w.n_turns == 0:
+        return False
+    _note_start(x, s, w, DIFFERENCE * x.span)
+    turned = turned_arguments(w, w.value_before, w.value_after)
+    if turned <= 2.0 * MOST_TURNED:
+        return False
+    if x.span * MOST_TURNED > w.least * turned:
+        return True
+    note_unresolved(w, x.t_before, w.value_before, w.value_after)
+    return False
 
 
 @compiled
@@ -124,11 +193,7 @@ def _event_within(x, c, s, m, until):
         w.ready = 0
         return 0.0
     small = DIFFERENCE * h
-    if not (w.ready and w.begun == x.t_before):
-        noted(w.value_before, _values(x, s, x.y_before, x.t_before), w.n)
-        _note_rates(x, s, x.y_before, x.k, x.t_before, small, w.value_before, w.rate_before)
-        w.begun = x.t_before
-        w.ready = 1
+    _note_start(x, s, w, small)
     _note_rates(x, s, x.y, shifted(x.k, c.stages * x.n), x.t, -small, w.value_after, w.rate_after)
     _look_within(x, c, s)
     note_zones(w)
@@ -235,6 +300,9 @@ def _taken_to_event(x, c, s, m, h, behind):
     """Take the step again up to the first event in it; 0, a negative status, `RETRIED`, or `NO_EVENT`."""
     w = event_search_view(x.watch)
     noted(w.value_after, _values(x, s, x.y, x.t), w.n)
+    _note_sides_at_start(x, s)
+    if _turned_too_far(x, s, w):
+        return TURNED_TOO_FAR
     changed = _changed(x, w.value_after)
     if changed:
         _note_changed(x, w.value_after)
@@ -248,7 +316,11 @@ def _taken_to_event(x, c, s, m, h, behind):
         return 0 if changed else NO_EVENT
     if within < 0.0:
         return int(within)
-    return RETRIED if within == h else retaken(x, c, s, m, max(within - behind, 0.5 * within))
+    if within == h:
+        return RETRIED
+    if _any_found(x):
+        return _taken_to_change(x, c, s, m, within, behind)
+    return retaken(x, c, s, m, max(within - behind, 0.5 * within))
 
 
 def end_at_event(explicit):
@@ -268,18 +340,22 @@ def _ended_at_event(x, c, s, m):
     h = x.span
     behind = max(BEHIND * h, ROUNDINGS * abs(x.t))
     status = _taken_to_event(x, c, s, m, h, behind)
+    w = event_search_view(x.watch)
     if status == NO_EVENT:
-        w = event_search_view(x.watch)
         copied(x.signs, w.value_after, x.n_event_functions)
         shift_ends(w)
+        if w.n_turns > 0:
+            x.h = min(x.h, longest_by_turns(w, w.rate_before, MOST_TURNED))
         w.begun = x.t
         _load(x, s, x.y, x.t)
         return 0
     if status < 0:
         return status
+    if status == TURNED_TOO_FAR:
+        return _gone_back(x, c, x.span * MOST_TURNED / turned_arguments(w, w.value_before, w.value_after))
     error = trusted_error(x, c, x.span) if status == 0 else UNTRUSTED
     if not error <= MOST_ERROR:
-        return _left(x, c, error)
+        return _gone_back(x, c, x.span * max(LEAST_FACTOR, 0.9 * error**-c.exponent))
     _go_past(x, c, _way_past(x, c, s, 2.0 * behind, FARTHEST_PAST * h))
     x.at_event = IN_ANOTHER_ZONE if _goes_on(x, s) else AT_ANOTHER_LAW
     return 0
@@ -293,9 +369,9 @@ def _goes_on(x, s):
 
 
 @compiled
-def _left(x, c, error):
+def _gone_back(x, c, h):
     """Go back to the step's start, for a shorter one."""
-    x.h = x.span * max(LEAST_FACTOR, 0.9 * error**-c.exponent)
+    x.h = h
     copied(x.y, x.y_before, x.n)
     copied(shifted(x.k, c.stages * x.n), x.k, x.n)
     x.t = x.t_before

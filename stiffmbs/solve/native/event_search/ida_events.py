@@ -4,17 +4,32 @@ from __future__ import annotations
 
 from stiffmbs.compile.machine.native.access import compiled, equations_view, floats, state_view
 from stiffmbs.compile.machine.native.evaluate import SWITCH, evaluate, evaluate_some, load
+from stiffmbs.compile.machine.native.orientation import add_rates
 from stiffmbs.solve.native.calls import call_int, int32
 from stiffmbs.solve.native.event_search.bounds import (
     LOOKED_AT,
+    TURNED,
+    edge,
     event_search_view,
+    longest_by_turns,
+    note_unresolved,
     noted,
     noted_rates,
     shift_ends,
     suspicious,
+    turned_arguments,
+    zone,
+)
+from stiffmbs.solve.native.event_search.from_zero import (
+    LONGER,
+    SHORTEST,
+    at_zero,
+    begin_sides,
+    leave_zero,
+    note_sides,
 )
 from stiffmbs.solve.native.event_search.nearby import note_mean_rates, note_near
-from stiffmbs.solve.native.event_search.within_step import DIFFERENCE, first_event, keep_row
+from stiffmbs.solve.native.event_search.within_step import DIFFERENCE, first_event, first_event_or_change, keep_row
 from stiffmbs.solve.native.ida_memory import array_of, native_ida_view
 from stiffmbs.solve.native.statuses import OK
 
@@ -23,6 +38,18 @@ UNSEEN = float("inf")
 START_DIFFERENCE, ROUNDINGS = 1e-9, 1e-15
 """Rates of event functions at a start are taken over this part of the time to the next stop; events nearer to a step's beginning
 than this part of the time are not told from it."""
+MOST_TURNED = 3.0
+"""rad, by which the argument of a sine may turn in a step."""
+SHORT_OF, UNSURE = 1e-8, 1e-4
+"""Parts of the longest step, and of the way to an event that is seen ahead, by which a step ends before it."""
+GROWTH = 2.0
+"""Times by which IDA's next step may be longer than the last one."""
+SHORTEST_OF, OF_A_ZONE = 1e-4, 0.25
+"""Part of the longest step from which on zones are looked for, and part of a zone that is passed in half a step."""
+BISECTIONS, STEPS_OF_A_PASSAGE = 6, 16.0
+"""Halvings that find where the motion leaves the law at a start, and steps to there at the least."""
+FIRST_STEP, SOON = 1e-3, 1e-2
+"""Parts of the time to the next stop: IDA's first step at the most, and where its first steps are short enough by themselves."""
 
 
 @compiled
@@ -33,6 +60,67 @@ def _go_straight(c, s, ahead):
     for k in range(e.n):
         c.probe[k] = y[k] + ahead * yp[k]
     load(s, e, c.probe, yp)
+
+
+@compiled
+def _go_ahead(c, s, ahead):
+    """Load the state to which the one in c.y goes with its present accelerations."""
+    for k in range(s.n_u):
+        s.a[k] = 0.0  # coordinates that stand still are not loaded
+    _go_straight(c, s, ahead)
+    add_rates(s, s.a, 0.5 * ahead * ahead, s.q)
+
+
+@compiled
+def _note_sides(c, w, s, toward):
+    """Find the sides to which functions go that are zero at the start, as IDA's search for roots is to see them."""
+    count = w.n_event_functions
+    for k in range(count):
+        w.a[k] = float(w.value_before[k] > 0.0) - float(w.value_before[k] < 0.0)
+    begin_sides(w.m, w.m2, count)
+    most = START_DIFFERENCE / FIRST_STEP * (toward - c.returned)
+    ahead = max(SHORTEST * (toward - c.returned), ROUNDINGS * abs(c.returned))
+    while ahead <= most:
+        _go_ahead(c, s, ahead)
+        if note_sides(w.a, evaluate(s, SWITCH, c.returned + ahead), w.m, w.m2, count) == 0:
+            break
+        ahead *= LONGER
+    for k in range(count):
+        if w.value_before[k] == 0.0:
+            c.signs[k] = float(w.a[k] > 0.0) - float(w.a[k] < 0.0)
+    leave_zero(w.value_before, w.a, count)
+
+
+@compiled
+def _bound_passage(c, w, s, toward):
+    """Bound steps up to where the motion, going on with the accelerations at the start, leaves a law again: what happens between
+    is seen by none of a step that leads over it."""
+    w.passage = float("inf")
+    ahead = START_DIFFERENCE * (toward - c.returned)
+    most = toward - c.returned if w.n_turns > 0 else SOON * (toward - c.returned)
+    while ahead < most and not _another_side(c, w, s, ahead):
+        ahead *= 2.0
+    if ahead < most:
+        low = 0.5 * ahead
+        for _ in range(BISECTIONS):
+            middle = 0.5 * (low + ahead)
+            if _another_side(c, w, s, middle):
+                ahead = middle
+            else:
+                low = middle
+        w.passage = ahead / STEPS_OF_A_PASSAGE
+        w.passed = c.returned + ahead
+
+
+@compiled
+def _another_side(c, w, s, ahead):
+    """Whether an event function leaves its side at the start in a time, or a law its zone."""
+    _go_ahead(c, s, ahead)
+    values = evaluate(s, SWITCH, c.returned + ahead)
+    others = 0
+    for k in range(w.n if w.n_turns > 0 else w.n_event_functions):
+        others += zone(w, k, values[k]) != zone(w, k, w.value_before[k])
+    return others > 0
 
 
 def look_at_start(toward, ida):
@@ -50,7 +138,99 @@ def look_at_start(toward, ida):
         noted(w.value_before, evaluate(s, SWITCH, c.returned), w.n)
         _go_straight(c, s, ahead)
         noted_rates(w.rate_before, w.value_before, evaluate(s, SWITCH, c.returned + ahead), ahead, w.n)
+        if at_zero(w.value_before, w.n_event_functions) > 0:
+            _note_sides(c, w, s, toward)
+        if w.n_turns > 0:
+            w.longest = longest_by_turns(w, w.rate_before, TURNED)
+        w.target = float("inf")
+        _bound_passage(c, w, s, toward)
     return int32(OK)
+
+
+@compiled
+def _go_on(c, w, s):
+    """Take the end of the step for the start of the next, which arguments of sines bound."""
+    if w.n_turns > 0:
+        w.longest = longest_by_turns(w, w.rate_after, TURNED)
+        if w.longest == float("inf") and turned_arguments(w, w.value_before, w.value_after) > MOST_TURNED:
+            note_unresolved(w, w.begun, w.value_before, w.value_after)
+    keep_row(w, s, 0)
+    w.begun = c.returned
+    shift_ends(w)
+    w.target = float("inf")
+
+
+@compiled
+def _look_ahead(c, w, s):
+    """Have the next step pass zones in several steps, and end before an event."""
+    if 0 < w.n_turns < w.n and w.longest < float("inf"):
+        if w.n > w.n_event_functions + w.n_turns:
+            _resolve_zones(c, w, s)
+        _aim(c, w, s)
+
+
+@compiled
+def _within_zones(w, middle, end):
+    """Whether laws move by less than a part of their zones from the start of a step to its middle, and from there to its end."""
+    beyond = 0
+    for k in range(w.n_event_functions, w.n):
+        if w.first_edge[k] == w.first_edge[k + 1]:
+            continue
+        start = w.value_before[k]
+        narrowest = min(_width(w, k, start), min(_width(w, k, middle[k]), _width(w, k, end[k])))
+        beyond += max(abs(middle[k] - start), abs(end[k] - middle[k])) > OF_A_ZONE * narrowest
+    return beyond == 0
+
+
+@compiled
+def _width(w, k, value):
+    """The width of the zone of a value; infinite for those at both ends."""
+    number, count = zone(w, k, value), w.first_edge[k + 1] - w.first_edge[k]
+    if w.period[k] == 0.0 and not 0 < number < count:
+        return float("inf")
+    return edge(w, k, number) - edge(w, k, number - 1)
+
+
+@compiled
+def _resolve_zones(c, w, s):
+    """Bound the next step so that the motion, going on with its accelerations, passes each zone of a law in several steps."""
+    t, ahead, most = c.returned, SHORTEST_OF * w.longest, min(w.longest, GROWTH * c.size)
+    while ahead < most:
+        _go_ahead(c, s, 0.5 * ahead)
+        noted(w.m, evaluate(s, SWITCH, t + 0.5 * ahead), w.n)
+        _go_ahead(c, s, ahead)
+        noted(w.m2, evaluate(s, SWITCH, t + ahead), w.n)
+        if not _within_zones(w, w.m, w.m2):
+            w.longest = max(ahead, w.least)
+            most = ahead
+        ahead *= 2.0
+
+
+@compiled
+def _aim(c, w, s):
+    """Have the next step end just before an event that the motion, going on with its accelerations, has within the longest step."""
+    t, ahead = c.returned, min(w.longest, GROWTH * c.size)
+    for k in range(w.n_nodes):
+        node = w.n_nodes - 1 - k
+        _go_ahead(c, s, ahead * w.node[node])
+        keep_row(w, s, node)
+        if k == 0:
+            noted(w.value_after, evaluate(s, SWITCH, t + ahead), w.n)
+    place = first_event_or_change(w, s, t, ahead)
+    for k in range(w.n):
+        w.found[k] = 0
+    least = max(SHORT_OF * ahead, 10.0 * ROUNDINGS * abs(t))
+    if 3.0 * least < ahead * place < ahead:
+        w.target = t + ahead * place - max(least, UNSURE * ahead * place)
+    load(s, equations_view(c.equations), array_of(c, c.y), array_of(c, c.yp))
+
+
+@compiled
+def _evaluate_near(w, s, t):
+    """Evaluate the functions that may change within the step; all of them where arguments of sines bound the next step."""
+    if w.n_turns > 0:
+        return evaluate(s, SWITCH, t)
+    return evaluate_some(s, SWITCH, t, w.near)
 
 
 def look_within(ida):
@@ -71,19 +251,17 @@ def look_within(ida):
     nearby = note_near(w, h, w.row, s.q)
     if not nearby:
         note_mean_rates(w, h)
-        keep_row(w, s, 0)
-        w.begun = c.returned
-        shift_ends(w)
+        _go_on(c, w, s)
         return int32(0)
     ahead = -DIFFERENCE * h
     _go_straight(c, s, ahead)
-    noted_rates(w.rate_after, w.value_after, evaluate_some(s, SWITCH, c.returned + ahead, w.near), ahead, w.n)
+    noted_rates(w.rate_after, w.value_after, _evaluate_near(w, s, c.returned + ahead), ahead, w.n)
     note_mean_rates(w, h)
     place = begun + LOOKED_AT * h
     if call_int(c.interpolate, (c.memory, place, int32(0), c.at_output)) < 0:
         return int32(0)
     load(s, e, c.output, array_of(c, c.yp))
-    noted(w.m, evaluate_some(s, SWITCH, place, w.near), w.n)
+    noted(w.m, _evaluate_near(w, s, place), w.n)
     load(s, e, array_of(c, c.y), array_of(c, c.yp))
     if suspicious(w, h, w.row, s.q):
         for node in range(w.n_nodes):
@@ -99,7 +277,6 @@ def look_within(ida):
             c.within = 1
             return int32(1)
         load(s, e, array_of(c, c.y), array_of(c, c.yp))
-    keep_row(w, s, 0)
-    w.begun = c.returned
-    shift_ends(w)
+    _go_on(c, w, s)
+    _look_ahead(c, w, s)
     return int32(0)

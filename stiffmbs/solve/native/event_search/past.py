@@ -40,6 +40,7 @@ def moved_past(s, t, most, count, q, values):
     ahead = most
     while ahead * SHORTER > ROUNDINGS * abs(t) and _passed(s, t, ahead * SHORTER, q, count, values) == passed:
         ahead *= SHORTER
+    ahead = min(ahead / (SHORTER * SHORTER), most)  # nearer by, rounding may show the change too early
     _passed(s, t, ahead, q, count, values)
     return ahead
 

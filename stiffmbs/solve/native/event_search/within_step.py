@@ -23,10 +23,13 @@ from stiffmbs.solve.native.event_search.bounds import (
     TURNED,
     beyond,
     cubic,
+    fastest_turn,
     left_out,
+    note_unresolved,
     noted,
     noted_rates,
     reaches,
+    turned_arguments,
     zone,
 )
 
@@ -41,7 +44,10 @@ SHALLOW = 1e-5
 WELL, MOST_MISSED = 0.03, 1e300
 """Part of what is allowed that the cubic must keep to for the next part of the step to be twice as long: it misses by the fourth
 power; what counts for a function without a number."""
-LEAST_PART, MOST_PARTS = 1e-4, 5000
+LEAST_PART, MOST_PARTS, FEW_PARTS = 1e-4, 5000, 100
+"""The last one where no number of parts would follow an argument of a sine."""
+WHOLE_TURN = 6.283185307179586
+"""rad, by which the argument of a sine must not turn unseen."""
 DIFFERENCE = 1e-6
 """Part of a step, or of a part of one, over which rates are taken."""
 REFINED, REFINEMENTS = 0.02, 5
@@ -137,8 +143,8 @@ def _visits(w, k, value, low, high):
     """Note that a function has a value at a place; whether that is an event.  It was in the zone of the start up to `low`."""
     one, other = zone(w, k, w.value_before[k]), zone(w, k, w.value_after[k])
     here = zone(w, k, value)
-    if here != one and w.left_high[k] < 0.0:
-        w.left_low[k], w.left_high[k] = low, high
+    if here != one and not 0.0 <= w.left_high[k] <= high:
+        w.left_low[k], w.left_high[k] = low, high  # nearer than one noted before, which may be where it has come back
     if k < w.n_event_functions:
         return here != one and abs(value) > w.depth
     if abs(one - other) > 1:
@@ -212,6 +218,29 @@ def _change(w, s, begun, h, k):
 
 
 @compiled
+def _turned_in_part(w, part):
+    """By how much the argument of a sine turns in a part of the step, by values and rates there."""
+    farthest = 0.0
+    for i in range(w.n_turns):
+        k = w.turn[i]
+        moved = max(abs(w.b[k] - w.a[k]), max(abs(w.m[k] - w.a[k]), abs(w.m2[k] - w.a[k])))
+        farthest = max(farthest, max(moved, part * max(abs(w.a_rate[k]), abs(w.b_rate[k]))))
+    return farthest
+
+
+@compiled
+def first_event_or_change(w, s, begun, h):
+    """The first event within a step, or else the first function that has changed at its end, as a place; 2 for none."""
+    first = first_event(w, s, begun, h)
+    if first > 1.0:
+        for k in range(w.n_event_functions):
+            if not left_out(w, k) and _seen_at_end(w, k):
+                w.left_low[k], w.left_high[k] = 0.0, 1.0
+                first = min(first, _change(w, s, begun, h, k))
+    return first
+
+
+@compiled
 def _longest_part(w):
     """A half, or less where a body turns far: rates at the ends of a part must tell of its turning."""
     last = shifted(w.row, (w.n_nodes - 1) * w.n_state)
@@ -230,8 +259,9 @@ def first_event(w, s, begun, h):
         w.left_high[k] = -1.0
     low = 0.0
     longest = _longest_part(w)
-    part = longest
+    part = max(min(longest, TURNED / max(fastest_turn(w, w.a_rate), TURNED)), LEAST_PART)
     parts = 0
+    most_parts = MOST_PARTS if turned_arguments(w, w.value_before, w.value_after) <= MOST_PARTS * TURNED else FEW_PARTS
     noise = 0.0
     for i in range(w.n_state):
         noise = max(noise, NOISE * abs(w.row[i]))
@@ -250,14 +280,17 @@ def first_event(w, s, begun, h):
         if missed > 1.0:
             _note_noise(w, s, begun, h, end, part)
             missed = _mismatch(w, part, noise)
-        if missed > 1.0 and part > LEAST_PART and parts < MOST_PARTS:
+        turns = _turned_in_part(w, part)
+        if (missed > 1.0 or turns > TURNED) and part > LEAST_PART and parts < most_parts:
             part *= 0.5
             continue
+        if turns > WHOLE_TURN:
+            note_unresolved(w, begun, w.a, w.b)
         place = _first_within(w, s, begun, h, low, part)
         if place <= 1.0:
             return min(1.0, place + BEHIND)
         noted(w.a, w.b, w.n)
         noted(w.a_rate, w.b_rate, w.n)
         low = end
-        part = min(2.0 * part, longest) if missed < WELL else part
+        part = min(2.0 * part, longest) if missed < WELL and turns < 0.5 * TURNED else part
     return 2.0

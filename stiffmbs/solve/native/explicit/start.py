@@ -7,6 +7,8 @@ from math import isfinite, sqrt
 from stiffmbs.compile.machine.native.access import compiled, shifted
 from stiffmbs.compile.machine.native.evaluate import ACCELERATION, SWITCH, evaluate
 from stiffmbs.compile.machine.native.orientation import add_rates
+from stiffmbs.solve.native.event_search.bounds import event_search_view
+from stiffmbs.solve.native.event_search.from_zero import LONGER, at_zero, begin_sides, keep_sides, note_sides
 from stiffmbs.solve.native.explicit.stages import add_rates_behind, copied, load_state, rates
 
 NO_RATE, SHORT, LONGER_AT_REST, LONGEST_FACTOR = 1e-15, 1e-6, 1e-3, 100.0
@@ -16,6 +18,9 @@ SMALL = 1e-5
 """Sizes, in tolerances, below which states and rates tell nothing of a length."""
 PART = 0.01
 """Of the state that the first explicit Euler step changes, and what the highest order term may come to, in tolerances."""
+FARTHEST, ROUNDINGS = 1e3, 2e-15
+"""Shortest steps within which the motion must leave an event function's zero for the law at the start to be that on the other side,
+and the part of the time that rounding takes."""
 
 
 @compiled
@@ -32,7 +37,42 @@ def start_steps(x, c, s, m):
         add_rates_behind(s, m, 1.0, k)
     if x.n_event_functions > 0:
         copied(x.signs, evaluate(s, SWITCH, x.t), x.n_event_functions)
+        if at_zero(x.signs, x.n_event_functions) > 0:
+            _leave_zeros(x, s, m, k)
     x.started = 1
+
+
+@compiled
+def _go_ahead(x, s, k, ahead):
+    """Load the state to which the one at the start goes in a time at rates k; its event functions."""
+    for i in range(x.n):
+        x.difference[i] = x.y[i] + ahead * k[i]
+    add_rates(s, shifted(k, s.n_q), 0.5 * ahead * ahead, x.difference)
+    load_state(s, x.difference)
+    return evaluate(s, SWITCH, x.t + ahead)
+
+
+@compiled
+def _leave_zeros(x, s, m, k):
+    """Take rates slightly after the start where event functions are exactly zero there: rounding decides which law holds at a zero.
+
+    They are not taken where they lead back to the zero, as in sticking friction.
+    """
+    w = event_search_view(x.watch)
+    count = x.n_event_functions
+    later, ahead = shifted(x.k, x.n), max(x.shortest, ROUNDINGS * abs(x.t))
+    begin_sides(w.m, w.m2, count)
+    zeros = at_zero(x.signs, count)
+    undecided = zeros
+    while undecided > 0 and 0.0 < ahead <= FARTHEST * x.shortest:
+        undecided = note_sides(x.signs, _go_ahead(x, s, k, ahead), w.m, w.m2, count)
+        ahead *= LONGER
+    ahead /= LONGER
+    if at_zero(x.signs, count) == zeros:
+        return
+    _go_ahead(x, s, k, ahead)
+    if rates(x, s, m, 1, x.t + ahead) == 0 and keep_sides(x.signs, _go_ahead(x, s, later, ahead), count):
+        copied(k, later, x.n)
 
 
 @compiled
