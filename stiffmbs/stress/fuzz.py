@@ -37,8 +37,9 @@ class Trial:
 
 
 def fuzzers() -> dict[str, str]:
-    """The modules of `stiffmbs.stress.fuzzers`, by the fuzzer's name."""
-    return {module.name: f"{package.__name__}.{module.name}" for module in pkgutil.iter_modules(package.__path__)}
+    """Return the modules of `stiffmbs.stress.fuzzers` by the names of their fuzzers, with dashes for underscores."""
+    found = (module.name for module in pkgutil.iter_modules(package.__path__))
+    return {name.replace("_", "-"): f"{package.__name__}.{name}" for name in found}
 
 
 def module_of(name: str) -> str:

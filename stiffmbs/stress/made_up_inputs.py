@@ -181,13 +181,13 @@ class _Maker:
         count = int(self.rng.integers(1, 8))
         inner = c + w * np.arange(0, count + 2)
         y = np.concatenate([[0.0], self.rng.uniform(0.2, 1, count), [0.0]])
-        kind = str(self.rng.choice(["lines", "spline", "akima"]))
+        kind = str(self.rng.choice(["lines", "spline", "akima", "monotone"]))
         rest = w * np.arange(1, 4)
         x = np.concatenate([[0.0], inner[0] - rest[::-1], inner, inner[-1] + rest, [END + 5]])
         y = np.concatenate([[0.0] * 4, y, [0.0] * 4])
         keep = np.concatenate([[True], np.diff(x) > 1e-9])
         x, y = x[keep], y[keep]
-        how = {} if kind == "spline" else {kind: True}
+        how = {} if kind == "monotone" else {kind: True}
         self.tables[name] = {"table": np.column_stack([x, y]).tolist(), **how}
         text, argument, bends = self.argument()
         knots = np.concatenate([bends, *(_passed(argument, knot) for knot in x[1:-1])])
@@ -220,11 +220,12 @@ def _ramp(z: np.ndarray) -> np.ndarray:
 
 def _curve(kind: str, x: np.ndarray, y: np.ndarray) -> Function:
     """The table by SciPy; beyond its points it goes on straight."""
-    from scipy.interpolate import Akima1DInterpolator, CubicSpline
+    from scipy.interpolate import Akima1DInterpolator, CubicSpline, PchipInterpolator
 
     if kind == "lines":
         return lambda s: np.interp(s, x, y)  # both of its ends are flat
-    curve = Akima1DInterpolator(x, y) if kind == "akima" else CubicSpline(x, y, bc_type="natural")
+    local = {"akima": Akima1DInterpolator, "monotone": PchipInterpolator}.get(kind)
+    curve = local(x, y) if local else CubicSpline(x, y, bc_type="natural")
     slopes = curve.derivative()
 
     def values(s: np.ndarray) -> np.ndarray:

@@ -58,7 +58,9 @@ def random_law(rng: np.random.Generator, start: float, name: str) -> RandomLaw:
             points = [(start + x, a * _step5(x - d)) for d in (at - start,) for x in np.linspace(-5, 5, 41).tolist()]
             spline = CubicSpline(*zip(*points, strict=True), bc_type="natural")
             return RandomLaw(
-                f"{name}(WAY)", lambda s: float(spline(s)), {name: {"table": [list(point) for point in points]}}
+                f"{name}(WAY)",
+                lambda s: float(spline(s)),
+                {name: {"table": [list(point) for point in points], "spline": True}},
             )
 
 

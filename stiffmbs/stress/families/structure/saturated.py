@@ -140,7 +140,7 @@ BEND = Law(
 DWELL = Law("dwells by step5", "step5(WAY, 4, 0, 5.5, 0.3)", _smooth, _smooth_slope)
 TABLE = Law(
     "dwells in a table", "p(WAY)", _smooth, _smooth_slope,
-    f"tables: {{p: {{table: {[[s / 100, _smooth(s / 100)] for s in range(-200, 1500)]}}}}}\n",
+    f"tables: {{p: {{table: {[[s / 100, _smooth(s / 100)] for s in range(-200, 1500)]}, spline: true}}}}\n",
 )  # fmt: skip
 ZERO = Law("products with zero", "(0*WAY + 0*WAY^2 + 0*sin(WAY))", lambda s: 0.0, lambda s: 0.0)
 PAIRS = (

@@ -1,0 +1,1 @@
+"""Analyses about a state: modes, transfer functions, stability."""

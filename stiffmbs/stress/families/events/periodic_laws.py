@@ -1,0 +1,149 @@
+"""Laws periodic in a displacement, an angle, a velocity or a state, pushed for a small part of each period, over many whole periods."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ....describe.reading import read_scene
+from ....results.solution import Solution
+from ...case import Case, Outcome
+from ...simulation import simulation
+from .within_one_step import SOLVERS
+
+PERIODS, DURATION = 120, 2.0
+EXPLICIT = {name: how for name, how in SOLVERS.items() if name != "bdf"}
+COARSE = {f"bdf {rtol:.0e}": {"solver": "bdf", "rtol": rtol} for rtol in (1e-2, 1e-3, 1e-4)}
+ALLOWED, OF_SMOOTH = (5e-4, 2e-2), (2e-3, 0.15)
+"""Error that is right by explicit steps at the default tolerance and by bdf at coarse ones; where the law is smooth, steps follow from the
+tolerance alone, which a thousand of them use up."""
+SMOOTH = ("bump", "rational", "power", "square")
+Function = Callable[[np.ndarray], np.ndarray]
+
+
+class Periodic(NamedTuple):
+    """A law of y = sin(a) of an argument a that turns evenly: its text and function, and the argument."""
+
+    law: str
+    of: Function
+    argument: str
+
+
+def _windowed(y: np.ndarray, level: float, width: float) -> np.ndarray:
+    z = np.clip((y - level) / width, 0, 1)
+    return z * z * (3 - 2 * z)
+
+
+LAWS: dict[str, Periodic] = {
+    "max over a displacement": Periodic("max(sin(A) - 0.9, 0)", lambda y: np.maximum(y - 0.9, 0), "displacement"),
+    "narrow max over a displacement": Periodic("max(sin(A) - 0.9999, 0)", lambda y: np.maximum(y - 0.9999, 0), "displacement"),
+    "max over a displacement in space": Periodic("max(sin(A) - 0.99, 0)", lambda y: np.maximum(y - 0.99, 0), "in space"),
+    "branch over an angle": Periodic("branch(sin(A) - 0.999, 0, 0, 1)", lambda y: (y > 0.999) * 1.0, "angle"),
+    "branch over an angle in space": Periodic("branch(sin(A) - 0.99, 0, 0, 1)", lambda y: (y > 0.99) * 1.0, "turn in space"),
+    "abs over a state": Periodic("max(abs(sin(A)) - 0.99, 0)", lambda y: np.maximum(np.abs(y) - 0.99, 0), "state"),
+    "branch over a state": Periodic("branch(sin(A) - 0.99999, 0, 0, 1)", lambda y: (y > 0.99999) * 1.0, "state"),
+    "step over a velocity": Periodic("step(sin(A), 0.95, 0, 0.99, 1)", lambda y: _windowed(y, 0.95, 0.04), "velocity"),
+    "step over a displacement": Periodic("step(sin(A), 0.99, 0, 0.999, 1)", lambda y: _windowed(y, 0.99, 0.009), "displacement"),
+    "bump over a displacement": Periodic("exp(200*(sin(A) - 1))", lambda y: np.exp(200 * (y - 1)), "displacement"),
+    "rational bump over a state": Periodic("1/(1 + 200*(1 - sin(A)))", lambda y: 1 / (1 + 200 * (1 - y)), "state"),
+    "power over an angle": Periodic("sin(A)^40", lambda y: y**40, "angle"),
+    "square over a displacement": Periodic("sin(A)^2", lambda y: y**2, "displacement"),
+}  # fmt: skip
+RATE = 2 * np.pi * PERIODS / DURATION
+
+
+def _mean(of: Function) -> float:
+    """Over a period, by midpoints that are closer together near the peaks at pi/2 and 3 pi/2."""
+    z = np.linspace(-1.0, 1.0, 200_001)
+    offset = np.pi / 2 * z**3
+    middle = 0.5 * (offset[1:] + offset[:-1])
+    whole = sum(float(np.sum(of(np.sin(peak + middle)) * np.diff(offset))) for peak in (np.pi / 2, 3 * np.pi / 2))
+    return whole / (2 * np.pi)
+
+
+def _scene(periodic: Periodic) -> str:
+    """1 kg at rest that is to have 1 m/s at the end, and what carries the argument."""
+    speed = 1.5
+    plane, space = "{mass: 1, inertia: 1, ", "{mass: 1, inertia: [1, 1, 1], "
+    more, parameters, joints, forces = "", "", "", ""
+    match periodic.argument:
+        case "displacement":
+            argument, body = f"{RATE / speed!r}*w.x", f"{plane}position: [0, 1], velocity: [{speed}, 0]}}"
+        case "in space":
+            argument, body = f"{RATE / speed!r}*w.z", f"{space}position: [0, 1, 0], velocity: [0, 0, {speed}]}}"
+        case "angle":
+            argument, body = f"{RATE / speed!r}*w.angle", f"{plane}position: [0, 1], omega: {speed}}}"
+        case "turn in space":
+            argument, body = f"{RATE / speed!r}*az(w, ground)", f"{space}position: [0, 1, 0], omega: [0, 0, {speed}]}}"
+            joints = "\njoints: {h: {type: revolute, i: w, j: {body: ground, point: [0, 1, 0]}}}"
+        case "velocity":
+            argument, body = f"{RATE / speed!r}*w.vx", f"{plane}position: [0, 1]}}"
+            forces = f", g: {{type: force, i: w, force: [{speed}, 0]}}"
+        case _:
+            argument, body = "p", f"{plane}position: [0, 1]}}"
+            more = f"\nstates: {{p: {{rate: {RATE!r}, start: 0}}}}"
+    law = f"{1 / (_mean(periodic.of) * DURATION)!r}*{periodic.law.replace('A', argument)}"
+    in_space = "space" in periodic.argument
+    zeros, own = (", 0, 0", f"{space[:-2]}}}") if in_space else (", 0", f"{plane[:-2]}}}")
+    return (
+        f"dimensions: {3 if in_space else 2}\ngravity: [0{zeros}]\nbodies: {{b: {own}, w: {body}}}{more}{parameters}{joints}\n"
+        f"forces: {{f: {{type: force, i: b, force: ['{law}'{zeros}]}}{forces}}}"
+    )
+
+
+def _off(solution: Solution) -> float:
+    return float(abs(solution["b.vx"][-1] - 1))
+
+
+def _case(name: str, periodic: Periodic, solver: str, how: dict[str, Any], allowed: float) -> Case:
+    return simulation(
+        f"{name}, {solver}", f"velocity after {PERIODS} periods against the impulse of each", lambda: read_scene(_scene(periodic)),
+        _off, allowed, duration=DURATION, points=2, **how,
+    )  # fmt: skip
+
+
+def _allowed(name: str) -> tuple[float, float]:
+    return OF_SMOOTH if name.startswith(SMOOTH) else ALLOWED
+
+
+FAST = "max(sin(1e9*w.x) - 0.9, 0)"
+"""A law with 10^8 periods, which no solver can follow."""
+UNRESOLVED = tuple(
+    simulation(
+        f"too many periods, {solver}", "a note names the law", partial(
+            read_scene,
+            "gravity: [0, 0]\nbodies: {b: {mass: 1, inertia: 1}, w: {mass: 1, inertia: 1, position: [0, 1], velocity: [1, 0]}}\n"
+            f"forces: {{fast: {{type: force, i: b, force: ['{FAST}', 0]}}}}",
+        ), lambda solution: 0.0, 1.0, names=("fast",), noted=("fast", "cannot be resolved"), expected=Outcome.TOLD, duration=1.0, points=2, **how,
+    )
+    for solver, how in SOLVERS.items()
+)  # fmt: skip
+
+
+def _bump(sharpness: float) -> Function:
+    return lambda y: np.exp(sharpness * (y - 1))
+
+
+NARROW = tuple(
+    _case(
+        f"narrow bump {sharpness} over a velocity at {rtol:.0e}",
+        Periodic(f"exp({sharpness}*(sin(A) - 1))", _bump(sharpness), "velocity"),
+        solver, EXPLICIT[solver] | {"rtol": rtol}, ALLOWED[0],
+    )
+    for sharpness in (2079, 4000) for solver in ("dopri5", "dop853") for rtol in (1e-4, 1e-5, 1e-6, 1e-7)
+)  # fmt: skip
+"""Steps that reach a bump from just before it and end where it has vanished."""
+
+CASES = (
+    *(
+        _case(name, law, solver, how, _allowed(name)[0])
+        for name, law in LAWS.items()
+        for solver, how in EXPLICIT.items()
+    ),
+    *(_case(name, law, solver, how, _allowed(name)[1]) for name, law in LAWS.items() for solver, how in COARSE.items()),
+    *NARROW,
+    *UNRESOLVED,
+)

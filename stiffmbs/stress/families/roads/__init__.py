@@ -1,0 +1,1 @@
+"""Roads and tables: kinks, cars over straight lines, and interpolation between points."""

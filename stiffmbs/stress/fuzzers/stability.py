@@ -1,0 +1,55 @@
+"""Random equilibria with a force along a velocity: the verdict on their stability against a run that starts beside them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ...describe.model import FORCES
+from ...describe.spatial.model import FORCES as SPATIAL_FORCES
+from ...errors import StiffmbsError
+from ...jobs.equilibrium import equilibrium
+from ...jobs.linearised.modes import modes
+from ...jobs.run import run
+from ...solve.trajectory import Outcome as Ending
+from ..case import Outcome, Verdict
+from ..random_statics import random_statics
+
+WHAT = (
+    "Equilibria with negative or positive damping: whether motions grow from them, against runs that start beside them."
+)
+PUSH, DURATION, RTOL = 1e-6, 4.0, 1e-9
+"""Velocity at the start, m/s, time, s, and tolerance of a run."""
+EXPONENT, CLEAR = 6.0, 10.0
+"""Growth over a run, as an exponent, from which a run tells; and factor from which a motion has grown."""
+BEATS = 1e3
+"""Growth of a stable motion by exchange between its modes."""
+
+
+def trial(seed: int) -> Verdict:
+    """One mechanism with springs, and a force along the velocity of one of its bodies."""
+    rng, in_space = np.random.default_rng(seed), seed % 2 == 1
+    model = random_statics(rng, in_space)
+    body, gain = str(rng.choice(list(model.bodies))), float(rng.uniform(-15, 15))
+    law = [f"{gain!r}*{body}.vx", *[0.0] * (2 if in_space else 1)]
+    model.add("along", (SPATIAL_FORCES if in_space else FORCES)["force"](i=body, force=law))
+    try:
+        found = equilibrium(model)
+        growth = max(
+            (v.real for mode in modes(model, start_from=found.solution).modes for v in mode.eigenvalues), default=0.0
+        )
+        rest = found.solution.state()
+        pushed = {name: value + PUSH * (name.endswith(".vx")) for name, value in rest.channels.items()}
+        solution = run(model, start_from=replace(rest, channels=pushed), duration=DURATION, rtol=RTOL, points=201)
+    except StiffmbsError as refusal:
+        return Verdict(Outcome.TOLD, detail=str(refusal))
+    told = any("unstable" in note for note in found.notes)
+    if solution.outcome is not Ending.DONE:
+        return Verdict(Outcome.TOLD, detail=solution.message)
+    moves = np.max([np.abs(solution[name]) for name in solution if name.endswith((".vx", ".vy", ".vz"))], axis=0)
+    factor = float(moves[-20:].max() / max(float(moves[:20].max()), 1e-300))
+    detail = f"a motion grows by {factor:.3g}, the fastest mode at {growth:.3g} 1/s: {found.notes}"
+    missed = not told and factor > BEATS
+    false = told and growth * DURATION > EXPONENT and factor < CLEAR
+    return Verdict(Outcome.WRONG if missed or false else Outcome.RIGHT, factor, BEATS, detail)

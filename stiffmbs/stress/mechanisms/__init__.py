@@ -1,0 +1,1 @@
+"""Mechanisms with published or closed-form results."""

@@ -1,0 +1,1 @@
+"""Random scenes: well-posed mechanisms of all kinds of elements, as the content of scene files."""

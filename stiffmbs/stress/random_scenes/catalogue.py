@@ -1,0 +1,103 @@
+"""The random maker of each kind of element, and the kinds without one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import partial
+from types import MappingProxyType
+
+from . import contacts, forces, parts, relations, states, tyres
+from .draft import Draft
+from .joints import EQUATIONS
+
+Make = Callable[[Draft], str]
+PLANE, SPACE, BOTH = (2,), (3,), (2, 3)
+
+
+@dataclass(frozen=True)
+class Maker:
+    """Adds an element of a kind to a draft.
+
+    Attributes
+    ----------
+    section : str
+        Of the scene: ``joints``, ``forces``, ``states`` or ``use``.
+    kind : str
+        The element's `type`; of states the key that only they have; of parts their name.
+    make : callable
+    needs : tuple of str
+        Of the `Features` of the scene.
+    dimensions : tuple of int
+    """
+
+    section: str
+    kind: str
+    make: Make
+    needs: tuple[str, ...] = ()
+    dimensions: tuple[int, ...] = BOTH
+
+
+EVENTS = ("events",)
+RELATIONS: tuple[Maker, ...] = (
+    Maker("joints", "coupler", relations.add_coupler, ("loops",)),
+    Maker("joints", "gear", relations.add_gear, ("loops",)),
+    Maker("joints", "rack_and_pinion", relations.add_rack_and_pinion, ("loops",)),
+    Maker("joints", "drive", relations.add_drive, ("time",)),
+    Maker("joints", "equation", relations.add_equation, ("loops",)),
+    Maker("joints", "velocity_equation", relations.add_velocity_equation, ("nonholonomic",)),
+)
+FORCES: tuple[Maker, ...] = (
+    Maker("forces", "force", forces.add_force),
+    Maker("forces", "torque", forces.add_torque),
+    Maker("forces", "line_force", forces.add_line_force),
+    Maker("forces", "spring_damper", forces.add_spring_damper),
+    Maker("forces", "torsion_spring", forces.add_torsion_spring),
+    Maker("forces", "bushing", forces.add_bushing),
+    Maker("forces", "joint_friction", forces.add_joint_friction, ("friction",)),
+    Maker("forces", "field", forces.add_field, dimensions=SPACE),
+    Maker("forces", "beam", forces.add_beam, dimensions=SPACE),
+    Maker("forces", "wheel_torque", forces.add_wheel_torque, dimensions=SPACE),
+    Maker("forces", "brake", forces.add_brake, EVENTS, SPACE),
+    Maker("forces", "contact", contacts.add_contact, EVENTS, PLANE),
+    Maker("forces", "sphere_contact", contacts.add_sphere_contact, EVENTS, SPACE),
+    Maker("forces", "solid_impact", contacts.add_solid_impact, EVENTS, SPACE),
+    *(
+        Maker("forces", f"{kind}_plane_impact", partial(contacts.add_plane_impact, kind=kind), EVENTS, SPACE)
+        for kind in ("box", "cylinder", "ellipsoid")
+    ),
+    *(
+        Maker("forces", f"sphere_{kind}_impact", partial(contacts.add_sphere_impact, kind=kind), EVENTS, SPACE)
+        for kind in ("box", "cylinder", "sphere")
+    ),
+    *(
+        Maker("forces", kind, partial(tyres.add_tyre, kind=kind), ("tyres",), SPACE)
+        for kind in ("vertical_tyre", "fiala_tyre", "magic_formula_tyre")
+    ),
+)
+STATES: tuple[Maker, ...] = (
+    Maker("states", "rate", states.add_state, ("states",)),
+    Maker("states", "zero", states.add_algebraic_state, ("states",)),
+    Maker("states", "denominator", states.add_filter, ("states",)),
+    Maker("states", "a", states.add_linear_system, ("states",)),
+    Maker("states", "pid", states.add_controller, ("states",)),
+)
+PARTS: tuple[Maker, ...] = tuple(
+    Maker("use", part, partial(parts.add_part, part=part), ("parts",), SPACE)
+    for part in (*parts.SUSPENSIONS, *parts.ALONE)
+)
+WITHOUT: Mapping[str, str] = MappingProxyType(
+    {
+        "python_force": "a function of Python is no part of a scene file",
+        "driver": "it needs a car with four wheels on tyres, which examples/car.yaml is",
+    }
+)
+"""Kinds and parts without a random maker, and why."""
+
+
+def kinds(dimensions: int) -> Iterator[tuple[str, str]]:
+    """Yield the section and kind of all elements that random scenes have."""
+    yield from (("joints", kind) for kind in EQUATIONS[dimensions])
+    for maker in (*RELATIONS, *FORCES, *STATES, *PARTS):
+        if dimensions in maker.dimensions:
+            yield maker.section, maker.kind

@@ -1,0 +1,1 @@
+"""Independent static equilibria for the fuzzers."""
