@@ -28,6 +28,10 @@ class SolverError(StiffmbsError):
     """An integrator stopped early (exit status 1); what was computed up to there is kept."""
 
 
+class ChatteringError(SolverError):
+    """A force jumps back and forth, so that no motion follows from there on, with any solver and tolerance."""
+
+
 @contextmanager
 def needs(package: str, extra: str) -> Iterator[None]:
     """Tell what to install where a package is missing that few parts need.

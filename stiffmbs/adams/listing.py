@@ -2,23 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any
 
-from ..describe.files.text_file import checked, file_text, source_name
+from ..describe.files.text_file import file_text, source_name
 from ..errors import InputError
 from .listed_arguments import arguments_of, unread_functions
 from .load import ENCODING, command_file
-from .statements.changes import alters, key_of
+from .statements.changes import Key, alters, key_of
 from .statements.commands import ENDING, FOLLOWED, HARMLESS, SETTINGS, full_name, read_commands
 from .statements.dataset import all_statements, faults_of
 from .statements.fault import DatasetFault
 from .statements.keywords import LEFT_OUT, REFUSED, keyword
-from .statements.left_out import LEFT_OUT_ARGUMENTS
-from .statements.text import Statement, commands
+from .statements.left_out import LEFT_OUT_ARGUMENTS, UNREAD_SYSTEM, is_unread_system
+from .statements.text import ZERO_BYTE, Statement, commands
 
 READ, OMITTED, NOT_READ = "read", "left out", "refused"
 
@@ -73,14 +73,14 @@ def listed_statements(path: str | Path) -> tuple[ListedStatement, ...]:
     InputError
         When a file cannot be read as text.
     """
-    text = checked(file_text(path, ENCODING), source_name(path))
+    text = file_text(path, ENCODING, ZERO_BYTE)
     faults = {fault.line: fault.reason for fault in faults_of(text)}
     _, found, _ = all_statements(text)
     solids = _solids(found)
-    listed = [entry for one in found for entry in _statement(one, source_name(path), faults, solids)]
+    listed = [entry for one in found for entry in _statement(one, source_name(path), faults, solids, found)]
     beside = command_file(path)
     if beside is not None:
-        listed += _commands(file_text(beside, ENCODING), beside.name)
+        listed += _commands(file_text(beside, ENCODING), beside.name, {key_of(one) for one in found})
     return tuple(listed)
 
 
@@ -92,13 +92,15 @@ def _solids(found: Iterable[Statement]) -> set[tuple[str, int]]:
 
 
 def _statement(
-    statement: Statement, file: str, faults: dict[int, str], solids: set[tuple[str, int]]
+    statement: Statement, file: str, faults: dict[int, str], solids: set[tuple[str, int]], every: Sequence[Statement]
 ) -> Iterator[ListedStatement]:
     name = keyword(statement.word)
     label = f"{name or statement.word}/{statement.ident}".rstrip("/")
     one = partial(ListedStatement, file, statement.line, label)
     if name is None:
         yield one(NOT_READ, "found a statement that is not known")
+    elif is_unread_system(name, statement, every):
+        yield one(OMITTED, UNREAD_SYSTEM)
     elif name in REFUSED:
         yield one(NOT_READ, REFUSED[name])
     elif key_of(statement) in solids:
@@ -124,11 +126,11 @@ def _lines(statement: Statement) -> set[int]:
     return {statement.line, *(piece.line for piece in statement.pieces)}
 
 
-def _commands(text: str, file: str) -> list[ListedStatement]:
+def _commands(text: str, file: str, known: Collection[Key]) -> list[ListedStatement]:
     listed = []
     refused: dict[int, str] = {}
     try:
-        read_commands(text)
+        read_commands(text, known)
     except DatasetFault as fault:
         refused[fault.line] = fault.reason
     except InputError as error:

@@ -9,17 +9,21 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from ..describe.files.scene_text import scene_text
 from ..describe.files.text_file import STANDARD_INPUT, checked, file_text, source_name
 from ..describe.reading import made_scene
 from ..describe.scene import Scene
+from ..describe.spatial.massless import BEYOND
 from ..errors import InputError
 from .scene.scene import scene
 from .stages import followed
-from .statements.changes import Changes
+from .statements.changes import Changes, key_of
 from .statements.commands import Segment, read_commands
-from .statements.dataset import NO_CHANGES, Dataset, read_dataset
+from .statements.dataset import NO_CHANGES, Dataset, all_statements, read_dataset
 from .statements.fault import CommandFault, DatasetFault
+from .statements.text import ZERO_BYTE
 
 COMMANDS = ".acf"
 """How the name of a command file ends."""
@@ -84,7 +88,7 @@ def _with_aliases(dataset: Dataset, found: dict[str, Any]) -> dict[str, Any]:
 
 
 def _scene(text: str, source: str, changes: Changes = NO_CHANGES) -> tuple[Dataset, dict[str, Any]]:
-    text = checked(text, source)
+    text = checked(text, source, ZERO_BYTE)
     try:
         dataset = read_dataset(text, changes)
         return dataset, scene(dataset)
@@ -92,6 +96,8 @@ def _scene(text: str, source: str, changes: Changes = NO_CHANGES) -> tuple[Datas
         raise
     except DatasetFault as fault:
         raise InputError(f"{source}, {fault}") from None
+    except np.linalg.LinAlgError:
+        raise InputError(f"{source}: {BEYOND}") from None
     except InputError as error:
         raise InputError(f"{source}: {error}") from None
 
@@ -99,11 +105,12 @@ def _scene(text: str, source: str, changes: Changes = NO_CHANGES) -> tuple[Datas
 def _commanded(path: str | Path) -> tuple[Dataset, dict[str, Any]]:
     """The scene of a dataset's file as the command file beside it says, if there is one."""
     beside = command_file(path)
-    text, source = file_text(path, ENCODING), source_name(path)
+    text, source = file_text(path, ENCODING, ZERO_BYTE), source_name(path)
     if beside is None:
         return _scene(text, source)
     try:
-        asked = read_commands(file_text(beside, ENCODING))
+        known = {key_of(statement) for statement in all_statements(checked(text, source, ZERO_BYTE))[1]}
+        asked = read_commands(file_text(beside, ENCODING), known)
     except DatasetFault as fault:
         raise InputError(f"{beside}, {fault}") from None
     first = asked.segments[0].changes if asked.segments else asked.changes

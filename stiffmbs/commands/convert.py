@@ -61,7 +61,7 @@ def _write(path: Path | None, text: str) -> None:
     from ..results import files
 
     try:
-        files.written_whole(path, lambda part: part.write_text(text, encoding="utf-8"))
+        files.write_text(path, text)
     except OSError as error:
         click.echo(f"stiffmbs: not written: {path}: {error.strerror}", err=True)
         sys.exit(STOPPED_EARLY)

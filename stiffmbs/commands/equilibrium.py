@@ -15,6 +15,7 @@ from .scene import (
     STOPPED_EARLY,
     changes_of,
     in_file,
+    is_written,
     refuse,
     refuse_own_input,
     solving_options,
@@ -72,13 +73,9 @@ def equilibrium(
             found = found_equilibrium(loaded, motion=motion, **start)
     except StiffmbsError as error:
         refuse(scene, error, as_json)
-    if output is not None:
-        try:
-            write(output, found.solution)
-        except OSError as error:
-            click.echo(f"stiffmbs: not written: {output}: {error.strerror}", err=True)
-            sys.exit(STOPPED_EARLY)
+    written = output is None or is_written(output, lambda: write(output, found.solution))
     click.echo(json.dumps(found.as_dict(scene)) if as_json else equilibrium_text(found, loaded))
+    sys.exit(0 if written else STOPPED_EARLY)
 
 
 def _motion(

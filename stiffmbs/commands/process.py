@@ -17,6 +17,7 @@ import click
 
 from ..describe.files.quoted import quoted
 from ..interrupts import INTERRUPTED
+from ..show.escaped import EscapingStream
 
 FAILED = 1
 OF_OUTPUT = (errno.ENOSPC, errno.EIO, errno.EBADF, errno.EPIPE, errno.EDQUOT)
@@ -35,7 +36,7 @@ class Process(click.Group):
     def main(self, *arguments: Any, **options: Any) -> Any:
         """Run the command that is asked for; see `click.Command.main`."""
         closed = _with_standard_files()
-        with _signals(), _no_interrupt_lost(), warnings.catch_warnings():
+        with _signals(), _no_interrupt_lost(), _escaping(), warnings.catch_warnings():
             # Numbers that overflow are told where they end up, in sentences.
             warnings.simplefilter("ignore", RuntimeWarning)
             status = 0
@@ -125,6 +126,17 @@ def _flushed(told: bool) -> bool:
     with contextlib.suppress(OSError, ValueError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     return False
+
+
+@contextlib.contextmanager
+def _escaping() -> Iterator[None]:
+    """Let nothing that is printed steer the terminal."""
+    before = sys.stdout, sys.stderr
+    sys.stdout, sys.stderr = (stream and EscapingStream(stream) for stream in before)  # type: ignore[assignment]
+    try:
+        yield
+    finally:
+        sys.stdout, sys.stderr = before
 
 
 @contextlib.contextmanager

@@ -7,6 +7,7 @@ import time
 from types import TracebackType
 from typing import Any
 
+from ..show.escaped import console
 from .terminal.listener import Listener
 from .terminal.logging_options import is_quiet
 
@@ -83,10 +84,7 @@ class Telling:
         if not self._seen:
             return
         if self._status is None:
-            from rich.console import Console
-
-            console = Console(stderr=True, markup=False, emoji=False)
-            self._status = console.status(line, refresh_per_second=4)
+            self._status = console(stderr=True).status(line, refresh_per_second=4)
             self._status.start()
         self._status.update(line)
 

@@ -10,7 +10,7 @@ import click
 
 from ..errors import InputError, StiffmbsError
 from ..jobs.load_scene import load_scene
-from .scene import STOPPED_EARLY, changes_of, in_file, refuse, solving_options
+from .scene import STOPPED_EARLY, changes_of, in_file, is_written, refuse, solving_options
 
 
 @click.command(short_help="Frequency response.")
@@ -47,6 +47,7 @@ def response(
 
     from ..jobs.linearised.inputs import force_on, parameter_of
     from ..jobs.linearised.transfer import transfer
+    from ..results.files import write_text
     from ..show.response import response_as_json, response_csv, response_text
 
     changes = changes_of(options)
@@ -62,14 +63,11 @@ def response(
                 for name in inputs
             }
             found = transfer(loaded, given, outputs, at=at)
+            frequencies = np.geomspace(lowest, highest, points)
+            values = found.response(frequencies)
     except StiffmbsError as error:
         refuse(scene, error, as_json)
-    frequencies = np.geomspace(lowest, highest, points)
-    values = found.response(frequencies)
-    if path is not None:
-        try:
-            path.write_text(response_csv(found, frequencies, values), encoding="utf-8")
-        except OSError as error:
-            click.echo(f"stiffmbs: not written: {path}: {error.strerror}", err=True)
-            sys.exit(STOPPED_EARLY)
+    text = response_csv(found, frequencies, values)
+    written = path is None or is_written(path, lambda: write_text(path, text))
     click.echo((response_as_json if as_json else response_text)(scene, found, frequencies, values))
+    sys.exit(0 if written else STOPPED_EARLY)

@@ -15,6 +15,7 @@ from .scene import (
     STOPPED_EARLY,
     changes_of,
     file_beside,
+    is_written,
     refuse,
     refuse_own_input,
     solve_scene,
@@ -88,13 +89,9 @@ def _drawing() -> Any:
 def _draw(scene: str, path: Path, solution: Any, loaded: Scene, as_json: bool) -> bool:
     """Draw the figure; whether it could be written."""
     try:
-        _drawing().draw(path, solution, loaded.figure)
+        return is_written(path, lambda: _drawing().draw(path, solution, loaded.figure))
     except StiffmbsError as error:
         refuse(scene, error, as_json)
-    except OSError as error:
-        click.echo(f"stiffmbs: not written: {path}: {error.strerror}", err=True)
-        return False
-    return True
 
 
 def _write(scene: str, output: Path | None, as_json: bool, solution: Any) -> tuple[str, bool]:
@@ -123,9 +120,8 @@ def _show(scene: str, solution: Any, results: str, as_json: bool) -> None:
 
 def console() -> Console:
     """Standard output; lines are broken to the width of a terminal, or of COLUMNS, and nowhere else."""
-    from rich.console import Console
-
+    from ..show.escaped import console as escaping_console
     from ..show.summary import UNBROKEN
 
     to_a_width = sys.stdout.isatty() or "COLUMNS" in os.environ
-    return Console(width=None if to_a_width else UNBROKEN, markup=False, emoji=False)
+    return escaping_console(width=None if to_a_width else UNBROKEN)

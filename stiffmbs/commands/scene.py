@@ -141,6 +141,16 @@ def refuse_own_input(option: str, scene: str, output: Path) -> None:
         raise InputError(f"{option} {output}: found the file that is read, {scene}, expected another one")
 
 
+def is_written(path: Path, write: Callable[[], object]) -> bool:
+    """Write a file that was asked for; where it cannot be written a sentence says why, and what was computed is shown all the same."""
+    try:
+        write()
+    except OSError as error:
+        click.echo(f"stiffmbs: not written: {path}: {error.strerror or error}", err=True)
+        return False
+    return True
+
+
 def file_beside(scene: str, ending: str) -> Path:
     """Where a command writes that is not told where: a file in the working folder, named after the scene."""
     return Path(f"{'stdin' if scene == STANDARD_INPUT else Path(scene).stem}{ending}")

@@ -12,8 +12,9 @@ import click
 
 from ..errors import StiffmbsError
 from ..jobs.load_scene import load_scene
+from ..show.escaped import console
 from .progress import SHOWN_AFTER
-from .scene import STOPPED_EARLY, changes_of, in_file, refuse, refuse_own_input, solving_options
+from .scene import STOPPED_EARLY, changes_of, in_file, is_written, refuse, refuse_own_input, solving_options
 
 if TYPE_CHECKING:
     import xarray
@@ -88,10 +89,7 @@ def _write(output: Path | None, store: Path | None, data: xarray.Dataset, write:
     """Write the table where asked, and then let go of the rows; whether it could be written."""
     if output is None or store is None:
         return True
-    try:
-        write(output, data)
-    except OSError as error:
-        click.echo(f"stiffmbs: not written: {output}: {error.strerror}", err=True)
+    if not is_written(output, lambda: write(output, data)):
         return False
     for ending in ("", "-wal", "-shm"):
         store.with_name(store.name + ending).unlink(missing_ok=True)
@@ -114,10 +112,9 @@ class _Bar:
         if self._bar is None:
             if not sys.stderr.isatty() or left < SHOWN_AFTER:
                 return
-            from rich.console import Console
             from rich.progress import Progress
 
-            self._bar = Progress(console=Console(stderr=True), transient=True)
+            self._bar = Progress(console=console(stderr=True), transient=True)
             self._bar.start()
             self._task = self._bar.add_task("solving", total=total)
         self._bar.update(self._task, completed=done, description=f"case {done} of {total}, {left:.0f} s left")

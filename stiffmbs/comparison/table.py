@@ -7,6 +7,7 @@ from functools import partial
 from io import StringIO
 from typing import TYPE_CHECKING, Any
 
+from ..show.escaped import console as escaping_console
 from ..show.summary import UNBROKEN
 from .compare import Comparison
 from .comparison_over import ComparisonOver
@@ -37,10 +38,8 @@ def text_over(comparison: ComparisonOver) -> str:
 
 
 def _text(show: Print) -> str:
-    from rich.console import Console
-
     written = StringIO()
-    show(Console(file=written, width=UNBROKEN, markup=False, emoji=False))
+    show(escaping_console(file=written, width=UNBROKEN))
     return written.getvalue().rstrip()
 
 

@@ -43,6 +43,10 @@ class Compilable(Protocol):
     @property
     def joints(self) -> Mapping[str, Any]: ...
 
+    def joint_at_initial_pose(self, name: str) -> Joint:
+        """Return a joint, with what it leaves open taken from the described poses."""
+        ...
+
     def elements(self) -> Iterator[tuple[str, Element]]:
         """Every joint, force, counter of turns and weight with its name."""
 
@@ -229,7 +233,7 @@ def _shape(value: Any, model: Compilable, data: ElementData) -> Shape:
         case MarkerReference():
             return data.marker_shape(value)
         case JointName():
-            joint: Joint = model.joints[value.joint]
+            joint = model.joint_at_initial_pose(value.joint)
             fields = _fields(joint, model, data)
             data.joints.append(value.joint)
             return ("joint", type(joint), fields, len(data.joints) - 1, value.coordinate_of(joint))

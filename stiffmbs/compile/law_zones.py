@@ -3,6 +3,7 @@
 A bump of 0.1 m in a table over distance, or a Gaussian of it, may lie between the ends of a step.  The edges here part the
 argument of each law into zones such that within a zone nothing is overlooked: a cubic describes the table, tanh has
 saturated, exp has vanished.  Solvers see to it that no step passes a whole zone (`stiffmbs.solve.native.event_search.within_step`).
+The argument of a sine has no zones: what counts is how far it turns in a step.
 A law goes on beyond an edge as it was before it for a while, and a step that goes no further has overlooked nothing: a damper
 that swings by a millimetre a second over a knot of its table does not change its law.
 """
@@ -23,11 +24,13 @@ def _on_both_sides(*edges: float) -> np.ndarray:
     return np.array([*(-edge for edge in reversed(edges)), *edges])
 
 
+TURN = "turn"
 FIXED = {
     "exp": _on_both_sides(0.5, 2.0, 6.0, 15.0, 37.0),
     "tanh": _on_both_sides(1.0, 3.0, 8.0, 19.0),
     "atan": _on_both_sides(1.0, 4.0, 20.0),
     "reciprocal": _on_both_sides(0.0, *2.0 * 4.0 ** np.arange(-20, 21))[1:],
+    TURN: np.empty(0),
 }
 """Edges of functions: of exp, cosh and sinh (exp(-37) is rounding); of tanh (so is 1 - tanh(19)); of atan; of 1/x and other
 negative powers, none at 1, where 1 + x^2 and cos(x) turn round and rounding would decide.  They are graded, so that a step
@@ -60,12 +63,15 @@ class Zones(NamedTuple):
         How far the law goes on beyond each edge, to both sides, as it was before the edge; zero for an event function.
     period : ndarray, shape (n,)
         Of a law that repeats; 0 for others.
+    turns : ndarray of int
+        Numbers of the functions that are arguments of sines.
     """
 
     first: np.ndarray
     edges: np.ndarray
     overlap: np.ndarray
     period: np.ndarray
+    turns: np.ndarray
 
 
 def zones_of(system: System) -> Zones:
@@ -78,7 +84,15 @@ def zones_of(system: System) -> Zones:
         np.concatenate([np.empty(0), *(edges for edges, _, _ in found)]),
         np.concatenate([np.empty(0), *(overlap for _, overlap, _ in found)]),
         np.array([period for _, _, period in found]),
+        system.n_event_functions + np.flatnonzero([name == TURN for name in _names(system)]),
     )
+
+
+def _names(system: System) -> Iterator[str]:
+    """The name of the zones of each argument, in the order of the arguments."""
+    for group in system.groups:
+        for _ in group.index[:, 2 * group.kind.n_bodies] if group.record.laws else ():
+            yield from (name for name, _ in group.record.laws)
 
 
 def _of_arguments(system: System) -> Iterator[tuple[np.ndarray, np.ndarray, float]]:
@@ -97,6 +111,8 @@ def _of_arguments(system: System) -> Iterator[tuple[np.ndarray, np.ndarray, floa
 
 def _narrower(edges: np.ndarray, period: float = 0.0) -> np.ndarray:
     """The width of the narrower zone beside each edge; beyond the outermost ones zones have no end, or the law repeats."""
+    if not len(edges):
+        return edges
     around = edges[0] + period - edges[-1] if period else np.inf
     widths = np.concatenate([[around], np.diff(edges), [around]])
     return np.minimum(widths[:-1], widths[1:])

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..describe.table import Table
 from ..errors import InputError
-from .akima import akima_pieces
+from .local_cubics import akima_pieces, monotone_pieces
 
 Curve = Callable[[np.ndarray], np.ndarray]
 NATURAL, PERIODIC = 0.0, 1.0
@@ -17,7 +17,8 @@ NATURAL, PERIODIC = 0.0, 1.0
 def spline_data(table: Table) -> np.ndarray:
     """What a kernel needs of a table: count, ends, knots, and the coefficients of each piece (highest first).
 
-    Cubic spline interpolation by SciPy, Akima's by `stiffmbs.compile.akima`; straight lines are pieces without curvature.
+    Splines are those of SciPy, monotone and Akima's cubics of `stiffmbs.compile.local_cubics`; straight lines are pieces without
+    curvature.
 
     Raises
     ------
@@ -41,16 +42,19 @@ def spline_data(table: Table) -> np.ndarray:
 
 def _pieces(table: Table, x: np.ndarray, y: np.ndarray) -> np.ndarray:
     """The coefficients of each piece, highest first, a column for each."""
-    if table.lines:
-        slope = np.diff(y) / np.diff(x)
-        return np.stack([np.zeros_like(slope), np.zeros_like(slope), slope, y[:-1]])
-    if table.akima:
-        return akima_pieces(x, y)
+    match table.interpolation:
+        case "lines":
+            slope = np.diff(y) / np.diff(x)
+            return np.stack([np.zeros_like(slope), np.zeros_like(slope), slope, y[:-1]])
+        case "akima":
+            return akima_pieces(x, y)
+        case "monotone":
+            return monotone_pieces(x, y)
     from scipy.interpolate import CubicSpline
 
     if table.ends == "periodic":
         y = np.append(y[:-1], y[0])
-    return np.asarray(CubicSpline(x, y, bc_type=table.ends).c)
+    return np.asarray(CubicSpline(x, y, bc_type=table.ends or "natural").c)
 
 
 def curve(table: Table) -> Curve:

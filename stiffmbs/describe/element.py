@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from pydantic import GetJsonSchemaHandler, model_validator
 
+from ..errors import InputError
 from .fields import Described, typed
 from .formula.formula import Formula
 from .loads import Loads
@@ -28,6 +29,90 @@ Symbolic = Any
 """The element as its equations see it (`stiffmbs.compile.symbolic.element.SymbolicElement`): a frame for a marker, a symbol for a number, an expression for a formula, a
 function for a formula or table of a variable, a symbolic element for a joint that is referred to; ``e.t`` for time,
 ``e.rate(expression)`` for a total time derivative, ``e.frames`` for the bodies."""
+
+
+IN_EQUATIONS = frozenset(
+    [
+        "a",
+        "angle",
+        "angles",
+        "at_extremum",
+        "breakpoints",
+        "by",
+        "by_accelerations",
+        "by_coordinate",
+        "by_coordinates",
+        "by_velocities",
+        "columns_of",
+        "common_normal",
+        "composed",
+        "coordinate",
+        "coordinates",
+        "depends",
+        "derivatives",
+        "distance",
+        "frames",
+        "in_state",
+        "integral",
+        "is_constant",
+        "kind",
+        "lam",
+        "loads",
+        "meanings",
+        "n_coordinates",
+        "named",
+        "own",
+        "point",
+        "q",
+        "rate",
+        "reaction",
+        "read",
+        "relative_rotation",
+        "second_rate",
+        "shortest_rotation",
+        "slope",
+        "state_rates",
+        "states",
+        "t",
+        "type",
+        "u",
+        "variable",
+        "velocities",
+        "velocity_level",
+        "work_by_coordinates",
+        "work_by_velocities",
+        "_accelerations",
+        "_by_coordinate",
+        "_by_velocity",
+        "_change",
+        "_coordinate",
+        "_joint",
+        "_matrix",
+        "_new_rotation",
+        "_note",
+        "_rotations",
+        "_state",
+    ]
+)
+"""Attributes of the symbolic element `e`, which equations read besides the fields (`stiffmbs.compile.symbolic.element`)."""
+
+
+def _reserved(element: type[Described], base: type[Described]) -> str:
+    """Return why a class of elements cannot have one of its fields, or an empty string.
+
+    Parameters
+    ----------
+    element : type
+        A subclass of joints or forces.
+    base : type
+        The base whose attributes its fields must not hide.
+    """
+    names = IN_EQUATIONS | {name for name in dir(base) if not hasattr(Described, name)}
+    added = {*element.model_fields, *element.__private_attributes__} - {*base.model_fields}
+    if not (found := sorted(added & names)):
+        return ""
+    listed = ", ".join(sorted(name for name in names if not name.startswith("_")))
+    return f"found the field '{found[0]}', expected names other than {listed}"
 
 
 class Component(Described):
@@ -74,6 +159,14 @@ class Element(Described):
     symbol: ClassVar[str] = ""
 
     type: str = ""
+
+    @classmethod
+    def __pydantic_init_subclass__(cls, **options: Any) -> None:
+        """Refuse fields that have the name of an attribute of the base class or of the symbolic element."""
+        super().__pydantic_init_subclass__(**options)
+        base = next(base for base in cls.__mro__ if base.__module__ == __name__)
+        if reason := _reserved(cls, base):
+            raise InputError(f"{cls.__name__}: {reason}")
 
     @model_validator(mode="before")
     @classmethod
@@ -237,6 +330,10 @@ class Force(Element):
     beyond: ClassVar[str] = ""
     doubtful: ClassVar[float] = -math.inf
     doubt: ClassVar[str] = ""
+
+    def valid_ranges(self) -> Mapping[str, tuple[float, float]]:
+        """Lowest and highest values of its channels that its data are valid for."""
+        return {}
 
     def own_states(self) -> tuple[str, ...]:
         """The names of its own states; channels have them behind the element's name."""

@@ -21,6 +21,7 @@ from .units import si
 if TYPE_CHECKING:
     from . import given
     from .element import Element
+    from .model_data import ModelData
 
 _REFERENCE = {"type": "string", "description": "a body ('cart'), a marker of a body ('bar.end'), or 'ground'"}
 
@@ -172,3 +173,24 @@ class PlacedMarkers(dict[MarkerReference, tuple[str, tuple[float, ...]]]):
         body, placed = self._model.carried(marker)
         self[marker] = found = body, placed.numbers()
         return found
+
+
+def same_turn(model: ModelData, i: Marker, j: Marker) -> Marker:
+    """Return marker i, its angle less the whole turns by which it is drawn apart from marker j.
+
+    An equation between both angles then holds in the turn in which the bodies are drawn.
+    """
+    turns = round((model.initial_marker(i).angle - model.initial_marker(j).angle) / math.tau)
+    if not turns:
+        return i
+    placed = model.place(i)
+    return Marker(body=i.body, point=placed.point, angle=placed.angle - math.tau * turns)
+
+
+class InOneTurn:
+    """Base of planar joints with an equation between the angles of their markers, which holds in the turn in which they are drawn."""
+
+    def at_initial_pose(self, model: ModelData) -> Any:
+        """Return the joint, the angle of its marker i taken in the turn of that of marker j."""
+        joint: Any = self
+        return joint.model_copy(update={"i": same_turn(model, joint.i, joint.j)})

@@ -209,6 +209,11 @@ class ModelData(Described):
         for name, element in (*self.joints.items(), *self.forces.items()):
             yield name, element.at_initial_pose(self)
 
+    def joint_at_initial_pose(self, name: str) -> Joint:
+        """Return a joint, with what it leaves open taken from the described poses."""
+        joint: Joint = self.joints[name]
+        return joint.at_initial_pose(self)
+
     def size(self) -> float:
         """Diagonal of the box around all bodies and markers at the start, m; 1 where it is a single point."""
         points = [body.coordinates()[: self.dimensions] for body in self.bodies.values()]

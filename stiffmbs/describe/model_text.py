@@ -12,6 +12,7 @@ from .formula.dimension import Known
 from .joint_name import JointName
 from .marker import MarkerReference
 from .model_data import ModelData
+from .python_function import PythonFunction
 from .states.amount import Amount
 from .states.linear_system import PID
 from .table import Table
@@ -56,6 +57,8 @@ def _written(value: Any) -> Any:
             return {**kind, **_fields(value)}
         case JointName():
             return str(value)
+        case PythonFunction():
+            raise InputError(f"found {value!r}, expected a formula: a scene file cannot hold a Python function")
         case dict():
             return {name: _written(part) for name, part in value.items()}
         case tuple():

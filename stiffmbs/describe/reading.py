@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from pydantic import ValidationError as PydanticError
@@ -20,9 +21,10 @@ from .files.expand import (
     set_value,
     unshared,
 )
+from .files.files_read import FOLDER, record, recorded
 from .files.held import with_held
 from .files.include import read_including
-from .files.other_files import ASKED, FOLDER, Asked
+from .files.own_sources import own_sources
 from .files.quoted import written
 from .files.stages import written_stages
 from .files.unchanged import Unchanged
@@ -36,15 +38,12 @@ from .roads.field import read_roads
 from .scene import Scene, scene_class
 from .units.units import Quantity
 
+NO_FILES: Mapping[str, str] = MappingProxyType({})
 SECTIONS = ("variables", "states", "bodies", "joints", "forces")
 
 
 def read_scene(
-    text: str,
-    changes: Sequence[tuple[str, str]] = (),
-    source: str = "scene",
-    file: Path | None = None,
-    asked: Asked | None = None,
+    text: str, changes: Sequence[tuple[str, str]] = (), source: str = "scene", file: Path | None = None
 ) -> Scene:
     """Read a scene from text.
 
@@ -58,8 +57,6 @@ def read_scene(
         What messages call it.
     file : Path, optional
         The file that the text is of: what it includes is looked for beside it, or in the working folder without it.
-    asked : callable, optional
-        Told of every other file before it is read.
 
     Returns
     -------
@@ -70,12 +67,13 @@ def read_scene(
     InputError
         When it is no valid scene; names the line and the path in it.
     """
-    found, line = read_including(text, source, file, asked)
+    with recorded() as files:
+        found, line = read_including(text, source, file)
     if found is None:
         raise InputError(f"{source}: found an empty scene, expected at least 'bodies'")
     if not isinstance(found, dict):
         raise InputError(f"{source}: found {type(found).__name__}, expected a mapping with 'bodies'")
-    return made_scene(found, changes, source, line, file.parent if file else None, asked=asked)
+    return made_scene(found, changes, source, line, file.parent if file else None, files=files)
 
 
 def made_scene(
@@ -85,7 +83,7 @@ def made_scene(
     line_of: Callable[[tuple[Any, ...]], int | str | None],
     folder: Path | None = None,
     unchanged: Unchanged | None = None,
-    asked: Asked | None = None,
+    files: Mapping[str, str] = NO_FILES,
 ) -> Scene:
     """The scene of a mapping.
 
@@ -103,20 +101,38 @@ def made_scene(
         Where meshes and property files are looked for; the working folder by default.
     unchanged : Unchanged, optional
         What was validated before and need not be again; the scene then does not keep what it was read from.
-    asked : callable, optional
-        Told of every file before it is read.
+    files : mapping of str to str
+        Digests of the files that the mapping comes from.
 
     Raises
     ------
     InputError
         When it is no valid scene.
     """
-    scene_as_written = None if unchanged else WrittenScene(copy.deepcopy(found), tuple(changes), source, folder)
+    kept = None if unchanged else WrittenScene(copy.deepcopy(found), tuple(changes), source, folder, dict(files))
+    with recorded() as read:
+        scene = _made_scene(found, changes, source, line_of, folder, unchanged, kept)
+        record(own_sources(scene))
+    if kept:
+        kept.files.update(read)
+    return scene
+
+
+def _made_scene(
+    found: dict[str, Any],
+    changes: Sequence[tuple[str, Any]],
+    source: str,
+    line_of: Callable[[tuple[Any, ...]], int | str | None],
+    folder: Path | None,
+    unchanged: Unchanged | None,
+    scene_as_written: WrittenScene | None,
+) -> Scene:
+    """Parameters and errors as for `made_scene`."""
     known = unchanged or Unchanged()
+    found, chosen, changes = _chosen(unshared(found), changes, source)
     parts = found.get("parts")
-    found, changes = placed_in_use(unshared(found), changes)
-    found, chosen, changes = _chosen(found, changes, source)
-    refuse_unused_parameters(found, changes)
+    found, changes = placed_in_use(found, changes)
+    refuse_unused_parameters(found, changes, Scene.model_fields)
     replaced = replaced_parameters(found, changes)
     in_parts = []
     for path, value in changes:
@@ -127,7 +143,7 @@ def made_scene(
             set_value(found, path, read)
     _keep_one_grid(found, {path for path, _ in changes})
     try:
-        scene = _validated(found, replaced, in_parts, {**chosen, FOLDER: folder, ASKED: asked}, known)
+        scene = _validated(found, replaced, in_parts, {**chosen, FOLDER: folder}, known)
     except _Located as error:
         message = as_written(str(error), parts)
         there = error.path if message == str(error) else ("parts", *error.path[1:])
@@ -135,9 +151,9 @@ def made_scene(
         raise InputError(f"{source}, {where}{message}") from None
     scene._written, scene._validated = scene_as_written, known
     if scene.stages:
-        scene._stage_scenes = _stage_scenes(scene, source, asked)
+        scene._stage_scenes = _stage_scenes(scene, source)
     elif scene.at_start:
-        scene._held_at_start = _held_at_start(scene, source, asked)
+        scene._held_at_start = _held_at_start(scene, source)
     return scene
 
 
@@ -157,7 +173,7 @@ def _chosen(
     return merged, chosen, [change for change in changes if change[0] not in words]
 
 
-def _stage_scenes(scene: Scene, source: str, asked: Asked | None) -> tuple[Scene, ...]:
+def _stage_scenes(scene: Scene, source: str) -> tuple[Scene, ...]:
     """The scene of each stage; errors as for `made_scene`."""
     if scene.written is None:
         raise InputError(f"{source}: found stages, expected a scene of one run")
@@ -166,21 +182,17 @@ def _stage_scenes(scene: Scene, source: str, asked: Asked | None) -> tuple[Scene
     except InputError as error:
         raise InputError(f"{source}, {error}") from None
     return tuple(
-        made_scene(
-            dict(stage.content), stage.changes, f"{source}, stages.{k}", lambda path: None, stage.folder, asked=asked
-        )
+        made_scene(dict(stage.content), stage.changes, f"{source}, stages.{k}", lambda path: None, stage.folder)
         for k, stage in enumerate(stages)
     )
 
 
-def _held_at_start(scene: Scene, source: str, asked: Asked | None) -> Scene:
+def _held_at_start(scene: Scene, source: str) -> Scene:
     """The scene with what holds at its start alone; errors as for `made_scene`."""
     if scene.written is None:
         raise InputError(f"{source}: found at_start, expected a scene that starts as described")
     held = with_held(scene.written)
-    return made_scene(
-        dict(held.content), held.changes, f"{source}, at_start", lambda path: None, held.folder, asked=asked
-    )
+    return made_scene(dict(held.content), held.changes, f"{source}, at_start", lambda path: None, held.folder)
 
 
 def _keep_one_grid(found: dict[str, Any], changed: set[str]) -> None:
@@ -245,7 +257,7 @@ def _validated(
         path = message.split(":")[0].split(".")
         raise _Located(message, tuple(path)) from None
     scene._quantities = parameters
-    unchanged.keep(written_entries, {**context, ASKED: None}, scene)
+    unchanged.keep(written_entries, context, scene)
     return scene
 
 

@@ -17,7 +17,7 @@ from .units.units import Quantity, named_unit
 
 
 class Table(Described):
-    """A function through points, as a cubic spline or by straight lines.
+    """A function through points. By default it rises and falls as the points do and has a continuous slope (PCHIP).
 
     Outside its points a table goes on with the slope of its end (none for ``clamped``); a periodic one repeats.
 
@@ -25,20 +25,25 @@ class Table(Described):
     ----------
     table : list of pairs
         Argument and value, arguments increasing.
+    spline : bool
+        A cubic spline: continuous curvature, but it may leave the range of its points (Adams: CUBSPL).
     ends : str
-        Of the spline: ``natural`` (no curvature), ``clamped`` (no slope), ``periodic`` (first and last value alike),
-        ``not-a-knot``.
+        Ends of a cubic spline, which they ask for: ``natural`` (no curvature, the spline's default), ``clamped`` (no slope),
+        ``not-a-knot``, ``periodic`` (first and last value alike; for straight lines too).
     lines : bool
-        Straight lines in place of a spline; its points are breakpoints.
+        Straight lines; its points are breakpoints.
     akima : bool
-        Akima's cubics in place of a spline, each by the five points around it: no overshoot, and no continuous curvature.
-        Akima, A new method of interpolation and smooth curve fitting, J. ACM 17 (1970) 589-602 (Adams: AKISPL).
+        Akima's cubics, each by the five points around it: they may leave the range of unevenly spaced points (Adams: AKISPL).
+        Akima, A new method of interpolation and smooth curve fitting, J. ACM 17 (1970) 589-602.
     """
 
     table: tuple[tuple[si.Anything, si.Anything], ...] = Field(min_length=2, description="pairs of argument and value")
-    ends: Literal["natural", "clamped", "periodic", "not-a-knot"] = Field("natural", description="end condition")
-    lines: bool = Field(False, description="straight lines in place of a spline")
-    akima: bool = Field(False, description="Akima's local cubics in place of a spline")
+    ends: Literal["natural", "clamped", "periodic", "not-a-knot"] | None = Field(
+        None, description="of a cubic spline: its end condition"
+    )
+    lines: bool = Field(False, description="straight lines between the points")
+    akima: bool = Field(False, description="Akima's local cubics")
+    spline: bool = Field(False, description="a cubic spline, which may leave the range of its points")
 
     if TYPE_CHECKING:
 
@@ -46,13 +51,21 @@ class Table(Described):
             self,
             *,
             table: Matrix,
-            ends: Literal["natural", "clamped", "periodic", "not-a-knot"] = "natural",
+            ends: Literal["natural", "clamped", "periodic", "not-a-knot"] | None = None,
             lines: bool = False,
             akima: bool = False,
+            spline: bool = False,
         ) -> None: ...
 
     _argument: Known = PrivateAttr(UNKNOWN)
     _value: Known = PrivateAttr(UNKNOWN)
+
+    @property
+    def interpolation(self) -> Literal["monotone", "lines", "akima", "spline"]:
+        """How it goes from point to point."""
+        if self.lines or self.akima:
+            return "lines" if self.lines else "akima"
+        return "spline" if self.spline or self.ends else "monotone"
 
     @property
     def dimensions(self) -> tuple[Known, Known]:
@@ -84,8 +97,10 @@ class Table(Described):
             raise ValueError(
                 f"found {first:g} at the start and {last:g} at the end, expected a periodic table to close"
             )
-        if self.akima and (self.lines or self.ends != "natural"):
+        if self.akima and (self.lines or self.ends or self.spline):
             raise ValueError("found akima with lines or ends, expected it alone")
+        if self.lines and (self.spline or self.ends in ("clamped", "not-a-knot")):
+            raise ValueError("found lines with a spline or its ends, expected lines alone or with periodic ends")
         if self.ends == "not-a-knot" and len(self.table) < 4:
             raise ValueError(f"found {len(self.table)} points, expected 4 or more for not-a-knot ends")
         return self

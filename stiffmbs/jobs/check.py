@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any, Unpack
 
 from ..compile.system import System
+from ..compile.table_notes import table_notes
 from ..describe.scene import Scene, notes_of
 from ..describe.settings import RunSettings, Settings, takes_settings
 from ..errors import AssemblyError, SolverError
@@ -23,6 +24,7 @@ from ..structure.messages.redundancy import (
     singular_sentence,
 )
 from ..structure.messages.unconnected import unconnected_sentence
+from ..structure.opposed_actuators import opposed_sentences
 from ..structure.overconstraint import Overconstraint, listed, overconstraints
 from .job import Examined, Runnable, data_of, examined
 
@@ -174,7 +176,8 @@ def check(model: Runnable, settings: RunSettings | None = None, **changes: Unpac
         inconsistencies=against, extra_freedoms=redundancy.extra_freedoms,
         unknowns=unknowns(system, subsystems, dynamics), presolve=tuple(presolve_sentences(system, subsystems, dynamics)),
         moved=start.moved if start else (),
-        messages=(*problems, *_assembly_sentence(start), *_freedom_sentences(found, system, free), *notes_of(found.data)), sound=not problems,
+        messages=(*problems, *_assembly_sentence(start), *_freedom_sentences(found, system, free),
+                  *(opposed_sentences(system, found.data, start.q, found.grid) if start else ()), *notes_of(found.data), *table_notes(found.data)), sound=not problems,
     )  # fmt: skip
 
 

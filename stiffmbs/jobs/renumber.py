@@ -85,6 +85,8 @@ def changes_of_numbers(job: Job, data: ModelData) -> list[Change] | None:
 def renumberable(job: Job) -> bool:
     """Whether other numbers may be put into a job: the presolve has not solved mechanisms apart, nor could it with others."""
     system = job.dynamics.system
+    if not job.settings.presolve:
+        return True
     return not job.subsystems and not job.dynamics.kept("apart", None, lambda: may_be_apart(system))
 
 

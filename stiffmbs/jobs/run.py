@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Unpack
@@ -10,6 +10,8 @@ from typing import Unpack
 import numpy as np
 
 from ..compile.callbacks import fault_of, notes_on_functions
+from ..compile.table_notes import table_notes
+from ..describe.element import Force
 from ..describe.requests.order import units
 from ..describe.scene import Scene, notes_of
 from ..describe.settings import RunSettings, Settings, takes_settings
@@ -17,6 +19,7 @@ from ..diagnostics.glance import glance_at
 from ..diagnostics.motion import motion_notes
 from ..diagnostics.overlooked import OVERLOOKED_PART
 from ..errors import AssemblyError
+from ..results.beyond_ranges import range_notes
 from ..results.channels import named, series_of
 from ..results.energy_balance import may_be_broken
 from ..results.of_run import RunResults, results_of_run
@@ -26,7 +29,7 @@ from ..solve.dynamics import OutputRows
 from ..solve.missing_rows import reported
 from ..solve.settings import changed, settings_notes
 from ..solve.suspect import suspect
-from ..solve.trajectory import Outcome, ProgressCallback, Trajectory
+from ..solve.trajectory import IN_DOUBT, Outcome, ProgressCallback, Trajectory
 from ..structure.messages.of_run import StructureNotes, structure_notes
 from .given_inputs import Given, with_inputs
 from .job import Job, Runnable, data_of, prepare
@@ -151,8 +154,21 @@ def finished(job: Job, watch: ProgressCallback | None = None) -> Finished:
     structure = structure_notes(job.redundancy, job.subsystems, job.dynamics)
     broken, undefined = (examined.broken_balance, examined.undefined) if examined else ((), ())
     wrong = (*(of_motion.senseless or broken), *of_motion.uncertain, *undefined)
-    notes = (*_notes(job, trajectory, structure), *overlooked, *computed.left_out, *wrong)
-    return Finished(job, trajectory, rows, outcome, message, notes, structure, examined)
+    bounded = {name: x for name, x in job.data.forces.items() if type(x).valid_ranges is not Force.valid_ranges}
+    ranges = {name: found for name, force in bounded.items() if (found := force.valid_ranges())}
+    beyond = (
+        range_notes(ranges, lambda channel: series_of(job.data, job.dynamics.system, rows, channel)) if ranges else ()
+    )
+    notes = (*_notes(job, trajectory, structure), *overlooked, *computed.left_out, *beyond, *wrong)
+    doubts = (*computed.doubts, *(of_motion.senseless or broken))
+    return Finished(job, trajectory, rows, outcome, _headline(outcome, message, doubts), notes, structure, examined)
+
+
+def _headline(outcome: Outcome, message: str, doubts: Sequence[str]) -> str:
+    """Return the sentence on the end of a run, with the first of the notes by which its results may be wrong."""
+    if outcome is not Outcome.DONE or not doubts:
+        return message
+    return message.replace(Outcome.DONE.value, f"{IN_DOUBT}: {doubts[0].partition(';')[0]}")
 
 
 def solved(job: Job, watch: ProgressCallback | None = None) -> Solution:
@@ -221,7 +237,13 @@ def _ending(job: Job, rows: OutputRows, trajectory: Trajectory) -> tuple[Outcome
 def _notes(job: Job, trajectory: Trajectory, structure: StructureNotes) -> Iterator[str]:
     system = job.dynamics.system
     yield from notes_of(job.data)
+    if system.has_laws:
+        yield from table_notes(job.data)
     yield from structure.of_joints
+    for joint in job.data.joints.values():
+        if joint.kind == "drive":
+            yield from job.dynamics.kept("opposed actuators", None, lambda: _opposed(job))
+            break
     yield from job.start.notes
     if system.has_functions:
         yield from notes_on_functions(system)
@@ -230,3 +252,9 @@ def _notes(job: Job, trajectory: Trajectory, structure: StructureNotes) -> Itera
     if trajectory.note:
         yield trajectory.note
     yield from settings_notes(job.settings, system)
+
+
+def _opposed(job: Job) -> tuple[str, ...]:
+    from ..structure.opposed_actuators import opposed_sentences  # models without drives do not load it
+
+    return opposed_sentences(job.dynamics.system, job.data, job.start.q, job.grid)

@@ -8,18 +8,22 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..errors import SolverError
+from ..linear_analysis.eigenvalues import eigen
 from ..linear_analysis.stability import lowest
 from ..linear_analysis.state_space import state_matrix
 from ..linear_analysis.tangent_space import linearised
 from ..solve.algebraic_states import failure
 from ..solve.dynamics import Dynamics
 from ..solve.equilibria.equilibrium import Equilibrium, find_equilibrium
-from ..solve.equilibria.force_balance import balance_at
+from ..solve.equilibria.force_balance import balance_at, forces_by_velocity
 from ..solve.equilibria.steady_motion import at_rest
 from ..solve.initial import InitialValues
 
-MOST_WITH_STATES = 1500
-"""Velocities up to which the stability of an equilibrium with states of the user's own is looked at (dense matrices)."""
+MOST_FOR_EIGENVALUES, MOST_CONSERVATIVE = 1500, 150
+"""Velocities up to which eigenvalues tell the stability of an equilibrium (dense matrices), and up to which they do where all
+forces have a potential, so that statics tell it too."""
+SYMMETRIC = 1e-9
+"""Part of the largest entry of a stiffness that counts as no difference from its transpose."""
 BRANCH = 1e-3
 """Move along an unstable direction, relative to the mechanism's size, or rad, from which a stable pose is sought."""
 MOST_BRANCHES = 3
@@ -31,6 +35,8 @@ LARGE_PART = 0.5
 """Size of a velocity, relative to the largest in free motions, from which on the first such one gives them its name."""
 GROWING = 1e-6
 """Real part of an eigenvalue, relative to the largest of all, from which on a motion grows: double zeros are known to that."""
+GROWING_OF_ITS_OWN, ROUNDED = 1e-6, 1e-10
+"""Real part of an eigenvalue, relative to itself and to the largest of all, from which on it grows where zeros are split off."""
 
 
 @dataclass(frozen=True)
@@ -75,15 +81,13 @@ def settled(dynamics: Dynamics, start: InitialValues, t: float) -> Settled:
     state.q[:] = start.q
     found = find_equilibrium(dynamics, t)
     notes: list[str] = []
-    if system.states and system.n_u > MOST_WITH_STATES:
-        return _settled(found, start, [f"{system.n_u} velocities: whether the equilibrium is stable was not looked at"])
     if system.states:
-        return _settled(found, start, list(_unstable(dynamics, t)))
+        return _settled(found, start, list(_growth(dynamics, t)))
     for _ in range(MOST_BRANCHES):
         unstable, free = _directions(dynamics, t)
         if unstable is None:
             held = f"nothing holds {', '.join(free)}: the pose along it is the one nearest to the described one"
-            return _settled(found, start, [*notes, *([held] if free else [])], free)
+            return _settled(found, start, [*notes, *([held] if free else []), *_growth(dynamics, t)], free)
         poses = [_branch(dynamics, found, sign * unstable, t) for sign in (1.0, -1.0)]
         notes.append(_branch_sentence(dynamics, unstable, poses))
         if not any(poses):
@@ -149,16 +153,35 @@ def _settled(found: Equilibrium, start: InitialValues, notes: Sequence[str], fre
     return Settled(resting, found.moves, found.imbalance, tuple(free), tuple(notes))
 
 
-def _unstable(dynamics: Dynamics, t: float) -> Iterator[str]:
-    """That motions grow from an equilibrium with states of the user's own, if they do."""
+def _growth(dynamics: Dynamics, t: float) -> Iterator[str]:
+    """Say that motions grow from an equilibrium, or that this was not assessed."""
+    system = dynamics.system
+    if system.n_u > MOST_CONSERVATIVE and not system.states and _is_conservative(dynamics, t):
+        return
+    if system.n_u > MOST_FOR_EIGENVALUES:
+        yield f"{system.n_u} velocities: whether the equilibrium is stable was not assessed by its eigenvalues"
+        return
     _, acceleration = dynamics.accelerate(t)
-    matrix = state_matrix(
-        linearised(dynamics, t, acceleration), dynamics.system.per_velocity(dynamics.system.size, 1.0)
-    ).matrix
-    values = np.linalg.eigvals(matrix)
-    fastest = float(np.max(values.real, initial=0.0))
-    if fastest > GROWING * np.max(np.abs(values), initial=0.0):
-        yield f"the equilibrium is unstable: motions from it grow at {fastest:.3g} 1/s"
+    try:
+        state = state_matrix(linearised(dynamics, t, acceleration), system.per_velocity(system.size, 1.0))
+    except SolverError as error:
+        yield f"whether the equilibrium is stable was not assessed by its eigenvalues: {error}"
+        return
+    values, _, _ = eigen(state.matrix, state.n_poses, state.n_states)
+    sizes = np.abs(values)
+    growing = values[values.real > GROWING_OF_ITS_OWN * sizes + ROUNDED * np.max(sizes, initial=0.0)]
+    if len(growing):
+        fastest = growing[np.argmax(growing.real)]
+        how = f", and oscillate at {abs(fastest.imag) / (2 * np.pi):.3g} Hz" if fastest.imag else ""
+        yield f"the equilibrium is unstable: motions from it grow at {fastest.real:.3g} 1/s{how}"
+
+
+def _is_conservative(dynamics: Dynamics, t: float) -> bool:
+    """Return True if no force depends on velocities and the stiffness is symmetric."""
+    stiffness = balance_at(dynamics, t, at_rest(dynamics.system.of_body.dimensions)).stiffness
+    if np.any(forces_by_velocity(dynamics).data):
+        return False
+    return bool(abs(stiffness - stiffness.T).max() <= SYMMETRIC * abs(stiffness).max())
 
 
 def _directions(dynamics: Dynamics, t: float) -> tuple[np.ndarray | None, list[str]]:

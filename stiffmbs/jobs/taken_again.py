@@ -41,12 +41,14 @@ LESS = 0.5
 
 @dataclass(frozen=True)
 class Computed:
-    """A trajectory, what is reported of it, notes on instants that are left out, and what the rows show at a glance."""
+    """A trajectory, what is reported of it, notes on instants that are left out, what the rows show at a glance, and notes
+    by which the results may be wrong."""
 
     trajectory: Trajectory
     rows: OutputRows
     left_out: list[str]
     seen: Glance | None
+    doubts: tuple[str, ...] = ()
 
 
 def seen_through(job: Job, compute: Callable[[Job], Computed]) -> tuple[Computed, list[str]]:
@@ -72,7 +74,8 @@ def seen_through(job: Job, compute: Callable[[Job], Computed]) -> tuple[Computed
             break
         found, left = again, _overlooked(job, again)
     if left is not None:
-        return found, [f"{left.sentence()}; {LEFT}"]
+        note = f"{left.sentence()}; {LEFT}"
+        return replace(found, doubts=(*found.doubts, note)), [note]
     return found, [f"{seen.sentence()}; {AGAIN}"] if seen else []
 
 
@@ -108,7 +111,7 @@ def on_exact_constraints(job: Job, compute: Callable[[Job], Computed]) -> Comput
     if not (creep.mean > CREPT or (stopped and creep.at_end > CREPT)):
         return found
     if found.trajectory.outcome is Outcome.INTERRUPTED:
-        return _noted(found, f"{creep.sentence()}; the results may be wrong by that")
+        return _doubted(found, f"{creep.sentence()}; the results may be wrong by that")
     again = compute(exactly(job))
     if len(again.rows.t) >= len(found.rows.t):
         # what stays is no creep, but jumps of velocities that no breakpoint tells
@@ -117,7 +120,7 @@ def on_exact_constraints(job: Job, compute: Callable[[Job], Computed]) -> Comput
         return _noted(again, f"{creep.sentence()}; the run was taken again by formulation {EXACT}")
     if stopped:
         return found
-    return _noted(
+    return _doubted(
         found,
         f"{creep.sentence()}; the results may be wrong by that, and formulation {EXACT} does not come as far: "
         f"{again.trajectory.message}",
@@ -147,3 +150,8 @@ def exactly(job: Job) -> Job:
 
 def _noted(computed: Computed, note: str) -> Computed:
     return replace(computed, left_out=[*computed.left_out, note])
+
+
+def _doubted(computed: Computed, note: str) -> Computed:
+    """Add a note by which the results may be wrong."""
+    return replace(_noted(computed, note), doubts=(*computed.doubts, note))

@@ -53,14 +53,24 @@ def eigen(matrix: np.ndarray, n_poses: int, n_states: int = 0) -> tuple[np.ndarr
     return values, scale[:, None] * vectors, Zeros(at_zero[0] if at_zero else nothing, generalised)
 
 
+def is_singular(matrix: np.ndarray) -> bool:
+    """Return True if the rank of a square matrix is less than its size, but for rounding."""
+    return not np.any(matrix) or bool(svd(_of_length_one(matrix), compute_uv=False)[-1] <= ZERO_SINGULAR * len(matrix))
+
+
+def _of_length_one(matrix: np.ndarray) -> np.ndarray:
+    """Rows of length 1; those of the size of rounding are zero."""
+    sizes = np.linalg.norm(matrix, axis=1)
+    noise = ZERO_SINGULAR * len(matrix) * sizes.max()
+    return np.asarray(matrix * np.where(sizes > noise, 1 / np.maximum(sizes, noise), 0.0)[:, None])
+
+
 def _deflated(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray, list[np.ndarray]]:
     """Eigenvalues other than zero, eigenvectors, and for each order of generalised eigenvectors at zero a basis."""
     n = len(matrix)
     if not np.any(matrix):
         return np.zeros(0), np.zeros((n, 0)), [np.eye(n)] if n else []
-    sizes = np.linalg.norm(matrix, axis=1)
-    noise = ZERO_SINGULAR * n * sizes.max()
-    _, singular, basis = svd(matrix * np.where(sizes > noise, 1 / np.maximum(sizes, noise), 0.0)[:, None])
+    _, singular, basis = svd(_of_length_one(matrix))
     rank = int(np.sum(singular > ZERO_SINGULAR * n))
     if rank == n:
         values, vectors = eig(matrix)

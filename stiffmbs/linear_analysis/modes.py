@@ -15,6 +15,8 @@ from .state_space import StateMatrix
 
 NO_MOTION = 1e-12
 """Displacement, in sizes of the mechanism, or rotation of an eigenvector of length 1 that counts as none."""
+NOT_FREE = 1e-6
+"""Part of the velocities of generalised eigenvectors from which on constraints do not leave one free."""
 
 
 class Motion(Enum):
@@ -121,28 +123,59 @@ def _without_oscillation(
 ) -> Iterator[Pair]:
     """Real eigenvalues two by two: zeros of one rigid body motion, and real ones whose shapes are most alike.
 
-    A zero without a generalised eigenvector belongs to a free motion that a damper ends, or to a pose that no free
-    velocity leads to (rolling constraints); the latter are no modes.
+    Another zero belongs to a free motion that a damper ends, or to a pose that no free velocity leads to (rolling
+    constraints); the latter are no modes.  Such a pose may have an eigenvalue other than zero, as of a wheel that is steered
+    by its place; that one stands alone, as those of states do.
     """
-    for k in range(zeros.generalised.shape[1]):
-        yield (0j, 0j), state.velocities @ zeros.generalised[:, k]
-    rolling = state.n_poses - state.degrees_of_freedom
-    single = zeros.eigenvectors.shape[1] - zeros.generalised.shape[1] - rolling
+    zero = zeros.eigenvectors.shape[1] + zeros.generalised.shape[1]
+    rigid = _rigid_motions(state, zeros, scale)[:, : zero // 2]
+    for shape in rigid.T:
+        yield (0j, 0j), shape
+    single = max(0, zero - 2 * rigid.shape[1] - (state.n_poses - state.degrees_of_freedom))
     reals = np.flatnonzero(values.imag == 0)
-    found, known = [*values[reals].real, *[0.0] * single], [*shapes[:, reals].real.T]
-    if single:
-        known += list((state.poses @ zeros.eigenvectors).T[:single])
+    found = [*values[reals].real, *[0.0] * single]
+    known = [*shapes[:, reals].real.T, *_neutral_poses(state, zeros, rigid, scale).T[:single]]
+    known += [np.zeros(len(scale))] * (len(found) - len(known))
     likeness = np.array(known).reshape(len(found), len(scale)) / scale
     pairs = list(_alike(likeness))
-    if state.n_states:  # most of them are modes of their own
-        others = state.degrees_of_freedom - int(np.sum(values.imag > 0)) - zeros.generalised.shape[1]
+    others = max(0, state.degrees_of_freedom - int(np.sum(values.imag > 0)) - rigid.shape[1])
+    if state.n_states or len(found) > 2 * others:  # eigenvalues that are modes of their own
         moving = [pair for pair in pairs if all(np.any(np.abs(likeness[k]) > NO_MOTION) for k in pair)]
-        pairs = moving[: max(0, others)]
+        pairs = moving[:others]
         for k in set(range(len(found))) - {k for pair in pairs for k in pair}:
             yield (complex(found[k]),), known[k].astype(complex)
     for one, other in pairs:
         first, second = sorted((one, other), key=lambda k: -abs(found[k]))
         yield (complex(found[first]), complex(found[second])), known[first].astype(complex)
+
+
+def _rigid_motions(state: StateMatrix, zeros: Zeros, scale: np.ndarray) -> np.ndarray:
+    """Velocities of generalised eigenvectors at zero that constraints leave free, shape (n_u, motions).
+
+    Another one only accompanies a pose, as the sideways velocity of a rolling wheel that has turned.
+    """
+    rates = state.velocities @ zeros.generalised / scale[:, None]
+    free = _free_velocities(state, scale)
+    _, sizes, combined = np.linalg.svd(rates - free @ (free.T @ rates))
+    accompanying = int(np.sum(sizes > NOT_FREE * np.linalg.norm(rates)))
+    return np.asarray(scale[:, None] * (rates @ combined[accompanying:].T if accompanying else rates))
+
+
+def _neutral_poses(state: StateMatrix, zeros: Zeros, rigid: np.ndarray, scale: np.ndarray) -> np.ndarray:
+    """Poses of eigenvectors at zero, shape (n_u, eigenvectors), ordered by how far free velocities other than rigid motions
+    lead to them."""
+    poses = state.poses @ zeros.eigenvectors / scale[:, None]
+    if not poses.shape[1]:
+        return poses
+    free, known = _free_velocities(state, scale), np.linalg.qr(rigid / scale[:, None])[0]
+    reached = free @ (free.T @ (poses - known @ (known.T @ poses)))
+    return np.asarray(scale[:, None] * (poses @ np.linalg.svd(reached, full_matrices=False)[2].T))
+
+
+def _free_velocities(state: StateMatrix, scale: np.ndarray) -> np.ndarray:
+    """An orthonormal basis of the scaled velocities that constraints leave free."""
+    own = slice(state.n_poses, state.n_poses + state.degrees_of_freedom)
+    return np.linalg.qr(state.velocities[:, own] / scale[:, None])[0]
 
 
 def _alike(shapes: np.ndarray) -> Iterator[tuple[int, int]]:

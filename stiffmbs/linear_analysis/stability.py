@@ -81,7 +81,7 @@ def lowest(stiffness: csc_array, jacobian: csc_array, mass: np.ndarray, scale: n
     rounding = STIFFNESS_ROUNDING * np.sum(sizes * (abs(stiffness) @ sizes), axis=0)
     beside = BESIDE_IMBALANCE * (np.abs(left) / scale) @ sizes**2
     none = (rounding + beside) / np.where(inertia > 0, inertia, np.inf) + of_eigenvalues
-    real = np.abs(squares.imag) < 1e-6 * np.abs(squares) + none
+    real = np.abs(squares.imag) <= 1e-6 * np.abs(squares) + none
     return Lowest(squares[real].real, shapes[:, real], none[real])
 
 

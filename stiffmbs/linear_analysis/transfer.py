@@ -12,11 +12,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..errors import InputError
+from .eigenvalues import is_singular
 from .state_space import StateMatrix
 from .tangent_space import Linearised
 
 if TYPE_CHECKING:
     from scipy.signal import StateSpace
+
+NEAR_POLE = 1e-6
+"""Distance from an eigenvalue, relative to the largest or in 1/s, from which on a frequency is examined."""
 
 
 @dataclass(frozen=True)
@@ -129,14 +133,31 @@ class Transfer:
         ----------
         frequencies : ndarray
             Hz.
+
+        Raises
+        ------
+        InputError
+            At the frequency of an undamped motion, such as 0 Hz of a body that nothing holds.
         """
         values, vectors = np.linalg.eig(self.a)
         if not len(values):
             return np.broadcast_to(self.d, (len(frequencies), *self.d.shape)).astype(complex)
         rates = 2j * np.pi * np.asarray(frequencies)
+        self._refuse_poles(rates, values)
         if np.linalg.cond(vectors) > 1e8:  # double eigenvalues, as of rigid body motions
             unit = np.eye(len(values))
             solved = np.array([np.linalg.solve(rate * unit - self.a, self.b) for rate in rates])
             return np.asarray(self.c @ solved + self.d)
         into = np.linalg.solve(vectors, self.b.astype(complex))
         return np.asarray(np.einsum("ok,fk,ki->foi", self.c @ vectors, 1 / (rates[:, None] - values), into) + self.d)
+
+    def _refuse_poles(self, rates: np.ndarray, values: np.ndarray) -> None:
+        """Refuse frequencies at which i w - A is singular but for rounding."""
+        near = np.min(np.abs(rates[:, None] - values), axis=1) < NEAR_POLE * np.max(np.abs(values)) + NEAR_POLE
+        for rate in rates[near]:
+            if is_singular(rate * np.eye(len(values)) - self.a):
+                held = "a motion that nothing holds" if rate == 0 else "an undamped motion"
+                raise InputError(
+                    f"frequencies: found {abs(rate) / (2 * np.pi):g} Hz, the frequency of {held}, where the response has no limit; "
+                    "expected another frequency"
+                )

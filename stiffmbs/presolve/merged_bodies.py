@@ -7,7 +7,7 @@ from importlib import import_module
 from types import ModuleType
 from typing import Any, NamedTuple
 
-from ..describe.element import Element
+from ..describe.element import Element, Joint
 from ..describe.formula.formula import Formula
 from ..describe.joint_name import JointName
 from ..describe.joints.fixed import Fixed
@@ -45,6 +45,10 @@ class MergedBodies(NamedTuple):
     def joints(self) -> dict[str, Element]:
         """All joints by name."""
         return self.model.joints
+
+    def joint_at_initial_pose(self, name: str) -> Joint:
+        """Return a joint of the model."""
+        return self.model.joint_at_initial_pose(name)
 
     def state_outputs(self) -> dict[str, Formula]:
         """The outputs that formulas use by a name."""

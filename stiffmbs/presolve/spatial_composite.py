@@ -44,9 +44,23 @@ def composite(members: Sequence[tuple[Body, Placement]]) -> tuple[Body, list[Pla
     x, y, z, *orientation = first.coordinates()
     rows = tuple(_numbers(row) for row in (inertia + inertia.T) / 2)
     body = Body(
-        mass=mass, inertia=rows, center_of_mass=_numbers(centre), position=(x, y, z), orientation=tuple(orientation)
-    )
-    return body, [body.carried(placed) for _, placed in members]
+        mass=mass, inertia=rows, center_of_mass=_numbers(centre), position=(x, y, z), orientation=tuple(orientation),
+        any_moments=any(body.any_moments for body, _ in members),
+    )  # fmt: skip
+    return body, [_as_drawn(body, own, body.carried(placed)) for own, placed in members]
+
+
+def _as_drawn(whole: Body, own: Body, placed: Placement) -> Placement:
+    """A member's place with that of its two quaternions with which the member is drawn.
+
+    Elastic connections measure angles beyond half a turn by the sign of a quaternion, whether bodies are merged or not.
+    """
+    (*_, w, x, y, z), (*_, a, b, c, d) = whole.coordinates(), own.coordinates()
+    turned = product((w, x, y, z), placed.orientation)
+    if np.dot(turned, (a, b, c, d)) >= 0:
+        return placed
+    p, q, r, s = placed.orientation
+    return Placement(point=placed.point, orientation=(-p, -q, -r, -s))
 
 
 def _numbers(vector: np.ndarray) -> tuple[float, float, float]:

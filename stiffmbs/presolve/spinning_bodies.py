@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..compile.kind import Compilable
-from ..describe.element import Element
+from ..describe.element import Element, Joint
 from ..describe.formula.formula import Formula
 from ..describe.joint_name import JointName
 from ..describe.marker import MarkerReference
@@ -57,6 +57,10 @@ class SpinningBodies(NamedTuple):
     def joints(self) -> Mapping[str, Any]:
         """All joints by name."""
         return self.model.joints
+
+    def joint_at_initial_pose(self, name: str) -> Joint:
+        """Return a joint of the model."""
+        return self.model.joint_at_initial_pose(name)
 
     def state_outputs(self) -> Mapping[str, Formula]:
         """The outputs that formulas use by a name."""

@@ -121,6 +121,11 @@ def write(path: Path, solution: Solution) -> None:
     written_whole(path, lambda part: WRITERS[path.suffix](part, solution))
 
 
+def write_text(path: Path, text: str) -> None:
+    """Write a text; the file appears whole or not at all."""
+    written_whole(path, lambda part: part.write_text(text, encoding="utf-8"))
+
+
 def written_whole(path: Path, write_to: Callable[[Path], object]) -> None:
     """Let a file be written beside its place and put there when it is whole.
 

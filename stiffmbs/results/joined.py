@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ..solve.trajectory import History
+from ..solve.trajectory import IN_DOUBT, History
 from .energy_balance import Balance
 from .scales import kind_of
 from .solution import Solution
@@ -56,7 +56,7 @@ def joined(name: str, solutions: Sequence[Solution]) -> Solution:
             channel: np.concatenate([_values(s, channel, requested)[rows] for s, rows in pairs]) for channel in channels
         },
         outcome=solutions[-1].outcome,
-        message=solutions[-1].message if not solutions[-1].success else f"{len(solutions)} runs: all were solved",
+        message=_message(solutions),
         notes=_notes([s.notes for s in solutions]),
         solver=_statistics(solutions),
         history=History(
@@ -157,3 +157,11 @@ def _one_after_the_other(parts: Sequence[np.ndarray]) -> np.ndarray:
         found.append(part + reached)
         reached = float(found[-1][-1]) if len(part) else reached
     return np.concatenate(found)
+
+
+def _message(solutions: Sequence[Solution]) -> str:
+    """Return the reason for which the last run stopped, or the first doubt about a run."""
+    if not solutions[-1].success:
+        return solutions[-1].message
+    doubtful = (solution.message for solution in solutions if IN_DOUBT in solution.message)
+    return next(doubtful, f"{len(solutions)} runs: all were solved")

@@ -10,13 +10,13 @@ from collections.abc import Mapping
 from dataclasses import astuple, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
-from zipfile import BadZipFile
 
 import numpy as np
 
 from ..describe.figure import Figure
 from ..errors import InputError
 from ..solve.trajectory import History, Outcome
+from .damaged import readable
 from .energy_balance import Balance
 from .error_bars import ErrorBar
 from .saved_state import TURNS
@@ -60,11 +60,11 @@ def loaded(path: Path) -> Solution:
             f"load {path}: found the ending '{path.suffix}', expected .npz: other files hold the channels alone"
         )
     try:
-        with np.load(path, allow_pickle=False) as archive:
+        with readable(path), np.load(path, allow_pickle=False) as archive:
             return _restored(path, dict(archive))
     except OSError as error:
         raise InputError(f"load {path}: {error.strerror or 'found no archive of arrays'}") from None
-    except (BadZipFile, ValueError, EOFError):
+    except ValueError:
         raise InputError(f"load {path}: found no archive of arrays, expected a file that Solution.save wrote") from None
 
 

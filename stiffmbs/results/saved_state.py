@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+import io
+import warnings
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
-from zipfile import BadZipFile
 
 import numpy as np
 
+from ..describe.files.files_read import content_of
 from ..describe.files.quoted import quoted
 from ..errors import InputError
+from .damaged import readable
 
 if TYPE_CHECKING:
     from .solution import Solution
@@ -78,7 +81,7 @@ def read_state(path: str | Path, at: float | None = None) -> SavedState:
     except OSError as error:
         reason = error.strerror or "found no file of results"
         raise InputError(f"{source}: {reason}, expected a file that stiffmbs run -o wrote") from None
-    except (BadZipFile, ValueError, EOFError, KeyError, TypeError, IndexError):
+    except (ValueError, TypeError, IndexError, AttributeError):
         raise InputError(f"{source}: found no table of channels, expected a file that stiffmbs run -o wrote") from None
 
 
@@ -114,13 +117,15 @@ def _number_of_row(source: str, time: np.ndarray, at: float) -> int:
 
 
 def _npz(path: Path) -> dict[str, Any]:
-    with np.load(path, allow_pickle=False) as archive:
+    with readable(path), np.load(path, allow_pickle=False) as archive:
         return {name: archive[name] for name in archive.files if "/" not in name or name.startswith(TURNS)}
 
 
 def _csv(path: Path) -> dict[str, Any]:
-    with path.open(encoding="utf-8") as file:
-        heads = [head.partition(" (")[0] for head in file.readline().rstrip("\n").split(",")]
+    with readable(path), warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # NumPy warns of a table without rows
+        file = io.StringIO(content_of(path).decode())
+        heads = [head.partition(" (")[0] for head in file.readline().rstrip("\r\n").split(",")]
         table = np.loadtxt(file, delimiter=",", ndmin=2)
     return _named(heads, table.T)
 
@@ -128,7 +133,7 @@ def _csv(path: Path) -> dict[str, Any]:
 def _netcdf(path: Path) -> dict[str, Any]:
     from scipy.io import netcdf_file
 
-    with netcdf_file(path, mmap=False) as file:
+    with readable(path), netcdf_file(path, mmap=False) as file:
         names = (
             getattr(variable, "channel", name.encode()).decode("utf-8") for name, variable in file.variables.items()
         )

@@ -7,10 +7,13 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
+import numpy as np
+
 from ..describe.files.scene_text import scene_text
 from ..describe.files.text_file import file_text, source_name
 from ..describe.reading import made_scene
 from ..describe.scene import Scene
+from ..describe.spatial.massless import BEYOND
 from ..errors import InputError
 from .robot import Robot, RobotFault
 from .scene.scene import scene
@@ -59,6 +62,8 @@ def _found(path: str | Path, coordinates: Mapping[str, float], rates: Mapping[st
         return scene(_read(path), coordinates, rates)
     except RobotFault as fault:
         raise InputError(f"{source_name(path)}: {fault}") from None
+    except np.linalg.LinAlgError:
+        raise InputError(f"{source_name(path)}: {BEYOND}") from None
 
 
 def _read(path: str | Path) -> Robot:

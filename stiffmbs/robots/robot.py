@@ -38,6 +38,8 @@ class LinkJoint:
         Inertia of the rotor as the joint feels it, kg m^2 or kg.
     limits : (float, float) or None
         Of the coordinate, rad or m.
+    effort : (float, float) or None
+        Bounds of the force of all actuators on the coordinate, N m or N.
     zero : float
         The coordinate at which the link is placed as its `Link` says, rad or m.
     """
@@ -52,6 +54,7 @@ class LinkJoint:
     friction: float = 0.0
     armature: float = 0.0
     limits: tuple[float, float] | None = None
+    effort: tuple[float, float] | None = None
     zero: float = 0.0
 
 
@@ -87,6 +90,11 @@ class Link:
     joints: tuple[LinkJoint, ...] = ()
     lifted: float = 0.0
 
+    @property
+    def is_heavy(self) -> bool:
+        """Whether it has mass or inertia."""
+        return self.mass > 0 or bool(np.any(self.inertia))
+
 
 @dataclass(frozen=True)
 class Transmission:
@@ -106,6 +114,10 @@ class Transmission:
         Bounds of the input and of the force.
     lag : float or None
         Time constant of the first-order filter behind the input, s; 0 for an integrator.
+    tendon : str
+        Name of the tendon whose actuators have a bounded total.
+    total : (float, float) or None
+        Bounds of the sum of the forces of all actuators along that tendon; beyond them all are scaled by one factor.
     """
 
     name: str
@@ -115,6 +127,8 @@ class Transmission:
     control: tuple[float, float] | None = None
     force: tuple[float, float] | None = None
     lag: float | None = None
+    tendon: str = ""
+    total: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True)

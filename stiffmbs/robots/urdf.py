@@ -2,17 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from xml.etree import ElementTree
-from xml.etree.ElementTree import Element
+from collections.abc import Iterator, Mapping
+from typing import Any
 
 import numpy as np
 
+from ..describe.files.requested import unused_notes
 from ..describe.spatial.orientation import about, matrix, product
 from .robot import ORIGIN, SAME_AXES, JointKind, Link, LinkJoint, Relation, Robot, RobotFault, Transmission
+from .xml_nodes import Node, parsed
 
 KINDS: dict[str, JointKind] = {"revolute": "hinge", "continuous": "hinge", "prismatic": "slide", "floating": "free"}
+OF_ONE_COORDINATE = ("revolute", "continuous", "prismatic")
 FIXED, PLANAR = "fixed", "planar"
+OF_MOTION = ("axis", "limit", "dynamics", "mimic", "safety_controller", "calibration")
+"""Children of a joint without effect on a fixed one."""
+DEFAULTS: Mapping[str, Mapping[str, Any]] = {
+    "robot": {"version": "1.0"},
+    "joint/limit": {"velocity": 0.0, "lower": 0.0, "upper": 0.0},
+}
+"""Values of attributes that are not used, with which they have no effect."""
+SHAPES, HARDWARE = "shapes and contacts are left out", "actuators of transmissions are left out"
+REASONS: Mapping[str, Mapping[str, str]] = {
+    "link": {"<visual>": SHAPES, "<collision>": SHAPES}, "robot": {"<material>": SHAPES},
+    "joint/limit": {"*": "limits are not held"}, "joint": {"<safety_controller>": "limits are not held"},
+    **{f"transmission{below}": {"*": HARDWARE} for below in ("", "/joint")},
+}  # fmt: skip
+"""Why attributes and children have no effect."""
 
 
 def read_urdf(text: str) -> Robot:
@@ -34,31 +50,27 @@ def read_urdf(text: str) -> Robot:
     child_of = _children(joints, links)
     ordered = _from_the_root(links, joints, child_of)
     moving = [name for name in child_of.values() if joints[name].get("type") != FIXED]
-    return Robot(
-        name=root.get("name") or "robot",
-        links=tuple(_link(name, links[name], child_of.get(name), joints) for name in ordered),
-        transmissions=tuple(_efforts(root, {name: joints[name] for name in moving})),
-        relations=tuple(_mimics(joints, child_of)),
-        notes=(f"the root link {ordered[0]} is fixed to ground",),
-    )
+    read: dict[str, Any] = {
+        "name": root.get("name") or "robot",
+        "links": tuple(_link(name, links[name], child_of.get(name), joints) for name in ordered),
+        "transmissions": tuple(_efforts(root, {name: joints[name] for name in moving})),
+        "relations": tuple(_mimics(joints, child_of)),
+    }
+    own = (f"the root link {ordered[0]} is fixed to ground", *_still(joints))
+    return Robot(**read, notes=(*own, *unused_notes(root.fields(), REASONS)))
 
 
-def _parsed(text: str) -> Element:
-    try:
-        root = ElementTree.fromstring(text)
-    except ElementTree.ParseError as error:
-        raise RobotFault(f"found no well-formed XML ({error}), expected a URDF file") from None
+def _parsed(text: str) -> Node:
+    root = parsed(text, "a URDF file", DEFAULTS)
     if root.tag != "robot":
         raise RobotFault(f"found <{root.tag}>, expected <robot> of a URDF file")
-    for element in root.iter():
-        if "xacro" in element.tag or any("${" in value for value in element.attrib.values()):
-            raise RobotFault(
-                f"found the macro <{element.tag.split('}')[-1]}>, expected plain URDF: run xacro on it first"
-            )
+    for node in root.walk():
+        if node.tag.startswith("xacro") or any("${" in value for value in node.attributes.values()):
+            raise RobotFault(f"found the macro <{node.tag}>, expected plain URDF: run xacro on it first")
     return root
 
 
-def _named(root: Element, tag: str) -> Iterator[tuple[str, Element]]:
+def _named(root: Node, tag: str) -> Iterator[tuple[str, Node]]:
     known = set()
     for element in root.findall(tag):
         name = element.get("name")
@@ -70,7 +82,7 @@ def _named(root: Element, tag: str) -> Iterator[tuple[str, Element]]:
         yield name, element
 
 
-def _children(joints: dict[str, Element], links: dict[str, Element]) -> dict[str, str]:
+def _children(joints: dict[str, Node], links: dict[str, Node]) -> dict[str, str]:
     """The joint that carries each link."""
     found: dict[str, str] = {}
     for name, element in joints.items():
@@ -89,12 +101,12 @@ def _children(joints: dict[str, Element], links: dict[str, Element]) -> dict[str
     return found
 
 
-def _end(joint: Element, role: str) -> str | None:
+def _end(joint: Node, role: str) -> str | None:
     end = joint.find(role)
     return None if end is None else end.get("link")
 
 
-def _from_the_root(links: dict[str, Element], joints: dict[str, Element], child_of: dict[str, str]) -> list[str]:
+def _from_the_root(links: dict[str, Node], joints: dict[str, Node], child_of: dict[str, str]) -> list[str]:
     """Links, each after its parent."""
     roots = [name for name in links if name not in child_of]
     if len(roots) != 1:
@@ -112,7 +124,7 @@ def _from_the_root(links: dict[str, Element], joints: dict[str, Element], child_
     return ordered
 
 
-def _link(name: str, element: Element, joint: str | None, joints: dict[str, Element]) -> Link:
+def _link(name: str, element: Node, joint: str | None, joints: dict[str, Node]) -> Link:
     mass, centre, inertia = _inertial(name, element.find("inertial"))
     if joint is None:
         return Link(name, None, mass=mass, center_of_mass=centre, inertia=inertia)
@@ -123,7 +135,7 @@ def _link(name: str, element: Element, joint: str | None, joints: dict[str, Elem
     )
 
 
-def _inertial(name: str, element: Element | None) -> tuple[float, tuple[float, ...], np.ndarray]:
+def _inertial(name: str, element: Node | None) -> tuple[float, tuple[float, ...], np.ndarray]:
     """Mass, centre of mass and inertia of a link, along the link's axes; nothing without an <inertial>."""
     if element is None:
         return 0.0, ORIGIN, np.zeros((3, 3))
@@ -139,14 +151,17 @@ def _inertial(name: str, element: Element | None) -> tuple[float, tuple[float, .
     return mass, centre, (tensor + tensor.T) / 2
 
 
-def _moving(name: str, element: Element) -> Iterator[LinkJoint]:
+def _moving(name: str, element: Node) -> Iterator[LinkJoint]:
     """The joints that a joint of URDF is: none of a fixed one, two slides and a hinge of a planar one."""
     kind = element.get("type")
     if kind == FIXED:
         return
     where, axis = f"joint {name}", _axis(name, element)
+    if kind == "floating":
+        yield LinkJoint(name, KINDS[kind], axis=axis)
+        return
     dynamics, limits = element.find("dynamics"), element.find("limit")
-    damping, friction = (_value(where, dynamics, key, 0.0) for key in ("damping", "friction"))
+    damping = _value(where, dynamics, "damping", 0.0)
     if kind == PLANAR:
         across = np.linalg.svd(np.array([axis]))[2][1:]
         for letter, direction in zip("xy", across, strict=True):
@@ -156,50 +171,72 @@ def _moving(name: str, element: Element) -> Iterator[LinkJoint]:
     bounds = None
     if limits is not None and kind in ("revolute", "prismatic"):
         bounds = (_value(where, limits, "lower", 0.0), _value(where, limits, "upper", 0.0))
+    friction = _value(where, dynamics, "friction", 0.0)
     yield LinkJoint(name, KINDS[kind or ""], axis=axis, damping=damping, friction=friction, limits=bounds)
 
 
-def _axis(name: str, element: Element) -> tuple[float, ...]:
+def _axis(name: str, element: Node) -> tuple[float, ...]:
     given = element.find("axis")
-    axis = np.array(_numbers(f"joint {name}", "axis", given.get("xyz", "1 0 0") if given is not None else "1 0 0"))
+    axis = np.array(_numbers(f"joint {name}", "axis", given.get("xyz") or "1 0 0" if given is not None else "1 0 0"))
     length = float(np.linalg.norm(axis))
     if length == 0:
         raise RobotFault(f"joint {name}: found an axis of length 0, expected a direction")
     return tuple(map(float, axis / length))
 
 
-def _efforts(root: Element, moving: dict[str, Element]) -> Iterator[Transmission]:
+def _efforts(root: Node, moving: dict[str, Node]) -> Iterator[Transmission]:
     given = [joint.get("name") for joint in root.findall("transmission/joint")]
     for name, element in moving.items():
         limit = element.find("limit")
         effort = 0.0 if limit is None else _value(f"joint {name}", limit, "effort", 0.0)
         driven = name in given if given else effort > 0
-        if driven and element.get("type") in ("revolute", "continuous", "prismatic") and element.find("mimic") is None:
+        if driven and element.get("type") in OF_ONE_COORDINATE and element.find("mimic") is None:
             yield Transmission(name, {name: 1.0}, force=(-effort, effort) if effort > 0 else None)
 
 
-def _mimics(joints: dict[str, Element], child_of: dict[str, str]) -> Iterator[Relation]:
+def _mimics(joints: dict[str, Node], child_of: dict[str, str]) -> Iterator[Relation]:
+    """Relations of joints that mimic others; where the other one is fixed the joint is held at its offset."""
     for name in child_of.values():
         mimic = joints[name].find("mimic")
-        if mimic is None:
+        if mimic is None or joints[name].get("type") == FIXED:
             continue
         where, other = f"joint {name}", mimic.get("joint")
-        if other not in joints or joints[name].get("type") not in KINDS or joints[other].get("type") not in KINDS:
+        known = (*OF_ONE_COORDINATE, FIXED)
+        if (
+            other not in joints
+            or other == name
+            or joints[name].get("type") not in known
+            or joints[other].get("type") not in known
+        ):
             raise RobotFault(
-                f"{where}: found that it mimics {other}, expected a revolute, continuous or prismatic joint"
+                f"{where}: found that it mimics {other}, expected a revolute, continuous, prismatic or fixed joint"
             )
         multiplier, offset = _value(where, mimic, "multiplier", 1.0), _value(where, mimic, "offset", 0.0)
-        yield Relation(f"{name}_mimic", name, other, (offset, multiplier))
+        if joints[other].get("type") == FIXED:
+            yield Relation(f"{name}_mimic", name, None, (offset,))
+        else:
+            yield Relation(f"{name}_mimic", name, other, (offset, multiplier))
 
 
-def _origin(where: str, element: Element) -> tuple[tuple[float, ...], tuple[float, ...]]:
+def _still(joints: dict[str, Node]) -> Iterator[str]:
+    """A note on fixed joints that mimic others; their axes, limits and dynamics have no effect."""
+    found = []
+    for name, element in joints.items():
+        if element.get("type") == FIXED:
+            found += [name] if element.find("mimic") is not None else []
+            element.without_effect(*OF_MOTION)
+    if found:
+        yield f"fixed joints stay fixed, and mimic no other: {', '.join(found)}"
+
+
+def _origin(where: str, element: Node) -> tuple[tuple[float, ...], tuple[float, ...]]:
     """Position and orientation of an <origin>: turns by roll, pitch and yaw about the fixed axes x, y and z."""
     origin = element.find("origin")
     if origin is None:
         return ORIGIN, SAME_AXES
-    roll, pitch, yaw = _numbers(where, "rpy", origin.get("rpy", "0 0 0"))
+    roll, pitch, yaw = _numbers(where, "rpy", origin.get("rpy") or "0 0 0")
     turned = product(product(about(2, yaw), about(1, pitch)), about(0, roll))
-    return tuple(_numbers(where, "xyz", origin.get("xyz", "0 0 0"))), turned
+    return tuple(_numbers(where, "xyz", origin.get("xyz") or "0 0 0")), turned
 
 
 def _numbers(where: str, key: str, text: str) -> list[float]:
@@ -212,7 +249,7 @@ def _numbers(where: str, key: str, text: str) -> list[float]:
     return found
 
 
-def _value(where: str, element: Element | None, key: str, default: float) -> float:
+def _value(where: str, element: Node | None, key: str, default: float) -> float:
     text = None if element is None else element.get(key)
     if text is None:
         return default

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import base64
+import html
 import io
 from collections.abc import Iterable, Sequence
-from html import escape
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
 from ..errors import StiffmbsError
 from ..results.solution import channel_ranges
+from .escaped import escaped
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Sheet
@@ -69,6 +70,11 @@ def solution_html(solution: Solution) -> str:
     return _page(
         solution.name, told + _figure(solution), _table(("channel", "unit", "first", "last", "min", "max"), rows)
     )
+
+
+def escape(text: str) -> str:
+    """Return text as HTML shows it."""
+    return html.escape(escaped(text))
 
 
 def _placed(part: Any) -> str:

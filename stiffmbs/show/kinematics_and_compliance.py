@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..results.files import written_whole
 from ..studies.suspension.characteristics import UNITS
 from ..studies.suspension.kinematics_and_compliance import KinematicsAndCompliance, Sweep
 from .sections import Section, Table
@@ -79,7 +80,8 @@ def draw_kc(path: Path | str, found: KinematicsAndCompliance) -> None:
     OSError
         When the file cannot be written.
     """
-    kc_figure(found).savefig(path)
+    sheet = kc_figure(found)
+    written_whole(Path(path), lambda part: sheet.savefig(part))
 
 
 def kc_section(found: KinematicsAndCompliance) -> Section:

@@ -21,7 +21,7 @@ from ..jobs.check import Report, check
 from ..jobs.linearised.modes import modes
 from ..results.energy_balance_notes import balance_words
 from ..results.error_bars import UNKNOWN
-from ..results.files import refuse_path, written_whole
+from ..results.files import refuse_path, write_text
 from ..results.scales import scales
 from ..results.solution import Solution, channel_ranges
 from .counters import solver_words
@@ -34,6 +34,7 @@ from .force_table import SHOWN_AS_ZERO
 from .joint_forces import joint_forces
 from .modes import modes_text
 from .page.data import page_data
+from .page.moving import environment
 from .page.parts import page_parts
 from .sections import Section
 from .step_history import step_history
@@ -81,17 +82,13 @@ def write_report(
         What else was asked for.
     """
     page = report_page(scene, solution, text, sections)
-    written_whole(path, lambda part: part.write_text(page, encoding="utf-8"))
+    write_text(path, page)
 
 
 @np.errstate(all="ignore")  # of a diverged run sums overflow
 def report_page(scene: Scene, solution: Solution, text: str = "", sections: Sequence[Section] = ()) -> str:
     """The page as HTML, figures and all."""
-    from jinja2 import Environment
-
-    template = Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True).from_string(
-        files(__package__).joinpath("report.html").read_text(encoding="utf-8")
-    )
+    template = environment().from_string(files(__package__).joinpath("report.html").read_text(encoding="utf-8"))
     report = check(scene)
     figures = [drawn(solution, scene.figure)] if scene.figure else []
     figures.append(drawn(solution, ENERGIES))

@@ -15,6 +15,7 @@ from ..results.error_bars import UNKNOWN
 from ..results.solution import Solution, channel_ranges
 from ..solve.trajectory import Outcome
 from .counters import solver_words
+from .escaped import console as escaping_console
 from .force_table import NOT_UNIQUE, force_table
 
 if TYPE_CHECKING:
@@ -91,10 +92,8 @@ def summary(solution: Solution) -> str:
     """See `Solution.summary`."""
     from io import StringIO
 
-    from rich.console import Console
-
     text = StringIO()
-    _print(solution.name or "model", solution, Console(file=text, width=UNBROKEN, markup=False, emoji=False))
+    _print(solution.name or "model", solution, escaping_console(file=text, width=UNBROKEN))
     return text.getvalue().rstrip()
 
 

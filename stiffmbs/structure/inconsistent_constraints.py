@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..compile.gaps import Gap, position_gap, velocity_gap
 from .drop_first import Redundant
 from .loop_equations import AGREES, CLOSED, LoopEquations, Pose
 from .loop_rank import LoopRank
@@ -40,15 +41,15 @@ class Inconsistency(NamedTuple):
         When, s.
     level : str
         ``position`` or ``velocity``.
-    gap : float
-        What the equation is off by where the others hold, in its own unit.
+    gap : Gap
+        Violation of the equation where the others hold.
     """
 
     row: int
     joints: tuple[str, ...]
     t: float
     level: str
-    gap: float
+    gap: Gap
 
 
 def time_dependent(equations: LoopEquations, pose: Pose, duration: float) -> np.ndarray:
@@ -74,8 +75,22 @@ def inconsistencies(found: LoopRank, redundant: list[Redundant], duration: float
             gaps = _nearby(equations, redundant, pose)
             asked = _blamed(pose, gaps)
         if against := [r for r in asked if r.row in gaps]:
-            return [Inconsistency(r.row, _joints(equations, r, driven), pose.t, level, gaps[r.row]) for r in against]
+            off = _gaps(equations, pose, level, {r.row: gaps[r.row] for r in against}, list(gaps))
+            return [Inconsistency(r.row, _joints(equations, r, driven), pose.t, level, off[r.row]) for r in against]
     return []
+
+
+def _gaps(equations: LoopEquations, pose: Pose, level: str, off: dict[int, float], every: list[int]) -> dict[int, Gap]:
+    """Return violations as lengths and angles, those of positions at the pose where the other rows hold."""
+    kept = np.ones(len(pose.C), dtype=bool)
+    kept[every] = False
+    if level == "position":
+        pose = equations.assembled(pose.q, pose.t, kept)
+    equations.pose(pose.q, pose.t)
+    rows, state = equations.loop.rows, equations.state
+    if level == "position":
+        return {row: position_gap(state, pose.t, rows[row]) for row in off}
+    return {row: velocity_gap(state, pose.t, rows[row], violation) for row, violation in off.items()}
 
 
 def _followed(equations: LoopEquations, start: Pose, duration: float) -> Iterator[Pose]:

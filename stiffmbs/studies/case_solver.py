@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
+from ..describe.files.files_read import recorded
 from ..describe.files.followed import NotFollowed
 from ..describe.files.other_forces import OtherForces
+from ..describe.files.quoted import quoted
 from ..describe.files.unchanged import Unchanged
 from ..describe.files.written_scene import WrittenScene
 from ..describe.reading import made_scene
@@ -67,12 +69,19 @@ class Row:
         What went wrong, and what the run has to say besides.
     values : tuple of float or ndarray
         The outputs, numbers or series; numbers are nan where the run was not done.
+    files : mapping of str to str
+        Digests of the files that cases name and the scene of the study does not.
     """
 
     case: int
     status: str
     message: str
     values: tuple[float | np.ndarray, ...]
+    files: Mapping[str, str] = field(default_factory=dict)
+
+
+class ChangedFileError(InputError):
+    """A file has another content than when the study began: no case can be solved any more."""
 
 
 class CaseSolver:
@@ -91,6 +100,7 @@ class CaseSolver:
         self._plan: NumberPlan | None = None
         self._may_plan = True
         self._of_scene = self._changed = RunSettings()
+        self._files: dict[str, str] = {}
 
     def scene(self, values: Sequence[Any]) -> Scene:
         """The scene of a case.
@@ -98,7 +108,7 @@ class CaseSolver:
         Raises
         ------
         InputError
-            When a value does not fit.
+            When a value does not fit, or a file is no longer what it was when the study began.
         """
         found = self._other_forces.scene(values) if self._other_forces and len(values) else None
         if found is not None:
@@ -106,10 +116,21 @@ class CaseSolver:
         written, names = self._task.scene, self._task.names
         content = copy.deepcopy(dict(written.content))
         changes = (*written.changes, *zip(names, values, strict=True))
-        scene = made_scene(content, changes, written.source, lambda _: None, written.folder, self._unchanged)
+        with recorded() as files:
+            scene = made_scene(content, changes, written.source, lambda _: None, written.folder, self._unchanged)
+        self._check_files(files)
         if self._other_forces is None:
             self._other_forces = OtherForces(written, names, self._unchanged)
         return scene
+
+    def _check_files(self, files: Mapping[str, str]) -> None:
+        """Refuse a file whose content has changed since the scene, or another case, was read."""
+        for name, digest in files.items():
+            if self._task.scene.files.get(name, self._files.get(name, digest)) != digest:
+                raise ChangedFileError(
+                    f"'{quoted(name)}' has changed since the scene was read; expected the same content in all cases"
+                )
+        self._files |= {name: digest for name, digest in files.items() if name not in self._task.scene.files}
 
     def solution(self, values: Sequence[Any]) -> Solution:
         """The solution of a case; errors as for `stiffmbs.run`."""
@@ -133,12 +154,15 @@ class CaseSolver:
                 raise
             self._plan, self._jobs = None, []
             return self.row(case, values)
+        except ChangedFileError:
+            raise
         except StiffmbsError as error:
-            return Row(case, "error", str(error)[:MOST_WORDS], (np.nan,) * len(self._task.outputs))
+            nothing = (np.nan,) * len(self._task.outputs)
+            return Row(case, "error", str(error)[:MOST_WORDS], nothing, dict(self._files))
         if solution.outcome is Outcome.INTERRUPTED:
             raise KeyboardInterrupt
         told = "; ".join([*([] if done else [solution.message]), *self._undefined(outputs, done), *solution.notes])
-        return Row(case, "done" if done else "stopped", told[:MOST_WORDS], outputs)
+        return Row(case, "done" if done else "stopped", told[:MOST_WORDS], outputs, dict(self._files))
 
     def _job_of_case(self, values: Sequence[Any]) -> Job:
         """The job of a case whose data may be those of another one, as only its compiled numbers are looked at."""

@@ -52,7 +52,7 @@ class Fit:
     success : bool
         Whether the search converged.
     message : str
-        How the search ended.
+        How the search ended, and which parameters it ends with at a bound.
     """
 
     values: dict[str, float]
@@ -267,5 +267,16 @@ def _concluded(
         dict(zip(ranges.names, values, strict=True)),
         {name: (a, b) for name, a, b in zip(ranges.names, low, high, strict=True)},
         {name: float(error) for name, error in zip(ranges.names, errors * slopes, strict=True)},
-        found.covariance / np.outer(errors, errors), rms, model.solution(point), model.runs, bool(result.success), str(result.message),
+        found.covariance / np.outer(errors, errors), rms, model.solution(point), model.runs, bool(result.success),
+        "; ".join([str(result.message).rstrip("."), *_at_bounds(ranges, result.active_mask)]),
     )  # fmt: skip
+
+
+def _at_bounds(ranges: Sought, active: np.ndarray) -> list[str]:
+    """Return a clause on each parameter that the search ends with at a bound."""
+    return [
+        f"'{name}' ends at its {'lower' if side < 0 else 'upper'} bound, {one.low if side < 0 else one.high:g}, so that a better fit may "
+        "lie beyond it and its interval does not hold"
+        for name, one, side in zip(ranges.names, ranges.ranges, active, strict=True)
+        if side
+    ]

@@ -82,5 +82,5 @@ def _from_file(path: Path) -> dict[str, Any]:
         return READERS[path.suffix](path)
     except OSError as error:
         raise InputError(f"{source}: {error.strerror or error}, expected a file of measured channels") from None
-    except (ValueError, TypeError, KeyError, EOFError):
+    except ValueError:
         raise InputError(f"{source}: found no table of numbers, expected a column for each channel, and time") from None

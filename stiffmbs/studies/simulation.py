@@ -12,9 +12,11 @@ import numpy as np
 from ..describe.settings import RunSettings, Settings, takes_settings
 from ..errors import AssemblyError, InputError, SolverError
 from ..jobs.job import Job, Runnable, data_of, prepare
+from ..jobs.renumber import renumberable
 from ..jobs.start_from import StartFrom, started_from, state_to_start_from
 from ..jobs.taken_again import CREPT, exactly, relaxed
 from ..results.channels import channels_of, turns_of
+from ..results.files import written_whole
 from ..results.saved_state import TURNS, SavedState
 from ..solve.algebraic_states import failure
 from ..solve.error_control.relaxation import creep_at
@@ -87,7 +89,7 @@ class Simulation:
     def __init__(self, solver: CaseSolver, inputs: Mapping[str, float], settings: RunSettings) -> None:
         scene = solver.scene([float(value) for value in inputs.values()])
         job = prepare(scene, settings)
-        self._job: Job = prepare(scene, changed(settings, {"presolve": False})) if job.subsystems else job
+        self._job: Job = job if renumberable(job) else prepare(scene, changed(settings, {"presolve": False}))
         self._first = dict(inputs)
         self._inputs = InputNumbers(self._job, solver, self._first)
         self.reset()
@@ -250,7 +252,7 @@ class Simulation:
         content: dict[str, Any] = {name: np.array([value]) for name, value in state.channels.items()}
         content |= {TURNS + name: np.array([value]) for name, value in state.turns.items()}
         content |= {INPUT + name: np.array(value) for name, value in self._inputs.values.items()}
-        np.savez(file, time=np.array([self.t]), **content)
+        written_whole(file, lambda part: np.savez(part, time=np.array([self.t]), **content))
 
     def load(self, path: StartFrom) -> None:
         """Go on from a saved state: a file that `save` or ``stiffmbs run -o`` wrote, a `SavedState` or a `Solution`.

@@ -66,7 +66,7 @@ class StartedSteps:
     def _quickly(self, t: float, end: float, features: InputFeatures) -> bool:
         """Whether no breakpoint lies between; the integrator then sees the inputs."""
         if self._features is not features:
-            self._engine.see_inputs(features)
+            self._engine.see_inputs(features, end - t)
             self._features = features
         between = features.breakpoints
         return not len(between) or not np.any((between >= just_before(t)) & (between <= just_after(end)))

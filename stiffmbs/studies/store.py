@@ -3,78 +3,200 @@
 from __future__ import annotations
 
 import hashlib
+import logging
 import sqlite3
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from types import TracebackType
 
 import numpy as np
 
-from ..errors import InputError
-from .case_solver import Row
+from ..describe.files.files_read import check_regular, digest_of_file
+from ..describe.files.own_sources import CODE
+from ..describe.files.quoted import quoted
+from ..errors import InputError, SolverError
+from .case_solver import ChangedFileError, Row
 
+PRIMARY, OF_DISK = 0xFF, (sqlite3.SQLITE_FULL, sqlite3.SQLITE_IOERR)
+"""Primary codes of SQLite's errors, and those of a disk that is full or fails."""
+FORMAT = 2
+"""Of the tables, kept as SQLite's user version."""
 _TABLES = """
-create table if not exists study (fingerprint text not null);
+create table if not exists parts (name text primary key, digest text not null);
+create table if not exists files (name text primary key, digest text not null);
 create table if not exists rows (
-    number integer primary key, status text not null, message text not null, lengths blob not null, outputs blob not null
+    number integer primary key, status text not null, message text not null, lengths blob not null, outputs blob not null,
+    code blob not null
 );
 """
+LOGGER = logging.getLogger(__name__)
 
 
 class Store:
     """The rows that are done.
 
+    Rows that cannot be written, as on a full disk, are kept in memory and written as soon as that is possible again.
+
     Parameters
     ----------
     path : Path or None
         The file, made where there is none; in memory without it.
-    study : bytes
-        All that the rows follow from: a file of another study is refused.
+    study : mapping of str to str
+        All that the rows follow from, by what messages call it: the store of a study in which a part differs is refused.
 
     Raises
     ------
     InputError
-        When the file is that of another study, or none at all.
+        When the file is that of another study, or none at all; names what has changed.
     """
 
-    def __init__(self, path: Path | None, study: bytes) -> None:
-        self._named = str(path) if path else "the study"
-        try:
+    def __init__(self, path: Path | None, study: Mapping[str, str]) -> None:
+        self._named = quoted(str(path)) if path else "the study"
+        self._unwritten: dict[int, Row] = {}
+        self._connection: sqlite3.Connection | None = None
+        with self._readable():
+            if path and path.exists():
+                check_regular(path)
             self._connection = sqlite3.connect(path or ":memory:", isolation_level=None)
             self._connection.execute("pragma journal_mode = wal")
             self._connection.execute("pragma synchronous = normal")
-            self._connection.executescript(_TABLES)
-            self._claim(hashlib.sha256(study).hexdigest())
-        except sqlite3.Error as error:
-            raise InputError(f"{self._named}: {error}, expected a file of a study, or none") from None
+            self._claim({name: _digest(text) for name, text in study.items()})
+            self._drop_damaged()
 
-    def _claim(self, fingerprint: str) -> None:
-        self._connection.execute("begin immediate")
-        found = self._connection.execute("select fingerprint from study").fetchone()
-        if found is None:
-            self._connection.execute("insert into study values (?)", (fingerprint,))
-        self._connection.execute("commit")
-        if found is not None and found[0] != fingerprint:
-            self._connection.close()
+    @property
+    def _file(self) -> sqlite3.Connection:
+        assert self._connection is not None
+        return self._connection
+
+    @contextmanager
+    def _readable(self) -> Iterator[None]:
+        """Refuse a file that cannot be read as a store."""
+        try:
+            yield
+        except (InputError, SolverError):
+            self.close()
+            raise
+        except (sqlite3.Error, OSError, ValueError, TypeError, OverflowError) as error:
+            self.close()
+            reason = getattr(error, "strerror", None) or error
+            if getattr(error, "sqlite_errorcode", 0) & PRIMARY in OF_DISK:
+                raise SolverError(f"{self._named}: the store cannot be written ({reason})") from None
             raise InputError(
-                f"{self._named}: found the rows of another study, or of another version of the scene or of stiffmbs; "
-                "expected those of this one: remove the file to begin anew"
+                f"{self._named}: the store cannot be used ({reason}), expected a file of a study, or none: remove the file to begin again"
+            ) from None
+
+    def _claim(self, parts: Mapping[str, str]) -> None:
+        """Make a new file that of a study, or check that a file is.
+
+        Raises
+        ------
+        InputError
+            When it is not.
+        """
+        tables = self._file.execute("select count(*) from sqlite_master").fetchone()[0]
+        if tables and self._file.execute("pragma user_version").fetchone()[0] != FORMAT:
+            raise self._of_another("stiffmbs")
+        self._file.execute("begin immediate")
+        for statement in filter(str.strip, _TABLES.split(";")):
+            self._file.execute(statement)
+        self._file.execute(f"pragma user_version = {FORMAT}")
+        if not tables:
+            self._file.executemany("insert into parts values (?, ?)", parts.items())
+        self._file.execute("commit")
+        found = dict(self._file.execute("select name, digest from parts"))
+        changed = [name for name in {**parts, **found} if parts.get(name) != found.get(name)]
+        files = [name for name in changed if name.startswith("'")]
+        named = files or changed
+        for name, digest in self._file.execute("select name, digest from files"):
+            if not name.startswith(CODE) and digest_of_file(name) != digest:
+                named = [*named, f"'{quoted(name)}'"]
+        if named:
+            raise self._of_another(" and ".join(named))
+
+    def _of_another(self, changed: str) -> InputError:
+        return InputError(
+            f"{self._named}: found the rows of another study, in which {changed} had other content; expected those of this one: "
+            "remove the file to begin again"
+        )
+
+    def _drop_damaged(self) -> None:
+        """Remove rows whose content does not match its code, so that their cases are solved again."""
+        damaged = [row[0] for row in self._file.execute("select * from rows") if _code(row[:-1]) != row[-1]]
+        if damaged:
+            self._file.executemany("delete from rows where number = ?", ((number,) for number in damaged))
+            LOGGER.warning(
+                "stiffmbs: note: %s: %d rows were damaged; their cases are solved again", self._named, len(damaged)
             )
 
     def done(self) -> set[int]:
-        """The numbers of the cases that are there."""
-        return {number for (number,) in self._connection.execute("select number from rows")}
+        """Return the numbers of the cases that are there."""
+        with self._readable():
+            return {number for (number,) in self._file.execute("select number from rows")}
 
     def add(self, rows: Iterable[Row]) -> None:
-        """Write rows, all or none of them."""
-        self._connection.execute("begin")
-        self._connection.executemany("insert or ignore into rows values (?, ?, ?, ?, ?)", map(_packed, rows))
-        self._connection.execute("commit")
+        """Write rows, all or none of them.
+
+        Raises
+        ------
+        ChangedFileError
+            When another case has found other content in a file that a row's case names.
+        """
+        self._unwritten |= {row.case: row for row in rows}
+        if failed := self._write_rest():
+            LOGGER.debug("%s: not written yet: %s", self._named, failed)
+
+    def _write_rest(self) -> str:
+        """Write the rows that are not written yet; why that is not possible, or nothing."""
+        rows = self._unwritten.values()
+        try:
+            self._file.execute("begin")
+            for row in rows:
+                self._add_files(row.files)
+            self._file.executemany("insert or ignore into rows values (?, ?, ?, ?, ?, ?)", map(_packed, rows))
+            self._file.execute("commit")
+        except (sqlite3.Error, ChangedFileError) as error:
+            with suppress(sqlite3.Error):
+                self._file.execute("rollback")
+            if isinstance(error, ChangedFileError):
+                raise
+            return str(error)
+        self._unwritten = {}
+        return ""
+
+    def _add_files(self, files: Mapping[str, str]) -> None:
+        for name, digest in files.items():
+            self._file.execute("insert or ignore into files values (?, ?)", (_text(name), digest))
+            (known,) = self._file.execute("select digest from files where name = ?", (_text(name),)).fetchone()
+            if known != digest:
+                raise ChangedFileError(f"'{quoted(name)}' has changed; expected the same content in all cases")
 
     def rows(self) -> Iterator[Row]:
-        """All rows, in the order of the cases."""
-        for number, status, message, lengths, outputs in self._connection.execute("select * from rows order by number"):
-            yield Row(number, status, message, tuple(_unpacked(lengths, outputs)))
+        """Yield all rows, in the order of the cases; a note tells where some could not be written."""
+        if self._unwritten and (failed := self._write_rest()):
+            LOGGER.warning(
+                "stiffmbs: note: %s: %d rows could not be kept (%s); their cases are solved again in another session",
+                self._named, len(self._unwritten), failed,
+            )  # fmt: skip
+        with self._readable():
+            kept = self._file.execute("select number, status, message, lengths, outputs from rows order by number")
+            rest = sorted(self._unwritten)
+            for number, status, message, lengths, outputs in kept:
+                while rest and rest[0] < number:
+                    yield self._unwritten[rest.pop(0)]
+                yield Row(number, status, message, tuple(_unpacked(lengths, outputs)))
+            yield from (self._unwritten[number] for number in rest)
+
+    def close(self) -> None:
+        """Let go of the file; rows that are still unwritten get a last chance."""
+        if self._connection is None:
+            return
+        if self._unwritten:
+            with suppress(InputError):
+                self._write_rest()
+        with suppress(sqlite3.Error):
+            self._connection.close()
+        self._connection = None
 
     def __enter__(self) -> Store:
         return self
@@ -82,14 +204,35 @@ class Store:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self._connection.close()
+        self.close()
 
 
-def _packed(row: Row) -> tuple[int, str, str, bytes, bytes]:
+def _digest(text: str) -> str:
+    return hashlib.sha256(text.encode(errors="surrogatepass")).hexdigest()
+
+
+def _text(found: str) -> str:
+    """A text without halves of surrogate pairs, which SQLite does not take."""
+    return found.encode(errors="backslashreplace").decode()
+
+
+def _code(columns: tuple[object, ...]) -> bytes:
+    """Return what shows whether a row is as it was written."""
+    return hashlib.sha256(repr(columns).encode(errors="surrogatepass")).digest()
+
+
+def _packed(row: Row) -> tuple[int, str, str, bytes, bytes, bytes]:
     """A row of the table; the length of a number is -1."""
     lengths = [len(value) if isinstance(value, np.ndarray) else -1 for value in row.values]
     numbers = np.concatenate([np.empty(0), *(np.atleast_1d(np.asarray(value, dtype="<f8")) for value in row.values)])
-    return row.case, row.status, row.message, np.array(lengths, dtype="<i8").tobytes(), numbers.astype("<f8").tobytes()
+    columns = (
+        row.case,
+        row.status,
+        _text(row.message),
+        np.array(lengths, dtype="<i8").tobytes(),
+        numbers.astype("<f8").tobytes(),
+    )
+    return *columns, _code(columns)
 
 
 def _unpacked(lengths: bytes, outputs: bytes) -> Iterator[float | np.ndarray]:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..describe.files.quoted import quoted
 from ..describe.scene import Scene
 from ..describe.settings import RunSettings
 from ..errors import InputError, StiffmbsError
@@ -54,18 +55,30 @@ class Study:
     time: np.ndarray
     title: str
 
+    @property
+    def parts(self) -> dict[str, str]:
+        """All that its rows follow from, by what messages call it: texts, and digests of files."""
+        from .. import __version__
+
+        task = self.task
+        return {
+            "stiffmbs": __version__, "the scene": repr((task.scene.content, task.scene.changes)),
+            "what is varied": repr(self.cases), "the settings": repr(task.settings), "the outputs": repr(task.outputs),
+            **{f"'{quoted(name)}'": digest for name, digest in task.scene.files.items()},
+        }  # fmt: skip
+
     def solve(
         self, workers: int | None = None, executor: Executor | None = None, store: str | Path | None = None,
         watch: StudyProgress | None = None,
     ) -> xarray.Dataset:  # fmt: skip
         """Solve the cases that the store does not have yet; parameters and errors as for `sweep`."""
-        from .. import __version__
-
         if workers is not None and workers < 1:
             raise InputError(f"workers: found {workers}, expected 1 or more")
         task = pickle.dumps(self.task)
-        study = repr((__version__, self.task, self.cases)).encode()
-        with Store(Path(store) if store else None, study) as rows, executor_of(workers, executor) as (found, count):
+        with (
+            Store(Path(store) if store else None, self.parts) as rows,
+            executor_of(workers, executor) as (found, count),
+        ):
             done = rows.done()
             size = max(1, min(LARGEST_CHUNK, (len(self.cases) - len(done)) // (CHUNKS_PER_WORKER * count)))
             progress = _Progress(len(self.cases), len(done), watch)

@@ -94,6 +94,8 @@ class Joints:
 
     @_made.register
     def _thread(self, joint: Thread, name: str) -> Iterator[str]:
+        if name not in self._numbers:
+            raise Refusal(f"found a joint of the type {joint.kind}, expected a thread and a cylindrical joint")
         if joint.offset is not None:
             raise Refusal("found an offset of a thread, expected none: it starts as drawn")
         yield statement("JOINT", self._numbers[name], "SCREW", *self._ends(joint), f"PITCH = {number(joint.pitch)}")
@@ -155,6 +157,7 @@ class Joints:
         return coordinate
 
     def _number(self, name: JointName) -> int:
-        if name.joint not in self._numbers:
-            raise Refusal(f"found the joint {name.joint}, expected one that Adams has")
+        kind = TYPES.get(self._model.joints[name.joint].kind)
+        if name.joint not in self._numbers or kind in PRIMITIVES:
+            raise Refusal(f"found the joint {name.joint}, expected one that is a JOINT of Adams")
         return self._numbers[name.joint]

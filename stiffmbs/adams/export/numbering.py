@@ -74,10 +74,10 @@ class Numbering:
         Refusal
             For a curve that Adams does not draw.
         """
-        way = "akima" if table.akima else "lines" if table.lines else table.ends
-        if way not in CURVES:
+        way = table.ends if table.interpolation == "spline" else table.interpolation
+        if way is None or way not in CURVES:
             raise Refusal(
-                f"found the table {name} with the ends '{way}', expected akima, lines, or the ends not-a-knot"
+                f"found the table {name} ({way or 'natural'}), expected akima, lines, or a spline with the ends not-a-knot"
             )
         if len(table.table) < FEWEST and way != "lines":
             raise Refusal(

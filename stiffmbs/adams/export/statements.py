@@ -24,7 +24,7 @@ def numbers(values: Iterable[float]) -> str:
 
 def statement(keyword: str, ident: int | None, *arguments: str) -> str:
     """A statement: its first line, and a continuation line for each argument."""
-    head = keyword if ident is None else f"{keyword}/{ident}"
+    head = f"{keyword}/" if ident is None else f"{keyword}/{ident}"
     return "\n".join([head, *(line for argument in arguments for line in _lines(argument))])
 
 

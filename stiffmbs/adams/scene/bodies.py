@@ -117,7 +117,12 @@ def _tensor(mechanism: Mechanism, part: Part) -> np.ndarray:
     if part.inertia_marker is not None and part.inertia_marker != part.center:
         marker = mechanism.dataset.markers[part.inertia_marker].frame.seen_from(mechanism.center(part))
         d = marker.point
-        tensor = marker.axes @ tensor @ marker.axes.T - part.mass * (d @ d * IDENTITY - np.outer(d, d))
+        with np.errstate(all="ignore"):
+            tensor = marker.axes @ tensor @ marker.axes.T - part.mass * (d @ d * IDENTITY - np.outer(d, d))
+    if not np.all(np.isfinite(tensor)):
+        raise DatasetFault(
+            part.line, part.label, "found moments of inertia about CM beyond 1e308 kg m^2, expected IM and IP of a body"
+        )
     return tensor
 
 

@@ -23,7 +23,8 @@ SLOW = 1e-6
 
 def contacts(mechanism: Mechanism, translation: Translation) -> dict[str, Any]:
     """The forces of all contacts by name."""
-    return of_each(mechanism.dataset.contacts.values(), lambda contact: _made(contact, mechanism, translation))
+    pairs = [pair for contact in mechanism.dataset.contacts.values() for pair in contact.pairs()]
+    return of_each(pairs, lambda contact: _made(contact, mechanism, translation))
 
 
 def _made(contact: Contact, mechanism: Mechanism, translation: Translation) -> dict[str, Any]:
@@ -38,6 +39,8 @@ def _made(contact: Contact, mechanism: Mechanism, translation: Translation) -> d
 
 def swapped(contact: Contact, mechanism: Mechanism) -> bool:
     """Whether the scene's force is on the part of JGEOM."""
+    if contact.others:
+        raise contact.fault("found it in a function, with several geometries on a side, expected one GRAPHICS on each")
     first, second = (_shape(contact, ident, mechanism) for ident in contact.shapes)
     return is_swapped(first, second)
 

@@ -1,6 +1,6 @@
 """Friction of joints as forces and torques by formulas.  MSC Adams/Solver, FRICTION statement.
 
-What presses a joint's surfaces is read off its reaction, and the coefficient goes over the speed of the surface as Adams' STEP:
+What presses a joint's surfaces is read off its reaction, and the coefficient goes over the speed of the surface as STEP5:
 from zero to the static one at the stiction velocity, on to the dynamic one at a multiple of that.  Nothing sticks for good: Adams'
 creep of up to MAX_STICTION_DEFORMATION has no counterpart.
 """
@@ -165,17 +165,17 @@ class _Rubbing:
 
     def _held(self, speed: str) -> str:
         f = self._f
-        return f"STEP({speed}, {-f.stiction_velocity!r}, {-f.static!r}, {f.stiction_velocity!r}, {f.static!r})"
+        return f"STEP5({speed}, {-f.stiction_velocity!r}, {-f.static!r}, {f.stiction_velocity!r}, {f.static!r})"
 
     def _fallen(self, speed: str, sign: str) -> str:
         """What the coefficient loses as the speed goes on from that of stiction."""
         f = self._f
         less = f.static - f.dynamic
-        return f" {sign} STEP({speed}, {f.stiction_velocity!r}, 0, {f.sliding_velocity!r}, {less!r})" if less else ""
+        return f" {sign} STEP5({speed}, {f.stiction_velocity!r}, 0, {f.sliding_velocity!r}, {less!r})" if less else ""
 
     def _direction(self, speed: str) -> str:
         slow = self._f.stiction_velocity
-        return f"STEP({speed}, {-slow!r}, -1, {slow!r}, 1)"
+        return f"STEP5({speed}, {-slow!r}, -1, {slow!r}, 1)"
 
     def _speed(self, *parts: str) -> str:
         squares = " + ".join(f"{part}**2" for part in parts)

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ...describe.files.quoted import quoted
+from ...describe.files.requested import Fields
 from .fault import DatasetFault
 from .text import Statement, Subsystem
 
@@ -48,11 +49,13 @@ class Arguments:
         self.statement, self.keyword = statement, keyword
         self.label = f"{keyword}/{quoted(statement.ident)}" if statement.ident else keyword
         self._names, self._functions = names, functions
-        self._found = self._read(statement.pieces)
+        found = self._read(statement.pieces)
         for line, pieces in statement.changes:
             self.label += f" (changed in line {line} of the command file)"
-            self._found |= self._read(pieces)
-        statement.read_as({name: (found.line, found.values) for name, found in self._found.items()})
+            found |= self._read(pieces)
+        statement.read_as({name: (one.line, one.values) for name, one in found.items()})
+        self._found = Fields(keyword, self.label, found)
+        statement.requests.append(self._found)
 
     def _read(self, pieces: Sequence[Subsystem]) -> dict[str, Argument]:
         """The arguments of some pieces by their full names."""
@@ -102,6 +105,10 @@ class Arguments:
         values = (" ".join(texts),) if name in self._functions and texts else tuple(texts)
         found[name] = Argument(name, values, line)
 
+    def without_effect(self, *names: str) -> None:
+        """Leave arguments out of the report of unused ones."""
+        self._found.request(*names)
+
     def fault(self, reason: str, line: int | None = None) -> DatasetFault:
         """What to raise where this statement is wrong."""
         return DatasetFault(line or self.statement.line, self.label, reason)
@@ -111,7 +118,7 @@ class Arguments:
 
     def line(self, name: str) -> int:
         """Where an argument stands; the statement's own line where it is missing."""
-        return self._found[name].line if name in self._found else self.statement.line
+        return self._found[name].line if self._found.has(name) else self.statement.line
 
     def ident(self) -> int:
         """The statement's number."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from .arguments import Arguments
@@ -40,19 +40,27 @@ class Changes:
         key = key_of(command)
         return replace(self, altered={**self.altered, key: (*self.altered.get(key, ()), command)})
 
-    def switched(self, command: Statement, active: bool) -> Changes:
-        """With the statements that ACTIVATE or DEACTIVATE names.
+    def switched(self, command: Statement, active: bool, known: Collection[Key] = ()) -> Changes:
+        """With the statements that ACTIVATE or DEACTIVATE names, by ID or by a RANGE of those that are `known`.
 
         Raises
         ------
         DatasetFault
             When the command names none, or such as have no such state.
         """
-        found = Arguments(command, "ACTIVATE" if active else "DEACTIVATE", ("ID",))
+        found = Arguments(command, "ACTIVATE" if active else "DEACTIVATE", ("ID", "RANGE"))
         name = keyword(command.ident.upper())
         idents = found.idents("ID")
-        if name not in SWITCHED or not idents:
-            raise found.fault(f"found no statement, expected one of {', '.join(SWITCHED)}, and ID = its number")
+        if name not in SWITCHED or not (idents or "RANGE" in found):
+            raise found.fault(
+                f"found no statement, expected one of {', '.join(SWITCHED)}, and ID = its number or RANGE = first, last"
+            )
+        if "RANGE" in found:
+            low, high = _ends(found)
+            ranged = sorted(ident for kind, ident in known if kind == name and low <= ident <= high)
+            if not ranged:
+                raise found.fault(f"found no {name} from {low} to {high}, expected one at least", found.line("RANGE"))
+            idents = (*idents, *ranged)
         inactive = dict(self.inactive)
         for ident in idents:
             inactive.pop((name, ident), None)
@@ -111,6 +119,12 @@ class Changes:
             labels = ", ".join(f"{name}/{ident}" if ident else name for name, ident in self.altered)
             told.append(f"{labels} {'are' if len(self.altered) > 1 else 'is'} as {source} says")
         return told
+
+
+def _ends(found: Arguments) -> tuple[int, int]:
+    """The first and the last number of a RANGE; one number is both."""
+    ends = found.idents("RANGE", 1, 2)
+    return ends[0], ends[-1]
 
 
 def key_of(statement: Statement) -> Key:

@@ -5,26 +5,50 @@ A command that would change results and is not followed is refused, never left o
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field, replace
 
+from .arguments import Arguments
 from .between_runs import refuse_between_runs
-from .changes import Changes, alters, key_of
+from .changes import Changes, Key, alters, key_of
 from .fault import DatasetFault
 from .integrator import USUAL_ERROR, integrator_settings
 from .keywords import keyword
 from .simulations import Simulation, read_simulation
-from .text import Statement, commands
+from .text import Statement, Subsystem, commands
 
-FOLLOWED = ("SIMULATE", "ACTIVATE", "DEACTIVATE", "INTEGRATOR")
+FOLLOWED = ("SIMULATE", "ACTIVATE", "DEACTIVATE", "INTEGRATOR", "LINEAR")
 ENDING = ("STOP", "EXIT")
 HARMLESS = (
     "FILE", "OUTPUT", "PREFERENCES", "INFO", "SHOW", "RESULTS", "MODEL", "SAVE", "FSAVE", "LIST", "HELP", "EPLOT",
     "GRAPHICS", "TITLE", "MREQUEST", "DEBUG",
 )  # fmt: skip
 """Commands that have no effect on the results."""
-SETTINGS = ("EQUILIBRIUM", "KINEMATICS", "IC", "LSOLVER", "LINEAR")
+SETTINGS = ("EQUILIBRIUM", "KINEMATICS", "IC", "LSOLVER", "ENVIRONMENT")
 """Commands that say how Adams computes what it computes, which is left to this package."""
+FILES = ("MODEL", "COMMAND", "OUTPUT_PREFIX", "GRAPHICS", "REQUEST", "RESULTS", "OUTPUT", "FEMDATA")
+LINEAR = (
+    "EIGENSOL",
+    "STATEMAT",
+    "MKB",
+    "EXPORT",
+    "FILE",
+    "FORMAT",
+    "KEEP",
+    "NODAMPIN",
+    "DAMPING",
+    "ORIGINAL",
+    "COORDS",
+    "PSTATE",
+    "PINPUT",
+    "POUTPUT",
+    "RM",
+    "ENERGY",
+    "DISSIPATION",
+    "KINETIC",
+    "STRAIN",
+    "TABLE_PRECISION",
+)
 NAMED_FIRST = 2
 """How many first lines may answer the questions of Adams/Solver for the names of files."""
 
@@ -66,8 +90,8 @@ class Commands:
     notes: tuple[str, ...] = ()
 
 
-def read_commands(text: str) -> Commands:
-    """What a command file asks for.
+def read_commands(text: str, known: Collection[Key] = ()) -> Commands:
+    """What a command file asks for, of a dataset with the statements that are `known` by name and number.
 
     Raises
     ------
@@ -76,7 +100,8 @@ def read_commands(text: str) -> Commands:
     """
     segments: list[Segment] = []
     changes, settings = Changes(), dict[str, float]()
-    left_out = []
+    left_out: list[str] = []
+    linear: list[str] = []
     for command in commands(text):
         name = full_name(command.word)
         if name in ENDING:
@@ -88,6 +113,10 @@ def read_commands(text: str) -> Commands:
         elif name == "INTEGRATOR":
             settings |= integrator_settings(command)
             left_out.append(f"INTEGRATOR (line {command.line}) but for HMAX, and ERROR below {USUAL_ERROR:g}")
+        elif name == "LINEAR":
+            linear.append(_linear_note(command, bool(segments)))
+        elif name == "FILE":
+            _refuse_commands_elsewhere(command)
         elif name in SETTINGS:
             left_out.append(f"{name} (line {command.line})")
         elif name in HARMLESS or _is_name_of_file(command, name):
@@ -95,9 +124,32 @@ def read_commands(text: str) -> Commands:
         else:
             if segments:
                 refuse_between_runs(command, name or "")
-            changes = _followed(changes, command, name)
+            changes = _followed(changes, command, name, known)
     notes = (f"{', '.join(left_out)} of the command file left out: analysis settings",) if left_out else ()
-    return Commands(tuple(segments), changes, notes)
+    return Commands(tuple(segments), changes, (*linear, *notes))
+
+
+def _refuse_commands_elsewhere(command: Statement) -> None:
+    """Refuse FILE/COMMAND: the commands of another file."""
+    found = Arguments(replace(command, ident="", pieces=(*_head(command), *command.pieces)), "FILE", FILES)
+    if "COMMAND" in found:
+        raise found.fault(f"found COMMAND = {found.text('COMMAND')}, expected the commands of that file in this one")
+
+
+def _linear_note(command: Statement, later: bool) -> str:
+    """The command of this package that does what LINEAR asks for."""
+    found = Arguments(replace(command, ident="", pieces=(*_head(command), *command.pieces)), "LINEAR", LINEAR)
+    does = {
+        "EIGENSOL": "'stiffmbs modes' computes eigenvalues and modes",
+        "STATEMAT": "'stiffmbs transfer' computes the state matrices",
+    }
+    what = found.one_of(*does) or "EIGENSOL"
+    where = " (with --from, of the state in which a run ends)" if later else ""
+    return f"LINEAR/{what} (line {command.line} of the command file) is left out: {does[what]}{where}"
+
+
+def _head(command: Statement) -> tuple[Subsystem, ...]:
+    return (Subsystem(command.ident, command.line),) if command.ident else ()
 
 
 def full_name(word: str) -> str | None:
@@ -119,10 +171,10 @@ def _is_name_of_file(command: Statement, name: str | None) -> bool:
     )
 
 
-def _followed(changes: Changes, command: Statement, name: str | None) -> Changes:
+def _followed(changes: Changes, command: Statement, name: str | None, known: Collection[Key]) -> Changes:
     """The changes with those of a command."""
     if name in ("ACTIVATE", "DEACTIVATE"):
-        return changes.switched(command, name == "ACTIVATE")
+        return changes.switched(command, name == "ACTIVATE", known)
     if alters(name):
         return changes.with_arguments(command)
     word, ident = key_of(command)

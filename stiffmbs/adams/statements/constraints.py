@@ -138,7 +138,9 @@ def read_joint(statement: Statement, units: Units) -> Joint:
     kind = found.one_of(*JOINT_KINDS)
     if kind is None:
         raise found.fault(f"found no kind of joint, expected one of {', '.join(JOINT_KINDS)}")
-    pitch, diameter = (found.number(name) for name in ("PITCH", "PD"))
+    pitch, diameter = (
+        found.number(name) if kind == own else None for own, name in (("SCREW", "PITCH"), ("RACKPIN", "PD"))
+    )
     for wanted, name, value in (("SCREW", "PITCH", pitch), ("RACKPIN", "PD", diameter)):
         if kind == wanted and not value:
             raise found.fault(f"found no {name}, expected a number other than zero", found.line(name))
@@ -151,6 +153,7 @@ def read_joint(statement: Statement, units: Units) -> Joint:
 def _refuse_friction(found: Arguments) -> None:
     """Refuse friction of old versions, whose law is not published."""
     if (found.text("FRICTION") or "").strip().upper() == "OFF":
+        found.without_effect(*WITHOUT_FRICTION)
         return
     for name in COEFFICIENTS:
         if found.number(name):
@@ -159,6 +162,7 @@ def _refuse_friction(found: Arguments) -> None:
                 "FRICTION statement",
                 found.line(name),
             )
+    found.without_effect(*WITHOUT_FRICTION)
 
 
 _STARTS = {

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import itertools
+from dataclasses import dataclass, replace
 
 from .arguments import Arguments
 from .constraints import Numbered
@@ -11,6 +12,7 @@ from .text import Statement
 from .units import Units
 
 SPHERE, PLANE, ELLIPSOID, CYLINDER, BOX = "SPHERE", "PLANE", "ELLIPSOID", "CYLINDER", "BOX"
+SOLIDS = "SOLID_TO_SOLID"
 ROUND = 1e-9
 """Part of an ellipsoid's axis by which another may differ and it is a sphere."""
 _SHAPES = ("ELLIPSOID", "PLANE", "CYLINDER", "BOX", "FRUSTUM", "TORUS", "CIRCLE", "ARC", "EXTERNAL", "OUTLINE", "FORCE", "SPRINGDAMPER", "CURVE")  # fmt: skip
@@ -34,6 +36,10 @@ class Contact(Numbered):
     ----------
     shapes : (int, int)
         GRAPHICS statements of its two sides.
+    others : tuple of (int, int)
+        Further pairs, where a side lists several.
+    part : int
+        Number of the pair that it stands for from the second on, 0 for the first.
     stiffness, damping, exponent, depth : float
         K, C, e, and the penetration from which the damping is whole.
     friction : Friction or None
@@ -45,6 +51,23 @@ class Contact(Numbered):
     exponent: float
     depth: float
     friction: Friction | None
+    others: tuple[tuple[int, int], ...] = ()
+    part: int = 0
+
+    @property
+    def name(self) -> str:
+        """Of its force in the scene."""
+        return f"{self.keyword}_{self.ident}" + (f"_{self.part}" if self.part else "")
+
+    @property
+    def graphics(self) -> set[int]:
+        """The numbers of all GRAPHICS that it names."""
+        return {number for pair in (self.shapes, *self.others) for number in pair}
+
+    def pairs(self) -> list[Contact]:
+        """Return a contact for each pair of geometries."""
+        further = (replace(self, shapes=pair, others=(), part=k) for k, pair in enumerate(self.others, start=2))
+        return [replace(self, others=()), *further]
 
 
 @dataclass(frozen=True)
@@ -66,7 +89,7 @@ class Shape:
 
 
 _CONTACT = (
-    "IGEOM", "JGEOM", "IFLIP_GEOMETRY", "JFLIP_GEOMETRY", "IFLIP_NORMAL", "JFLIP_NORMAL", "IMPACT", "STIFFNESS", "DAMPING",
+    "TYPE", "IGEOM", "JGEOM", "IFLIP_GEOMETRY", "JFLIP_GEOMETRY", "IFLIP_NORMAL", "JFLIP_NORMAL", "IMPACT", "STIFFNESS", "DAMPING",
     "EXPONENT", "DMAX", "POISSON", "PENALTY", "RESTITUTION_COEFFICIENT", "NORMAL_FUNCTION", "NORMAL_ROUTINE",
     "COULOMB_FRICTION", "NO_FRICTION", "MU_STATIC", "MU_DYNAMIC", "STICTION_TRANSITION_VELOCITY",
     "FRICTION_TRANSITION_VELOCITY", "FRICTION_FUNCTION", "FRICTION_ROUTINE", "AUGMENTED_LAGRANGIAN_FORMULATION",
@@ -83,17 +106,21 @@ def read_contact(statement: Statement, units: Units) -> Contact:
     for name in _NOT_READ:
         if name in found:
             raise found.fault(f"found {name}, expected a contact by IMPACT between primitives", found.line(name))
-    sides = found.idents("IGEOM", 1), found.idents("JGEOM", 1)
+    if (kind := (found.text("TYPE") or SOLIDS).strip().upper()) and not SOLIDS.startswith(kind):
+        raise found.fault(f"found TYPE = {kind}, expected {SOLIDS}", found.line("TYPE"))
+    sides = found.idents("IGEOM"), found.idents("JGEOM")
     if not all(sides):
-        raise found.fault("found no IGEOM or no JGEOM, expected one GRAPHICS each")
+        raise found.fault("found no IGEOM or no JGEOM, expected a GRAPHICS or more for each")
+    found.without_effect("IMPACT", "NO_FRICTION")
+    first, *others = itertools.product(*sides)
     needed = {name: found.number(name) for name in ("STIFFNESS", "EXPONENT", "DMAX")}
     for name, value in needed.items():
         if not (value or 0.0) > 0:
             raise found.fault(f"found no {name}, expected a number above zero", found.line(name))
     stiffness, exponent, depth = (value or 0.0 for value in needed.values())
     return Contact(
-        found.ident(), statement.line, statement.alias, "CONTACT", (sides[0][0], sides[1][0]), stiffness,
-        found.number("DAMPING") or 0.0, exponent, depth, _friction(found),
+        found.ident(), statement.line, statement.alias, "CONTACT", first, stiffness,
+        found.number("DAMPING") or 0.0, exponent, depth, _friction(found), tuple(others),
     )  # fmt: skip
 
 

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
+from ...describe.files.requested import unused_notes
 from ...errors import InputError
 from .bodies import Marker, Part, read_marker
 from .changes import Changes, Key, key_of
@@ -17,9 +18,10 @@ from .fault import DatasetFault, raise_all
 from .forces import SingleForce, VectorForce, read_gravity
 from .friction import JointFriction
 from .keywords import LEFT_OUT, READERS, REFUSED, SINGLE, keyword
+from .left_out import LEFT_OUT_ARGUMENTS, TEXT, UNREAD_SYSTEM, is_unread_system
 from .outputs import Array, Request, Spline, Variable
 from .sensor import Sensor
-from .text import Statement, statements, untitled
+from .text import ZERO_BYTE, Statement, statements, untitled
 from .units import Units, read_units
 
 MOST_LISTED = 8
@@ -139,6 +141,9 @@ def read_dataset(text: str, changes: Changes = NO_CHANGES) -> Dataset:
     """
     title, found, ended = all_statements(text)
     named = changes.applied([(keyword(statement.word), statement) for statement in found])
+    for name, statement in named:
+        if name not in LEFT_OUT:
+            _refuse_zero_bytes(name, statement)
     unread = _unread(named)
     units, gravity = _single(named)
     data, faults = _data(named, units)
@@ -146,9 +151,9 @@ def read_dataset(text: str, changes: Changes = NO_CHANGES) -> Dataset:
         raise InputError("; ".join([unread, *map(str, faults[:MOST_LISTED])]))
     raise_all(faults)
     graphics = {key_of(statement)[1]: statement for name, statement in named if name == "GRAPHICS"}
-    solids = {number for contact in data.get("CONTACT", {}).values() for number in contact.shapes}
+    solids = {number for contact in data.get("CONTACT", {}).values() for number in contact.graphics}
     drawn = [(name, one) for name, one in named if name != "GRAPHICS" or key_of(one)[1] not in solids]
-    notes = tuple(_notes(drawn, ended, title is None))
+    notes = (*_notes(drawn, ended, title is None), *_unused_arguments(named))
     return Dataset(title or "", units, gravity, data, notes, frozenset(changes.inactive), graphics)
 
 
@@ -215,6 +220,15 @@ def read_statement(name: str, statement: Statement, units: Units, before: Part |
     return READERS[name](statement, units)
 
 
+def _refuse_zero_bytes(name: str | None, statement: Statement) -> None:
+    """Refuse zero bytes in a statement that counts, or in the name of one."""
+    for piece in statement.pieces:
+        if ZERO_BYTE in piece.text and name is None:
+            raise InputError(f"line {piece.line}: found a zero byte, expected text")
+        if ZERO_BYTE in piece.text:
+            raise DatasetFault(piece.line, f"{name}/{statement.ident}".rstrip("/"), "found a zero byte, expected text")
+
+
 def _once(wanted: str, named: list[tuple[str | None, Statement]]) -> list[Statement]:
     found = [statement for name, statement in named if name == wanted]
     if len(found) > 1:
@@ -224,10 +238,11 @@ def _once(wanted: str, named: list[tuple[str | None, Statement]]) -> list[Statem
 
 def _unread(named: list[tuple[str | None, Statement]]) -> str:
     """What would be missing from the mechanism, all of it in one sentence; nothing where all is read."""
+    every = [statement for _, statement in named]
     unread = [
         (f"{name or statement.word}/{statement.ident}".rstrip("/"), statement.line)
         for name, statement in named
-        if name is None or name in REFUSED
+        if name is None or (name in REFUSED and not is_unread_system(name, statement, every))
     ]
     if not unread:
         return ""
@@ -237,6 +252,16 @@ def _unread(named: list[tuple[str | None, Statement]]) -> str:
         f"found statements that are not read here: {listed}{more}; expected {', '.join((*SINGLE, *READERS))}, or "
         "graphics, output and analysis settings, which are left out"
     )
+
+
+def _unused_arguments(named: list[tuple[str | None, Statement]]) -> list[str]:
+    """Notes on arguments of statements that nobody has requested, but for texts."""
+    for name, statement in named:
+        for fields in statement.requests:
+            fields.request(
+                *(argument for argument, why in LEFT_OUT_ARGUMENTS.get(name or "", {}).items() if why == TEXT)
+            )
+    return unused_notes([fields for _, statement in named for fields in statement.requests], LEFT_OUT_ARGUMENTS)
 
 
 def _is_statement(title: str) -> bool:
@@ -250,11 +275,11 @@ def _notes(named: list[tuple[str | None, Statement]], ended: bool, without_title
         yield "line 1 is the title of a dataset, but reads as a statement: it is taken as one, which Adams would leave out"
     kinds: dict[str, list[int]] = {}
     for name, statement in named:
-        if name in LEFT_OUT:
-            kinds.setdefault(name, []).append(statement.line)
+        if name in LEFT_OUT or name in REFUSED:  # of these a GSE alone comes so far
+            kinds.setdefault(name or "", []).append(statement.line)
     for name, lines in kinds.items():
         listed = ", ".join(map(str, lines[:MOST_LISTED]))
         more = f" and {len(lines) - MOST_LISTED} more" if len(lines) > MOST_LISTED else ""
-        yield f"{name} (line{'s' if len(lines) > 1 else ''} {listed}{more}) is left out: {LEFT_OUT[name]}"
+        yield f"{name} (line{'s' if len(lines) > 1 else ''} {listed}{more}) is left out: {LEFT_OUT.get(name, UNREAD_SYSTEM)}"
     if not ended:
         yield "the dataset has no END, and may have been cut off"

@@ -61,7 +61,7 @@ _ABOVE_ZERO = {
 }  # fmt: skip
 """Numbers above zero, and what Adams takes where they are missing."""
 FROM_ZERO = ("MU_STATIC", "MU_DYNAMIC", "FRICTION_FORCE_PRELOAD", "FRICTION_TORQUE_PRELOAD")
-LEFT_OUT = ("MAX_STICTION_DEFORMATION", "INACTIVE")
+LEFT_OUT = ("MAX_STICTION_DEFORMATION", "INACTIVE", "INACTIVE_DURING")
 _NOT_READ = (
     "MAX_FRICTION_FORCE",
     "MAX_FRICTION_TORQUE",
@@ -90,6 +90,8 @@ def read_friction(statement: Statement, units: Units) -> JointFriction:
         if name in found:
             raise found.fault(f"found {name}, expected friction without it", found.line(name))
     _one_word(found, "FORMULATION", ("ORIGINAL",))
+    for name in ("INACTIVE", "INACTIVE_DURING"):
+        _one_word(found, name, ("STATICS",))
     effect = _effect(found)
     numbers = {name: _number(found, name, usual) for name, usual in _ABOVE_ZERO.items()}
     static, dynamic, force, torque = (_from_zero(found, name) for name in FROM_ZERO)

@@ -1,26 +1,29 @@
-"""Arguments that are known and have no effect here, and why, by statement."""
+"""Arguments that are known and have no effect here, and why, by statement; and systems that nothing reads."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import re
+from collections.abc import Mapping, Sequence
 
 from .constraints import WITHOUT_FRICTION
 from .curves import WITHOUT_EFFECT as CURVE_STARTS
 from .sensor import WITHOUT_EFFECT
+from .text import Statement
 
+TEXT = "text"
 _NO_STATICS = "in statics states find their own equilibrium"
 LEFT_OUT_ARGUMENTS: Mapping[str, Mapping[str, str]] = {
     "PART": {"MATERIAL": "masses are given", "EXACT": "assembly may move every part"},
     "POINT_MASS": {"EXACT": "assembly may move every part"},
     "JOINT": dict.fromkeys(WITHOUT_FRICTION, "of friction of old versions, which is off"),
     "REQUEST": {
-        "COMMENT": "text", "TITLE": "text", "CUNITS": "text", "CLABELS": "text", "RESULTS_NAME": "text",
+        "COMMENT": TEXT, "TITLE": TEXT, "CUNITS": TEXT, "CLABELS": TEXT, "RESULTS_NAME": TEXT,
         "ROUTINE": "a user's own subroutine",
     },
     "SPLINE": {"BLOCK": "of a file", "CHANNEL": "of a file"},
     "FRICTION": {
         "MAX_STICTION_DEFORMATION": "the joint creeps below STICTION_TRANSITION_VELOCITY",
-        "INACTIVE": "friction is zero in statics",
+        "INACTIVE": "friction is zero in statics", "INACTIVE_DURING": "friction is zero in statics",
     },
     "CURVE": {"MINPAR": "of a subroutine", "MAXPAR": "of a subroutine"},
     "PTCV": dict.fromkeys(CURVE_STARTS, "parts start where they are drawn"),
@@ -28,6 +31,26 @@ LEFT_OUT_ARGUMENTS: Mapping[str, Mapping[str, str]] = {
     "DIFF": {"STATIC_HOLD": _NO_STATICS},
     "LSE": {"STATIC_HOLD": _NO_STATICS},
     "TFSISO": {"STATIC_HOLD": _NO_STATICS},
-    "MATRIX": {"NAME": "text", "UNITS": "text"},
+    "MATRIX": {"NAME": TEXT, "UNITS": TEXT},
 }  # fmt: skip
 """Statements that are not here have none."""
+UNREAD_SYSTEM = "a subroutine has its equations, and nothing reads its states and outputs"
+_ARRAY = re.compile(r"\s*(?:X|XD|Y)\s*=\s*(\d+)\s*", re.IGNORECASE)
+
+
+def is_unread_system(name: str | None, statement: Statement, every: Sequence[Statement]) -> bool:
+    """Return True for a GSE of whose arrays X, XD and Y no function takes a value.
+
+    Parameters
+    ----------
+    name : str or None
+        Full name of the statement.
+    statement : Statement
+    every : sequence of Statement
+        Of the dataset.
+    """
+    if name != "GSE":
+        return False
+    arrays = [found[1] for piece in statement.pieces if (found := _ARRAY.fullmatch(piece.text))]
+    reads = re.compile(rf"\b(?:ARYVAL\s*\(\s*(?:{'|'.join(arrays) or 'no'})\b|USER\s*\()", re.IGNORECASE)
+    return not any(reads.search(piece.text) for other in every for piece in other.pieces if other is not statement)

@@ -9,14 +9,18 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Any
 
+from ...describe.files.requested import Fields
 from ...describe.files.text_file import lines
 
 _HEAD = re.compile(r"\s*([A-Za-z_]\w*)\s*(?:/\s*((?:\w+(?=\s*(?:[,\x00]|\Z)))?))?\s*(.*)", re.DOTALL)
 """The name, the number after the slash where there is one, and the rest."""
 _ALIAS = re.compile(r"!\s*adams_view_name\s*=\s*'([^']*)'", re.IGNORECASE)
 _TWO_VALUES = re.compile(r"[\w.)]\s*\x00\s*[\w.]|[\d.)]\s*\x00\s*\(")
+ZERO_BYTE = "\ufffd"
+"""Stands for a zero byte, which statements that are left out may have."""
 _LINE_COMMA = "\x00"
 """Stands for a comma that starts a continuation line: it parts arguments, but not the terms of a function."""
 
@@ -58,6 +62,8 @@ class Statement:
         The name in Adams/View, where a comment before the statement tells it.
     changes : tuple of (int, tuple of Subsystem)
         What commands give of its arguments anew, with the line of each.
+    requests : list of Fields
+        Of its arguments, with a record of those that are requested; filled when the statement is read.
     """
 
     word: str
@@ -66,6 +72,7 @@ class Statement:
     line: int
     alias: str = ""
     changes: tuple[tuple[int, tuple[Subsystem, ...]], ...] = ()
+    requests: list[Fields[Any]] = field(default_factory=list, compare=False)
 
     def read_as(self, arguments: Mapping[str, tuple[int, tuple[str, ...]]]) -> None:
         """Told the full names of its arguments, each with its line and values, when they are read; for those who list them."""

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import sys
-from pathlib import Path
 
 import click
 
+from ...describe.files.files_read import content_of
 from ...errors import InputError, StiffmbsError
 from ..scene import refuse
 
@@ -76,7 +76,7 @@ def _lines(text: str) -> list[str]:
     if "=" in text:
         return [text]
     try:
-        content = Path(text).read_text(encoding="utf-8")
+        content = content_of(text).decode()
     except (OSError, ValueError):
         raise InputError(f"--map {text}: found no such file, expected one, or CHANNEL=COLUMN") from None
     return [line for line in content.splitlines() if line.strip() and not line.lstrip().startswith("#")]

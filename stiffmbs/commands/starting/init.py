@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from pathlib import Path
 
@@ -16,9 +17,12 @@ FIRST_SCENE = Path(__file__).with_name("first_scene.yaml")
 @click.argument("file", type=click.Path(path_type=Path), default=Path("scene.yaml"))
 def init(file: Path) -> None:
     """Write a first scene with comments to FILE, scene.yaml by default; no file that is there is written over."""
+    from ...results.files import write_text
+
     try:
-        with file.open("x", encoding="utf-8") as opened:
-            opened.write(FIRST_SCENE.read_text(encoding="utf-8"))
+        if os.path.lexists(file):
+            raise FileExistsError
+        write_text(file, FIRST_SCENE.read_text(encoding="utf-8"))
     except FileExistsError:
         click.echo(f"stiffmbs: {file}: found a file, expected a name that is not taken", err=True)
         sys.exit(WRONG_INPUT)

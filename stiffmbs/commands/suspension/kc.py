@@ -10,7 +10,7 @@ import click
 
 from ...errors import InputError, StiffmbsError
 from ...jobs.load_scene import load_scene
-from ..scene import CHANGES, STOPPED_EARLY, in_file, refuse
+from ..scene import CHANGES, STOPPED_EARLY, in_file, is_written, refuse
 
 
 @click.command(short_help="Kinematics and compliance of an axle.")
@@ -35,24 +35,24 @@ def kc(
 
     Exit status: 0 done, 1 no equilibrium was found or a file could not be written, 2 the input is wrong.
     """
+    from ...results.files import write_text
+    from ...show.figure import check_figure
     from ...show.kinematics_and_compliance import draw_kc, kc_csv, kc_text
     from ...studies.suspension.kinematics_and_compliance import kinematics_and_compliance
 
     try:
+        if figure is not None:
+            check_figure("--figure", figure)
         loaded = load_scene(scene, changes)
         with in_file(scene):
             found = kinematics_and_compliance(loaded, axle, points, body, steering, **_sizes(cases))
     except StiffmbsError as error:
         refuse(scene, error, as_json)
-    try:
-        if output is not None:
-            output.write_text(kc_csv(found), encoding="utf-8")
-        if figure is not None:
-            draw_kc(figure, found)
-    except (OSError, ValueError) as error:
-        click.echo(f"stiffmbs: not written: {error}", err=True)
-        sys.exit(STOPPED_EARLY)
+    written = output is None or is_written(output, lambda: write_text(output, kc_csv(found)))
+    if figure is not None:
+        written = is_written(figure, lambda: draw_kc(figure, found)) and written
     click.echo(json.dumps(found.as_dict(scene)) if as_json else kc_text(scene, found))
+    sys.exit(0 if written else STOPPED_EARLY)
 
 
 def _sizes(cases: tuple[str, ...]) -> dict[str, float]:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from rich.console import Console
 from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeRemainingColumn
+
+from ...show.escaped import console
 
 
 def bar() -> Progress:
@@ -15,7 +16,7 @@ def bar() -> Progress:
         TextColumn("{task.fields[reached]}", markup=False),
         TimeRemainingColumn(compact=True),
         TextColumn("{task.fields[after]}", markup=False),
-        console=Console(stderr=True, markup=False, emoji=False),
+        console=console(stderr=True),
         transient=True,
         refresh_per_second=5,
     )

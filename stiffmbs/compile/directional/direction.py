@@ -43,6 +43,11 @@ class Numbers:
     mass: np.ndarray
 
 
+def unchanged(system: System) -> Numbers:
+    """Return a direction for derivatives by the state and time alone: no number is differentiated."""
+    return Numbers(tuple(group.numbers for group in system.groups), frozenset(), np.zeros(system.n_u))
+
+
 @cache
 def directional_kernel(kind: Kind, term_set: str, along: tuple[str, ...]) -> Compiled | None:
     """The kernel with which a kind contributes to the derivative of a set, if it does.

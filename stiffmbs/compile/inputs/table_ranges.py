@@ -33,7 +33,7 @@ class TableRanges:
         self.table = table
         self._values = curve(table)
         _, self._x, self._pieces = parts_of(table)
-        self._smooth = 1 if table.lines else 2 if table.akima else 3
+        self._smooth = {"lines": 1, "spline": 3}.get(table.interpolation, 2)
         self.period = self._x[-1] - self._x[0] if table.ends == "periodic" else 0.0
         self.breakpoints = _breakpoints(table, self._x)
         h = np.diff(self._x)

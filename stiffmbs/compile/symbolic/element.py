@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
+from ...describe.element import IN_EQUATIONS
 from ...errors import InputError
 from .common_normal import common_normal
 from .continuous_angle import ContinuousAngle, counter
@@ -22,23 +23,6 @@ if TYPE_CHECKING:
 COINCIDENT = sp.Float("1e-200")
 """Added under the root of a distance, so that a spring of no free length is defined where its points coincide."""
 
-
-OF_ELEMENTS = (
-    "type",
-    "frames",
-    "angles",
-    "states",
-    "own",
-    "state_rates",
-    "breakpoints",
-    "derivatives",
-    "_rotations",
-    "kind",
-    "_joint",
-    "_coordinate",
-    "lam",
-)
-"""Attributes that are no fields."""
 
 Work = tuple[sp.Expr, sp.Expr]
 """An effort, and what it does work on: a function of the pose, or its rate."""
@@ -87,7 +71,7 @@ class SymbolicElement:
         self.__dict__.update(fields)
 
     def __getattr__(self, name: str) -> Any:
-        known = (*(own for own in self.__dict__ if own not in OF_ELEMENTS), "t", "rate", "distance", "angle", "named")
+        known = (*(own for own in self.__dict__ if own not in IN_EQUATIONS), "t", "rate", "distance", "angle", "named")
         raise AttributeError(f"found e.{name}, expected one of e.{', e.'.join(known)}")
 
     @property

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from functools import partial
@@ -13,6 +14,7 @@ import sympy as sp
 from ...describe.formula.functions import EACH, FUNCTIONS, IN_FORMULAS, Breakpoints, FormulaFunction
 from ...describe.formula.nodes import TIME
 from ...describe.formula.text import evaluate
+from ..bodies import SPACE
 from ..formula_shape import OWN, REACTION, STATE, Shape
 from ..kind import Kind
 from . import nonsmooth, planar_frames, spatial_frames
@@ -35,6 +37,13 @@ STEEP, LEAST_SQUARE = 10, 1e-200
 square of the least |x|."""
 
 
+INTERNAL = re.compile(
+    "|".join((*SPACE.positions, *SPACE.velocities, *SPACE.accelerations))
+    + r"|a\d\d|e\d|phi\d|n|size|turn\d+|carried\d+_\d+|s"
+)
+"""Stems of the symbols of bodies, rotations and common subexpressions, which end with ``_`` and a number, too."""
+
+
 @dataclass(frozen=True)
 class Law:
     """A table or function with zones (`stiffmbs.compile.law_zones`) that a formula calls with something of the state.
@@ -43,7 +52,7 @@ class Law:
     ----------
     argument : expression
     of : (str, int)
-        The zones' name; for ``table`` the place of its offset among the element's numbers, else 0.
+        The zones' name, ``turn`` for the argument of a sine; for ``table`` the place of its offset among the element's numbers, else 0.
     """
 
     argument: sp.Expr
@@ -128,7 +137,8 @@ class _Builder:
 
     def fresh(self, name: str, **assumptions: bool) -> sp.Symbol:
         """A new symbol for the next number."""
-        symbol = sp.Symbol(f"{name}_{len(self.symbols.numbers)}", **(assumptions or {"real": True}))
+        stem = f"{name}_field" if INTERNAL.fullmatch(name) else name
+        symbol = sp.Symbol(f"{stem}_{len(self.symbols.numbers)}", **(assumptions or {"real": True}))
         self.symbols.numbers.append(symbol)
         return symbol
 
@@ -240,12 +250,16 @@ class _Builder:
         """The functions of formulas; those with breakpoints note where they are, if it is in the state."""
 
         def noting(name: str, function: FormulaFunction) -> Any:
+            def turning(argument: sp.Expr) -> sp.Expr:
+                self.symbols.note_law(argument, "turn")
+                return SMOOTH[name](argument)
+
             def called(*arguments: sp.Expr) -> sp.Expr:
                 for breakpoint in _breakpoints(function, arguments):
                     self.symbols.note_event_function(breakpoint)
                 return getattr(nonsmooth, function.symbolic)(*arguments)
 
-            return SMOOTH.get(name, called)
+            return turning if function.turns else SMOOTH.get(name, called)
 
         return {name: noting(name, function) for name, function in IN_FORMULAS.items()}
 

@@ -7,7 +7,7 @@ A repeated entry stands for many: ``link{k}: {for: k in 1..N, mass: 1, position:
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
 from pydantic import ValidationError as PydanticError
@@ -79,8 +79,17 @@ def _keys(place: Any, path: str) -> list[str]:
     return keys
 
 
-def refuse_unused_parameters(scene: dict[str, Any], changes: Sequence[tuple[str, Any]]) -> None:
+def refuse_unused_parameters(
+    scene: dict[str, Any], changes: Sequence[tuple[str, Any]], sections: Collection[str]
+) -> None:
     """Refuse to add a parameter that no other change uses: misspelt, it would change nothing and nobody would know.
+
+    Parameters
+    ----------
+    scene : mapping
+    changes : sequence of (path, value)
+    sections : collection of str
+        What a scene may have at its top.
 
     Raises
     ------
@@ -88,8 +97,16 @@ def refuse_unused_parameters(scene: dict[str, Any], changes: Sequence[tuple[str,
         Names the parameter and those of the scene.
     """
     known = scene.get("parameters") or {}
+    added = {
+        path.partition(".")[2] for path, _ in changes if path.startswith("parameters.")
+    }  # and may be changed again
     for path, _ in changes:
         section, _, name = path.partition(".")
+        if not name and not {path} & {*known, *added, *scene, *sections}:
+            raise InputError(
+                f"{path}: found no such parameter, expected one of {', '.join(map(str, known)) or 'none'}, or a path such as "
+                "forces.spring.stiffness"
+            )
         alone = rf"(?<![\w.]){re.escape(name)}(?![\w.])"
         used = any(re.search(alone, str(text)) for other, text in changes if other != path)
         if section == "parameters" and name and name not in known and not used:

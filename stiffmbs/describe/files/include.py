@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 from ...errors import InputError
-from .other_files import Asked
 from .quoted import quoted, written
 from .read_before import read_yaml_file
 from .text_file import STANDARD_INPUT, file_text
@@ -45,9 +44,7 @@ class Sources:
         return line
 
 
-def read_including(
-    text: str, source: str, file: Path | None, asked: Asked | None = None
-) -> tuple[Any, Callable[[tuple[Any, ...]], str | None]]:
+def read_including(text: str, source: str, file: Path | None) -> tuple[Any, Callable[[tuple[Any, ...]], str | None]]:
     """What stands in a text and in the files that it includes.
 
     Parameters
@@ -58,8 +55,6 @@ def read_including(
         What messages call it.
     file : Path or None
         The file that the text is of, beside which those are that it includes; the working folder's without one.
-    asked : callable, optional
-        Told of each file that is included before it is read.
 
     Returns
     -------
@@ -77,14 +72,13 @@ def read_including(
     found = read_yaml_file(text, source, file)
     if isinstance(found, dict):
         own = (file.resolve(),) if file else ()
-        found = _Including(sources, asked).whole(found, source, file.parent if file else Path(), own, ())
+        found = _Including(sources).whole(found, source, file.parent if file else Path(), own, ())
     return found, sources.line
 
 
 @dataclass
 class _Including:
     sources: Sources
-    asked: Asked | None = None
 
     def whole(
         self, found: dict[str, Any], source: str, folder: Path, within: tuple[Path, ...], path: tuple[str, ...]
@@ -120,8 +114,6 @@ class _Including:
         if len(self.sources.texts) > MOST_FILES:
             raise InputError(f"{where}: found more than {MOST_FILES} files, expected fewer")
         _check_file(file, where)
-        if self.asked is not None:
-            self.asked(file)
         text = file_text(file)
         self.sources.texts.append((str(file), text, path))
         found = read_yaml_file(text, str(file), file)

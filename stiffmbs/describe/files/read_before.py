@@ -6,6 +6,7 @@ There is one entry for a file, which a change of the file replaces.  Where there
 from __future__ import annotations
 
 import json
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -35,7 +36,8 @@ def read_yaml_file(text: str, source: str, file: Path | None) -> Any:
     name, version = f"{FILE}-{digest(str(file.resolve()))}", digest(text)
     stored = folder_of_files().read(name)
     if stored is not None and stored.startswith(version.encode()):
-        return json.loads(stored[len(version) :])
+        with suppress(ValueError):  # of an entry that something else has written
+            return json.loads(stored[len(version) :])
     found = read_yaml(text, source)
     if _is_plain(found) and len(content := json.dumps(found)) <= LARGEST:
         keep(name, f"{version}{content}".encode())

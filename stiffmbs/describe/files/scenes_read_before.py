@@ -19,8 +19,8 @@ from typing import TYPE_CHECKING, Any
 from ...cache.entries import digest
 from ...cache.source_files import digest_of, files_within
 from ...interrupts import uncollected
+from .files_read import digest_of_file, recorded
 from .folder import folder_of_files, keep
-from .other_files import digest_of_file
 from .unchanged import Unchanged
 
 if TYPE_CHECKING:
@@ -58,8 +58,8 @@ def _read(text: str, changes: Sequence[tuple[str, Any]], source: str, file: Path
     """Read a scene, and keep it under a name; nothing is kept without one."""
     from ..reading import read_scene
 
-    others: dict[str, str] = {}
-    scene = read_scene(text, changes, source, file, lambda asked: others.update({str(asked): digest_of_file(asked)}))
+    with recorded() as others:
+        scene = read_scene(text, changes, source, file)
     if name and len(scene.bodies) + len(scene.joints) + len(scene.forces) <= MOST_ELEMENTS:
         content = _pickled(scene)
         if content is not None and len(content) <= LARGEST:
@@ -69,17 +69,19 @@ def _read(text: str, changes: Sequence[tuple[str, Any]], source: str, file: Path
 
 def _scene_in(stored: bytes, text: str) -> Scene | None:
     """The scene of an entry; None where anything that it was read from is no longer the same."""
+    from ..scene import Scene
+
     head, _, content = stored.partition(b"\n")
-    of_text, reader, others = json.loads(head)
-    if of_text != digest(text) or reader != _reader():
-        return None
-    if any(digest_of_file(file) != found for file, found in others.items()):
-        return None
     try:
-        scene: Scene = pickle.loads(content)  # it bears the user's code
-    except Exception:  # of a class that is no longer found: pickles raise whatever Python does
+        of_text, reader, others = json.loads(head)
+        if of_text != digest(text) or reader != _reader():
+            return None
+        if any(digest_of_file(file) != found for file, found in others.items()):
+            return None
+        scene = pickle.loads(content)  # it bears the user's code
+    except Exception:  # of a class that is no longer found, or of what is no scene: pickles raise whatever Python does
         return None
-    return scene
+    return scene if isinstance(scene, Scene) else None
 
 
 @cache

@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 from ...errors import InputError
+from .files_read import LARGEST, content_of
 from .quoted import quoted
 
 STANDARD_INPUT = "-"
@@ -29,7 +30,7 @@ def source_name(path: str | Path) -> str:
     return "standard input" if str(path) == STANDARD_INPUT else str(path)
 
 
-def file_text(path: str | Path, otherwise: str = "") -> str:
+def file_text(path: str | Path, otherwise: str = "", zero: str = "") -> str:
     """What stands in a file, or on standard input where its name is ``-``.
 
     Parameters
@@ -37,26 +38,35 @@ def file_text(path: str | Path, otherwise: str = "") -> str:
     path : str or Path
     otherwise : str
         The encoding of a file that is neither UTF-8 nor UTF-16; such a file is refused without it.
+    zero : str
+        Stands for a zero byte within the text; such a file is refused without it.
 
     Raises
     ------
     InputError
-        When the file cannot be read, or is no text.
+        When the file cannot be read, is no regular file, is larger than `LARGEST`, or is no text.
     """
     source = source_name(path)
     if str(path) == STANDARD_INPUT and sys.stdin is None:
         raise InputError(f"{source}: found it closed, expected a scene")
     try:
-        content = sys.stdin.buffer.read() if str(path) == STANDARD_INPUT else Path(path).read_bytes()
+        content = _standard_input() if str(path) == STANDARD_INPUT else content_of(path)
     except FileNotFoundError:
         raise InputError(f"{source}: found no such file, expected a scene") from None
     except (OSError, ValueError) as error:  # a name may hold what no file system takes
         reason = getattr(error, "strerror", None) or error
         raise InputError(f"{quoted(source)}: the file cannot be read ({reason})") from None
-    return decoded(content, source, otherwise)
+    return decoded(content, source, otherwise, zero)
 
 
-def decoded(content: bytes, source: str, otherwise: str = "") -> str:
+def _standard_input() -> bytes:
+    content = sys.stdin.buffer.read(LARGEST + 1)
+    if len(content) > LARGEST:
+        raise InputError(f"{source_name(STANDARD_INPUT)}: found more than {LARGEST} bytes, expected a scene")
+    return content
+
+
+def decoded(content: bytes, source: str, otherwise: str = "", zero: str = "") -> str:
     """The text of bytes: UTF-8, UTF-16 or UTF-32 by their mark, UTF-16 without one by its zero bytes; errors as `file_text`."""
     encoding = next((name for mark, name in _MARKS if content.startswith(mark)), None) or _unmarked(content)
     try:
@@ -66,12 +76,14 @@ def decoded(content: bytes, source: str, otherwise: str = "") -> str:
             name = encoding.upper().removesuffix("-SIG")
             raise InputError(f"{source}: the file cannot be read (it is not {name} text)") from None
         text = content.decode(otherwise)
-    return checked(text, source)
+    return checked(text, source, zero)
 
 
-def checked(text: str, source: str) -> str:
+def checked(text: str, source: str, zero: str = "") -> str:
     """A text without a byte order mark and what pads its end; refused where zero bytes stand in it, which no text has."""
     text = text.removeprefix("\ufeff").rstrip(_PADDING)
+    if "\0" in text and zero:
+        return text.replace("\0", zero)
     if "\0" in text:
         line = len(lines(text[: text.index("\0")] + "x"))
         raise InputError(f"{source}, line {line}: found a zero byte, expected text")

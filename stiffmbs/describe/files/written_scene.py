@@ -22,9 +22,12 @@ class WrittenScene:
         What messages call it.
     folder : Path or None
         Where meshes are looked for.
+    files : dict of str to str
+        Digests of all files that were read for it besides its own, and of the code of users' own elements.
     """
 
     content: Mapping[str, Any] = field(compare=False)
     changes: tuple[tuple[str, Any], ...] = field(compare=False)
     source: str = field(compare=False)
     folder: Path | None = field(compare=False)
+    files: dict[str, str] = field(default_factory=dict, compare=False)

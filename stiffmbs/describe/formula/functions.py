@@ -72,6 +72,8 @@ class FormulaFunction:
         Whether it grows beyond all bounds within its domain.
     zones : str
         The zones of `stiffmbs.compile.law_zones` in which its features are narrow where the argument is steep.
+    turns : bool
+        Whether it repeats with each turn of its argument.
     in_numbers : bool
         Whether numbers may call it, and not only formulas.
     """
@@ -87,6 +89,7 @@ class FormulaFunction:
     domain: tuple[float, float] = EVERYWHERE
     poles: bool = False
     zones: str = ""
+    turns: bool = False
     in_numbers: bool = False
 
     @property
@@ -139,9 +142,9 @@ def _smooth(value: Callable[[float], float], array: Callable[..., Any], **others
 
 
 FUNCTIONS: dict[str, FormulaFunction] = {
-    "sin": _smooth(math.sin, np.sin),
-    "cos": _smooth(math.cos, np.cos),
-    "tan": _smooth(math.tan, np.tan, poles=True),
+    "sin": _smooth(math.sin, np.sin, turns=True),
+    "cos": _smooth(math.cos, np.cos, turns=True),
+    "tan": _smooth(math.tan, np.tan, poles=True, turns=True),
     "asin": _smooth(math.asin, np.arcsin, domain=(-1.0, 1.0)),
     "acos": _smooth(math.acos, np.arccos, domain=(-1.0, 1.0)),
     "atan": _smooth(math.atan, np.arctan, zones="atan"),

@@ -10,6 +10,7 @@ from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler, Validati
 from pydantic_core import core_schema
 
 from ..fields import Described
+from ..files.files_read import digest_of_file, file_beside
 from ..files.quoted import quoted, written
 from ..units import si
 
@@ -89,8 +90,11 @@ class MeshShape(Shape):
     def _known(cls, file: str, info: ValidationInfo) -> str:
         if Path(file).suffix.lower() not in ENDINGS:
             raise ValueError(f"found '{quoted(file)}', expected a file that ends in {' or '.join(ENDINGS)}")
-        folder = (info.context or {}).get("folder")
-        return str(folder / file) if folder is not None else file
+        if info.context is None:
+            return file
+        path = file_beside(info.context, file)
+        digest_of_file(path)  # records it
+        return str(path)
 
     def placed(self, frame: Any) -> Any:
         signs = (*frame.signs, 1.0)[:3]

@@ -7,10 +7,10 @@ from typing import Any, ClassVar
 from pydantic import Field
 
 from ..element import Joint, Symbolic
-from ..marker import Marker
+from ..marker import InOneTurn, Marker
 
 
-class Fixed(Joint):
+class Fixed(InOneTurn, Joint):
     """Weld: two markers coincide in place and direction.
 
     The reaction is a force of any direction and a torque.  This is Adams' FIXED in the plane.

@@ -91,7 +91,7 @@ def repeating(law: Formula | Table | None) -> Formula | Table | None:
             return law
         case Table(ends=ends, table=((first, _), *_, (last, _))):
             raise ValueError(
-                f"found a table with {ends} ends over {last - first:.9g} rad, expected a periodic one over a full "
+                f"found a table with {ends or 'natural'} ends over {last - first:.9g} rad, expected a periodic one over a full "
                 f"turn, {TURN:.9g} rad"
             )
         case Formula():

@@ -9,10 +9,10 @@ from pydantic import Field
 from ..element import Joint, Symbolic
 from ..forces.friction import magnitude
 from ..loads import Loads
-from ..marker import Marker
+from ..marker import InOneTurn, Marker
 
 
-class Prismatic(Joint):
+class Prismatic(InOneTurn, Joint):
     """Slider: marker i stays on the line through marker j along j's axis and keeps j's direction.
 
     The reaction is a force across the line and a torque; along the line it has no component.

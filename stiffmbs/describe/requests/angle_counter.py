@@ -18,10 +18,10 @@ class AngleCounter(Element):
 
     kind: ClassVar[str] = ""
 
-    angle: OfPosition
+    counted: OfPosition
 
 
 @lru_cache(maxsize=COUNTERS)
 def counter_of(angle: str, bodies: frozenset[str]) -> AngleCounter:
     """The counter of an angle between markers of these bodies, by the angle's text."""
-    return AngleCounter.model_validate({"angle": angle}, context={"names": Names(bodies)})
+    return AngleCounter.model_validate({"counted": angle}, context={"names": Names(bodies)})

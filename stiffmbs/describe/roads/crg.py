@@ -11,7 +11,7 @@ from pydantic_core import core_schema
 
 from ...errors import InputError
 from ..element import Symbolic
-from ..files.other_files import file_beside
+from ..files.files_read import file_beside
 from ..files.quoted import written
 from ..table import Table
 from .crg_grid import CrgGrid, read_crg
@@ -59,7 +59,7 @@ AnyCrg = Annotated[CrgGrid, _CrgField()]
 class CrgRoad(Road):
     """A road by an OpenCRG file (.crg): heights beside a straight or curved reference line, with its slope and banking.
 
-    Along each long section the height is interpolated by Akima's cubics, between two sections straight; beyond the road it stays.
+    Along each long section the height is interpolated by monotone cubics (PCHIP), between two sections straight; beyond the road it stays.
     Of more long sections than `sections` so many are used, equally far apart, and a note says so.  The line may turn by up to
     80 deg from its mean direction.
 
@@ -131,8 +131,7 @@ class CrgRoad(Road):
         used, count = len(self._columns), len(self.file.v)
         if used < count:
             yield f"{used} of the {count} long sections of {self.file.path} are used"
-        if self.file.options:
-            yield f"the options of {self.file.path} are not used: beyond the road its height stays"
+        yield from self.file.remarks
 
     def extent(self) -> tuple[float, float]:
         return float(self.file.u[0]), float(self.file.u[-1])
@@ -174,6 +173,4 @@ def _section(u: np.ndarray, heights: np.ndarray) -> Table:
     beside = (u[1] - u[0]) * np.arange(1, LEVEL + 1)
     at = np.concatenate([u[0] - beside[::-1], u, u[-1] + beside])
     z = np.concatenate([np.full(LEVEL, heights[0]), heights, np.full(LEVEL, heights[-1])])
-    return Table.model_construct(
-        table=tuple(zip(at.tolist(), z.tolist(), strict=True)), ends="natural", lines=False, akima=True
-    )
+    return Table.model_construct(table=tuple(zip(at.tolist(), z.tolist(), strict=True)))

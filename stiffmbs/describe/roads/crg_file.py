@@ -13,11 +13,16 @@ from pathlib import Path
 
 from ...errors import InputError
 from ..files.quoted import quoted
+from ..files.requested import Fields
 
 WIDTH = 72
 """Characters of a line of the header that count."""
 REFUSED = {"ROAD_CRG_FILE": "a reference to another file", "ROAD_CRG_MODS": "modifiers"}
 """Blocks that change what the file says, and what they hold."""
+TEXTS = ("CT",)
+"""Blocks of comments."""
+OF_NO_EFFECT = {f"REFERENCE_LINE_OFFSET_{axis}": 0.0 for axis in ("X", "Y", "Z", "PHI")}
+"""Numbers of ``$ROAD_CRG`` that are not used, and their values without effect."""
 
 
 @dataclass(frozen=True)
@@ -34,8 +39,8 @@ class CrgHeader:
 
     Attributes
     ----------
-    blocks : dict of str to list of Entry
-    numbers : dict of str to float
+    blocks : Fields of lists of Entry
+    numbers : Fields of float
         Of ``$ROAD_CRG``, by the names in capitals.
     layout : str
         Of the data: LRFI, LDFI, KRBI or KDBI.
@@ -49,8 +54,8 @@ class CrgHeader:
         Where the data begin, in bytes.
     """
 
-    blocks: dict[str, list[Entry]]
-    numbers: dict[str, float]
+    blocks: Fields[list[Entry]]
+    numbers: Fields[float]
     layout: str
     channels: list[Entry]
     u: tuple[float, float]
@@ -67,14 +72,16 @@ def read_header(content: bytes, path: Path) -> CrgHeader:
         When it is none; names the line.
     """
     source = str(path)
-    blocks, line, end = _blocks(content, source)
+    found, line, end = _blocks(content, source)
+    blocks = Fields("block", "", {name: entries for name, entries in found.items() if entries})
+    blocks.request(*TEXTS)
     for name, holds in REFUSED.items():
         if blocks.get(name):
             entry = blocks[name][0]
             raise InputError(
                 f"{source}, line {entry.line}: found ${name}, {holds}, expected a file with heights as they are"
             )
-    numbers = dict(_numbers(blocks.get("ROAD_CRG", []), source))
+    numbers = Fields("[ROAD_CRG]", "", dict(_numbers(blocks.get("ROAD_CRG", []), source)), OF_NO_EFFECT)
     definition = blocks.get("KD_DEFINITION", [])
     layouts = [entry for entry in definition if entry.text.startswith("#:")]
     channels = [Entry(entry.line, entry.text[2:].strip()) for entry in definition if entry.text.startswith("D:")]

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ...errors import InputError
+from ..files.files_read import content_of
+from ..files.requested import Fields, unused_notes
 from .crg_file import CrgHeader, Entry, read_header
 from .crg_records import read_records
 
@@ -16,6 +19,11 @@ if TYPE_CHECKING:
 
 UNITS = {"phi": "rad", "slope": "m/m", "banking": "m/m"}
 """Of the channels of the reference line."""
+FROM_THE_DATA = (
+    "REFERENCE_LINE_END_U", "REFERENCE_LINE_END_X", "REFERENCE_LINE_END_Y", "REFERENCE_LINE_END_Z", "REFERENCE_LINE_END_PHI",
+    "REFERENCE_LINE_END_S", "REFERENCE_LINE_END_B", "LONG_SECTION_V_LEFT",
+)  # fmt: skip
+"""Numbers of ``$ROAD_CRG`` that follow from the data."""
 SAME_HEADING = 1e-3
 """rad, between a heading that is given and the one from start to end."""
 SAME_AT_END = {"S": 1e-3, "B": 1e-3, "Z": 1e-2}
@@ -41,8 +49,8 @@ class CrgGrid:
         At its start, rad.
     level : float
         Of the reference line at its start, m.
-    options : bool
-        Whether the file has options, which are not used.
+    remarks : tuple of str
+        What of the file is not used.
     """
 
     path: str
@@ -53,7 +61,7 @@ class CrgGrid:
     y: np.ndarray
     heading: float
     level: float
-    options: bool = False
+    remarks: tuple[str, ...] = ()
 
 
 def read_crg(path: Path) -> CrgGrid:
@@ -70,7 +78,7 @@ def read_crg(path: Path) -> CrgGrid:
     import numpy as np
 
     try:
-        content = path.read_bytes()
+        content = content_of(path)
     except OSError as error:
         raise InputError(f"{path}: the file cannot be read ({error.strerror or error})") from None
     header = read_header(content, path)
@@ -101,11 +109,22 @@ def read_crg(path: Path) -> CrgGrid:
         str(path), u, v, records[:, columns] + level[:, None] + banking[:, None] * v,
         get("REFERENCE_LINE_START_X", 0.0) + _summed(np.cos(phi) * header.u[1]),
         get("REFERENCE_LINE_START_Y", 0.0) + _summed(np.sin(phi) * header.u[1]),
-        float(phi[1]), float(level[0]), bool(header.blocks.get("ROAD_CRG_OPTS")),
+        float(phi[1]), float(level[0]), tuple(_remarks(header, path)),
     )  # fmt: skip
 
 
-def _heading(numbers: dict[str, float], path: Path) -> float:
+def _remarks(header: CrgHeader, path: Path) -> Iterator[str]:
+    """What of a file is not used, a sentence each."""
+    if header.blocks.get("ROAD_CRG_OPTS"):
+        yield f"the options of {path} are not used: beyond the road its height stays"
+    header.numbers.request(*FROM_THE_DATA)
+    names = (entry.text.partition(",")[0].strip() for entry in header.channels)
+    others = [x for x in names if not x.startswith("long section ") and x.removeprefix("reference line ") not in UNITS]
+    channels = Fields("channel", "", dict.fromkeys(others, 0))
+    yield from (f"{path}: {note}" for note in unused_notes([header.blocks, header.numbers, channels]))
+
+
+def _heading(numbers: Mapping[str, float], path: Path) -> float:
     """Of a straight reference line, rad: as it is given, or from its start to its end where that is."""
     start, end = ([numbers.get(f"REFERENCE_LINE_{which}_{axis}") for axis in "XY"] for which in ("START", "END"))
     given = numbers.get("REFERENCE_LINE_START_PHI")
@@ -120,7 +139,7 @@ def _heading(numbers: dict[str, float], path: Path) -> float:
     return found if given is None else given
 
 
-def _check_end(numbers: dict[str, float], found: dict[str, float], path: Path) -> None:
+def _check_end(numbers: Mapping[str, float], found: dict[str, float], path: Path) -> None:
     """Refuse a header that states another end than slope and banking lead to: heights would be wrong along the whole road."""
     for letter, value in found.items():
         stated = numbers.get(f"REFERENCE_LINE_END_{letter}")

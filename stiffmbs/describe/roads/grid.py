@@ -15,7 +15,7 @@ from .rolling_filter import through_filter
 class GridRoad(Road):
     """A road whose heights stand on a grid in a file: its first row has y, each further row x and the heights there, in m.
 
-    Along each line the height is interpolated by Akima's cubics, between two lines straight; beyond the first and the last line
+    Along each line the height is interpolated by monotone cubics (PCHIP), between two lines straight; beyond the first and the last line
     it stays, and beyond both ends it goes on with their slope.
     """
 

@@ -14,7 +14,7 @@ from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationInfo
 from pydantic_core import core_schema
 
 from ...errors import InputError
-from ..files.other_files import file_beside
+from ..files.files_read import file_beside
 from ..files.quoted import quoted, written
 from ..files.text_file import file_text, lines
 from ..table import Table
@@ -58,7 +58,7 @@ def read_grid(path: Path) -> Grid:
             )
     _refuse_disorder([(number, row[0]) for number, row in heights], "x", path)
     tables = (tuple((row[0], row[1 + k]) for _, row in heights) for k in range(len(across)))
-    return Grid(across, tuple(Table(table=table, akima=True) for table in tables))
+    return Grid(across, tuple(Table(table=table) for table in tables))
 
 
 def _rows(text: str, source: str) -> Iterator[tuple[int, tuple[float, ...]]]:

@@ -137,4 +137,4 @@ def _table(waves: np.ndarray, k: np.ndarray, count: int, length: float) -> Table
     heights = np.fft.irfft(spectrum, count)
     x = np.linspace(0.0, length, count + 1)
     rows = zip(x.tolist(), [*heights.tolist(), float(heights[0])], strict=True)
-    return Table.model_construct(table=tuple(rows), ends="periodic", lines=False, akima=False)
+    return Table.model_construct(table=tuple(rows), ends="periodic")

@@ -94,7 +94,7 @@ def reference_line(u: np.ndarray, x: np.ndarray, y: np.ndarray, v: np.ndarray, s
 
 def _table(arguments: np.ndarray, values: np.ndarray) -> Table:
     rows = zip(arguments.tolist(), values.tolist(), strict=True)
-    return Table.model_construct(table=tuple(rows), ends="natural", lines=False, akima=False)
+    return Table.model_construct(table=tuple(rows), ends="natural")
 
 
 def _chosen(u: np.ndarray, x: np.ndarray, y: np.ndarray) -> np.ndarray:

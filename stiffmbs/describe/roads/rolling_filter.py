@@ -60,9 +60,7 @@ def rolled_profile(heights: Callable[[np.ndarray], np.ndarray], extent: tuple[fl
 
 def _table(x: np.ndarray, heights: np.ndarray, periodic: bool) -> Table:
     rows = zip(x.tolist(), heights.tolist(), strict=True)
-    return Table.model_construct(
-        table=tuple(rows), ends="periodic" if periodic else "natural", lines=False, akima=not periodic
-    )
+    return Table.model_construct(table=tuple(rows), ends="periodic" if periodic else None)
 
 
 def _centres(
@@ -102,7 +100,7 @@ def _take_in(centre: np.ndarray, x: np.ndarray, points: np.ndarray, radius: floa
 def heights_of(table: Table, x: np.ndarray) -> np.ndarray:
     """The profile, which goes on straight or repeats as in the equations."""
     import numpy as np
-    from scipy.interpolate import Akima1DInterpolator, CubicSpline
+    from scipy.interpolate import Akima1DInterpolator, CubicSpline, PchipInterpolator
 
     at, heights = np.array(table.table).T
     if table.ends == "periodic":
@@ -113,7 +111,8 @@ def heights_of(table: Table, x: np.ndarray) -> np.ndarray:
         slope = np.diff(heights) / np.diff(at)
         ends = np.where(x < at[0], slope[0], slope[-1])
         return np.interp(inside, at, heights) + ends * (x - inside)
-    found = Akima1DInterpolator(at, heights) if table.akima else CubicSpline(at, heights, bc_type=table.ends)
+    local = {"akima": Akima1DInterpolator, "monotone": PchipInterpolator}.get(table.interpolation)
+    found = local(at, heights) if local else CubicSpline(at, heights, bc_type=table.ends or "natural")
     return np.asarray(found(inside) + found(inside, 1) * (x - inside))
 
 

@@ -10,6 +10,9 @@ from collections.abc import Iterable
 
 import numpy as np
 
+BEYOND = (
+    "found numbers too large to compute with, expected lengths, masses and moments of inertia below 1e100 in SI units"
+)
 MASSLESS = 1e-8
 """Of the lightest mass, and of that at the mechanism's reach; with a tenth of it reactions feel rounding."""
 NO_MOMENT = 1e-12

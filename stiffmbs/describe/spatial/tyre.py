@@ -115,6 +115,11 @@ class Tyre(Force):
         """The load at a deflection above zero, N; it is never taken below zero."""
         return e.stiffness * deflection + e.damping * rate
 
+    @staticmethod
+    def rim_contact(e: Symbolic, deflection: Any, camber: Any) -> tuple[Any, Any] | None:
+        """Normal force of the rim on the road, N, and its overturning torque, N m; None for a tyre without."""
+        return None
+
     @classmethod
     def rolling_radius(cls, e: Symbolic, deflection: Any) -> Any:
         """Effective rolling radius, m: with a third of the deflection below the unloaded one."""
@@ -140,7 +145,7 @@ class Tyre(Force):
 
     @classmethod
     def _acting(cls, e: Symbolic) -> tuple[Any, Rolling, Any, Any]:
-        """The contact, what the law depends on, the deflection, and the law's forces and torques."""
+        """The contact, what the law depends on, the deflection, and the forces Fx, Fy, N and torques with those of the rim."""
         from sympy import atan
 
         touch = cls._touching(e)
@@ -149,7 +154,10 @@ class Tyre(Force):
         of = (touch.load, touch.slip, angle, contact.camber, touch.speed, direction, contact.friction)
         rolling = Rolling(*(e.variable(x) if e.in_state(x) else x for x in map(e.read, of)))
         variables = [x for x in vars(rolling).values() if e.in_state(x)]
-        return contact, rolling, touch.deflection, e.composed(cls.law(e, rolling), variables)
+        fx, fy, mx, my, mz = e.composed(cls.law(e, rolling), variables)
+        rim = cls.rim_contact(e, touch.deflection, contact.camber)
+        normal = rolling.load if rim is None else e.read(touch.load + rim[0])
+        return contact, rolling, touch.deflection, (fx, fy, normal, mx if rim is None else mx + rim[1], my, mz)
 
     @classmethod
     def rates(cls, e: Symbolic) -> Any:
@@ -159,9 +167,9 @@ class Tyre(Force):
     @classmethod
     def powers(cls, e: Symbolic) -> Pairs:
         """The wrench at the point of contact on the wheel, and the opposite on the road's body."""
-        contact, rolling, _, (fx, fy, mx, my, mz) = cls._acting(e)
+        contact, _, _, (fx, fy, normal, mx, my, mz) = cls._acting(e)
         axes = contact.forward, contact.left, contact.normal
-        force = e.named(_along(axes, (fx, fy, rolling.load)))
+        force = e.named(_along(axes, (fx, fy, normal)))
         torque = e.named(_along(axes, (mx, my, mz)))
         v, w = velocity(e, e.i, contact.point), e.i.omega
         if e.j is not None:
@@ -171,9 +179,9 @@ class Tyre(Force):
     @classmethod
     def measured(cls, e: Symbolic) -> list[Any]:
         """In the order of `channels`."""
-        _, rolling, deflection, (fx, fy, mx, my, mz) = cls._acting(e)
+        _, rolling, deflection, (fx, fy, normal, mx, my, mz) = cls._acting(e)
         return [
-            fx, fy, rolling.load, mx, my, mz, rolling.slip, rolling.slip_angle, rolling.camber, deflection,
+            fx, fy, normal, mx, my, mz, rolling.slip, rolling.slip_angle, rolling.camber, deflection,
         ]  # fmt: skip
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
@@ -11,9 +12,23 @@ from pydantic_core import core_schema
 
 from ...errors import InputError
 from ..element import Component
-from ..files.other_files import file_beside
+from ..files.files_read import file_beside
 from ..files.quoted import quoted, written
-from .names import COEFFICIENTS, COMBINED, DIMENSIONS, KNOWN_UNUSED, REQUIRED, SCALES, TEXTS
+from ..files.requested import unused_notes
+from ..table import Table
+from .names import (
+    AS_BEFORE,
+    COEFFICIENTS,
+    COMBINED,
+    DIMENSIONS,
+    LATER,
+    OF_THE_FILE,
+    RANGES,
+    REASONS,
+    REQUIRED,
+    SCALES,
+    home,
+)
 from .property_file import PropertyFile, read_property_file
 
 if TYPE_CHECKING:
@@ -31,10 +46,18 @@ WITH_LENGTHS = 10
 """What USE_MODE is greater by where slips lag by relaxation lengths."""
 MODES = frozenset((*range(5), *range(10, 15)))
 """USE_MODE without its sign."""
-LATER_FORMULA = 60
-"""FITTYP from which on a file is of MF-Tyre 6.0 or later."""
+FITTYPES = (5, 6, 50, 52)
+"""FITTYP of MF-Tyre 5.x."""
 SIDES = ("left", "right", "symmetric")
 FORMATS = ("PAC2002", "MF_05", "MF-TYRE", "MF_52", "52", "MF52")
+
+
+class Bottoming(Component):
+    """Contact of the rim with the road: [BOTTOMING_CURVE] of PAC2002."""
+
+    radius: float = Field(gt=0, description="BOTTOMING_RADIUS, m")
+    width: float = Field(0.0, ge=0, description="WIDTH of the tyre, m; without it camber has no effect")
+    load: Table = Field(description="force (N) over penetration (m)")
 
 
 class TyreProperties(Component):
@@ -49,6 +72,14 @@ class TyreProperties(Component):
     coefficients: dict[str, float] = Field(description="by name, SI units")
     use_mode: int | None = Field(None, description="USE_MODE of PAC2002; 4, or 14 with relaxation lengths, by default")
     side: Literal["", "left", "right", "symmetric"] = Field("", description="TYRESIDE, that the tyre was measured on")
+    ranges: dict[str, tuple[float, float]] = Field(
+        {},
+        description="lowest and highest slip, slip_angle (rad), camber (rad) and load (N) that the properties are valid for",
+    )
+    deflection_load: Table | None = Field(
+        None, description="load (N) over deflection (m), in place of VERTICAL_STIFFNESS"
+    )
+    bottoming: Bottoming | None = Field(None, description="contact of the rim with the road")
     remarks: tuple[str, ...] = ()
 
     @model_validator(mode="after")
@@ -98,7 +129,10 @@ class TyreProperties(Component):
 
     def in_equations(self) -> dict[str, Any]:
         mode = 4 if self.use_mode is None else abs(self.use_mode) % WITH_LENGTHS
-        own = {"is_combined": self.is_combined, "mode": str(mode), "is_mirrored": self.is_mirrored, "side": self.side}
+        own = {
+            "is_combined": self.is_combined, "mode": str(mode), "is_mirrored": self.is_mirrored, "side": self.side,
+            "deflection_load": self.deflection_load, "bottoming": self.bottoming,
+        }  # fmt: skip
         return {**DEFAULTS, **self.coefficients, **own}
 
     def notes(self) -> Iterator[str]:
@@ -156,39 +190,97 @@ class TyreProperties(Component):
 
 
 def _of_file(file: PropertyFile) -> TyreProperties:
-    form = file.text("PROPERTY_FILE_FORMAT")
-    if form and form not in FORMATS:
-        line = file.entries["PROPERTY_FILE_FORMAT"].line
-        raise InputError(
-            f"{file.source}, line {line}: found the format '{quoted(form)}', expected PAC2002 or MF-Tyre 5.2 "
-            f"({', '.join(FORMATS)})"
-        )
+    _check_formula(file)
     found = {
-        name: file.number(name, DIMENSIONS.get(name, ""))
+        name: file.number(name, DIMENSIONS.get(name, ""), home(name))
         for name in NUMBERS
-        if name in file.entries or name in REQUIRED
+        if name in REQUIRED or file.entry(name, home(name))
     }
-    unknown = [name for name in file.entries if name not in (*NUMBERS, *KNOWN_UNUSED, *TEXTS)]
-    remarks = [f"{file.source}: the keys {', '.join(unknown)} are not used"] if unknown else []
-    if "FITTYP" in file.entries and file.number("FITTYP") >= LATER_FORMULA:
-        line = file.entries["FITTYP"].line
-        remarks.append(
-            f"{file.source}, line {line}: FITTYP is that of a later Magic Formula, and its forces are those of MF-Tyre 5.2"
-        )
+    read = {
+        "coefficients": found, "use_mode": _mode(file), "side": _side(file), "ranges": dict(_ranges(file)),
+        "deflection_load": _curve(file, "DEFLECTION_LOAD_CURVE"), "bottoming": _bottoming(file),
+    }  # fmt: skip
+    for name in OF_THE_FILE:
+        file.entry(name)
+    remarks = unused_notes([*file.sections.values(), file.tables], REASONS)
     try:
-        return TyreProperties(coefficients=found, use_mode=_mode(file), side=_side(file), remarks=tuple(remarks))
+        return TyreProperties(**read, remarks=tuple(f"{file.source}: {note}" for note in remarks))
     except InputError as error:
         raise InputError(f"{file.source}: {str(error).removeprefix('TyreProperties: ')}") from None
 
 
+def _check_formula(file: PropertyFile) -> None:
+    """Refuse files of other formulas: by their format, by FITTYP, and without it by coefficients that 5.2 does not have."""
+    form = file.text("PROPERTY_FILE_FORMAT")
+    if form and form not in FORMATS:
+        raise InputError(
+            f"{_where(file, 'PROPERTY_FILE_FORMAT')}: found the format '{quoted(form)}', expected PAC2002 or MF-Tyre 5.2 "
+            f"({', '.join(FORMATS)})"
+        )
+    if file.entry("FITTYP", "MODEL"):
+        kind = file.number("FITTYP", home="MODEL")
+        if kind not in FITTYPES:
+            raise InputError(
+                f"{_where(file, 'FITTYP')}: found FITTYP = {kind:g}, expected that of MF-Tyre 5.2, one of "
+                f"{', '.join(map(str, FITTYPES))}: the Magic Formula 6.0 and later gives other forces and is not available"
+            )
+        return
+    for name in LATER:
+        if file.entry(name, home(name)) and file.number(name, home=home(name)) != AS_BEFORE[name]:
+            raise InputError(
+                f"{_where(file, name)}: found {name} and no FITTYP, a coefficient of the Magic Formula 6.0 or later, which "
+                f"is not available; expected a file of MF-Tyre 5.2, or FITTYP = {FITTYPES[0]} where {name} has no effect"
+            )
+
+
+def _where(file: PropertyFile, name: str) -> str:
+    entry = file.entry(name, home(name))
+    return f"{file.source}, line {entry.line}" if entry else file.source
+
+
+def _ranges(file: PropertyFile) -> Iterator[tuple[str, tuple[float, float]]]:
+    """The ranges that the file is valid in, by channel; a missing end has no bound."""
+    for channel, (least, most, dimension) in RANGES.items():
+        ends = [file.number(name, dimension) if file.entry(name) else None for name in (least, most)]
+        if ends != [None, None]:
+            low, high = (-math.inf if ends[0] is None else ends[0]), (math.inf if ends[1] is None else ends[1])
+            yield channel, (low, high)
+
+
+def _curve(file: PropertyFile, section: str) -> Table | None:
+    """A curve of loads over deflections, N over m."""
+    rows = file.tables.get(f"[{section}]")
+    if rows is None:
+        return None
+    where = f"{file.source}, line {rows.line}: [{section}]"
+    if any(len(row) != 2 for row in rows.numbers):
+        raise InputError(f"{where}: found rows of other than two numbers, expected a deflection and a load in each")
+    length, force = file.factor("length"), file.factor("force")
+    try:
+        return Table(table=tuple((length * deflection, force * load) for deflection, load in rows.numbers))
+    except InputError as error:
+        raise InputError(f"{where}: {error}") from None
+
+
+def _bottoming(file: PropertyFile) -> Bottoming | None:
+    """The contact of the rim, if the file has its curve and its radius."""
+    if not file.entry("BOTTOMING_RADIUS", "DIMENSION"):
+        return None
+    load = _curve(file, "BOTTOMING_CURVE")
+    if load is None:
+        return None
+    width = file.number("WIDTH", "length", "DIMENSION") if file.entry("WIDTH", "DIMENSION") else 0.0
+    return Bottoming(radius=file.number("BOTTOMING_RADIUS", "length", "DIMENSION"), width=width, load=load)
+
+
 def _mode(file: PropertyFile) -> int | None:
     """USE_MODE, if there is one."""
-    if "USE_MODE" not in file.entries:
+    if not file.entry("USE_MODE", "MODEL"):
         return None
-    mode, line = file.number("USE_MODE"), file.entries["USE_MODE"].line
+    mode = file.number("USE_MODE", home="MODEL")
     if abs(mode) not in MODES:
         raise InputError(
-            f"{file.source}, line {line}: found USE_MODE = {mode:g}, expected 0 to 4 for steady slip, 10 to 14 for slip with "
+            f"{_where(file, 'USE_MODE')}: found USE_MODE = {mode:g}, expected 0 to 4 for steady slip, 10 to 14 for slip with "
             "relaxation lengths, or one of these below zero for a mirrored tyre"
         )
     return int(mode)
@@ -198,9 +290,8 @@ def _side(file: PropertyFile) -> Any:
     """TYRESIDE, in small letters."""
     side = file.text("TYRESIDE").lower()
     if side and side not in SIDES:
-        line = file.entries["TYRESIDE"].line
         raise InputError(
-            f"{file.source}, line {line}: found TYRESIDE = '{quoted(side)}', expected one of {', '.join(SIDES)}"
+            f"{_where(file, 'TYRESIDE')}: found TYRESIDE = '{quoted(side)}', expected one of {', '.join(SIDES)}"
         )
     return side
 

@@ -191,7 +191,7 @@ def relaxation_lengths(p: Any, load: Any, gamma: Any, f: Name) -> tuple[Any, Any
     dfz, R = increment(p, load, f), p.UNLOADED_RADIUS
     along = load * (p.PTX1 + p.PTX2 * dfz) * exp(-p.PTX3 * dfz) * R / p.FNOMIN * p.LSGKP
     by_load = sin(2 * atan(load / (p.PTY2 * p.FNOMIN * p.LFZO)))
-    return along, p.PTY1 * by_load * (1 - p.PKY3 * magnitude(gamma)) * R * p.LFZO * p.LSGAL
+    return along, p.PTY1 * by_load * (1 - p.PKY3 * magnitude(gamma * p.LGAY)) * R * p.LFZO * p.LSGAL
 
 
 def increment(p: Any, load: Any, f: Name) -> Any:

@@ -33,16 +33,50 @@ DIMENSIONS = {
 }  # fmt: skip
 """Other numbers that are used, and what they measure."""
 REQUIRED = ("FNOMIN", "UNLOADED_RADIUS", "VERTICAL_STIFFNESS", "PCX1", "PDX1", "PKX1", "PCY1", "PDY1", "PKY1", "PKY2")
-KNOWN_UNUSED = _words(
+LATER = _words(
     """
-    VXLOW WIDTH ASPECT_RATIO RIM_RADIUS RIM_WIDTH KPUMIN KPUMAX ALPMIN ALPMAX CAMMIN CAMMAX FZMIN
-    LGYR QTZ1 MBELT PROPERTY_FILE_FORMAT FILE_TYPE FILE_VERSION FILE_FORMAT
-    LENGTH FORCE ANGLE MASS TIME FITTYP MFSAFE1 MFSAFE2 MFSAFE3 TYPE_OF_DYNAMICS
+    PPX1 PPX2 PPX3 PPX4 PPY1 PPY2 PPY3 PPY4 PPY5 PPZ1 PPZ2 PPMX1 PKY4 PKY5 PKY6 PKY7 PEY5 RBX3 RBY4 QDZ10 QDZ11
+    QSX4 QSX5 QSX6 QSX7 QSX8 QSX9 QSX10 QSX11 QSX12 QSX13 QSX14 QSY5 QSY6 QSY7 QSY8
     """
 )
-"""What files have that is not used, and no note is made of."""
-TEXTS = ("USE_MODE", "TYRESIDE")
-"""What else files have that is used."""
+"""Coefficients of forces that MF-Tyre 6.0 and later have, and 5.2 does not."""
+AS_BEFORE = {**dict.fromkeys(LATER, 0.0), "PKY4": 2.0, "QSY7": 1.0}
+"""Their values without effect."""
+RANGES = {
+    "slip": ("KPUMIN", "KPUMAX", ""), "slip_angle": ("ALPMIN", "ALPMAX", "angle"),
+    "camber": ("CAMMIN", "CAMMAX", "angle"), "load": ("FZMIN", "FZMAX", "force"),
+}  # fmt: skip
+"""Ends of the ranges that a file is valid in, by channel, and their dimension."""
+OF_THE_FILE = ("FILE_TYPE", "FILE_VERSION", "FILE_FORMAT")
+"""Keys that describe the file itself."""
+REASONS = {
+    "*": {
+        "QTZ1": "the gyroscopic couple of the belt is left out", "MBELT": "the gyroscopic couple of the belt is left out",
+        "BELT_MASS": "the gyroscopic couple of the belt is left out", "LGYR": "the gyroscopic couple of the belt is left out",
+    },
+    "[INERTIA]": {"*": "the wheel's body has the mass"},
+}  # fmt: skip
+"""Why keys have no effect, by section."""
+DEFAULT_VALUES = {
+    "QTZ1": 0.0, "LGYR": 1.0, "GRAVITY": -9.81, **AS_BEFORE,
+    **dict.fromkeys(("LIP", "LKYC", "LKZC", "LMP", "LMUV", "LAMU", "LCZ", "LFZMAX"), 1.0),
+}  # fmt: skip
+"""Values of keys that are not used, with which they have no effect."""
+
+
+def home(name: str) -> str:
+    """Return the section of a property file that a key belongs to."""
+    if name in DIMENSIONS:
+        return {"UNLOADED_RADIUS": "DIMENSION", "LONGVL": "MODEL", "FZMAX": "VERTICAL_FORCE_RANGE"}.get(
+            name, "VERTICAL"
+        )
+    if name in SCALES:
+        return "SCALING_COEFFICIENTS"
+    of_torque = {"X": "OVERTURNING_COEFFICIENTS", "Y": "ROLLING_COEFFICIENTS", "Z": "ALIGNING_COEFFICIENTS"}
+    of_force = {"X": "LONGITUDINAL_COEFFICIENTS", "Y": "LATERAL_COEFFICIENTS", "Z": "ALIGNING_COEFFICIENTS"}
+    return (of_torque if name[0] == "Q" else of_force).get(name[2:3], "")
+
+
 SAMPLE = {
     "FNOMIN": 1.0, "UNLOADED_RADIUS": 1.0, "VERTICAL_STIFFNESS": 1.0, "PCX1": 1.6, "PDX1": 1.1, "PKX1": 2.0, "PCY1": 1.4,
     "PDY1": 1.0, "PKY1": -1.3, "PKY2": 1.5, "RBX1": 1.3, "RCX1": 1.1, "RBY1": 0.7, "RCY1": 1.05, "QBZ1": 1.0, "QCZ1": 1.1,

@@ -10,7 +10,9 @@ from pathlib import Path
 
 from ...errors import InputError
 from ..files.quoted import quoted
+from ..files.requested import Fields
 from ..files.text_file import file_text, lines
+from .names import DEFAULT_VALUES
 
 UNITS: Mapping[str, Mapping[str, float]] = {
     "LENGTH": {"meter": 1.0, "m": 1.0, "mm": 1e-3, "millimeter": 1e-3, "cm": 1e-2, "centimeter": 1e-2, "km": 1e3,
@@ -39,44 +41,83 @@ class Entry:
     line: int
     section: str
 
+    def __str__(self) -> str:
+        return self.text
+
+
+@dataclass(frozen=True)
+class Rows:
+    """Rows of numbers below a heading in braces, and the line of the first."""
+
+    line: int
+    numbers: tuple[tuple[float, ...], ...]
+
 
 @dataclass(frozen=True)
 class PropertyFile:
-    """What stands in a file.
+    """The content of a file.
 
     Attributes
     ----------
     source : str
-        What messages call it.
-    entries : mapping of str to Entry
-        By key, in capital letters.
-    tables : mapping of str to tuple of rows
-        Rows of numbers below a heading in braces, by section; with the line of the first.
+        Its name in messages.
+    sections : mapping of str to Fields
+        The keys of each section, in capital letters.
+    tables : Fields of Rows
+        By section.
     """
 
     source: str
-    entries: Mapping[str, Entry]
-    tables: Mapping[str, tuple[int, tuple[tuple[float, ...], ...]]]
+    sections: Mapping[str, Fields[Entry]]
+    tables: Fields[Rows]
 
-    def text(self, key: str) -> str:
-        """A value in capital letters; empty where there is none."""
-        return self.entries[key].text.upper() if key in self.entries else ""
+    def entry(self, key: str, home: str = "") -> Entry | None:
+        """Return the entry of a key, or None.
 
-    def number(self, key: str, dimension: str = "") -> float:
-        """A value in SI units.
+        Parameters
+        ----------
+        key : str
+        home : str
+            The section that the key belongs to, which counts where several sections have the key.
+
+        Raises
+        ------
+        InputError
+            When sections to which the key does not belong give it different values.
+        """
+        having = [section for section in self.sections.values() if section.has(key)]
+        own = [section for section in having if section.kind == f"[{home}]"]
+        found = [section[key] for section in own or having]
+        if not found:
+            return None
+        for other in found[1:]:
+            if other.text != found[0].text:
+                raise InputError(
+                    f"{self.source}, line {other.line}: found {key} in [{other.section}] and in [{found[0].section}] "
+                    f"(line {found[0].line}), expected it in one section" + (f", [{home}]" if home else "")
+                )
+        return found[0]
+
+    def text(self, key: str, home: str = "") -> str:
+        """Return a value in capital letters, empty where there is none."""
+        entry = self.entry(key, home)
+        return entry.text.upper() if entry else ""
+
+    def number(self, key: str, dimension: str = "", home: str = "") -> float:
+        """Return a value in SI units.
 
         Raises
         ------
         InputError
             When the file has none, or it is no number.
         """
-        if key not in self.entries:
+        entry = self.entry(key, home)
+        if entry is None:
             raise InputError(f"{self.source}: found no {key}, expected one")
-        entry = self.entries[key]
         return _number(entry.text, f"{self.source}, line {entry.line}: {key}") * self.factor(dimension)
 
     def factor(self, dimension: str) -> float:
-        """The file's unit of a dimension in SI units; SI units where the file has no [UNITS].
+        """Return the file's unit of a dimension in SI units; SI units where the file has no [UNITS].
 
         Raises
         ------
@@ -84,11 +125,11 @@ class PropertyFile:
             For a unit that is not known.
         """
         value = 1.0
+        units: Mapping[str, Entry] = self.sections.get("UNITS", {})
         for kind, power in POWERS[dimension].items():
-            entry = self.entries.get(kind)
-            if entry is None or entry.section != "UNITS":
+            if kind not in units:
                 continue
-            known = UNITS[kind]
+            entry, known = units[kind], UNITS[kind]
             if entry.text.lower() not in known:
                 raise InputError(
                     f"{self.source}, line {entry.line}: {kind}: found the unit '{quoted(entry.text)}', expected one of "
@@ -111,8 +152,8 @@ def read_property_file(path: Path) -> PropertyFile:
 
 def parse_properties(text: str, source: str) -> PropertyFile:
     """The same for its text."""
-    entries: dict[str, Entry] = {}
-    tables: dict[str, tuple[int, list[tuple[float, ...]]]] = {}
+    sections: dict[str, dict[str, Entry]] = {}
+    rows: dict[str, tuple[int, list[tuple[float, ...]]]] = {}
     section = ""
     for number, line in enumerate(lines(text), start=1):
         content = line.strip()
@@ -122,22 +163,25 @@ def parse_properties(text: str, source: str) -> PropertyFile:
         if content.startswith("["):
             section = _section(content, where)
         elif key := _KEY.match(content):
-            name = key[1].upper()
-            if name in entries:
-                raise InputError(
-                    f"{where}: found {name} again, which line {entries[name].line} has too, expected it once"
-                )
-            entries[name] = Entry(_value(key[2], where), number, section)
+            name, own = key[1].upper(), sections.setdefault(section, {})
+            if name in own:
+                raise InputError(f"{where}: found {name} again, which line {own[name].line} has too, expected it once")
+            own[name] = Entry(_value(key[2], where), number, section)
         elif section:
             row = tuple(_number(part, where) for part in re.split(r"[\s,]+", _uncommented(content)))
-            tables.setdefault(section, (number, []))[1].append(row)
+            rows.setdefault(section, (number, []))[1].append(row)
         else:
             raise InputError(
                 f"{where}: found '{quoted(content)}', expected a [SECTION], KEY = value, or a comment (! or $)"
             )
-    if not entries:
+    if not sections:
         raise InputError(f"{source}: found no KEY = value, expected a file of tyre properties")
-    return PropertyFile(source, entries, {name: (line, tuple(rows)) for name, (line, rows) in tables.items()})
+    tables = {f"[{name}]": Rows(line, tuple(numbers)) for name, (line, numbers) in rows.items()}
+    return PropertyFile(
+        source,
+        {name: Fields(f"[{name}]", "", own, DEFAULT_VALUES) for name, own in sections.items()},
+        Fields("table", "", tables),
+    )
 
 
 def _section(content: str, where: str) -> str:

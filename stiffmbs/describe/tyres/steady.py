@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-CHOICES = ("is_combined", "mode", "is_mirrored", "side")
+CHOICES = ("is_combined", "mode", "is_mirrored", "side", "deflection_load", "bottoming")
 """What is no number among the properties; of these forces and torques without a model see `is_combined`."""
 OUTPUTS = ("longitudinal", "lateral", "overturning", "rolling", "aligning")
 

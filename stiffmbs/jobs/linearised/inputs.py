@@ -42,13 +42,14 @@ def force_on(model: ModelBuilder[Any, Any, Any] | ModelData, name: str) -> Param
         return _input_of(data, name)
     at, _, component = name.rpartition(".")
     body, marker = Names(frozenset(data.bodies)).body_and_marker(at)
-    place = {"body": body, "marker": marker or None}
     components = BODY_KINDS[data.dimensions].reactions
     if body not in data.bodies or component not in components:
         raise InputError(
             f"input '{name}': found no such force, expected BODY.COMPONENT or BODY.MARKER.COMPONENT with one of "
             f"{', '.join(components)}, or a parameter of the scene"
         )
+
+    place = _place(data, body, marker)
 
     def with_force(value: float) -> ModelData:
         loads = [value if label == component else 0.0 for label in components]
@@ -66,7 +67,15 @@ def _input_of(data: ModelData, name: str) -> Parameterised:
     return lambda shift: data.model_copy(update={"inputs": {**data.inputs, name: Amount(value + shift)}})
 
 
-def _applied(dimensions: int, at: dict[str, str | None], loads: list[float]) -> Force:
+def _place(data: ModelData, body: str, marker: str) -> dict[str, Any]:
+    """A marker that a body names, or the body's centre of mass, which is not its origin for every body in space."""
+    if marker:
+        return {"body": body, "marker": marker}
+    centre = getattr(data.bodies[body], "center_of_mass", None)
+    return {"body": body} if centre is None else {"body": body, "point": centre}
+
+
+def _applied(dimensions: int, at: dict[str, Any], loads: list[float]) -> Force:
     """The applied force or torque with some components, of which one differs from zero at most."""
     force, torque = tuple(loads[:dimensions]), tuple(loads[dimensions:])
     if dimensions == 2:

@@ -19,9 +19,13 @@ from ..job import Runnable
 from ..start_from import StartFrom
 from .at_state import AtState, at_state
 from .mode_shapes import mode_shape
+from .sides import Kink, kink_at
 
 AT_REST = 1e-6
 """Acceleration relative to that of gravity (to 1 m/s^2 without), below which a state counts as an equilibrium."""
+
+MOST_LISTED = 6
+"""Eigenvalues that a note lists for each side of a breakpoint."""
 
 
 @dataclass(frozen=True)
@@ -46,6 +50,8 @@ class Modes:
         The model at that state.
     own_axes : sparse array, shape (n_u, n_u)
         From ground axes, which shapes are in, to those of u.
+    sides : tuple of StateMatrix
+        Where the state lies on a breakpoint of a force, the state matrices of both sides; empty elsewhere.
     """
 
     name: str
@@ -56,6 +62,7 @@ class Modes:
     notes: tuple[str, ...]
     about: AtState
     own_axes: csr_array
+    sides: tuple[StateMatrix, ...] = ()
 
     def shape(self, number: int, amplitude: float = 0.1, points: int = 61) -> Solution:
         """One period of a mode as results over time, which can be drawn and saved like those of a run.
@@ -135,8 +142,22 @@ def modes(
     linear = linearised(found.dynamics, found.t, found.acceleration)
     state = state_matrix(linear, scale)
     shapes = tuple(natural_modes(state, linear.mass, system.bodies, scale))
-    notes = tuple(_notes(found, state))
-    return Modes(found.data.name, found.t, state.degrees_of_freedom, shapes, state, notes, found, linear.own_axes)
+    kink = kink_at(found, state, linear)
+    sides = () if kink is None else tuple(state_matrix(side, scale) for side in kink.sides)
+    of_sides = [natural_modes(side, linear.mass, system.bodies, scale) for side in sides]
+    notes = (*_notes(found, state), *([] if kink is None else [_kink_sentence(kink, of_sides)]))
+    return Modes(
+        found.data.name, found.t, state.degrees_of_freedom, shapes, state, notes, found, linear.own_axes, sides
+    )
+
+
+def _kink_sentence(kink: Kink, sides: list[list[Mode]]) -> str:
+    """The eigenvalues of both sides of a breakpoint."""
+    listed = [", ".join(f"{mode.eigenvalues[0]:.4g}" for mode in side[:MOST_LISTED]) for side in sides]
+    return (
+        f"the state lies on a breakpoint of a force on {kink.where}, or within a millionth of the mechanism's size of one: the modes "
+        f"are those of one side; eigenvalues are {listed[0]} on one side and {listed[1]} on the other"
+    )
 
 
 def _notes(found: AtState, state: StateMatrix) -> Iterator[str]:
@@ -151,7 +172,7 @@ def _notes(found: AtState, state: StateMatrix) -> Iterator[str]:
     rolling = state.n_poses - state.degrees_of_freedom
     if rolling:
         ways = "one direction" if rolling == 1 else f"{rolling} directions"
-        yield f"constraints of velocities alone, as of rolling, leave {ways} of poses without a free velocity, which have no mode"
+        yield f"constraints of velocities alone, as of rolling, leave {ways} of poses without a free velocity; a zero eigenvalue of these is no mode"
     extra = state.degrees_of_freedom - found.redundancy.degrees_of_freedom
     if extra > 0:
         yield f"the state is a singular pose: {extra} degrees of freedom more than in general"

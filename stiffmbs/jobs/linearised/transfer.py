@@ -22,6 +22,7 @@ from ..job import Runnable, prepare
 from ..start_from import StartFrom
 from .at_state import AtState, at_state
 from .inputs import Parameterised, force_on
+from .sides import kink_at
 
 PLACES = ("dx", "dy", "dz", "dm", "ax", "ay", "az", "psi", "theta", "phi", "q0", "q1", "q2", "q3")
 """Measures of places and angles."""
@@ -77,6 +78,13 @@ def transfer(
     scale = system.per_velocity(system.size, 1.0)
     linear = linearised(found.dynamics, found.t, found.acceleration)
     about = _About(found, linear, state_matrix(linear, scale), scale)
+    kink = kink_at(found, about.state, linear)
+    if kink is not None:
+        raise SolverError(
+            f"the state at t = {found.t:g} s lies on a breakpoint of a force on {kink.where}, or within a millionth of the mechanism's "
+            "size of one, where no linear equations hold on both sides; expected a state away from it, or a law that is smooth there "
+            "(`modes` has the state matrices of both sides)"
+        )
     nothing, as_they_are = np.zeros((1, system.n_u)), np.zeros((1, len(system.states)))
     at_zero = _channels(about, found.dynamics, nothing, nothing, as_they_are, outputs)[0]
     given = inputs if isinstance(inputs, Mapping) else {name: force_on(found.data, name) for name in inputs}
@@ -99,7 +107,7 @@ def _column(
     """What an input does to z' and to the outputs, by the models on both sides of the state."""
     system = about.found.dynamics.system
     step = SHIFT * max(1.0, system.size)
-    sides = [_with_value(about, given, value, changes) for value in (-step, step)]
+    sides = [_with_value(about, name, given, value, changes) for value in (-step, step)]
     (force, gap, rate, of_states), (more, wider, faster, other) = (_acting(about, side) for side in sides)
     if np.any(np.abs(faster - rate) > NO_RATE * 2 * step):
         raise InputError(
@@ -120,15 +128,21 @@ def _column(
     return acts.rates, (values[1] - values[0]) / (2 * step)
 
 
-def _with_value(about: _About, given: Parameterised, value: float, changes: Settings) -> Dynamics:
+def _with_value(about: _About, name: str, given: Parameterised, value: float, changes: Settings) -> Dynamics:
     """The model for a value of an input, at the state about which it is linearised."""
     job = prepare(given(value), **changes)
     system, state = job.dynamics.system, about.found.dynamics.state
     own = about.found.dynamics.system
     if (system.bodies, system.states, system.equations) != (own.bodies, own.states, own.equations):
-        raise InputError("found another mechanism for another value of an input, expected the same bodies and joints")
+        raise InputError(
+            f"input '{name}': found another mechanism for another value, expected the same bodies and joints"
+        )
     job.dynamics.state.q[:], job.dynamics.state.u[:] = state.q, state.u
     job.dynamics.state.lam[:] = state.lam
+    if not np.array_equal(system.principal_axes, own.principal_axes):
+        raise InputError(
+            f"input '{name}': found that it turns principal axes of a body, expected inertias about fixed ones"
+        )
     return job.dynamics
 
 

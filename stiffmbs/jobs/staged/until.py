@@ -16,6 +16,7 @@ from ...describe.files.until import Until
 from ...errors import InputError
 from ...results.joined import joined
 from ...results.solution import Solution
+from ...solve.trajectory import IN_DOUBT
 from ..given_inputs import Given
 
 POINTS, LEVELS = 33, 3
@@ -115,7 +116,8 @@ def run_until(
         changes = {**changes, "start_from": state, "start": float(part.time[-1]), "duration": rest}
     else:
         raise InputError(f"found conditions that begin to hold more than {MOST} times, expected fewer")
-    solution = replace(joined(parts[0].name, parts), message=parts[-1].message)
+    doubtful = (part.message for part in parts if IN_DOUBT in part.message)
+    solution = replace(joined(parts[0].name, parts), message=next(doubtful, parts[-1].message))
     return Ended(solution, ended_by, given)
 
 

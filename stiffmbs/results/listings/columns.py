@@ -9,8 +9,10 @@ from xml.etree import ElementTree
 
 import numpy as np
 
+from ...describe.files.files_read import content_of
 from ...describe.files.quoted import quoted
 from ...errors import InputError
+from ..damaged import readable
 from ..saved_state import READERS
 
 Columns = dict[str, np.ndarray]
@@ -39,10 +41,11 @@ def read_columns(path: str | Path) -> Columns:
     file = Path(path)
     reader = _reader(file)
     try:
-        found = reader(file)
+        with readable(file):
+            found = reader(file)
     except OSError as error:
         raise InputError(f"{quoted(str(path))}: {error.strerror or 'found no file'}") from None
-    except (ValueError, KeyError, EOFError, TypeError, ElementTree.ParseError) as error:
+    except ValueError as error:
         raise InputError(f"{quoted(str(path))}: found no table of numbers over time ({error})") from None
     time = found.get(TIME)
     if time is None or len(time) < FEWEST_ROWS or np.any(np.diff(time) < 0):
@@ -68,7 +71,7 @@ def _numeric(values: np.ndarray) -> bool:
 
 def _table(path: Path) -> Columns:
     """The longest block of lines of as many numbers each, with the names in the line before it."""
-    lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
+    lines = content_of(path).decode(errors="replace").splitlines()
     rows = [_numbers(line) for line in lines]
     first, last = _longest_block([len(row) for row in rows])
     if last - first < FEWEST_ROWS:

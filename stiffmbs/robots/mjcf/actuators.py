@@ -8,20 +8,42 @@ from typing import Any
 import numpy as np
 
 from ..robot import RobotFault, Transmission
+from .disabled import Disabled
+
+MOST_GROUPS = 31
+"""Groups that can be switched off, from 0 on."""
 
 
-def transmissions(m: Any) -> Iterator[Transmission]:
+def transmissions(m: Any, disabled: Disabled) -> Iterator[Transmission]:
     """What acts along the joints: actuators with their inputs, and the springs and dampers of tendons."""
-    for k in range(m.nactuator if hasattr(m, "nactuator") else m.nu):
-        yield _actuator(m, k)
+    for k in () if disabled("ACTUATION") else range(m.nactuator if hasattr(m, "nactuator") else m.nu):
+        if not _in_disabled_group(m, k):
+            yield _actuator(m, k, disabled)
     for k in range(m.ntendon):
-        yield from _tendon(m, k)
+        yield from _tendon(m, k, disabled)
 
 
-def _actuator(m: Any, k: int) -> Transmission:
+def disabled_actuators(m: Any, disabled: Disabled) -> Iterator[str]:
+    """A note on actuators that the file switches off."""
+    count = m.nactuator if hasattr(m, "nactuator") else m.nu
+    off = [k for k in range(count) if disabled("ACTUATION") or _in_disabled_group(m, k)]
+    if off:
+        yield f"actuators that the file switches off are left out: {', '.join(_actuator_name(m, k) for k in off)}"
+
+
+def _in_disabled_group(m: Any, k: int) -> bool:
+    group = int(m.actuator_group[k])
+    return 0 <= group < MOST_GROUPS and bool(int(m.opt.disableactuator) >> group & 1)
+
+
+def _actuator_name(m: Any, k: int) -> str:
+    return m.actuator(k).name or f"actuator_{k}"
+
+
+def _actuator(m: Any, k: int, disabled: Disabled) -> Transmission:
     import mujoco
 
-    name = m.actuator(k).name or f"actuator_{k}"
+    name = _actuator_name(m, k)
     gain, bias, dynamics = (
         mujoco.mjtGain(m.actuator_gaintype[k]),
         mujoco.mjtBias(m.actuator_biastype[k]),
@@ -55,10 +77,22 @@ def _actuator(m: Any, k: int) -> Transmission:
         _gears(m, k, name),
         gain=gains,
         bias=tuple(map(float, m.actuator_biasprm[k, :3])) if affine else (0.0, 0.0, 0.0),
-        control=bounds(m.actuator_ctrllimited[k], m.actuator_ctrlrange[k]),
+        control=None if disabled("CLAMPCTRL") else bounds(m.actuator_ctrllimited[k], m.actuator_ctrlrange[k]),
         force=bounds(m.actuator_forcelimited[k], m.actuator_forcerange[k]),
         lag=lags[dynamics],
+        **_tendon_of(m, k),
     )
+
+
+def _tendon_of(m: Any, k: int) -> dict[str, Any]:
+    """The tendon along which an actuator acts, and bounds of the force of all actuators along it."""
+    import mujoco
+
+    tendon = int(m.actuator_trnid[k, 0])
+    if mujoco.mjtTrn(m.actuator_trntype[k]) != mujoco.mjtTrn.mjTRN_TENDON:
+        return {}
+    total = bounds(m.tendon_actfrclimited[tendon], m.tendon_actfrcrange[tendon])
+    return {"tendon": m.tendon(tendon).name or f"tendon_{tendon}", "total": total} if total else {}
 
 
 def bounds(limited: Any, ends: Any) -> tuple[float, float] | None:
@@ -81,10 +115,11 @@ def _gears(m: Any, k: int, name: str) -> dict[str, float]:
     )
 
 
-def _tendon(m: Any, k: int) -> Iterator[Transmission]:
+def _tendon(m: Any, k: int, disabled: Disabled) -> Iterator[Transmission]:
     """The spring and damper of a tendon, which act outside of the range of lengths where the spring rests."""
     name = m.tendon(k).name or f"tendon_{k}"
-    stiffness, damping = float(m.tendon_stiffness[k]), float(m.tendon_damping[k])
+    stiffness = 0.0 if disabled("SPRING") else float(m.tendon_stiffness[k])
+    damping = 0.0 if disabled("DAMPER") else float(m.tendon_damping[k])
     for key in ("stiffnesspoly", "dampingpoly", "springyield", "armature", "frictionloss"):
         values = getattr(m, f"tendon_{key}", None)
         if values is not None and np.any(values[k]):

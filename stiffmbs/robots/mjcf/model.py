@@ -8,11 +8,14 @@ from typing import Any
 
 import numpy as np
 
-from ...describe.files.text_file import file_text
+from ...describe.files.requested import unused_notes
 from ...describe.spatial.orientation import matrix
 from ..robot import JointKind, Link, LinkJoint, Robot, RobotFault
-from .actuators import bounds, transmissions
+from .actuators import bounds, disabled_actuators, transmissions
+from .assets import check_assets
 from .closures import connections, relations
+from .disabled import Disabled
+from .fields import REASONS, RequestedModel, model_fields
 
 KINDS: tuple[JointKind, ...] = ("free", "ball", "slide", "hinge")
 """In the order of MuJoCo's numbers."""
@@ -29,40 +32,42 @@ def read_mjcf(path: str | Path) -> Robot:
     InputError
         Where the file cannot be read.
     """
-    compiled = _compiled(path)
+    spec, compiled = _compiled(path)
+    m = RequestedModel(compiled)
+    disabled = Disabled(m)
+    read: dict[str, Any] = {
+        "links": tuple(_link(m, body, disabled) for body in range(1, compiled.nbody)),
+        "gravity": (0.0, 0.0, 0.0) if disabled("GRAVITY") else tuple(map(float, m.opt.gravity[:])),
+        "transmissions": tuple(transmissions(m, disabled)),
+        "relations": () if disabled("EQUALITY", "CONSTRAINT") else tuple(relations(m)),
+        "connections": () if disabled("EQUALITY", "CONSTRAINT") else tuple(connections(m)),
+    }
+    own = (*_notes(m, disabled), *disabled_actuators(m, disabled))
+    elements = [*model_fields(spec, m), *disabled.fields()]
     return Robot(
         name=compiled.names[: compiled.names.index(b"\0")].decode() or "robot",
-        links=tuple(_link(compiled, body) for body in range(1, compiled.nbody)),
-        gravity=_gravity(compiled),
-        transmissions=tuple(transmissions(compiled)),
-        relations=tuple(relations(compiled)),
-        connections=tuple(connections(compiled)),
-        notes=tuple(_notes(compiled)),
+        **read,
+        notes=(*own, *unused_notes(elements, REASONS)),
     )
 
 
-def _compiled(path: str | Path) -> Any:
+def _compiled(path: str | Path) -> tuple[Any, Any]:
+    """MuJoCo's specification and model of a file."""
     try:
         import mujoco
     except ImportError:
         raise RobotFault(
             "found an MJCF file, expected the package mujoco, which reads them: pip install 'stiffmbs[robots]'"
         ) from None
-    file_text(path)  # says why a file cannot be read
+    check_assets(Path(path))
     try:
-        return mujoco.MjModel.from_xml_path(str(path))
+        spec = mujoco.MjSpec.from_file(str(path))
+        return spec, spec.compile()
     except ValueError as error:
         raise RobotFault(f"MuJoCo refuses the file: {' '.join(str(error).split())}") from None
 
 
-def _gravity(m: Any) -> tuple[float, ...]:
-    import mujoco
-
-    off = m.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_GRAVITY
-    return (0.0, 0.0, 0.0) if off else tuple(map(float, m.opt.gravity))
-
-
-def _link(m: Any, body: int) -> Link:
+def _link(m: Any, body: int, disabled: Disabled) -> Link:
     parent = int(m.body_parentid[body])
     turned = matrix(m.body_iquat[body])
     tensor = turned @ np.diag(m.body_inertia[body]) @ turned.T
@@ -75,8 +80,8 @@ def _link(m: Any, body: int) -> Link:
         mass=float(m.body_mass[body]),
         center_of_mass=tuple(map(float, m.body_ipos[body])),
         inertia=(tensor + tensor.T) / 2,
-        joints=tuple(_joint(m, joint) for joint in range(first, first + m.body_jntnum[body])),
-        lifted=float(m.body_gravcomp[body]),
+        joints=tuple(_joint(m, joint, disabled) for joint in range(first, first + m.body_jntnum[body])),
+        lifted=0.0 if disabled.all("SPRING", "DAMPER") else float(m.body_gravcomp[body]),
     )
 
 
@@ -85,7 +90,7 @@ def joint_name(m: Any, joint: int) -> str:
     return m.joint(joint).name or f"joint_{joint}"
 
 
-def _joint(m: Any, joint: int) -> LinkJoint:
+def _joint(m: Any, joint: int, disabled: Disabled) -> LinkJoint:
     name, kind = joint_name(m, joint), KINDS[m.jnt_type[joint]]
     dof, coordinate = m.jnt_dofadr[joint], m.jnt_qposadr[joint]
     for what, values in (
@@ -97,29 +102,31 @@ def _joint(m: Any, joint: int) -> LinkJoint:
     if hasattr(m, "dof_dampingpoly") and np.any(m.dof_dampingpoly[dof]):
         raise RobotFault(f"joint {name}: found a damping that is no constant, expected a linear damper")
     if kind in ("free", "ball"):
-        return _loose(m, joint, kind)
+        return _loose(m, joint, kind, disabled)
     return LinkJoint(
         name,
         kind,
         point=tuple(map(float, m.jnt_pos[joint])),
         axis=tuple(map(float, m.jnt_axis[joint])),
-        stiffness=float(m.jnt_stiffness[joint]),
-        damping=float(m.dof_damping[dof]),
+        stiffness=0.0 if disabled("SPRING") else float(m.jnt_stiffness[joint]),
+        damping=0.0 if disabled("DAMPER") else float(m.dof_damping[dof]),
         rest=float(m.qpos_spring[coordinate]),
-        friction=float(m.dof_frictionloss[dof]),
+        friction=0.0 if disabled("FRICTIONLOSS", "CONSTRAINT") else float(m.dof_frictionloss[dof]),
         armature=float(m.dof_armature[dof]),
-        limits=bounds(m.jnt_limited[joint], m.jnt_range[joint]),
+        limits=None if disabled("LIMIT", "CONSTRAINT") else bounds(m.jnt_limited[joint], m.jnt_range[joint]),
+        effort=bounds(m.jnt_actfrclimited[joint], m.jnt_actfrcrange[joint]),
         zero=float(m.qpos0[coordinate]),
     )
 
 
-def _loose(m: Any, joint: int, kind: JointKind) -> LinkJoint:
+def _loose(m: Any, joint: int, kind: JointKind, disabled: Disabled) -> LinkJoint:
     """A ball joint, or that of a free body."""
     name, dof = joint_name(m, joint), m.jnt_dofadr[joint]
     count = 6 if kind == "free" else 3
-    start, spring = m.jnt_qposadr[joint], float(m.jnt_stiffness[joint])
+    start, spring = m.jnt_qposadr[joint], 0.0 if disabled("SPRING") else float(m.jnt_stiffness[joint])
     same = np.array_equal(m.qpos_spring[start : start + count + 1], m.qpos0[start : start + count + 1])
-    if np.any(m.dof_frictionloss[dof : dof + count]) or np.any(m.dof_armature[dof : dof + count]):
+    rubs = np.any(m.dof_frictionloss[dof : dof + count]) and not disabled("FRICTIONLOSS", "CONSTRAINT")
+    if rubs or np.any(m.dof_armature[dof : dof + count]):
         raise RobotFault(
             f"joint {name}: found dry friction or an armature of a {kind} joint, expected a hinge or slide"
         )
@@ -127,14 +134,15 @@ def _loose(m: Any, joint: int, kind: JointKind) -> LinkJoint:
         raise RobotFault(
             f"joint {name}: found a spring of a {kind} joint, expected one of a hinge, slide or ball at rest as drawn"
         )
-    return LinkJoint(
-        name, kind, tuple(map(float, m.jnt_pos[joint])), stiffness=spring, damping=float(m.dof_damping[dof])
-    )
+    damping = 0.0 if disabled("DAMPER") else float(m.dof_damping[dof])
+    return LinkJoint(name, kind, tuple(map(float, m.jnt_pos[joint])), stiffness=spring, damping=damping)
 
 
-def _notes(m: Any) -> Iterator[str]:
+def _notes(m: Any, disabled: Disabled) -> Iterator[str]:
     """What is no part of the rigid mechanism, and is left out."""
-    if np.any(m.geom_contype[: m.ngeom] | m.geom_conaffinity[: m.ngeom]) or m.npair:
+    if not disabled("CONTACT", "CONSTRAINT") and (
+        np.any(m.geom_contype[: m.ngeom] | m.geom_conaffinity[: m.ngeom]) or m.npair
+    ):
         yield "contacts between the shapes of MJCF are left out"
     if m.opt.density or m.opt.viscosity:
         yield "the forces of the fluid around the bodies are left out"

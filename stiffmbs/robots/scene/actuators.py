@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from ...describe.spatial.number_format import plain
-from ..robot import Robot, Transmission
+from ..robot import Robot, RobotFault, Transmission
 from .joints import along_axis
 from .mechanism import Hold, Mechanism
 
@@ -24,16 +24,34 @@ class Actuators:
 def actuators(robot: Robot, mechanism: Mechanism) -> Actuators:
     """What all transmissions of a robot put into its scene."""
     found = Actuators()
-    for transmission in robot.transmissions:
-        holds = [
-            (mechanism.holds[joint], gear) for joint, gear in transmission.gears.items() if joint in mechanism.holds
-        ]
-        if holds:
-            _add(found, mechanism, transmission, holds)
+    limited: dict[str, list[str]] = {}
+    acting = [
+        (transmission, holds)
+        for transmission in robot.transmissions
+        if (holds := [(mechanism.holds[x], gear) for x, gear in transmission.gears.items() if x in mechanism.holds])
+    ]
+    named = [(transmission, holds, _force(found, mechanism, transmission, holds)) for transmission, holds in acting]
+    for transmission, holds, name in named:
+        along = [other for t, _, other in named if transmission.total and t.tendon == transmission.tendon]
+        force = _of_total(transmission, name, along)
+        for hold, gear in holds:
+            term = _times(repr(plain(gear)), force)
+            if hold.joint.effort is not None and transmission.gain is not None:
+                limited.setdefault(hold.joint.name, []).append(term)
+                continue
+            element = mechanism.names.take(
+                f"{transmission.name}_{hold.name}" if len(holds) > 1 else f"{transmission.name}_drive"
+            )
+            found.forces[element] = along_axis(hold, term)
+    for joint, terms in limited.items():
+        hold = mechanism.holds[joint]
+        element = mechanism.names.take(f"{hold.name}_drive")
+        found.forces[element] = along_axis(hold, _within(" + ".join(terms), hold.joint.effort))
     return found
 
 
-def _add(found: Actuators, mechanism: Mechanism, transmission: Transmission, holds: list[tuple[Hold, float]]) -> None:
+def _force(found: Actuators, mechanism: Mechanism, transmission: Transmission, holds: list[tuple[Hold, float]]) -> str:
+    """Add the formula of a transmission's force; its name."""
     name = mechanism.names.take(f"{transmission.name}_force")
     length = " + ".join(f"{plain(gear)}*{hold.coordinate}" for hold, gear in holds)
     rate = " + ".join(f"{plain(gear)}*{hold.rate}" for hold, gear in holds)
@@ -43,11 +61,29 @@ def _add(found: Actuators, mechanism: Mechanism, transmission: Transmission, hol
         gain = _affine(transmission.gain, length, rate)
         force = f"{_times(gain, u)} + {force}" if force != "0" else _times(gain, u)
     found.variables[name] = _within(force, transmission.force)
-    for hold, gear in holds:
-        element = mechanism.names.take(
-            f"{transmission.name}_{hold.name}" if len(holds) > 1 else f"{transmission.name}_drive"
+    return name
+
+
+def _of_total(transmission: Transmission, name: str, along: list[str]) -> str:
+    """The force of an actuator where the total of all along its tendon is bounded.
+
+    Raises
+    ------
+    RobotFault
+        When several actuators have a total whose bounds do not enclose zero.
+    """
+    if transmission.total is None:
+        return name
+    if len(along) == 1:
+        return _within(name, transmission.total)
+    low, high = transmission.total
+    if not low < 0 < high:
+        raise RobotFault(
+            f"tendon {transmission.tendon}: found the bounds {low:g} and {high:g} of the force of {len(along)} actuators, "
+            "expected one below and one above zero"
         )
-        found.forces[element] = along_axis(hold, _times(repr(plain(gear)), name))
+    total = f"({' + '.join(along)})"
+    return f"{name}/max(1, {total}/{plain(high)}, {total}/({plain(low)}))"
 
 
 def _activation(found: Actuators, mechanism: Mechanism, transmission: Transmission) -> str:

@@ -59,13 +59,18 @@ def _between(link: Link, masses: Masses) -> dict[str, Any]:
 
 def _heavy(link: Link, masses: Masses) -> dict[str, Any]:
     tensor = link.inertia
+    if not np.all(np.isfinite(tensor)):
+        raise RobotFault(f"link {link.name}: found moments of inertia beyond 1e308 kg m^2, expected those of a body")
     moments = np.linalg.eigvalsh(tensor)
-    if moments[0] < -TRIANGLE * max(moments[-1], 0.0) or not np.all(np.isfinite(moments)):
+    if moments[0] < -TRIANGLE * max(moments[-1], masses.moment) or not np.all(np.isfinite(moments)):
         raise RobotFault(
             f"link {link.name}: found the principal moments of inertia {', '.join(f'{x:g}' for x in moments)} kg m^2, expected none below 0"
         )
     body: dict[str, Any] = {"mass": plain(link.mass or masses.mass)}
-    if not np.any(tensor):
+    if moments[0] < 0:  # by rounding
+        axes = np.linalg.eigh(tensor)[1]
+        tensor = (axes * np.maximum(moments, 0.0)) @ axes.T
+    if moments[-1] <= TRIANGLE * masses.moment:
         tensor = masses.moment * np.eye(3)
     elif lacks_inertia(tensor):
         tensor = filled(tensor, masses.moment)

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from ...describe.spatial.number_format import plain
-from ..robot import Connection, Relation, Robot
+from ..robot import ORIGIN, Connection, Link, LinkJoint, Relation, Robot
 from .mechanism import Hold, Mechanism
 
 KINDS = {"hinge": "revolute", "slide": "prismatic", "ball": "spherical"}
@@ -23,9 +23,20 @@ def joints(robot: Robot, mechanism: Mechanism) -> dict[str, Any]:
     return found
 
 
-def passive(mechanism: Mechanism) -> dict[str, Any]:
-    """Springs, dampers and dry friction of the joints."""
-    return {name: entry for hold in mechanism.holds.values() for name, entry in _passive(mechanism, hold)}
+def passive(robot: Robot, mechanism: Mechanism) -> dict[str, Any]:
+    """Springs, dampers and dry friction of the joints, and dampers of free links."""
+    found = {name: entry for hold in mechanism.holds.values() for name, entry in _passive(mechanism, hold)}
+    free = [(link, joint) for link in robot.links for joint in link.joints if joint.kind == "free" and joint.damping]
+    return found | {name: entry for link, joint in free for name, entry in _damped(mechanism, link, joint)}
+
+
+def _damped(mechanism: Mechanism, link: Link, joint: LinkJoint) -> Iterator[tuple[str, dict[str, Any]]]:
+    """A force against the velocity of a free link's origin, and a torque against its angular velocity."""
+    names = [mechanism.names.take(f"{joint.name}_{what}") for what in ("damper", "rotary_damper")]
+    marker = mechanism.mark(link.name, names[0], ORIGIN)
+    for name, kind, rate in zip(names, ("force", "torque"), "vw", strict=True):
+        formulas = [f"-{plain(joint.damping)}*{rate}{axis}({marker})" for axis in "xyz"]
+        yield name, {"type": kind, "i": marker, kind: formulas}
 
 
 def _passive(mechanism: Mechanism, hold: Hold) -> Iterator[tuple[str, dict[str, Any]]]:

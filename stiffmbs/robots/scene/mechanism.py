@@ -62,7 +62,7 @@ class Hold:
 class Mechanism:
     """Which body carries each link, where these are at the start, and the markers on them.
 
-    A link that moves, or has mass, is a body.  A fixed link without mass is a marker on the body that carries it, and a
+    A link that moves, or has mass or inertia, is a body.  A fixed link without both is a marker on the body that carries it, and a
     link that moves by several joints has a body without mass between each two of them.  What has no mass at its far
     end does not move.
 
@@ -102,7 +102,7 @@ class Mechanism:
                 self.unmoved += tuple(joint.name for joint in link.joints)
             if link.joints and link.name in moves_mass:
                 self._move(link, called[link.name], carrier, placed[link.name])
-            elif link.mass > 0:
+            elif link.is_heavy:
                 self._fix(link, called[link.name], carrier, placed[link.name][-1])
             else:
                 self.seats[link.name] = carrier
@@ -164,10 +164,10 @@ def along_z(axis: tuple[float, ...]) -> tuple[float, ...]:
 
 
 def _with_mass(robot: Robot) -> set[str]:
-    """Links that have mass, carry links that have, or feel a rotor."""
+    """Links that have mass or inertia, carry links that have, or feel a rotor."""
     found: set[str] = set()
     for link in reversed(robot.links):
-        if link.name in found or link.mass > 0 or any(joint.armature > 0 for joint in link.joints):
+        if link.name in found or link.is_heavy or any(joint.armature > 0 for joint in link.joints):
             found.add(link.name)
             if link.parent is not None:
                 found.add(link.parent)

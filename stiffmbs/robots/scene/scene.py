@@ -49,7 +49,7 @@ def scene(robot: Robot, coordinates: Mapping[str, float], rates: Mapping[str, fl
         "inputs": acting.inputs,
         "states": acting.states,
         "variables": acting.variables,
-        "forces": passive(mechanism) | acting.forces | _lifted(robot, mechanism),
+        "forces": passive(robot, mechanism) | acting.forces | _lifted(robot, mechanism),
         "run": dict(RUN),
     }
     found["bodies"] = bodies(mechanism, masses)  # with the markers of all the others

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ...describe.files.files_read import content_of
 from ...errors import InputError
 from .scene_graph import Solid
 
@@ -29,7 +30,7 @@ def read_mesh(path: Path, where: str) -> Solid:
         When it cannot be read.
     """
     try:
-        data = path.read_bytes()
+        data = content_of(path)
     except OSError as error:
         raise InputError(f"{where}: {path}: {error.strerror}, expected a mesh") from None
     try:

@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 from importlib.resources import files
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+from ..escaped import page_text
 from .parts import page_parts
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
 
 
 def moving_page(title: str, data: dict[str, str]) -> str:
@@ -20,9 +24,15 @@ def moving_page(title: str, data: dict[str, str]) -> str:
     return rendered("moving.html", title=title or "Mechanism", **data, **page_parts())
 
 
-def rendered(template: str, **content: Any) -> str:
-    """A template of this folder with its content; text in it is escaped."""
+def environment() -> Environment:
+    """Return what renders templates: text in them is escaped, for HTML and as `stiffmbs.show.escaped` says."""
     from jinja2 import Environment
 
-    environment = Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True)
-    return environment.from_string(files(__package__).joinpath(template).read_text(encoding="utf-8")).render(**content)
+    return Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True, finalize=page_text)
+
+
+def rendered(template: str, **content: Any) -> str:
+    """A template of this folder with its content; text in it is escaped."""
+    return (
+        environment().from_string(files(__package__).joinpath(template).read_text(encoding="utf-8")).render(**content)
+    )

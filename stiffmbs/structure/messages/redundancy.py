@@ -75,9 +75,7 @@ def _inconsistency_sentence(system: System, rank_result: LoopRankResult, inconsi
     others = listed([name for name in inconsistency.joints if name != joint])
     against = f"joint '{joint}' (equation {equation}) contradicts {others or 'itself'}"
     where = "its positions do not agree with theirs" if inconsistency.level == "position" else "their velocities differ"
-    return (
-        f"the scene cannot be assembled: {against} at t = {inconsistency.t:.6g} s, {where} (by {inconsistency.gap:.3g})"
-    )
+    return f"the scene cannot be assembled: {against} at t = {inconsistency.t:.6g} s, {where} (by {inconsistency.gap})"
 
 
 def singular_sentence(redundancy: Redundancy) -> Iterator[str]:

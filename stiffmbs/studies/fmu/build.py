@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import copy
 import json
+import keyword
 import re
+import shutil
 import sys
 import tempfile
 from collections.abc import Sequence
@@ -15,18 +17,26 @@ from ...describe.files.scene_text import scene_text
 from ...describe.scene import Scene
 from ...errors import InputError, needs
 from ...jobs.load_scene import load_scene
+from ...results.files import refuse_path, written_whole
 from .stepping import CommunicationSteps, parameters_of
 
 ABOUT, SCENE = "model.json", "scene.yaml"
-ENDING = ".fmu"
+ENDING, BUILT = ".fmu", "built.fmu"
+_NOT_IN_XML = re.compile("[^\t\n\r -\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+USED = ("SceneSlave", "hold")
+"""Names that the FMU's script has already."""
 SCRIPT = '''"""The model of the FMU; it needs the package stiffmbs in the Python that runs it."""
 
-from stiffmbs.studies.fmu.slave import SceneSlave
+from stiffmbs.studies.fmu.slave import SceneSlave, hold
+
+hold(globals())
 
 
 class {name}(SceneSlave):
     pass
 '''
+LONGEST_NAME = 60
+"""Characters of a model's name, which files of the FMU are called by."""
 
 
 def build_fmu(
@@ -61,11 +71,11 @@ def build_fmu(
     target = Path(output)
     if target.suffix != ENDING:
         raise InputError(f"-o {output}: found the ending '{target.suffix}', expected {ENDING}")
+    refuse_path("-o", target, (ENDING,))
     with needs("pythonfmu", "fmu"):
         from pythonfmu.builder import FmuBuilder
     scene = load_scene(path, changes)
-    name = re.sub(r"\W+", "_", Path(path).stem).strip("_") or "model"
-    name = name if name[0].isalpha() else f"model_{name}"
+    name = model_name(path)
     with tempfile.TemporaryDirectory() as made:
         folder = Path(made)
         (folder / SCENE).write_text(_content(scene), encoding="utf-8")
@@ -75,11 +85,19 @@ def build_fmu(
         script.write_text(SCRIPT.format(name=name), encoding="utf-8")
         before = list(sys.path)
         try:
-            FmuBuilder.build_FMU(script, target, project_files=[folder / SCENE, folder / ABOUT])
+            built = FmuBuilder.build_FMU(script, folder / BUILT, project_files=[folder / SCENE, folder / ABOUT])
+            written_whole(target, lambda part: shutil.copyfile(built, part))
         finally:
             sys.path[:] = before
             sys.modules.pop(script.stem, None)
     return tuple(about["outputs"])
+
+
+def model_name(path: str | Path) -> str:
+    """Return what an FMU's model is called after a scene's file: an identifier of C and Python."""
+    name = re.sub(r"\W+", "_", Path(path).stem, flags=re.ASCII).strip("_")[:LONGEST_NAME]
+    fits = name[:1].isalpha() and not keyword.iskeyword(name) and name not in USED
+    return name if fits else f"model_{name}".rstrip("_")
 
 
 def _content(scene: Scene) -> str:
@@ -107,13 +125,17 @@ def _about(scene: Scene, copied: Path, outputs: Sequence[str]) -> dict[str, Any]
     if tables:
         raise InputError(f"found a table for the input '{tables[0]}', expected a number")
     values = steps.values({})
-    chosen = tuple(outputs) or tuple(name for name in values if name in scene.outputs()) or tuple(values)
+    given = {**inputs, **parameters_of(scene)}
+    free = tuple(name for name in values if name not in given)
+    chosen = tuple(outputs) or tuple(name for name in free if name in scene.outputs()) or free
+    if taken := [name for name in chosen if name in given]:
+        raise InputError(f"found the output '{taken[0]}', which is an input or parameter of the FMU, expected another")
     unknown = [name for name in chosen if name not in values]
     if unknown:
         raise InputError(f"found no channel '{unknown[0]}', expected one such as {', '.join(list(values)[:12])}")
     run = scene.run
     return {
-        "description": scene.name, "version": __version__, "start": run.start, "stop": run.start + run.duration,
+        "description": _NOT_IN_XML.sub("?", scene.name), "version": __version__, "start": run.start, "stop": run.start + run.duration,
         "step": run.output or run.duration / 1000, "tolerance": run.rtol,
         "inputs": {name: float(value) for name, value in inputs.items()},
         "parameters": {name: float(value) for name, value in parameters_of(scene).items()},

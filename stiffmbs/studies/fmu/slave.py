@@ -6,8 +6,10 @@ It is imported by the FMU's script, in the Python of the program that runs the F
 from __future__ import annotations
 
 import json
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
+from xml.etree.ElementTree import Element, SubElement
 
 from pythonfmu import DefaultExperiment, Fmi2Causality, Fmi2Slave, Fmi2Variability, Real
 
@@ -16,6 +18,18 @@ from .stepping import CommunicationSteps
 
 ABOUT, SCENE = "model.json", "scene.yaml"
 """Files of the FMU's resources: what its variables are, and the scene."""
+
+
+def hold(names: dict[str, Any]) -> None:
+    """Take a reference to the names of an FMU's script that nothing owns.
+
+    PythonFMU 0.7 executes the script at each instantiation, and then releases a reference to its names that it does not own: without
+    this the names would be freed while the script is in use.
+    """
+    with suppress(AttributeError, ImportError, OSError):
+        import ctypes
+
+        ctypes.pythonapi.Py_IncRef(ctypes.py_object(names))
 
 
 class SceneSlave(Fmi2Slave):  # type: ignore[misc]
@@ -32,6 +46,7 @@ class SceneSlave(Fmi2Slave):  # type: ignore[misc]
         self._parameters: dict[str, float] = dict(about["parameters"])
         self._start: float = about["start"]
         self._tolerance: float | None = None
+        self._begun = True  # with the values of the scene's file
         self._channels: dict[str, float] | None = dict(about["outputs"])
         self._register(self._inputs, Fmi2Causality.input, Fmi2Variability.continuous)
         self._register(self._parameters, Fmi2Causality.parameter, Fmi2Variability.fixed)
@@ -40,6 +55,17 @@ class SceneSlave(Fmi2Slave):  # type: ignore[misc]
                 Real(name, causality=Fmi2Causality.output, getter=lambda name=name: self._value(name)), nested=False
             )
 
+    def to_xml(self, model_options: dict[str, str] | None = None) -> Element:
+        """Build the model description; all outputs are unknowns of the initialization, as FMI 2.0.4 asks (section 2.2.8)."""
+        root: Element = super().to_xml(model_options or {})
+        structure = root.find("ModelStructure")
+        outputs = root.findall("ModelStructure/Outputs/Unknown")
+        if structure is not None and outputs:
+            unknowns = SubElement(structure, "InitialUnknowns")
+            for output in outputs:
+                SubElement(unknowns, "Unknown", {"index": output.attrib["index"]})
+        return root
+
     def _register(self, values: dict[str, float], causality: Any, variability: Any) -> None:
         """Variables that another program sets."""
         for name, value in values.items():
@@ -47,6 +73,7 @@ class SceneSlave(Fmi2Slave):  # type: ignore[misc]
             def put(number: float, name: str = name) -> None:
                 values[name] = number
                 self._channels = None
+                self._begun = self._begun and causality == Fmi2Causality.input
 
             self.register_variable(
                 Real(
@@ -62,18 +89,26 @@ class SceneSlave(Fmi2Slave):  # type: ignore[misc]
 
     def _value(self, name: str) -> float:
         if self._channels is None:
+            self._begin()
             self._channels = self._steps.values(self._inputs)
         return self._channels[name]
 
     def setup_experiment(self, start_time: float, stop_time: float | None, tolerance: float | None) -> None:
         """Take the time at the start, and the tolerance where it is finer than the scene's."""
         self._start, self._tolerance = start_time, tolerance
+        self._begun, self._channels = False, None
 
     def exit_initialization_mode(self) -> None:
-        """Read the scene with the parameters that were set."""
-        finer = self._tolerance and min(self._tolerance, self._steps.scene.run.rtol)
-        self._steps.begin(self._start, self._parameters, self._inputs, finer or None)
-        self._channels = None
+        """Read the scene with the parameters and inputs that were set."""
+        self._begun, self._channels = False, None
+        self._begin()
+
+    def _begin(self) -> None:
+        """Read the scene with the values that were set, where that has not been done."""
+        if not self._begun:
+            finer = self._tolerance and min(self._tolerance, self._steps.scene.run.rtol)
+            self._steps.begin(self._start, self._parameters, self._inputs, finer or None)
+            self._begun = True
 
     def do_step(self, current_time: float, step_size: float) -> bool:
         """Run on to the next communication point; inputs hold over the step."""

@@ -9,17 +9,24 @@ from typing import Any
 
 import numpy as np
 
-from ...errors import InputError
+from ...errors import InputError, SolverError
 from ..outputs import FUNCTIONS, OPERATORS, REDUCTIONS, TIME, channel_of, parsed
 
 SELECTED = {
-    "peak": lambda x: int(np.argmax(np.abs(x))), "max": lambda x: int(np.argmax(x)), "min": lambda x: int(np.argmin(x)),
-    "final": lambda x: len(x) - 1, "first": lambda x: 0,
+    "peak": lambda x: _largest(np.abs(x)), "max": lambda x: _largest(x), "min": lambda x: _largest(-x),
+    "final": lambda x: np.array([len(x) - 1]), "first": lambda x: np.array([0]),
 }  # fmt: skip
-"""Reductions that are the value at one instant, which moves: at a peak the channel's rate is zero, so that this has no part in the
-derivative."""
+"""Reductions that are the value at one instant, or at several that have it but for rounding.  The instant moves: at a peak the
+channel's rate is zero, so that this has no part in the derivative."""
+SAME, ALIKE = 1e-12, 1e-6
+"""Part of an extreme by which values count as the same, and of derivatives at instants with the same value."""
 WHOLE = ("rms", "mean", "integral")
 """Reductions of all instants."""
+
+
+def _largest(x: np.ndarray) -> np.ndarray:
+    """Return the numbers of the instants that have the largest value."""
+    return np.flatnonzero(x >= np.max(x) - SAME * np.max(np.abs(x)))
 
 
 def of_whole_time(text: str) -> bool:
@@ -124,13 +131,29 @@ class Formula:
         if np.ndim(x.slope) == 0:
             return Dual(value, 0.0)
         if name in SELECTED:
-            k = SELECTED[name](series)
-            return Dual(value, x.slope[k] * (np.sign(series[k]) if name == "peak" else 1.0))
+            return Dual(value, self._at_extreme(name, series, x.slope))
         span = 1.0 if name == "integral" else self._time[-1] - self._time[0]
         if name == "rms":
             mean = np.trapezoid(series[:, None] * x.slope, self._time, axis=0) / span
             return Dual(value, mean / value if value else 0.0 * mean)
         return Dual(value, np.trapezoid(x.slope, self._time, axis=0) / span)
+
+    def _at_extreme(self, name: str, series: np.ndarray, slope: np.ndarray) -> np.ndarray:
+        """Return the derivative of the value that is selected.
+
+        Raises
+        ------
+        SolverError
+            When several instants have it, and their derivatives differ.
+        """
+        k = SELECTED[name](series)
+        slopes = slope[k] * (np.sign(series[k])[:, None] if name == "peak" else 1.0)
+        if np.any(np.ptp(slopes, axis=0) > ALIKE * np.abs(slope).max()):
+            raise SolverError(
+                f"sensitivities: found that '{self.text}' has its {name} at {len(k)} instants, first at t = {self._time[k[0]]:.9g} s, "
+                "with other derivatives at each; expected one at a single instant"
+            )
+        return np.asarray(slopes[0])
 
 
 def _times(factor: Any, slope: Any) -> Any:
@@ -162,10 +185,10 @@ def _operated(operator: ast.operator, a: Dual, b: Dual) -> Dual:
 
 
 SLOPES: dict[str, Any] = {
-    "abs": np.sign, "sqrt": lambda x: 0.5 / np.sqrt(x), "exp": np.exp, "log": lambda x: 1 / x, "sin": np.cos,
+    "abs": lambda x: np.where(np.abs(x) > SAME * np.max(np.abs(x)), np.sign(x), 0.0), "sqrt": lambda x: 0.5 / np.sqrt(x), "exp": np.exp, "log": lambda x: 1 / x, "sin": np.cos,
     "cos": lambda x: -np.sin(x), "tan": lambda x: 1 / np.cos(x) ** 2,
 }  # fmt: skip
-"""Derivatives of the functions of one number."""
+"""Derivatives of the functions of one number; of ``abs`` at zero, but for rounding, the mean of both sides."""
 
 
 def _called(name: str, arguments: list[Dual]) -> Dual:

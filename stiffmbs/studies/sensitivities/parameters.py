@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
@@ -19,6 +20,9 @@ from ..case_solver import written_scene
 STEP = 1e-4
 """Change of a parameter, relative to it, by which what a scene is set up with is differentiated; absolute, in SI units, where the
 parameter is zero.  Set-up is arithmetic, exact to rounding: central differences leave 1e-8 of it and mostly far less."""
+
+ALMOST_ZERO = 1e-300
+"""Value of what is zero where it would leave elements out, as gravity does with weights."""
 
 
 class Scenes:
@@ -105,7 +109,17 @@ class Parameter:
     @property
     def step(self) -> float:
         """By which set-up is differentiated."""
-        return STEP * (abs(self.value) or 1.0)
+        return STEP * (abs(self.value) if abs(self.value) > ALMOST_ZERO else 1.0)
+
+    def brings_gravity(self) -> bool:
+        """Return True if gravity differs from zero with another value."""
+        with suppress(InputError):  # another value may not fit
+            return any(self.scene(self.value + self.step).gravity)
+        return False
+
+    def almost_zero(self) -> tuple[str, Any]:
+        """Return the change that replaces a value of zero by one that is too small to have an effect."""
+        return self._path, _replaced(self._whole, self._places, ALMOST_ZERO)
 
     def scene(self, value: float) -> Scene:
         """The scene with another value.
@@ -116,6 +130,14 @@ class Parameter:
             When it does not fit.
         """
         return self._scenes.changed([(self._path, _replaced(self._whole, self._places, value))])
+
+
+def with_weights(scenes: Scenes, names: Sequence[str]) -> Scenes:
+    """Return scenes whose bodies have weights where a parameter that is zero is all that keeps gravity from acting."""
+    if any(scenes.known.gravity):
+        return scenes
+    parameters = [Parameter(scenes, name) for name in names]
+    return scenes.at([each.almost_zero() for each in parameters if each.value == 0.0 and each.brings_gravity()])
 
 
 def _found(scene: Scene, name: str) -> tuple[str, tuple[int, ...], Any]:

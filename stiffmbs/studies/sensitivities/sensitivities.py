@@ -18,12 +18,13 @@ from ...solve.dynamics import OutputRows
 from ...solve.missing_rows import reported
 from ...solve.settings import changed
 from ...solve.trajectory import Grid, Outcome
-from ...solve.variations.along_run import AlongRun
+from ...solve.variations.along_run import AlongRun, Instant, Side
+from ...solve.variations.jumps import NO_JUMP
 from ...solve.variations.recorded import Recorder
 from ..outputs import outputs_of
 from .channels import changed_channels, changed_requests
 from .formulas import Formula
-from .parameters import Parameter, Scenes
+from .parameters import Parameter, Scenes, with_weights
 from .set_up import SetUp, breakpoint_rates
 
 TIGHTER, TIGHTEST = 1e-6, 1e-12
@@ -104,14 +105,22 @@ def sensitivities(scene: Runnable, to: Sequence[str] | str, of: str, **settings:
         raise InputError(f"to: found {', '.join(names) or 'no parameter'}, expected one parameter or more, each once")
     (output,) = outputs_of(of)
     scenes = Scenes.of_model(scene)
-    asked = changed(scenes.known.run, settings)
+    (found,) = differentiated(scenes, names, changed(scenes.known.run, settings)).sensitivities([output.text])
+    return found
+
+
+def differentiated(scenes: Scenes, names: Sequence[str], asked: RunSettings) -> DifferentiatedRun:
+    """Return a run much tighter than it is asked for, or as it is asked for where that fails; errors as for `sensitivities`.
+
+    No motion follows a force that chatters, with any tolerance: a run that stops there is the last one.
+    """
+    scenes = with_weights(scenes, names)
     for rtol in (min(asked.rtol, max(TIGHTER * asked.rtol, TIGHTEST)), asked.rtol):
         job = prepare(scenes.known, differentiable(changed(asked, {"rtol": rtol})))
         run = DifferentiatedRun(scenes, names, job)
-        if run.success:
+        if run.success or run.chatters:
             break
-    (found,) = run.sensitivities([output.text])
-    return found
+    return run
 
 
 def differentiable(settings: RunSettings) -> RunSettings:
@@ -136,6 +145,8 @@ class DifferentiatedRun:
     ----------
     success : bool
         Whether the whole time was solved.
+    chatters : bool
+        Whether it stopped where a force jumps back and forth.
     """
 
     def __init__(self, scenes: Scenes, names: Sequence[str], job: Job, times: np.ndarray | None = None) -> None:
@@ -150,6 +161,8 @@ class DifferentiatedRun:
         if self._trajectory.outcome is Outcome.INTERRUPTED:
             raise KeyboardInterrupt
         self.success = self._trajectory.outcome is Outcome.DONE
+        self.chatters = self._recorder.chatters
+        self._jumping: list[tuple[str, int, np.ndarray]] = []
 
     def sensitivities(self, texts: Sequence[str]) -> list[Sensitivity]:
         """Of formulas of channels; errors as for `stiffmbs.sensitivities`."""
@@ -165,12 +178,27 @@ class DifferentiatedRun:
     def _of_formula(self, formula: Formula, slopes: dict[str, np.ndarray]) -> Sensitivity:
         dual = formula.dual(slopes)
         by = np.broadcast_to(dual.slope, (*np.shape(dual.value), len(self._set_ups)))
+        if np.ndim(dual.value) == 0:
+            self._refuse_jumps(formula, slopes)
         if not np.isfinite(by).all():
             raise SolverError(
                 f"sensitivities: found a derivative of '{formula.text}' that is no number, expected finite ones"
             )
         to = {set_up.parameter.name: _plain(by[..., k]) for k, set_up in enumerate(self._set_ups)}
         return Sensitivity(formula.text, _plain(dual.value), to, self._rows.t)
+
+    def _refuse_jumps(self, formula: Formula, slopes: dict[str, np.ndarray]) -> None:
+        """Refuse a number that takes the value of a channel at an instant at which it jumps; a series is that of the right side."""
+        for name, k, moved in self._jumping:
+            here = np.zeros((len(self._rows.t), 1), dtype=bool)
+            here[k] = True
+            slope = formula.dual({**slopes, name: np.where(here & moved, np.nan, slopes[name])}).slope
+            for parameter in np.flatnonzero(np.isnan(np.broadcast_to(slope, moved.shape))):
+                raise SolverError(
+                    f"sensitivities: found that '{name}' jumps at the output instant t = {self._rows.t[k]:.9g} s, which "
+                    f"'{self._set_ups[parameter].parameter.name}' moves: '{formula.text}' has no derivative by it; expected "
+                    "other output instants"
+                )
 
     @cached_property
     def _rows(self) -> OutputRows:
@@ -188,23 +216,46 @@ class DifferentiatedRun:
         job, rows, count = self._job, self._rows, len(self._set_ups)
         along = AlongRun(job.dynamics, self._recorder, self._numbers, breakpoint_rates(self._set_ups))
         start_q, start_u = (np.array([set_up.start[k] for set_up in self._set_ups]) for k in range(2))
-        changes, values = [], []
         try:
-            for k, change in along.at(rows, instants, start_q, start_u):
-                changes.append(change)
-                values.append(along.block.outputs(rows.t[k], change))
+            found = list(along.at(rows, instants, start_q, start_u))
         finally:
             along.close()
-        slopes: dict[str, np.ndarray] = {}
-        if not changes:
-            return slopes
-        found = changed_channels(job.dynamics.system, rows.u[instants], self._numbers, changes, np.array(values))
-        for name, slope in found.items():
-            slopes[name] = np.zeros((len(rows.t), count))
+        if not found:
+            return {}
+        at = rows.at(instants)
+        changed = self._changed(at, {name: values[instants] for name, values in channels.items()}, found)
+        slopes = {name: np.zeros((len(rows.t), count)) for name in changed}
+        for name, slope in changed.items():
             slopes[name][instants] = slope
-        moved_q = np.zeros((len(rows.t), count, job.dynamics.system.n_q))
-        moved_q[instants] = [change.q for change in changes]
+        for instant in found:
+            if instant.sides:
+                self._take_both_sides(instant, channels, slopes)
+        return slopes
+
+    def _take_both_sides(
+        self, instant: Instant, channels: dict[str, np.ndarray], slopes: dict[str, np.ndarray]
+    ) -> None:
+        """Take the mean of both sides of a breakpoint at an output instant, as central differences do."""
+        job, k, moved = self._job, instant.number, instant.moved
+        there = [channels_of(job.data, job.dynamics.system, side.row) for side in instant.sides]
+        left, right = (self._changed(s.row, at, [s]) for s, at in zip(instant.sides, there, strict=True))
+        for name, slope in slopes.items():
+            jump = abs(float(there[1][name][0] - there[0][name][0]))
+            jumps = jump > NO_JUMP * job.settings.rtol * np.abs(channels[name]).max()
+            both = right[name][0] if jumps else 0.5 * (left[name][0] + right[name][0])
+            slope[k] = np.where(moved, both, slope[k])
+            if jumps:
+                self._jumping.append((name, k, moved))
+
+    def _changed(
+        self, rows: OutputRows, channels: dict[str, np.ndarray], found: Sequence[Instant | Side]
+    ) -> dict[str, np.ndarray]:
+        """Return the derivatives of all channels at some instants, shape (instants, directions)."""
+        job, changes = self._job, [each.change for each in found]
+        values = np.array([each.values for each in found])
+        slopes = changed_channels(job.dynamics.system, rows.u, self._numbers, changes, values)
         if job.data.requests:
+            moved_q = np.array([change.q for change in changes])
             slopes |= changed_requests(job, self._set_ups, rows, channels, slopes, moved_q)
         return slopes
 

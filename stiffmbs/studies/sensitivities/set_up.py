@@ -6,7 +6,7 @@ differentiated by central differences.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
 from typing import Any
@@ -23,6 +23,7 @@ from ...errors import InputError, SolverError
 from ...jobs.job import Job, start_of_job
 from ...jobs.start_from import started_from
 from ...solve.dynamics import Dynamics
+from ...solve.variations.jumps import BreakpointRates
 from .parameters import Parameter
 
 HELD = ("dimensions", "gravity", "markers", "states", "inputs", "roads")
@@ -78,8 +79,10 @@ class SetUp:
         system = self._job.dynamics.system
         for other in found:
             if not _same_structure(system, other):
+                without = any(any(scene.gravity) for scene in self.scenes) and not any(self._job.data.gravity)
                 raise InputError(
-                    f"to: found that '{self.parameter.name}' changes the structure of the model, expected one that changes numbers"
+                    f"to: found that '{self.parameter.name}' changes the structure of the model"
+                    f"{' (no body has a weight where gravity is zero)' if without else ''}, expected one that changes numbers"
                 )
             if not np.array_equal(system.principal_axes, other.principal_axes):
                 raise InputError(
@@ -170,25 +173,32 @@ class SetUp:
         dynamics = Dynamics(replace(system, active=self._job.dynamics.system.active))
         return start_of_job(replace(self._job, data=scene, dynamics=dynamics))
 
-    def breakpoint_rate(self, t: float) -> float:
-        """The derivative of the breakpoint in time at t; zero where there is none.
+    def has_breakpoint(self, t: float) -> bool:
+        """Return True if an input begins, ends or bends at t; a run also starts again for narrow features of laws."""
+        return bool(self._near(t).any())
+
+    def _near(self, t: float) -> np.ndarray:
+        return np.abs(self._breakpoints[0] - t) <= SAME_TIME * (self._job.grid.end - self._job.grid.start)
+
+    def breakpoint_rate(self, t: float, needed: bool) -> float:
+        """Return the derivative of the breakpoint in time at t.
 
         Raises
         ------
         SolverError
-            When other values have other breakpoints.
+            When it is needed, and other values have no such breakpoint.
         """
         known, *others = self._breakpoints
-        if any(len(other) != len(known) for other in others):
-            raise SolverError(
-                f"sensitivities: found that inputs begin, end or bend at {len(known)} instants, and at {[len(o) for o in others]} with "
-                f"another '{self.parameter.name}', where the motion is not differentiable by it; expected as many"
-            )
-        near = np.abs(known - t) <= SAME_TIME * (self._job.grid.end - self._job.grid.start)
-        if not near.any():  # the run started anew for a narrow feature of a law, which has no breakpoint there
+        place = int(np.flatnonzero(self._near(t))[0])
+        there = [_counterpart(known, place, other) for other in others]
+        if None not in there:
+            return float(self.derivative(there))
+        if not needed:
             return 0.0
-        place = int(np.flatnonzero(near)[0])
-        return float(self.derivative([other[place] for other in others]))
+        raise SolverError(
+            f"sensitivities: found that inputs begin, end or bend at {len(known)} instants, and at {[len(o) for o in others]} with "
+            f"another '{self.parameter.name}', where the motion is not differentiable by it; expected as many"
+        )
 
     @cached_property
     def _breakpoints(self) -> list[np.ndarray]:
@@ -197,9 +207,28 @@ class SetUp:
         return [np.asarray(input_features(system, start, end).breakpoints) for system in systems]
 
 
-def breakpoint_rates(set_ups: Sequence[SetUp]) -> Callable[[float], np.ndarray]:
+def breakpoint_rates(set_ups: Sequence[SetUp]) -> BreakpointRates:
     """How the breakpoint next to some time moves with each parameter."""
-    return lambda t: np.array([each.breakpoint_rate(t) for each in set_ups])
+
+    def rates(t: float, needed: bool) -> np.ndarray | None:
+        if not set_ups[0].has_breakpoint(t):
+            return None
+        return np.array([each.breakpoint_rate(t, needed) for each in set_ups])
+
+    return rates
+
+
+def _counterpart(known: np.ndarray, place: int, other: np.ndarray) -> float | None:
+    """Return the breakpoint of another value that belongs to a known one; None where it is not clear which.
+
+    Breakpoints may enter or leave at the ends of the run, so that there may be more or fewer of them.
+    """
+    if len(known) == len(other):
+        return float(other[place])
+    nearest = int(np.argmin(np.abs(other - known[place]))) if len(other) else None
+    if nearest is None or int(np.argmin(np.abs(known - other[nearest]))) != place:
+        return None
+    return float(other[nearest])
 
 
 def _same_bodies(before: Any, after: Any) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Any, ClassVar, Literal
 
@@ -12,6 +13,7 @@ from ...roads.road import above_zero
 from ...tyres.coefficients import AnyProperties, TyreProperties
 from ...tyres.names import SAMPLE
 from ...units import si
+from ..bottoming import bottomed
 from ..relaxation import DEFLECTIONS
 from ..tyre import Rolling, Tyre
 
@@ -21,7 +23,8 @@ class MagicFormulaTyre(Tyre):
 
     Longitudinal and lateral force, overturning, rolling and aligning torque, pure and combined slip, camber, load, relaxation
     lengths; which of them, USE_MODE says.  Slip angle and camber enter as angles (Pacejka's book has tan(alpha) and sin(gamma) in their places).  The load is
-    VERTICAL_STIFFNESS d + VERTICAL_DAMPING d', never below zero; the formula's load is at most FZMAX.  The rolling radius is
+    VERTICAL_STIFFNESS d + VERTICAL_DAMPING d', or that of [DEFLECTION_LOAD_CURVE] with the same damping, never below zero; the formula's load is at most FZMAX.
+    With BOTTOMING_RADIUS and [BOTTOMING_CURVE] the rim adds to the normal force and the overturning torque alone.  The rolling radius is
     UNLOADED_RADIUS - d0 (DREFF atan(BREFF d/d0) + FREFF d/d0), d0 = FNOMIN/VERTICAL_STIFFNESS.  A file without coefficients of combined slip has the friction ellipse, and a note says so.
 
     Pacejka, Tire and Vehicle Dynamics (2006), sec. 4.3.2; MSC Adams/Tire, PAC2002.
@@ -51,6 +54,10 @@ class MagicFormulaTyre(Tyre):
             raise ValueError("transient: found properties without PTX1 and PTY1, expected relaxation lengths")
         return self
 
+    def valid_ranges(self) -> Mapping[str, tuple[float, float]]:
+        ranges = self.properties.ranges
+        return {"load": (-math.inf, math.inf), **ranges} if ranges else {}  # without load nothing counts
+
     def own_states(self) -> tuple[str, ...]:
         transient = self.properties.is_transient if self.transient is None else self.transient
         return DEFLECTIONS if transient else ()
@@ -68,7 +75,17 @@ class MagicFormulaTyre(Tyre):
 
     @staticmethod
     def carried(e: Symbolic, deflection: Any, rate: Any) -> Any:
-        return e.properties.VERTICAL_STIFFNESS * deflection + e.properties.VERTICAL_DAMPING * rate
+        p = e.properties
+        spring = p.deflection_load or (lambda x: p.VERTICAL_STIFFNESS * x)
+        return spring(deflection) + p.VERTICAL_DAMPING * rate
+
+    @staticmethod
+    def rim_contact(e: Symbolic, deflection: Any, camber: Any) -> tuple[Any, Any] | None:
+        """Force of [BOTTOMING_CURVE], and its overturning torque; the rim is a cylinder of the tyre's width."""
+        rim = e.properties.bottoming
+        return (
+            None if rim is None else bottomed(e, rim, deflection - (e.properties.UNLOADED_RADIUS - rim.radius), camber)
+        )
 
     @classmethod
     def rolling_radius(cls, e: Symbolic, deflection: Any) -> Any:

@@ -1,0 +1,85 @@
+"""Violations of constraint equations as lengths and angles: how far one body must move, or turn, for an equation to hold."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from .state import State
+
+MOST_MOVES, CLOSED, TINY = 60, 1e-12, 1e-300
+"""Newton steps, the part of the first violation at which an equation holds, and the smallest derivative."""
+
+
+class Gap(NamedTuple):
+    """A violation and its unit, empty for an equation of states alone."""
+
+    size: float
+    unit: str
+
+    def __str__(self) -> str:
+        return f"{self.size:.3g} {self.unit}".strip()
+
+
+def position_gap(state: State, t: float, row: int) -> Gap:
+    """Return the translation of one body, or its rotation, after which one equation of positions holds.
+
+    An equation may have any unit, as (d . d - L^2)/(2 L) of a rod. Newton's steps move the body on which the equation depends
+    most, along its derivative.
+
+    Parameters
+    ----------
+    state : State
+        Its coordinates are those of the violation, and stay.
+    t : float
+        s.
+    row : int
+        The equation.
+    """
+    system = state.system
+    kept = state.q.copy()
+    try:
+        state.evaluate("motion", t)
+        first = C = float(state.vector("motion", "C")[row])
+        columns, unit = _moved_body(state, row)
+        move = np.zeros(system.of_body.n_u * len(system.bodies))
+        for _ in range(MOST_MOVES if unit else 0):
+            if abs(C) <= CLOSED * abs(first):
+                return Gap(float(np.linalg.norm(move)), unit)
+            along = state.matrix("motion", "J")[row, columns]
+            step = -C * along / max(float(along @ along), TINY)
+            move[columns] += step
+            taken = np.zeros_like(move)
+            taken[columns] = step
+            state.q[: system.n_pose] = system.of_body.moved(state.q[: system.n_pose], taken)
+            state.evaluate("motion", t)
+            C = float(state.vector("motion", "C")[row])
+            if not np.isfinite(C):
+                break
+    finally:
+        state.q[:] = kept
+    return Gap(abs(first), "")
+
+
+def velocity_gap(state: State, t: float, row: int, violation: float) -> Gap:
+    """Return the velocity of one body that makes up for a violation of one equation of velocities."""
+    state.evaluate("motion", t)
+    columns, unit = _moved_body(state, row)
+    slope = float(np.linalg.norm(state.matrix("motion", "J")[row, columns])) if unit else 1.0
+    return Gap(abs(violation) / max(slope, TINY), f"{unit}/s" if unit else "")
+
+
+def _moved_body(state: State, row: int) -> tuple[np.ndarray, str]:
+    """Return the columns of the body's translation, or of its rotation where no translation matters, and the unit."""
+    system = state.system
+    count = system.of_body.n_u * len(system.bodies)
+    along = np.abs(state.matrix("motion", "J")[row, :count])
+    linear = system.per_velocity(1.0, 0.0)[:count]
+    for part, unit in ((linear, "m"), (1.0 - linear, "rad")):
+        found = np.flatnonzero(part * along > CLOSED)
+        if len(found):
+            body = int(np.argmax((part * along).reshape(len(system.bodies), -1).max(axis=1)))
+            places = np.arange(count).reshape(len(system.bodies), -1)[body]
+            return places[part[places] > 0], unit
+    return np.empty(0, dtype=int), ""

@@ -1,0 +1,115 @@
+"""Fields of files of other programs: which of them a reader requests, and notes on the others."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any, TypeVar
+
+MOST_OWNERS = 5
+"""Elements that a note names for one field."""
+Value = TypeVar("Value")
+
+
+class Fields(Mapping[str, Value]):
+    """The fields of one element of a file by name, with a record of those that a reader requests.
+
+    Parameters
+    ----------
+    kind : str
+        Of the element, such as ``joint`` or ``[VERTICAL]``.
+    owner : str
+        The element's name or number; empty where the kind occurs once in a file.
+    values : mapping of str to Any
+        The fields that the file has.
+    defaults : mapping of str to Any
+        Values that have the effect of a missing field.
+    """
+
+    def __init__(
+        self, kind: str, owner: str, values: Mapping[str, Value], defaults: Mapping[str, Any] | None = None
+    ) -> None:
+        self.kind, self.owner = kind, owner
+        self._values, self._defaults = values, defaults or {}
+        self._requested: set[str] = set()
+
+    def __getitem__(self, name: str) -> Value:
+        self._requested.add(name)
+        return self._values[name]
+
+    def __contains__(self, name: object) -> bool:
+        self._requested.add(str(name))
+        return name in self._values
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._values)
+
+    def __len__(self) -> int:
+        return len(self._values)
+
+    def has(self, name: str) -> bool:
+        """Return True if the field is present, without requesting it."""
+        return name in self._values
+
+    def request(self, *names: str) -> None:
+        """Record that fields are used by other means than this mapping."""
+        self._requested.update(names)
+
+    def unused(self) -> list[str]:
+        """Return the names of fields that were never requested and differ from their defaults."""
+        return [
+            name
+            for name, value in self._values.items()
+            if name not in self._requested and not (name in self._defaults and _same(value, self._defaults[name]))
+        ]
+
+
+def unused_notes(elements: Iterable[Fields[Any]], reasons: Mapping[str, Mapping[str, str]] | None = None) -> list[str]:
+    """Return a note on the fields that no reader has requested, and one for each reason that is known.
+
+    Parameters
+    ----------
+    elements : iterable of Fields
+    reasons : mapping of str to (mapping of str to str)
+        Why a field has no effect, by kind and name; ``*`` stands for any kind or name.
+    """
+    owners: dict[str, dict[str, list[str]]] = {}
+    for element in elements:
+        for name in element.unused():
+            reason = _reason(reasons or {}, element.kind, name)
+            owners.setdefault(reason, {}).setdefault(f"{element.kind} {name}".strip(), []).append(element.owner)
+    return [
+        f"not used{f' ({reason})' if reason else ''}: {', '.join(_listed(field, who) for field, who in fields.items())}"
+        for reason, fields in sorted(owners.items())
+    ]
+
+
+def _reason(reasons: Mapping[str, Mapping[str, str]], kind: str, name: str) -> str:
+    of_kind, of_any = reasons.get(kind, {}), reasons.get("*", {})
+    return next((found[key] for found in (of_kind, of_any) for key in (name, "*") if key in found), "")
+
+
+def _listed(field: str, owners: list[str]) -> str:
+    named = list(dict.fromkeys(owner for owner in owners if owner))
+    if not named:
+        return field
+    more = f" and {len(named) - MOST_OWNERS} more" if len(named) > MOST_OWNERS else ""
+    return f"{field} of {', '.join(named[:MOST_OWNERS])}{more}"
+
+
+def _same(value: Any, default: Any) -> bool:
+    """Return True for two texts of one number or word, and for equal numbers or sequences of numbers."""
+    texts = [[str(part).strip().lower() for part in _parts(x)] for x in (value, default)]
+    return len(texts[0]) == len(texts[1]) and all(a == b or _equal(a, b) for a, b in zip(*texts, strict=True))
+
+
+def _parts(x: Any) -> list[Any]:
+    if isinstance(x, str):
+        return x.split()
+    return list(x) if hasattr(x, "__iter__") else [x]
+
+
+def _equal(a: str, b: str) -> bool:
+    try:
+        return float(a) == float(b) or (a == b == "nan")
+    except ValueError:
+        return False

@@ -1,0 +1,161 @@
+"""Breakpoints of forces at the state of a linearisation: the equations a little to both sides of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...errors import SolverError
+from ...linear_analysis.state_space import StateMatrix
+from ...linear_analysis.tangent_space import Linearised, linearised
+from .at_state import AtState
+
+
+@dataclass(frozen=True)
+class Moves:
+    """Moves along which the equations are compared on both sides of a state.
+
+    Attributes
+    ----------
+    wide, narrow : float
+        Sizes, relative to the mechanism's size, rad, or these over one second.  A breakpoint within the wide one is near the state.
+    steep : float
+        Times the change of a force that its derivatives on both sides of the narrow move explain, from which on it jumps.
+    curved : float
+        Part of a change over the wide move by which it may differ from that over the narrow one in proportion to their sizes, as
+        of a smooth law.
+    rounding : float
+        Part of the sum of all parts of an entry, or of the largest force, that counts as none.
+    """
+
+    wide: float = 1e-6
+    narrow: float = 1e-7
+    steep: float = 10.0
+    curved: float = 0.5
+    rounding: float = 1e-6
+
+    def break_between(self, wide: np.ndarray, narrow: np.ndarray) -> np.ndarray:
+        """Return where changes over the two moves are not in proportion to their sizes."""
+        return np.asarray(np.abs(narrow * (self.wide / self.narrow) - wide) > self.curved * np.abs(wide))
+
+
+MOVES = Moves()
+
+
+@dataclass(frozen=True)
+class Kink:
+    """A breakpoint at the state.
+
+    Attributes
+    ----------
+    where : str
+        The velocity, or state, whose equation bends, such as ``b.vx``.
+    sides : tuple of Linearised
+        The equations on both sides of the breakpoint.
+    """
+
+    where: str
+    sides: tuple[Linearised, Linearised]
+
+
+def kink_at(found: AtState, state: StateMatrix, linear: Linearised, moves: Moves = MOVES) -> Kink | None:
+    """Return the breakpoint of a force or rate at a state, or None.
+
+    Parameters
+    ----------
+    found : AtState
+    state : StateMatrix
+    linear : Linearised
+        At that state.
+    moves : Moves, optional
+
+    Raises
+    ------
+    SolverError
+        Where a force jumps at the state, which then has no linearisation.
+    """
+    if not len(state.matrix):
+        return None
+    system = found.dynamics.system
+    scale = system.per_velocity(system.size, 1.0)
+    move = _generic_move(state, scale)
+    wide, narrow = (
+        [_side(found, state, linear, sign * size * move) for sign in (-1.0, 1.0)] for size in (moves.wide, moves.narrow)
+    )
+    names = [system.name_of(k, system.of_body.velocities) for k in range(system.n_u)]
+    states = [name for name, algebraic in zip(system.states, system.algebraic, strict=True) if not algebraic]
+    rows = [*_moving(state, scale, names), *states]
+    jump = np.abs(narrow[1].forces - narrow[0].forces)
+    smooth = moves.steep * 2 * moves.narrow * np.maximum(narrow[0].parts, narrow[1].parts) @ np.abs(move)
+    jumps = jump > smooth + moves.rounding * np.max(np.abs(narrow[0].forces), initial=0.0)
+    if jumps.any():
+        raise SolverError(
+            f"a force or rate of {rows[int(np.argmax(np.where(jumps, jump, 0.0)))]} jumps at the state at t = {found.t:g} s, where it "
+            "has no linearisation; expected a state away from the jump, or a law that is continuous there, such as step()"
+        )
+    changes = [after.matrix - before.matrix for before, after in (wide, narrow)]
+    bends = moves.break_between(*changes) & (np.abs(changes[0]) > moves.rounding * wide[0].parts)
+    if not bends.any():
+        return None
+    share = np.where(bends, np.abs(changes[0]) / np.where(bends, wide[0].parts + np.abs(changes[0]), 1.0), 0.0)
+    where = rows[int(np.argmax(share.max(axis=1)))]
+    return Kink(where, (wide[0].linear, wide[1].linear))
+
+
+def _moving(state: StateMatrix, scale: np.ndarray, names: list[str]) -> list[str]:
+    """The velocity that is largest in each free one."""
+    free = state.velocities[:, state.n_poses : state.n_poses + state.degrees_of_freedom] / scale[:, None]
+    return [names[int(k)] for k in np.argmax(np.abs(free), axis=0)]
+
+
+@dataclass(frozen=True)
+class _Side:
+    """The equations after a move: forces and rates, their derivatives by free variations, and the sums of the sizes of all parts
+    of these."""
+
+    linear: Linearised
+    forces: np.ndarray
+    matrix: np.ndarray
+    parts: np.ndarray
+
+
+def _generic_move(state: StateMatrix, scale: np.ndarray) -> np.ndarray:
+    """Variations of which every one takes part, of size 1."""
+    rng = np.random.default_rng(1)
+    n = len(state.matrix)
+    sizes = np.abs(np.vstack([state.poses / scale[:, None], state.velocities / scale[:, None]])).max(axis=0)
+    sizes[n - state.n_states :] = 1.0
+    return rng.choice((-1.0, 1.0), n) * rng.uniform(0.5, 1.0, n) / np.maximum(sizes, 1.0)
+
+
+def _side(found: AtState, state: StateMatrix, linear: Linearised, z: np.ndarray) -> _Side:
+    """The equations after a variation, with the multipliers and accelerations of the state."""
+    dynamics, at, system = found.dynamics, found.dynamics.state, found.dynamics.system
+    own = linear.algebraic.among_all(z[len(z) - state.n_states :, None])[:, 0]
+    with at.unchanged():
+        at.q[:] = system.of_body.moved(at.q, linear.own_axes @ (state.poses @ z))
+        at.q[system.first_state :] += own * system.state_scales
+        at.u[:] += linear.own_axes @ (state.velocities @ z)
+        there = linearised(dynamics, found.t, found.acceleration)
+        at.evaluate("motion", found.t)
+        force, rate = (
+            at.vector("motion", "f").copy(),
+            at.vector("motion", "rate")[system.first_state :][~system.algebraic],
+        )
+    free = state.velocities[:, state.n_poses : state.n_poses + state.degrees_of_freedom]
+    s = np.eye(len(z))[len(z) - state.n_states :]
+    forced = (
+        (there.stiffness, there.damping, there.by_states),
+        (there.rate_by_pose, there.rate_by_velocity, there.rate_by_states),
+    )
+    variations = state.poses, state.velocities, s
+    acting, rates = (sum(part @ of for part, of in zip(parts, variations, strict=True)) for parts in forced)
+    sizes, of_rates = (
+        sum(np.abs(part) @ np.abs(of) for part, of in zip(parts, variations, strict=True)) for parts in forced
+    )
+    sizes = sizes + np.abs((there.mass @ there.spin).toarray()) @ np.abs(
+        state.velocities
+    )  # cancels parts of the damping
+    matrix, parts = np.vstack([free.T @ acting, rates]), np.vstack([np.abs(free.T) @ sizes, of_rates])
+    return _Side(there, np.append(free.T @ (linear.own_axes.T @ force), rate), matrix, parts)

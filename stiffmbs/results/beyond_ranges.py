@@ -1,0 +1,42 @@
+"""Notes on force elements whose channels leave the ranges that their data are valid for, such as the loads of a tyre."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+
+import numpy as np
+
+ACTING = "load"
+"""A channel that is zero where the element does not act, so that its other channels do not count."""
+
+
+def range_notes(
+    ranges: Mapping[str, Mapping[str, tuple[float, float]]], series: Callable[[str], np.ndarray]
+) -> Iterator[str]:
+    """Yield a sentence for each element, with the extremes that its channels reached outside their ranges.
+
+    Parameters
+    ----------
+    ranges : mapping of str to (mapping of str to (float, float))
+        By element and channel.
+    series : callable
+        The values of a channel at the output times, by its name.
+    """
+    for name, of_element in ranges.items():
+        acts = series(f"{name}.{ACTING}") > 0 if ACTING in of_element else slice(None)
+        found = [
+            sentence
+            for channel, (low, high) in of_element.items()
+            if (sentence := _beyond(channel, series(f"{name}.{channel}")[acts], low, high))
+        ]
+        if found:
+            yield f"'{name}' leaves the ranges that its data are valid for: {', '.join(found)}"
+
+
+def _beyond(channel: str, values: np.ndarray, low: float, high: float) -> str:
+    """The extremes of a channel and its range; empty within it."""
+    values = values[np.isfinite(values)]
+    if not len(values) or (low <= values.min() and values.max() <= high):
+        return ""
+    reached = [x for x, beyond in ((values.min(), values.min() < low), (values.max(), values.max() > high)) if beyond]
+    return f"{channel} reaches {' and '.join(f'{x:.4g}' for x in reached)} (valid from {low:.4g} to {high:.4g})"

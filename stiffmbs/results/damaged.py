@@ -1,0 +1,40 @@
+"""Files of results that are damaged: what their readers raise then."""
+
+from __future__ import annotations
+
+import struct
+import tokenize
+import zlib
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from xml.etree.ElementTree import ParseError
+from zipfile import BadZipFile
+
+from ..describe.files.files_read import check_regular
+
+RAISED = (
+    BadZipFile, zlib.error, struct.error, tokenize.TokenError, ParseError, ArithmeticError, AssertionError, AttributeError,
+    EOFError, LookupError, NotImplementedError, RuntimeError, SyntaxError, TypeError,
+)  # fmt: skip
+"""What archives, arrays, tables and XML of damaged content are known to raise."""
+
+
+@contextmanager
+def readable(path: Path) -> Iterator[None]:
+    """Read a regular file whose content may be anything.
+
+    Raises
+    ------
+    OSError
+        When it is no regular file, or cannot be read.
+    ValueError
+        When its content cannot be read.
+    """
+    check_regular(path)
+    try:
+        yield
+    except ValueError:
+        raise
+    except RAISED as error:
+        raise ValueError(f"damaged content ({type(error).__name__})") from error

@@ -1,0 +1,54 @@
+"""Files that an MJCF file names: MuJoCo opens them itself, and would wait for a pipe without end."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import suppress
+from pathlib import Path
+from xml.etree import ElementTree
+
+from ...describe.files.files_read import check_regular
+from ...describe.files.quoted import quoted
+from ...describe.files.text_file import file_text
+from ..robot import RobotFault
+
+FILE, INCLUDE = "file", "include"
+FOLDERS = ("assetdir", "meshdir", "texturedir")
+MOST_INCLUDED = 100
+
+
+def check_assets(path: Path) -> None:
+    """Refuse an MJCF file that names what is no regular file, itself or in a file that it includes.
+
+    Raises
+    ------
+    RobotFault
+    InputError
+        For an included file that cannot be read as text.
+    """
+    waiting, seen = [path], set[Path]()
+    while waiting and len(seen) < MOST_INCLUDED:
+        file = waiting.pop()
+        if file in seen:
+            continue
+        seen.add(file)
+        for name, included in _named(file, path.parent):
+            try:
+                check_regular(name)
+            except FileNotFoundError:
+                continue
+            except (OSError, ValueError) as error:
+                reason = getattr(error, "strerror", None) or error
+                raise RobotFault(f"{quoted(str(name))}: the file cannot be read ({reason})") from None
+            if included:
+                waiting.append(name)
+
+
+def _named(file: Path, folder: Path) -> Iterator[tuple[Path, bool]]:
+    """Yield the places in which MuJoCo may look for the files that one names, and whether it is included."""
+    with suppress(ElementTree.ParseError):  # MuJoCo tells what is wrong
+        root = ElementTree.fromstring(file_text(file))
+        folders = {folder} | {folder / value for part in root.iter() for at in FOLDERS if (value := part.get(at))}
+        for part in root.iter():
+            if name := part.get(FILE):
+                yield from ((each / name, part.tag == INCLUDE) for each in folders)

@@ -1,0 +1,45 @@
+"""What the flags of an MJCF file switch off."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ...describe.files.requested import Fields
+
+OF_PASSIVE = ("SPRING", "DAMPER")
+"""Flags that older versions of MuJoCo have as one, PASSIVE."""
+
+
+class Disabled:
+    """The disable flags of a compiled model by their names, with a record of those that are requested.
+
+    Parameters
+    ----------
+    m : RequestedModel
+    """
+
+    def __init__(self, m: Any) -> None:
+        import mujoco
+
+        off, on = (_bits(kind) for kind in (mujoco.mjtDisableBit, mujoco.mjtEnableBit))
+        self._off = Fields("flag", "", {name: "disabled" for name, bit in off.items() if m.opt.disableflags & bit})
+        self._on = Fields("flag", "", {name: "enabled" for name, bit in on.items() if m.opt.enableflags & bit})
+
+    def __call__(self, *names: str) -> bool:
+        """Return True if any of some features is switched off."""
+        found = [name in self._off or (name in OF_PASSIVE and "PASSIVE" in self._off) for name in names]
+        return any(found)
+
+    def all(self, *names: str) -> bool:
+        """Return True if all of some features are switched off."""
+        found = [self(name) for name in names]
+        return all(found)
+
+    def fields(self) -> tuple[Fields[str], Fields[str]]:
+        """Return the disable and the enable flags that are set."""
+        return self._off, self._on
+
+
+def _bits(kind: Any) -> dict[str, int]:
+    """The flags of an enumeration by their names without prefix."""
+    return {name[7:]: int(getattr(kind, name)) for name in dir(kind) if name.startswith(("mjDSBL_", "mjENBL_"))}

@@ -1,0 +1,95 @@
+"""Elements of an XML file with a record of the attributes and children that a reader requests."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+from xml.etree.ElementTree import Element, TreeBuilder
+from xml.parsers.expat import ExpatError, ParserCreate
+
+from ..describe.files.requested import Fields
+from .robot import RobotFault
+
+
+class Node:
+    """An element of an XML file.
+
+    Parameters
+    ----------
+    element : Element
+    kind : str
+        Tags from the root to the element, with ``/`` between them.
+    owner : str
+        The name of the nearest element that has one.
+    defaults : mapping of str to (mapping of str to Any)
+        Values without effect, by kind.
+    """
+
+    def __init__(
+        self, element: Element, kind: str = "", owner: str = "", defaults: Mapping[str, Mapping[str, Any]] | None = None
+    ) -> None:
+        self.tag, self.attributes = element.tag, element.attrib
+        kind = kind or element.tag
+        children = {_child(child.tag): child.tag for child in element}
+        own = {name: value for name, value in element.attrib.items() if not name.startswith("xmlns")}
+        self._fields = Fields(kind, owner, {**own, **children}, (defaults or {}).get(kind))
+        self._children = [
+            Node(child, f"{kind}/{child.tag}".removeprefix("robot/"), child.get("name") or owner, defaults)
+            for child in element
+        ]
+
+    def get(self, name: str, default: str | None = None) -> str | None:
+        """Return an attribute."""
+        return self._fields.get(name, default)
+
+    def find(self, tag: str) -> Node | None:
+        """Return the first child of a tag."""
+        return next(iter(self.findall(tag)), None)
+
+    def findall(self, path: str) -> list[Node]:
+        """Return the children of a tag, or of a tag in children of another one."""
+        tag, _, rest = path.partition("/")
+        self._fields.request(_child(tag))
+        found = [child for child in self._children if child.tag == tag]
+        return [below for child in found for below in child.findall(rest)] if rest else found
+
+    def without_effect(self, *tags: str) -> None:
+        """Leave children out of the report."""
+        self._fields.request(*map(_child, tags))
+        self._children = [child for child in self._children if child.tag not in tags]
+
+    def walk(self) -> Iterator[Node]:
+        """Yield the element and all below it."""
+        yield self
+        for child in self._children:
+            yield from child.walk()
+
+    def fields(self) -> Iterator[Fields[str]]:
+        """Yield the fields of the element and of all requested ones below it."""
+        yield self._fields
+        unused = self._fields.unused()
+        for child in self._children:
+            if _child(child.tag) not in unused:
+                yield from child.fields()
+
+
+def _child(tag: str) -> str:
+    return f"<{tag}>"
+
+
+def parsed(text: str, expected: str, defaults: Mapping[str, Mapping[str, Any]]) -> Node:
+    """Read an XML file; prefixes of namespaces need not be declared.
+
+    Raises
+    ------
+    RobotFault
+        For text that is not well-formed.
+    """
+    builder, parser = TreeBuilder(), ParserCreate()
+    parser.StartElementHandler, parser.EndElementHandler = builder.start, builder.end
+    parser.CharacterDataHandler = builder.data
+    try:
+        parser.Parse(text, True)
+    except ExpatError as error:
+        raise RobotFault(f"found no well-formed XML ({error}), expected {expected}") from None
+    return Node(builder.close(), defaults=defaults)
