@@ -132,3 +132,24 @@ def test_the_command_writes_a_dataset_and_its_command_file(tmp_path):
     assert again.run.duration == 0.2 and len(stiffmbs.run(again).t) == 3
     refused = CliRunner().invoke(main, ["convert", str(dataset), "-o", str(tmp_path / "swing.ADM")])
     assert refused.exit_code in (0, 2)
+
+
+@pytest.mark.parametrize(
+    ("joints", "said"),
+    [
+        (
+            "one: {type: screw, i: b, j: {body: ground, point: [1, 0.2, 0.1]}, pitch: 0.05}",
+            "found a joint of the type screw, expected a thread",
+        ),
+        (
+            "one: {type: point_on_line, i: b, j: {body: ground, point: [1, 0.2, 0.1]}}, two: {type: drive, joint: one, position: t}",
+            "found the joint one, expected one that is a JOINT",
+        ),
+    ],
+)
+def test_joints_that_are_no_joint_of_adams_are_refused_by_name(joints, said):
+    text = "\n".join(
+        line for line in BODIES.splitlines() if not line.startswith(("tables", "  smooth", "  straight", "  local"))
+    )
+    with pytest.raises(InputError, match=said):
+        dataset_text(stiffmbs.read_scene(f"{text}\njoints: {{{joints}}}\n"))

@@ -15,20 +15,36 @@ G = 9.80665
 TIMES = np.linspace(0, 0.4, 21)
 
 
-def step(x, x0, h0, x1, h1):
+def step5(x, x0, h0, x1, h1):
     z = min(max((x - x0) / (x1 - x0), 0), 1)
-    return h0 + (h1 - h0) * z * z * (3 - 2 * z)
+    return h0 + (h1 - h0) * z**3 * (10 + z * (6 * z - 15))
 
 
 def coefficient(v, static, dynamic, slow, times=1.5):
     """Adams' curve over a speed: the static coefficient at one velocity, the dynamic one from a multiple of it on."""
     if abs(v) < slow:
-        return step(v, -slow, -static, slow, static)
-    return np.sign(v) * step(abs(v), slow, static, times * slow, dynamic)
+        return step5(v, -slow, -static, slow, static)
+    return np.sign(v) * step5(abs(v), slow, static, times * slow, dynamic)
 
 
 def direction(v, slow):
-    return step(v, -slow, -1, slow, 1)
+    return step5(v, -slow, -1, slow, 1)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("ratio", [0.0557, 0.01, 0.03, 0.08, 0.099, 0.101, 0.11, 0.12, 0.13, 0.145, 0.16])
+def test_the_torque_of_a_ball_over_its_speed_is_that_of_a_run_of_adams(tmp_path, ratio):
+    text = """ACCGRAV/KGRAV=-9.80665
+MARKER/11, PART=1
+PART/2, MASS=3, CM=21, IP=2e12,2e12,2e12, WX={speed}
+MARKER/21, PART=2
+JOINT/1, SPHERICAL, I=21, J=11
+FRICTION/7, JOINT=1, MU_STATIC=0.4, MU_DYNAMIC=0.3, BALL_RADIUS=1, STICTION_TRANSITION_VELOCITY=0.1
+"""
+    found = played(tmp_path, text.format(speed=ratio), 0.4, rtol=1e-9)
+    if ratio == 0.0557:
+        assert coefficient(ratio, 0.4, 0.3, 0.1) / 0.4 == pytest.approx(0.848, abs=5e-4)  # as measured
+    np.testing.assert_allclose(-found["FRICTION_7.tx"] / (3 * G), coefficient(ratio, 0.4, 0.3, 0.1), rtol=1e-6)
 
 
 PENDULUM = """ACCGRAV/KGRAV=-9.80665

@@ -65,3 +65,15 @@ def test_a_garbled_dataset_is_read_or_refused(tmp_path, seed):
         (tmp_path / "model.adm").write_text(text)
         assert stiffmbs.listed_statements(tmp_path / "model.adm")
     assert read and refused
+
+
+@pytest.mark.parametrize(
+    "fields", ["QP=1E160,0,0", "QP=0,1E155,0", "QP=1E154,1E154,0", "QP=0,0,-1E308", "QP=1E200,0,0, REULER=1,1,1"]
+)
+def test_inertias_beyond_all_numbers_are_refused(fields):
+    text = (
+        "ADAMS title\nPART/1, GROUND\nMARKER/1, PART=1\nPART/2, MASS=1, CM=4, IM=5, IP=1,1,1\nMARKER/4, PART=2\n"
+        f"MARKER/5, PART=2, {fields}\nACCGRAV/JGRAV=-9.8\nEND\n"
+    )
+    with pytest.raises(InputError, match=r"PART/2: found moments of inertia about CM beyond 1e308"):
+        read_adams(text)

@@ -112,6 +112,10 @@ def test_an_output_spacing_that_is_set_takes_the_place_of_points(in_folder):
         (("--rtol", "1e-20"), "scene.yaml, --set run.rtol: found 1e-20"),
         (("--set", "parameters={a: 2 x}"), "scene.yaml, --set parameters.a: found"),
         (("--set", "parameters.l=2"), "--set parameters.l: found no such parameter, expected one of none"),
+        (
+            ("--set", "l=2"),
+            "l: found no such parameter, expected one of none, or a path such as forces.spring.stiffness",
+        ),
         (("--set", "joints.rail.j=bar", "--set", "joints.rail.i=bar"), "scene.yaml, line 8, joints.rail: found 'bar'"),
     ],
 )

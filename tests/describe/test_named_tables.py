@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from scipy.interpolate import Akima1DInterpolator, CubicSpline
+from scipy.interpolate import Akima1DInterpolator, CubicSpline, PchipInterpolator
 
 import stiffmbs
 from stiffmbs import InputError
@@ -31,7 +31,10 @@ def scene(force="scale*push(t)", how="", request="1"):
 @pytest.mark.parametrize(
     "how, made",
     [
-        ("", lambda x, y: CubicSpline(x, y, bc_type="natural")),
+        ("", PchipInterpolator),
+        (", spline: true", lambda x, y: CubicSpline(x, y, bc_type="natural")),
+        (", ends: natural", lambda x, y: CubicSpline(x, y, bc_type="natural")),
+        (", spline: true, ends: clamped", lambda x, y: CubicSpline(x, y, bc_type="clamped")),
         (", ends: not-a-knot", lambda x, y: CubicSpline(x, y, bc_type="not-a-knot")),
         (", akima: true", Akima1DInterpolator),
         (", lines: true", None),
@@ -51,8 +54,8 @@ def test_a_table_of_the_state_keeps_energy_as_its_integral_does():
     """A force -push(x): half m v^2 plus the area under the table stays."""
     solution = stiffmbs.run(scene("-push(sled.x + 1)"))
     way = np.linspace(0, 1, 2001)
-    natural = CubicSpline(*np.array(POINTS, dtype=float).T, bc_type="natural")
-    areas = [np.trapezoid(natural(1 + x * way) * x, way) for x in solution["sled.x"]]
+    monotone = PchipInterpolator(*np.array(POINTS, dtype=float).T)
+    areas = [np.trapezoid(monotone(1 + x * way) * x, way) for x in solution["sled.x"]]
     np.testing.assert_allclose(solution["sled.vx"] ** 2 + areas, 0.09, atol=1e-6)
 
 
@@ -73,7 +76,7 @@ run: {duration: 2, points: 9}
 @pytest.mark.parametrize("periodic", [False, True])
 def test_curves_are_what_kernels_compute(periodic):
     points = [*POINTS[:-1], [3, 0]] if periodic else POINTS
-    table = Table(table=points, ends="periodic" if periodic else "natural")
+    table = Table(table=points, ends="periodic" if periodic else None)
     text = f"""
 tables: {{push: {{table: {points}{", ends: periodic" if periodic else ""}}}}}
 bodies: {{sled: {{mass: 1, inertia: 1}}}}
@@ -104,6 +107,7 @@ def test_corners_of_named_tables_of_time():
         ("push:", "two words:", "tables: found the name 'two words'"),
         ("[1, 0.5]", "[0.2, 0.5]", "tables.push: .*found 0.2 after 0.5"),
         ("[3, 1]]", "[3, 1]], akima: true, lines: true", "found akima with lines or ends"),
+        ("[3, 1]]", "[3, 1]], spline: true, lines: true", "found lines with a spline or its ends"),
         ("tables:", "tables: 3\nfigure:", "tables: found 3, expected a mapping"),
     ],
 )
@@ -112,3 +116,32 @@ def test_tables_that_cannot_be_are_told(before, after, words):
     assert before in text
     with pytest.raises(InputError, match=words):
         stiffmbs.read_scene(text.replace(before, after))
+
+
+BUMP = [[-100, 0], [12, 0], [12.3, 0.05], [12.6, 0.05], [12.9, 0], [200, 0]]
+STOP = [[-0.1, -2000], [0, 0], [0.05, 0], [0.051, 9000], [0.1, 9100]]
+DAMPER = [[-2, -1000], [-0.1, -900], [0, 0], [0.1, 1500], [2, 1600]]
+
+
+@pytest.mark.parametrize("points", [BUMP, STOP, DAMPER, POINTS])
+def test_a_table_stays_between_its_points_by_default(points):
+    x, y = np.array(points, dtype=float).T
+    values = curve(Table(table=points))(np.linspace(x[0], x[-1], 20_001))
+    assert (values.min(), values.max()) == pytest.approx((y.min(), y.max()), rel=1e-6, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("points", "how", "noted"),
+    [
+        (BUMP, "spline: true", True), (BUMP, "ends: natural", True), (BUMP, "ends: not-a-knot", True), (BUMP, "akima: true", True),
+        (BUMP, "lines: true", False), (BUMP, "", False), (STOP, "spline: true", True), (STOP, "", False), (DAMPER, "spline: true", True),
+        (DAMPER, "lines: true", False), ([[0, 0], [1, 1], [2, 4], [3, 9]], "spline: true", False),
+    ],
+)  # fmt: skip
+def test_a_spline_that_leaves_the_range_of_its_points_is_noted(points, how, noted):
+    table = f"{{table: {points}{', ' if how else ''}{how}}}"
+    for law in (f"tables: {{h: {table}}}\nforces: {{f: {{type: force, i: b, force: ['-h(b.x)', 0]}}}}",
+                f"forces: {{f: {{type: spring_damper, i: b, j: ground, damper_law: {table}}}}}"):  # fmt: skip
+        scene = stiffmbs.read_scene(f"gravity: [0, 0]\nbodies: {{b: {{mass: 1, inertia: 1, position: [1, 0]}}}}\n{law}")
+        for notes in (stiffmbs.check(scene).messages, stiffmbs.run(scene, duration=1e-3, points=2).notes):
+            assert any("where its points are between" in note and note.startswith("f: ") for note in notes) == noted

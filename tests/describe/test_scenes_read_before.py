@@ -1,5 +1,6 @@
 """Scenes that are kept as they were once valid: the same scene, and never that of other texts, files or readers."""
 
+import pickle
 import shutil
 from pathlib import Path
 
@@ -176,3 +177,34 @@ def test_an_entry_whose_classes_are_gone_is_made_anew(scene, reads, monkeypatch)
     )
     assert stiffmbs.load_scene(scene).bodies["bar"].mass == 2
     assert len(reads) == 2
+
+
+@pytest.mark.parametrize(
+    "garbage",
+    [b"", b"\n", b"null\n", b"[1, 2]\n", b"{}\n\x80", b"\xff\xfe\n", b"[1, 2, 3]\nabc", "half", "no scene", "no head", "head alone", "other files"],
+)  # fmt: skip
+def test_garbage_with_a_right_code_is_made_anew(scene, reads, garbage):
+    stiffmbs.load_scene(scene)
+    folder = folder_of_files()
+    for entry in _kept():
+        whole = folder.read(entry.name)
+        head, _, content = whole.partition(b"\n")
+        made = {
+            "half": whole[: len(whole) // 2], "no scene": head + b"\n" + pickle.dumps([1]), "no head": content,
+            "head alone": head, "other files": head.replace(b"{}", b'[["a", 1]]') + b"\n" + content,
+        }  # fmt: skip
+        folder.write(entry.name, made.get(garbage, garbage))
+    assert stiffmbs.load_scene(scene).bodies["bar"].mass == 2
+    assert len(reads) == 2
+
+
+@pytest.mark.parametrize("garbage", [b"", b"[", b"\xff", b'{"bodies":'])
+def test_garbage_in_the_entry_of_a_text_is_read_anew(scene, garbage):
+    stiffmbs.load_scene(scene)
+    folder = folder_of_files()
+    for entry in folder.path.iterdir():
+        if entry.name.startswith("file-"):
+            folder.write(entry.name, folder.read(entry.name)[:40] + garbage)
+        else:
+            entry.unlink()
+    assert stiffmbs.load_scene(scene).bodies["bar"].mass == 2

@@ -21,6 +21,7 @@ from stiffmbs import (
     Prismatic,
     RackAndPinion,
     Revolute,
+    TorsionSpring,
 )
 
 G = 9.81
@@ -247,3 +248,23 @@ def test_force_on_a_rod_with_coincident_points_is_told():
     model.add("push", AppliedForce(i="a", force=(1, 0)))
     with pytest.raises(stiffmbs.AssemblyError, match=r"rod|singular"):
         stiffmbs.run(model, duration=0.1)
+
+
+@pytest.mark.parametrize("settings", [{}, {"presolve": False}, {"solver": "projected"}, {"solver": "auto"}], ids=str)
+@pytest.mark.parametrize("turns", [-2, -1, 1, 3])
+@pytest.mark.parametrize("on", ["i", "j"])
+@pytest.mark.parametrize("kind", [Fixed, Prismatic])
+def test_markers_drawn_whole_turns_apart_wind_up_no_spring(kind, on, turns, settings):
+    """A body stays in the turn in which it is drawn, and a torsion spring on it as it is drawn."""
+    angles = {"i": 1.5, "j": 1.5, on: 1.5 + 2 * np.pi * turns}
+    model = Model()
+    model.add("block", Body(mass=2.0, inertia=0.1))
+    model.add("arm", Body(mass=1.0, inertia=0.2, angle=0.01))
+    i, j = (Marker(body=body, angle=angles[side]) for side, body in (("i", "block"), ("j", "ground")))
+    model.add("joint", kind(i=i, j=j))
+    model.add("pin", Revolute(i="arm", j="block"))
+    model.add("spring", TorsionSpring(i="arm", j="block", stiffness=10.0))
+    solution = stiffmbs.run(model, duration=0.5, points=11, rtol=1e-8, **settings)
+    np.testing.assert_allclose(solution["block.angle"], 0.0, atol=1e-9)
+    turned = 0.01 * np.cos(np.sqrt(10.0 / 0.2) * solution.time)
+    np.testing.assert_allclose(solution["arm.angle"], turned, atol=1e-6)

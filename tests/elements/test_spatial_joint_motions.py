@@ -63,6 +63,21 @@ def test_shafts_in_a_constant_velocity_joint_turn_alike(bend, of_second):
     np.testing.assert_allclose(solution["second.wx"], 2 + 3 * np.cos(3 * solution.time), atol=1e-7)
 
 
+@pytest.mark.parametrize("of_second", [ALONG_X, ALONG_MINUS_X], ids=["same", "opposite"])
+def test_the_reaction_of_a_constant_velocity_joint_in_a_formula(of_second):
+    """A force that reads the torque in the joint reads that which is reported, whichever sense the axes are drawn with."""
+    joint = spatial.ConstantVelocity(
+        i={"body": "first", "orientation": ALONG_X}, j={"body": "second", "orientation": of_second}
+    )
+    model = two_shafts(0.4, joint, "2*t + sin(3*t)")
+    model.add("probe", spatial.Body(mass=1.0, inertia=(0.1, 0.1, 0.1)))
+    model.add("read", spatial.AppliedForce(i="probe", force=("tx(joint)", "ty(joint)", "tz(joint)")))
+    solution = stiffmbs.run(model, duration=1.0, points=41, rtol=1e-8)
+    assert np.abs(solution["joint.tx"]).max() > 0.1
+    for axis in "xyz":
+        np.testing.assert_allclose(solution[f"read.f{axis}"], solution[f"joint.t{axis}"], atol=1e-6)
+
+
 PITCH, MASS, INERTIA = 0.05, 1.3, 0.0004
 
 
@@ -113,6 +128,41 @@ def test_a_nut_falls_slowly_by_its_own_turning(sense, joints, solver):
     np.testing.assert_allclose(axes(solution, "nut"), expected, atol=1e-5)
     np.testing.assert_allclose(solution["screw.fz"], MASS * (G - a), rtol=1e-9)
     np.testing.assert_allclose(solution["screw.tz"], -INERTIA * per_metre * a, rtol=1e-9)
+
+
+REFERRING = {
+    "drive": lambda of: spatial.Drive(
+        joint=f"screw.{of}", position="1 + t + t^2" if of == "angle" else "0.1 + 0.01*t^2"
+    ),
+    "coupler": lambda of: spatial.Coupler(joint_1=f"screw.{of}", joint_2="sleeve.displacement", scale=2.0),
+    "gear": lambda of: spatial.Gear(joint_1="screw.angle", joint_2="sleeve.angle", ratio=2.0),
+}
+
+
+@pytest.mark.parametrize(
+    "solver", [{}, {"presolve": False}, {"solver": "projected"}], ids=["bdf", "as-is", "projected"]
+)
+@pytest.mark.parametrize("of", ["angle", "displacement"])
+@pytest.mark.parametrize("kind", REFERRING)
+@pytest.mark.parametrize("offset", [None, 0.1], ids=["as-drawn", "given"])
+def test_elements_that_refer_to_a_screw(offset, kind, of, solver):
+    """A screw whose offset is taken from its drawn pose moves as one with that offset given."""
+    joints = [
+        (
+            "screw",
+            lambda ground: spatial.Screw(i="nut", j=ground, pitch=PITCH, offset=offset and offset - PITCH / TURN),
+        ),
+        ("sleeve", lambda ground: spatial.Cylindrical(i="ring", j=ground)),
+        ("referring", lambda _: REFERRING[kind](of)),
+    ]
+    model = falling_nut(joints[0])
+    model.add("ring", wheel(position=(0.3, 0.2, 0.0)))
+    for name, joint in joints[1:]:
+        model.add(name, joint(spatial.Marker(body="ground", point=(0.3, 0.2, 0))))
+    solution = stiffmbs.run(model, duration=0.4, points=9, rtol=1e-9, **solver)
+    assert solution.success
+    turn, advance = solution["nut.wz"][-1], solution["nut.vz"][-1]
+    np.testing.assert_allclose(advance, PITCH * turn / TURN, rtol=1e-6, atol=1e-9)
 
 
 @pytest.mark.parametrize("ratio", [17 / 31, -3.0, np.sqrt(2)], ids=["17/31", "internal", "irrational"])

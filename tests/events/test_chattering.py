@@ -12,6 +12,8 @@ from stiffmbs.solve.dynamics import Dynamics
 from stiffmbs.solve.events.chattering import TRUSTED_EVENTS, WINDOW, Chattering
 from stiffmbs.solve.events.discontinuity import sliding
 from stiffmbs.solve.trajectory import Outcome
+from stiffmbs.stress.families.roads.kinks import SLIDES, belts, follower
+from stiffmbs.stress.families.roads.kinks import wheel as wheel_on_road
 
 SOLVERS = ["bdf", "callbacks", "auto", "dop853", "dopri5"]
 
@@ -175,3 +177,21 @@ def test_a_jump_at_a_place_is_passed_whatever_the_accelerations():
 
 def test_a_jump_that_drives_the_motion_back_is_found():
     assert looked_at("-2*sign(block.vx)", 1e-9)[0] == 1
+
+
+@pytest.mark.parametrize(
+    ("scene", "profile", "damping"),
+    [(wheel_on_road, "crest", 50.0), (follower, "crest", 0.0), (follower, "pothole", 50.0), (follower, "bump", 500.0)],
+)
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_a_damper_over_a_kink_is_passed(solver, scene, profile, damping, monkeypatch):
+    """The force of a spring and damper jumps through zero where its support bends: an event function that jumps does not slide."""
+    solution = solve(scene(profile, 20.0, damping), solver, monkeypatch, duration=1.5, rtol=1e-5)
+    assert solution.outcome is Outcome.DONE, solution.message
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_friction_slides_on_the_belt_whose_speed_is_reached_not_where_belts_meet(solver, monkeypatch):
+    solution = solve(belts(), solver, monkeypatch, duration=8.0, points=401)
+    assert "'f' jumps back and forth" in solution.message
+    assert abs(solution.t[-1] - SLIDES) < 0.05

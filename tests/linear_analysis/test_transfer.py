@@ -8,6 +8,7 @@ from click.testing import CliRunner
 
 import stiffmbs
 from stiffmbs.commands.main import main
+from stiffmbs.describe.spatial.orientation import matrix
 from stiffmbs.errors import InputError
 from stiffmbs.jobs.linearised.transfer import transfer
 
@@ -188,3 +189,64 @@ def test_wrong_requests_are_told(tmp_path, options, told):
     scene.write_text(OSCILLATOR)
     found = CliRunner().invoke(main, ["response", str(scene), *options])
     assert found.exit_code == 2 and told in found.output
+
+
+OFFSET = """
+dimensions: 3
+bodies:
+  b: {mass: 2, inertia: %s, center_of_mass: [0.5, -0.2, 0.1], position: [1, 2, 3], orientation: {euler: zxz, angles: [0.3, 0.8, -0.4]},
+      omega: %s, markers: {tip: {point: [0.1, 0.7, -0.3]}}}
+"""
+
+
+@pytest.mark.parametrize("omega", ["[0, 0, 0]", "[0.5, -2, 3]"], ids=["at rest", "spinning"])
+@pytest.mark.parametrize("inertia", ["[0.3, 0.4, 0.5]", "[[0.3, 0.02, 0.05], [0.02, 0.4, -0.03], [0.05, -0.03, 0.5]]"])
+@pytest.mark.parametrize("at", ["b", "b.tip"])
+def test_loads_on_a_body_whose_centre_of_mass_is_not_its_origin(inertia, omega, at):
+    """A force there moves the centre of mass by F/m; about it r x F, in own axes, changes the angular velocity by I w'."""
+    scene = stiffmbs.read_scene(OFFSET % (inertia, omega))
+    body = scene.bodies["b"]
+    outputs = [f"b.{label}" for label in ("ax", "ay", "az", "wdx", "wdy", "wdz")]
+    found = transfer(scene, [f"{at}.{label}" for label in ("fx", "fy", "fz", "tx", "ty", "tz")], outputs)
+    axes = matrix(body.orientation)
+    arm = np.zeros(3) if at == "b" else np.array([0.1, 0.7, -0.3]) - body.center_of_mass
+    turned = np.linalg.solve(np.array(body.inertia), np.hstack([np.cross(arm, axes.T, axisb=0, axisc=0), axes.T]))
+    expected = np.vstack([np.eye(3, 6) / 2, turned])
+    np.testing.assert_allclose(found.d, expected, atol=1e-8)
+    places = transfer(scene, [f"{at}.fy"], ["b.x", "b.y", "b.z", "b.vx", "b.vy", "b.vz"])
+    s = 2j * np.pi * 0.7
+    moved = np.array([0, 1 / (2 * s**2), 0, 0, 1 / (2 * s), 0])
+    np.testing.assert_allclose(places.response(np.array([0.7]))[0, :, 0], moved, atol=1e-7)
+
+
+def test_an_input_that_turns_principal_axes_is_refused():
+    text = OFFSET % ("[[0.3, 0, lean], [0, 0.4, 0], [lean, 0, 0.5]]", "[0, 0, 0]") + "parameters: {lean: 0}\n"
+    made = lambda value: stiffmbs.read_scene(text, [("parameters.lean", repr(value))])  # noqa: E731
+    with pytest.raises(InputError, match=r"input 'lean': found that it turns principal axes of a body"):
+        transfer(made(0.0), {"lean": made}, ["b.x"])
+
+
+@pytest.mark.parametrize("held, gain", [("", 1 / 2), ("{type: force, i: a, force: [-6*a.vx, 0]}", None)])
+def test_the_response_of_a_free_body(held, gain):
+    """Double zeros as eigenvalues, and a zero that a damper leaves: a = F/(m + d/s), x = a/s^2."""
+    text = "bodies: {a: {mass: 2, inertia: 1}}\njoints: {rail: {type: prismatic, i: a, j: ground}}\n"
+    found = transfer(
+        stiffmbs.read_scene(f"{text}forces: {{held: {held}}}" if held else text), ["a.fx"], ["a.ax", "a.x", "rail.fy"]
+    )
+    frequencies = np.array([0.01, 0.5, 20.0])
+    s = 2j * np.pi * frequencies
+    acceleration = np.full(3, gain) if gain else 1 / (2 + 6 / s)
+    expected = np.stack([acceleration, acceleration / s**2, np.zeros(3)], -1)
+    np.testing.assert_allclose(found.response(frequencies)[:, :, 0], expected, rtol=1e-7, atol=1e-12)
+    with pytest.raises(InputError, match="found 0 Hz, the frequency of a motion that nothing holds"):
+        found.response(np.array([0.0, 1.0]))
+
+
+def test_a_held_body_has_a_response_at_zero_hertz_but_none_at_its_own_frequency():
+    text = "bodies: {a: {mass: 2, inertia: 1}}\njoints: {rail: {type: prismatic, i: a, j: ground}}\n"
+    found = transfer(
+        stiffmbs.read_scene(text + "forces: {f: {type: force, i: a, force: [-50*a.x, 0]}}"), ["a.fx"], ["a.x"]
+    )
+    np.testing.assert_allclose(found.response(np.array([0.0])), 1 / 50, rtol=1e-7)
+    with pytest.raises(InputError, match="the frequency of an undamped motion"):
+        found.response(np.array([5 / (2 * np.pi)]))

@@ -1,5 +1,7 @@
 """The presolve in space: the same numbers with fewer unknowns, and every line of its report."""
 
+import json
+
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
@@ -7,7 +9,7 @@ from hypothesis import strategies as st
 
 import stiffmbs
 from stiffmbs.describe.reading import read_scene
-from stiffmbs.describe.spatial.orientation import matrix
+from stiffmbs.describe.spatial.orientation import conjugate, matrix, rotated
 from stiffmbs.jobs.job import prepare
 from stiffmbs.spatial import (
     Body,
@@ -152,6 +154,27 @@ def test_two_welded_halves_are_a_whole():
     np.testing.assert_allclose(one["energy.kinetic"], other["energy.kinetic"], atol=1e-7)
 
 
+@pytest.mark.parametrize("seed", range(10))
+def test_moments_of_no_distribution_of_mass_are_kept_by_welds(seed):
+    """Bodies with `any_moments` among those that are merged, in any place."""
+    rng = np.random.default_rng(seed)
+    model = Model(gravity=(0, 0, -9.81))
+    model.add("b0", random_body(rng, omega=(0.1, 0.2, 0.3)))
+    for k in range(1, 3):
+        welded_at(model, f"b{k}", f"b{rng.integers(k)}", rng)
+    chosen = set(rng.choice(3, size=rng.integers(1, 4), replace=False).tolist())
+    for k in chosen:
+        body = model.bodies[f"b{k}"]
+        turn = matrix(random_turn(rng))
+        tensor = (turn @ np.diag([5.0, 30.0, 90.0]) @ turn.T).tolist()
+        kept = body.model_dump(include={"mass", "center_of_mass", "position", "orientation", "omega"})
+        model.bodies[f"b{k}"] = Body(**kept, inertia=tensor, any_moments=True)
+    model.add("pin", Spherical(i="b0", j="ground"))
+    with_it, without = both(model, duration=0.3, points=11, rtol=1e-9)
+    assert any("fixed joints make one body" in line for line in with_it.presolve)
+    assert_same(with_it, without, 1e-4)
+
+
 def cart(rail, **changes):
     """A cart with a tilted tensor of inertia on a rail of given axes, a pendulum on a ball and a spring to a point."""
     model = Model(gravity=(0.3, -9.81, 1))
@@ -284,3 +307,36 @@ def test_turns_are_counted_where_mechanisms_are_solved_apart():
     )
     t = with_it.time
     np.testing.assert_allclose(with_it["wheel0.q3"] ** 2, np.sin((8 * t + 5 * t**2) / 2) ** 2, atol=1e-7)
+
+
+@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("kind", ["bushing", "field"])
+def test_a_bushing_on_merged_bodies_starts_at_the_angle_that_is_drawn(kind, seed):
+    """The quaternions of merged bodies have the signs of those that are drawn, so that no bushing is wound up by a turn."""
+    rng = np.random.default_rng(seed)
+    base, cap, hung = (tuple(q / np.linalg.norm(q)) for q in rng.standard_normal((3, 4)))
+    tensor = [[0.3, 0.02, 0], [0.02, 0.4, 0.01], [0, 0.01, 0.5]]
+    scene = {
+        "dimensions": 3,
+        "gravity": [0, 0, -9.81],
+        "bodies": {
+            "base": {"mass": 1, "inertia": [0.5, 0.3, 0.4], "orientation": base},
+            "cap": {"mass": 1, "inertia": tensor, "position": [0, 0.2, 0], "orientation": cap},
+            "hung": {"mass": 1, "inertia": tensor, "position": [0, 0, -0.5], "orientation": hung},
+        },
+        "joints": {
+            "weld": {"type": "fixed", "i": _level("cap", cap), "j": _level("base", base, rotated(conjugate(base), (0, 0.2, 0)))},
+        },
+        "forces": {
+            "rubber": {
+                "type": kind, "i": _level("hung", hung), "j": _level("cap", cap), "stiffness": [50, 60, 70, 3, 4, 5],
+                "damping": [1, 1, 1, 0.1, 0.1, 0.1], "preload": [0, 0, 0, 0.1, 0, 0],
+            },
+        },
+    }  # fmt: skip
+    assert_same(*both(read_scene(json.dumps(scene, default=list)), duration=0.2, points=6, rtol=1e-9), 1e-5)
+
+
+def _level(body, orientation, point=(0, 0, 0)):
+    """A marker along the ground's axes, as a matrix, which has two quaternions."""
+    return {"body": body, "point": list(point), "orientation": matrix(conjugate(orientation)).tolist()}

@@ -115,3 +115,18 @@ def test_what_is_wrong_is_named(tmp_path, old, new, message):
     assert old in ARM
     with pytest.raises(InputError, match=message):
         load_robot(_file(tmp_path, ARM.replace(old, new)))
+
+
+FAR = """<robot name="r"><link name="base"/><link name="arm"><inertial><origin xyz="0.1 0 0"/><mass value="1"/>
+<inertia ixx="{inertia}" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+<joint name="h" type="continuous"><parent link="base"/><child link="arm"/><origin xyz="{place} 0 0"/><axis xyz="0 1 0"/></joint></robot>"""
+
+
+@pytest.mark.parametrize(
+    ("place", "inertia"), [("1e160", "1"), ("-1e160", "1"), ("1e308", "1"), ("0", "1e308"), ("0", "1.7e308")]
+)
+def test_numbers_beyond_all_bounds_are_refused(tmp_path, place, inertia):
+    path = tmp_path / "far.urdf"
+    path.write_text(FAR.format(place=place, inertia=inertia))
+    with pytest.raises(stiffmbs.InputError, match=r"found (numbers|moments of inertia|1e\+308)"):
+        stiffmbs.load_scene(path)

@@ -2,13 +2,14 @@
 
 import json
 
+import numpy as np
 import pytest
 from click.testing import CliRunner
 
 from stiffmbs.commands.main import main
 from stiffmbs.stress import child, fuzz
 from stiffmbs.stress.case import Outcome
-from stiffmbs.stress.fuzzers import constraints
+from stiffmbs.stress.fuzzers import constraints, entry_points
 
 TOY = "tests.stress.toy_fuzzer"
 
@@ -85,3 +86,31 @@ def test_constraints_that_hold_by_a_slope_alone(seed):
     """Slopes of 5e-5 and 1.4e-12: relaxed constraints lost energy without a word there, or took 14 million steps."""
     verdict = constraints.trial(seed)
     assert verdict.outcome is Outcome.RIGHT
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("seed", "kind"), [(0, "urdf"), (2, "urdf"), (8, "mjcf"), (202, "scene")])
+def test_conversions_are_compared_and_the_comparison_can_fail(monkeypatch, seed, kind):
+    """A robot's or dataset's gravity that is read wrongly is seen."""
+    from stiffmbs.stress.fuzzers import convert
+
+    trial = convert._converted if kind == "scene" else lambda rng: convert._robot(rng, kind)
+    assert trial(np.random.default_rng(seed)).outcome is Outcome.RIGHT
+    weaker = [("gravity", "[0.3, 0.2, -5]")]
+    load, read = convert.load_robot, convert.read_adams
+    monkeypatch.setattr(convert, "load_robot", lambda path, changes=(), **how: load(path, [*changes, *weaker], **how))
+    monkeypatch.setattr(convert, "read_adams", lambda text: read(text, weaker))
+    assert trial(np.random.default_rng(seed)).outcome is Outcome.WRONG
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", sorted(set(fuzz.fuzzers()) - {"entry-points"}))
+def test_the_first_cases_of_a_fuzzer_are_not_wrong(name):
+    found = [
+        trial.line() for trial in fuzz.trials(fuzz.module_of(name), range(6)) if trial.verdict.outcome is Outcome.WRONG
+    ]
+    assert not found
+
+
+def test_the_entry_points_are_fuzzers():
+    assert set(entry_points.PAIRS) <= set(fuzz.fuzzers())

@@ -161,3 +161,18 @@ run: {duration: 0.5, rtol: 1e-8}
     found = optimise(stiffmbs.read_scene(text), "(final(stone.y) - 1)^2", {"v": (1, 8)})
     assert found.values["v"] == pytest.approx((1 + 1.25) / 0.5, rel=1e-4)
     assert found.runs < 25
+
+
+@pytest.mark.parametrize(
+    ("ranges", "sentence"),
+    [
+        ({"k": (20.0, 110.0)}, "'k' ends at its upper bound, 110,"),
+        ({"k": (150.0, 400.0), "c": (0.5, 5.0)}, "'k' ends at its lower bound, 150,"),
+        ({"k": Range(135.0, 200.0, log=True)}, "'k' ends at its lower bound, 135,"),
+        ({"k": (100.0, 200.0)}, ""),
+    ],
+)
+def test_a_fit_that_ends_at_a_bound_says_so(ranges, sentence):
+    found = fit(stiffmbs.read_scene(SLED), noisy(1), ranges)
+    assert sentence in found.message
+    assert bool(sentence) == ("bound" in found.message)

@@ -81,8 +81,101 @@ def test_the_command_names_the_outputs(scene, tmp_path):
 
 @pytest.mark.parametrize(
     ("output", "channels", "words"),
-    [("a.zip", (), "found the ending '.zip', expected .fmu"), ("a.fmu", ("sled.q",), "found no channel 'sled.q'")],
+    [
+        ("a.zip", (), "found the ending '.zip', expected .fmu"),
+        ("a.fmu", ("sled.q",), "found no channel 'sled.q'"),
+        ("a.fmu", ("push",), "which is an input or parameter"),
+    ],
 )
 def test_what_cannot_be_built_is_told(scene, tmp_path, output, channels, words):
     with pytest.raises(InputError, match=words):
         stiffmbs.build_fmu(scene, tmp_path / output, channels)
+
+
+INSTANCES = """
+import json, sys
+from fmpy import extract, read_model_description
+from fmpy.fmi2 import FMU2Slave
+
+def instance(folder, path, k):
+    about = read_model_description(path)
+    model = about.coSimulation.modelIdentifier
+    made = FMU2Slave(guid=about.guid, unzipDirectory=folder, modelIdentifier=model, instanceName=f"instance{k}")
+    made.instantiate()
+    return made, {v.name: v.valueReference for v in about.modelVariables}
+
+def started(made, refs, k):
+    made.setupExperiment(startTime=0.0)
+    made.enterInitializationMode()
+    made.setReal([refs["k"]], [40.0 + 10 * k])
+    at_start = made.getReal([refs["pull"]])
+    made.exitInitializationMode()
+    assert made.getReal([refs["pull"]]) == at_start, (made.getReal([refs["pull"]]), at_start)
+
+paths, freed = sys.argv[1].split(","), sys.argv[2] == "freed"
+folders = [extract(path) for path in paths]
+instances = [instance(folders[k % len(paths)], paths[k % len(paths)], k) for k in range(6)]
+if freed:
+    for made, _ in instances[::2]:
+        made.freeInstance()
+    instances[::2] = [instance(folders[k % len(paths)], paths[k % len(paths)], k) for k in range(0, 6, 2)]
+for k, (made, refs) in enumerate(instances):
+    started(made, refs, k)
+for step in range(50):
+    for made, _ in instances:
+        made.doStep(0.01 * step, 0.01)
+print(json.dumps([made.getReal([refs["where"]])[0] for made, refs in instances]))
+for made, _ in instances:
+    made.terminate()
+    made.freeInstance()
+"""
+
+
+@pytest.mark.parametrize("files", [1, 2, 3])
+@pytest.mark.parametrize("freed", ["kept", "freed"])
+def test_a_process_may_have_many_instances_of_one_or_several_files(tmp_path, files, freed):
+    paths = [tmp_path / f"sled{k}.fmu" for k in range(files)]
+    for k, path in enumerate(paths):
+        (tmp_path / f"sled{k % 2}.yaml").write_text(SCENE.replace("where: sled.x", "where: sled.x, pull: spring.fx"))
+        stiffmbs.build_fmu(tmp_path / f"sled{k % 2}.yaml", path, ["where", "pull"])  # two of three have one name
+    command = [sys.executable, "-c", INSTANCES, ",".join(map(str, paths)), freed]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=300)
+    assert done.returncode == 0, done.stderr[-2000:]
+    omega = np.sqrt((40 + 10 * np.arange(6)) / 2)
+    np.testing.assert_allclose(json.loads(done.stdout.splitlines()[-1]), np.sin(omega * 0.5) / omega, atol=1e-7)
+
+
+SPACE = """
+dimensions: 3
+gravity: [0, 0, -9.81]
+parameters: {k: 40 N/m}
+bodies: {ball: {mass: 1, inertia: [1, 1, 1], position: [0.3, 0, 0]}}
+forces: {spring: {type: force, i: ball, force: [-k*ball.x, 0, 9.81 N]}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("text", "outputs"),
+    [
+        (SCENE, ()), (SCENE, ("sled.x",)), (SCENE.replace("requests:", "# "), ()), (SCENE.replace("inputs: {push: 0 N}", "variables: {push: 0 N}"), ()),
+        (SCENE.replace("k: 40 N/m", "k: 40 N/m, other: 3, third: 2 m"), ()), (SPACE, ()), (SPACE, ("ball.vx", "spring.fx")),
+        (SCENE.replace("name: Pushed", r'name: "a <b> & \x9b \"c\" \u202e \ufffe"'), ()),
+    ],
+)  # fmt: skip
+def test_the_model_description_is_valid(tmp_path, text, outputs):
+    from fmpy.validation import validate_fmu
+
+    (tmp_path / "model.yaml").write_text(text, encoding="utf-8")
+    stiffmbs.build_fmu(tmp_path / "model.yaml", tmp_path / "model.fmu", outputs)
+    assert validate_fmu(str(tmp_path / "model.fmu")) == []
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["class", "a b", "1st", "-x", "ünïcode", "日本", "SceneSlave", "hold", "...", "x" * 200, "a'b\"c", "a\nb", "None", "\u202ex", "import.os"],
+)  # fmt: skip
+def test_a_scene_may_have_any_name(tmp_path, name):
+    scene = tmp_path / f"{name}.yaml"
+    scene.write_text(SCENE, encoding="utf-8")
+    stiffmbs.build_fmu(scene, tmp_path / "x.fmu")
+    np.testing.assert_allclose(simulated(tmp_path / "x.fmu")["where"][0], 0.0, atol=1e-12)

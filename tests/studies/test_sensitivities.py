@@ -1,6 +1,7 @@
 """Sensitivities: closed forms of their own derivatives, jumps at breakpoints and events, differences of converged runs."""
 
 from functools import partial
+from importlib import import_module
 
 import numpy as np
 import pytest
@@ -201,3 +202,53 @@ def test_a_run_that_stops_early_has_none():
     text = SLED.replace('"-k*sled.x - c*sled.vx"', '"sqrt(1 - t)"')
     with pytest.raises(SolverError, match="the run stopped"):
         sensitivities(stiffmbs.read_scene(text.replace("k: 100 N/m, c: 1 N s/m, ", "")), ["m"], "final(sled.x)")
+
+
+FALLING = """
+parameters: {g: 0 m/s^2, tilt: 0, k: 100 N/m}
+bodies: {sled: {mass: 2 kg, inertia: 1, position: [0.1, 0]}}
+joints: {rail: {type: prismatic, i: sled, j: ground}}
+forces:
+  spring: {type: force, i: sled, force: ["-k*sled.x", 0]}
+run: {duration: 2, rtol: 1e-7, points: 41}
+"""
+
+
+@pytest.mark.parametrize(
+    ("gravity", "to", "factor"),
+    [
+        ("", "gravity.0", 1.0),
+        ("gravity: [0, 0]", "gravity.0", 1.0),
+        ("gravity: [g, 0]", "g", 1.0),
+        ("gravity: [0, g]", "g", 0.0),
+        ("gravity: ['-g/2', g]", "g", -0.5),
+        ("gravity: ['9.81*sin(tilt)', 0]", "tilt", 9.81),
+        ("gravity: [0, 9.81]", "gravity.0", 1.0),
+    ],
+)
+def test_those_by_gravity_that_is_zero(gravity, to, factor):
+    """The sled oscillates about m g/k: dx/dg = m/k (1 - cos(w t)); that by the stiffness is not affected."""
+    found = sensitivities(stiffmbs.read_scene(FALLING + gravity), [to, "k"], "sled.x")
+    w = np.sqrt(100 / 2)
+    np.testing.assert_allclose(found.to[to], factor * 2 / 100 * (1 - np.cos(w * found.time)), atol=1e-7)
+    by_k = slope(lambda k: oscillation(found.time, k=k, c=0.0), "k", 100.0)
+    np.testing.assert_allclose(found.to["k"], by_k, atol=1e-8)
+
+
+def test_gravity_that_vanishes_by_chance_is_named():
+    scene = stiffmbs.read_scene(FALLING.replace("tilt: 0", "tilt: 1") + "gravity: ['tilt - 1', 0]")
+    with pytest.raises(InputError, match="no body has a weight where gravity is zero"):
+        sensitivities(scene, "tilt", "sled.x")
+
+
+def test_a_motion_that_chatters_is_not_solved_a_second_time(monkeypatch):
+    """No motion follows a force against the velocity that jumps, with any tolerance."""
+    solved, module = [], import_module("stiffmbs.studies.sensitivities.sensitivities")
+    prepare = module.prepare
+    monkeypatch.setattr(
+        module, "prepare", lambda scene, settings: solved.append(settings.rtol) or prepare(scene, settings)
+    )
+    text = SLED.replace("- c*sled.vx", "- 20*sign(sled.vx)")
+    with pytest.raises(SolverError, match="jumps back and forth"):
+        sensitivities(stiffmbs.read_scene(text.replace("c: 1 N s/m, ", "")), ["k"], "final(sled.x)")
+    assert len(solved) == 1

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import stiffmbs
-from stiffmbs import Body, InputError, Model, simulation
+from stiffmbs import AppliedForce, Body, InputError, Model, simulation
 
 SLED = """
 parameters: {F: 0 N, k: 100 N/m}
@@ -58,6 +58,22 @@ def test_an_input_that_is_not_linear_in_a_force_is_followed_too():
     assert sim["sled.vx"] == pytest.approx(1 / 2 + 16 / 2, rel=1e-8)
 
 
+@pytest.mark.parametrize("presolve", [True, False])
+@pytest.mark.parametrize("used", [True, False])
+def test_an_input_of_one_of_two_mechanisms_is_followed(presolve, used):
+    """Mechanisms that the presolve solves apart, or would, are stepped together; an input may stand nowhere."""
+    model = Model("two")
+    model.add("pushed", Body(mass=1, inertia=1))
+    model.add("other", Body(mass=1, inertia=1))
+    model.add_input("push", 1.0)
+    if used:
+        model.add("motor", AppliedForce(i="pushed", force=("push", 0)))
+    sim = stiffmbs.simulation(model, presolve=presolve)
+    sim.step(0.5)
+    sim.step(0.5, inputs={"push": 3.0})
+    assert sim["pushed.x"] == pytest.approx(used * (0.125 + 0.25 + 0.375))
+
+
 def test_a_reset_and_a_saved_state_go_on_as_before(tmp_path):
     sim = simulation(stiffmbs.read_scene(SLED), inputs={"F": 20.0})
     sim.step(0.3)
@@ -101,7 +117,7 @@ def test_what_is_no_input_is_refused(examples):
     scene = stiffmbs.read_scene(SLED)
     with pytest.raises(InputError, match=r"input 'bodies\.sled\.mass': found a value that more than numbers of forces"):
         simulation(scene, inputs={"bodies.sled.mass": 2.0})
-    with pytest.raises(InputError, match="found the unknown key 'G'"):
+    with pytest.raises(InputError, match="G: found no such parameter, expected one of F, k"):
         simulation(scene, inputs={"G": 2.0})
     sim = simulation(scene, inputs={"F": 0.0})
     with pytest.raises(InputError, match="input 'k': found no such input, expected one of F"):
@@ -112,3 +128,10 @@ def test_what_is_no_input_is_refused(examples):
         sim.step(0)
     with pytest.raises(InputError, match=r"found no channel 'sled\.z'"):
         sim["sled.z"]
+
+
+def test_a_parameter_that_a_change_adds_is_an_input(examples):
+    added = [("parameters.u", "0 N"), ("forces.push", "{type: force, i: cart, force: [u, 0]}")]
+    sim = simulation(stiffmbs.load_scene(examples / "cart_pendulum.yaml", added), inputs={"u": 0.0})
+    sim.step(0.01, inputs={"u": 1000.0})
+    assert sim["cart.vx"] > 0.1

@@ -215,3 +215,25 @@ def test_a_header_that_contradicts_itself_at_the_end_is_refused(tmp_path, stated
     file.write_text(head.format(stated) + rest)
     with pytest.raises(InputError, match=said):
         CrgRoad(file=file)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("$CT", "$ROAD_CRG_MPRO\nmap = 1\n$\n$CT", "not used: block ROAD_CRG_MPRO"),
+        ("$CT", "$OTHER\nx\n$\n$CT", "not used: block OTHER"),
+        ("REFERENCE_LINE_START_Z = 2", "REFERENCE_LINE_START_Z = 2\nREFERENCE_LINE_OFFSET_Z = 0.5", "[ROAD_CRG] REFERENCE_LINE_OFFSET_Z"),
+        ("REFERENCE_LINE_START_Z = 2", "REFERENCE_LINE_START_Z = 2\nREFERENCE_LINE_START_LON = 11", "REFERENCE_LINE_START_LON"),
+        ("REFERENCE_LINE_START_Z = 2", "REFERENCE_LINE_START_Z = 2\nREFERENCE_LINE_OFFSET_Z = 0", ""),
+        ("REFERENCE_LINE_START_Z = 2", "REFERENCE_LINE_START_Z = 2\nLONG_SECTION_V_LEFT = 3", ""),
+        ("$CT", "$ROAD_CRG_OPTS\nBORDER_MODE_U = 2\n$\n$CT", "the options of"),
+        ("reference line slope", "reference line slope", ""),
+    ],
+)  # fmt: skip
+def test_what_a_file_says_and_nothing_uses_is_noted(tmp_path, old, new, said):
+    path = written(tmp_path / "road.crg")
+    content = path.read_bytes()
+    assert old.encode() in content
+    path.write_bytes(content.replace(old.encode(), new.encode(), 1))
+    notes = "; ".join(CrgRoad(file=path).notes())
+    assert said in notes if said else not notes

@@ -3,6 +3,7 @@
 import pytest
 
 from stiffmbs import InputError, load_scene
+from stiffmbs.describe.tyres.names import AS_BEFORE, LATER
 from stiffmbs.tyres import TyreProperties
 
 FILE = """$ a tyre
@@ -60,9 +61,69 @@ def test_unknown_keys_and_missing_weights_are_noted(read):
     notes = " ".join(read().notes())
     assert "OWN1" in notes
     assert "friction ellipse" in notes
-    assert "FITTYP" not in notes
-    later = " ".join(read(FILE.replace("PCX1 = 1.6", "PCX1 = 1.6\nFITTYP = 61")).notes())
-    assert "line 23: FITTYP is that of a later Magic Formula" in later
+    assert "table [SHAPE]" in notes
+
+
+@pytest.mark.parametrize("kind", [60, 61, 62, 7, 21, 2012, 61.0, 51.5, 0, -5])
+def test_files_of_other_formulas_are_refused_by_their_fittyp(read, kind):
+    with pytest.raises(InputError, match=r"line 10: found FITTYP = .*expected that of MF-Tyre 5\.2, one of 5, 6"):
+        read(FILE.replace("LONGVL = 16700", f"FITTYP = {kind}"))
+
+
+@pytest.mark.parametrize("kind", [5, 6, 52])
+def test_files_of_this_formula_leave_later_coefficients_out(read, kind):
+    later = read(FILE.replace("LONGVL = 16700", f"FITTYP = {kind}").replace("PCX1 = 1.6", "PCX1 = 1.6\nPPX1 = -0.4"))
+    assert "PPX1" in " ".join(later.notes())
+
+
+@pytest.mark.parametrize("name", LATER)
+def test_later_coefficients_without_fittyp_are_refused(read, name):
+    with pytest.raises(InputError, match=f"line 23: found {name} and no FITTYP"):
+        read(FILE.replace("PCX1 = 1.6", f"PCX1 = 1.6\n{name} = 0.37"))
+    unchanged = read(FILE.replace("PCX1 = 1.6", f"PCX1 = 1.6\n{name} = {AS_BEFORE[name]}"))
+    assert name not in " ".join(unchanged.notes())
+
+
+UNUSED = {
+    "[MODEL]\nVXLOW = 1": "[MODEL] VXLOW",
+    "[INERTIA]\nMASS = 9.3\nIYY = 0.8": "(the wheel's body has the mass): [INERTIA] MASS, [INERTIA] IYY",
+    "[CONTACT_COEFFICIENTS]\nQTZ1 = 0.2": "(the gyroscopic couple of the belt is left out): [CONTACT_COEFFICIENTS] QTZ1",
+    "[BOTTOMING_CURVE]\n{pen fz}\n0 0\n10 5": "table [BOTTOMING_CURVE]",
+    "[OPERATING_CONDITIONS]\nINFLPRES = 2e5": "[OPERATING_CONDITIONS] INFLPRES",
+    "[DIMENSION]\nRIM_RADIUS = 190": "[DIMENSION] RIM_RADIUS",
+    "[STRUCTURAL]\nPCX1 = 7": "[STRUCTURAL] PCX1",
+    "[TURNSLIP_COEFFICIENTS]\nPDXP1 = 0.4": "[TURNSLIP_COEFFICIENTS] PDXP1",
+    "[SCALING_COEFFICIENTS]\nLAMU = 2": "[SCALING_COEFFICIENTS] LAMU",
+    "[VERTICAL]\nQ_V2 = 0.04": "[VERTICAL] Q_V2",
+}
+
+
+@pytest.mark.parametrize("added", UNUSED)
+def test_each_key_that_is_not_used_is_noted_with_its_section(read, added):
+    assert UNUSED[added] in " ".join(read(f"{FILE}{added}\n").notes())
+
+
+def test_values_without_effect_are_not_noted(read):
+    neutral = "[SCALING_COEFFICIENTS]\nLAMU = 1\nLGYR = 1.0\n[ALIGNING_COEFFICIENTS]\nQTZ1 = 0\n[MDI_HEADER]\nFILE_TYPE = 'tir'\n"
+    assert list(read(FILE + neutral).notes()) == list(read().notes())
+
+
+def test_sections_are_namespaces(read):
+    """MASS is a unit in [UNITS] and a mass in [INERTIA], and a key counts in the section that it belongs to."""
+    twice = read(
+        f"{FILE}[INERTIA]\nMASS = 9.3\nFORCE = 7\n[OTHER]\nFNOMIN = 8\nPCX1 = 7\nUSE_MODE = 99\n[MODEL]\nUSE_MODE = 4\n"
+    )
+    assert twice.coefficients["FNOMIN"] == pytest.approx(4000)
+    assert (twice.coefficients["PCX1"], twice.use_mode) == (1.6, 4)
+
+
+def test_a_key_in_two_sections_that_it_does_not_belong_to_is_refused(read):
+    moved = FILE.replace("[LATERAL_COEFFICIENTS]", "[LATERAL]")
+    with pytest.raises(
+        InputError, match=r"found PCY1 in \[MINE\] and in \[LATERAL\] \(line \d+\), expected it in one section"
+    ):
+        read(f"{moved}[MINE]\nPCY1 = 7\n")
+    assert read(f"{moved}[MINE]\nPCY1 = 1.3\n").coefficients["PCY1"] == 1.3
 
 
 @pytest.mark.parametrize(

@@ -40,7 +40,9 @@ def no_search(monkeypatch):
 
     def far_away(system):
         count = len(zones_of(system).period)
-        return Zones(np.arange(count + 1), np.full(count, 1e300), np.zeros(count), np.zeros(count))
+        return Zones(
+            np.arange(count + 1), np.full(count, 1e300), np.zeros(count), np.zeros(count), np.empty(0, dtype=np.int64)
+        )
 
     monkeypatch.setattr(event_watch, "zones_of", far_away)
 

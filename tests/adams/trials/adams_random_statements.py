@@ -45,19 +45,19 @@ def pulled(view, pulls, joint, marker: Marker):
     return force[k], torque[k] + np.cross(view.r[k] - at, force[k])
 
 
-def step(x, x0, h0, x1, h1):
+def step5(x, x0, h0, x1, h1):
     z = np.clip((x - x0) / (x1 - x0), 0, 1)
-    return h0 + (h1 - h0) * z * z * (3 - 2 * z)
+    return h0 + (h1 - h0) * z**3 * (10 + z * (6 * z - 15))
 
 
 def rising(v, slow):
-    return step(v, -slow, -1, slow, 1)
+    return step5(v, -slow, -1, slow, 1)
 
 
 def mu(v, static, dynamic, slow, fast):
     if abs(v) < slow:
         return static * rising(v, slow)
-    return np.sign(v) * step(abs(v), slow, static, fast, dynamic)
+    return np.sign(v) * step5(abs(v), slow, static, fast, dynamic)
 
 
 class Statements(Trial):

@@ -1,0 +1,40 @@
+"""Stability of equilibria at rest by eigenvalues, and forces that vanish there."""
+
+import pytest
+
+import stiffmbs
+from stiffmbs.stress.families.analyses.flutter import LAWS, LOADS, column, slider
+
+
+@pytest.mark.parametrize(("law", "unstable"), LAWS.items())
+def test_a_slider_with_negative_damping_is_called_unstable(law, unstable):
+    assert any("unstable" in note for note in stiffmbs.equilibrium(slider(law)).notes) == unstable
+
+
+@pytest.mark.parametrize(("given", "unstable"), LOADS.items())
+def test_zieglers_column_flutters_above_its_critical_load(given, unstable):
+    found = stiffmbs.equilibrium(column(*given))
+    assert any("unstable: motions from it grow" in note and "oscillate" in note for note in found.notes) == unstable
+
+
+def test_an_equilibrium_too_large_for_eigenvalues_says_so(monkeypatch):
+    monkeypatch.setattr("stiffmbs.jobs.settled.MOST_FOR_EIGENVALUES", 2)
+    notes = stiffmbs.equilibrium(slider("-100*b.x + 2*b.vx")).notes
+    assert notes == ("3 velocities: whether the equilibrium is stable was not assessed by its eigenvalues",)
+
+
+def test_forces_with_a_potential_need_no_eigenvalues(monkeypatch):
+    monkeypatch.setattr("stiffmbs.jobs.settled.MOST_FOR_EIGENVALUES", 2)
+    monkeypatch.setattr("stiffmbs.jobs.settled.MOST_CONSERVATIVE", 2)
+    assert not stiffmbs.equilibrium(slider("-100*b.x")).notes
+
+
+def test_a_force_that_vanishes_cubically_has_an_equilibrium():
+    found = stiffmbs.equilibrium(slider("-b.x^3"))
+    assert found.channels["b.x"] == pytest.approx(0, abs=1e-3)
+    assert found.imbalance == 0
+
+
+def test_a_slider_without_any_force_is_named():
+    found = stiffmbs.equilibrium(slider("0"))
+    assert found.free == ("b.vx",) and "nothing holds b.vx" in found.notes[0]
