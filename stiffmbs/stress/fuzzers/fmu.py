@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 import tempfile
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -59,7 +60,11 @@ def trial(seed: int) -> Verdict:
             expected = [_by_runs(scene, each, channels) for each in given]
         except StiffmbsError as refusal:
             return told(f"{refusal} [{detail}]", ())
-        found, faults = _by_fmpy(fmu, content["run"]["duration"], given, channels)
+        paths = list(sys.path)  # an FMU puts its own copy of PythonFMU before the installed one
+        try:
+            found, faults = _by_fmpy(fmu, content["run"]["duration"], given, channels)
+        finally:
+            sys.path[:] = paths
     if faults:
         return Verdict(Outcome.WRONG, detail=f"{faults} [{detail}]")
     if any(rows is None for rows in found):
@@ -120,7 +125,7 @@ def _by_fmpy(
         from fmpy.validation import validate_fmu
     if faults := validate_fmu(str(fmu)):
         return [], f"the validation finds {faults}"
-    about, folder = read_model_description(str(fmu)), extract(str(fmu))
+    about, folder = read_model_description(str(fmu)), extract(str(fmu), fmu.parent / "extracted")
     refs = {variable.name: variable.valueReference for variable in about.modelVariables}
     instances = []
     for k, each in enumerate(given):

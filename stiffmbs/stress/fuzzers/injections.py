@@ -13,6 +13,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+import time
 import zipfile
 from collections.abc import Callable
 from contextlib import suppress
@@ -233,6 +234,8 @@ def _run(session: Session) -> tuple[int, bytes, bytes]:
             env={**os.environ, "PYTHONPATH": path, "COLUMNS": "300", **session.environment}, preexec_fn=limited,
         )  # fmt: skip
     begun = 0.0
+    if session.signals:
+        _wait_for_handler(process.pid)
     try:
         for at, number in session.signals:
             try:
@@ -252,6 +255,20 @@ def _run(session: Session) -> tuple[int, bytes, bytes]:
         process.send_signal(signal.SIGINT)
         out, err = process.communicate(timeout=PATIENCE)
     return process.returncode, out or b"", err
+
+
+def _wait_for_handler(pid: int) -> None:
+    """Wait until a process answers SIGTERM itself: before, Python has not begun to run the command."""
+    status, bit = Path(f"/proc/{pid}/status"), 1 << (signal.SIGTERM - 1)
+    until = time.monotonic() + LATEST
+    while time.monotonic() < until:
+        try:
+            caught = next(line for line in status.read_text().splitlines() if line.startswith("SigCgt:"))
+        except (OSError, StopIteration):  # it has ended, or the system does not tell
+            return
+        if int(caught.split()[1], 16) & bit:
+            return
+        time.sleep(1e-3)
 
 
 def _endless(session: Session) -> bool:
