@@ -15,7 +15,7 @@ NATURAL, PERIODIC = 0.0, 1.0
 
 
 def spline_data(table: Table) -> np.ndarray:
-    """What a kernel needs of a table: count, ends, knots, and the coefficients of each piece (highest first).
+    """Return the data of a table that a kernel reads: count, ends, knots, and the coefficients of each piece (highest first).
 
     Splines are those of SciPy, monotone and Akima's cubics of `stiffmbs.compile.local_cubics`; straight lines are pieces without
     curvature.

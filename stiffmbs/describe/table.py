@@ -62,7 +62,7 @@ class Table(Described):
 
     @property
     def interpolation(self) -> Literal["monotone", "lines", "akima", "spline"]:
-        """How it goes from point to point."""
+        """Name the interpolation between the points."""
         if self.lines or self.akima:
             return "lines" if self.lines else "akima"
         return "spline" if self.spline or self.ends else "monotone"

@@ -92,7 +92,7 @@ class Link:
 
     @property
     def is_heavy(self) -> bool:
-        """Whether it has mass or inertia."""
+        """Return True for a link with mass or inertia."""
         return self.mass > 0 or bool(np.any(self.inertia))
 
 

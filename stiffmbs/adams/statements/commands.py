@@ -91,7 +91,7 @@ class Commands:
 
 
 def read_commands(text: str, known: Collection[Key] = ()) -> Commands:
-    """What a command file asks for, of a dataset with the statements that are `known` by name and number.
+    """Read what a command file asks for of a dataset whose statements are `known` by name and number.
 
     Raises
     ------

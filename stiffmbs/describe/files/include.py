@@ -45,7 +45,7 @@ class Sources:
 
 
 def read_including(text: str, source: str, file: Path | None) -> tuple[Any, Callable[[tuple[Any, ...]], str | None]]:
-    """What stands in a text and in the files that it includes.
+    """Read a YAML text and the files that it includes.
 
     Parameters
     ----------

@@ -110,7 +110,7 @@ class _Walk:
         return self._is_own_module(_module_of(found))
 
     def _is_own_module(self, name: str) -> bool:
-        """Whether a module is of the user's own packages, or at least not installed."""
+        """Return True for a module of the user's own packages, or one that is not installed."""
         top = name.partition(".")[0]
         if top in self._packages:
             return True

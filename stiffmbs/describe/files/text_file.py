@@ -31,7 +31,7 @@ def source_name(path: str | Path) -> str:
 
 
 def file_text(path: str | Path, otherwise: str = "", zero: str = "") -> str:
-    """What stands in a file, or on standard input where its name is ``-``.
+    """Read a text file, or standard input where its name is ``-``.
 
     Parameters
     ----------

@@ -114,7 +114,7 @@ def read_crg(path: Path) -> CrgGrid:
 
 
 def _remarks(header: CrgHeader, path: Path) -> Iterator[str]:
-    """What of a file is not used, a sentence each."""
+    """List the fields of a file that are not used, a sentence each."""
     if header.blocks.get("ROAD_CRG_OPTS"):
         yield f"the options of {path} are not used: beyond the road its height stays"
     header.numbers.request(*FROM_THE_DATA)

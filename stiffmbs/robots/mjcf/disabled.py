@@ -1,4 +1,4 @@
-"""What the flags of an MJCF file switch off."""
+"""Switch off the parts of an MJCF model that its flags disable."""
 
 from __future__ import annotations
 

@@ -60,7 +60,7 @@ class Hold:
 
 
 class Mechanism:
-    """Which body carries each link, where these are at the start, and the markers on them.
+    """The body that carries each link, its position at the start, and the markers on it.
 
     A link that moves, or has mass or inertia, is a body.  A fixed link without both is a marker on the body that carries it, and a
     link that moves by several joints has a body without mass between each two of them.  What has no mass at its far

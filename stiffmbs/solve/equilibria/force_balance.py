@@ -30,7 +30,7 @@ CONSTRAINED_PART = 1e-9
 
 @dataclass(frozen=True)
 class Balance:
-    """What is known at a pose.
+    """The balance of forces at a pose.
 
     Attributes
     ----------

@@ -39,7 +39,7 @@ def just_after(t: float) -> float:
 
 
 def straight_on(t: float, step: float, rtol: float) -> float:
-    """How far ahead of an event at t the motion may be taken for straight after a step of a length, s; at least what rounding may hide."""
+    """Return the time, s, for which the motion after an event at t is linear, at least what rounding may hide."""
     return max(PASSED * min(rtol, LARGEST_RTOL) * step, HIDDEN * abs(t))
 
 

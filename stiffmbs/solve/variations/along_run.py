@@ -37,7 +37,7 @@ class Side:
 
 @dataclass(frozen=True)
 class Instant:
-    """How an output instant changes.
+    """The variation of an output instant.
 
     Attributes
     ----------

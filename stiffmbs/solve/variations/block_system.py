@@ -1,4 +1,4 @@
-"""How accelerations, multipliers and algebraic states change with the state and with numbers: the block system differentiated."""
+"""Derivatives of accelerations, multipliers and algebraic states by state and parameters: the block system differentiated."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from .saddle import acceleration_solution
 
 @dataclass(frozen=True)
 class Change:
-    """How a state changes in each direction, one a row.
+    """The variation of a state in each direction, one a row.
 
     Attributes
     ----------

@@ -113,7 +113,7 @@ def _same(one: np.ndarray, other: np.ndarray) -> bool:
 
 
 class Jumps:
-    """What sensitivities jump by between two segments of a run.
+    """The jumps of sensitivities between two segments of a run.
 
     Parameters
     ----------

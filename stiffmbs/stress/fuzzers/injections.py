@@ -277,7 +277,7 @@ def _endless(session: Session) -> bool:
 
 
 def _fault(session: Session, status: int, out: bytes, err: bytes, old: bool) -> str:
-    """What is wrong with how a command ended; nothing where it is right."""
+    """Describe the fault in how a command ended; an empty text where there is none."""
     words = err.decode(errors="replace").strip()
     lines = [line for line in words.splitlines() if not line.startswith("stiffmbs: note:")]
     if "Traceback" in words or "Error ignored" in words:
@@ -323,7 +323,7 @@ def _with_old_output(session: Session) -> bool:
 
 
 def _half_written(session: Session, status: int, old: bool) -> str:
-    """What is wrong with the file that a command writes: it is the old one, none, or whole."""
+    """Describe the fault of the file that a command writes, which must be the old one, none, or whole."""
     left = [path.name for path in session.folder.rglob(".part-*") if "cache" not in path.parts]
     if left:
         return f"a part of a file is left: {left}"
@@ -375,7 +375,7 @@ READERS: dict[str, Callable[[Path, bytes], Any]] = {
 
 
 def _lost(session: Session, random: Random) -> str:
-    """What a study has lost: given again without a fault, it has the table of one without faults, or names a damaged store."""
+    """Describe the results that a study lost: run again, it must give the complete table or name a damaged store."""
     if session.command[0] != "study" or (output := _output(session)) is None or not _plain(session):
         return ""
     again = Session(session.folder, session.command, {})

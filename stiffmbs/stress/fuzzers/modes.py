@@ -54,7 +54,7 @@ def trial(seed: int) -> Verdict:
 
 
 def _listed_wrongly(found: Modes) -> str:
-    """What is wrong with the list of modes: its power sums are not the traces of the state matrix, or modes are missing."""
+    """Describe the fault of a list of modes: its power sums must be the traces of the state matrix, with no mode missing."""
     values = np.array([value for mode in found.modes for value in mode.eigenvalues])
     matrix = found.state.matrix
     largest = max(1.0, float(np.abs(values).max(initial=0.0)))
@@ -130,7 +130,7 @@ def _beside_equilibrium(rng: np.random.Generator, scene: Runnable) -> Verdict:
 
 
 def _end(scene: Runnable, rest: Solution, found: Modes, linear: Linearised, z: np.ndarray) -> np.ndarray:
-    """Where a motion from a variation comes to."""
+    """Run from a varied state and return the state at the end."""
     job = prepare(scene, None, rest, duration=DURATION, points=2, rtol=RTOL, presolve=False)
     about = replace(found.about, dynamics=job.dynamics)
     state = job.dynamics.state

@@ -15,7 +15,7 @@ NOT_COMPARED = ("constraint.",)
 
 @dataclass(frozen=True)
 class Allowance:
-    """How far channels of two runs may differ.
+    """The allowed difference between channels of two runs.
 
     Attributes
     ----------

@@ -21,7 +21,7 @@ ORIGIN, CENTRE = "origin", "centre"
 
 @dataclass(frozen=True)
 class Frame:
-    """Where the frame of another description of a body is in the axes that the body was described in.
+    """The frame of another description of a body, in the axes of the first description.
 
     Attributes
     ----------
@@ -65,11 +65,13 @@ class Reframed(Mapper):
         self._frames, self._replace = frames, replace
 
     def marker(self, value: Any) -> Any:
+        """Return a marker on the other body."""
         found = {"body": value} if isinstance(value, str) else dict(value)
         frame = self._frames.get(found["body"])
         return value if frame is None else {"body": frame.body, **frame.placement(found)}
 
     def formula(self, value: Any, kind: FormulaOf, owner: Content) -> Any:
+        """Return a formula in the channels of the other body."""
         return value if self._replace is None else replaced(value, self._replace)
 
 

@@ -25,7 +25,7 @@ ALONG = ("dx", "dy", "dz", "vx", "vy", "vz", "wx", "wy", "wz", "accx", "accy", "
 
 @dataclass(frozen=True)
 class Placing:
-    """Where the scene's ground axes are in those of the changed scene.
+    """The pose of the scene's ground axes in those of the changed scene.
 
     Attributes
     ----------

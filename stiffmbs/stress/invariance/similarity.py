@@ -34,7 +34,7 @@ LABELS: dict[str, Dimension] = {
 
 @dataclass(frozen=True)
 class Units:
-    """What the numbers of the changed scene are multiplied with."""
+    """Factors of mass, length and time between a scene and its scaled copy."""
 
     mass: float
     length: float

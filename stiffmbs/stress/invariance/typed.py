@@ -29,7 +29,7 @@ class NotLegitimate(Exception):
 
 
 class Mapper:
-    """What is made of each value of a scene; every value stays by default."""
+    """Map each value of a scene to another; every value stays by default."""
 
     def number(self, value: Any, measured: Measured, owner: Content) -> Any:
         """Return a number with a unit."""

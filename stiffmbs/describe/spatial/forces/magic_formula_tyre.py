@@ -55,6 +55,7 @@ class MagicFormulaTyre(Tyre):
         return self
 
     def valid_ranges(self) -> Mapping[str, tuple[float, float]]:
+        """Return the ranges of the property file for each quantity, SI units; none where the file gives none."""
         ranges = self.properties.ranges
         return {"load": (-math.inf, math.inf), **ranges} if ranges else {}  # without load nothing counts
 
