@@ -11,8 +11,9 @@ from typing import Any
 from ..describe.files.text_file import file_text, source_name
 from ..errors import InputError
 from .listed_arguments import arguments_of, unread_functions
-from .load import ENCODING, command_file
+from .load import ENCODING, command_file, other_commands
 from .statements.changes import Key, alters, key_of
+from .statements.command_files import Read, command_file_of
 from .statements.commands import ENDING, FOLLOWED, HARMLESS, SETTINGS, full_name, read_commands
 from .statements.dataset import all_statements, faults_of
 from .statements.fault import DatasetFault
@@ -80,7 +81,8 @@ def listed_statements(path: str | Path) -> tuple[ListedStatement, ...]:
     listed = [entry for one in found for entry in _statement(one, source_name(path), faults, solids, found)]
     beside = command_file(path)
     if beside is not None:
-        listed += _commands(file_text(beside, ENCODING), beside.name, {key_of(one) for one in found})
+        read = partial(other_commands, beside)
+        listed += _commands(file_text(beside, ENCODING), beside.name, {key_of(one) for one in found}, read)
     return tuple(listed)
 
 
@@ -126,11 +128,11 @@ def _lines(statement: Statement) -> set[int]:
     return {statement.line, *(piece.line for piece in statement.pieces)}
 
 
-def _commands(text: str, file: str, known: Collection[Key]) -> list[ListedStatement]:
+def _commands(text: str, file: str, known: Collection[Key], read: Read) -> list[ListedStatement]:
     listed = []
     refused: dict[int, str] = {}
     try:
-        read_commands(text, known)
+        read_commands(text, known, read)
     except DatasetFault as fault:
         refused[fault.line] = fault.reason
     except InputError as error:
@@ -144,6 +146,8 @@ def _commands(text: str, file: str, known: Collection[Key]) -> list[ListedStatem
             fate, reason = NOT_READ, refused[command.line]
         elif ended:
             fate, reason = OMITTED, "after STOP"
+        elif (other := command_file_of(command)) is not None:
+            reason = f"the commands of {other}"
         elif name in (*SETTINGS, *HARMLESS):
             fate, reason = OMITTED, "no effect on results" if name in HARMLESS else "analysis settings"
         elif not (name in (*FOLLOWED, *ENDING) or alters(name)):

@@ -6,6 +6,7 @@ import copy
 import os
 import re
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -73,6 +74,12 @@ def command_file(path: str | Path) -> Path | None:
     return None if beside.stem == STANDARD_INPUT or not os.path.isfile(beside) else beside
 
 
+def other_commands(beside: Path, name: str) -> str:
+    """Read the command file that FILE/COMMAND of another names, from the folder of that one on."""
+    path = beside.parent / name
+    return file_text(path if path.suffix else path.with_suffix(COMMANDS), ENCODING)
+
+
 def _with_aliases(dataset: Dataset, found: dict[str, Any]) -> dict[str, Any]:
     """The scene with a comment beside what is called otherwise in Adams/View."""
     from ruamel.yaml.comments import CommentedMap
@@ -110,7 +117,7 @@ def _commanded(path: str | Path) -> tuple[Dataset, dict[str, Any]]:
         return _scene(text, source)
     try:
         known = {key_of(statement) for statement in all_statements(checked(text, source, ZERO_BYTE))[1]}
-        asked = read_commands(file_text(beside, ENCODING), known)
+        asked = read_commands(file_text(beside, ENCODING), known, partial(other_commands, beside))
     except DatasetFault as fault:
         raise InputError(f"{beside}, {fault}") from None
     first = asked.segments[0].changes if asked.segments else asked.changes

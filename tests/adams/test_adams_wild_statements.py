@@ -160,10 +160,46 @@ def test_commands_without_an_effect_on_the_motion_are_noted(commands, said):
     assert said in "; ".join(read_commands(commands).notes)
 
 
+FALL = "SIMULATE/DYNAMICS, END=1, STEPS=10\n"
+
+
 @pytest.mark.parametrize(
     "command",
     ["FILE/COMMAND=other.acf", "FILE/MODEL=a, COMMAND=other.acf", "FIL/COM=other", "file/command = other.acf"],
 )
-def test_commands_of_another_file_are_refused(tmp_path, command):
-    with pytest.raises(InputError, match=r"model.acf, line 1, FILE: found COMMAND = other"):
-        load_scene(written(tmp_path, f"{command}\nSIMULATE/DYNAMICS, END=1, STEPS=10\n"))
+def test_commands_of_another_file_are_executed(tmp_path, command):
+    """Those of a file within a file too; STOP there ends all."""
+    (tmp_path / "other.acf").write_text("INTEGRATOR/HMAX=0.125\nFILE/COMMAND=third.acf\n")
+    (tmp_path / "third.acf").write_text(f"{FALL}STOP\n")
+    scene = load_scene(written(tmp_path, f"{command}\nSIMULATE/DYNAMICS, END=3, STEPS=10\n"))
+    assert (scene.run.duration, scene.run.points, scene.run.max_step) == (1.0, 11, 0.125)
+
+
+def test_commands_after_those_of_another_file_are_followed(tmp_path):
+    (tmp_path / "other.acf").write_text(FALL)
+    scene = load_scene(written(tmp_path, "FILE/COMMAND=other.acf\nSIMULATE/DYNAMICS, END=3, STEPS=20\n"))
+    assert scene.run.duration == 3.0
+
+
+@pytest.mark.parametrize(
+    ("other", "said"),
+    [
+        (None, r"model.acf, line 2, FILE/COMMAND: .*other.acf: found no such file"),
+        (
+            "model\nFILE/COMMAND=other.acf\n",
+            r"line 2, FILE/COMMAND: other.acf, line 2, .* expected no file that executes itself",
+        ),
+        ("BOX/1\n", r"model.acf, line 2, BOX/1: found a command that is not followed"),
+        ("SIMULATE/DYNAMICS, END=x\n", r"model.acf, line 2, SIMULATE: found END = x"),
+    ],
+)
+def test_what_another_file_has_wrong_is_named(tmp_path, other, said):
+    if other is not None:
+        (tmp_path / "other.acf").write_text(other)
+    with pytest.raises(InputError, match=said):
+        load_scene(written(tmp_path, f"OUTPUT/NOSEPARATOR\nFILE/COMMAND=other.acf\n{FALL}"))
+
+
+def test_commands_without_files_are_those_of_the_text():
+    with pytest.raises(InputError, match=r"line 1, FILE/COMMAND: found COMMAND = other.acf"):
+        read_commands("FILE/COMMAND=other.acf\n")

@@ -6,16 +6,17 @@ A command that would change results and is not followed is refused, never left o
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 from .arguments import Arguments
 from .between_runs import refuse_between_runs
 from .changes import Changes, Key, alters, key_of
+from .command_files import Read, all_commands, with_first_argument
 from .fault import DatasetFault
 from .integrator import USUAL_ERROR, integrator_settings
 from .keywords import keyword
 from .simulations import Simulation, read_simulation
-from .text import Statement, Subsystem, commands
+from .text import Statement
 
 FOLLOWED = ("SIMULATE", "ACTIVATE", "DEACTIVATE", "INTEGRATOR", "LINEAR")
 ENDING = ("STOP", "EXIT")
@@ -26,7 +27,6 @@ HARMLESS = (
 """Commands that have no effect on the results."""
 SETTINGS = ("EQUILIBRIUM", "KINEMATICS", "IC", "LSOLVER", "ENVIRONMENT")
 """Commands that say how Adams computes what it computes, which is left to this package."""
-FILES = ("MODEL", "COMMAND", "OUTPUT_PREFIX", "GRAPHICS", "REQUEST", "RESULTS", "OUTPUT", "FEMDATA")
 LINEAR = (
     "EIGENSOL",
     "STATEMAT",
@@ -90,8 +90,15 @@ class Commands:
     notes: tuple[str, ...] = ()
 
 
-def read_commands(text: str, known: Collection[Key] = ()) -> Commands:
+def read_commands(text: str, known: Collection[Key] = (), read: Read | None = None) -> Commands:
     """Read what a command file asks for of a dataset whose statements are `known` by name and number.
+
+    Parameters
+    ----------
+    text : str
+    known : collection of Key
+    read : callable, optional
+        Returns the text of another command file by its name; without it FILE/COMMAND is refused.
 
     Raises
     ------
@@ -102,7 +109,8 @@ def read_commands(text: str, known: Collection[Key] = ()) -> Commands:
     changes, settings = Changes(), dict[str, float]()
     left_out: list[str] = []
     linear: list[str] = []
-    for command in commands(text):
+    begun = False
+    for command in all_commands(text, read):
         name = full_name(command.word)
         if name in ENDING:
             break
@@ -115,30 +123,20 @@ def read_commands(text: str, known: Collection[Key] = ()) -> Commands:
             left_out.append(f"INTEGRATOR (line {command.line}) but for HMAX, and ERROR below {USUAL_ERROR:g}")
         elif name == "LINEAR":
             linear.append(_linear_note(command, bool(segments)))
-        elif name == "FILE":
-            _refuse_commands_elsewhere(command)
         elif name in SETTINGS:
             left_out.append(f"{name} (line {command.line})")
-        elif name in HARMLESS or _is_name_of_file(command, name):
-            continue
-        else:
+        elif not (name in HARMLESS or (not begun and _is_name_of_file(command, name))):
             if segments:
                 refuse_between_runs(command, name or "")
             changes = _followed(changes, command, name, known)
+        begun = begun or name is not None
     notes = (f"{', '.join(left_out)} of the command file left out: analysis settings",) if left_out else ()
     return Commands(tuple(segments), changes, (*linear, *notes))
 
 
-def _refuse_commands_elsewhere(command: Statement) -> None:
-    """Refuse FILE/COMMAND: the commands of another file."""
-    found = Arguments(replace(command, ident="", pieces=(*_head(command), *command.pieces)), "FILE", FILES)
-    if "COMMAND" in found:
-        raise found.fault(f"found COMMAND = {found.text('COMMAND')}, expected the commands of that file in this one")
-
-
 def _linear_note(command: Statement, later: bool) -> str:
     """The command of this package that does what LINEAR asks for."""
-    found = Arguments(replace(command, ident="", pieces=(*_head(command), *command.pieces)), "LINEAR", LINEAR)
+    found = Arguments(with_first_argument(command), "LINEAR", LINEAR)
     does = {
         "EIGENSOL": "'stiffmbs modes' computes eigenvalues and modes",
         "STATEMAT": "'stiffmbs transfer' computes the state matrices",
@@ -146,10 +144,6 @@ def _linear_note(command: Statement, later: bool) -> str:
     what = found.one_of(*does) or "EIGENSOL"
     where = " (with --from, of the state in which a run ends)" if later else ""
     return f"LINEAR/{what} (line {command.line} of the command file) is left out: {does[what]}{where}"
-
-
-def _head(command: Statement) -> tuple[Subsystem, ...]:
-    return (Subsystem(command.ident, command.line),) if command.ident else ()
 
 
 def full_name(word: str) -> str | None:

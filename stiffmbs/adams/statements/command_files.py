@@ -1,0 +1,83 @@
+"""Commands of several files: FILE/COMMAND executes the commands of another file where it stands."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+
+from ...errors import InputError
+from .arguments import Arguments
+from .fault import DatasetFault
+from .text import Statement, Subsystem, commands
+
+ARGUMENTS = ("MODEL", "COMMAND", "OUTPUT_PREFIX", "GRAPHICS", "REQUEST", "RESULTS", "OUTPUT", "FEMDATA")
+"""Arguments of FILE."""
+Read = Callable[[str], str]
+"""Returns the text of a command file by its name."""
+DEEPEST = 16
+"""Files that may be open at once: a file that executes itself has no end."""
+
+
+def all_commands(text: str, read: Read | None = None, depth: int = 1) -> Iterator[Statement]:
+    """Yield the commands of a text and of the files that it executes, these with the line of their FILE/COMMAND.
+
+    Parameters
+    ----------
+    text : str
+        The content of a command file.
+    read : callable, optional
+        Reads another command file; without it FILE/COMMAND is refused.
+    depth : int
+        Files that are open.
+
+    Raises
+    ------
+    DatasetFault
+        When a file cannot be read, or too many are open.
+    """
+    for command in commands(text):
+        name = command_file_of(command)
+        if name is None:
+            yield command
+            continue
+        content = _content(command, name, read, depth)
+        try:
+            others = list(all_commands(content, read, depth + 1))
+        except DatasetFault as fault:
+            raise DatasetFault(command.line, "FILE/COMMAND", f"{name}, {fault}") from None
+        for other in others:
+            yield replace(
+                other, line=command.line, pieces=tuple(replace(piece, line=command.line) for piece in other.pieces)
+            )
+
+
+def command_file_of(command: Statement) -> str | None:
+    """Return the name of the file whose commands FILE/COMMAND executes; None for any other command."""
+    if not is_file(command.word):
+        return None
+    found = Arguments(with_first_argument(command), "FILE", ARGUMENTS)
+    return found.text("COMMAND") if "COMMAND" in found else None
+
+
+def is_file(word: str) -> bool:
+    """Return True for FILE and its abbreviations of three letters or more."""
+    return len(word) > 2 and "FILE".startswith(word)
+
+
+def with_first_argument(command: Statement) -> Statement:
+    """Return a command whose first argument, written after the slash, is one of its pieces."""
+    head = (Subsystem(command.ident, command.line),) if command.ident else ()
+    return replace(command, ident="", pieces=(*head, *command.pieces))
+
+
+def _content(command: Statement, name: str, read: Read | None, depth: int) -> str:
+    if read is None:
+        reason = f"found COMMAND = {name}, expected the commands of that file in this one"
+    elif depth >= DEEPEST:
+        reason = f"found {DEEPEST} command files open at {name}, expected no file that executes itself"
+    else:
+        try:
+            return read(name)
+        except InputError as error:
+            reason = str(error)
+    raise DatasetFault(command.line, "FILE/COMMAND", reason)
