@@ -10,11 +10,11 @@ from typing import Any
 
 from ..describe.files.text_file import file_text, source_name
 from ..errors import InputError
+from .commands.command_files import Read, command_file_of
+from .commands.commands import ENDING, FOLLOWED, HARMLESS, SETTINGS, full_name, read_commands
 from .listed_arguments import arguments_of, unread_functions
 from .load import ENCODING, command_file, other_commands
 from .statements.changes import Key, alters, key_of
-from .statements.command_files import Read, command_file_of
-from .statements.commands import ENDING, FOLLOWED, HARMLESS, SETTINGS, full_name, read_commands
 from .statements.dataset import all_statements, faults_of
 from .statements.fault import DatasetFault
 from .statements.keywords import LEFT_OUT, REFUSED, keyword

@@ -18,10 +18,10 @@ from ..describe.reading import made_scene
 from ..describe.scene import Scene
 from ..describe.spatial.massless import BEYOND
 from ..errors import InputError
+from .commands.commands import Segment, read_commands
 from .scene.scene import scene
 from .stages import followed
 from .statements.changes import Changes, key_of
-from .statements.commands import Segment, read_commands
 from .statements.dataset import NO_CHANGES, Dataset, all_statements, read_dataset
 from .statements.fault import CommandFault, DatasetFault
 from .statements.text import ZERO_BYTE

@@ -6,11 +6,11 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any, TypeAlias
 
 from ..describe.files.stages import merge_patch
+from .commands.commands import Segment
+from .commands.simulations import STATICS, one_run, refuse_velocities
 from .scene.sensors import conditions
-from .statements.commands import Segment
 from .statements.constraints import Motion
 from .statements.dataset import Dataset
-from .statements.simulations import STATICS, one_run, refuse_velocities
 from .statements.units import Units
 
 Described: TypeAlias = tuple[Dataset, dict[str, Any]]

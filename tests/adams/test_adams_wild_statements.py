@@ -5,8 +5,8 @@ import pytest
 
 import stiffmbs
 from stiffmbs import InputError, load_scene
+from stiffmbs.adams.commands.commands import read_commands
 from stiffmbs.adams.load import read_adams
-from stiffmbs.adams.statements.commands import read_commands
 
 from .test_adams_command import PENDULUM
 

@@ -7,13 +7,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from .arguments import Arguments
-from .fault import DatasetFault
-from .text import Statement, Subsystem
-from .units import Units
+from ..statements.arguments import Arguments
+from ..statements.fault import DatasetFault
+from ..statements.text import Statement, Subsystem
+from ..statements.units import Units
 
 if TYPE_CHECKING:
-    from .dataset import Dataset
+    from ..statements.dataset import Dataset
 
 STATICS = "STATICS"
 OVER_TIME = ("DYNAMICS", "KINEMATICS", "TRANSIENT")

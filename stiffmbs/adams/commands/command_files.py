@@ -6,9 +6,9 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 from ...errors import InputError
-from .arguments import Arguments
-from .fault import DatasetFault
-from .text import Statement, Subsystem, commands
+from ..statements.arguments import Arguments
+from ..statements.fault import DatasetFault
+from ..statements.text import Statement, Subsystem, commands
 
 ARGUMENTS = ("MODEL", "COMMAND", "OUTPUT_PREFIX", "GRAPHICS", "REQUEST", "RESULTS", "OUTPUT", "FEMDATA")
 """Arguments of FILE."""

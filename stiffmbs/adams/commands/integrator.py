@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from .arguments import Arguments
-from .text import Statement
+from ..statements.arguments import Arguments
+from ..statements.text import Statement
 
 METHODS = (
     "GSTIFF",

@@ -8,15 +8,15 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 
-from .arguments import Arguments
+from ..statements.arguments import Arguments
+from ..statements.changes import Changes, Key, alters, key_of
+from ..statements.fault import DatasetFault
+from ..statements.keywords import keyword
+from ..statements.text import Statement
 from .between_runs import refuse_between_runs
-from .changes import Changes, Key, alters, key_of
 from .command_files import Read, all_commands, with_first_argument
-from .fault import DatasetFault
 from .integrator import USUAL_ERROR, integrator_settings
-from .keywords import keyword
 from .simulations import Simulation, read_simulation
-from .text import Statement
 
 FOLLOWED = ("SIMULATE", "ACTIVATE", "DEACTIVATE", "INTEGRATOR", "LINEAR")
 ENDING = ("STOP", "EXIT")

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from .changes import key_of
-from .fault import DatasetFault
-from .text import Statement, Subsystem
+from ..statements.changes import key_of
+from ..statements.fault import DatasetFault
+from ..statements.text import Statement, Subsystem
 
 CHANGED = {
     "PART": ("MASS", "IP"),

@@ -1,0 +1,1 @@
+"""Command files of MSC Adams/Solver: simulations, and the changes before each."""
