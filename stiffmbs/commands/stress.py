@@ -10,34 +10,34 @@ from ..errors import InputError, StiffmbsError
 
 SOME_WRONG, WRONG_INPUT = 1, 2
 COUNT = 1000
-"""Random cases of a fuzzer, unless told."""
+"""Default number of random cases."""
 
 
-@click.command(short_help="Cases that ask for more than is fair.")
+@click.command(short_help="Stress tests: extreme or ill-posed models.")
 @click.argument("names", metavar="[CASE]...", nargs=-1)
-@click.option("--quick", is_flag=True, help="Leave out the cases that take long.")
+@click.option("--quick", is_flag=True, help="Skip long cases.")
 @click.option(
-    "--fuzz", metavar="NAME", is_flag=False, flag_value="", help="Try random cases of a fuzzer in place of CASEs."
+    "--fuzz", metavar="NAME", is_flag=False, flag_value="", help="Run random cases of a fuzzer instead of CASEs."
 )
-@click.option("--count", type=click.IntRange(1), help="Random cases of --fuzz; 1000 unless given.")
+@click.option("--count", type=click.IntRange(1), help="Number of random cases of --fuzz (default 1000).")
 @click.option(
     "--seed",
     type=click.IntRange(0),
-    help="Seed of the first random case of --fuzz, the next has the next; 0 unless given.",
+    help="Seed of the first random case of --fuzz (default 0); the seeds are consecutive.",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object a line for each case.")
 def stress(
     names: tuple[str, ...], quick: bool, fuzz: str | None, count: int | None, seed: int | None, as_json: bool
 ) -> None:
-    """Ask for more than is fair, and show what came of it: right, told, slow, or WRONG without a word.
+    """Run stress tests and print their outcomes: right, told (reported), slow, or WRONG.
 
     CASE is the name of a case or of a family of cases.
 
-    With --fuzz random cases are made from seeds and tried in a process of their own.  Those that are WRONG are printed: with a
-    silent difference, a traceback, a crash of the process, or no end within 30 s of processor time.  --fuzz without a name
+    With --fuzz, random cases are drawn from seeds and run in a separate process.  Cases that are WRONG are printed: an
+    unreported error, a traceback, a crash of the process, or more than 30 s of processor time.  --fuzz without a name
     lists the fuzzers.
 
-    Exit status: 0 none is wrong, 1 some are, 2 there is no such case.
+    Exit status: 0 if no case is wrong, 1 if some are, 2 if there is no such case.
     """
     try:
         if fuzz is None:

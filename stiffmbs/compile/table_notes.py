@@ -1,4 +1,4 @@
-"""Notes on tables that leave the range of their points between them."""
+"""Notes on tables whose interpolation overshoots their points."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from ..describe.table import Table
 from .table_values import parts_of
 
 BEYOND = 0.1
-"""Part of the range of a table's values by which its curve may leave that range without a note."""
+"""Overshoot, relative to the range of a table's values, that is not noted."""
 SECTIONS = "joints", "forces", "states"
 CURVES = {"akima": "Akima's cubics", "spline": "a cubic spline"}
-"""Interpolations that may leave the range of two points."""
+"""Interpolations that may overshoot."""
 
 
 def table_notes(data: Described) -> Iterator[str]:
-    """Name the tables of a model whose curves leave the range of their values by more than a tenth of it."""
+    """Yield a note for each table of a model whose interpolation overshoots its points."""
     users: dict[str, list[str]] = {}
     for section in SECTIONS:
         for name, element in getattr(data, section, {}).items():
@@ -32,7 +32,7 @@ def table_notes(data: Described) -> Iterator[str]:
 
 
 def _tables(value: Any, label: str) -> Iterator[tuple[str, Table]]:
-    """Iterate over the tables in a field, with the names that a scene gives them or the field's."""
+    """Yield the tables in a field, with their names in the scene or the name of the field."""
     match value:
         case Table():
             yield label, value
@@ -50,7 +50,7 @@ def _tables(value: Any, label: str) -> Iterator[tuple[str, Table]]:
 
 
 def _beyond(table: Table) -> str:
-    """Say how far a curve leaves the range of its points; empty where it does not by more than a tenth."""
+    """Return a sentence on the overshoot of a table, or an empty string."""
     if table.interpolation not in CURVES:
         return ""
     at, values = _extrema(table)
@@ -61,13 +61,13 @@ def _beyond(table: Table) -> str:
     if not over[k] > BEYOND * (high - low):
         return ""
     return (
-        f"is {CURVES[table.interpolation]} that comes to {values[k]:.4g} at {at[k]:.4g}, where its points are between {low:.4g} and "
-        f"{high:.4g}; the default interpolation or 'lines: true' stays between them"
+        f"is {CURVES[table.interpolation]} that reaches {values[k]:.4g} at {at[k]:.4g}, but its points are between {low:.4g} and "
+        f"{high:.4g}; the default interpolation and 'lines: true' stay within this range"
     )
 
 
 def _extrema(table: Table) -> tuple[np.ndarray, np.ndarray]:
-    """Return the arguments inside the pieces at which a table has no slope, and its values there."""
+    """Return the arguments inside the pieces at which the slope is zero, and the values there."""
     _, x, pieces = parts_of(table)
     a, b, c, d = pieces.T[:, None]
     with np.errstate(all="ignore"):

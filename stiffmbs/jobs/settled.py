@@ -20,10 +20,10 @@ from ..solve.equilibria.steady_motion import at_rest
 from ..solve.initial import InitialValues
 
 MOST_FOR_EIGENVALUES, MOST_CONSERVATIVE = 1500, 150
-"""Velocities up to which eigenvalues tell the stability of an equilibrium (dense matrices), and up to which they do where all
-forces have a potential, so that statics tell it too."""
+"""Largest numbers of velocities for which eigenvalues are computed (dense matrices): in general, and if all forces have a
+potential, so that static stability is sufficient."""
 SYMMETRIC = 1e-9
-"""Part of the largest entry of a stiffness that counts as no difference from its transpose."""
+"""Asymmetry of a stiffness matrix, relative to its largest entry, that counts as rounding."""
 BRANCH = 1e-3
 """Move along an unstable direction, relative to the mechanism's size, or rad, from which a stable pose is sought."""
 MOST_BRANCHES = 3
@@ -36,7 +36,7 @@ LARGE_PART = 0.5
 GROWING = 1e-6
 """Real part of an eigenvalue, relative to the largest of all, from which on a motion grows: double zeros are known to that."""
 GROWING_OF_ITS_OWN, ROUNDED = 1e-6, 1e-10
-"""Real part of an eigenvalue, relative to itself and to the largest of all, from which on it grows where zeros are split off."""
+"""Real part above which an eigenvalue is unstable, relative to its own magnitude and to the largest magnitude."""
 
 
 @dataclass(frozen=True)
@@ -154,26 +154,26 @@ def _settled(found: Equilibrium, start: InitialValues, notes: Sequence[str], fre
 
 
 def _growth(dynamics: Dynamics, t: float) -> Iterator[str]:
-    """Say that motions grow from an equilibrium, or that this was not assessed."""
+    """Yield a note if an equilibrium is dynamically unstable, or if this was not assessed."""
     system = dynamics.system
     if system.n_u > MOST_CONSERVATIVE and not system.states and _is_conservative(dynamics, t):
         return
     if system.n_u > MOST_FOR_EIGENVALUES:
-        yield f"{system.n_u} velocities: whether the equilibrium is stable was not assessed by its eigenvalues"
+        yield f"the dynamic stability of the equilibrium was not assessed: {system.n_u} velocities, at most {MOST_FOR_EIGENVALUES} expected"
         return
     _, acceleration = dynamics.accelerate(t)
     try:
         state = state_matrix(linearised(dynamics, t, acceleration), system.per_velocity(system.size, 1.0))
     except SolverError as error:
-        yield f"whether the equilibrium is stable was not assessed by its eigenvalues: {error}"
+        yield f"the dynamic stability of the equilibrium was not assessed: {error}"
         return
     values, _, _ = eigen(state.matrix, state.n_poses, state.n_states)
     sizes = np.abs(values)
     growing = values[values.real > GROWING_OF_ITS_OWN * sizes + ROUNDED * np.max(sizes, initial=0.0)]
     if len(growing):
         fastest = growing[np.argmax(growing.real)]
-        how = f", and oscillate at {abs(fastest.imag) / (2 * np.pi):.3g} Hz" if fastest.imag else ""
-        yield f"the equilibrium is unstable: motions from it grow at {fastest.real:.3g} 1/s{how}"
+        how = f" and oscillate at {abs(fastest.imag) / (2 * np.pi):.3g} Hz" if fastest.imag else ""
+        yield f"the equilibrium is unstable: disturbances grow at {fastest.real:.3g} 1/s{how}"
 
 
 def _is_conservative(dynamics: Dynamics, t: float) -> bool:

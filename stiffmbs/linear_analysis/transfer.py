@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from scipy.signal import StateSpace
 
 NEAR_POLE = 1e-6
-"""Distance from an eigenvalue, relative to the largest or in 1/s, from which on a frequency is examined."""
+"""Distance from an eigenvalue, relative to the largest one or in 1/s, below which a frequency is checked."""
 
 
 @dataclass(frozen=True)
@@ -127,7 +127,7 @@ class Transfer:
         return StateSpace(self.a, self.b, self.c, self.d)
 
     def response(self, frequencies: np.ndarray) -> np.ndarray:
-        """H = C (i w - A)^-1 B + D, shape (frequencies, outputs, inputs).
+        """Return H = C (i w - A)^-1 B + D, shape (frequencies, outputs, inputs).
 
         Parameters
         ----------
@@ -137,7 +137,7 @@ class Transfer:
         Raises
         ------
         InputError
-            At the frequency of an undamped motion, such as 0 Hz of a body that nothing holds.
+            At the frequency of an undamped motion, such as 0 Hz of a free body.
         """
         values, vectors = np.linalg.eig(self.a)
         if not len(values):
@@ -152,12 +152,12 @@ class Transfer:
         return np.asarray(np.einsum("ok,fk,ki->foi", self.c @ vectors, 1 / (rates[:, None] - values), into) + self.d)
 
     def _refuse_poles(self, rates: np.ndarray, values: np.ndarray) -> None:
-        """Refuse frequencies at which i w - A is singular but for rounding."""
+        """Refuse frequencies at which i w - A is numerically singular."""
         near = np.min(np.abs(rates[:, None] - values), axis=1) < NEAR_POLE * np.max(np.abs(values)) + NEAR_POLE
         for rate in rates[near]:
             if is_singular(rate * np.eye(len(values)) - self.a):
-                held = "a motion that nothing holds" if rate == 0 else "an undamped motion"
+                held = "an unconstrained motion" if rate == 0 else "an undamped mode"
                 raise InputError(
-                    f"frequencies: found {abs(rate) / (2 * np.pi):g} Hz, the frequency of {held}, where the response has no limit; "
+                    f"frequencies: found {abs(rate) / (2 * np.pi):g} Hz, the frequency of {held}, at which the response is unbounded; "
                     "expected another frequency"
                 )

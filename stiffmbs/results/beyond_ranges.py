@@ -1,4 +1,4 @@
-"""Notes on force elements whose channels leave the ranges that their data are valid for, such as the loads of a tyre."""
+"""Notes on force elements whose channels leave the valid ranges of their data, such as the load of a tyre."""
 
 from __future__ import annotations
 
@@ -7,20 +7,20 @@ from collections.abc import Callable, Iterator, Mapping
 import numpy as np
 
 ACTING = "load"
-"""A channel that is zero where the element does not act, so that its other channels do not count."""
+"""Channel that is zero if the element does not act; its other channels are then ignored."""
 
 
 def range_notes(
     ranges: Mapping[str, Mapping[str, tuple[float, float]]], series: Callable[[str], np.ndarray]
 ) -> Iterator[str]:
-    """Yield a sentence for each element, with the extremes that its channels reached outside their ranges.
+    """Yield a sentence for each element, with the extremes of its channels outside their ranges.
 
     Parameters
     ----------
     ranges : mapping of str to (mapping of str to (float, float))
-        By element and channel.
+        Valid ranges by element and channel.
     series : callable
-        The values of a channel at the output times, by its name.
+        Returns the values of a channel at the output times.
     """
     for name, of_element in ranges.items():
         acts = series(f"{name}.{ACTING}") > 0 if ACTING in of_element else slice(None)
@@ -30,11 +30,11 @@ def range_notes(
             if (sentence := _beyond(channel, series(f"{name}.{channel}")[acts], low, high))
         ]
         if found:
-            yield f"'{name}' leaves the ranges that its data are valid for: {', '.join(found)}"
+            yield f"'{name}' leaves the valid ranges of its data: {', '.join(found)}"
 
 
 def _beyond(channel: str, values: np.ndarray, low: float, high: float) -> str:
-    """The extremes of a channel and its range; empty within it."""
+    """Return a clause with the extremes of a channel and its range, or an empty string within it."""
     values = values[np.isfinite(values)]
     if not len(values) or (low <= values.min() and values.max() <= high):
         return ""

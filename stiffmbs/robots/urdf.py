@@ -16,19 +16,19 @@ KINDS: dict[str, JointKind] = {"revolute": "hinge", "continuous": "hinge", "pris
 OF_ONE_COORDINATE = ("revolute", "continuous", "prismatic")
 FIXED, PLANAR = "fixed", "planar"
 OF_MOTION = ("axis", "limit", "dynamics", "mimic", "safety_controller", "calibration")
-"""Children of a joint without effect on a fixed one."""
+"""Children of a joint that have no effect on a fixed joint."""
 DEFAULTS: Mapping[str, Mapping[str, Any]] = {
     "robot": {"version": "1.0"},
     "joint/limit": {"velocity": 0.0, "lower": 0.0, "upper": 0.0},
 }
-"""Values of attributes that are not used, with which they have no effect."""
+"""Values of unused attributes that have no effect."""
 SHAPES, HARDWARE = "shapes and contacts are left out", "actuators of transmissions are left out"
 REASONS: Mapping[str, Mapping[str, str]] = {
     "link": {"<visual>": SHAPES, "<collision>": SHAPES}, "robot": {"<material>": SHAPES},
     "joint/limit": {"*": "limits are not held"}, "joint": {"<safety_controller>": "limits are not held"},
     **{f"transmission{below}": {"*": HARDWARE} for below in ("", "/joint")},
 }  # fmt: skip
-"""Why attributes and children have no effect."""
+"""Reasons why attributes and children have no effect."""
 
 
 def read_urdf(text: str) -> Robot:
@@ -66,7 +66,7 @@ def _parsed(text: str) -> Node:
         raise RobotFault(f"found <{root.tag}>, expected <robot> of a URDF file")
     for node in root.walk():
         if node.tag.startswith("xacro") or any("${" in value for value in node.attributes.values()):
-            raise RobotFault(f"found the macro <{node.tag}>, expected plain URDF: run xacro on it first")
+            raise RobotFault(f"found the macro <{node.tag}>, expected plain URDF: run xacro first")
     return root
 
 
@@ -195,7 +195,7 @@ def _efforts(root: Node, moving: dict[str, Node]) -> Iterator[Transmission]:
 
 
 def _mimics(joints: dict[str, Node], child_of: dict[str, str]) -> Iterator[Relation]:
-    """Relations of joints that mimic others; where the other one is fixed the joint is held at its offset."""
+    """Return the relations of joints that mimic others; if the other joint is fixed, the joint is fixed at its offset."""
     for name in child_of.values():
         mimic = joints[name].find("mimic")
         if mimic is None or joints[name].get("type") == FIXED:
@@ -219,14 +219,14 @@ def _mimics(joints: dict[str, Node], child_of: dict[str, str]) -> Iterator[Relat
 
 
 def _still(joints: dict[str, Node]) -> Iterator[str]:
-    """A note on fixed joints that mimic others; their axes, limits and dynamics have no effect."""
+    """Yield a note on fixed joints that mimic others; their axes, limits and dynamics have no effect."""
     found = []
     for name, element in joints.items():
         if element.get("type") == FIXED:
             found += [name] if element.find("mimic") is not None else []
             element.without_effect(*OF_MOTION)
     if found:
-        yield f"fixed joints stay fixed, and mimic no other: {', '.join(found)}"
+        yield f"'mimic' has no effect on fixed joints: {', '.join(found)}"
 
 
 def _origin(where: str, element: Node) -> tuple[tuple[float, ...], tuple[float, ...]]:

@@ -1,1 +1,1 @@
-"""Cases that ask a solver for more than is fair, and what came of each: right, told, or silently wrong."""
+"""Stress tests: extreme or ill-posed models, and the outcome of each: right, told (reported), or wrong."""

@@ -1,4 +1,4 @@
-"""Controllers that act on a motion that a drive prescribes: their force changes no motion, only the drive's reaction."""
+"""Controllers that act on a motion prescribed by a drive: their force changes only the reaction of the drive."""
 
 from __future__ import annotations
 
@@ -21,29 +21,29 @@ if TYPE_CHECKING:
     from ..describe.model_data import ModelData
 
 SAMPLES = 4
-"""Random states and times at which forces are compared, so that no gain is zero at all of them."""
+"""Number of random states and times at which forces are compared, so that no gain is zero at all of them."""
 ROUNDING = 1e-9
-"""Part of a direction, or of a largest singular value, that is rounding."""
+"""Relative size of rounding in a direction or in singular values."""
 SHORT = 1e-300
-"""Keeps a quotient from being undefined."""
+"""Lower bound of a divisor."""
 
 
 def opposed_sentences(system: System, data: ModelData, q: np.ndarray, grid: Grid) -> tuple[str, ...]:
-    """Return a sentence on each of the controllers whose force has no component in the free motions, but would have one without drives.
+    """Return a sentence on each controller whose force has a component along the free motions only without the drives.
 
-    A controller is a force that depends on time or states, and that measures motion itself or by its states.  Springs, dampers
-    and forces over time are none: the reaction of a drive to these is a usual result.  A force on a body acts on those too that
-    hold it by bushings, as on the housing of a rack.
+    A controller is a force that depends on time or states, and that measures motion directly or through states.  Springs, dampers
+    and forces that depend on time alone are not controllers: the reaction of a drive to these is a common result.  A force on a
+    body is assumed to act on bodies connected to it by bushings as well, such as the housing of a rack.
 
     Parameters
     ----------
     system : System
     data : ModelData
-        Of which the system was compiled.
+        Model from which the system was compiled.
     q : ndarray
         An assembled pose.
     grid : Grid
-        Of the run.
+        Output times of the run.
     """
     drives = [name for name, joint in data.joints.items() if joint.kind == "drive"]
     controllers = [name for name, force in data.forces.items() if drives and _measures(force, data)]
@@ -66,8 +66,8 @@ def opposed_sentences(system: System, data: ModelData, q: np.ndarray, grid: Grid
 def _sentence(actuator: str, drives: list[str]) -> str:
     prescribe = "prescribes" if len(drives) == 1 else "prescribe"
     return (
-        f"{actuator} controls a motion that {listed(drives)} {prescribe}: it changes no motion, only the reaction of "
-        f"{listed(drives)}; leave one of them out"
+        f"{actuator} acts on a motion that {listed(drives)} {prescribe}: it changes only the reaction of "
+        f"{listed(drives)}; remove one of them"
     )
 
 
@@ -86,7 +86,7 @@ def _measures(force: Force, data: ModelData) -> bool:
 
 
 def _held_by_bushings(data: ModelData, system: System) -> dict[int, set[int]]:
-    """The bodies on bushings of each body; the ground is the number of bodies."""
+    """Return the bodies connected to each body by bushings; the ground has the number of bodies as its index."""
     number = {name: k for k, name in enumerate(system.bodies)}
     held: dict[int, set[int]] = {}
     for force in data.forces.values():
@@ -98,7 +98,7 @@ def _held_by_bushings(data: ModelData, system: System) -> dict[int, set[int]]:
 
 
 class _Directions:
-    """Directions in the space of velocities, lengths in units of the system's size."""
+    """Directions in velocity space, with lengths in units of the system's size."""
 
     def __init__(self, state: State, q: np.ndarray, times: tuple[float, float]) -> None:
         self.state, self.system, self._times = state, state.system, times
@@ -111,7 +111,7 @@ class _Directions:
         self._samples = self._sampled()
 
     def _sampled(self) -> list[np.ndarray]:
-        """The values of the forces at times and states of a run, at one pose."""
+        """Return the values of the forces at times and states of a run, at one pose."""
         rng = np.random.default_rng(1)
         system, q = self.system, self.state.q.copy()
         values = []
@@ -124,7 +124,7 @@ class _Directions:
         return values
 
     def rows_of(self, joint: str) -> list[int]:
-        """The rows of a joint's equations."""
+        """Return the rows of a joint's equations."""
         for group in self.system.groups:
             if joint in group.names and (count := group.record.n_equations):
                 first = group.first_row + group.names.index(joint) * count
@@ -132,14 +132,14 @@ class _Directions:
         return []
 
     def space(self, without: Iterator[int] | list[int] | tuple[int, ...]) -> np.ndarray:
-        """An orthonormal basis of the directions of all constraints but some rows."""
+        """Return an orthonormal basis of the row space of all constraints except some rows."""
         J = np.delete(self._J, list(without), axis=0)
         J = J / np.maximum(np.linalg.norm(J, axis=1, keepdims=True), SHORT)
         _, values, basis = np.linalg.svd(J, full_matrices=False)
         return basis[values > ROUNDING * max(values, default=0.0)]
 
     def of(self, force: str) -> Iterator[np.ndarray]:
-        """The directions of what time and states change of a force."""
+        """Return the directions in which time and states change a force."""
         at = 1 + TERM_SETS["motion"].index("f")
         for g, group in enumerate(self.system.groups):
             if force not in group.names or not group.entries["f"]:
@@ -160,7 +160,7 @@ class _Directions:
             yield from ways[values > ROUNDING * np.max(np.abs(samples), initial=SHORT)]
 
     def elsewhere(self, way: np.ndarray, held: dict[int, set[int]]) -> Iterator[np.ndarray]:
-        """A direction, and those with the part of one body acting on another that bushings hold to it."""
+        """Yield a direction, and its variants with the force moved to a body connected by a bushing."""
         yield way
         width, ground = self.system.of_body.n_u, len(self.system.bodies)
         parts = (way * self._scale).reshape(ground, width)
@@ -177,7 +177,7 @@ class _Directions:
                     yield moved.reshape(-1) / self._scale / np.linalg.norm(moved.reshape(-1) / self._scale)
 
     def _wrench(self, part: np.ndarray, body: int) -> np.ndarray:
-        """Force and torque about the origin of the ground."""
+        """Return the force and the torque about the origin of the ground."""
         place, turn = self._pose(body)
         force, torque = (part[:2], part[2:]) if turn is None else (part[:3], rotated(turn, part[3:]))
         return np.append(force, torque + _moment(place, force))
@@ -189,14 +189,14 @@ class _Directions:
         return np.append(force, torque if turn is None else rotated(turn * [1, -1, -1, -1], torque))
 
     def _pose(self, body: int) -> tuple[np.ndarray, np.ndarray | None]:
-        """Place of the centre of mass, and the quaternion in space."""
+        """Return the position of the centre of mass, and the quaternion in space."""
         of_body = self.system.of_body
         q = self.state.q[of_body.n_q * body : of_body.n_q * (body + 1)]
         return (q[:2], None) if of_body.n_q == 3 else (q[:3], q[3:] / np.linalg.norm(q[3:]))
 
 
 def _lies_in(direction: np.ndarray, basis: np.ndarray) -> bool:
-    """Return True if a direction of length one is a sum of those of an orthonormal basis."""
+    """Return True if a unit vector lies in the span of an orthonormal basis."""
     rest = direction - basis.T @ (basis @ direction)
     return bool(np.linalg.norm(rest) <= np.sqrt(ROUNDING))
 

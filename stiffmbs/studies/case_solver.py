@@ -57,7 +57,7 @@ class Task:
 
 @dataclass(frozen=True)
 class Row:
-    """A case that has been solved, or could not be.
+    """Result of a case.
 
     Attributes
     ----------
@@ -66,11 +66,11 @@ class Row:
     status : str
         ``done``, ``stopped`` early, or ``error``.
     message : str
-        What went wrong, and what the run has to say besides.
+        Error message, and notes of the run.
     values : tuple of float or ndarray
         The outputs, numbers or series; numbers are nan where the run was not done.
     files : mapping of str to str
-        Digests of the files that cases name and the scene of the study does not.
+        Digests of the files that cases name, but not the scene of the study.
     """
 
     case: int
@@ -81,7 +81,7 @@ class Row:
 
 
 class ChangedFileError(InputError):
-    """A file has another content than when the study began: no case can be solved any more."""
+    """A file has changed since the study began, so no further case can be solved."""
 
 
 class CaseSolver:
@@ -103,12 +103,12 @@ class CaseSolver:
         self._files: dict[str, str] = {}
 
     def scene(self, values: Sequence[Any]) -> Scene:
-        """The scene of a case.
+        """Return the scene of a case.
 
         Raises
         ------
         InputError
-            When a value does not fit, or a file is no longer what it was when the study began.
+            When a value is not valid, or a file has changed since the study began.
         """
         found = self._other_forces.scene(values) if self._other_forces and len(values) else None
         if found is not None:
@@ -124,7 +124,7 @@ class CaseSolver:
         return scene
 
     def _check_files(self, files: Mapping[str, str]) -> None:
-        """Refuse a file whose content has changed since the scene, or another case, was read."""
+        """Refuse a file that has changed since the scene or another case was read."""
         for name, digest in files.items():
             if self._task.scene.files.get(name, self._files.get(name, digest)) != digest:
                 raise ChangedFileError(

@@ -42,17 +42,17 @@ class Fit:
         95 % confidence intervals, by the linearised model and Student's distribution.
     standard_errors : dict of str to float
     correlation : ndarray
-        Of the estimates, in the order of `values`.
+        Correlation of the estimates, in the order of `values`.
     residuals : dict of str to float
         Root mean square of model - data, by channel.
     solution : Solution
-        Of the fitted model at the times of the data.
+        Solution of the fitted model at the times of the data.
     runs : int
-        Integrations that it took.
+        Number of integrations.
     success : bool
-        Whether the search converged.
+        True if the search converged.
     message : str
-        How the search ended, and which parameters it ends with at a bound.
+        Reason for termination, and the parameters that are at a bound.
     """
 
     values: dict[str, float]
@@ -273,10 +273,10 @@ def _concluded(
 
 
 def _at_bounds(ranges: Sought, active: np.ndarray) -> list[str]:
-    """Return a clause on each parameter that the search ends with at a bound."""
+    """Return a clause on each parameter that is at a bound at the end of the search."""
     return [
-        f"'{name}' ends at its {'lower' if side < 0 else 'upper'} bound, {one.low if side < 0 else one.high:g}, so that a better fit may "
-        "lie beyond it and its interval does not hold"
+        f"'{name}' is at its {'lower' if side < 0 else 'upper'} bound, {one.low if side < 0 else one.high:g}: a better fit may "
+        "lie beyond it, and its confidence interval is not valid"
         for name, one, side in zip(ranges.names, ranges.ranges, active, strict=True)
         if side
     ]

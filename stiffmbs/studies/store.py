@@ -19,9 +19,9 @@ from ..errors import InputError, SolverError
 from .case_solver import ChangedFileError, Row
 
 PRIMARY, OF_DISK = 0xFF, (sqlite3.SQLITE_FULL, sqlite3.SQLITE_IOERR)
-"""Primary codes of SQLite's errors, and those of a disk that is full or fails."""
+"""Primary error codes of SQLite, and those of a full or failing disk."""
 FORMAT = 2
-"""Of the tables, kept as SQLite's user version."""
+"""Version of the tables, stored as SQLite's user version."""
 _TABLES = """
 create table if not exists parts (name text primary key, digest text not null);
 create table if not exists files (name text primary key, digest text not null);
@@ -34,21 +34,21 @@ LOGGER = logging.getLogger(__name__)
 
 
 class Store:
-    """The rows that are done.
+    """Store of completed rows.
 
-    Rows that cannot be written, as on a full disk, are kept in memory and written as soon as that is possible again.
+    Rows that cannot be written, for example on a full disk, are kept in memory and written later.
 
     Parameters
     ----------
     path : Path or None
-        The file, made where there is none; in memory without it.
+        The file, which is created if it does not exist; None for a store in memory.
     study : mapping of str to str
-        All that the rows follow from, by what messages call it: the store of a study in which a part differs is refused.
+        Everything that the rows depend on, by its name in messages; a store in which a part differs is refused.
 
     Raises
     ------
     InputError
-        When the file is that of another study, or none at all; names what has changed.
+        When the file belongs to another study, or is not a store; the message names the changed parts.
     """
 
     def __init__(self, path: Path | None, study: Mapping[str, str]) -> None:
@@ -83,16 +83,16 @@ class Store:
             if getattr(error, "sqlite_errorcode", 0) & PRIMARY in OF_DISK:
                 raise SolverError(f"{self._named}: the store cannot be written ({reason})") from None
             raise InputError(
-                f"{self._named}: the store cannot be used ({reason}), expected a file of a study, or none: remove the file to begin again"
+                f"{self._named}: the store cannot be used ({reason}), expected the store of a study: remove the file to start again"
             ) from None
 
     def _claim(self, parts: Mapping[str, str]) -> None:
-        """Make a new file that of a study, or check that a file is.
+        """Assign a new file to a study, or check that it belongs to the study.
 
         Raises
         ------
         InputError
-            When it is not.
+            When it does not.
         """
         tables = self._file.execute("select count(*) from sqlite_master").fetchone()[0]
         if tables and self._file.execute("pragma user_version").fetchone()[0] != FORMAT:
@@ -116,12 +116,12 @@ class Store:
 
     def _of_another(self, changed: str) -> InputError:
         return InputError(
-            f"{self._named}: found the rows of another study, in which {changed} had other content; expected those of this one: "
-            "remove the file to begin again"
+            f"{self._named}: found the rows of another study, in which {changed} had different content; expected rows of this study: "
+            "remove the file to start again"
         )
 
     def _drop_damaged(self) -> None:
-        """Remove rows whose content does not match its code, so that their cases are solved again."""
+        """Remove rows whose content does not match its checksum, so that their cases are solved again."""
         damaged = [row[0] for row in self._file.execute("select * from rows") if _code(row[:-1]) != row[-1]]
         if damaged:
             self._file.executemany("delete from rows where number = ?", ((number,) for number in damaged))
@@ -130,7 +130,7 @@ class Store:
             )
 
     def done(self) -> set[int]:
-        """Return the numbers of the cases that are there."""
+        """Return the numbers of the stored cases."""
         with self._readable():
             return {number for (number,) in self._file.execute("select number from rows")}
 
@@ -140,14 +140,14 @@ class Store:
         Raises
         ------
         ChangedFileError
-            When another case has found other content in a file that a row's case names.
+            When a file that the case of a row names had different content in another case.
         """
         self._unwritten |= {row.case: row for row in rows}
         if failed := self._write_rest():
             LOGGER.debug("%s: not written yet: %s", self._named, failed)
 
     def _write_rest(self) -> str:
-        """Write the rows that are not written yet; why that is not possible, or nothing."""
+        """Write the pending rows; return the reason if this is not possible, else an empty string."""
         rows = self._unwritten.values()
         try:
             self._file.execute("begin")
@@ -172,10 +172,10 @@ class Store:
                 raise ChangedFileError(f"'{quoted(name)}' has changed; expected the same content in all cases")
 
     def rows(self) -> Iterator[Row]:
-        """Yield all rows, in the order of the cases; a note tells where some could not be written."""
+        """Yield all rows in the order of the cases; log a note if some could not be written."""
         if self._unwritten and (failed := self._write_rest()):
             LOGGER.warning(
-                "stiffmbs: note: %s: %d rows could not be kept (%s); their cases are solved again in another session",
+                "stiffmbs: note: %s: %d rows could not be stored (%s); another session solves their cases again",
                 self._named, len(self._unwritten), failed,
             )  # fmt: skip
         with self._readable():
@@ -188,7 +188,7 @@ class Store:
             yield from (self._unwritten[number] for number in rest)
 
     def close(self) -> None:
-        """Let go of the file; rows that are still unwritten get a last chance."""
+        """Try to write the pending rows, and close the file."""
         if self._connection is None:
             return
         if self._unwritten:
@@ -212,12 +212,12 @@ def _digest(text: str) -> str:
 
 
 def _text(found: str) -> str:
-    """A text without halves of surrogate pairs, which SQLite does not take."""
+    """Return a text without lone surrogates, which SQLite does not accept."""
     return found.encode(errors="backslashreplace").decode()
 
 
 def _code(columns: tuple[object, ...]) -> bytes:
-    """Return what shows whether a row is as it was written."""
+    """Return the checksum of a row."""
     return hashlib.sha256(repr(columns).encode(errors="surrogatepass")).digest()
 
 

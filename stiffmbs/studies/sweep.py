@@ -57,7 +57,7 @@ class Study:
 
     @property
     def parts(self) -> dict[str, str]:
-        """All that its rows follow from, by what messages call it: texts, and digests of files."""
+        """Everything that its rows depend on, by its name in messages: texts, and digests of files."""
         from .. import __version__
 
         task = self.task

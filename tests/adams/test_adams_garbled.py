@@ -75,5 +75,5 @@ def test_inertias_beyond_all_numbers_are_refused(fields):
         "ADAMS title\nPART/1, GROUND\nMARKER/1, PART=1\nPART/2, MASS=1, CM=4, IM=5, IP=1,1,1\nMARKER/4, PART=2\n"
         f"MARKER/5, PART=2, {fields}\nACCGRAV/JGRAV=-9.8\nEND\n"
     )
-    with pytest.raises(InputError, match=r"PART/2: found moments of inertia about CM beyond 1e308"):
+    with pytest.raises(InputError, match=r"PART/2: found moments of inertia about CM above 1e308"):
         read_adams(text)

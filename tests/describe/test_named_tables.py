@@ -144,4 +144,4 @@ def test_a_spline_that_leaves_the_range_of_its_points_is_noted(points, how, note
                 f"forces: {{f: {{type: spring_damper, i: b, j: ground, damper_law: {table}}}}}"):  # fmt: skip
         scene = stiffmbs.read_scene(f"gravity: [0, 0]\nbodies: {{b: {{mass: 1, inertia: 1, position: [1, 0]}}}}\n{law}")
         for notes in (stiffmbs.check(scene).messages, stiffmbs.run(scene, duration=1e-3, points=2).notes):
-            assert any("where its points are between" in note and note.startswith("f: ") for note in notes) == noted
+            assert any("but its points are between" in note and note.startswith("f: ") for note in notes) == noted

@@ -222,7 +222,7 @@ def test_loads_on_a_body_whose_centre_of_mass_is_not_its_origin(inertia, omega, 
 def test_an_input_that_turns_principal_axes_is_refused():
     text = OFFSET % ("[[0.3, 0, lean], [0, 0.4, 0], [lean, 0, 0.5]]", "[0, 0, 0]") + "parameters: {lean: 0}\n"
     made = lambda value: stiffmbs.read_scene(text, [("parameters.lean", repr(value))])  # noqa: E731
-    with pytest.raises(InputError, match=r"input 'lean': found that it turns principal axes of a body"):
+    with pytest.raises(InputError, match=r"input 'lean': found that it rotates the principal axes of a body"):
         transfer(made(0.0), {"lean": made}, ["b.x"])
 
 

@@ -61,7 +61,7 @@ def test_a_leaf_sprung_car_on_bumps_is_the_same_by_both_integrators(examples):
 def test_the_driver_follows_a_change_of_lane(examples):
     found = stiffmbs.run(stiffmbs.load_scene(examples / "car.yaml", [("choose.manoeuvre", "lane_change")]))
     y = found["chassis.y"]
-    assert found.success and not any("controls a motion" in note for note in found.notes)
+    assert found.success and not any("acts on a motion" in note for note in found.notes)
     assert max(y) < 3.6 and y[-1] == pytest.approx(3.5, abs=0.02)
 
 
@@ -70,6 +70,6 @@ def test_the_driver_follows_a_change_of_lane(examples):
 def test_a_driver_who_steers_against_a_held_rack_is_reported(examples, path, word):
     scene = stiffmbs.load_scene(examples / "car.yaml", [("choose.path", path), ("choose.compliance", word)])
     assert any(
-        message.startswith("driver.servo controls a motion that steer prescribes")
+        message.startswith("driver.servo acts on a motion that steer prescribes")
         for message in stiffmbs.check(scene).messages
     )

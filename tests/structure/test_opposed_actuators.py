@@ -87,14 +87,14 @@ def notes_of(text, servo, states):
     model = read_scene(yaml.safe_dump(scene))
     for presolve in (True, False):
         run = stiffmbs.run(model, presolve=presolve)
-        yield [note for note in run.notes if "controls a motion" in note]
-    yield [message for message in stiffmbs.check(model).messages if "controls a motion" in message]
+        yield [note for note in run.notes if "acts on a motion" in note]
+    yield [message for message in stiffmbs.check(model).messages if "acts on a motion" in message]
 
 
 @pytest.mark.parametrize("case", OPPOSED)
 def test_a_controller_that_acts_on_a_prescribed_motion_is_reported(case):
     for (note,) in notes_of(*OPPOSED[case]):
-        assert note.startswith("servo controls a motion that motor prescribes: it changes no motion")
+        assert note.startswith("servo acts on a motion that motor prescribes: it changes only the reaction")
 
 
 @pytest.mark.parametrize("case", LEGITIMATE)

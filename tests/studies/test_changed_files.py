@@ -95,7 +95,7 @@ def test_a_store_names_the_file_that_changed(tmp_path, examples, kind):
     study = {"vary": {f"bodies.{body}.mass": [90.0, 110.0]}, "outputs": [f"final({channel or 'wheel.z'})"]}
     first = sweep(scene, **study, store=tmp_path / "rows")
     (tmp_path / name).write_text(other)
-    with pytest.raises(InputError, match=f"rows of another study, in which '.*{name}' had other content"):
+    with pytest.raises(InputError, match=f"rows of another study, in which '.*{name}' had different content"):
         sweep(scene, **study, store=tmp_path / "rows")
     again = sweep(scene, **study)
     (value,) = (variable for variable in first.data_vars if variable.startswith("final"))
@@ -154,7 +154,7 @@ def test_a_file_that_cases_name_is_part_of_the_store(tmp_path):
     }
     sweep(tmp_path / "scene.yaml", **study)
     (tmp_path / "b.txt").write_text(GRID.replace("10 0 0", "10 .1 .1"))
-    with pytest.raises(InputError, match=r"in which '.*b.txt' had other content"):
+    with pytest.raises(InputError, match=r"in which '.*b.txt' had different content"):
         sweep(tmp_path / "scene.yaml", **study)
 
 
@@ -173,7 +173,7 @@ def test_a_file_that_changes_during_a_study_ends_it(tmp_path):
     }
     with pytest.raises(InputError, match=r"'.*a.txt' has changed since the scene was read"):
         sweep(tmp_path / "scene.yaml", **study, watch=edited)
-    with pytest.raises(InputError, match=r"in which '.*a.txt' had other content"):
+    with pytest.raises(InputError, match=r"in which '.*a.txt' had different content"):
         sweep(tmp_path / "scene.yaml", **study)
     (tmp_path / "a.txt").write_text(GRID)
     seen = []

@@ -122,7 +122,7 @@ def test_a_full_disk_loses_no_row(tmp_path, monkeypatch, caplog, full_from):
     monkeypatch.setattr(kept, "_packed", full)
     found = study(tmp_path)
     assert found.identical(expected)
-    assert ("rows could not be kept" in caplog.text) == (full_from < 3)
+    assert ("rows could not be stored" in caplog.text) == (full_from < 3)
     monkeypatch.setattr(kept, "_packed", packed)
     assert study(tmp_path).identical(expected)
 

@@ -166,9 +166,9 @@ run: {duration: 0.5, rtol: 1e-8}
 @pytest.mark.parametrize(
     ("ranges", "sentence"),
     [
-        ({"k": (20.0, 110.0)}, "'k' ends at its upper bound, 110,"),
-        ({"k": (150.0, 400.0), "c": (0.5, 5.0)}, "'k' ends at its lower bound, 150,"),
-        ({"k": Range(135.0, 200.0, log=True)}, "'k' ends at its lower bound, 135,"),
+        ({"k": (20.0, 110.0)}, "'k' is at its upper bound, 110:"),
+        ({"k": (150.0, 400.0), "c": (0.5, 5.0)}, "'k' is at its lower bound, 150:"),
+        ({"k": Range(135.0, 200.0, log=True)}, "'k' is at its lower bound, 135:"),
         ({"k": (100.0, 200.0)}, ""),
     ],
 )

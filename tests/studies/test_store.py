@@ -64,5 +64,5 @@ def test_rows_of_another_study_are_refused(examples, tmp_path):
     with pytest.raises(InputError, match="found the rows of another study"):
         sweep(changed, L=[0.5], duration=0.1, store=store)
     (tmp_path / "text").write_text("no table at all, but a text that is long enough to be read as one")
-    with pytest.raises(InputError, match="expected a file of a study"):
+    with pytest.raises(InputError, match="expected the store of a study"):
         sweep(scene, L=[0.5], duration=0.1, store=tmp_path / "text")

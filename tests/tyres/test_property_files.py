@@ -86,7 +86,7 @@ def test_later_coefficients_without_fittyp_are_refused(read, name):
 
 UNUSED = {
     "[MODEL]\nVXLOW = 1": "[MODEL] VXLOW",
-    "[INERTIA]\nMASS = 9.3\nIYY = 0.8": "(the wheel's body has the mass): [INERTIA] MASS, [INERTIA] IYY",
+    "[INERTIA]\nMASS = 9.3\nIYY = 0.8": "(the mass properties are those of the wheel's body): [INERTIA] MASS, [INERTIA] IYY",
     "[CONTACT_COEFFICIENTS]\nQTZ1 = 0.2": "(the gyroscopic couple of the belt is left out): [CONTACT_COEFFICIENTS] QTZ1",
     "[BOTTOMING_CURVE]\n{pen fz}\n0 0\n10 5": "table [BOTTOMING_CURVE]",
     "[OPERATING_CONDITIONS]\nINFLPRES = 2e5": "[OPERATING_CONDITIONS] INFLPRES",

@@ -44,7 +44,7 @@ def test_a_curve_counts_as_the_stiffness_that_it_has_everywhere(tyre):
 @pytest.mark.parametrize(
     ("added", "said"),
     [
-        ("[DEFLECTION_LOAD_CURVE]\n0 0\n10 2 3\n", "found rows of other than two numbers"),
+        ("[DEFLECTION_LOAD_CURVE]\n0 0\n10 2 3\n", "found a row without exactly two numbers"),
         ("[DEFLECTION_LOAD_CURVE]\n10 0\n0 2\n", "expected increasing arguments"),
         ("[DEFLECTION_LOAD_CURVE]\n0 0\n", "[DEFLECTION_LOAD_CURVE]"),
     ],

@@ -91,7 +91,7 @@ class Commands:
 
 
 def read_commands(text: str, known: Collection[Key] = (), read: Read | None = None) -> Commands:
-    """Read what a command file asks for of a dataset whose statements are `known` by name and number.
+    """Read a command file for a dataset whose statements are `known` by name and number.
 
     Parameters
     ----------
@@ -103,7 +103,7 @@ def read_commands(text: str, known: Collection[Key] = (), read: Read | None = No
     Raises
     ------
     DatasetFault
-        When it cannot be read, or asks for what is not followed and changes results.
+        When it cannot be read, or has a command that changes results and is not supported.
     """
     segments: list[Segment] = []
     changes, settings = Changes(), dict[str, float]()
@@ -135,7 +135,7 @@ def read_commands(text: str, known: Collection[Key] = (), read: Read | None = No
 
 
 def _linear_note(command: Statement, later: bool) -> str:
-    """The command of this package that does what LINEAR asks for."""
+    """Return a note that LINEAR is ignored, with the equivalent command of this package."""
     found = Arguments(with_first_argument(command), "LINEAR", LINEAR)
     does = {
         "EIGENSOL": "'stiffmbs modes' computes eigenvalues and modes",

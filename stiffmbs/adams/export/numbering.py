@@ -76,9 +76,7 @@ class Numbering:
         """
         way = table.ends if table.interpolation == "spline" else table.interpolation
         if way is None or way not in CURVES:
-            raise Refusal(
-                f"found the table {name} ({way or 'natural'}), expected akima, lines, or a spline with the ends not-a-knot"
-            )
+            raise Refusal(f"found the table {name} ({way or 'natural'}), expected akima, lines, or ends: not-a-knot")
         if len(table.table) < FEWEST and way != "lines":
             raise Refusal(
                 f"found a curve through {len(table.table)} points, expected {FEWEST} or more, or straight lines"

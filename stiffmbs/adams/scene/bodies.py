@@ -121,7 +121,7 @@ def _tensor(mechanism: Mechanism, part: Part) -> np.ndarray:
             tensor = marker.axes @ tensor @ marker.axes.T - part.mass * (d @ d * IDENTITY - np.outer(d, d))
     if not np.all(np.isfinite(tensor)):
         raise DatasetFault(
-            part.line, part.label, "found moments of inertia about CM beyond 1e308 kg m^2, expected IM and IP of a body"
+            part.line, part.label, "found moments of inertia about CM above 1e308 kg m^2, expected finite values"
         )
     return tensor
 

@@ -40,7 +40,9 @@ def _made(contact: Contact, mechanism: Mechanism, translation: Translation) -> d
 def swapped(contact: Contact, mechanism: Mechanism) -> bool:
     """Whether the scene's force is on the part of JGEOM."""
     if contact.others:
-        raise contact.fault("found it in a function, with several geometries on a side, expected one GRAPHICS on each")
+        raise contact.fault(
+            "found a function of its force and several geometries on a side, expected one GRAPHICS on each side"
+        )
     first, second = (_shape(contact, ident, mechanism) for ident in contact.shapes)
     return is_swapped(first, second)
 

@@ -41,25 +41,25 @@ class Changes:
         return replace(self, altered={**self.altered, key: (*self.altered.get(key, ()), command)})
 
     def switched(self, command: Statement, active: bool, known: Collection[Key] = ()) -> Changes:
-        """With the statements that ACTIVATE or DEACTIVATE names, by ID or by a RANGE of those that are `known`.
+        """Return the states after an ACTIVATE or DEACTIVATE command, by ID or by a RANGE of the `known` statements.
 
         Raises
         ------
         DatasetFault
-            When the command names none, or such as have no such state.
+            When the command names no statement, or one that cannot be switched.
         """
         found = Arguments(command, "ACTIVATE" if active else "DEACTIVATE", ("ID", "RANGE"))
         name = keyword(command.ident.upper())
         idents = found.idents("ID")
         if name not in SWITCHED or not (idents or "RANGE" in found):
             raise found.fault(
-                f"found no statement, expected one of {', '.join(SWITCHED)}, and ID = its number or RANGE = first, last"
+                f"found no statement, expected one of {', '.join(SWITCHED)} with ID = number or RANGE = first, last"
             )
         if "RANGE" in found:
             low, high = _ends(found)
             ranged = sorted(ident for kind, ident in known if kind == name and low <= ident <= high)
             if not ranged:
-                raise found.fault(f"found no {name} from {low} to {high}, expected one at least", found.line("RANGE"))
+                raise found.fault(f"found no {name} from {low} to {high}, expected at least one", found.line("RANGE"))
             idents = (*idents, *ranged)
         inactive = dict(self.inactive)
         for ident in idents:
@@ -122,7 +122,7 @@ class Changes:
 
 
 def _ends(found: Arguments) -> tuple[int, int]:
-    """The first and the last number of a RANGE; one number is both."""
+    """Return the first and the last number of a RANGE; a single number is both."""
     ends = found.idents("RANGE", 1, 2)
     return ends[0], ends[-1]
 

@@ -37,11 +37,11 @@ class Contact(Numbered):
     shapes : (int, int)
         GRAPHICS statements of its two sides.
     others : tuple of (int, int)
-        Further pairs, where a side lists several.
+        Further pairs, if a side lists several.
     part : int
-        Number of the pair that it stands for from the second on, 0 for the first.
+        Number of the pair, from 0.
     stiffness, damping, exponent, depth : float
-        K, C, e, and the penetration from which the damping is whole.
+        K, C, e, and the penetration at which full damping applies.
     friction : Friction or None
     """
 
@@ -56,12 +56,12 @@ class Contact(Numbered):
 
     @property
     def name(self) -> str:
-        """Of its force in the scene."""
+        """Name of its force in the scene."""
         return f"{self.keyword}_{self.ident}" + (f"_{self.part}" if self.part else "")
 
     @property
     def graphics(self) -> set[int]:
-        """The numbers of all GRAPHICS that it names."""
+        """Numbers of all GRAPHICS that it names."""
         return {number for pair in (self.shapes, *self.others) for number in pair}
 
     def pairs(self) -> list[Contact]:
@@ -110,7 +110,7 @@ def read_contact(statement: Statement, units: Units) -> Contact:
         raise found.fault(f"found TYPE = {kind}, expected {SOLIDS}", found.line("TYPE"))
     sides = found.idents("IGEOM"), found.idents("JGEOM")
     if not all(sides):
-        raise found.fault("found no IGEOM or no JGEOM, expected a GRAPHICS or more for each")
+        raise found.fault("found no IGEOM or no JGEOM, expected one or more GRAPHICS for each")
     found.without_effect("IMPACT", "NO_FRICTION")
     first, *others = itertools.product(*sides)
     needed = {name: found.number(name) for name in ("STIFFNESS", "EXPONENT", "DMAX")}

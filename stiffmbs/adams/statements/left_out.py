@@ -1,4 +1,4 @@
-"""Arguments that are known and have no effect here, and why, by statement; and systems that nothing reads."""
+"""Arguments that are known but have no effect, with reasons, by statement; and systems that are not read."""
 
 from __future__ import annotations
 
@@ -34,12 +34,12 @@ LEFT_OUT_ARGUMENTS: Mapping[str, Mapping[str, str]] = {
     "MATRIX": {"NAME": TEXT, "UNITS": TEXT},
 }  # fmt: skip
 """Statements that are not here have none."""
-UNREAD_SYSTEM = "a subroutine has its equations, and nothing reads its states and outputs"
+UNREAD_SYSTEM = "its equations are in a subroutine, and no function reads its states or outputs"
 _ARRAY = re.compile(r"\s*(?:X|XD|Y)\s*=\s*(\d+)\s*", re.IGNORECASE)
 
 
 def is_unread_system(name: str | None, statement: Statement, every: Sequence[Statement]) -> bool:
-    """Return True for a GSE of whose arrays X, XD and Y no function takes a value.
+    """Return True for a GSE if no function reads its arrays X, XD or Y.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ def is_unread_system(name: str | None, statement: Statement, every: Sequence[Sta
         Full name of the statement.
     statement : Statement
     every : sequence of Statement
-        Of the dataset.
+        All statements of the dataset.
     """
     if name != "GSE":
         return False

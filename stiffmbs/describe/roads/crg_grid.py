@@ -23,7 +23,7 @@ FROM_THE_DATA = (
     "REFERENCE_LINE_END_U", "REFERENCE_LINE_END_X", "REFERENCE_LINE_END_Y", "REFERENCE_LINE_END_Z", "REFERENCE_LINE_END_PHI",
     "REFERENCE_LINE_END_S", "REFERENCE_LINE_END_B", "LONG_SECTION_V_LEFT",
 )  # fmt: skip
-"""Numbers of ``$ROAD_CRG`` that follow from the data."""
+"""Numbers of ``$ROAD_CRG`` that are redundant with the data."""
 SAME_HEADING = 1e-3
 """rad, between a heading that is given and the one from start to end."""
 SAME_AT_END = {"S": 1e-3, "B": 1e-3, "Z": 1e-2}
@@ -114,9 +114,9 @@ def read_crg(path: Path) -> CrgGrid:
 
 
 def _remarks(header: CrgHeader, path: Path) -> Iterator[str]:
-    """List the fields of a file that are not used, a sentence each."""
+    """Return one sentence for each field of a file that is not used."""
     if header.blocks.get("ROAD_CRG_OPTS"):
-        yield f"the options of {path} are not used: beyond the road its height stays"
+        yield f"the options of {path} are not used: the height is constant beyond the road"
     header.numbers.request(*FROM_THE_DATA)
     names = (entry.text.partition(",")[0].strip() for entry in header.channels)
     others = [x for x in names if not x.startswith("long section ") and x.removeprefix("reference line ") not in UNITS]

@@ -74,7 +74,7 @@ class TyreProperties(Component):
     side: Literal["", "left", "right", "symmetric"] = Field("", description="TYRESIDE, that the tyre was measured on")
     ranges: dict[str, tuple[float, float]] = Field(
         {},
-        description="lowest and highest slip, slip_angle (rad), camber (rad) and load (N) that the properties are valid for",
+        description="valid ranges of slip, slip_angle (rad), camber (rad) and load (N)",
     )
     deflection_load: Table | None = Field(
         None, description="load (N) over deflection (m), in place of VERTICAL_STIFFNESS"
@@ -97,7 +97,7 @@ class TyreProperties(Component):
         if self.use_mode is not None and abs(self.use_mode) not in MODES:
             raise ValueError(
                 f"found USE_MODE = {self.use_mode}, expected 0 to 4 for steady slip, 10 to 14 for slip with relaxation "
-                "lengths, or one of these below zero for a mirrored tyre"
+                "lengths, or the negative of one of these for a mirrored tyre"
             )
         for name in ("FNOMIN", "UNLOADED_RADIUS", "VERTICAL_STIFFNESS"):
             if self.coefficients[name] < 0:
@@ -210,7 +210,7 @@ def _of_file(file: PropertyFile) -> TyreProperties:
 
 
 def _check_formula(file: PropertyFile) -> None:
-    """Refuse files of other formulas: by their format, by FITTYP, and without it by coefficients that 5.2 does not have."""
+    """Refuse files of other formulas, by format, FITTYP, or coefficients that MF-Tyre 5.2 does not have."""
     form = file.text("PROPERTY_FILE_FORMAT")
     if form and form not in FORMATS:
         raise InputError(
@@ -222,14 +222,14 @@ def _check_formula(file: PropertyFile) -> None:
         if kind not in FITTYPES:
             raise InputError(
                 f"{_where(file, 'FITTYP')}: found FITTYP = {kind:g}, expected that of MF-Tyre 5.2, one of "
-                f"{', '.join(map(str, FITTYPES))}: the Magic Formula 6.0 and later gives other forces and is not available"
+                f"{', '.join(map(str, FITTYPES))}: Magic Formula 6.0 and later are not supported"
             )
         return
     for name in LATER:
         if file.entry(name, home(name)) and file.number(name, home=home(name)) != AS_BEFORE[name]:
             raise InputError(
-                f"{_where(file, name)}: found {name} and no FITTYP, a coefficient of the Magic Formula 6.0 or later, which "
-                f"is not available; expected a file of MF-Tyre 5.2, or FITTYP = {FITTYPES[0]} where {name} has no effect"
+                f"{_where(file, name)}: found {name} without FITTYP, a coefficient of Magic Formula 6.0 or later, which "
+                f"is not supported; expected a file of MF-Tyre 5.2, or FITTYP = {FITTYPES[0]} where {name} has no effect"
             )
 
 
@@ -239,7 +239,7 @@ def _where(file: PropertyFile, name: str) -> str:
 
 
 def _ranges(file: PropertyFile) -> Iterator[tuple[str, tuple[float, float]]]:
-    """The ranges that the file is valid in, by channel; a missing end has no bound."""
+    """Return the valid ranges of the file by channel; a missing limit is infinite."""
     for channel, (least, most, dimension) in RANGES.items():
         ends = [file.number(name, dimension) if file.entry(name) else None for name in (least, most)]
         if ends != [None, None]:
@@ -248,13 +248,13 @@ def _ranges(file: PropertyFile) -> Iterator[tuple[str, tuple[float, float]]]:
 
 
 def _curve(file: PropertyFile, section: str) -> Table | None:
-    """A curve of loads over deflections, N over m."""
+    """Return a curve of load (N) over deflection (m)."""
     rows = file.tables.get(f"[{section}]")
     if rows is None:
         return None
     where = f"{file.source}, line {rows.line}: [{section}]"
     if any(len(row) != 2 for row in rows.numbers):
-        raise InputError(f"{where}: found rows of other than two numbers, expected a deflection and a load in each")
+        raise InputError(f"{where}: found a row without exactly two numbers, expected a deflection and a load")
     length, force = file.factor("length"), file.factor("force")
     try:
         return Table(table=tuple((length * deflection, force * load) for deflection, load in rows.numbers))
@@ -263,7 +263,7 @@ def _curve(file: PropertyFile, section: str) -> Table | None:
 
 
 def _bottoming(file: PropertyFile) -> Bottoming | None:
-    """The contact of the rim, if the file has its curve and its radius."""
+    """Return the contact of the rim, or None if the file has no curve or no radius."""
     if not file.entry("BOTTOMING_RADIUS", "DIMENSION"):
         return None
     load = _curve(file, "BOTTOMING_CURVE")
@@ -281,7 +281,7 @@ def _mode(file: PropertyFile) -> int | None:
     if abs(mode) not in MODES:
         raise InputError(
             f"{_where(file, 'USE_MODE')}: found USE_MODE = {mode:g}, expected 0 to 4 for steady slip, 10 to 14 for slip with "
-            "relaxation lengths, or one of these below zero for a mirrored tyre"
+            "relaxation lengths, or the negative of one of these for a mirrored tyre"
         )
     return int(mode)
 

@@ -39,14 +39,14 @@ LATER = _words(
     QSX4 QSX5 QSX6 QSX7 QSX8 QSX9 QSX10 QSX11 QSX12 QSX13 QSX14 QSY5 QSY6 QSY7 QSY8
     """
 )
-"""Coefficients of forces that MF-Tyre 6.0 and later have, and 5.2 does not."""
+"""Force coefficients of MF-Tyre 6.0 and later that MF-Tyre 5.2 does not have."""
 AS_BEFORE = {**dict.fromkeys(LATER, 0.0), "PKY4": 2.0, "QSY7": 1.0}
-"""Their values without effect."""
+"""Values of these coefficients without effect."""
 RANGES = {
     "slip": ("KPUMIN", "KPUMAX", ""), "slip_angle": ("ALPMIN", "ALPMAX", "angle"),
     "camber": ("CAMMIN", "CAMMAX", "angle"), "load": ("FZMIN", "FZMAX", "force"),
 }  # fmt: skip
-"""Ends of the ranges that a file is valid in, by channel, and their dimension."""
+"""Limits of the valid ranges of a file, by channel, and their dimension."""
 OF_THE_FILE = ("FILE_TYPE", "FILE_VERSION", "FILE_FORMAT")
 """Keys that describe the file itself."""
 REASONS = {
@@ -54,14 +54,14 @@ REASONS = {
         "QTZ1": "the gyroscopic couple of the belt is left out", "MBELT": "the gyroscopic couple of the belt is left out",
         "BELT_MASS": "the gyroscopic couple of the belt is left out", "LGYR": "the gyroscopic couple of the belt is left out",
     },
-    "[INERTIA]": {"*": "the wheel's body has the mass"},
+    "[INERTIA]": {"*": "the mass properties are those of the wheel's body"},
 }  # fmt: skip
-"""Why keys have no effect, by section."""
+"""Reasons why keys have no effect, by section."""
 DEFAULT_VALUES = {
     "QTZ1": 0.0, "LGYR": 1.0, "GRAVITY": -9.81, **AS_BEFORE,
     **dict.fromkeys(("LIP", "LKYC", "LKZC", "LMP", "LMUV", "LAMU", "LCZ", "LFZMAX"), 1.0),
 }  # fmt: skip
-"""Values of keys that are not used, with which they have no effect."""
+"""Values of unused keys that have no effect."""
 
 
 def home(name: str) -> str:

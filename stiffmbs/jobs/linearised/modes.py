@@ -35,23 +35,23 @@ class Modes:
     Attributes
     ----------
     name : str
-        Of the model.
+        Name of the model.
     t : float
-        s.
+        Time of the state, s.
     degrees_of_freedom : int
-        Velocities that the constraints leave free; as many modes.
+        Number of free velocities, which is the number of modes.
     modes : tuple of Mode
-        By undamped natural frequency.
+        Modes by undamped natural frequency.
     state : StateMatrix
-        What they are the eigenvalues of.
+        The state matrix.
     notes : tuple of str
-        What there is to say of the state, a sentence each.
+        Notes on the state, one sentence each.
     about : AtState
         The model at that state.
     own_axes : sparse array, shape (n_u, n_u)
-        From ground axes, which shapes are in, to those of u.
+        Transformation from ground axes, used by shapes, to the axes of u.
     sides : tuple of StateMatrix
-        Where the state lies on a breakpoint of a force, the state matrices of both sides; empty elsewhere.
+        The state matrices of both sides if the state lies on a breakpoint of a force, else empty.
     """
 
     name: str
@@ -152,11 +152,11 @@ def modes(
 
 
 def _kink_sentence(kink: Kink, sides: list[list[Mode]]) -> str:
-    """The eigenvalues of both sides of a breakpoint."""
+    """Return a sentence with the eigenvalues of both sides of a breakpoint."""
     listed = [", ".join(f"{mode.eigenvalues[0]:.4g}" for mode in side[:MOST_LISTED]) for side in sides]
     return (
         f"the state lies on a breakpoint of a force on {kink.where}, or within a millionth of the mechanism's size of one: the modes "
-        f"are those of one side; eigenvalues are {listed[0]} on one side and {listed[1]} on the other"
+        f"are those of one side; the eigenvalues are {listed[0]} on one side and {listed[1]} on the other"
     )
 
 
@@ -171,8 +171,8 @@ def _notes(found: AtState, state: StateMatrix) -> Iterator[str]:
         )
     rolling = state.n_poses - state.degrees_of_freedom
     if rolling:
-        ways = "one direction" if rolling == 1 else f"{rolling} directions"
-        yield f"constraints of velocities alone, as of rolling, leave {ways} of poses without a free velocity; a zero eigenvalue of these is no mode"
+        ways = "one pose variation" if rolling == 1 else f"{rolling} pose variations"
+        yield f"nonholonomic constraints, such as rolling, leave {ways} without a free velocity; zero eigenvalues of these are not modes"
     extra = state.degrees_of_freedom - found.redundancy.degrees_of_freedom
     if extra > 0:
         yield f"the state is a singular pose: {extra} degrees of freedom more than in general"

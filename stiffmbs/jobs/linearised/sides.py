@@ -1,4 +1,4 @@
-"""Breakpoints of forces at the state of a linearisation: the equations a little to both sides of it."""
+"""Breakpoints of forces at the state of a linearisation: the linearised equations on both sides."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ from .at_state import AtState
 
 @dataclass(frozen=True)
 class Moves:
-    """Moves along which the equations are compared on both sides of a state.
+    """Perturbations by which the equations on both sides of a state are compared.
 
     Attributes
     ----------
     wide, narrow : float
-        Sizes, relative to the mechanism's size, rad, or these over one second.  A breakpoint within the wide one is near the state.
+        Sizes, relative to the mechanism's size, rad, or these per second.  A breakpoint within the wide one is near the state.
     steep : float
-        Times the change of a force that its derivatives on both sides of the narrow move explain, from which on it jumps.
+        Ratio of the change of a force to the change expected from its derivatives on both sides, above which the force is
+        discontinuous.
     curved : float
-        Part of a change over the wide move by which it may differ from that over the narrow one in proportion to their sizes, as
-        of a smooth law.
+        Relative deviation from proportionality between the changes over both perturbations that a smooth law may have.
     rounding : float
-        Part of the sum of all parts of an entry, or of the largest force, that counts as none.
+        Size that counts as zero, relative to the sum of all terms of an entry or to the largest force.
     """
 
     wide: float = 1e-6
@@ -36,7 +36,7 @@ class Moves:
     rounding: float = 1e-6
 
     def break_between(self, wide: np.ndarray, narrow: np.ndarray) -> np.ndarray:
-        """Return where changes over the two moves are not in proportion to their sizes."""
+        """Return the entries whose changes over the two perturbations are not proportional to their sizes."""
         return np.asarray(np.abs(narrow * (self.wide / self.narrow) - wide) > self.curved * np.abs(wide))
 
 
@@ -50,7 +50,7 @@ class Kink:
     Attributes
     ----------
     where : str
-        The velocity, or state, whose equation bends, such as ``b.vx``.
+        The velocity or state whose equation has the breakpoint, such as ``b.vx``.
     sides : tuple of Linearised
         The equations on both sides of the breakpoint.
     """
@@ -73,7 +73,7 @@ def kink_at(found: AtState, state: StateMatrix, linear: Linearised, moves: Moves
     Raises
     ------
     SolverError
-        Where a force jumps at the state, which then has no linearisation.
+        If a force is discontinuous at the state, so that no linearisation exists.
     """
     if not len(state.matrix):
         return None
@@ -91,8 +91,8 @@ def kink_at(found: AtState, state: StateMatrix, linear: Linearised, moves: Moves
     jumps = jump > smooth + moves.rounding * np.max(np.abs(narrow[0].forces), initial=0.0)
     if jumps.any():
         raise SolverError(
-            f"a force or rate of {rows[int(np.argmax(np.where(jumps, jump, 0.0)))]} jumps at the state at t = {found.t:g} s, where it "
-            "has no linearisation; expected a state away from the jump, or a law that is continuous there, such as step()"
+            f"a force or rate of {rows[int(np.argmax(np.where(jumps, jump, 0.0)))]} is discontinuous at the state at t = {found.t:g} s, where "
+            "no linearisation exists; expected a state away from the discontinuity, or a continuous law, such as step()"
         )
     changes = [after.matrix - before.matrix for before, after in (wide, narrow)]
     bends = moves.break_between(*changes) & (np.abs(changes[0]) > moves.rounding * wide[0].parts)
@@ -104,15 +104,15 @@ def kink_at(found: AtState, state: StateMatrix, linear: Linearised, moves: Moves
 
 
 def _moving(state: StateMatrix, scale: np.ndarray, names: list[str]) -> list[str]:
-    """The velocity that is largest in each free one."""
+    """Return the largest velocity in each free velocity."""
     free = state.velocities[:, state.n_poses : state.n_poses + state.degrees_of_freedom] / scale[:, None]
     return [names[int(k)] for k in np.argmax(np.abs(free), axis=0)]
 
 
 @dataclass(frozen=True)
 class _Side:
-    """The equations after a move: forces and rates, their derivatives by free variations, and the sums of the sizes of all parts
-    of these."""
+    """Perturbed equations: forces and rates, their derivatives with respect to free variations, and the magnitudes of their
+    terms."""
 
     linear: Linearised
     forces: np.ndarray
@@ -121,7 +121,7 @@ class _Side:
 
 
 def _generic_move(state: StateMatrix, scale: np.ndarray) -> np.ndarray:
-    """Variations of which every one takes part, of size 1."""
+    """Return a combination of all variations, of size 1."""
     rng = np.random.default_rng(1)
     n = len(state.matrix)
     sizes = np.abs(np.vstack([state.poses / scale[:, None], state.velocities / scale[:, None]])).max(axis=0)
@@ -130,7 +130,7 @@ def _generic_move(state: StateMatrix, scale: np.ndarray) -> np.ndarray:
 
 
 def _side(found: AtState, state: StateMatrix, linear: Linearised, z: np.ndarray) -> _Side:
-    """The equations after a variation, with the multipliers and accelerations of the state."""
+    """Return the perturbed equations, with the multipliers and accelerations of the state."""
     dynamics, at, system = found.dynamics, found.dynamics.state, found.dynamics.system
     own = linear.algebraic.among_all(z[len(z) - state.n_states :, None])[:, 0]
     with at.unchanged():

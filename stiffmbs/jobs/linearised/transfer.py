@@ -82,7 +82,7 @@ def transfer(
     if kink is not None:
         raise SolverError(
             f"the state at t = {found.t:g} s lies on a breakpoint of a force on {kink.where}, or within a millionth of the mechanism's "
-            "size of one, where no linear equations hold on both sides; expected a state away from it, or a law that is smooth there "
+            "size of one, where the linearised equations of both sides differ; expected a state away from it, or a smooth law "
             "(`modes` has the state matrices of both sides)"
         )
     nothing, as_they_are = np.zeros((1, system.n_u)), np.zeros((1, len(system.states)))
@@ -135,13 +135,13 @@ def _with_value(about: _About, name: str, given: Parameterised, value: float, ch
     own = about.found.dynamics.system
     if (system.bodies, system.states, system.equations) != (own.bodies, own.states, own.equations):
         raise InputError(
-            f"input '{name}': found another mechanism for another value, expected the same bodies and joints"
+            f"input '{name}': found that its value changes the mechanism, expected the same bodies and joints for all values"
         )
     job.dynamics.state.q[:], job.dynamics.state.u[:] = state.q, state.u
     job.dynamics.state.lam[:] = state.lam
     if not np.array_equal(system.principal_axes, own.principal_axes):
         raise InputError(
-            f"input '{name}': found that it turns principal axes of a body, expected inertias about fixed ones"
+            f"input '{name}': found that it rotates the principal axes of a body, expected fixed principal axes"
         )
     return job.dynamics
 

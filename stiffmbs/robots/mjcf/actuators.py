@@ -11,7 +11,7 @@ from ..robot import RobotFault, Transmission
 from .disabled import Disabled
 
 MOST_GROUPS = 31
-"""Groups that can be switched off, from 0 on."""
+"""Number of groups that can be disabled."""
 
 
 def transmissions(m: Any, disabled: Disabled) -> Iterator[Transmission]:
@@ -24,11 +24,11 @@ def transmissions(m: Any, disabled: Disabled) -> Iterator[Transmission]:
 
 
 def disabled_actuators(m: Any, disabled: Disabled) -> Iterator[str]:
-    """A note on actuators that the file switches off."""
+    """Yield a note on actuators that the file disables."""
     count = m.nactuator if hasattr(m, "nactuator") else m.nu
     off = [k for k in range(count) if disabled("ACTUATION") or _in_disabled_group(m, k)]
     if off:
-        yield f"actuators that the file switches off are left out: {', '.join(_actuator_name(m, k) for k in off)}"
+        yield f"disabled actuators are ignored: {', '.join(_actuator_name(m, k) for k in off)}"
 
 
 def _in_disabled_group(m: Any, k: int) -> bool:
@@ -85,7 +85,7 @@ def _actuator(m: Any, k: int, disabled: Disabled) -> Transmission:
 
 
 def _tendon_of(m: Any, k: int) -> dict[str, Any]:
-    """The tendon along which an actuator acts, and bounds of the force of all actuators along it."""
+    """Return the tendon of an actuator, and the bounds of the total force of all actuators on it."""
     import mujoco
 
     tendon = int(m.actuator_trnid[k, 0])

@@ -60,7 +60,7 @@ def _between(link: Link, masses: Masses) -> dict[str, Any]:
 def _heavy(link: Link, masses: Masses) -> dict[str, Any]:
     tensor = link.inertia
     if not np.all(np.isfinite(tensor)):
-        raise RobotFault(f"link {link.name}: found moments of inertia beyond 1e308 kg m^2, expected those of a body")
+        raise RobotFault(f"link {link.name}: found moments of inertia above 1e308 kg m^2, expected finite values")
     moments = np.linalg.eigvalsh(tensor)
     if moments[0] < -TRIANGLE * max(moments[-1], masses.moment) or not np.all(np.isfinite(moments)):
         raise RobotFault(

@@ -24,14 +24,15 @@ from .recorded import Segment
 from .saddle import saddle_solution
 
 BreakpointRates = Callable[[float, bool], np.ndarray | None]
-"""How a breakpoint at some time, s, moves in each direction, shape (directions,); None where there is none.  Whether it is needed."""
+"""Function of a time, s, and of a flag whether the result is required.  It returns the derivatives of the breakpoint at that
+time, shape (directions,), or None if there is no breakpoint."""
 NO_JUMP = 100.0
 """Times the relative tolerance by which rates may differ on both sides of an instant without counting as a jump."""
 MUCH_LARGER = 2.0
 """Times by which positions may change more, seen from an event, for them to be integrated so."""
 ALIKE = 1e-6
-"""Part by which instants of simultaneous events may move differently for the same ones, and part of the state that a jump of rates makes
-at least for them to matter."""
+"""Relative difference of the derivatives of event times below which events remain simultaneous, and smallest effect of a
+discontinuity of rates on the state, relative to the state, that is considered."""
 GRAZING = 1e-9
 """Part of an event function's change in the segment, over its time, below which its rate counts as zero."""
 
@@ -76,18 +77,18 @@ class Shifted:
 
 @dataclass(frozen=True)
 class Jump:
-    """The instant between two segments.
+    """Event between two segments.
 
     Attributes
     ----------
     left, right : State
-        Both sides of it.
+        The states on both sides.
     q_u_left, q_u_right : tuples of ndarrays, shapes (directions, n_q), (directions, n_u)
-        How the states of both sides change at a fixed instant.
+        Derivatives of both states at a fixed time.
     moved : ndarray, shape (directions,)
         dt_e/dp.
     s : Shifted
-        How the state changes after it.
+        Derivatives of the state after it.
     """
 
     left: State
@@ -99,7 +100,7 @@ class Jump:
 
 
 def _matters(left: State, right: State, duration: float) -> bool:
-    """Return True if the jump of rates, over the time of a segment, is more than rounding in the state."""
+    """Return True if the discontinuity of rates, over the duration of a segment, exceeds rounding in the state."""
     jumps = np.abs(right.q_rates - left.q_rates), np.abs(right.acceleration - left.acceleration)
     return any(
         bool(np.max(jump, initial=0.0) * duration > ALIKE * np.max(np.abs(size), initial=0.0))
@@ -108,12 +109,12 @@ def _matters(left: State, right: State, duration: float) -> bool:
 
 
 def _same(one: np.ndarray, other: np.ndarray) -> bool:
-    """Return True if two instants move alike in all directions."""
+    """Return True if the derivatives of two event times agree in all directions."""
     return bool(np.all(np.abs(one - other) <= ALIKE * np.maximum(np.abs(one), np.abs(other))))
 
 
 class Jumps:
-    """The jumps of sensitivities between two segments of a run.
+    """Jumps of the sensitivities between two segments of a run.
 
     Parameters
     ----------
@@ -124,7 +125,7 @@ class Jumps:
     block : BlockSystem
         In these directions.
     breakpoint_rates : callable
-        How a breakpoint at some time moves in each direction.
+        Returns the derivatives of a breakpoint in time in each direction.
     rtol : float
         Of the run.
     """
@@ -145,7 +146,7 @@ class Jumps:
         self._motions: list[Direction] = []
 
     def over(self, before: Segment, after: Segment, s: Shifted) -> Jump:
-        """Return how the state changes after the start of a segment, given how it changes at the end of the one before."""
+        """Return the sensitivities at the start of a segment from those at the end of the previous one."""
         left = self._end(before)
         right = self._start(after, after.first[0] - left.t)
         q, u = s.unshifted(left.q_rates, left.acceleration)
@@ -159,7 +160,7 @@ class Jumps:
         return Jump(left, right, (q, u), found.unshifted(right.q_rates, right.acceleration), moved, there)
 
     def _instants(self, before: Segment, left: State, right: State, q: np.ndarray, u: np.ndarray) -> np.ndarray:
-        """Return how the instant between two segments moves in each direction; zero where no rate jumps and it is not determined."""
+        """Return the derivatives of the event time between two segments; zero if it is undetermined and no rate is discontinuous."""
         jumps = self._counts(left.q_rates - right.q_rates, left.q_rates)
         jumps = jumps or self._counts(left.acceleration - right.acceleration, left.acceleration)
         by_input = self._breakpoint_rates(right.t, jumps and not before.fired)
@@ -173,7 +174,7 @@ class Jumps:
     def _moves_of_events(
         self, before: Segment, left: State, right: State, q: np.ndarray, u: np.ndarray, jumps: bool
     ) -> dict[str, np.ndarray]:
-        """Return how the instants of the events between two states move, by the elements that they are of; first that which has fired."""
+        """Return the derivatives of the event times between two states by element, starting with the located event."""
         changes, rates, values = self._event(left, q, u)
         state, system = self._dynamics.state, self._dynamics.system
         state.q[:], state.u[:], state.lam[:] = right.q, right.u, right.lam
@@ -184,8 +185,8 @@ class Jumps:
             if jumps:
                 name = writer(system, "event_function", before.fired[0])
                 raise SolverError(
-                    f"sensitivities: found that '{name}' only grazes its breakpoint at t = {left.t:.9g} s, where the motion is not "
-                    "differentiable by parameters; expected an event that is passed"
+                    f"sensitivities: found that '{name}' grazes its breakpoint at t = {left.t:.9g} s, where the motion is not "
+                    "differentiable with respect to parameters; expected an event that crosses it"
                 )
             return {}
         events = [*before.fired[:1], *np.flatnonzero(passed & ~still)]
@@ -198,13 +199,13 @@ class Jumps:
 
     @staticmethod
     def _refuse_apart(moves: dict[str, np.ndarray], t: float) -> None:
-        """Refuse events at one instant that parameters move apart: which part of a jump belongs to which is not known."""
+        """Refuse simultaneous events that parameters separate: their discontinuities cannot be told apart."""
         (first, *others), (moved, *rest) = list(moves) or [""], list(moves.values()) or [np.zeros(0)]
         for name, other in zip(others, rest, strict=True):
             if not _same(moved, other):
                 raise SolverError(
-                    f"sensitivities: found that {first} and {name} change their laws at the same instant t = {t:.9g} s, which the "
-                    "parameters move apart; expected events at separate instants"
+                    f"sensitivities: found that {first} and {name} have simultaneous events at t = {t:.9g} s, which the "
+                    "parameters separate; expected events at different times"
                 )
 
     def _end(self, segment: Segment) -> State:
@@ -228,7 +229,7 @@ class Jumps:
         return State(t, q, u, rates, acceleration, dynamics.state.lam.copy())
 
     def _event(self, left: State, q: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return how event functions change in each direction, shape (directions, n), and with time, and their values."""
+        """Return the derivatives of event functions in each direction, shape (directions, n), their time derivatives, and their values."""
         state, system = self._dynamics.state, self._dynamics.system
         if not self._events:
             by_time = Direction(state, "event_function", unchanged(system), STATE)

@@ -23,9 +23,10 @@ BACK, FURTHEST = 1e-13, 1e-6
 """Part of the time, or of the time since the start before, by which the end of a segment is moved back at first, and at the most: the
 instant of an event is known to some roundings."""
 SHORTEST = 1e-13
-"""Part of the run below which a segment has no length: an event that rounding finds twice."""
+"""Duration, relative to the run, below which a segment is empty: rounding detects an event twice."""
 SUDDEN, JUMP = 1e-9, 1e-3
-"""Part of the run in which no force changes smoothly, and part of the largest acceleration that a jump in a step so short has at least."""
+"""Step size, relative to the run, in which no force changes smoothly, and smallest discontinuity in such a step, relative to the
+largest acceleration."""
 MOST_NUMBERS = 2e8
 """Numbers that are kept of a run, 1.6 GB."""
 
@@ -58,13 +59,13 @@ class Segment:
 
 
 class Recorder(Integrator):
-    """An integrator that keeps its steps.
+    """Integrator that records its steps.
 
     Attributes
     ----------
     segments : list of Segment
     chatters : bool
-        Whether a run has stopped where a force jumps back and forth.
+        True if a run has stopped because a force chatters.
     """
 
     def __init__(self, dynamics: Dynamics, settings: RunSettings) -> None:
@@ -79,12 +80,12 @@ class Recorder(Integrator):
         self._numbers = 0
 
     def passed(self, duration: float) -> list[Segment]:
-        """Return the segments of some length.
+        """Return the segments of nonzero length.
 
         Raises
         ------
         SolverError
-            When accelerations jump within one.
+            When accelerations are discontinuous within a segment.
         """
         found = [each for each in self.segments if len(each.rows)]
         found = [each for each in found if each.rows[-1, 0] - each.first[0] > SHORTEST * duration] or found
@@ -93,7 +94,7 @@ class Recorder(Integrator):
         return found
 
     def _refuse_jumps_within(self, segment: Segment, sudden: float) -> None:
-        """Refuse a force that jumps where it declares no breakpoint: steps become as short as rounding allows there."""
+        """Refuse a force that is discontinuous without a declared breakpoint: steps become as short as rounding allows there."""
         n, at = self.equations.n, self.equations.at["u"]
         t, a = segment.rows[:, 0], segment.rows[:, 2 + n + at]
         least = JUMP * np.abs(a).max(axis=0)
@@ -102,9 +103,9 @@ class Recorder(Integrator):
             there = [self._accelerations(row[0], row[2 : 2 + n]) for row in segment.rows[k : k + 2]]
             if np.any(np.abs(there[1] - there[0]) > least):
                 raise SolverError(
-                    f"sensitivities: found that accelerations jump at t = {t[k]:.9g} s, where no force declares a breakpoint (a spring "
-                    "that passes its anchor, a Python function with a jump): the motion is not differentiated there; expected forces "
-                    "without such jumps"
+                    f"sensitivities: found that accelerations are discontinuous at t = {t[k]:.9g} s, where no force declares a breakpoint (a spring "
+                    "that passes its anchor, a discontinuous Python function): the motion is not differentiable there; expected "
+                    "continuous forces"
                 )
 
     def _accelerations(self, t: float, y: np.ndarray) -> np.ndarray:

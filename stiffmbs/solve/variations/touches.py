@@ -1,8 +1,7 @@
-"""Events that the motion only touches, where it is not differentiable: found in recorded steps, within the errors of the run.
+"""Grazing events, at which the motion is not differentiable: detected in recorded steps, within the integration error.
 
-A force that jumps at g = 0 acts for a time of sqrt(2 d/g'') where the least value of g is -d, and not at all where it is +d.  Its
-derivative by d is not bounded, and whether the force acts is not determined where d is below the error of the run: at most the
-tolerance of each step.
+A force that is discontinuous at g = 0 acts for a time proportional to sqrt(d/g'') if the minimum of g is -d, and not at all if it is +d.
+The derivative with respect to d is unbounded.  If d is below the integration error, it is undetermined whether the force acts.
 """
 
 from __future__ import annotations
@@ -20,19 +19,19 @@ from ..error_control.tolerances import independent_tolerances
 from .recorded import Recorder, Segment
 
 NEAR = 1e-3
-"""Part of the largest value of an event function in a segment that an extreme near zero has at the most: the largest rtol."""
+"""Largest extremum near zero, relative to the largest value of an event function in a segment: the largest rtol."""
 FURTHER, LINEAR = 1e3, 0.1
-"""Times by which a larger move to both sides of a touched breakpoint is larger, and the part of its change of rates that a smaller
-one leaves where these jump."""
+"""Ratio of a larger to a smaller displacement from a grazed breakpoint, and ratio of the changes of rates above which the rates are
+discontinuous."""
 
 
 class Touches:
-    """Refuses events that are touched.
+    """Refuses grazing events.
 
     Parameters
     ----------
     recorder : Recorder
-        After its run.
+        A recorder after its run.
     """
 
     def __init__(self, recorder: Recorder) -> None:
@@ -43,12 +42,12 @@ class Touches:
         self._by_time = Direction(self._dynamics.state, "event_function", unchanged(self._dynamics.system), STATE)
 
     def refuse(self, segments: Sequence[Segment]) -> None:
-        """Raise a SolverError where a force that jumps at a breakpoint is about to reach it, or just passes it.
+        """Raise a SolverError if a discontinuous force almost reaches, or barely crosses, its breakpoint.
 
         Parameters
         ----------
         segments : sequence of Segment
-            Of some length.
+            Segments of nonzero length.
         """
         if not self._count:
             return
@@ -65,8 +64,8 @@ class Touches:
             if self._touched(t, y, event, len(rows)):
                 name = writer(self._dynamics.system, "event_function", int(event))
                 raise SolverError(
-                    f"sensitivities: found that '{name}' only grazes its breakpoint at t = {t:.9g} s, to the errors of the run, where "
-                    "the motion is not differentiable by parameters; expected an event that is passed, or not reached"
+                    f"sensitivities: found that '{name}' grazes its breakpoint at t = {t:.9g} s, within the integration error, where "
+                    "the motion is not differentiable with respect to parameters; expected an event that crosses it or stays clear of it"
                 )
 
     def _take(self, t: float, y: np.ndarray) -> None:
@@ -89,7 +88,7 @@ class Touches:
         ].copy()
 
     def _between(self, before: np.ndarray, after: np.ndarray, part: float) -> np.ndarray:
-        """Return the state within a step, by Hermite's polynomial."""
+        """Return the state within a step, by cubic Hermite interpolation."""
         n, h = self._recorder.equations.n, after[0] - before[0]
         (y, yp), (z, zp) = ((row[2 : 2 + n], row[2 + n :]) for row in (before, after))
         s = part
@@ -101,7 +100,7 @@ class Touches:
         )
 
     def _touched(self, t: float, y: np.ndarray, event: int, steps: int) -> bool:
-        """Return True if an event function is zero but for the errors of the run, and rates jump there."""
+        """Return True if an event function is zero within the integration error, and rates are discontinuous there."""
         tolerance = steps * (self._recorder.settings.rtol * np.abs(y) + self._atol)
         slope = self._slope(t, y, event, tolerance)
         margin = float(np.abs(slope) @ tolerance)
@@ -113,7 +112,7 @@ class Touches:
         return bool(np.any((near > LINEAR * far) & (near > 0)))
 
     def _slope(self, t: float, y: np.ndarray, event: int, moves: np.ndarray) -> np.ndarray:
-        """Return the derivatives of an event function by the state, by differences over the tolerances."""
+        """Return the derivatives of an event function with respect to the state, by differences over the tolerances."""
         slope, at = np.zeros(len(y)), self._recorder.equations.independent
         for k in at[moves[at] > 0]:
             moved = np.zeros(len(y))
@@ -127,7 +126,7 @@ class Touches:
         return float(self._dynamics.state.values["event_function"][event])
 
     def _change(self, t: float, y: np.ndarray, way: np.ndarray, to_zero: float, size: float) -> np.ndarray:
-        """Return by how much rates differ on both sides of the breakpoint."""
+        """Return the difference between the rates on both sides of the breakpoint."""
         one, other = (np.concatenate(list(self._rates(t, y + (to_zero + side * size) * way))) for side in (-1, 1))
         return np.asarray(np.abs(other - one))
 

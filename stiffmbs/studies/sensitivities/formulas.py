@@ -16,16 +16,16 @@ SELECTED = {
     "peak": lambda x: _largest(np.abs(x)), "max": lambda x: _largest(x), "min": lambda x: _largest(-x),
     "final": lambda x: np.array([len(x) - 1]), "first": lambda x: np.array([0]),
 }  # fmt: skip
-"""Reductions that are the value at one instant, or at several that have it but for rounding.  The instant moves: at a peak the
-channel's rate is zero, so that this has no part in the derivative."""
+"""Reductions that select the value at one output time, or at several with the same value up to rounding.  The rate of the channel
+is zero at a peak, so the shift of the peak does not contribute to the derivative."""
 SAME, ALIKE = 1e-12, 1e-6
-"""Part of an extreme by which values count as the same, and of derivatives at instants with the same value."""
+"""Relative differences below which values, and derivatives at output times with the same value, are equal."""
 WHOLE = ("rms", "mean", "integral")
 """Reductions of all instants."""
 
 
 def _largest(x: np.ndarray) -> np.ndarray:
-    """Return the numbers of the instants that have the largest value."""
+    """Return the indices of the output times with the largest value."""
     return np.flatnonzero(x >= np.max(x) - SAME * np.max(np.abs(x)))
 
 
@@ -139,19 +139,19 @@ class Formula:
         return Dual(value, np.trapezoid(x.slope, self._time, axis=0) / span)
 
     def _at_extreme(self, name: str, series: np.ndarray, slope: np.ndarray) -> np.ndarray:
-        """Return the derivative of the value that is selected.
+        """Return the derivative of the selected value.
 
         Raises
         ------
         SolverError
-            When several instants have it, and their derivatives differ.
+            When several output times have this value with different derivatives.
         """
         k = SELECTED[name](series)
         slopes = slope[k] * (np.sign(series[k])[:, None] if name == "peak" else 1.0)
         if np.any(np.ptp(slopes, axis=0) > ALIKE * np.abs(slope).max()):
             raise SolverError(
-                f"sensitivities: found that '{self.text}' has its {name} at {len(k)} instants, first at t = {self._time[k[0]]:.9g} s, "
-                "with other derivatives at each; expected one at a single instant"
+                f"sensitivities: found that '{self.text}' has its {name} at {len(k)} output times, first at t = {self._time[k[0]]:.9g} s, "
+                "with different derivatives; expected a single output time"
             )
         return np.asarray(slopes[0])
 
@@ -188,7 +188,7 @@ SLOPES: dict[str, Any] = {
     "abs": lambda x: np.where(np.abs(x) > SAME * np.max(np.abs(x)), np.sign(x), 0.0), "sqrt": lambda x: 0.5 / np.sqrt(x), "exp": np.exp, "log": lambda x: 1 / x, "sin": np.cos,
     "cos": lambda x: -np.sin(x), "tan": lambda x: 1 / np.cos(x) ** 2,
 }  # fmt: skip
-"""Derivatives of the functions of one number; of ``abs`` at zero, but for rounding, the mean of both sides."""
+"""Derivatives of the functions of one number; for ``abs`` near zero, the mean of both sides."""
 
 
 def _called(name: str, arguments: list[Dual]) -> Dual:

@@ -110,9 +110,9 @@ def sensitivities(scene: Runnable, to: Sequence[str] | str, of: str, **settings:
 
 
 def differentiated(scenes: Scenes, names: Sequence[str], asked: RunSettings) -> DifferentiatedRun:
-    """Return a run much tighter than it is asked for, or as it is asked for where that fails; errors as for `sensitivities`.
+    """Run with a much tighter tolerance, or with the tolerance of the settings if that fails; errors as for `sensitivities`.
 
-    No motion follows a force that chatters, with any tolerance: a run that stops there is the last one.
+    A run that stops because a force chatters is not repeated: no tolerance resolves chattering.
     """
     scenes = with_weights(scenes, names)
     for rtol in (min(asked.rtol, max(TIGHTER * asked.rtol, TIGHTEST)), asked.rtol):
@@ -129,24 +129,24 @@ def differentiable(settings: RunSettings) -> RunSettings:
 
 
 class DifferentiatedRun:
-    """A run with the derivatives of its outputs.
+    """Run with the derivatives of its outputs.
 
     Parameters
     ----------
     scenes : Scenes
     names : sequence of str
-        Of the parameters.
+        Names of the parameters.
     job : Job
-        Of the scene as it is, with settings that are `differentiable`.
+        The unchanged scene, with settings that are `differentiable`.
     times : ndarray, optional
-        Output instants in place of those of the settings.
+        Output times that replace those of the settings.
 
     Attributes
     ----------
     success : bool
-        Whether the whole time was solved.
+        True if the whole time was solved.
     chatters : bool
-        Whether it stopped where a force jumps back and forth.
+        True if it stopped because a force chatters.
     """
 
     def __init__(self, scenes: Scenes, names: Sequence[str], job: Job, times: np.ndarray | None = None) -> None:
@@ -188,16 +188,16 @@ class DifferentiatedRun:
         return Sensitivity(formula.text, _plain(dual.value), to, self._rows.t)
 
     def _refuse_jumps(self, formula: Formula, slopes: dict[str, np.ndarray]) -> None:
-        """Refuse a number that takes the value of a channel at an instant at which it jumps; a series is that of the right side."""
+        """Refuse a number that evaluates a channel at a discontinuity; a series has the value of the right side."""
         for name, k, moved in self._jumping:
             here = np.zeros((len(self._rows.t), 1), dtype=bool)
             here[k] = True
             slope = formula.dual({**slopes, name: np.where(here & moved, np.nan, slopes[name])}).slope
             for parameter in np.flatnonzero(np.isnan(np.broadcast_to(slope, moved.shape))):
                 raise SolverError(
-                    f"sensitivities: found that '{name}' jumps at the output instant t = {self._rows.t[k]:.9g} s, which "
-                    f"'{self._set_ups[parameter].parameter.name}' moves: '{formula.text}' has no derivative by it; expected "
-                    "other output instants"
+                    f"sensitivities: found that '{name}' is discontinuous at the output time t = {self._rows.t[k]:.9g} s, and "
+                    f"'{self._set_ups[parameter].parameter.name}' moves the discontinuity: '{formula.text}' has no derivative "
+                    "with respect to it; expected other output times"
                 )
 
     @cached_property
@@ -235,7 +235,7 @@ class DifferentiatedRun:
     def _take_both_sides(
         self, instant: Instant, channels: dict[str, np.ndarray], slopes: dict[str, np.ndarray]
     ) -> None:
-        """Take the mean of both sides of a breakpoint at an output instant, as central differences do."""
+        """Average both sides of a breakpoint at an output time, as central differences do."""
         job, k, moved = self._job, instant.number, instant.moved
         there = [channels_of(job.data, job.dynamics.system, side.row) for side in instant.sides]
         left, right = (self._changed(s.row, at, [s]) for s, at in zip(instant.sides, there, strict=True))
@@ -250,7 +250,7 @@ class DifferentiatedRun:
     def _changed(
         self, rows: OutputRows, channels: dict[str, np.ndarray], found: Sequence[Instant | Side]
     ) -> dict[str, np.ndarray]:
-        """Return the derivatives of all channels at some instants, shape (instants, directions)."""
+        """Return the derivatives of all channels at some output times, shape (times, directions)."""
         job, changes = self._job, [each.change for each in found]
         values = np.array([each.values for each in found])
         slopes = changed_channels(job.dynamics.system, rows.u, self._numbers, changes, values)

@@ -82,7 +82,7 @@ class SetUp:
                 without = any(any(scene.gravity) for scene in self.scenes) and not any(self._job.data.gravity)
                 raise InputError(
                     f"to: found that '{self.parameter.name}' changes the structure of the model"
-                    f"{' (no body has a weight where gravity is zero)' if without else ''}, expected one that changes numbers"
+                    f"{' (no body has a weight where gravity is zero)' if without else ''}, expected one that changes values only"
                 )
             if not np.array_equal(system.principal_axes, other.principal_axes):
                 raise InputError(
@@ -174,7 +174,7 @@ class SetUp:
         return start_of_job(replace(self._job, data=scene, dynamics=dynamics))
 
     def has_breakpoint(self, t: float) -> bool:
-        """Return True if an input begins, ends or bends at t; a run also starts again for narrow features of laws."""
+        """Return True if an input has a breakpoint at t; a run also restarts for narrow features of laws."""
         return bool(self._near(t).any())
 
     def _near(self, t: float) -> np.ndarray:
@@ -186,7 +186,7 @@ class SetUp:
         Raises
         ------
         SolverError
-            When it is needed, and other values have no such breakpoint.
+            When it is required, and other values have no such breakpoint.
         """
         known, *others = self._breakpoints
         place = int(np.flatnonzero(self._near(t))[0])
@@ -196,8 +196,8 @@ class SetUp:
         if not needed:
             return 0.0
         raise SolverError(
-            f"sensitivities: found that inputs begin, end or bend at {len(known)} instants, and at {[len(o) for o in others]} with "
-            f"another '{self.parameter.name}', where the motion is not differentiable by it; expected as many"
+            f"sensitivities: found {len(known)} breakpoints of inputs, and {[len(o) for o in others]} for other values of "
+            f"'{self.parameter.name}', so that the motion is not differentiable with respect to it; expected the same number"
         )
 
     @cached_property
@@ -219,9 +219,9 @@ def breakpoint_rates(set_ups: Sequence[SetUp]) -> BreakpointRates:
 
 
 def _counterpart(known: np.ndarray, place: int, other: np.ndarray) -> float | None:
-    """Return the breakpoint of another value that belongs to a known one; None where it is not clear which.
+    """Return the breakpoint for another value that corresponds to a known one, or None if this is ambiguous.
 
-    Breakpoints may enter or leave at the ends of the run, so that there may be more or fewer of them.
+    Breakpoints may enter or leave at the ends of the run, so their number may differ.
     """
     if len(known) == len(other):
         return float(other[place])

@@ -32,19 +32,19 @@ forces:
 
 
 def slider(law: str, point: float = 0.0, speed: float = 0.0) -> Scene:
-    """A slider under a force along its way."""
+    """Return a slider under a force along its rail."""
     return read_scene(SLIDER.format(law=law, point=point, speed=speed))
 
 
 def ball(height: float) -> Scene:
-    """A sprung ball over a floor."""
+    """Return a sprung ball over a floor."""
     return read_scene(BALL.format(height=height))
 
 
 def _bends(
     made: Callable[[], Scene], label: str, stiffness: tuple[float, float], damping: tuple[float, float]
 ) -> Verdict:
-    """A note of modes, matrices of both sides with their stiffness and damping, and no transfer function."""
+    """Check the note of `modes`, the matrices of both sides, and the refusal of `transfer`."""
     scene = made()
     found = modes(scene)
     try:
@@ -72,15 +72,15 @@ def _jumps(made: Callable[[], Scene]) -> Verdict:
         except SolverError as refusal:
             found = str(refusal)
         else:
-            return Verdict(Outcome.WRONG, detail="linearised across a jump")
-    return told(found, ("b.vx jumps at the state",))
+            return Verdict(Outcome.WRONG, detail="linearised at a discontinuity")
+    return told(found, ("b.vx is discontinuous at the state",))
 
 
 def _smooth(made: Callable[[], Scene], label: str, stiffness: float, damping: float) -> Verdict:
     scene = made()
     found = modes(scene)
     if found.sides:
-        return Verdict(Outcome.WRONG, detail=f"a smooth law is called bent: {found.notes}")
+        return Verdict(Outcome.WRONG, detail=f"a smooth law is reported as having a breakpoint: {found.notes}")
     response = transfer(scene, [f"b.f{label}"], [f"b.{label}"]).response(np.array([0.3]))[0, 0, 0]
     s = 2j * np.pi * 0.3
     return measured(abs(response * (MASS * s**2 + damping * s + stiffness) - 1), ALLOWED)

@@ -1,4 +1,4 @@
-"""Equilibria that statics call stable and eigenvalues do not: negative damping and follower forces."""
+"""Equilibria that are statically stable and dynamically unstable: negative damping and follower forces."""
 
 from __future__ import annotations
 
@@ -31,19 +31,19 @@ forces:
 
 
 def slider(law: str) -> Scene:
-    """A slider under a force along its way."""
+    """Return a slider under a force along its rail."""
     return read_scene(SLIDER.format(law=law))
 
 
 def column(load: float, damping: float) -> Scene:
-    """Ziegler's column under a follower force, N."""
+    """Return Ziegler's column under a follower force, N."""
     return read_scene(COLUMN.format(load=load, damping=damping))
 
 
 def _judged(made: Callable[[], Scene], unstable: bool) -> Verdict:
     notes = "; ".join(equilibrium(made()).notes)
     if unstable:
-        return told(notes, ("the equilibrium is unstable: motions from it grow at",))
+        return told(notes, ("the equilibrium is unstable: disturbances grow at",))
     return measured(float("unstable" in notes), 0.0, notes)
 
 

@@ -1,4 +1,4 @@
-"""Tables with steep parts between far points: the default stays between its points, splines that do not are noted."""
+"""Tables with steep segments between distant points: the default does not overshoot; splines that do are noted."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ TABLES: dict[str, list[list[float]]] = {
     "stop": [[-10, 20], [0, 0], [30, 0], [30.1, -40], [31, -80]],
     "uneven": [[0, 0], [1, 1], [1.5, 3], [12, 3.5], [12.1, 0], [40, 1], [41, 1], [90, -2]],
 }
-"""Forces over the path, N over m."""
+"""Forces over displacement, N over m."""
 SOLVERS: dict[str, dict[str, Any]] = {
     "bdf": {"solver": "bdf"},
     "dop853": {"solver": "projected", "scheme": "dop853"},
@@ -32,7 +32,7 @@ SPEED = 25.0
 
 
 def pushed(table: str, how: str = "") -> Scene:
-    """1 kg that a force by a table pushes along x."""
+    """Return a scene of 1 kg pushed along x by a force given by a table."""
     return read_scene(
         f"gravity: [0, 0]\ntables: {{p: {{table: {TABLES[table]}{how}}}}}\nbodies: {{b: {{mass: 1, inertia: 1, velocity: [{SPEED}, 0]}}}}\n"
         "forces: {f: {type: force, i: b, force: ['p(b.x)', 0]}}"
@@ -40,7 +40,7 @@ def pushed(table: str, how: str = "") -> Scene:
 
 
 def sprung(table: str, how: str = "") -> Scene:
-    """The same along a rail in space, by the spring law of an element whose length is the path."""
+    """Return the same along a rail in space, by the spring law of an element whose length is the displacement."""
     law = [[x, -force] for x, force in TABLES[table]]
     return read_scene(
         f"dimensions: 3\ngravity: [0, 0, 0]\nbodies: {{b: {{mass: 1, inertia: [1, 1, 1], velocity: [{SPEED}, 0, 0]}}}}\n"
@@ -51,7 +51,7 @@ def sprung(table: str, how: str = "") -> Scene:
 
 
 def _off(solution: Solution, table: str) -> float:
-    """The speed against the work of the force, relative; by SciPy's monotone cubics."""
+    """Compare the final speed with the work of the force, integrated from SciPy's monotone cubics."""
     work = PchipInterpolator(*np.array(TABLES[table], dtype=float).T).antiderivative()
     speed = np.sqrt(SPEED**2 + 2 * (work(solution["b.x"]) - work(0.0)))
     return float(np.abs(solution["b.vx"] / speed - 1).max())
@@ -70,7 +70,7 @@ CASES = (
     *(
         simulation(
             f"{name} by a spline through a {table}", "the spline is noted", partial(scene, table, ", spline: true"), lambda _: 0.0, 0.0,
-            names=("where its points are between",), noted=("where its points are between",), expected=Outcome.TOLD, duration=1e-3,
+            names=("but its points are between",), noted=("but its points are between",), expected=Outcome.TOLD, duration=1e-3,
         )
         for name, scene in (("pushed", pushed), ("sprung", sprung))
         for table in TABLES
