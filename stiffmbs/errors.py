@@ -29,7 +29,7 @@ class SolverError(StiffmbsError):
 
 
 class ChatteringError(SolverError):
-    """A force jumps back and forth, so that no motion follows from there on, with any solver and tolerance."""
+    """A force chatters: no solution exists beyond this time, with any solver or tolerance."""
 
 
 @contextmanager

@@ -130,7 +130,7 @@ def _flushed(told: bool) -> bool:
 
 @contextlib.contextmanager
 def _escaping() -> Iterator[None]:
-    """Let nothing that is printed steer the terminal."""
+    """Escape control characters in all printed text."""
     before = sys.stdout, sys.stderr
     sys.stdout, sys.stderr = (stream and EscapingStream(stream) for stream in before)  # type: ignore[assignment]
     try:

@@ -142,7 +142,7 @@ def refuse_own_input(option: str, scene: str, output: Path) -> None:
 
 
 def is_written(path: Path, write: Callable[[], object]) -> bool:
-    """Write a file that was asked for; where it cannot be written a sentence says why, and what was computed is shown all the same."""
+    """Write a requested file; if this fails, print the reason and continue."""
     try:
         write()
     except OSError as error:

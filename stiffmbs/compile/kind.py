@@ -44,7 +44,7 @@ class Compilable(Protocol):
     def joints(self) -> Mapping[str, Any]: ...
 
     def joint_at_initial_pose(self, name: str) -> Joint:
-        """Return a joint, with what it leaves open taken from the described poses."""
+        """Return a joint with its undefined fields taken from the described poses."""
         ...
 
     def elements(self) -> Iterator[tuple[str, Element]]:

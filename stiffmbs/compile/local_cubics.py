@@ -1,15 +1,15 @@
-"""Cubics by the points around each piece: monotone (PCHIP) and Akima's; SciPy's load its optimisers and more, at a cost to short runs."""
+"""Local piecewise cubic interpolation: monotone (PCHIP) and Akima.  SciPy's modules would slow down the start of short runs."""
 
 from __future__ import annotations
 
 import numpy as np
 
 UNDEFINED = 1e-9
-"""Change of the slopes around a point, relative to the largest of all, up to which the weights of both sides are equal."""
+"""Differences of slopes, relative to the largest one, below which the weights of both sides are equal."""
 
 
 def akima_pieces(x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Cubics through points, each slope by the five points around.
+    """Return Akima's piecewise cubic interpolant.
 
     Akima, A New Method of Interpolation and Smooth Curve Fitting Based on Local Procedures, J. ACM 17 (1970) 589-602.
 
@@ -28,7 +28,7 @@ def akima_pieces(x: np.ndarray, y: np.ndarray) -> np.ndarray:
 
 
 def monotone_pieces(x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Return cubics through points that rise and fall as the points do (PCHIP); they never leave the range of two points.
+    """Return the monotone piecewise cubic interpolant (PCHIP), which does not overshoot.
 
     Fritsch, Butland, A Method for Constructing Local Monotone Piecewise Cubic Interpolants, SIAM J. Sci. Stat. Comput. 5
     (1984) 300-304.
@@ -56,7 +56,7 @@ def _hermite(x: np.ndarray, y: np.ndarray, chords: np.ndarray, slopes: np.ndarra
 
 
 def _monotone_slopes(apart: np.ndarray, chords: np.ndarray) -> np.ndarray:
-    """Return the slope at each point: a weighted harmonic mean of those of the chords, 0 where these differ in sign."""
+    """Return the slope at each point: a weighted harmonic mean of the secant slopes, 0 if these differ in sign."""
     before, after = chords[:-1], chords[1:]
     rises = np.sign(before) * np.sign(after) > 0
     first, second = 2 * apart[1:] + apart[:-1], apart[1:] + 2 * apart[:-1]
@@ -67,7 +67,7 @@ def _monotone_slopes(apart: np.ndarray, chords: np.ndarray) -> np.ndarray:
 
 
 def _slope_at_end(apart: float, next_apart: float, chord: float, next_chord: float) -> float:
-    """Return the slope of the parabola through three points at the end, limited so that the end piece is monotone."""
+    """Return the slope of the parabola through three end points, limited so that the end piece is monotone."""
     slope = ((2 * apart + next_apart) * chord - apart * next_chord) / (apart + next_apart)
     if np.sign(slope) != np.sign(chord):
         return 0.0
@@ -77,7 +77,7 @@ def _slope_at_end(apart: float, next_apart: float, chord: float, next_chord: flo
 
 
 def _akima_slopes(chords: np.ndarray) -> np.ndarray:
-    """The slope at each point, from those of the chords, two more of which are added at both ends."""
+    """Return the slope at each point from the secant slopes, extended by two at each end."""
     m = np.concatenate([[0.0, 0.0], chords, [0.0, 0.0]])
     m[1] = 2 * m[2] - m[3]
     m[0] = 2 * m[1] - m[2]

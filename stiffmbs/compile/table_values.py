@@ -23,7 +23,7 @@ def spline_data(table: Table) -> np.ndarray:
     Raises
     ------
     InputError
-        When points are so near to each other that a coefficient has no finite value.
+        When points are so close that a coefficient is not finite.
     """
     x, y = np.array(table.table, dtype=float).T
     try:

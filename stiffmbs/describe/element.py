@@ -94,11 +94,11 @@ IN_EQUATIONS = frozenset(
         "_state",
     ]
 )
-"""Attributes of the symbolic element `e`, which equations read besides the fields (`stiffmbs.compile.symbolic.element`)."""
+"""Attributes of the symbolic element `e` in addition to the fields (`stiffmbs.compile.symbolic.element`)."""
 
 
 def _reserved(element: type[Described], base: type[Described]) -> str:
-    """Return why a class of elements cannot have one of its fields, or an empty string.
+    """Return the reason why a field of an element class is not allowed, or an empty string.
 
     Parameters
     ----------
@@ -162,7 +162,7 @@ class Element(Described):
 
     @classmethod
     def __pydantic_init_subclass__(cls, **options: Any) -> None:
-        """Refuse fields that have the name of an attribute of the base class or of the symbolic element."""
+        """Refuse fields with the name of an attribute of the base class or of the symbolic element."""
         super().__pydantic_init_subclass__(**options)
         base = next(base for base in cls.__mro__ if base.__module__ == __name__)
         if reason := _reserved(cls, base):
@@ -332,7 +332,7 @@ class Force(Element):
     doubt: ClassVar[str] = ""
 
     def valid_ranges(self) -> Mapping[str, tuple[float, float]]:
-        """Lowest and highest values of its channels that its data are valid for."""
+        """Return the valid ranges of the channels of the element."""
         return {}
 
     def own_states(self) -> tuple[str, ...]:

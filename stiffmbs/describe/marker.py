@@ -176,9 +176,9 @@ class PlacedMarkers(dict[MarkerReference, tuple[str, tuple[float, ...]]]):
 
 
 def same_turn(model: ModelData, i: Marker, j: Marker) -> Marker:
-    """Return marker i, its angle less the whole turns by which it is drawn apart from marker j.
+    """Return marker i with its angle reduced by the whole turns between the drawn markers i and j.
 
-    An equation between both angles then holds in the turn in which the bodies are drawn.
+    An equation between both angles then holds for the bodies as drawn.
     """
     turns = round((model.initial_marker(i).angle - model.initial_marker(j).angle) / math.tau)
     if not turns:
@@ -188,9 +188,9 @@ def same_turn(model: ModelData, i: Marker, j: Marker) -> Marker:
 
 
 class InOneTurn:
-    """Base of planar joints with an equation between the angles of their markers, which holds in the turn in which they are drawn."""
+    """Base of planar joints that constrain the angles of their markers, in the turn in which they are drawn."""
 
     def at_initial_pose(self, model: ModelData) -> Any:
-        """Return the joint, the angle of its marker i taken in the turn of that of marker j."""
+        """Return the joint with the angle of marker i in the same turn as that of marker j."""
         joint: Any = self
         return joint.model_copy(update={"i": same_turn(model, joint.i, joint.j)})

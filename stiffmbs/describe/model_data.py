@@ -210,7 +210,7 @@ class ModelData(Described):
             yield name, element.at_initial_pose(self)
 
     def joint_at_initial_pose(self, name: str) -> Joint:
-        """Return a joint, with what it leaves open taken from the described poses."""
+        """Return a joint with its undefined fields taken from the described poses."""
         joint: Joint = self.joints[name]
         return joint.at_initial_pose(self)
 

@@ -54,7 +54,7 @@ def read_scene(
     changes : sequence of (path, text)
         Values put in place of the text's, such as ``("bodies.cart.mass", "12 kg")``.
     source : str
-        What messages call it.
+        Name of the scene in messages.
     file : Path, optional
         The file that the text is of: what it includes is looked for beside it, or in the working folder without it.
 
@@ -85,29 +85,29 @@ def made_scene(
     unchanged: Unchanged | None = None,
     files: Mapping[str, str] = NO_FILES,
 ) -> Scene:
-    """The scene of a mapping.
+    """Return the scene described by a mapping.
 
     Parameters
     ----------
     found : mapping
-        Is changed.
+        Modified in place.
     changes : sequence of (path, text)
-        Values that are no text are put there as they are.
+        Values that are not text are used unchanged.
     source : str
-        What messages call it.
+        Name of the scene in messages.
     line_of : callable
-        The line in the source of what a path of keys leads to.
+        Returns the line in the source of a path of keys.
     folder : Path, optional
-        Where meshes and property files are looked for; the working folder by default.
+        Folder of meshes and property files; the working folder by default.
     unchanged : Unchanged, optional
-        What was validated before and need not be again; the scene then does not keep what it was read from.
+        Parts that have been validated before.  The scene then does not keep its source.
     files : mapping of str to str
-        Digests of the files that the mapping comes from.
+        Digests of the files from which the mapping was read.
 
     Raises
     ------
     InputError
-        When it is no valid scene.
+        When the scene is not valid.
     """
     kept = None if unchanged else WrittenScene(copy.deepcopy(found), tuple(changes), source, folder, dict(files))
     with recorded() as read:
@@ -127,7 +127,7 @@ def _made_scene(
     unchanged: Unchanged | None,
     scene_as_written: WrittenScene | None,
 ) -> Scene:
-    """Parameters and errors as for `made_scene`."""
+    """Return the scene; parameters and errors as for `made_scene`."""
     known = unchanged or Unchanged()
     found, chosen, changes = _chosen(unshared(found), changes, source)
     parts = found.get("parts")

@@ -17,23 +17,23 @@ from .units.units import Quantity, named_unit
 
 
 class Table(Described):
-    """A function through points. By default it rises and falls as the points do and has a continuous slope (PCHIP).
+    """Function through points, by default a monotone piecewise cubic with continuous slope (PCHIP).
 
-    Outside its points a table goes on with the slope of its end (none for ``clamped``); a periodic one repeats.
+    Outside its points a table is extrapolated with the slope of its end (zero for ``clamped``); a periodic table repeats.
 
     Parameters
     ----------
     table : list of pairs
         Argument and value, arguments increasing.
     spline : bool
-        A cubic spline: continuous curvature, but it may leave the range of its points (Adams: CUBSPL).
+        Cubic spline: continuous curvature, but it may overshoot its points (Adams: CUBSPL).
     ends : str
-        Ends of a cubic spline, which they ask for: ``natural`` (no curvature, the spline's default), ``clamped`` (no slope),
-        ``not-a-knot``, ``periodic`` (first and last value alike; for straight lines too).
+        End condition of a cubic spline, which it selects: ``natural`` (zero curvature, the default of a spline), ``clamped`` (zero
+        slope), ``not-a-knot``, ``periodic`` (equal first and last value; also for linear interpolation).
     lines : bool
-        Straight lines; its points are breakpoints.
+        Linear interpolation; the points are breakpoints.
     akima : bool
-        Akima's cubics, each by the five points around it: they may leave the range of unevenly spaced points (Adams: AKISPL).
+        Akima's interpolation, which may overshoot unevenly spaced points (Adams: AKISPL).
         Akima, A new method of interpolation and smooth curve fitting, J. ACM 17 (1970) 589-602.
     """
 

@@ -165,7 +165,7 @@ def finished(job: Job, watch: ProgressCallback | None = None) -> Finished:
 
 
 def _headline(outcome: Outcome, message: str, doubts: Sequence[str]) -> str:
-    """Return the sentence on the end of a run, with the first of the notes by which its results may be wrong."""
+    """Return the final message of a run, with the first of the notes that question its results."""
     if outcome is not Outcome.DONE or not doubts:
         return message
     return message.replace(Outcome.DONE.value, f"{IN_DOUBT}: {doubts[0].partition(';')[0]}")

@@ -41,8 +41,8 @@ LESS = 0.5
 
 @dataclass(frozen=True)
 class Computed:
-    """A trajectory, what is reported of it, notes on instants that are left out, what the rows show at a glance, and notes
-    by which the results may be wrong."""
+    """Trajectory of a run with its reported values, notes on omitted output times, findings of the scan of the rows, and notes that
+    question the results."""
 
     trajectory: Trajectory
     rows: OutputRows
@@ -153,5 +153,5 @@ def _noted(computed: Computed, note: str) -> Computed:
 
 
 def _doubted(computed: Computed, note: str) -> Computed:
-    """Add a note by which the results may be wrong."""
+    """Add a note that questions the results."""
     return replace(_noted(computed, note), doubts=(*computed.doubts, note))

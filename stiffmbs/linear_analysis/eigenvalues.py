@@ -54,12 +54,12 @@ def eigen(matrix: np.ndarray, n_poses: int, n_states: int = 0) -> tuple[np.ndarr
 
 
 def is_singular(matrix: np.ndarray) -> bool:
-    """Return True if the rank of a square matrix is less than its size, but for rounding."""
+    """Return True if a square matrix is numerically singular."""
     return not np.any(matrix) or bool(svd(_of_length_one(matrix), compute_uv=False)[-1] <= ZERO_SINGULAR * len(matrix))
 
 
 def _of_length_one(matrix: np.ndarray) -> np.ndarray:
-    """Rows of length 1; those of the size of rounding are zero."""
+    """Return normalised rows; rows of the size of rounding become zero."""
     sizes = np.linalg.norm(matrix, axis=1)
     noise = ZERO_SINGULAR * len(matrix) * sizes.max()
     return np.asarray(matrix * np.where(sizes > noise, 1 / np.maximum(sizes, noise), 0.0)[:, None])

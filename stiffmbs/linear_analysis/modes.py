@@ -16,7 +16,7 @@ from .state_space import StateMatrix
 NO_MOTION = 1e-12
 """Displacement, in sizes of the mechanism, or rotation of an eigenvector of length 1 that counts as none."""
 NOT_FREE = 1e-6
-"""Part of the velocities of generalised eigenvectors from which on constraints do not leave one free."""
+"""Relative size of velocities of generalised eigenvectors above which constraints do not leave them free."""
 
 
 class Motion(Enum):
@@ -121,11 +121,10 @@ def _oscillations(values: np.ndarray, shapes: np.ndarray) -> Iterator[Pair]:
 def _without_oscillation(
     values: np.ndarray, shapes: np.ndarray, state: StateMatrix, zeros: Zeros, scale: np.ndarray
 ) -> Iterator[Pair]:
-    """Real eigenvalues two by two: zeros of one rigid body motion, and real ones whose shapes are most alike.
+    """Pair real eigenvalues: zeros of one rigid body motion, and real eigenvalues with the most similar shapes.
 
-    Another zero belongs to a free motion that a damper ends, or to a pose that no free velocity leads to (rolling
-    constraints); the latter are no modes.  Such a pose may have an eigenvalue other than zero, as of a wheel that is steered
-    by its place; that one stands alone, as those of states do.
+    A further zero belongs to a free motion with a damper, or to a pose variation without a free velocity (rolling constraints).
+    The latter is not a mode.  A nonzero eigenvalue of such a pose variation is not paired, like those of states.
     """
     zero = zeros.eigenvectors.shape[1] + zeros.generalised.shape[1]
     rigid = _rigid_motions(state, zeros, scale)[:, : zero // 2]
@@ -139,7 +138,7 @@ def _without_oscillation(
     likeness = np.array(known).reshape(len(found), len(scale)) / scale
     pairs = list(_alike(likeness))
     others = max(0, state.degrees_of_freedom - int(np.sum(values.imag > 0)) - rigid.shape[1])
-    if state.n_states or len(found) > 2 * others:  # eigenvalues that are modes of their own
+    if state.n_states or len(found) > 2 * others:  # eigenvalues that are not paired
         moving = [pair for pair in pairs if all(np.any(np.abs(likeness[k]) > NO_MOTION) for k in pair)]
         pairs = moving[:others]
         for k in set(range(len(found))) - {k for pair in pairs for k in pair}:
@@ -150,9 +149,9 @@ def _without_oscillation(
 
 
 def _rigid_motions(state: StateMatrix, zeros: Zeros, scale: np.ndarray) -> np.ndarray:
-    """Velocities of generalised eigenvectors at zero that constraints leave free, shape (n_u, motions).
+    """Return the free velocities of generalised eigenvectors at zero, shape (n_u, motions).
 
-    Another one only accompanies a pose, as the sideways velocity of a rolling wheel that has turned.
+    Other velocities only follow a pose, such as the lateral velocity of a rolling wheel that has turned.
     """
     rates = state.velocities @ zeros.generalised / scale[:, None]
     free = _free_velocities(state, scale)
@@ -162,8 +161,8 @@ def _rigid_motions(state: StateMatrix, zeros: Zeros, scale: np.ndarray) -> np.nd
 
 
 def _neutral_poses(state: StateMatrix, zeros: Zeros, rigid: np.ndarray, scale: np.ndarray) -> np.ndarray:
-    """Poses of eigenvectors at zero, shape (n_u, eigenvectors), ordered by how far free velocities other than rigid motions
-    lead to them."""
+    """Return the poses of eigenvectors at zero, shape (n_u, eigenvectors), ordered by the contribution of free velocities other than
+    rigid motions."""
     poses = state.poses @ zeros.eigenvectors / scale[:, None]
     if not poses.shape[1]:
         return poses
@@ -173,7 +172,7 @@ def _neutral_poses(state: StateMatrix, zeros: Zeros, rigid: np.ndarray, scale: n
 
 
 def _free_velocities(state: StateMatrix, scale: np.ndarray) -> np.ndarray:
-    """An orthonormal basis of the scaled velocities that constraints leave free."""
+    """Return an orthonormal basis of the scaled free velocities."""
     own = slice(state.n_poses, state.n_poses + state.degrees_of_freedom)
     return np.linalg.qr(state.velocities[:, own] / scale[:, None])[0]
 

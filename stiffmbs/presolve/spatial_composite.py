@@ -51,9 +51,9 @@ def composite(members: Sequence[tuple[Body, Placement]]) -> tuple[Body, list[Pla
 
 
 def _as_drawn(whole: Body, own: Body, placed: Placement) -> Placement:
-    """A member's place with that of its two quaternions with which the member is drawn.
+    """Return the pose of a member, with the sign of the quaternion with which the member is drawn.
 
-    Elastic connections measure angles beyond half a turn by the sign of a quaternion, whether bodies are merged or not.
+    Elastic connections measure angles beyond half a turn by the sign of the quaternion.
     """
     (*_, w, x, y, z), (*_, a, b, c, d) = whole.coordinates(), own.coordinates()
     turned = product((w, x, y, z), placed.orientation)

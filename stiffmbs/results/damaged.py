@@ -1,4 +1,4 @@
-"""Files of results that are damaged: what their readers raise then."""
+"""Read result files whose content may be damaged."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ RAISED = (
     BadZipFile, zlib.error, struct.error, tokenize.TokenError, ParseError, ArithmeticError, AssertionError, AttributeError,
     EOFError, LookupError, NotImplementedError, RuntimeError, SyntaxError, TypeError,
 )  # fmt: skip
-"""What archives, arrays, tables and XML of damaged content are known to raise."""
+"""Exceptions that readers of archives, arrays, tables and XML raise for damaged content."""
 
 
 @contextmanager
 def readable(path: Path) -> Iterator[None]:
-    """Read a regular file whose content may be anything.
+    """Read a regular file with arbitrary content.
 
     Raises
     ------
     OSError
-        When it is no regular file, or cannot be read.
+        When it is not a regular file, or cannot be read.
     ValueError
         When its content cannot be read.
     """

@@ -122,7 +122,7 @@ def write(path: Path, solution: Solution) -> None:
 
 
 def write_text(path: Path, text: str) -> None:
-    """Write a text; the file appears whole or not at all."""
+    """Write a text atomically: the file is complete or unchanged."""
     written_whole(path, lambda part: part.write_text(text, encoding="utf-8"))
 
 

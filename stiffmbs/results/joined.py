@@ -160,7 +160,7 @@ def _one_after_the_other(parts: Sequence[np.ndarray]) -> np.ndarray:
 
 
 def _message(solutions: Sequence[Solution]) -> str:
-    """Return the reason for which the last run stopped, or the first doubt about a run."""
+    """Return the reason why the last run stopped, or the first note that questions a run."""
     if not solutions[-1].success:
         return solutions[-1].message
     doubtful = (solution.message for solution in solutions if IN_DOUBT in solution.message)

@@ -19,7 +19,7 @@ class RobotFault(Exception):
 
 @dataclass(frozen=True)
 class LinkJoint:
-    """One joint by which a link moves against its parent.
+    """Joint between a link and its parent.
 
     Attributes
     ----------
@@ -31,17 +31,17 @@ class LinkJoint:
     stiffness, damping : float
         N m/rad and N m s/rad of a hinge or ball, N/m and N s/m of a slide.
     rest : float
-        The coordinate where its spring rests, rad or m.
+        Coordinate at which its spring is relaxed, rad or m.
     friction : float
         Magnitude of the dry friction, N m or N.
     armature : float
-        Inertia of the rotor as the joint feels it, kg m^2 or kg.
+        Inertia of the rotor reflected to the joint, kg m^2 or kg.
     limits : (float, float) or None
-        Of the coordinate, rad or m.
+        Limits of the coordinate, rad or m.
     effort : (float, float) or None
         Bounds of the force of all actuators on the coordinate, N m or N.
     zero : float
-        The coordinate at which the link is placed as its `Link` says, rad or m.
+        Coordinate at the pose given by its `Link`, rad or m.
     """
 
     name: str
@@ -98,7 +98,7 @@ class Link:
 
 @dataclass(frozen=True)
 class Transmission:
-    """A length that joint coordinates make, and what acts along it: L = sum of gear times coordinate.
+    """Length that depends on joint coordinates, L = sum of gear times coordinate, with an actuator, spring or damper.
 
     An actuator's force is gain u + bias with gain = g_0 + g_1 L + g_2 L' and bias = b_0 + b_1 L + b_2 L'; a passive
     tendon has no input u, and its spring and damper are the bias.
@@ -107,17 +107,17 @@ class Transmission:
     ----------
     name : str
     gears : mapping of str to float
-        By joint.
+        Gear by joint.
     gain, bias : tuple of float
-        The three coefficients of each; without a gain there is no input.
+        Three coefficients each; without a gain there is no input.
     control, force : (float, float) or None
         Bounds of the input and of the force.
     lag : float or None
-        Time constant of the first-order filter behind the input, s; 0 for an integrator.
+        Time constant of the first-order filter of the input, s; 0 for an integrator.
     tendon : str
         Name of the tendon whose actuators have a bounded total.
     total : (float, float) or None
-        Bounds of the sum of the forces of all actuators along that tendon; beyond them all are scaled by one factor.
+        Bounds of the total force of all actuators on that tendon; beyond them all forces are scaled by one factor.
     """
 
     name: str

@@ -1,4 +1,4 @@
-"""Elements of an XML file with a record of the attributes and children that a reader requests."""
+"""Elements of an XML file, with a record of the attributes and children that a reader requests."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ from .robot import RobotFault
 
 
 class Node:
-    """An element of an XML file.
+    """Element of an XML file.
 
     Parameters
     ----------
     element : Element
     kind : str
-        Tags from the root to the element, with ``/`` between them.
+        Tags from the root to the element, separated by ``/``.
     owner : str
-        The name of the nearest element that has one.
+        Name of the nearest named element.
     defaults : mapping of str to (mapping of str to Any)
         Values without effect, by kind.
     """
@@ -47,25 +47,25 @@ class Node:
         return next(iter(self.findall(tag)), None)
 
     def findall(self, path: str) -> list[Node]:
-        """Return the children of a tag, or of a tag in children of another one."""
+        """Return the children with a tag, optionally below children with another tag."""
         tag, _, rest = path.partition("/")
         self._fields.request(_child(tag))
         found = [child for child in self._children if child.tag == tag]
         return [below for child in found for below in child.findall(rest)] if rest else found
 
     def without_effect(self, *tags: str) -> None:
-        """Leave children out of the report."""
+        """Exclude children from the report."""
         self._fields.request(*map(_child, tags))
         self._children = [child for child in self._children if child.tag not in tags]
 
     def walk(self) -> Iterator[Node]:
-        """Yield the element and all below it."""
+        """Yield the element and all its descendants."""
         yield self
         for child in self._children:
             yield from child.walk()
 
     def fields(self) -> Iterator[Fields[str]]:
-        """Yield the fields of the element and of all requested ones below it."""
+        """Yield the fields of the element and of its requested descendants."""
         yield self._fields
         unused = self._fields.unused()
         for child in self._children:
@@ -78,7 +78,7 @@ def _child(tag: str) -> str:
 
 
 def parsed(text: str, expected: str, defaults: Mapping[str, Mapping[str, Any]]) -> Node:
-    """Read an XML file; prefixes of namespaces need not be declared.
+    """Read an XML file; namespace prefixes need not be declared.
 
     Raises
     ------

@@ -1,7 +1,8 @@
-"""Text for terminals and pages: names and files may hold characters that steer a terminal or turn the direction of writing.
+"""Escape control and formatting characters in text for terminals and pages.
 
-Control characters (C0 and C1), formatting characters (such as bidirectional overrides and characters without width), separators of
-lines other than a line feed, and what is no character are written as escapes, ``\\u202e``, which JSON reads as the same character.
+Names and files may hold characters that control a terminal or change the writing direction.  The following are written as escapes
+that JSON reads as the same character, such as ``\\u202e``: control characters (C0 and C1), formatting characters (such as
+bidirectional overrides and zero-width characters), line separators other than a line feed, and code points without a character.
 Unicode Standard Annex 9, section 3.1; Unicode Technical Report 36, section 2.
 """
 
@@ -17,12 +18,12 @@ if TYPE_CHECKING:
 
 _UNUSUAL = re.compile("[^ -~\n\t]")
 ESCAPED = ("Cc", "Cf", "Cn", "Co", "Cs", "Zl", "Zp")
-"""Categories of characters that are written as escapes."""
+"""Unicode categories that are escaped."""
 BASIC = 0xFFFF
 
 
 def escaped(text: str) -> str:
-    """Return a text in which what is no visible character, blank, tab or line feed stands as an escape.
+    """Return a text with escapes for all characters except visible ones, blanks, tabs and line feeds.
 
     Examples
     --------
@@ -40,7 +41,7 @@ def _escape(found: re.Match[str]) -> str:
 
 
 class EscapingStream:
-    """A stream of text whose text is escaped; its bytes are out of reach.
+    """Text stream that escapes its text and gives no access to its bytes.
 
     Parameters
     ----------
@@ -50,15 +51,15 @@ class EscapingStream:
 
     def __init__(self, stream: Any) -> None:
         self.rich_proxied_file = stream
-        """What consoles of rich write to, whose codes for a terminal are their own: see `console`."""
+        """Underlying stream for consoles of rich, which write terminal codes themselves: see `console`."""
 
     def write(self, text: str | bytes) -> int:
-        """Write text, or what bytes say in UTF-8, and return its length.
+        """Write text, or bytes in UTF-8, and return the length.
 
         Raises
         ------
         TypeError
-            For no bytes, by which click finds out that this is a stream of text.
+            For empty bytes, with which click tests for a text stream.
         """
         if not text and not isinstance(text, str):
             raise TypeError("found bytes, expected text")
@@ -78,7 +79,7 @@ class EscapingStream:
 
 
 def console(**options: Any) -> Console:
-    """Return a console of rich that escapes text, and leaves it otherwise as it is; parameters as for `rich.console.Console`."""
+    """Return a console of rich that escapes text and does not format it; parameters as for `rich.console.Console`."""
     from rich.console import Console
     from rich.segment import Segment
 
@@ -91,5 +92,5 @@ def console(**options: Any) -> Console:
 
 
 def page_text(found: Any) -> Any:
-    """Return what a page shows of a value: text escaped, scripts and other values as they are."""
+    """Return a value for a page: text is escaped, scripts and other values are unchanged."""
     return escaped(found) if type(found) is str else found

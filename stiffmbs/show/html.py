@@ -73,7 +73,7 @@ def solution_html(solution: Solution) -> str:
 
 
 def escape(text: str) -> str:
-    """Return text as HTML shows it."""
+    """Return text escaped for HTML."""
     return html.escape(escaped(text))
 
 

@@ -37,7 +37,7 @@ class Trial:
 
 
 def fuzzers() -> dict[str, str]:
-    """Return the modules of `stiffmbs.stress.fuzzers` by the names of their fuzzers, with dashes for underscores."""
+    """Return the modules of `stiffmbs.stress.fuzzers` by fuzzer name, with hyphens instead of underscores."""
     found = (module.name for module in pkgutil.iter_modules(package.__path__))
     return {name.replace("_", "-"): f"{package.__name__}.{name}" for name in found}
 

@@ -29,20 +29,20 @@ REGULAR = 1e-5
 
 
 class Inconsistency(NamedTuple):
-    """Redundant equations that disagree with those that hold the same.
+    """Redundant equation that contradicts the equations on which it depends.
 
     Attributes
     ----------
     row : int
-        The redundant equation, counted in its loop.
+        Number of the redundant equation in its loop.
     joints : tuple of str
-        Its joint and those it disagrees with; of these the ones that depend on time, where there are such.
+        Its joint and the joints that it contradicts; only those that depend on time, if there are any.
     t : float
-        When, s.
+        Time, s.
     level : str
         ``position`` or ``velocity``.
     gap : Gap
-        Violation of the equation where the others hold.
+        Violation of the equation if the others hold.
     """
 
     row: int
@@ -81,7 +81,7 @@ def inconsistencies(found: LoopRank, redundant: list[Redundant], duration: float
 
 
 def _gaps(equations: LoopEquations, pose: Pose, level: str, off: dict[int, float], every: list[int]) -> dict[int, Gap]:
-    """Return violations as lengths and angles, those of positions at the pose where the other rows hold."""
+    """Return violations as lengths and angles, for positions at the pose that satisfies the other rows."""
     kept = np.ones(len(pose.C), dtype=bool)
     kept[every] = False
     if level == "position":

@@ -238,7 +238,7 @@ def test_the_response_of_a_free_body(held, gain):
     acceleration = np.full(3, gain) if gain else 1 / (2 + 6 / s)
     expected = np.stack([acceleration, acceleration / s**2, np.zeros(3)], -1)
     np.testing.assert_allclose(found.response(frequencies)[:, :, 0], expected, rtol=1e-7, atol=1e-12)
-    with pytest.raises(InputError, match="found 0 Hz, the frequency of a motion that nothing holds"):
+    with pytest.raises(InputError, match="found 0 Hz, the frequency of an unconstrained motion"):
         found.response(np.array([0.0, 1.0]))
 
 
@@ -248,5 +248,5 @@ def test_a_held_body_has_a_response_at_zero_hertz_but_none_at_its_own_frequency(
         stiffmbs.read_scene(text + "forces: {f: {type: force, i: a, force: [-50*a.x, 0]}}"), ["a.fx"], ["a.x"]
     )
     np.testing.assert_allclose(found.response(np.array([0.0])), 1 / 50, rtol=1e-7)
-    with pytest.raises(InputError, match="the frequency of an undamped motion"):
+    with pytest.raises(InputError, match="the frequency of an undamped mode"):
         found.response(np.array([5 / (2 * np.pi)]))

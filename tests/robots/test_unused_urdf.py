@@ -93,8 +93,8 @@ def test_a_link_with_inertia_and_no_mass_keeps_it(tmp_path, kind, mass):
     ("kind", "wrist", "said"),
     [
         ("fixed", '<mimic joint="hinge" multiplier="2"/>', "'mimic' has no effect on fixed joints: wrist"),
-        ("fixed", '<mimic joint="nothing"/>', "mimic no other: wrist"),
-        ("fixed", '<mimic/>' + LIMIT, "mimic no other: wrist"),
+        ("fixed", '<mimic joint="nothing"/>', "'mimic' has no effect on fixed joints: wrist"),
+        ("fixed", '<mimic/>' + LIMIT, "'mimic' has no effect on fixed joints: wrist"),
         ("revolute", LIMIT + '<mimic joint="hinge" multiplier="2"/>', ""),
     ],
 )  # fmt: skip

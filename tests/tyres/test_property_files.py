@@ -78,7 +78,7 @@ def test_files_of_this_formula_leave_later_coefficients_out(read, kind):
 
 @pytest.mark.parametrize("name", LATER)
 def test_later_coefficients_without_fittyp_are_refused(read, name):
-    with pytest.raises(InputError, match=f"line 23: found {name} and no FITTYP"):
+    with pytest.raises(InputError, match=f"line 23: found {name} without FITTYP"):
         read(FILE.replace("PCX1 = 1.6", f"PCX1 = 1.6\n{name} = 0.37"))
     unchanged = read(FILE.replace("PCX1 = 1.6", f"PCX1 = 1.6\n{name} = {AS_BEFORE[name]}"))
     assert name not in " ".join(unchanged.notes())

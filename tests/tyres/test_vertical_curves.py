@@ -97,7 +97,7 @@ WITHIN = {"load": 10, "slip": 1.5, "angle": 12, "camber": 10}
 def test_ranges_that_are_left_are_noted_with_the_extremes(tyre, narrow, said, duration):
     properties = tyre(RANGES.format(**{**WITHIN, **narrow}))
     model = wheel(MagicFormulaTyre(i="wheel", properties=properties), 0.32, 0.01, 0.05, 0.05, spin=30)
-    notes = [note for note in model.run(duration=duration, points=5).notes if "leaves the ranges" in note]
+    notes = [note for note in model.run(duration=duration, points=5).notes if "leaves the valid ranges" in note]
     assert bool(notes) == bool(said)
     assert not said or (said in notes[0] and notes[0].startswith("'tyre' leaves") and "valid from" in notes[0])
 
@@ -105,4 +105,4 @@ def test_ranges_that_are_left_are_noted_with_the_extremes(tyre, narrow, said, du
 def test_a_tyre_in_the_air_leaves_no_range(tyre):
     properties = tyre("[LONG_SLIP_RANGE]\nKPUMAX = 0.001\n[INCLINATION_ANGLE_RANGE]\nCAMMAX = 1\n")
     model = wheel(MagicFormulaTyre(i="wheel", properties=properties), 0.32, -0.2, camber=0.1)
-    assert not any("leaves the ranges" in note for note in stiffmbs.run(model, duration=0.01).notes)
+    assert not any("leaves the valid ranges" in note for note in stiffmbs.run(model, duration=0.01).notes)

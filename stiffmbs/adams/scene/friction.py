@@ -1,8 +1,8 @@
 """Friction of joints as forces and torques by formulas.  MSC Adams/Solver, FRICTION statement.
 
-What presses a joint's surfaces is read off its reaction, and the coefficient goes over the speed of the surface as STEP5:
-from zero to the static one at the stiction velocity, on to the dynamic one at a multiple of that.  Nothing sticks for good: Adams'
-creep of up to MAX_STICTION_DEFORMATION has no counterpart.
+The normal force follows from the reaction of the joint.  The coefficient of friction is a STEP5 function of the sliding speed: from
+zero to the static coefficient at the stiction velocity, then to the dynamic coefficient at a multiple of it.  Joints creep below
+the stiction velocity; Adams' MAX_STICTION_DEFORMATION has no counterpart.
 """
 
 from __future__ import annotations

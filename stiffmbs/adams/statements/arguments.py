@@ -106,7 +106,7 @@ class Arguments:
         found[name] = Argument(name, values, line)
 
     def without_effect(self, *names: str) -> None:
-        """Leave arguments out of the report of unused ones."""
+        """Exclude arguments from the report of unused arguments."""
         self._found.request(*names)
 
     def fault(self, reason: str, line: int | None = None) -> DatasetFault:

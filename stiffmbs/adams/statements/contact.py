@@ -39,7 +39,7 @@ class Contact(Numbered):
     others : tuple of (int, int)
         Further pairs, if a side lists several.
     part : int
-        Number of the pair, from 0.
+        Number of the pair: 0 for the first, then 2, 3, ...
     stiffness, damping, exponent, depth : float
         K, C, e, and the penetration at which full damping applies.
     friction : Friction or None

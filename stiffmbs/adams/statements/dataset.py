@@ -221,7 +221,7 @@ def read_statement(name: str, statement: Statement, units: Units, before: Part |
 
 
 def _refuse_zero_bytes(name: str | None, statement: Statement) -> None:
-    """Refuse zero bytes in a statement that counts, or in the name of one."""
+    """Refuse zero bytes in a statement that is used, or in its name."""
     for piece in statement.pieces:
         if ZERO_BYTE in piece.text and name is None:
             raise InputError(f"line {piece.line}: found a zero byte, expected text")
@@ -255,7 +255,7 @@ def _unread(named: list[tuple[str | None, Statement]]) -> str:
 
 
 def _unused_arguments(named: list[tuple[str | None, Statement]]) -> list[str]:
-    """Notes on arguments of statements that nobody has requested, but for texts."""
+    """Yield notes on unused arguments of statements, except texts."""
     for name, statement in named:
         for fields in statement.requests:
             fields.request(
@@ -275,7 +275,7 @@ def _notes(named: list[tuple[str | None, Statement]], ended: bool, without_title
         yield "line 1 is the title of a dataset, but reads as a statement: it is taken as one, which Adams would leave out"
     kinds: dict[str, list[int]] = {}
     for name, statement in named:
-        if name in LEFT_OUT or name in REFUSED:  # of these a GSE alone comes so far
+        if name in LEFT_OUT or name in REFUSED:  # only a GSE reaches this point
             kinds.setdefault(name or "", []).append(statement.line)
     for name, lines in kinds.items():
         listed = ", ".join(map(str, lines[:MOST_LISTED]))

@@ -20,7 +20,7 @@ _HEAD = re.compile(r"\s*([A-Za-z_]\w*)\s*(?:/\s*((?:\w+(?=\s*(?:[,\x00]|\Z)))?))
 _ALIAS = re.compile(r"!\s*adams_view_name\s*=\s*'([^']*)'", re.IGNORECASE)
 _TWO_VALUES = re.compile(r"[\w.)]\s*\x00\s*[\w.]|[\d.)]\s*\x00\s*\(")
 ZERO_BYTE = "\ufffd"
-"""Stands for a zero byte, which statements that are left out may have."""
+"""Placeholder of a zero byte, which ignored statements may contain."""
 _LINE_COMMA = "\x00"
 """Stands for a comma that starts a continuation line: it parts arguments, but not the terms of a function."""
 
@@ -48,22 +48,22 @@ class Subsystem:
 
 @dataclass(frozen=True)
 class Statement:
-    """A statement as written.
+    """Statement of a dataset or command file.
 
     Attributes
     ----------
     word : str
-        What stands before the slash, in capitals.
+        Text before the slash, in capitals.
     ident : str
-        What stands after it.
+        Text after the slash.
     pieces : tuple of Subsystem
     line : int
     alias : str
-        The name in Adams/View, where a comment before the statement tells it.
+        Name in Adams/View, from a comment before the statement.
     changes : tuple of (int, tuple of Subsystem)
-        What commands give of its arguments anew, with the line of each.
+        Arguments that commands change, with the line of each.
     requests : list of Fields
-        Of its arguments, with a record of those that are requested; filled when the statement is read.
+        Arguments, with a record of those that are requested; filled when the statement is read.
     """
 
     word: str

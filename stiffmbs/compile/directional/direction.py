@@ -44,7 +44,7 @@ class Numbers:
 
 
 def unchanged(system: System) -> Numbers:
-    """Return a direction for derivatives by the state and time alone: no number is differentiated."""
+    """Return a direction for derivatives with respect to state and time; no numbers are differentiated."""
     return Numbers(tuple(group.numbers for group in system.groups), frozenset(), np.zeros(system.n_u))
 
 

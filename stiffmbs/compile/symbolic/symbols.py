@@ -41,18 +41,19 @@ INTERNAL = re.compile(
     "|".join((*SPACE.positions, *SPACE.velocities, *SPACE.accelerations))
     + r"|a\d\d|e\d|phi\d|n|size|turn\d+|carried\d+_\d+|s"
 )
-"""Stems of the symbols of bodies, rotations and common subexpressions, which end with ``_`` and a number, too."""
+"""Stems of the symbols of bodies, rotations and common subexpressions, which end with ``_`` and a number as well."""
 
 
 @dataclass(frozen=True)
 class Law:
-    """A table or function with zones (`stiffmbs.compile.law_zones`) that a formula calls with something of the state.
+    """Table or function with zones (`stiffmbs.compile.law_zones`) that a formula calls with an argument that depends on the state.
 
     Attributes
     ----------
     argument : expression
     of : (str, int)
-        The zones' name, ``turn`` for the argument of a sine; for ``table`` the place of its offset among the element's numbers, else 0.
+        Name of the zones (``turn`` for the argument of a sine) and, for ``table``, the index of its offset in the element's numbers,
+        else 0.
     """
 
     argument: sp.Expr

@@ -82,19 +82,19 @@ def _keys(place: Any, path: str) -> list[str]:
 def refuse_unused_parameters(
     scene: dict[str, Any], changes: Sequence[tuple[str, Any]], sections: Collection[str]
 ) -> None:
-    """Refuse to add a parameter that no other change uses: misspelt, it would change nothing and nobody would know.
+    """Refuse a change that adds a parameter which no other change uses: a misspelt name would have no effect.
 
     Parameters
     ----------
     scene : mapping
     changes : sequence of (path, value)
     sections : collection of str
-        What a scene may have at its top.
+        Sections that a scene may have.
 
     Raises
     ------
     InputError
-        Names the parameter and those of the scene.
+        When there is no such parameter; names the parameters of the scene.
     """
     known = scene.get("parameters") or {}
     added = {

@@ -1,7 +1,6 @@
-"""Files that a scene is read from: each is read here, within a limit of its size, and its digest is recorded.
+"""Read the files of a scene, with a limit on their size, and record their digests.
 
-A store or a cache whose entries follow from a scene depends on this record: a scene that names a file of another content is
-another scene.
+Stores and caches depend on this record: a scene is different if a file that it names has different content.
 """
 
 from __future__ import annotations
@@ -17,12 +16,12 @@ from pathlib import Path
 from typing import Any
 
 FOLDER = "folder"
-"""Key in the context of a validation: where files are looked for."""
+"""Key in the validation context: the folder of relative file names."""
 LARGEST = 500_000_000
-"""Bytes of a file that is read as a whole, and of standard input."""
+"""Largest size of a file or of standard input, bytes."""
 
 Digests = dict[str, str]
-"""Digests of files' contents by the files' names; empty for a file that cannot be read."""
+"""Digests of file contents by file name; empty for a file that cannot be read."""
 _RECORDS: ContextVar[tuple[Digests, ...]] = ContextVar("records", default=())
 _SORTS = (
     (stat.S_ISDIR, "a folder"), (stat.S_ISFIFO, "a pipe"), (stat.S_ISCHR, "a device"), (stat.S_ISBLK, "a device"),
@@ -32,7 +31,7 @@ _SORTS = (
 
 @contextmanager
 def recorded() -> Iterator[Digests]:
-    """Record the digests of all files that are read within; records may be nested."""
+    """Record the digests of all files that are read in this context; records may be nested."""
     found: Digests = {}
     token = _RECORDS.set((*_RECORDS.get(), found))
     try:
@@ -42,13 +41,13 @@ def recorded() -> Iterator[Digests]:
 
 
 def record(digests: Mapping[str, str]) -> None:
-    """Add files to the records that are open, as where a cache stands for reading them again."""
+    """Add files to the open records, for example if a cache replaces reading them."""
     for each in _RECORDS.get():
         each.update(digests)
 
 
 def file_beside(context: Mapping[str, Any], name: str | Path) -> Path:
-    """Return the file that a scene names, from the scene's folder on."""
+    """Return the path of a file that a scene names, relative to the folder of the scene."""
     return Path(context.get(FOLDER) or "") / name
 
 
@@ -58,30 +57,30 @@ def content_of(path: str | Path, largest: int = LARGEST) -> bytes:
     Parameters
     ----------
     path : str or Path
-        No pipe or device is waited for.
+        Pipes and devices are refused.
     largest : int
-        Bytes from which on a file is refused.
+        Largest accepted size, bytes.
 
     Raises
     ------
     OSError
-        When it cannot be read, is no regular file, or is larger.
+        When it cannot be read, is not a regular file, or is larger.
     ValueError
-        For a name that no file has.
+        For an invalid file name.
     """
     record({str(path): ""})
     handle = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
     with os.fdopen(handle, "rb") as file:
         _check(os.fstat(handle), path, largest)
         content = file.read(largest + 1)
-    if len(content) > largest:  # it has grown, or tells no size
+    if len(content) > largest:  # it has grown, or has no size
         raise _too_large(path, len(content), largest)
     record({str(path): hashlib.sha256(content).hexdigest()})
     return content
 
 
 def check_regular(path: str | Path) -> None:
-    """Refuse what is no regular file, for readers that open it themselves.
+    """Refuse anything except a regular file, for readers that open the file themselves.
 
     Raises
     ------
@@ -92,7 +91,7 @@ def check_regular(path: str | Path) -> None:
 
 
 def digest_of_file(path: str | Path) -> str:
-    """Return the digest of a file's content; empty where it cannot be read."""
+    """Return the digest of a file's content, or an empty string if it cannot be read."""
     try:
         return hashlib.sha256(content_of(path)).hexdigest()
     except (OSError, ValueError):

@@ -52,9 +52,9 @@ def read_including(text: str, source: str, file: Path | None) -> tuple[Any, Call
     text : str
         YAML.
     source : str
-        What messages call it.
+        Name of the text in messages.
     file : Path or None
-        The file that the text is of, beside which those are that it includes; the working folder's without one.
+        File of the text; included files are relative to its folder, or to the working folder if it is None.
 
     Returns
     -------

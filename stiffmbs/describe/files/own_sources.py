@@ -1,8 +1,7 @@
-"""Digests of users' own Python code that a scene's elements use: what they compute may follow from any function, number or file of it.
+"""Digests of the user's Python code that the elements of a scene use.
 
-The source file of each function and class is among the files that a scene is read from.  The code as it is loaded has a digest of its
-own, as a file may have been edited since.
-Other functions and classes of the user's that are named in the code are followed, as are values in its closures and modules.
+The source file of each function and class belongs to the files of the scene.  The loaded code has a separate digest, because the file
+may have been edited since.  User functions and classes that the code names are followed, as are values in closures and modules.
 """
 
 from __future__ import annotations
@@ -25,19 +24,19 @@ if TYPE_CHECKING:
 
 PACKAGE = __name__.partition(".")[0]
 CODE = "code of "
-"""Before the name of a file, for the digest of its code as it is loaded."""
+"""Prefix of a file name for the digest of its loaded code."""
 PLAIN = (int, float, complex, str, bytes, bool, type(None))
 
 
 def own_sources(scene: Scene) -> dict[str, str]:
-    """Return digests of the code of a scene's own elements by file; none for a scene of the package's elements alone."""
+    """Return the digests of the code of user-defined elements by file; empty for a scene with elements of the package only."""
     kinds = {type(element) for section in (scene.joints, scene.forces) for element in section.values()}
     own = {kind for kind in kinds if kind.__module__.partition(".")[0] != PACKAGE}
     return digests_of_code(own) if own else {}
 
 
 def digests_of_code(found: Iterable[Any]) -> dict[str, str]:
-    """Return digests by file of classes and functions, and of all that their code uses of the same user's."""
+    """Return the digests by file of classes and functions, and of all user code that they use."""
     digests = {}
     for file, parts in _Walk(found).parts.items():
         digests[file] = digest_of_file(file)
@@ -46,12 +45,12 @@ def digests_of_code(found: Iterable[Any]) -> dict[str, str]:
 
 
 class _Walk:
-    """Classes and functions that can be reached from some, each visited once.
+    """Classes and functions that are reachable from given ones, each visited once.
 
     Attributes
     ----------
     parts : dict of str to list of str
-        What the digest of each source file, or of a module without one, consists of.
+        Texts from which the digest of each source file, or of a module without one, is computed.
     """
 
     def __init__(self, found: Iterable[Any]) -> None:
@@ -110,7 +109,7 @@ class _Walk:
         return self._is_own_module(_module_of(found))
 
     def _is_own_module(self, name: str) -> bool:
-        """Return True for a module of the user's own packages, or one that is not installed."""
+        """Return True for a module of the user: one that is not installed, or belongs to a user package."""
         top = name.partition(".")[0]
         if top in self._packages:
             return True
@@ -122,7 +121,7 @@ class _Walk:
 
 @functools.cache
 def _installed() -> tuple[Path, ...]:
-    """Return where Python's library and installed packages are."""
+    """Return the folders of Python's standard library and of installed packages."""
     return tuple({Path(sysconfig.get_paths()[name]) for name in ("stdlib", "platstdlib", "purelib", "platlib")})
 
 
@@ -131,7 +130,7 @@ def _module_of(found: Any) -> str:
 
 
 def _file_of(found: Any) -> str:
-    """Return the source file of a class or function; a name of its module where it has none."""
+    """Return the source file of a class or function, or the name of its module if it has no file."""
     try:
         return inspect.getsourcefile(found) or f"module {_module_of(found)}"
     except (TypeError, OSError):
@@ -146,13 +145,13 @@ def _is_filled(cell: Any) -> bool:
 
 
 def _text_of(code: CodeType) -> str:
-    """Return the code of a function as text, with that of the functions within it."""
+    """Return the code of a function and of its nested functions as text."""
     constants = [_text_of(found) if isinstance(found, CodeType) else _plain(found) for found in code.co_consts]
     return repr((code.co_name, code.co_code.hex(), code.co_names, code.co_varnames, constants))
 
 
 def _names(code: CodeType) -> Iterator[str]:
-    """Return the names that a function's code, and that of the functions within it, uses."""
+    """Return the names used by a function and by its nested functions."""
     yield from code.co_names
     for found in code.co_consts:
         if isinstance(found, CodeType):
@@ -160,7 +159,7 @@ def _names(code: CodeType) -> Iterator[str]:
 
 
 def _plain(found: Any) -> str:
-    """Return data as text that is the same in every process; empty for anything else."""
+    """Return data as text that is the same in every process, or an empty string for other objects."""
     if isinstance(found, PLAIN):
         return repr(found)
     if isinstance(found, tuple | list):

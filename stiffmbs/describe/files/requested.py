@@ -1,4 +1,4 @@
-"""Fields of files of other programs: which of them a reader requests, and notes on the others."""
+"""Fields of files of other programs, with notes on the fields that are not used."""
 
 from __future__ import annotations
 
@@ -6,23 +6,23 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, TypeVar
 
 MOST_OWNERS = 5
-"""Elements that a note names for one field."""
+"""Largest number of elements that a note names for one field."""
 Value = TypeVar("Value")
 
 
 class Fields(Mapping[str, Value]):
-    """The fields of one element of a file by name, with a record of those that a reader requests.
+    """Fields of one element of a file, with a record of the requested ones.
 
     Parameters
     ----------
     kind : str
-        Of the element, such as ``joint`` or ``[VERTICAL]``.
+        Kind of the element, such as ``joint`` or ``[VERTICAL]``.
     owner : str
-        The element's name or number; empty where the kind occurs once in a file.
+        Name or number of the element; empty if the kind occurs once in a file.
     values : mapping of str to Any
-        The fields that the file has.
+        Fields of the element in the file.
     defaults : mapping of str to Any
-        Values that have the effect of a missing field.
+        Values that have the same effect as a missing field.
     """
 
     def __init__(
@@ -51,7 +51,7 @@ class Fields(Mapping[str, Value]):
         return name in self._values
 
     def request(self, *names: str) -> None:
-        """Record that fields are used by other means than this mapping."""
+        """Record fields that are used without this mapping."""
         self._requested.update(names)
 
     def unused(self) -> list[str]:
@@ -64,13 +64,13 @@ class Fields(Mapping[str, Value]):
 
 
 def unused_notes(elements: Iterable[Fields[Any]], reasons: Mapping[str, Mapping[str, str]] | None = None) -> list[str]:
-    """Return a note on the fields that no reader has requested, and one for each reason that is known.
+    """Return notes on the fields that were not requested, one for each known reason.
 
     Parameters
     ----------
     elements : iterable of Fields
     reasons : mapping of str to (mapping of str to str)
-        Why a field has no effect, by kind and name; ``*`` stands for any kind or name.
+        Reasons why a field has no effect, by kind and name; ``*`` matches any kind or name.
     """
     owners: dict[str, dict[str, list[str]]] = {}
     for element in elements:
@@ -97,7 +97,7 @@ def _listed(field: str, owners: list[str]) -> str:
 
 
 def _same(value: Any, default: Any) -> bool:
-    """Return True for two texts of one number or word, and for equal numbers or sequences of numbers."""
+    """Return True for two texts of the same number or word, and for equal numbers or sequences."""
     texts = [[str(part).strip().lower() for part in _parts(x)] for x in (value, default)]
     return len(texts[0]) == len(texts[1]) and all(a == b or _equal(a, b) for a, b in zip(*texts, strict=True))
 

@@ -31,20 +31,20 @@ def source_name(path: str | Path) -> str:
 
 
 def file_text(path: str | Path, otherwise: str = "", zero: str = "") -> str:
-    """Read a text file, or standard input where its name is ``-``.
+    """Read a text file, or standard input for the name ``-``.
 
     Parameters
     ----------
     path : str or Path
     otherwise : str
-        The encoding of a file that is neither UTF-8 nor UTF-16; such a file is refused without it.
+        Encoding of a file that is neither UTF-8 nor UTF-16; such a file is refused if it is empty.
     zero : str
-        Stands for a zero byte within the text; such a file is refused without it.
+        Replacement of zero bytes; files with zero bytes are refused if it is empty.
 
     Raises
     ------
     InputError
-        When the file cannot be read, is no regular file, is larger than `LARGEST`, or is no text.
+        When the file cannot be read, is not a regular file, is larger than `LARGEST`, or is not text.
     """
     source = source_name(path)
     if str(path) == STANDARD_INPUT and sys.stdin is None:

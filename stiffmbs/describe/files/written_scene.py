@@ -10,20 +10,20 @@ from typing import Any
 
 @dataclass(frozen=True)
 class WrittenScene:
-    """The content of a scene's file, and what was changed of it; scenes are equal wherever they come from.
+    """Content of a scene file, and its changes.  It is ignored when scenes are compared.
 
     Attributes
     ----------
     content : mapping
-        As it stands in the file, with what it includes; not to be changed.
+        Content of the file, with included files; read-only.
     changes : tuple of (path, value)
-        Values put in place of the file's.
+        Values that replace those of the file.
     source : str
-        What messages call it.
+        Name of the scene in messages.
     folder : Path or None
-        Where meshes are looked for.
+        Folder of meshes.
     files : dict of str to str
-        Digests of all files that were read for it besides its own, and of the code of users' own elements.
+        Digests of all other files that were read for it, and of the code of user-defined elements.
     """
 
     content: Mapping[str, Any] = field(compare=False)

@@ -47,35 +47,34 @@ Rule = Callable[[Sequence[Part], ast.expr], Known]
 
 @dataclass(frozen=True)
 class FormulaFunction:
-    """A function of formulas: all that the program knows of it, or where that is.
+    """Function that formulas may call, with its properties.
 
     Attributes
     ----------
     takes : Takes
     dimension : Rule
     value : callable
-        Of numbers.
+        Evaluates numbers.
     array : callable
-        Of NumPy's arrays.
+        Evaluates NumPy arrays.
     symbolic : str
-        What stands for it in equations, and in kernels: ``sympy.sin``, which is also called so in C's library, or a class or
-        function of `stiffmbs.compile.symbolic.nonsmooth`.  Empty for a function whose value jumps, so that no integrator could
-        follow it: only formulas that are reported may call it.
+        Its counterpart in equations and kernels: ``sympy.sin``, which has the same name in the C library, or a class or function
+        of `stiffmbs.compile.symbolic.nonsmooth`.  Empty for a discontinuous function, which only formulas for output may call.
     enclosure : str
-        Its interval form, of `stiffmbs.compile.inputs.enclosed_functions`; empty where that follows from the derivative.
+        Its interval form in `stiffmbs.compile.inputs.enclosed_functions`; empty if it follows from the derivative.
     derivative : str
-        By x, of a function of x, as a formula.
+        Derivative of a function of x with respect to x, as a formula.
     breakpoints : Breakpoints
     domain : (float, float)
-        Arguments for which it has a value.
+        Domain of the argument.
     poles : bool
-        Whether it grows beyond all bounds within its domain.
+        True if it is unbounded within its domain.
     zones : str
-        The zones of `stiffmbs.compile.law_zones` in which its features are narrow where the argument is steep.
+        Its zones in `stiffmbs.compile.law_zones`, which resolve narrow features.
     turns : bool
-        Whether it repeats with each turn of its argument.
+        True if it is periodic in its argument.
     in_numbers : bool
-        Whether numbers may call it, and not only formulas.
+        True if numbers may call it as well as formulas.
     """
 
     takes: Takes

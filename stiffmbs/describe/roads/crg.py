@@ -57,11 +57,11 @@ AnyCrg = Annotated[CrgGrid, _CrgField()]
 
 
 class CrgRoad(Road):
-    """A road by an OpenCRG file (.crg): heights beside a straight or curved reference line, with its slope and banking.
+    """A road by an OpenCRG file (.crg): heights along a straight or curved reference line, with its slope and banking.
 
-    Along each long section the height is interpolated by monotone cubics (PCHIP), between two sections straight; beyond the road it stays.
-    Of more long sections than `sections` so many are used, equally far apart, and a note says so.  The line may turn by up to
-    80 deg from its mean direction.
+    The height is interpolated by monotone cubics (PCHIP) along each long section, and linearly between two sections; it is constant
+    beyond the road.  If the file has more long sections than `sections`, that number of equally spaced ones is used, and a note
+    says so.  The line may turn by up to 80 deg from its mean direction.
 
     ASAM OpenCRG 1.2, user manual.
     """

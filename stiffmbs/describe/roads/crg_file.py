@@ -20,9 +20,9 @@ WIDTH = 72
 REFUSED = {"ROAD_CRG_FILE": "a reference to another file", "ROAD_CRG_MODS": "modifiers"}
 """Blocks that change what the file says, and what they hold."""
 TEXTS = ("CT",)
-"""Blocks of comments."""
+"""Comment blocks."""
 OF_NO_EFFECT = {f"REFERENCE_LINE_OFFSET_{axis}": 0.0 for axis in ("X", "Y", "Z", "PHI")}
-"""Numbers of ``$ROAD_CRG`` that are not used, and their values without effect."""
+"""Unused numbers of ``$ROAD_CRG``, and their values without effect."""
 
 
 @dataclass(frozen=True)
@@ -35,23 +35,23 @@ class Entry:
 
 @dataclass(frozen=True)
 class CrgHeader:
-    """The header of a file.
+    """Header of a file.
 
     Attributes
     ----------
     blocks : Fields of lists of Entry
     numbers : Fields of float
-        Of ``$ROAD_CRG``, by the names in capitals.
+        Numbers of ``$ROAD_CRG`` by name, in capitals.
     layout : str
-        Of the data: LRFI, LDFI, KRBI or KDBI.
+        Format of the data: LRFI, LDFI, KRBI or KDBI.
     channels : list of Entry
-        What stands behind ``D:``.
+        Channel definitions, ``D:``.
     u : tuple of float
         Start and increment, m.
     line : int
-        The last line of the header.
+        Last line of the header.
     end : int
-        Where the data begin, in bytes.
+        Offset of the data, bytes.
     """
 
     blocks: Fields[list[Entry]]

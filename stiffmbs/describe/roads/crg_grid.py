@@ -32,25 +32,25 @@ SAME_AT_END = {"S": 1e-3, "B": 1e-3, "Z": 1e-2}
 
 @dataclass(frozen=True, eq=False)
 class CrgGrid:
-    """A curved regular grid.
+    """Curved regular grid.
 
     Attributes
     ----------
     path : str
     u : ndarray, shape (n,)
-        Along the reference line, m.
+        Coordinates along the reference line, m.
     v : ndarray, shape (k,)
-        To the left of it, m; increasing.
+        Coordinates to the left of it, m; increasing.
     heights : ndarray, shape (n, k)
-        With slope and banking, m.
+        Heights with slope and banking, m.
     x, y : ndarrays, shape (n,)
-        Of the reference line, m.
+        Coordinates of the reference line, m.
     heading : float
-        At its start, rad.
+        Heading at the start, rad.
     level : float
-        Of the reference line at its start, m.
+        Height of the reference line at its start, m.
     remarks : tuple of str
-        What of the file is not used.
+        Notes on unused parts of the file.
     """
 
     path: str

@@ -13,10 +13,10 @@ from .rolling_filter import through_filter
 
 
 class GridRoad(Road):
-    """A road whose heights stand on a grid in a file: its first row has y, each further row x and the heights there, in m.
+    """Road with heights on a grid in a file: the first row has y, each further row has x and the heights there, in m.
 
-    Along each line the height is interpolated by monotone cubics (PCHIP), between two lines straight; beyond the first and the last line
-    it stays, and beyond both ends it goes on with their slope.
+    The height is interpolated by monotone cubics (PCHIP) along each line, and linearly between two lines.  It is constant beyond the
+    first and the last line, and extrapolated with the end slopes beyond both ends.
     """
 
     kind: ClassVar[str] = "grid"

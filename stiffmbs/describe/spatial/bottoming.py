@@ -1,8 +1,7 @@
-"""Contact of a wheel's rim with the road where the tyre is pressed in too far.
+"""Contact of a wheel's rim with the road at large tyre deflections.
 
-The rim is a cylinder of the tyre's width W.  With the penetration d of its middle and the camber gamma the penetration
-across the width is d + y tan(gamma); the force is that of a curve at the mean penetration, at the centre of the
-penetrated area.  MSC Adams/Tire, PAC2002, wheel bottoming.
+The rim is a cylinder of the tyre's width W.  With the penetration d at mid-width and the camber gamma, the penetration across the
+width is d + y tan(gamma).  The force is that of a curve at the mean penetration.  It acts at the centre of the penetrated area.  MSC Adams/Tire, PAC2002, wheel bottoming.
 """
 
 from __future__ import annotations
@@ -13,7 +12,7 @@ from ..element import Symbolic
 from ..roads.road import above_zero, magnitude
 
 NO_WIDTH = "1e-30"
-"""m, added to the half difference of penetrations where it divides."""
+"""m, added to the half difference of penetrations in a divisor."""
 
 
 def bottomed(e: Symbolic, rim: Any, depth: Any, camber: Any) -> tuple[Any, Any]:
@@ -24,9 +23,9 @@ def bottomed(e: Symbolic, rim: Any, depth: Any, camber: Any) -> tuple[Any, Any]:
     e : SymbolicElement
     rim : Bottoming
     depth : Expr
-        Penetration of the middle of the rim, m; below zero where it is clear of the road.
+        Penetration of the rim at mid-width, m; negative without contact.
     camber : Expr
-        rad, above zero where the top leans to the right.
+        Camber, rad; positive if the top leans to the right.
     """
     from sympy import Float, Piecewise, tan
 

@@ -117,7 +117,7 @@ class Tyre(Force):
 
     @staticmethod
     def rim_contact(e: Symbolic, deflection: Any, camber: Any) -> tuple[Any, Any] | None:
-        """Normal force of the rim on the road, N, and its overturning torque, N m; None for a tyre without."""
+        """Return the normal force of the rim on the road, N, and its overturning torque, N m, or None for a tyre without rim contact."""
         return None
 
     @classmethod
@@ -145,7 +145,7 @@ class Tyre(Force):
 
     @classmethod
     def _acting(cls, e: Symbolic) -> tuple[Any, Rolling, Any, Any]:
-        """The contact, what the law depends on, the deflection, and the forces Fx, Fy, N and torques with those of the rim."""
+        """Return the contact, the arguments of the law, the deflection, and the forces Fx, Fy, N and torques including the rim."""
         from sympy import atan
 
         touch = cls._touching(e)

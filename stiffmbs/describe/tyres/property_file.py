@@ -47,7 +47,7 @@ class Entry:
 
 @dataclass(frozen=True)
 class Rows:
-    """Rows of numbers below a heading in braces, and the line of the first."""
+    """Rows of numbers after a heading in braces, and the line of the first row."""
 
     line: int
     numbers: tuple[tuple[float, ...], ...]
@@ -55,16 +55,16 @@ class Rows:
 
 @dataclass(frozen=True)
 class PropertyFile:
-    """The content of a file.
+    """Content of a property file.
 
     Attributes
     ----------
     source : str
-        Its name in messages.
+        Name of the file in messages.
     sections : mapping of str to Fields
-        The keys of each section, in capital letters.
+        Keys of each section, in capital letters.
     tables : Fields of Rows
-        By section.
+        Tables by section.
     """
 
     source: str
@@ -78,7 +78,7 @@ class PropertyFile:
         ----------
         key : str
         home : str
-            The section that the key belongs to, which counts where several sections have the key.
+            Section to which the key belongs; it is used if several sections have the key.
 
         Raises
         ------
@@ -99,7 +99,7 @@ class PropertyFile:
         return found[0]
 
     def text(self, key: str, home: str = "") -> str:
-        """Return a value in capital letters, empty where there is none."""
+        """Return a value in capital letters, or an empty string if there is none."""
         entry = self.entry(key, home)
         return entry.text.upper() if entry else ""
 
@@ -109,7 +109,7 @@ class PropertyFile:
         Raises
         ------
         InputError
-            When the file has none, or it is no number.
+            When the value is missing or not a number.
         """
         entry = self.entry(key, home)
         if entry is None:
@@ -117,12 +117,12 @@ class PropertyFile:
         return _number(entry.text, f"{self.source}, line {entry.line}: {key}") * self.factor(dimension)
 
     def factor(self, dimension: str) -> float:
-        """Return the file's unit of a dimension in SI units; SI units where the file has no [UNITS].
+        """Return the file's unit of a dimension in SI units; 1 if the file has no [UNITS].
 
         Raises
         ------
         InputError
-            For a unit that is not known.
+            For an unknown unit.
         """
         value = 1.0
         units: Mapping[str, Entry] = self.sections.get("UNITS", {})

@@ -68,7 +68,7 @@ def _input_of(data: ModelData, name: str) -> Parameterised:
 
 
 def _place(data: ModelData, body: str, marker: str) -> dict[str, Any]:
-    """A marker that a body names, or the body's centre of mass, which is not its origin for every body in space."""
+    """Return a named marker of a body, or its centre of mass, which may differ from its origin in space."""
     if marker:
         return {"body": body, "marker": marker}
     centre = getattr(data.bodies[body], "center_of_mass", None)

@@ -1,4 +1,4 @@
-"""Files that an MJCF file names: MuJoCo opens them itself, and would wait for a pipe without end."""
+"""Files that an MJCF file names.  MuJoCo opens them itself, and would block on a pipe."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ MOST_INCLUDED = 100
 
 
 def check_assets(path: Path) -> None:
-    """Refuse an MJCF file that names what is no regular file, itself or in a file that it includes.
+    """Refuse an MJCF file if it, or a file that it includes, names something other than a regular file.
 
     Raises
     ------
@@ -45,8 +45,8 @@ def check_assets(path: Path) -> None:
 
 
 def _named(file: Path, folder: Path) -> Iterator[tuple[Path, bool]]:
-    """Yield the places in which MuJoCo may look for the files that one names, and whether it is included."""
-    with suppress(ElementTree.ParseError):  # MuJoCo tells what is wrong
+    """Yield the paths at which MuJoCo may look for named files, and True for included files."""
+    with suppress(ElementTree.ParseError):  # MuJoCo reports the error
         root = ElementTree.fromstring(file_text(file))
         folders = {folder} | {folder / value for part in root.iter() for at in FOLDERS if (value := part.get(at))}
         for part in root.iter():

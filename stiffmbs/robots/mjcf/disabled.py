@@ -1,4 +1,4 @@
-"""Switch off the parts of an MJCF model that its flags disable."""
+"""Remove the parts of an MJCF model that its flags disable."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from typing import Any
 from ...describe.files.requested import Fields
 
 OF_PASSIVE = ("SPRING", "DAMPER")
-"""Flags that older versions of MuJoCo have as one, PASSIVE."""
+"""Flags that older versions of MuJoCo combine as PASSIVE."""
 
 
 class Disabled:
-    """The disable flags of a compiled model by their names, with a record of those that are requested.
+    """Disable flags of a compiled model by name, with a record of the requested ones.
 
     Parameters
     ----------
@@ -26,12 +26,12 @@ class Disabled:
         self._on = Fields("flag", "", {name: "enabled" for name, bit in on.items() if m.opt.enableflags & bit})
 
     def __call__(self, *names: str) -> bool:
-        """Return True if any of some features is switched off."""
+        """Return True if any of the features is disabled."""
         found = [name in self._off or (name in OF_PASSIVE and "PASSIVE" in self._off) for name in names]
         return any(found)
 
     def all(self, *names: str) -> bool:
-        """Return True if all of some features are switched off."""
+        """Return True if all of the features are disabled."""
         found = [self(name) for name in names]
         return all(found)
 
@@ -41,5 +41,5 @@ class Disabled:
 
 
 def _bits(kind: Any) -> dict[str, int]:
-    """The flags of an enumeration by their names without prefix."""
+    """Return the flags of an enumeration by name, without prefix."""
     return {name[7:]: int(getattr(kind, name)) for name in dir(kind) if name.startswith(("mjDSBL_", "mjENBL_"))}

@@ -1,4 +1,4 @@
-"""Fields of MJCF elements that differ from MuJoCo's defaults, and which of them the reader requests of the compiled model."""
+"""Fields of MJCF elements that differ from MuJoCo's defaults, with a record of those that the reader requests."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ LISTS = {
     "equality": "equalities", "sensor": "sensors", "key": "keys", "exclude": "excludes", "camera": "cameras",
     "light": "lights", "plugin": "plugins",
 }  # fmt: skip
-"""Kinds of elements, and what MuJoCo's specification calls their lists."""
+"""Kinds of elements, and the names of their lists in MuJoCo's specification."""
 NAMELESS = (
     "alt",
     "ialt",
@@ -29,7 +29,7 @@ NAMELESS = (
     "signature",
     "userdata",
 )
-"""Attributes of a specification's element that are no fields with an effect of their own."""
+"""Attributes of an element of the specification that have no effect of their own."""
 COMPILED: Mapping[str, tuple[str, ...]] = {
     "body": ("pos", "quat", "ipos", "iquat", "inertia", "fullinertia", "mass", "explicitinertial", "childclass", "simple"),
     "joint": ("springdamper", "align"),
@@ -43,9 +43,9 @@ COMPILED: Mapping[str, tuple[str, ...]] = {
     "equality": ("name1", "name2", "data", "objtype", "type", "active"),
     "option": ("disableflags", "enableflags"),
 }  # fmt: skip
-"""Fields that MuJoCo's compiler turns into poses, masses, springs and lengths, which the reader takes from the model."""
+"""Fields that MuJoCo's compiler converts to poses, masses, springs and lengths of the model, which are read."""
 ARRAYS: Mapping[str, tuple[str, ...]] = {"joint": ("jnt", "dof"), "equality": ("eq",)}
-"""Prefixes of a kind's arrays in the model, where they are not the kind itself."""
+"""Prefixes of the arrays of a kind in the model, if different from its name."""
 RENAMED = {
     ("joint", "ref"): ("qpos0",),
     ("joint", "springref"): ("qpos_spring",),
@@ -53,7 +53,7 @@ RENAMED = {
 }
 DRAWING, SOFT, SOLVER, CONTACTS = (
     "graphics",
-    "constraints are exact here, and limits are not held",
+    "constraints are exact here, and limits are not enforced",
     "settings of MuJoCo's solver",
     "contacts are left out",
 )
@@ -78,12 +78,12 @@ REASONS: Mapping[str, Mapping[str, str]] = {
 
 
 class RequestedModel:
-    """A compiled model that records which entries of its arrays are requested.
+    """Compiled model with a record of the requested entries of its arrays.
 
     Attributes
     ----------
     requested : set of (str, int or None)
-        Names of arrays with the index of an entry, None for all; options by ``opt.`` and their names.
+        Names of arrays with the index of an entry, None for all; options as ``opt.`` and their name.
     """
 
     def __init__(self, model: Any) -> None:
@@ -98,12 +98,12 @@ class RequestedModel:
 
     @property
     def plain(self) -> Any:
-        """MuJoCo's own object."""
+        """Return MuJoCo's own object."""
         return self._model
 
 
 class _Options:
-    """The options of a model, of which each that is read is recorded."""
+    """Options of a model, with a record of those that are read."""
 
     def __init__(self, options: Any, requested: set[tuple[str, int | None]]) -> None:
         self._options, self._requested = options, requested
@@ -114,7 +114,7 @@ class _Options:
 
 
 class _Entries:
-    """An array of a model, of which each entry that is read is recorded."""
+    """Array of a model, with a record of the entries that are read."""
 
     def __init__(self, array: np.ndarray, name: str, requested: set[tuple[str, int | None]]) -> None:
         self._array, self._name, self._requested = array, name, requested
@@ -132,13 +132,13 @@ class _Entries:
 
 
 def model_fields(spec: Any, model: RequestedModel) -> Iterator[Fields[Any]]:
-    """Yield the fields of the elements of a specification that was compiled, as far as the reader has requested them.
+    """Yield the fields of the elements of a compiled specification, with a record of the requested ones.
 
     Parameters
     ----------
     spec : mujoco.MjSpec
     model : RequestedModel
-        Its compiled model, after reading.
+        The compiled model, after reading.
     """
     defaults = _defaults()
     for kind, several in LISTS.items():
@@ -173,14 +173,14 @@ def _request(fields: Fields[Any], kind: str, ident: int, model: RequestedModel) 
 
 
 def _at(array: str, ident: int, model: Any) -> int:
-    """The index of a joint's entry in an array over joints, degrees of freedom or coordinates; others are over elements."""
+    """Return the index of an element in an array; joints have arrays over joints, degrees of freedom or coordinates."""
     if array.startswith("dof_"):
         return int(model.jnt_dofadr[ident])
     return int(model.jnt_qposadr[ident]) if array.startswith("qpos") else ident
 
 
 def _defaults() -> dict[str, dict[str, Any]]:
-    """The fields of new elements of each kind."""
+    """Return the default fields of each kind."""
     import mujoco
 
     spec = mujoco.MjSpec()
@@ -193,7 +193,7 @@ def _defaults() -> dict[str, dict[str, Any]]:
 
 
 def _values(element: Any) -> dict[str, Any]:
-    """The fields of an element that are numbers, words or sequences of them."""
+    """Return the fields of an element that are numbers, words or sequences of them."""
     found = {}
     for name in dir(element):
         if name.startswith("_") or name in NAMELESS:

@@ -52,7 +52,7 @@ def read_mjcf(path: str | Path) -> Robot:
 
 
 def _compiled(path: str | Path) -> tuple[Any, Any]:
-    """MuJoCo's specification and model of a file."""
+    """Return MuJoCo's specification and model of a file."""
     try:
         import mujoco
     except ImportError:

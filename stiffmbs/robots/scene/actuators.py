@@ -51,7 +51,7 @@ def actuators(robot: Robot, mechanism: Mechanism) -> Actuators:
 
 
 def _force(found: Actuators, mechanism: Mechanism, transmission: Transmission, holds: list[tuple[Hold, float]]) -> str:
-    """Add the formula of a transmission's force; its name."""
+    """Add the formula of a transmission's force and return its name."""
     name = mechanism.names.take(f"{transmission.name}_force")
     length = " + ".join(f"{plain(gear)}*{hold.coordinate}" for hold, gear in holds)
     rate = " + ".join(f"{plain(gear)}*{hold.rate}" for hold, gear in holds)
@@ -65,12 +65,12 @@ def _force(found: Actuators, mechanism: Mechanism, transmission: Transmission, h
 
 
 def _of_total(transmission: Transmission, name: str, along: list[str]) -> str:
-    """The force of an actuator where the total of all along its tendon is bounded.
+    """Return the force of an actuator if the total force on its tendon is bounded.
 
     Raises
     ------
     RobotFault
-        When several actuators have a total whose bounds do not enclose zero.
+        When the bounds of the total force of several actuators do not enclose zero.
     """
     if transmission.total is None:
         return name

@@ -24,14 +24,14 @@ def joints(robot: Robot, mechanism: Mechanism) -> dict[str, Any]:
 
 
 def passive(robot: Robot, mechanism: Mechanism) -> dict[str, Any]:
-    """Springs, dampers and dry friction of the joints, and dampers of free links."""
+    """Return springs, dampers and dry friction of the joints, and dampers of free links."""
     found = {name: entry for hold in mechanism.holds.values() for name, entry in _passive(mechanism, hold)}
     free = [(link, joint) for link in robot.links for joint in link.joints if joint.kind == "free" and joint.damping]
     return found | {name: entry for link, joint in free for name, entry in _damped(mechanism, link, joint)}
 
 
 def _damped(mechanism: Mechanism, link: Link, joint: LinkJoint) -> Iterator[tuple[str, dict[str, Any]]]:
-    """A force against the velocity of a free link's origin, and a torque against its angular velocity."""
+    """Return a damping force on the origin of a free link, and a damping torque."""
     names = [mechanism.names.take(f"{joint.name}_{what}") for what in ("damper", "rotary_damper")]
     marker = mechanism.mark(link.name, names[0], ORIGIN)
     for name, kind, rate in zip(names, ("force", "torque"), "vw", strict=True):

@@ -60,28 +60,27 @@ class Hold:
 
 
 class Mechanism:
-    """The body that carries each link, its position at the start, and the markers on it.
+    """Bodies of the links, their initial positions and their markers.
 
-    A link that moves, or has mass or inertia, is a body.  A fixed link without both is a marker on the body that carries it, and a
-    link that moves by several joints has a body without mass between each two of them.  What has no mass at its far
-    end does not move.
+    A link that moves, or has mass or inertia, is a body.  A fixed link without either is a marker on its parent body.  A
+    link with several joints has a massless body between each two of them.  Joints that move no mass are left out.
 
     Attributes
     ----------
     bodies : dict of str to (Link, Placed)
-        By name, with the link, or for a body between joints the link that these carry.
+        Bodies by name, each with its link or, for a body between joints, with the link that these joints carry.
     between : set of str
         Names of the bodies between joints.
     seats : dict of str to Seat
-        By link.
+        Seats by link.
     markers : dict of str to dict
-        By body, the placements of markers by name.
+        Placements of markers by name, for each body.
     holds : dict of str to Hold
-        By joint.
+        Holds by joint.
     fixed : dict of str to (str, str)
         Fixed joints by name, with their markers i and j.
     unmoved : tuple of str
-        Joints that move no mass, and are left out.
+        Joints that move no mass and are left out.
     """
 
     def __init__(self, robot: Robot, coordinates: Mapping[str, float], rates: Mapping[str, float]) -> None:
@@ -164,7 +163,7 @@ def along_z(axis: tuple[float, ...]) -> tuple[float, ...]:
 
 
 def _with_mass(robot: Robot) -> set[str]:
-    """Links that have mass or inertia, carry links that have, or feel a rotor."""
+    """Return the links that have mass, inertia or a rotor, or carry links that do."""
     found: set[str] = set()
     for link in reversed(robot.links):
         if link.name in found or link.is_heavy or any(joint.armature > 0 for joint in link.joints):

@@ -25,14 +25,14 @@ def moving_page(title: str, data: dict[str, str]) -> str:
 
 
 def environment() -> Environment:
-    """Return what renders templates: text in them is escaped, for HTML and as `stiffmbs.show.escaped` says."""
+    """Return the environment of templates, which escapes text for HTML and as in `stiffmbs.show.escaped`."""
     from jinja2 import Environment
 
     return Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True, finalize=page_text)
 
 
 def rendered(template: str, **content: Any) -> str:
-    """A template of this folder with its content; text in it is escaped."""
+    """Return a rendered template of this folder, with escaped text."""
     return (
         environment().from_string(files(__package__).joinpath(template).read_text(encoding="utf-8")).render(**content)
     )

@@ -19,7 +19,7 @@ from .steady_motion import SteadyMotion
 BALANCED, ROUNDING = 1e-10, 8
 """Imbalance of forces that counts as none, relative to the largest force; roundings of the coordinates that may be left in them."""
 SLOWEST = 1e-5
-"""Rate, rad/s: a force counts as none that moves its body by the mechanism's size, or 1 rad, in a day (1/SLOWEST)."""
+"""Rate, rad/s: a force is negligible if it moves its body by less than the mechanism's size, or 1 rad, in a day (1/SLOWEST)."""
 SLOW_STATE = 1e-3
 """Rate of a state beside itself, 1/s, of which the same part counts as none as of forces."""
 PASSED_ON = 1e-8
@@ -30,29 +30,29 @@ CONSTRAINED_PART = 1e-9
 
 @dataclass(frozen=True)
 class Balance:
-    """The balance of forces at a pose.
+    """Balance of forces at a pose.
 
     Attributes
     ----------
     left : ndarray, shape (n_u + states,)
-        What multipliers leave of the forces and of the bodies' inertia, and the rates of the user's own states.
+        Residual of forces, inertia forces and reactions, and the rates of the user's own states.
     lam : ndarray
     largest : float
-        The largest force.
+        Largest force.
     allowed : ndarray, shape (n_u + states,)
-        What may be left.
+        Allowed residual.
     stiffness : sparse array
-        How what is left falls with moves of the pose, and changes of states.
+        Negative derivative of the residual with respect to pose and states.
     jacobian, reactions : sparse arrays
-        J of the equations that are not redundant, and how what is left falls with multipliers.
+        J of the independent equations, and the negative derivative of the residual with respect to multipliers.
     dragged : sparse array
-        How rates of states change with velocities.
+        Derivative of the rates of states with respect to velocities.
     motion : SteadyMotion
-        In which this is so.
+        Steady motion of the balance.
     speeds : FoundSpeeds, optional
-        Its speeds that forces tell.
+        Speeds of the motion that the forces determine.
     negligible : ndarray, shape (n_u,)
-        Forces that are none, where all forces vanish in equilibrium.
+        Forces that count as zero if all forces vanish in equilibrium.
     """
 
     left: np.ndarray
@@ -69,7 +69,7 @@ class Balance:
 
     @property
     def imbalance(self) -> float:
-        """Of forces that are not negligible, relative to the largest."""
+        """Largest imbalance of forces that are not negligible, relative to the largest force."""
         forces = np.abs(self.left[: self.dragged.shape[1]])
         return float(np.max(np.where(forces > self.negligible, forces, 0.0), initial=0.0) / (self.largest or 1.0))
 

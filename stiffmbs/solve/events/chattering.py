@@ -48,25 +48,25 @@ class Chattering:
         self._mark: tuple[float, int] | None = None
 
     def begin(self, t: float, q: np.ndarray, u: np.ndarray) -> None:
-        """Look at the state from which the integrator is to start.
+        """Check the state from which the integrator is to start.
 
         Raises
         ------
         ChatteringError
-            Where a force drives the motion back from both sides of its jump; names the element.
+            If a force drives the motion back from both sides of its discontinuity; names the element.
         """
         if self._any:
             self.refuse(t, sliding(self._dynamics, t, q, u))
 
     def look(self, t: float, q: np.ndarray, u: np.ndarray, steps: int) -> None:
-        """Look at a state on the way, after so many steps of the run.
+        """Check a state after a number of steps of the run.
 
         Raises
         ------
         ChatteringError
-            Where a force drives the motion back from both sides of its jump.
+            If a force drives the motion back from both sides of its discontinuity.
         SolverError
-            Where the steps are too short to arrive.
+            If the steps are too short to reach the end.
         """
         if self._any:
             self.refuse(t, sliding(self._dynamics, t, q, u, self._reach))
@@ -84,12 +84,12 @@ class Chattering:
             )
 
     def note_event(self, t: float, q: np.ndarray, u: np.ndarray, event_function: int) -> None:
-        """Take note of an event at a state: an event function, below zero where it is not known, has changed its sign.
+        """Record an event at a state; the number of the event function is negative if it is unknown.
 
         Raises
         ------
         ChatteringError
-            When events follow each other so fast that the run would come to no end; names the element.
+            When events accumulate so that the run would not end; names the element.
         """
         self._count += 1
         self._events.append(t)

@@ -175,10 +175,10 @@ def _driven_back(sides: tuple[_Side, _Side], event_functions: np.ndarray) -> np.
 
 
 def _slides(beside: _Beside, reach: float, event_function: int) -> bool:
-    """Return True if the motion returns to an event function's zero from both sides, with rates that jump there.
+    """Return True if the motion returns to the zero of an event function from both sides, with discontinuous rates.
 
-    The zero is a surface of sliding only where the event function is continuous. One that jumps through zero, as the load of a
-    damper does at a kink of its road, changes its sign at a surface that another event function describes.
+    The zero is a sliding surface only if the event function is continuous.  A function that is discontinuous there, such as the
+    load of a damper at a kink of its road, changes its sign at a surface that another event function describes.
     """
     at_zero = beside.at_zero(reach, event_function)
     values, rates = [], []

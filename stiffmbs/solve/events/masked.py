@@ -17,9 +17,9 @@ from .discontinuity import jumping
 FEW_STEPS, TIMES_THE_WAIT = 4, 4
 """An event within so many steps of a start, and of the wait before, counts as one by rounding."""
 FIRST_WAIT, LONGER, MOST_IN_SUCCESSION = 8, 4, 5
-"""Steps for which an event function is left alone after its second event of that kind, times how many after each further one, up to
-so many: a start's first steps double from one to the next.  A single one may be an event that is met twice, as the start is brought
-back to the constraints."""
+"""Steps for which an event function is masked after its second event of a kind, factor for each further event, and upper bound: the
+first steps after a start double in size.  A single repetition may be an event detected twice, because the start is projected onto
+the constraints."""
 TELLING = 3
 """Such events in succession from which on a force that jumps is told; the first may be those of a start at zero."""
 

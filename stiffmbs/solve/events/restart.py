@@ -22,7 +22,8 @@ INDISTINCT = 4 * float(np.finfo(float).eps)
 
 
 HIDDEN = 1e-11
-"""Part of the time for which rounding may hide that an event function has changed: 10^5 roundings, as of a sine just below its top."""
+"""Interval, relative to the time, in which rounding may hide a change of an event function: 10^5 roundings, as near the maximum of a
+sine."""
 PASSED, LARGEST_RTOL = 1e-2, 1e-4
 """How far the motion goes straight on behind an event: part of the last step, times the relative tolerance or this at most.  What a
 law changes in that time is so much below the tolerance."""
@@ -39,7 +40,7 @@ def just_after(t: float) -> float:
 
 
 def straight_on(t: float, step: float, rtol: float) -> float:
-    """Return the time, s, for which the motion after an event at t is linear, at least what rounding may hide."""
+    """Return the time, s, for which the motion after an event at t is extrapolated, at least the interval that rounding may hide."""
     return max(PASSED * min(rtol, LARGEST_RTOL) * step, HIDDEN * abs(t))
 
 

@@ -19,15 +19,15 @@ from .touches import Touches
 
 @dataclass(frozen=True)
 class Side:
-    """One side of a breakpoint or an event at an output instant.
+    """Side of a breakpoint or an event at an output time.
 
     Attributes
     ----------
     row : OutputRows
-        Of one instant.
+        Rows of one output time.
     change : Change
     values : ndarray, shape (directions, values)
-        How the output terms change.
+        Sensitivities of the output terms.
     """
 
     row: OutputRows
@@ -37,18 +37,18 @@ class Side:
 
 @dataclass(frozen=True)
 class Instant:
-    """The variation of an output instant.
+    """Sensitivities at an output time.
 
     Attributes
     ----------
     number : int
-        Of the instant.
+        Number of the output time.
     change, values
-        As for a side.
+        As in `Side`.
     sides : tuple of Side
-        Those of a breakpoint or an event at this instant that moves; none elsewhere.
+        Both sides of a parameter-dependent breakpoint or event at this time, else empty.
     moved : ndarray of bool, shape (directions,)
-        In which directions it moves.
+        True for the directions in which it moves.
     """
 
     number: int
@@ -82,16 +82,16 @@ class AlongRun:
         )
 
     def at(self, rows: OutputRows, wanted: np.ndarray, start_q: np.ndarray, start_u: np.ndarray) -> Iterator[Instant]:
-        """Yield how the state changes at some of the output instants.
+        """Yield the sensitivities at selected output times.
 
         Parameters
         ----------
         rows : OutputRows
-            Of the run.
+            Rows of the run.
         wanted : ndarray of int
-            The numbers of instants, increasing.
+            Numbers of the output times, increasing.
         start_q, start_u : ndarrays, shapes (directions, n_q), (directions, n_u)
-            How the start changes.
+            Sensitivities of the initial state.
         """
         s, asked = Shifted(start_q, start_u, np.zeros(len(start_q))), list(wanted)
         segments = self._recorder.passed(rows.t[-1] - rows.t[0])
@@ -123,7 +123,7 @@ class AlongRun:
         return Shifted(s[:, self._equations.at["q"]], s[:, self._equations.at["u"]], shift)
 
     def _instant(self, rows: OutputRows, k: int, s: Shifted) -> Instant:
-        """Return how the state of an output instant changes."""
+        """Return the sensitivities of the state at an output time."""
         t, q, u = rows.t[k], rows.q[k], rows.u[k]
         moved_q, moved_u = s.q, s.u
         if s.shift.any():
@@ -133,7 +133,7 @@ class AlongRun:
         return Instant(k, *self._changes(t, q, u, moved_q, moved_u))
 
     def _between(self, rows: OutputRows, k: int, jump: Jump) -> Instant:
-        """Return how an output instant changes that a breakpoint or an event meets."""
+        """Return the sensitivities at an output time that coincides with a breakpoint or an event."""
         found = self._instant(rows, k, jump.s)
         if not jump.moved.any():
             return found
@@ -147,7 +147,7 @@ class AlongRun:
     def _changes(
         self, t: float, q: np.ndarray, u: np.ndarray, moved_q: np.ndarray, moved_u: np.ndarray
     ) -> tuple[Change, np.ndarray]:
-        """Return how a state and its output terms change."""
+        """Return the sensitivities of a state and its output terms."""
         change = self.block.change(t, q, u, moved_q, moved_u, np.zeros(len(moved_q)))
         return change, self.block.outputs(t, change)
 

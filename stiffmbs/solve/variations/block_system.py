@@ -1,4 +1,4 @@
-"""Derivatives of accelerations, multipliers and algebraic states by state and parameters: the block system differentiated."""
+"""Derivatives of accelerations, multipliers and algebraic states with respect to state and parameters."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from .saddle import acceleration_solution
 
 @dataclass(frozen=True)
 class Change:
-    """The variation of a state in each direction, one a row.
+    """Variation of a state, one row for each direction.
 
     Attributes
     ----------
     q, u : ndarrays, shapes (directions, n_q), (directions, n_u)
-        With algebraic states as their equations give them.
+        Variations of coordinates and velocities, with algebraic states that satisfy their equations.
     acceleration, lam : ndarrays, shapes (directions, n_u), (directions, n_c)
     """
 
@@ -50,26 +50,26 @@ class BlockSystem:
     def change(
         self, t: float, q: np.ndarray, u: np.ndarray, moved_q: np.ndarray, moved_u: np.ndarray, moved_t: np.ndarray
     ) -> Change:
-        """Return how accelerations, multipliers and algebraic states change at a state.
+        """Return the variations of accelerations, multipliers and algebraic states at a state.
 
         Parameters
         ----------
         t : float
         q, u : ndarrays, shapes (n_q,), (n_u,)
         moved_q, moved_u : ndarrays, shapes (directions, n_q), (directions, n_u)
-            Columns of algebraic states are not read.
+            Variations of the state; columns of algebraic states are ignored.
         moved_t : ndarray, shape (directions,)
-            How time changes.
+            Variation of time.
 
         Raises
         ------
         SolverError
-            When the state has no accelerations.
+            When the accelerations are not determined.
         """
         return self._change(t, (q, u), self._accelerations, moved_q, moved_u, moved_t)
 
     def motion(self, t: float, q: np.ndarray, u: np.ndarray, q_rates: np.ndarray, acceleration: np.ndarray) -> Change:
-        """Return the rates of all parts of a state along the motion, of one row; errors as for `change`."""
+        """Return the time derivatives of all parts of a state, one row; errors as for `change`."""
         return self._change(t, (q, u), [self._by_time], q_rates[None], acceleration[None], np.ones(1))
 
     def _change(

@@ -1,4 +1,4 @@
-"""Solutions of the block systems for several right sides at once."""
+"""Solve the block systems for several right-hand sides."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from ...compile.system import System
 DENSE_UP_TO = 200
 """Unknowns up to which a full matrix is solved sooner than a sparse one is put together."""
 Entries = tuple[np.ndarray, np.ndarray, np.ndarray]
-"""Rows, columns and values."""
+"""Row indices, column indices and values."""
 
 
 def saddle_solution(state: State, term_set: str, right: np.ndarray) -> np.ndarray:
-    """Return the solution of [M J^T; J 0] [x; w] = right at the state whose terms have just been computed.
+    """Solve [M J^T; J 0] [x; w] = right at the state whose terms have just been computed.
 
     Parameters
     ----------
     state : State
     term_set : str
-        One that J is in.
+        Term set that contains J.
     right : ndarray, shape (n_u + n_c, k)
 
     Returns
@@ -34,7 +34,7 @@ def saddle_solution(state: State, term_set: str, right: np.ndarray) -> np.ndarra
 
 
 def acceleration_solution(state: State, right: np.ndarray) -> np.ndarray:
-    """Return how accelerations, multipliers and algebraic states follow from changes of their equations.
+    """Return the variations of accelerations, multipliers and algebraic states for variations of their equations.
 
     The matrix is [M J^T-f_lam -f_x; J 0 0; 0 -z_lam -z_x]: forces, and the equations z of algebraic states, depend on
     multipliers and on algebraic states.

@@ -24,7 +24,7 @@ ABOUT, SCENE = "model.json", "scene.yaml"
 ENDING, BUILT = ".fmu", "built.fmu"
 _NOT_IN_XML = re.compile("[^\t\n\r -\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 USED = ("SceneSlave", "hold")
-"""Names that the FMU's script has already."""
+"""Names that the script of the FMU already uses."""
 SCRIPT = '''"""The model of the FMU; it needs the package stiffmbs in the Python that runs it."""
 
 from stiffmbs.studies.fmu.slave import SceneSlave, hold
@@ -36,7 +36,7 @@ class {name}(SceneSlave):
     pass
 '''
 LONGEST_NAME = 60
-"""Characters of a model's name, which files of the FMU are called by."""
+"""Largest length of a model name, which is used for file names."""
 
 
 def build_fmu(
@@ -94,7 +94,7 @@ def build_fmu(
 
 
 def model_name(path: str | Path) -> str:
-    """Return what an FMU's model is called after a scene's file: an identifier of C and Python."""
+    """Return the model name of an FMU from the name of a scene file: an identifier of C and Python."""
     name = re.sub(r"\W+", "_", Path(path).stem, flags=re.ASCII).strip("_")[:LONGEST_NAME]
     fits = name[:1].isalpha() and not keyword.iskeyword(name) and name not in USED
     return name if fits else f"model_{name}".rstrip("_")

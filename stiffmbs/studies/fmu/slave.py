@@ -21,10 +21,10 @@ ABOUT, SCENE = "model.json", "scene.yaml"
 
 
 def hold(names: dict[str, Any]) -> None:
-    """Take a reference to the names of an FMU's script that nothing owns.
+    """Take an extra reference to the globals of an FMU's script.
 
-    PythonFMU 0.7 executes the script at each instantiation, and then releases a reference to its names that it does not own: without
-    this the names would be freed while the script is in use.
+    PythonFMU 0.7 executes the script at each instantiation, and then releases a reference to its globals that it does not own.
+    Without the extra reference the globals would be freed while the script is in use.
     """
     with suppress(AttributeError, ImportError, OSError):
         import ctypes
@@ -56,7 +56,7 @@ class SceneSlave(Fmi2Slave):  # type: ignore[misc]
             )
 
     def to_xml(self, model_options: dict[str, str] | None = None) -> Element:
-        """Build the model description; all outputs are unknowns of the initialization, as FMI 2.0.4 asks (section 2.2.8)."""
+        """Build the model description; all outputs are initial unknowns, as FMI 2.0.4 requires (section 2.2.8)."""
         root: Element = super().to_xml(model_options or {})
         structure = root.find("ModelStructure")
         outputs = root.findall("ModelStructure/Outputs/Unknown")
@@ -104,7 +104,7 @@ class SceneSlave(Fmi2Slave):  # type: ignore[misc]
         self._begin()
 
     def _begin(self) -> None:
-        """Read the scene with the values that were set, where that has not been done."""
+        """Read the scene with the values that were set, unless it has been read."""
         if not self._begun:
             finer = self._tolerance and min(self._tolerance, self._steps.scene.run.rtol)
             self._steps.begin(self._start, self._parameters, self._inputs, finer or None)

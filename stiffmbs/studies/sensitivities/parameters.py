@@ -22,7 +22,7 @@ STEP = 1e-4
 parameter is zero.  Set-up is arithmetic, exact to rounding: central differences leave 1e-8 of it and mostly far less."""
 
 ALMOST_ZERO = 1e-300
-"""Value of what is zero where it would leave elements out, as gravity does with weights."""
+"""Value that replaces a zero that would remove elements, such as zero gravity, which removes weights."""
 
 
 class Scenes:
@@ -112,13 +112,13 @@ class Parameter:
         return STEP * (abs(self.value) if abs(self.value) > ALMOST_ZERO else 1.0)
 
     def brings_gravity(self) -> bool:
-        """Return True if gravity differs from zero with another value."""
-        with suppress(InputError):  # another value may not fit
+        """Return True if gravity is nonzero for another value."""
+        with suppress(InputError):  # another value may be invalid
             return any(self.scene(self.value + self.step).gravity)
         return False
 
     def almost_zero(self) -> tuple[str, Any]:
-        """Return the change that replaces a value of zero by one that is too small to have an effect."""
+        """Return the change that replaces zero by a negligible value."""
         return self._path, _replaced(self._whole, self._places, ALMOST_ZERO)
 
     def scene(self, value: float) -> Scene:
@@ -133,7 +133,7 @@ class Parameter:
 
 
 def with_weights(scenes: Scenes, names: Sequence[str]) -> Scenes:
-    """Return scenes whose bodies have weights where a parameter that is zero is all that keeps gravity from acting."""
+    """Return scenes in which bodies have weights if only a zero parameter makes gravity zero."""
     if any(scenes.known.gravity):
         return scenes
     parameters = [Parameter(scenes, name) for name in names]

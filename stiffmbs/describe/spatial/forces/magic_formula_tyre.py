@@ -22,10 +22,12 @@ class MagicFormulaTyre(Tyre):
     """Pacejka's Magic Formula in the form of MF-Tyre 5.2 and PAC2002, with the coefficients of a property file (.tir).
 
     Longitudinal and lateral force, overturning, rolling and aligning torque, pure and combined slip, camber, load, relaxation
-    lengths; which of them, USE_MODE says.  Slip angle and camber enter as angles (Pacejka's book has tan(alpha) and sin(gamma) in their places).  The load is
-    VERTICAL_STIFFNESS d + VERTICAL_DAMPING d', or that of [DEFLECTION_LOAD_CURVE] with the same damping, never below zero; the formula's load is at most FZMAX.
-    With BOTTOMING_RADIUS and [BOTTOMING_CURVE] the rim adds to the normal force and the overturning torque alone.  The rolling radius is
-    UNLOADED_RADIUS - d0 (DREFF atan(BREFF d/d0) + FREFF d/d0), d0 = FNOMIN/VERTICAL_STIFFNESS.  A file without coefficients of combined slip has the friction ellipse, and a note says so.
+    lengths; USE_MODE selects them.  Slip angle and camber enter as angles; Pacejka's book uses tan(alpha) and sin(gamma).
+
+    The load is VERTICAL_STIFFNESS d + VERTICAL_DAMPING d', or that of [DEFLECTION_LOAD_CURVE] with the same damping.  It is never
+    negative; the load in the formula is limited to FZMAX.  With BOTTOMING_RADIUS and [BOTTOMING_CURVE], the rim adds to the normal
+    force and the overturning torque only.  The rolling radius is UNLOADED_RADIUS - d0 (DREFF atan(BREFF d/d0) + FREFF d/d0), with
+    d0 = FNOMIN/VERTICAL_STIFFNESS.  A file without coefficients of combined slip uses the friction ellipse, and a note says so.
 
     Pacejka, Tire and Vehicle Dynamics (2006), sec. 4.3.2; MSC Adams/Tire, PAC2002.
     """
@@ -55,9 +57,9 @@ class MagicFormulaTyre(Tyre):
         return self
 
     def valid_ranges(self) -> Mapping[str, tuple[float, float]]:
-        """Return the ranges of the property file for each quantity, SI units; none where the file gives none."""
+        """Return the valid ranges of the property file for each quantity, SI units; empty if the file has none."""
         ranges = self.properties.ranges
-        return {"load": (-math.inf, math.inf), **ranges} if ranges else {}  # without load nothing counts
+        return {"load": (-math.inf, math.inf), **ranges} if ranges else {}  # without load no range applies
 
     def own_states(self) -> tuple[str, ...]:
         transient = self.properties.is_transient if self.transient is None else self.transient
@@ -82,7 +84,7 @@ class MagicFormulaTyre(Tyre):
 
     @staticmethod
     def rim_contact(e: Symbolic, deflection: Any, camber: Any) -> tuple[Any, Any] | None:
-        """Force of [BOTTOMING_CURVE], and its overturning torque; the rim is a cylinder of the tyre's width."""
+        """Return the force of [BOTTOMING_CURVE] and its overturning torque; the rim is a cylinder of the tyre's width."""
         rim = e.properties.bottoming
         return (
             None if rim is None else bottomed(e, rim, deflection - (e.properties.UNLOADED_RADIUS - rim.radius), camber)
