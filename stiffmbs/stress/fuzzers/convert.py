@@ -1,4 +1,4 @@
-"""Random scenes as datasets and back, and random robots' files, against the scene itself and against MuJoCo."""
+"""Compare random scenes, converted to datasets and back, with themselves, and random robot files with MuJoCo."""
 
 from __future__ import annotations
 
@@ -30,26 +30,26 @@ WHAT = (
     "Random scenes written as datasets and read again, and random MJCF and URDF files against MuJoCo's accelerations."
 )
 EXPORTED = ("force", "torque", "line_force", "spring_damper", "torsion_spring", "bushing", "field", "beam")
-"""Forces that a dataset has; others are taken out of a scene."""
+"""Forces that a dataset can express; others are removed from a scene."""
 WITHOUT = Features(friction=False, tyres=False, parts=False, events=False)
 RTOL, ALIKE = 1e-8, 1e-4
-"""Tolerance of both runs, and of their difference relative to the size of a channel."""
+"""Tolerance of both runs, and allowed difference relative to the size of a channel."""
 ROUNDING = 1e-6
-"""Of accelerations relative to the largest one: slight masses between several joints of one link take part."""
+"""Allowed error of accelerations relative to the largest one; small masses between the joints of one link contribute."""
 INSTANT = 1e-6
-"""s, a run of which the start alone counts."""
+"""Duration, s, of a run of which only the start is used."""
 _NAMED = re.compile(r"\b(joints|forces|states)\.(\w+)")
 
 
 def trial(seed: int) -> Verdict:
-    """A random scene, or an MJCF or URDF file, by the seed."""
+    """Test a random scene, or an MJCF or URDF file."""
     rng = np.random.default_rng(seed)
     kind = rng.choice(["scene", "scene", "mjcf", "urdf"])
     return _converted(rng) if kind == "scene" else _robot(rng, str(kind))
 
 
 def _converted(rng: np.random.Generator) -> Verdict:
-    """A scene against what its dataset is read as: centres of mass, their velocities, and angular speeds."""
+    """Compare a scene with its dataset: centres of mass, their velocities, and angular speeds."""
     content = random_scene(rng, features=WITHOUT)
     content["forces"] = {name: x for name, x in content.get("forces", {}).items() if x["type"] in EXPORTED}
     try:
@@ -71,7 +71,7 @@ def _converted(rng: np.random.Generator) -> Verdict:
 
 
 def _written(content: dict[str, Any]) -> tuple[Any, str, str]:
-    """A scene, in space, as a dataset and as text: without what a dataset has no statement for."""
+    """Return a spatial scene, as a scene and as a dataset, without elements that have no statement."""
     while True:
         text = json.dumps(content)
         scene = read_scene(text)
@@ -89,7 +89,7 @@ def _written(content: dict[str, Any]) -> tuple[Any, str, str]:
 
 
 def _alike(names: dict[str, str], one: Solution, other: Solution, text: str) -> Verdict:
-    """Compare the motions of bodies that have other names in another run."""
+    """Compare the motions of bodies with different names in two runs."""
     worst, where = 0.0, ""
     for body, its in names.items():
         for what in ("x y z", "vx vy vz", "w"):
@@ -101,14 +101,14 @@ def _alike(names: dict[str, str], one: Solution, other: Solution, text: str) -> 
 
 
 def _of_body(solution: Solution, body: str, what: str) -> np.ndarray:
-    """Position, velocity, or the magnitude of the angular velocity, which no axes of the body are in."""
+    """Return position, velocity, or the magnitude of the angular velocity, which does not depend on body axes."""
     if what == "w":
         return np.linalg.norm([solution[f"{body}.w{axis}"] for axis in "xyz"], axis=0)
     return np.array([solution[f"{body}.{name}"] for name in what.split()])
 
 
 def _robot(rng: np.random.Generator, kind: str) -> Verdict:
-    """Accelerations of all centres of mass at a random state, against MuJoCo's."""
+    """Compare the accelerations of all centres of mass at a random state with MuJoCo's."""
     with needs("mujoco", "robots"):
         import mujoco
     text = random_mjcf(rng) if kind == "mjcf" else random_urdf(rng)
@@ -142,7 +142,7 @@ def _robot(rng: np.random.Generator, kind: str) -> Verdict:
 
 
 def _acceleration(mujoco: Any, m: Any, d: Any, body: int) -> np.ndarray:
-    """Of the centre of mass of a body by MuJoCo, m/s^2: J q'' + J' q'."""
+    """Return the acceleration of a centre of mass by MuJoCo, m/s^2: J q'' + J' q'."""
     J, rate = np.zeros((3, m.nv)), np.zeros((3, m.nv))
     mujoco.mj_jac(m, d, J, None, d.xipos[body], body)
     mujoco.mj_jacDot(m, d, rate, None, d.xipos[body], body)

@@ -1,4 +1,4 @@
-"""Every analysis against an independent method, in turn: the seeds go round the fuzzers of single entry points."""
+"""Run the fuzzers of single entry points in turn."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ PAIRS = ("sensitivities", "modes", "transfer", "equilibria", "stability", "studi
 
 
 def trial(seed: int) -> Verdict:
-    """Try the fuzzer whose turn it is."""
+    """Run the fuzzer selected by the seed."""
     name = PAIRS[seed % len(PAIRS)]
     module = importlib.import_module(f".{name}", __package__)
     verdict = tried(lambda: module.trial(seed // len(PAIRS)))

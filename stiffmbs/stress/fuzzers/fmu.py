@@ -1,4 +1,4 @@
-"""FMUs of random scenes, simulated by FMPy with inputs that change, against runs of the scenes."""
+"""Compare FMUs of random scenes, simulated by FMPy with changing inputs, with runs of the scenes."""
 
 from __future__ import annotations
 
@@ -23,21 +23,21 @@ from ..random_scenes.scene import random_scene
 
 WHAT = "FMUs of random scenes in FMPy, one or several in a process, with parameters and changing inputs, against `run`."
 GAIN, GIVEN, PUSH = "fmu_gain", "fmu_given", "fmu_push"
-"""A parameter, an input and a force that each scene has besides its own."""
+"""Parameter, input and force that are added to each scene."""
 STEPS, SEGMENTS = 20, 3
-"""Communication steps, and intervals of them with one value of the input."""
+"""Number of communication steps, and number of intervals with constant input."""
 COSTLY = 0.1
-"""Part of the scenes that may have tyres, and of those that may have parts: they take long to compile."""
+"""Fractions of scenes with tyres and with parts, which take long to compile."""
 RTOL = 1e-8
 BOUND = 1e-5
-"""Difference relative to the size of a channel: 1000 times the tolerance, as errors of both add up over events."""
+"""Allowed difference relative to the size of a channel: 1000 times the tolerance, because errors grow at events."""
 FLOOR = 1e-2
-"""m, rad and per second: channels that stay below are compared with this size."""
+"""Smallest size of a channel, m, rad, and these per second."""
 
 
 @dataclass(frozen=True)
 class Given:
-    """Values for one instance: of the parameter, and of the input in each interval."""
+    """Values of the parameter, and of the input in each interval, for one instance."""
 
     gain: float
     inputs: tuple[float, ...]
@@ -90,7 +90,7 @@ def _scene(rng: np.random.Generator) -> dict[str, Any]:
 
 
 def _channels(scene: Path) -> tuple[str, ...]:
-    """The positions and velocities of all bodies, and the states, which no event makes jump but a collision."""
+    """Return the names of the positions and velocities of all bodies, and of the states; only collisions make them discontinuous."""
     data = load_scene(scene)
     labels = "x y angle vx vy omega" if data.dimensions == 2 else "x y z vx vy vz wx wy wz"
     bodies = [f"{body}.{label}" for body in data.bodies for label in labels.split()]
@@ -98,7 +98,7 @@ def _channels(scene: Path) -> tuple[str, ...]:
 
 
 def _by_runs(scene: Path, given: Given, channels: tuple[str, ...]) -> np.ndarray:
-    """The channels after each communication step, by a run for each value of the input, shape (steps, channels)."""
+    """Return the channels after each communication step, by a run for each value of the input, shape (steps, channels)."""
     whole = load_scene(scene)
     ends = np.linspace(0, STEPS, SEGMENTS + 1).astype(int)
     step, state, rows = whole.run.duration / STEPS, None, []
@@ -118,7 +118,7 @@ def _by_runs(scene: Path, given: Given, channels: tuple[str, ...]) -> np.ndarray
 def _by_fmpy(
     fmu: Path, duration: float, given: list[Given], channels: tuple[str, ...]
 ) -> tuple[list[np.ndarray | None], str]:
-    """The same by instances of an FMU that take their steps in turn; None where a step is refused.  And what FMPy finds wrong."""
+    """Return the same from FMU instances that step in turn, or None if a step is refused; and the faults that FMPy finds."""
     with needs("fmpy", "test"):
         from fmpy import extract, read_model_description
         from fmpy.fmi2 import FMU2Slave

@@ -1,7 +1,7 @@
-"""Commands under injected faults: a full disk, damaged stores and caches, unusual names, signals at random times.
+"""Run commands under injected faults: a full disk, damaged stores and caches, unusual names, signals at random times.
 
-Each command runs in a process of its own.  It must end with one sentence, the exit status of its kind, and no traceback; a file that it
-writes is whole, or as it was before.  A study that is given again has the table of one without faults.
+Each command runs in a separate process.  It must end with one sentence, the proper exit status, and no traceback.  A file that it
+writes is complete or unchanged.  A repeated study has the same table as one without faults.
 """
 
 from __future__ import annotations
@@ -54,35 +54,35 @@ COMMANDS = (
     ["fit", "IN", "--data", "state.npz", "--parameter", "k=30:60", "--json"], ["version"], ["init", "OUT.yaml"],
 )  # fmt: skip
 LIMITS = (0, 1, 100, 4096, 20_000, 200_000)
-"""Bytes that a file may have on a full disk."""
+"""Largest file size on a full disk, bytes."""
 NAMES = (
     "-x", " ", "a b", "ünï", "日本", "\u202ex", "a\x9bb", "a\nb", "'quoted'", '"', "$(x)", "*", "~", "%s", "{x}", "a=b", "#", "x" * 200, "x" * 255,
     "CON", "..x", "\udcff", "a:b", "[1]", "<b>", "\\",
 )  # fmt: skip
 STATUSES = (0, 1, 2, 130)
 LATEST = 2.5
-"""Time, s, up to which a signal comes."""
+"""Latest time of a signal, s."""
 PATIENCE = 120.0
 
 
 @dataclass
 class Session:
-    """A command with what is done to it.
+    """Command with an injected fault.
 
     Attributes
     ----------
     folder : Path
-        In which it runs.
+        Working folder.
     command : list of str
     environment : dict of str to str
     limit : int or None
-        Bytes that a file may have.
+        Largest file size, bytes.
     full_output : bool
-        Whether standard output is a full device.
+        True if standard output is a full device.
     signals : list of (float, int)
-        When which signals are sent; 0 closes standard output.
+        Times and numbers of the signals; 0 closes standard output.
     may_fail : bool
-        Whether another exit status than 0 is right.
+        True if an exit status other than 0 is allowed.
     """
 
     folder: Path
@@ -216,7 +216,7 @@ DAMAGES = (_flipped, _cut, _garbage, _folder, _pipe, _gone, _unreadable)
 
 
 def _run(session: Session) -> tuple[int, bytes, bytes]:
-    """Run a session; exit status, standard output and standard error."""
+    """Run a session; return exit status, standard output and standard error."""
 
     def limited() -> None:
         signal.signal(signal.SIGINT, signal.SIG_DFL)
@@ -258,13 +258,13 @@ def _run(session: Session) -> tuple[int, bytes, bytes]:
 
 
 def _wait_for_handler(pid: int) -> None:
-    """Wait until a process answers SIGTERM itself: before, Python has not begun to run the command."""
+    """Wait until a process handles SIGTERM: before that, Python has not begun to run the command."""
     status, bit = Path(f"/proc/{pid}/status"), 1 << (signal.SIGTERM - 1)
     until = time.monotonic() + LATEST
     while time.monotonic() < until:
         try:
             caught = next(line for line in status.read_text().splitlines() if line.startswith("SigCgt:"))
-        except (OSError, StopIteration):  # it has ended, or the system does not tell
+        except (OSError, StopIteration):  # it has ended, or the system has no such information
             return
         if int(caught.split()[1], 16) & bit:
             return
@@ -272,12 +272,12 @@ def _wait_for_handler(pid: int) -> None:
 
 
 def _endless(session: Session) -> bool:
-    """Return True for a run that ends when it is interrupted alone."""
+    """Return True for a run that ends only when it is interrupted."""
     return "1e7" in session.command
 
 
 def _fault(session: Session, status: int, out: bytes, err: bytes, old: bool) -> str:
-    """Describe the fault in how a command ended; an empty text where there is none."""
+    """Describe the fault in the end of a command; empty if there is none."""
     words = err.decode(errors="replace").strip()
     lines = [line for line in words.splitlines() if not line.startswith("stiffmbs: note:")]
     if "Traceback" in words or "Error ignored" in words:
@@ -306,7 +306,7 @@ def _says_why(out: bytes) -> bool:
 
 
 def _output(session: Session) -> Path | None:
-    """The file that a command writes."""
+    """Return the file that a command writes."""
     asked = session.command.index("-o") + 1 if "-o" in session.command else None
     return session.folder / session.command[asked] if asked else None
 
@@ -393,7 +393,7 @@ def _plain(session: Session) -> bool:
 
 @cache
 def _prepared() -> Path:
-    """A folder with a cache in which all commands have run, a state, and the store of half a study."""
+    """Return a folder with a cache in which all commands have run, a saved state, and the store of an interrupted study."""
     folder = Path(tempfile.mkdtemp(prefix="injections-"))
     (folder / "in.yaml").write_text(SCENE)
     environment = {DIRECTORY_VARIABLE: str(folder / "cache")}

@@ -1,4 +1,4 @@
-"""Random scenes of all kinds of elements, which must move alike when they are turned, moved, scaled, split, renamed, ..."""
+"""Compare random scenes with transformed copies that must have the same motion."""
 
 from __future__ import annotations
 
@@ -26,21 +26,21 @@ WHAT = (
     "random scenes of all kinds, which must move alike when turned, moved, scaled, shifted in time, split, renamed, ..."
 )
 CHANGES = 3
-"""Of each scene."""
+"""Number of transformations of each scene."""
 FINE, COARSE = 1e-8, 1e-6
 """Relative tolerances whose difference is the error bar."""
 FAR = 1000.0
-"""m, that a scene is moved by."""
+"""Translation of a scene, m."""
 KINEMATIC = "kinematic"
 BALANCE = "momentum of each body"
 FEW_DIGITS = {"I3": ("moved by 1 km", "observed from a moving frame")}
-"""Changes that leave a formulation, which divides positions by the step, too few digits for the fine tolerance."""
+"""Transformations after which formulations that divide positions by the step have too few digits for the fine tolerance."""
 RARE = "a fixed pair as one body"
-"""The change that few scenes allow, which is tried first."""
+"""Transformation that few scenes allow, which is tried first."""
 ALIKE = 0.3
-"""Part of the changed scenes that are run with the settings of the original."""
+"""Fraction of transformed scenes that are run with the settings of the original."""
 FREE = ("with an idle body",)
-"""The changes that add freedoms, which no drive fixes."""
+"""Transformations that add undriven degrees of freedom."""
 SOLVERS: tuple[dict[str, Any], ...] = (
     {"solver": "bdf"}, {"solver": "bdf", "formulation": "SI1"}, {"solver": "bdf", "formulation": "I3"},
     {"solver": "bdf", "formulation": "index1"}, {"solver": "auto"}, {"solver": "projected", "scheme": "dop853"},
@@ -49,7 +49,7 @@ SOLVERS: tuple[dict[str, Any], ...] = (
 
 
 def trial(seed: int) -> Verdict:
-    """One random scene and three random changes."""
+    """Test one random scene with three random transformations."""
     rng = np.random.default_rng(seed)
     how = _settings(rng)
     content = driven_scene(rng) if how["solver"] == KINEMATIC else random_scene(rng)
@@ -81,16 +81,16 @@ def trial(seed: int) -> Verdict:
 
 @dataclass(frozen=True)
 class Original:
-    """A scene, how it is run, and what came of it.
+    """Scene with the settings and results of its run.
 
     Attributes
     ----------
     content : dict
     how : dict
-        Settings of the run but its tolerance.
+        Settings of the run, without its tolerance.
     fine : Found
     bars : dict of str to ndarray
-        Its error bars.
+        Error bars of the channels.
     """
 
     content: Content
@@ -100,13 +100,13 @@ class Original:
 
 
 def _settings(rng: np.random.Generator, driven: bool = True) -> dict[str, Any]:
-    """Return a solver, which may be that of driven scenes, and whether unknowns are eliminated before."""
+    """Return a random solver and presolve setting."""
     solvers = [each for each in SOLVERS if driven or each["solver"] != KINEMATIC]
     return {**solvers[int(rng.integers(len(solvers)))], "presolve": bool(rng.random() < 0.6)}
 
 
 def assembled(content: Content) -> Content:
-    """Return a scene whose velocities are those that its constraints allow, so that no change depends on how they are made so."""
+    """Return a scene with consistent velocities, so that results do not depend on their projection."""
     found = ways.at_once({**content, "run": {**content["run"], "points": 2}}, rtol=COARSE)
     dimensions = content.get("dimensions", 2)
     described = {}
@@ -120,13 +120,13 @@ def assembled(content: Content) -> Content:
 
 
 def rubs_without_unique_reactions(content: Content, found: Found) -> bool:
-    """Return True if friction follows reactions that rigid bodies do not determine, so that the motion is not unique."""
+    """Return True if friction depends on reactions without unique values, so that the motion is not unique."""
     rubbing = {force["joint"] for force in content.get("forces", {}).values() if force["type"] == "joint_friction"}
     return any(channel.rpartition(".")[0] in rubbing for channel in found.not_unique)
 
 
 Way = Callable[[Content, np.random.Generator], tuple[Change, Callable[..., Found]]]
-"""From a scene to the changed one, and how that is run."""
+"""Return the transformations by name."""
 
 
 def _turned(content: Content, rng: np.random.Generator) -> tuple[Change, Callable[..., Found]]:
@@ -207,23 +207,23 @@ WAYS: dict[str, Way] = {
 def difference_of(
     original: Original, name: str, rng: np.random.Generator, settings: dict[str, Any] | None = None
 ) -> Difference:
-    """Return how far a changed scene differs; against its own error bar too where it does.
+    """Return the difference of a transformed scene, also with respect to its own error bar if it is too large.
 
-    A stop of the changed run is legitimate only where the original stops with the same settings, or the change is one of `FEW_DIGITS`.
+    A stop of the transformed run is accepted only if the original stops with the same settings, or for `FEW_DIGITS`.
 
     Parameters
     ----------
     original : Original
     name : str
-        Of the change.
+        Name of the transformation.
     rng : Generator
     settings : dict, optional
-        Of the changed run; those of the original by default.
+        Settings of the transformed run; those of the original by default.
 
     Raises
     ------
     NotLegitimate
-        When the change is none for this scene.
+        When the transformation does not apply to this scene.
     """
     how = original.how if settings is None else settings
     change, way = WAYS[name](original.content, rng)
@@ -245,7 +245,7 @@ def difference_of(
 
 
 def stops_too(content: Content, how: dict[str, Any]) -> bool:
-    """Return True if a scene stops, or is refused, with some settings."""
+    """Return True if a scene stops or is refused with given settings."""
     try:
         for rtol in (FINE, COARSE):
             ways.at_once(content, **how, rtol=rtol)
@@ -255,7 +255,7 @@ def stops_too(content: Content, how: dict[str, Any]) -> bool:
 
 
 def _back(change: Change, found: Found) -> Found:
-    """Return a run's channels as those of the original."""
+    """Return the channels of a run transformed back to those of the original."""
     channels = change.back(found.channels, found.time)
     owners = change.back({name: np.zeros_like(found.time) for name in found.not_unique}, found.time)
     return replace(found, channels=channels, not_unique=frozenset(owners))

@@ -1,4 +1,4 @@
-"""Random axles on the test rig of `stiffmbs kc` against force balances with rotation vectors."""
+"""Compare random axles on the test rig of `stiffmbs kc` with an independent static solver."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from ..statics.assembly import Ball, ElasticBushing, End, Line, Pad, Part, Pose,
 WHAT = "Random five-link and wishbone axles in bump, roll and under forces: `kc` against force balances."
 POINTS = 5
 BOUND = 1e-6
-"""Error relative to the size of a curve."""
+"""Allowed error relative to the size of a curve."""
 G = 9.81
 SIDES = {"left": 1.0, "right": -1.0}
 
@@ -62,7 +62,7 @@ def _difference(found: KinematicsAndCompliance, case: str, expected: dict[str, n
 
 
 class _Axle:
-    """The same axle as a model and as parts of a force balance."""
+    """Axle as a model and as parts of the static solver."""
 
     def __init__(self, rng: np.random.Generator) -> None:
         self._rng = rng
@@ -107,7 +107,7 @@ class _Axle:
         self.parts[self._now].append(Push(End(name, np.zeros(3)), np.array([0.0, 0.0, -mass * G]), constant=True))
 
     def _arm(self, side: str, centre: np.ndarray, low: np.ndarray, inner: list[np.ndarray], mirror: np.ndarray) -> None:
-        """A lower wishbone on two bushings, with a ball at the upright."""
+        """Add a lower wishbone on two bushings, with a ball joint at the upright."""
         rng, name = self._rng, f"{side}.arm"
         place = centre + low - mirror * [0.0, 0.15, 0.0]
         self._body(name, place, float(rng.uniform(3, 8)))

@@ -1,4 +1,4 @@
-"""Random blocks on turned bushings under slow forces: `loads` against force balances with rotation vectors."""
+"""Compare `loads` of random blocks on rotated bushings under slow forces with an independent static solver."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ WHAT = (
 POINTS = 3
 MOST_BLOCKS = 3
 BOUND = 1e-6
-"""Error of a component relative to the largest force or moment of its bushing."""
+"""Allowed error of a component relative to the largest force or moment of its bushing."""
 G = 9.81
 
 
@@ -53,7 +53,7 @@ def trial(seed: int) -> Verdict:
 
 
 class _Blocks:
-    """A chain of blocks on bushings, as a model and as parts of a force balance."""
+    """Chain of blocks on bushings, as a model and as parts of the static solver."""
 
     def __init__(self, rng: np.random.Generator) -> None:
         count = int(rng.integers(1, MOST_BLOCKS + 1))

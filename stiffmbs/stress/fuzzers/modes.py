@@ -1,4 +1,4 @@
-"""Random state matrices and modes: against differences of accelerations in motion, and small motions beside equilibria."""
+"""Compare random state matrices and modes with differences of accelerations, and with small motions near equilibria."""
 
 from __future__ import annotations
 
@@ -25,18 +25,18 @@ from ..random_statics import random_statics
 
 WHAT = "State matrices and modes of random scenes, in motion and in equilibrium, against differences and small motions."
 STEP = 1e-4
-"""Variation of a state, in sizes of the mechanism or rad."""
+"""Variation of a state, relative to the size of the mechanism, or rad."""
 ALLOWED = 1e-5
-"""Error of a rate relative to the largest one."""
+"""Allowed error of a rate relative to the largest one."""
 DIRECTIONS = 2
 SMALL, DURATION, RTOL = 3e-6, 0.2, 1e-10
-"""Displacement, in sizes of the mechanism or rad, duration, s, and tolerance of small motions."""
+"""Displacement (relative to the size of the mechanism, or rad), duration (s) and tolerance of small motions."""
 OFF = 3e-2
-"""Error of a small motion relative to its size."""
+"""Allowed error of a small motion relative to its size."""
 
 
 def trial(seed: int) -> Verdict:
-    """One random scene: two of three in motion, else a mechanism that has an equilibrium."""
+    """Test one random scene: two of three in motion, otherwise a mechanism with an equilibrium."""
     rng = np.random.default_rng(seed)
     try:
         if seed % 3 == 2:
@@ -68,7 +68,7 @@ def _listed_wrongly(found: Modes) -> str:
 
 
 def _difference(about: AtState, linear: Linearised, chosen: StateMatrix, rng: np.random.Generator) -> float:
-    """Accelerations and rates of states beside the state, as differences extrapolated to a step of zero, against the matrix."""
+    """Compare the matrix with extrapolated differences of accelerations and rates of states."""
     system = about.dynamics.system
     scale = np.concatenate([system.per_velocity(system.size, 1.0), system.state_scales])
     z = rng.standard_normal(len(chosen.matrix))
@@ -83,7 +83,7 @@ def _difference(about: AtState, linear: Linearised, chosen: StateMatrix, rng: np
 
 
 def _slope(about: AtState, linear: Linearised, chosen: StateMatrix, z: np.ndarray, step: float) -> np.ndarray:
-    """Central difference of accelerations and rates of states along a variation."""
+    """Return the central difference of accelerations and rates of states along a variation."""
     rates = []
     for size in (-step, step):
         with about.dynamics.state.unchanged():
@@ -97,7 +97,7 @@ def _slope(about: AtState, linear: Linearised, chosen: StateMatrix, z: np.ndarra
 
 
 def _vary(about: AtState, linear: Linearised, chosen: StateMatrix, z: np.ndarray) -> None:
-    """Move the state of a system by a variation, and onto its constraints."""
+    """Apply a variation to the state of a system, and project it onto the constraints."""
     dynamics, state = about.dynamics, about.dynamics.state
     own = linear.algebraic.among_all(z[len(z) - chosen.n_states :, None])[:, 0]
     state.q[:] = dynamics.system.of_body.moved(state.q, linear.own_axes @ (chosen.poses @ z))
@@ -108,7 +108,7 @@ def _vary(about: AtState, linear: Linearised, chosen: StateMatrix, z: np.ndarray
 
 
 def _beside_equilibrium(rng: np.random.Generator, scene: Runnable) -> Verdict:
-    """The difference of two small motions from an equilibrium, against the exponential of the state matrix."""
+    """Compare the difference of two small motions from an equilibrium with the exponential of the state matrix."""
     rest = equilibrium(scene).solution
     found = modes(scene, start_from=rest)
     wrong = _listed_wrongly(found)

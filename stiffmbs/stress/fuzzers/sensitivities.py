@@ -1,4 +1,4 @@
-"""Sensitivities of random scenes against differences of runs."""
+"""Compare sensitivities of random scenes with differences of runs."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from ..random_scenes.scene import random_scene
 
 WHAT = "sensitivities of random channels and functionals by random numbers of random scenes against differences of runs"
 ALL_KINDS = 0.1
-"""Part of the scenes that have all kinds of elements, which take longest to compile."""
+"""Fraction of scenes with all kinds of elements, which take longest to compile."""
 FUNCTIONALS = (
     "final(?)",
     "?",
@@ -37,19 +37,19 @@ FUNCTIONALS = (
 )
 OUTPUTS = 12
 STEP, RTOL = 5e-4, 1e-11
-"""Of differences, relative to the number, and of the runs that they are taken of."""
+"""Step of differences, relative to the number, and tolerance of their runs."""
 OFF, NOISE = 1e-4, 1e-10
-"""Error of a derivative, relative to it; and errors of runs, relative to the peak of the output."""
+"""Allowed relative error of a derivative; and error of runs, relative to the peak of the output."""
 SMALL = 1e-4
-"""Size, SI units, of outputs that may be zero but for rounding."""
+"""Size, SI units, of outputs that may be zero up to rounding."""
 UNSETTLED = 0.02
-"""Difference of differences over two steps, relative to the derivative, beyond which they do not judge."""
+"""Difference between two step sizes, relative to the derivative, above which differences are not used as a reference."""
 SECTIONS = ("parameters", "bodies", "joints", "forces", "states", "gravity")
 Path = tuple[str | int, ...]
 
 
 def trial(seed: int) -> Verdict:
-    """One scene, in the plane for even seeds, and one number of it."""
+    """Test one number of a scene, planar for even seeds."""
     rng = np.random.default_rng(seed)
     dimensions = 2 + seed % 2
     content = random_scene(rng, dimensions) if rng.random() < ALL_KINDS else random_events(rng, dimensions)

@@ -1,4 +1,4 @@
-"""Random equilibria with a force along a velocity: the verdict on their stability against a run that starts beside them."""
+"""Compare the reported stability of random equilibria with runs from a perturbed state."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ WHAT = (
     "Equilibria with negative or positive damping: whether motions grow from them, against runs that start beside them."
 )
 PUSH, DURATION, RTOL = 1e-6, 4.0, 1e-9
-"""Velocity at the start, m/s, time, s, and tolerance of a run."""
+"""Initial velocity, m/s, duration, s, and tolerance of a run."""
 EXPONENT, CLEAR = 6.0, 10.0
-"""Growth over a run, as an exponent, from which a run tells; and factor from which a motion has grown."""
+"""Growth exponent of a run that is significant, and factor by which an unstable motion grows."""
 BEATS = 1e3
-"""Growth of a stable motion by exchange between its modes."""
+"""Transient growth of a stable motion."""
 
 
 def trial(seed: int) -> Verdict:
-    """One mechanism with springs, and a force along the velocity of one of its bodies."""
+    """Test one mechanism with springs, and a force along the velocity of one of its bodies."""
     rng, in_space = np.random.default_rng(seed), seed % 2 == 1
     model = random_statics(rng, in_space)
     body, gain = str(rng.choice(list(model.bodies))), float(rng.uniform(-15, 15))

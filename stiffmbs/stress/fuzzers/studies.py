@@ -1,4 +1,4 @@
-"""Studies and simulations of random scenes against single runs."""
+"""Compare studies and simulations of random scenes with single runs."""
 
 from __future__ import annotations
 
@@ -20,18 +20,18 @@ from .sensitivities import Path, changed, numbers_of
 
 WHAT = "cases of studies, and simulations step by step, of random scenes against single runs: also with zeros that change the structure"
 ALL_KINDS, SIMULATED = 0.1, 0.3
-"""Parts of the scenes that have all kinds of elements, and of those that are simulated."""
+"""Fractions of scenes with all kinds of elements, and of scenes that are simulated."""
 FACTORS = (0.0, 0.5, 1.0, 1.01, 2.0, -1.0)
 OUTPUTS, RTOL = 8, 1e-8
 GLOBAL, SMALL = 3e-5, 1e-3
-"""Error of outputs, relative to their peak, that runs of RTOL may leave; and the least peak, SI units."""
+"""Allowed error of outputs, relative to their peak, and the smallest peak, SI units."""
 
 TIGHT, AS_FAR = 0.01, 30.0
-"""Part of RTOL of the run that a simulation is compared with, and times by which it may be further off than a run of RTOL."""
+"""Tolerance of the reference run of a simulation, relative to RTOL, and factor of its allowed error."""
 
 
 def trial(seed: int) -> Verdict:
-    """One scene, in the plane for even seeds."""
+    """Test one scene, planar for even seeds."""
     rng = np.random.default_rng(seed)
     dimensions = 2 + seed % 2
     content = random_scene(rng, dimensions) if rng.random() < ALL_KINDS else random_events(rng, dimensions)
@@ -40,7 +40,7 @@ def trial(seed: int) -> Verdict:
 
 
 def _studied(rng: np.random.Generator, content: Any, how: dict[str, Any]) -> Verdict:
-    """Vary one or two numbers and compare each case with a run of the scene as it is then written."""
+    """Vary one or two numbers, and compare each case with a run of the scene with these numbers."""
     paths = list(numbers_of(content))
     chosen = [paths[k] for k in rng.choice(len(paths), min(len(paths), int(rng.integers(1, 3))), replace=False)]
     chosen = [path for k, path in enumerate(chosen) if not k or _vector(path) != _vector(chosen[0])]

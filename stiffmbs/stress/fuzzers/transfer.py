@@ -1,4 +1,4 @@
-"""Random transfer functions: loads and parameters as inputs, channels as outputs, against starts with the load or beside the state."""
+"""Compare random transfer functions with starts under a load, and with starts from perturbed states."""
 
 from __future__ import annotations
 
@@ -30,13 +30,13 @@ from ..random_scenes.scene import random_scene
 WHAT = "Transfer functions of random scenes in motion: columns against starts under a load, rows against starts beside the state."
 INPUTS, OUTPUTS = 2, 6
 BESIDE = 1e-5
-"""Size of a variation of velocities and poses, SI units."""
+"""Variation of velocities and poses, SI units."""
 ALLOWED = 3e-5
-"""Error relative to the largest entry of a kind, or to 1."""
+"""Allowed error relative to the largest entry of a kind, or to 1."""
 
 
 def trial(seed: int) -> Verdict:
-    """One random scene in motion, with random inputs and outputs."""
+    """Test one random scene in motion, with random inputs and outputs."""
     rng = np.random.default_rng(seed)
     content = random_scene(rng, features=replace(SMOOTH, time=False, states=bool(rng.random() < 0.4)))
     scene = read_scene(json.dumps(content))
@@ -57,17 +57,17 @@ def trial(seed: int) -> Verdict:
 
 
 def _start(scene: Scene, state: SavedState | None = None) -> SavedState:
-    """The channels of the first instant of a run."""
+    """Return the channels at the start of a run."""
     return run(scene, start_from=state, duration=1e-6, points=2, solver="bdf", rtol=1e-6).state(at=0.0)
 
 
 def _over_time(start: Mapping[str, float]) -> set[str]:
-    """Channels that are no functions of the state."""
+    """Channels that are not functions of the state."""
     return {name for name in start if name.startswith(("energy.", "constraint."))}
 
 
 def _inputs(rng: np.random.Generator, scene: Scene) -> dict[str, Force]:
-    """Random loads by name, each as an element that acts with a unit."""
+    """Return random loads by name, each as an element with a unit load."""
     in_space = scene.dimensions == 3
     labels, kinds = BODY_KINDS[scene.dimensions].reactions, SPATIAL_FORCES if in_space else FORCES
     found: dict[str, Force] = {}
@@ -88,7 +88,7 @@ def _inputs(rng: np.random.Generator, scene: Scene) -> dict[str, Force]:
 def _columns(
     found: Transfer, state: StateMatrix, inputs: Mapping[str, Force], scene: Scene, start: Mapping[str, float]
 ) -> float:
-    """D against differences of starts under a load, and B against the accelerations of these."""
+    """Compare D with differences of starts under a load, and B with their accelerations."""
     worst, labels = 0.0, BODY_KINDS[scene.dimensions].accelerations[: scene.dimensions]
     for column, element in enumerate(inputs.values()):
         loaded = _start(scene.model_copy(update={"forces": {**scene.forces, "load_of_input": element}})).channels
@@ -100,7 +100,7 @@ def _columns(
 
 
 def _rows(rng: np.random.Generator, found: Transfer, state: StateMatrix, scene: Scene, before: SavedState) -> float:
-    """C against differences of starts beside the state, as they are after assembly."""
+    """Compare C with differences of starts from perturbed states, after assembly."""
     labels = (*"xyz"[: scene.dimensions], *BODY_KINDS[scene.dimensions].velocities)
     changes = {f"{body}.{label}": BESIDE * float(rng.standard_normal()) for body in scene.bodies for label in labels}
     sides = []
@@ -113,7 +113,7 @@ def _rows(rng: np.random.Generator, found: Transfer, state: StateMatrix, scene: 
     z = np.linalg.lstsq(np.vstack([state.poses, state.velocities]), known, rcond=1e-12)[0]
     left = float(np.abs(np.vstack([state.poses, state.velocities]) @ z - known).max())
     if own.any() or state.n_states or left > ALLOWED * BESIDE:
-        return 0.0  # states are not told by poses and velocities
+        return 0.0  # states do not follow from poses and velocities
     changed = np.array([sides[1][name] - sides[0][name] for name in found.outputs])
     return _off(changed / BESIDE, found.c @ z / BESIDE)
 
@@ -121,7 +121,7 @@ def _rows(rng: np.random.Generator, found: Transfer, state: StateMatrix, scene: 
 def _variation(
     scene: Scene, sides: Sequence[Mapping[str, float]], start: Mapping[str, float]
 ) -> tuple[np.ndarray, np.ndarray]:
-    """The difference of two states as displacements and rotations in ground axes, and their rates."""
+    """Return the difference of two states as displacements and rotations in ground axes, and their rates."""
     of_body, x, v = BODY_KINDS[scene.dimensions], [], []
     for body in scene.bodies:
         (q, u), (other, faster) = (

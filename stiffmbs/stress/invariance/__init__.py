@@ -1,1 +1,1 @@
-"""Changes of a scene that must not change its motion, and how channels of both runs are compared."""
+"""Transformations of a scene that must not change its motion, and the comparison of both runs."""

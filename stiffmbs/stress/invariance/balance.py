@@ -1,4 +1,4 @@
-"""The equations of Newton and Euler of each body of a run, from the scene's data and the channels of the run alone."""
+"""Newton-Euler equations of each body of a run, from the data of the scene and the channels alone."""
 
 from __future__ import annotations
 
@@ -15,29 +15,29 @@ from .reframed import tensor_of, three
 from .ways import Found
 
 Wrench = tuple[np.ndarray, np.ndarray]
-"""A force and its torque about a body's centre of mass, in ground axes, each of shape (3, n)."""
+"""Force and its torque about a body's centre of mass, in ground axes, each of shape (3, n)."""
 RELATIVE = 1e-8
-"""Part of the largest term of an equation by which it may miss: output accelerations and reactions solve one linear system."""
+"""Allowed residual relative to the largest term: output accelerations and reactions solve one linear system."""
 DRIFT, BARS = 1e-4, 3.0
-"""Bounds on velocities that do not integrate the accelerations: relative, and in error bars of the integrals."""
+"""Allowed difference between velocities and integrated accelerations: relative, and in error bars of the integrals."""
 FINE, COARSE = (1.0, 4.0, 2.0, 4.0, 1.0), (2.0, 0.0, 8.0, 0.0, 2.0)
-"""Simpson's weights over four intervals and over two double ones, in thirds of an interval."""
+"""Simpson's weights over four intervals, and over two double intervals, in thirds of an interval."""
 LEAST = 1e-2
-"""Part of the largest term of all bodies below which an equation is not measured more finely."""
+"""Smallest scale of an equation, relative to the largest term of all bodies."""
 
 
 def balance(content: Content, found: Found) -> Difference:
-    """Return the body whose forces and accelerations contradict each other most, relative to what is allowed.
+    """Return the body with the largest residual of its equations, relative to the allowed one.
 
-    Bodies are left out that are acted on by an element whose two wrenches do not follow from its channels: a relation of
-    several joints, an equation by formula, or a shipped part.
+    Bodies are skipped if the wrenches of one of their elements do not follow from its channels: a relation of several joints, an
+    equation by formula, or a library part.
 
     Parameters
     ----------
     content : dict
-        Of a scene.
+        Content of a scene.
     found : Found
-        What its run has found.
+        Results of its run.
     """
     sizes = {"force": 0.0, "torque": 0.0}
     missed: dict[tuple[str, str], tuple[float, float]] = {}
@@ -59,7 +59,7 @@ def balance(content: Content, found: Found) -> Difference:
 
 
 def _drifts(content: Content, found: Found, name: str) -> Iterator[tuple[str, float, float]]:
-    """Yield how far a body's changes of velocity differ from the integrals of its accelerations, and the bounds on that.
+    """Yield the differences between a body's velocity changes and its integrated accelerations, with their bounds.
 
     The integrals are Simpson's over groups of four intervals.  Their error bar is the sum of all differences from Simpson's
     over two double intervals.  Scenes with impacts, which may fall between output times, are left out.
@@ -94,7 +94,7 @@ def _elements(content: Content) -> Content:
 
 
 def _ends(content: Content, element: Content) -> tuple[Any, Any] | None:
-    """Return the markers whose bodies take the wrench of an element and its opposite; None where these are others."""
+    """Return the markers whose bodies take the wrench of an element and its opposite, or None if there are others."""
     if element["type"] in ("equation", "velocity_equation") or "coordinate" in element:
         return None
     if "joint" in element:
@@ -105,14 +105,14 @@ def _ends(content: Content, element: Content) -> tuple[Any, Any] | None:
 
 
 def _named(content: Content, element: Content) -> set[str]:
-    """Return the bodies that an element names, or whose joints it names."""
+    """Return the bodies that an element refers to, directly or by joints."""
     joints = [content["joints"].get(str(part).partition(".")[0], {}) for part in element.values()]
     text = json.dumps([element, *joints])
     return {name for name in content["bodies"] if name in text}
 
 
 def _terms(content: Content, channels: Channels, name: str) -> Iterator[tuple[str, list[np.ndarray]]]:
-    """Yield the terms of the equations of a body's force and torque, which add up to zero."""
+    """Yield the terms of a body's force and torque balance, which add up to zero."""
     body = content["bodies"][name]
     centre, accelerated = (_motion(content, channels, name, label) for label in ("", "a"))
     acting = list(_wrenches(content, channels, name, centre))
@@ -131,7 +131,7 @@ def _terms(content: Content, channels: Channels, name: str) -> Iterator[tuple[st
 
 
 def _motion(content: Content, channels: Channels, name: str, label: str) -> np.ndarray:
-    """Return the place or the acceleration (``a``) of a body's centre of mass over time, shape (3, n)."""
+    """Return the position or the acceleration (``a``) of a body's centre of mass over time, shape (3, n)."""
     found = [channels[f"{name}.{label}{axis}"] for axis in "xyz"[: content.get("dimensions", 2)]]
     return np.array([*found, np.zeros_like(found[0])][:3])
 
@@ -171,7 +171,7 @@ def _point(content: Content, channels: Channels, marker: Any) -> np.ndarray:
 
 
 def axes_over_time(channels: Channels, name: str) -> np.ndarray:
-    """Return a body's own axes over time, shape (n, 3, 3), from its quaternion or angle."""
+    """Return the axes of a body over time, shape (n, 3, 3), from its quaternion or angle."""
     if f"{name}.angle" in channels:
         return np.array([about_z(float(angle)) for angle in channels[f"{name}.angle"]])
     w, x, y, z = (channels[f"{name}.q{k}"] for k in range(4))

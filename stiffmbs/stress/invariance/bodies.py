@@ -1,4 +1,4 @@
-"""A scene with an idle body, or with one body as two that are fixed together."""
+"""Add an idle body to a scene, or split a body into two that are fixed together."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ IDLE, TWIN, WELD = "idle", "twin", "weld"
 
 
 def with_idle_body(content: Content, rng: np.random.Generator) -> Change:
-    """Return a scene with a body that falls freely, or swings on a spring of its own."""
+    """Return a scene with an additional body that falls freely, or swings on a separate spring."""
     dimensions = content.get("dimensions", 2)
     found = copy.deepcopy(content)
     inertia: Any = [0.5, 0.6, 0.7] if dimensions == 3 else 0.5
@@ -36,7 +36,7 @@ def with_idle_body(content: Content, rng: np.random.Generator) -> Change:
 
 
 def with_a_body_in_two(content: Content, rng: np.random.Generator) -> Change:
-    """Return a scene in which a body is two that are fixed together, and some of its elements act on the second one."""
+    """Return a scene with a body split into two that are fixed together; some elements act on the second one."""
     dimensions = content.get("dimensions", 2)
     found = copy.deepcopy(content)
     name = str(rng.choice(list(content["bodies"])))
@@ -62,7 +62,7 @@ def with_a_body_in_two(content: Content, rng: np.random.Generator) -> Change:
 
 
 def _halves(body: Content, part: float, axes: np.ndarray, dimensions: int) -> tuple[Content, Content]:
-    """Return two bodies with the centre of mass of one, the second of which has other axes."""
+    """Return two bodies with the same common centre of mass as one, the second with different axes."""
     mass = body["mass"]
     first, second = dict(body, mass=(1 - part) * mass), dict(body, mass=part * mass)
     centre = np.array(second.pop("center_of_mass", [0.0] * dimensions))
@@ -83,7 +83,7 @@ def _halves(body: Content, part: float, axes: np.ndarray, dimensions: int) -> tu
 
 
 def _others(channels: Channels, owners: tuple[str, ...], energy: bool) -> Channels:
-    """Return the channels of all else."""
+    """Return the channels of all other elements."""
     return {
         name: series for name, series in channels.items()
         if name.rpartition(".")[0] not in owners and (energy or not name.startswith("energy."))

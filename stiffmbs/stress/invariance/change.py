@@ -1,4 +1,4 @@
-"""A change of a scene and how its channels are taken back."""
+"""Transformation of a scene, and the inverse transformation of its channels."""
 
 from __future__ import annotations
 
@@ -14,25 +14,25 @@ Channels = dict[str, np.ndarray]
 
 
 def unchanged(channels: Channels, time: np.ndarray) -> Channels:
-    """Return channels as they are."""
+    """Return channels unchanged."""
     return channels
 
 
 @dataclass(frozen=True)
 class Change:
-    """A scene that must move as another one.
+    """Scene that must have the same motion as another one.
 
     Attributes
     ----------
     what : str
-        In messages.
+        Name in messages.
     content : dict
-        Of the changed scene.
+        Content of the transformed scene.
     back : callable
-        From the channels of its run, and the output instants, to those of the original; channels that it leaves out are not
+        Transforms the channels of its run, at the output times, back to those of the original; omitted channels are not
         compared.
     start : float
-        Of the run, s.
+        Start time of the run, s.
     """
 
     what: str
@@ -44,11 +44,11 @@ class Change:
 VECTORS: Mapping[str, tuple[str, ...]] = {
     name: tuple(name.format(axis) for axis in "xyz") for name in ("{}", "v{}", "a{}", "f{}", "t{}")
 }
-"""The channels along the ground's axes, by vectors."""
+"""Channels along the ground's axes, by vector."""
 
 
 def vector(channels: Channels, owner: str, labels: tuple[str, ...]) -> np.ndarray | None:
-    """Return a vector over time, shape (3, n), with zero for a component along z that the plane lacks; None where there is none."""
+    """Return a vector over time, shape (3, n), with z = 0 for planar scenes, or None if it does not exist."""
     found = [channels.get(f"{owner}.{label}") for label in labels]
     if found[0] is None or found[1] is None:
         return None
@@ -57,7 +57,7 @@ def vector(channels: Channels, owner: str, labels: tuple[str, ...]) -> np.ndarra
 
 
 def with_vector(channels: Channels, owner: str, labels: tuple[str, ...], values: np.ndarray) -> None:
-    """Put a vector in place of the channels that there are."""
+    """Replace the existing channels of a vector."""
     for label, series in zip(labels, values, strict=True):
         if f"{owner}.{label}" in channels:
             channels[f"{owner}.{label}"] = series

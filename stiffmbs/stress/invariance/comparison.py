@@ -1,4 +1,4 @@
-"""The channels of two runs, against their error bars."""
+"""Compare the channels of two runs with their error bars."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ NOT_COMPARED = ("constraint.",)
 
 @dataclass(frozen=True)
 class Allowance:
-    """The allowed difference between channels of two runs.
+    """Allowed difference between channels of two runs.
 
     Attributes
     ----------
     floor : float
-        Relative to the size of a channel.
+        Allowed difference relative to the size of a channel.
     bars : float
-        In differences of the runs at two tolerances.
+        Allowed difference in error bars: differences of the runs at two tolerances.
     sensitive : float
-        Error bar relative to the size of a channel from which on it is not compared.
+        Error bar, relative to the size of a channel, above which the channel is not compared.
     """
 
     floor: float = 2e-5
@@ -37,7 +37,7 @@ ALLOWANCE = Allowance()
 
 @dataclass(frozen=True)
 class Difference:
-    """The channel in which two runs differ most, relative to what is allowed.
+    """Channel with the largest difference between two runs, relative to the allowed one.
 
     Attributes
     ----------
@@ -57,7 +57,7 @@ def compared(one: Found, other: Found, bars: Channels, allowance: Allowance = AL
     Parameters
     ----------
     one, other : Found
-        The original, and the changed one with its channels taken back.
+        The original, and the transformed run with its channels transformed back.
     bars : dict of str to ndarray
         Differences of runs of different tolerance.
     allowance : Allowance
@@ -88,7 +88,7 @@ def bars_of(one: Found, other: Found) -> Channels:
 
 
 def difference(name: str, one: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """Return the difference of two channels; of angles up to whole turns, of potential energy up to its origin."""
+    """Return the difference of two channels; angles modulo whole turns, potential energy up to a constant."""
     label = name.rpartition(".")[2]
     gap = one - other
     if name in ("energy.potential", "energy.total"):

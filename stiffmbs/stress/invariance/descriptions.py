@@ -1,4 +1,4 @@
-"""A scene with a body in other own axes, or with two bodies that a joint fixes together as one."""
+"""Describe a body in other axes, or merge two bodies that a joint fixes together."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from .typed import NotLegitimate
 
 
 def in_other_axes(content: Content, rng: np.random.Generator) -> Change:
-    """Return a scene in space with a body that is described in other own axes, from another origin.
+    """Return a spatial scene with a body that is described in other axes, from another origin.
 
     Raises
     ------
     NotLegitimate
-        In the plane, whose angles may count turns, and when a part or a drive names the body.
+        For planar scenes, whose angles may count turns, and when a part or a drive names the body.
     """
     if content.get("dimensions", 2) == 2:
         raise NotLegitimate("the plane has one axis of rotation")
@@ -41,7 +41,7 @@ def in_other_axes(content: Content, rng: np.random.Generator) -> Change:
 
 
 def _in_own(channels: Channels, name: str, axes: np.ndarray) -> Channels:
-    """Return a body's quaternion and angular velocities in the axes that it was described in."""
+    """Return the quaternion and angular velocities of a body in its original axes."""
     found = dict(channels)
     for kind in ("w", "wd"):
         labels = (f"{kind}x", f"{kind}y", f"{kind}z")
@@ -58,12 +58,12 @@ def _in_own(channels: Channels, name: str, axes: np.ndarray) -> Channels:
 
 
 def as_one_body(content: Content, rng: np.random.Generator) -> Change:
-    """Return a scene in which two bodies that a joint fixes together are one, with the axes of the first.
+    """Return a scene in which two bodies fixed together by a joint are merged, with the axes of the first.
 
     Raises
     ------
     NotLegitimate
-        When no such pair was drawn, another joint ties it too, or a part or a drive names one of the bodies.
+        When there is no such pair, another joint connects it, or a part or a drive names one of the bodies.
     """
     pairs = [
         (key, body_of(joint["i"]), body_of(joint["j"]))
@@ -120,7 +120,7 @@ def _apart_otherwise(content: Content, weld: str, pair: set[str]) -> None:
 
 
 def _composite(first: Content, masses: list[float], centres: list[np.ndarray], tensors: list[np.ndarray]) -> Content:
-    """Return the body that two make up, from its centre of mass, with the axes and the motion of the first."""
+    """Return the union of two bodies, with its centre of mass as origin, and the axes and motion of the first."""
     centre = np.average(centres, axis=0, weights=masses)
     whole = np.zeros((3, 3))
     for mass, place, tensor in zip(masses, centres, tensors, strict=True):

@@ -1,4 +1,4 @@
-"""Formulas of a scene with other expressions in place of their names."""
+"""Substitute names in the formulas of a scene."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from ...describe.formula.text import as_written, parse
 from ..random_scenes.draft import Content
 
 Replace = Callable[[ast.expr], str | None]
-"""The text that stands for a name, coordinate, measure or reaction in place of it; None where it stays."""
+"""Return the substitute of a name, coordinate, measure or reaction, or None if it is unchanged."""
 
 
 def replaced(text: Any, replace: Replace) -> Any:
-    """Return a formula with other expressions in it; a number as it is."""
+    """Return a formula with substitutions; a number is unchanged."""
     if not isinstance(text, str):
         return text
     return as_written(_Replaced(replace).visit(copy.deepcopy(parse(text))))
@@ -31,15 +31,15 @@ class _Replaced(ast.NodeTransformer):
         return node if text is None else parse(text)
 
     def visit_Name(self, node: ast.Name) -> ast.AST:
-        """Time, a variable or a state."""
+        """Substitute time, a variable or a state."""
         return self._visited(node)
 
     def visit_Attribute(self, node: ast.Attribute) -> ast.AST:
-        """A coordinate, or a channel."""
+        """Substitute a coordinate or a channel."""
         return self._visited(node)
 
     def visit_Call(self, node: ast.Call) -> ast.AST:
-        """A measure or reaction, or a function of parts."""
+        """Substitute a measure or reaction, or the arguments of a function."""
         if is_measure(node) or is_reaction(node) or _called(node).startswith("acc"):
             return self._visited(node)
         return ast.Call(node.func, [self.visit(argument) for argument in node.args], [])
@@ -51,14 +51,14 @@ def _called(node: ast.Call) -> str:
 
 
 def call_of(node: ast.expr) -> tuple[str, list[str]] | None:
-    """Return the name of a measure or reaction and the names in it; None for any other node."""
+    """Return the name and the arguments of a measure or reaction, or None for any other node."""
     if isinstance(node, ast.Call):
         return _called(node), [ast.unparse(argument) for argument in node.args]
     return None
 
 
 def coordinate_of(node: ast.expr) -> tuple[str, str] | None:
-    """Return the owner and the name of a coordinate such as ``b.vx``; None for any other node."""
+    """Return the owner and the name of a coordinate such as ``b.vx``, or None for any other node."""
     if isinstance(node, ast.Attribute):
         return ast.unparse(node.value), node.attr
     return None
@@ -70,7 +70,7 @@ def is_time(node: ast.expr) -> bool:
 
 
 def with_other_formulas(content: Content, replace: Replace) -> Content:
-    """Return a scene's states and requests with other formulas."""
+    """Return a scene's states and requests with substituted formulas."""
     found = dict(content)
     if "states" in content:
         found["states"] = {name: dict(_state(entry, replace)) for name, entry in content["states"].items()}
@@ -80,7 +80,7 @@ def with_other_formulas(content: Content, replace: Replace) -> Content:
 
 
 FORMULAS = ("rate", "zero", "input", "setpoint")
-"""The keys of states that hold formulas."""
+"""Keys of states that hold formulas."""
 
 
 def _state(entry: Content, replace: Replace) -> Iterator[tuple[str, Any]]:

@@ -1,4 +1,4 @@
-"""A scene that is observed from a frame which moves at a constant velocity: its ground is a body that is driven along."""
+"""Observe a scene from a frame with constant velocity: its ground becomes a driven body."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ CARRIER = "carrier"
 
 
 def moving(content: Content, velocity: np.ndarray) -> Change:
-    """Return the scene on a carrier that moves at a velocity, shape (3,).
+    """Return the scene on a carrier with a given velocity, shape (3,).
 
     Raises
     ------
@@ -81,7 +81,7 @@ def _add_carrier(content: Content, velocity: np.ndarray, dimensions: int) -> Non
 
 
 def _replace(velocity: np.ndarray, dimensions: int) -> Any:
-    """Return what formulas have in place of coordinates and measures against the ground."""
+    """Return the substitution for coordinates and measures relative to the ground."""
     axes = "xyz"[:dimensions]
 
     def replace(node: ast.expr) -> str | None:
@@ -103,7 +103,7 @@ def _replace(velocity: np.ndarray, dimensions: int) -> Any:
 
 
 def _back(channels: Channels, time: np.ndarray, velocity: np.ndarray) -> Channels:
-    """Return channels against the carrier; kinetic energy is another one."""
+    """Return channels relative to the carrier, without the kinetic energy."""
     found = {name: series for name, series in channels.items() if not name.startswith(("energy.", "carrie"))}
     for owner in dict.fromkeys(name.rpartition(".")[0] for name in found):
         places, rates = (vector(channels, owner, VECTORS[kind]) for kind in ("{}", "v{}"))

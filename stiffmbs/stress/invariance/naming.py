@@ -1,4 +1,4 @@
-"""A scene whose bodies, joints, forces and states have other names and stand in another order."""
+"""Rename and reorder the bodies, joints, forces and states of a scene."""
 
 from __future__ import annotations
 

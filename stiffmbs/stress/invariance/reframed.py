@@ -1,4 +1,4 @@
-"""The markers and formulas of a scene on a body that is described in another frame, or is a part of another body."""
+"""Transform the markers and formulas of a body to another frame or another body."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ ORIGIN, CENTRE = "origin", "centre"
 
 @dataclass(frozen=True)
 class Frame:
-    """The frame of another description of a body, in the axes of the first description.
+    """Frame of a second description of a body, in the axes of the first.
 
     Attributes
     ----------
@@ -51,7 +51,7 @@ class Frame:
 
 
 class Reframed(Mapper):
-    """Markers of bodies in other frames, and formulas that measure them there.
+    """Mapping of markers and formulas to bodies in other frames.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ class Reframed(Mapper):
 
 
 def reframed(content: Content, frames: dict[str, Frame], others: Content) -> Content:
-    """Return a scene whose bodies are others, with all markers and formulas of those that had other frames.
+    """Return a scene with other bodies, and with transformed markers and formulas.
 
     Parameters
     ----------
@@ -109,7 +109,7 @@ def reframed(content: Content, frames: dict[str, Frame], others: Content) -> Con
 
 
 def named(content: Content, bodies: Iterable[str]) -> None:
-    """Raise NotLegitimate where a part or the drive of a coordinate names one of some bodies."""
+    """Raise NotLegitimate if a part or the drive of a coordinate names one of the bodies."""
     driven = {
         joint["coordinate"].partition(".")[0] for joint in content.get("joints", {}).values() if "coordinate" in joint
     }
@@ -119,7 +119,7 @@ def named(content: Content, bodies: Iterable[str]) -> None:
 
 
 def _replace(frames: dict[str, Frame]) -> Callable[[ast.expr], str | None]:
-    """Return what formulas have in place of coordinates and measures of bodies in other frames."""
+    """Return the substitution for coordinates and measures of bodies in other frames."""
 
     def replace(node: ast.expr) -> str | None:
         coordinate, call = coordinate_of(node), call_of(node)
@@ -134,7 +134,7 @@ def _replace(frames: dict[str, Frame]) -> Callable[[ast.expr], str | None]:
 
 
 def _measure(name: str, label: str, frame: Frame) -> str:
-    """Return the measure that a body's coordinate is."""
+    """Return the measure that is equivalent to a body coordinate."""
     centre, own = f"{frame.body}.{CENTRE}_{name}", f"{frame.body}.{ORIGIN}_{name}"
     if label in ("x", "y", "z"):
         return f"d{label}({centre}, {GROUND})"
@@ -150,7 +150,7 @@ def _measure(name: str, label: str, frame: Frame) -> str:
 
 
 def axes_of(marker: Content) -> np.ndarray:
-    """Return the axes of a marker or body, which has an angle, a quaternion or a matrix."""
+    """Return the axes of a marker or body, given by an angle, a quaternion or a matrix."""
     if "angle" in marker:
         return about_z(marker["angle"])
     found = marker.get("orientation", np.eye(3))
@@ -165,11 +165,11 @@ def turned(axes: np.ndarray, dimensions: int) -> Content:
 
 
 def three(components: Any) -> np.ndarray:
-    """Return a vector of the plane or of space, or the zero vector of no components, with three components."""
+    """Return a vector with three components; an empty vector is zero."""
     return np.array([*components, 0.0, 0.0, 0.0][:3])
 
 
 def tensor_of(body: Content) -> np.ndarray:
-    """Return a body's inertia tensor about its centre of mass in its own axes; that about z alone in the plane."""
+    """Return a body's inertia tensor about its centre of mass in body axes; only about z in the plane."""
     found = np.array(body["inertia"])
     return np.diag([0.0, 0.0, float(found)]) if found.ndim == 0 else np.diag(found) if found.ndim == 1 else found

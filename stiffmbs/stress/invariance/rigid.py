@@ -1,4 +1,4 @@
-"""A scene that is turned and moved as a whole, with the ground's markers, roads and gravity."""
+"""Rotate and translate a scene as a whole, with markers of the ground, roads and gravity."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ from .formulas import call_of, coordinate_of, replaced, with_other_formulas
 from .typed import Mapper, NotLegitimate, class_of, has_road, mapped
 
 LAB = "lab"
-"""The marker of the ground that stands where the ground's origin was."""
+"""Marker of the ground at its original origin."""
 ALONG = ("dx", "dy", "dz", "vx", "vy", "vz", "wx", "wy", "wz", "accx", "accy", "accz", "wdtx", "wdty", "wdtz")
-"""Measures along axes, which are the ground's unless a third marker is named."""
+"""Measures along the axes of the ground or of a third marker."""
 
 
 @dataclass(frozen=True)
 class Placing:
-    """The pose of the scene's ground axes in those of the changed scene.
+    """Pose of the ground axes of the scene in those of the transformed scene.
 
     Attributes
     ----------
@@ -40,19 +40,19 @@ class Placing:
 
     @property
     def angle(self) -> float:
-        """Of the rotation about z."""
+        """Angle of the rotation about z."""
         return math.atan2(self.rotation[1, 0], self.rotation[0, 0])
 
     def point(self, place: list[float]) -> list[float]:
-        """Return a point in the changed scene."""
+        """Return a point in the transformed scene."""
         return self.listed(self.rotation @ _three(place) + self.translation)
 
     def direction(self, components: list[float]) -> list[float]:
-        """Return a vector in the changed scene."""
+        """Return a vector in the transformed scene."""
         return self.listed(self.rotation @ _three(components))
 
     def listed(self, components: np.ndarray) -> list[float]:
-        """Return as many components as there are dimensions."""
+        """Return the components of a planar or spatial scene."""
         return [float(part) for part in components[: self.dimensions]]
 
     def lab(self) -> Content:
@@ -67,18 +67,18 @@ class Placing:
         return {"point": point, "orientation": self.orientation(marker.get("orientation", [1.0, 0.0, 0.0, 0.0]))}
 
     def orientation(self, found: list[Any]) -> list[float]:
-        """Return an orientation, a quaternion or a matrix, in the changed scene."""
+        """Return an orientation, a quaternion or a matrix, in the transformed scene."""
         axes = matrix(found) if len(found) == 4 else np.array(found)
         return [float(part) for part in from_matrix(self.rotation @ axes)]
 
 
 def placed(content: Content, placing: Placing, what: str) -> Change:
-    """Return a scene that is turned and moved.
+    """Return a rotated and translated scene.
 
     Raises
     ------
     NotLegitimate
-        When an element has numbers along the ground's axes that cannot be turned.
+        When an element has numbers along the ground's axes that cannot be rotated.
     """
     replace = _replace(placing)
     mapper = _Moved(placing, replace)
@@ -125,7 +125,7 @@ class _Moved(Mapper):
 
 
 def _turn_components(entry: Content, described: type[Any], placing: Placing) -> None:
-    """Turn the components along the ground's axes of an element that has such."""
+    """Rotate the components of an element along the ground's axes."""
     field = described.model_fields.get("axes")
     axes = entry.get("axes", field.default if field is not None else None)
     if axes != GROUND or "frame" in entry:
@@ -148,7 +148,7 @@ def _turned(components: list[Any], placing: Placing) -> list[Any]:
 
 
 def _replace(placing: Placing) -> Any:
-    """Return what formulas have in place of coordinates, measures and reactions."""
+    """Return the substitution for coordinates, measures and reactions."""
     axes = "xyz"[: placing.dimensions]
 
     def mixed(names: list[str], axis: str) -> str:
@@ -184,7 +184,7 @@ def _replace(placing: Placing) -> Any:
 
 
 def _back(channels: Channels, placing: Placing) -> Channels:
-    """Return channels along the axes of the original, from its origin."""
+    """Return channels along the axes of the original, relative to its origin."""
     found, inverse = dict(channels), placing.rotation.T
     for owner in dict.fromkeys(name.rpartition(".")[0] for name in channels):
         for kind, labels in VECTORS.items():

@@ -1,4 +1,4 @@
-"""A scene in other units of mass, length and time."""
+"""Scale a scene to other units of mass, length and time."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ LABELS: dict[str, Dimension] = {
     **dict.fromkeys(("torque", "tx", "ty", "tz", "overturning", "rolling", "aligning", "braking"), TORQUE),
     **dict.fromkeys(("kinetic", "potential", "total"), ENERGY),
 }
-"""The dimensions of channels, coordinates and measures by the last part of their names."""
+"""Dimensions of channels, coordinates and measures by the last part of their names."""
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,7 @@ def scaled(content: Content, units: Units) -> Change:
     Raises
     ------
     NotLegitimate
-        When numbers have a unit that the scene does not show.
+        When numbers have a unit that is not declared.
     """
     if "use" in content:
         raise NotLegitimate("parts have numbers of their own")
@@ -103,7 +103,7 @@ class _Scaled(Mapper):
         return f"{factor!r}*({replaced(value, with_own)})"
 
     def _of_formula(self, value: Any, owner: Content) -> Dimension:
-        """Return the dimension of a formula whose field does not state it."""
+        """Return the dimension of a formula whose field does not declare it."""
         match owner["type"]:
             case "drive" if value == owner.get("coordinate"):
                 return LENGTH
@@ -125,7 +125,7 @@ class _Scaled(Mapper):
 
 
 def _of_value(owner: Content, measured: Measured, content: Content) -> Dimension:
-    """Return the dimension of a number whose field takes any."""
+    """Return the dimension of a number whose field accepts any dimension."""
     kind = owner["type"]
     if kind == "coupler":
         (_, first, _), (_, second, _) = (_sort(owner[f"joint_{k}"], content) for k in (1, 2))
@@ -146,7 +146,7 @@ def _sort(joint: str, content: Content) -> Dimension:
 
 
 def _state(state: Content, units: Units) -> Content:
-    """Return a state, whose value stays: rates are those of another time."""
+    """Return a state with an unchanged value and a rate in the new unit of time."""
     T = units.time
     match state:
         case {"rate": rate}:
@@ -165,12 +165,12 @@ def _state(state: Content, units: Units) -> Content:
 
 
 def _powers(row: list[float], T: float) -> list[float]:
-    """Return the coefficients of a polynomial in s, which is another one over time."""
+    """Return the coefficients of a polynomial in s, in the new unit of time."""
     return [part * T ** (len(row) - 1 - k) for k, part in enumerate(row)]
 
 
 def _replace(units: Units, states: set[str]) -> Any:
-    """Return what formulas have in place of quantities with units."""
+    """Return the substitution for quantities with units."""
 
     def replace(node: ast.expr) -> str | None:
         coordinate, call = coordinate_of(node), call_of(node)

@@ -1,4 +1,4 @@
-"""A scene that starts at another time."""
+"""Shift the start time of a scene."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .typed import Mapper, mapped_scene
 
 
 def shifted(content: Content, start: float) -> Change:
-    """Return a scene whose formulas of t are those of t - start, from `start` on."""
+    """Return a scene that starts at `start`, with t - start in its formulas."""
 
     def replace(node: Any) -> str | None:
         return f"(t - ({start!r}))" if is_time(node) else None

@@ -1,4 +1,4 @@
-"""The numbers, formulas, markers and orientations in a scene's content, by the declared types of its fields."""
+"""Map the values in a scene's content by the declared types of its fields."""
 
 from __future__ import annotations
 
@@ -21,34 +21,34 @@ from ...describe.spatial.orientation import OrientationField
 from ..random_scenes.draft import Content
 
 OPAQUE = ("properties", "function")
-"""Fields whose values hold numbers with units that a scene does not show."""
+"""Fields with numbers whose units are not declared."""
 
 
 class NotLegitimate(Exception):
-    """A change is none that leaves the motion of a scene as it is."""
+    """The transformation would change the motion of the scene."""
 
 
 class Mapper:
-    """Map each value of a scene to another; every value stays by default."""
+    """Mapping of each value of a scene; the default is the identity."""
 
     def number(self, value: Any, measured: Measured, owner: Content) -> Any:
-        """Return a number with a unit."""
+        """Map a number with a unit."""
         return value
 
     def formula(self, value: Any, kind: FormulaOf, owner: Content) -> Any:
-        """Return a formula, a number or a table in place of one."""
+        """Map a formula, a number or a table."""
         return value
 
     def marker(self, value: Any) -> Any:
-        """Return a marker."""
+        """Map a marker."""
         return value
 
     def orientation(self, value: Any) -> Any:
-        """Return an orientation of a body."""
+        """Map an orientation of a body."""
         return value
 
     def opaque(self, name: str, value: Any) -> Any:
-        """Return a value that holds numbers which a scene does not show."""
+        """Map a value with undeclared numbers."""
         return value
 
 
@@ -66,17 +66,17 @@ def class_of(section: str, entry: Content, dimensions: int) -> type[Any]:
 
 
 def mapped(entry: Content, described: type[Any], mapper: Mapper, defaults: bool = False) -> Content:
-    """Return an entry with other values.
+    """Return an entry with mapped values.
 
     Parameters
     ----------
     entry : dict
-        Of a scene.
+        Entry of a scene.
     described : type
-        Its class.
+        Class of the entry.
     mapper : Mapper
     defaults : bool
-        Whether fields with a default that is a number are written too.
+        True to write fields with a numeric default as well.
     """
     described.model_rebuild()
     found = dict(entry)
@@ -92,7 +92,7 @@ def mapped(entry: Content, described: type[Any], mapper: Mapper, defaults: bool 
 
 
 def _mapped(value: Any, annotation: Any, metadata: Any, mapper: Mapper, owner: Content) -> Any:
-    """Return the value of a field, by its type."""
+    """Return the mapped value of a field, by its type."""
     for kind in metadata:
         match kind:
             case Measured():
@@ -116,14 +116,14 @@ def _mapped(value: Any, annotation: Any, metadata: Any, mapper: Mapper, owner: C
 
 
 def _chosen(arguments: tuple[Any, ...], value: Any) -> Any:
-    """Return the member of a union that a value is of."""
+    """Return the member of a union that matches a value."""
     present = [kind for kind in arguments if kind is not type(None)]
     lists = [kind for kind in present if typing.get_origin(kind) is tuple]
     return lists[0] if lists and isinstance(value, list) else present[0]
 
 
 def _items(value: list[Any], arguments: tuple[Any, ...], mapper: Mapper, owner: Content) -> Iterator[Any]:
-    """Yield the items of a list; a diagonal stands for a matrix."""
+    """Yield the items of a list; a diagonal represents a matrix."""
     if len(arguments) == 2 and arguments[1] is Ellipsis:
         arguments = (arguments[0],) * len(value)
     for k, (item, kind) in enumerate(zip(value, arguments, strict=True)):
@@ -136,7 +136,7 @@ def _measured(metadata: Any) -> bool:
 
 
 def mapped_scene(content: Content, mapper: Mapper, defaults: bool = False) -> Content:
-    """Return a scene with other values in its bodies, joints, forces and roads."""
+    """Return a scene with mapped values in its bodies, joints, forces and roads."""
     dimensions = content.get("dimensions", 2)
     found = dict(content)
     for section in ("bodies", "joints", "forces", "roads"):

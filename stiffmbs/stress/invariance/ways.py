@@ -1,4 +1,4 @@
-"""The ways in which a scene is run: at once, in two runs with a state between them, step by step, as a study, in space."""
+"""Run a scene in several ways: at once, interrupted by a saved state, step by step, as a study, in space."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from .typed import NotLegitimate
 
 @dataclass(frozen=True)
 class Found:
-    """The channels of a run.
+    """Channels of a run.
 
     Attributes
     ----------
@@ -44,12 +44,12 @@ class Found:
 
 
 def scene_of(content: Content) -> Any:
-    """Return the scene that a file with the content is."""
+    """Return the scene with a given content."""
     return read_scene(json.dumps(content), source="'a random scene'")
 
 
 def found_of(solution: Solution) -> Found:
-    """Return what a run has found.
+    """Return the results of a run.
 
     Raises
     ------
@@ -67,7 +67,7 @@ def at_once(content: Content, **how: Any) -> Found:
 
 
 def in_two_runs(content: Content, **how: Any) -> Found:
-    """Return the channels of a run and another one that starts from the state that the first one saved to a file."""
+    """Return the channels of a run and of its continuation from a saved state."""
     scene = scene_of(content)
     duration, points = content["run"]["duration"], content["run"]["points"]
     half = (points - 1) // 2
@@ -96,7 +96,7 @@ def step_by_step(content: Content, **how: Any) -> Found:
 
 
 def as_a_study(content: Content, **how: Any) -> Found:
-    """Return the channels of the second of two cases of a study, which differ in the mass of a body."""
+    """Return the channels of the second of two cases of a study that differ in the mass of a body."""
     scene = scene_of(content)
     body = next(iter(content["bodies"]))
     mass = content["bodies"][body]["mass"]
@@ -109,7 +109,7 @@ def as_a_study(content: Content, **how: Any) -> Found:
 
 
 def embedded(content: Content, **how: Any) -> Found:
-    """Return the channels of a planar scene in space, by their names in the plane; a torque has a potential in the plane alone.
+    """Return the channels of a planar scene embedded in space, by their planar names; only planar torques have a potential.
 
     Raises
     ------

@@ -14,11 +14,11 @@ from ...describe.scene import Scene
 GRAVITY = 9.81
 MASS = np.array([[80.81722, 2.31941332208709], [2.31941332208709, 0.29784188199686]])
 DAMPING = np.array([[0.0, 33.86641391492494], [-0.85035641456978, 1.68540397397560]])
-"""Over the speed."""
+"""Damping matrix divided by the speed."""
 STIFFNESS = np.array([[-80.95, -2.59951685249872], [-2.59951685249872, -0.80329488458618]])
-"""Over gravity."""
+"""Stiffness matrix divided by gravity."""
 STIFFNESS_BY_SPEED = np.array([[0.0, 76.59734589573222], [0.0, 2.65431523794604]])
-"""Over the square of the speed."""
+"""Stiffness matrix divided by the square of the speed."""
 
 WHEEL = """
   {name}_touch: {{type: equation, zero: "dz({name}) + {radius} m*{across}"}}
@@ -70,7 +70,7 @@ joints:
 
 
 def bicycle(speed: float) -> Scene:
-    """Return the bicycle that rolls upright and straight ahead.
+    """Return the bicycle rolling upright and straight ahead.
 
     Parameters
     ----------

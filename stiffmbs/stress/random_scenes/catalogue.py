@@ -1,4 +1,4 @@
-"""The random maker of each kind of element, and the kinds without one."""
+"""Generators of random elements of each kind, and the kinds without one."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ PLANE, SPACE, BOTH = (2,), (3,), (2, 3)
 
 @dataclass(frozen=True)
 class Maker:
-    """Adds an element of a kind to a draft.
+    """Generator of elements of one kind.
 
     Attributes
     ----------
     section : str
-        Of the scene: ``joints``, ``forces``, ``states`` or ``use``.
+        Section of the scene: ``joints``, ``forces``, ``states`` or ``use``.
     kind : str
-        The element's `type`; of states the key that only they have; of parts their name.
+        The element's `type`; the distinctive key of a state; the name of a part.
     make : callable
     needs : tuple of str
-        Of the `Features` of the scene.
+        Required `Features` of the scene.
     dimensions : tuple of int
     """
 
@@ -92,7 +92,7 @@ WITHOUT: Mapping[str, str] = MappingProxyType(
         "driver": "it needs a car with four wheels on tyres, which examples/car.yaml is",
     }
 )
-"""Kinds and parts without a random maker, and why."""
+"""Kinds and parts without a generator, with reasons."""
 
 
 def kinds(dimensions: int) -> Iterator[tuple[str, str]]:

@@ -1,4 +1,4 @@
-"""Random contacts: shapes that are about to meet."""
+"""Random contacts: shapes that are about to touch."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def add_sphere_contact(draft: Draft) -> str:
 
 
 def _surface(draft: Draft, at: np.ndarray, way: np.ndarray, radius: float, surface: str) -> tuple[np.ndarray, Content]:
-    """Return the place of the surface's marker from which it is reached after a gap, and its fields."""
+    """Return the position of the surface's marker at a gap from the body, and its fields."""
     gap = draft.uniform(0.005, GAP)
     if surface in ("line", "plane"):
         return at - (radius + gap) * way, {"surface": surface}
@@ -109,7 +109,7 @@ def add_solid_impact(draft: Draft) -> str:
 
 
 def _impact(draft: Draft) -> Content:
-    """Return the law of an impact, at times with friction."""
+    """Return the law of an impact, sometimes with friction."""
     law: Content = {
         "stiffness": draft.uniform(2e3, 2e4), "exponent": draft.choice([1.5, 2.0]), "damping": draft.uniform(1, 10),
         "depth": draft.uniform(1e-3, 5e-3),

@@ -1,4 +1,4 @@
-"""A random scene in the making: bodies at their poses, and markers at points of the ground's axes."""
+"""Construction of a random scene."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ ROUNDING = 1e-15
 
 
 class Unfit(Exception):
-    """The draft has nothing that an element of a kind could act on."""
+    """The draft has nothing on which an element of this kind could act."""
 
 
 @dataclass(frozen=True)
 class Pose:
-    """A point of the ground's axes, and axes as the columns of a rotation matrix."""
+    """Point in ground axes, and axes as the columns of a rotation matrix."""
 
     point: np.ndarray
     axes: np.ndarray
@@ -30,16 +30,16 @@ class Pose:
 
 @dataclass(frozen=True)
 class Coordinate:
-    """A coordinate of a joint that relations and drives may use.
+    """Coordinate of a joint that relations and drives may use.
 
     Attributes
     ----------
     joint : str
-        As relations name it, ``sleeve.angle`` where there are two.
+        Name in relations; ``sleeve.angle`` if the joint has two coordinates.
     sort : str
         ``angle`` or ``displacement``.
     i, j : str
-        The bodies.
+        Names of the bodies.
     """
 
     joint: str
@@ -50,22 +50,22 @@ class Coordinate:
 
 @dataclass
 class Draft:
-    """A random scene in the making.
+    """Random scene under construction.
 
     Attributes
     ----------
     rng : Generator
     dimensions : int
     features : Features
-        What it may have.
+        Features that it may have.
     content : dict
-        Of the scene file.
+        Content of the scene file.
     poses : dict of str to Pose
-        Of the bodies' own axes; those of the ground too.
+        Poses of the body axes and of the ground.
     coordinates : list of Coordinate
-        Not yet used by a relation or drive.
+        Coordinates not yet used by a relation or drive.
     freedoms : int
-        Degrees of freedom that are left.
+        Number of remaining degrees of freedom.
     """
 
     rng: np.random.Generator
@@ -78,16 +78,16 @@ class Draft:
 
     @property
     def in_space(self) -> bool:
-        """True in space."""
+        """True for spatial scenes."""
         return self.dimensions == 3
 
     @property
     def bodies(self) -> list[str]:
-        """The names of the bodies."""
+        """Names of the bodies."""
         return [name for name in self.poses if name != GROUND]
 
     def section(self, name: str) -> Content:
-        """Return a section of the scene, which is made where there is none."""
+        """Return a section of the scene, which is created if necessary."""
         found: Content = self.content.setdefault(name, {})
         return found
 
@@ -108,7 +108,7 @@ class Draft:
         return float(f"{self.rng.uniform(low, high):.3g}")
 
     def vector(self, size: float, count: int | None = None) -> list[float]:
-        """Return random components, as many as there are dimensions."""
+        """Return random components of a planar or spatial vector."""
         return [self.uniform(-size, size) for _ in range(count or self.dimensions)]
 
     def place(self, size: float) -> np.ndarray:
@@ -136,7 +136,7 @@ class Draft:
         return random_axes(self.rng)
 
     def marker(self, body: str, at: np.ndarray, axes: np.ndarray | None = None) -> Content:
-        """Return a marker of a body at a point of the ground's axes, with the axes of the ground or others."""
+        """Return a marker of a body at a point in ground axes, with the axes of the ground or others."""
         pose = self.poses[body]
         own = pose.axes.T @ (at - pose.point)
         own[np.abs(own) < ROUNDING] = 0.0
@@ -156,19 +156,19 @@ class Draft:
 
 
 def about_z(angle: float) -> np.ndarray:
-    """Return axes that are turned about z."""
+    """Return axes rotated about z."""
     c, s = math.cos(angle), math.sin(angle)
     return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
 
 
 def about_x(angle: float) -> np.ndarray:
-    """Return axes that are turned about x."""
+    """Return axes rotated about x."""
     c, s = math.cos(angle), math.sin(angle)
     return np.array([[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]])
 
 
 def random_axes(rng: np.random.Generator) -> np.ndarray:
-    """Return axes that are turned at random."""
+    """Return randomly rotated axes."""
     w, x, y, z = (part / 1.0 for part in _unit(rng.standard_normal(4)))
     return np.array(
         [
@@ -188,7 +188,7 @@ def axes_with_z(direction: np.ndarray) -> np.ndarray:
 
 
 def _angle(axes: np.ndarray) -> float:
-    """Return the angle of x about z, so that markers that are drawn alike have one angle, without whole turns between them."""
+    """Return the angle of x about z, so that parallel markers have the same angle without whole turns."""
     return math.atan2(axes[1, 0], axes[0, 0])
 
 

@@ -1,4 +1,4 @@
-"""Random scenes whose drives fix every coordinate, as the solver `kinematic` takes them."""
+"""Random scenes in which drives prescribe every coordinate, for the solver `kinematic`."""
 
 from __future__ import annotations
 

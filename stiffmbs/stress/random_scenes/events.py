@@ -1,4 +1,4 @@
-"""Random scenes with events of few forms, whose numbers are parameters, so that each form is compiled once."""
+"""Random scenes with a few forms of events.  Numbers are parameters, so that each form is compiled once."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ LAWS = (
     "-K*sign(X - A)*(X - A)^2", "K*min(max(X - A, 0), 0.02)", "-K*tanh(V/0.2)", "K*max(sin(9*t + A), 0.3)", "K*abs(p - A)",
     "branch(p - A, K, 0, K/3)", "-K*p*max(V, 0)", "K*ramp(t + z)", "K*branch(z - A, 1, 0, 0.2)", "-K*max(X - A, 0)*max(1 + C*V, 0)",
 )  # fmt: skip
-"""Laws of forces: X and V are a coordinate and its rate, T the time from a start that is a number; ``ramp`` is a table."""
+"""Force laws: X and V are a coordinate and its rate, T is a shifted time, ``ramp`` is a table."""
 STATES: tuple[tuple[str, Content], ...] = (
     ("p", {"zero": "p - X - C*V", "start": 0.0}), ("p", {"zero": "p + p^3 - K*X/10 - z", "start": 0.0}),
     ("p", {"zero": "p - abs(X - A) - t", "start": 0.0}), ("p", {"zero": "2*p - max(X, A)*C - z", "start": 0.0}),
@@ -24,12 +24,12 @@ JOINTS = {2: ("prismatic", "revolute", "free"), 3: ("prismatic", "revolute", "sp
 
 
 def random_events(rng: np.random.Generator, dimensions: int) -> Content:
-    """Return the content of a scene of one to three bodies under forces with breakpoints, with states that follow."""
+    """Return the content of a scene of one to three bodies with states, under forces with breakpoints."""
     return _Maker(rng, dimensions).content()
 
 
 class _Maker:
-    """Makes one scene."""
+    """Generator of one scene."""
 
     def __init__(self, rng: np.random.Generator, dimensions: int) -> None:
         self._rng, self._dimensions = rng, dimensions
@@ -81,7 +81,7 @@ class _Maker:
         self._joints[f"j{k}"] = {"type": kind, "i": i, "j": j}
 
     def _written(self, text: Any) -> Any:
-        """Return a text with a coordinate and numbers of its own."""
+        """Return a text with a random coordinate and random numbers."""
         if not isinstance(text, str):
             return text
         rng, body = self._rng, str(self._rng.choice(list(self._bodies)))
@@ -110,7 +110,7 @@ class _Maker:
         }  # fmt: skip
 
     def _table(self) -> list[list[float]]:
-        """Return points, some of them on output instants."""
+        """Return points, some of them at output times."""
         places = [-3.0, -0.1, 0.0, 0.05, 0.1, 0.2, 0.27, 0.4, 4.0]
         return [
             [place, float(value)] for place, value in zip(places, self._rng.uniform(-1, 1, len(places)), strict=True)

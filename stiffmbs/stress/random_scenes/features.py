@@ -7,14 +7,14 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Features:
-    """The features that a random scene may have; all of them by default.
+    """Features that a random scene may have; all by default.
 
     Attributes
     ----------
     loops : bool
         Joints that close loops, and relations between the coordinates of joints.
     redundant : bool
-        Joints whose equations follow from those of others.
+        Joints with redundant equations.
     time : bool
         Drives and formulas of t.
     events : bool
@@ -24,15 +24,15 @@ class Features:
     velocities : bool
         Initial velocities; bodies are at rest without them.
     nonholonomic : bool
-        Constraints of velocities alone.
+        Nonholonomic constraints.
     friction : bool
         Friction in joints, which depends on their reactions.
     tyres : bool
         Wheels with tyres on roads.
     parts : bool
-        The parts that come with the package.
+        Library parts of the package.
     inputs : bool
-        Values that another program may give.
+        Inputs from other programs.
     """
 
     loops: bool = True

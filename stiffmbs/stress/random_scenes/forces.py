@@ -10,9 +10,9 @@ from .draft import Content, Draft, Unfit
 from .laws import law_of_motion
 
 STIFFNESS, DAMPING = 60.0, 3.0
-"""N/m and N s/m, at most, of soft elements."""
+"""Largest stiffness and damping of soft elements, N/m and N s/m."""
 STIFF = 2e4
-"""N/m, at most, of stiff ones."""
+"""Largest stiffness of stiff elements, N/m."""
 FORCE, TORQUE = 8.0, 2.0
 
 
@@ -37,7 +37,7 @@ def add_torque(draft: Draft) -> str:
 
 
 def _components(draft: Draft, body: str, size: float) -> list[Any]:
-    """Return one formula, or two, among numbers."""
+    """Return components of which one or two are formulas."""
     found: list[Any] = draft.vector(size)
     for _ in range(int(draft.rng.integers(1, 3))):
         found[int(draft.rng.integers(draft.dimensions))] = law_of_motion(draft, body, size)
@@ -84,7 +84,7 @@ def add_torsion_spring(draft: Draft) -> str:
 
 
 def add_bushing(draft: Draft) -> str:
-    """Add a bushing, by numbers, a full matrix or laws, at one place or somewhat deformed."""
+    """Add a bushing with numbers, a full matrix or laws, undeformed or slightly deformed."""
     i, j = draft.two_bodies()
     fields: Content = {**_stiffness(draft), "preload": draft.choice([None, _wrench(draft)])}
     if draft.chance(0.3):
@@ -117,7 +117,7 @@ def add_beam(draft: Draft) -> str:
 
 
 def add_joint_friction(draft: Draft) -> str:
-    """Add friction to a joint that has none yet, between speeds that are not too small."""
+    """Add friction to a joint without friction, with transition speeds that are not too small."""
     taken = {force.get("joint") for force in draft.content.get("forces", {}).values()}
     rubbing = ("revolute", "prismatic", "cylindrical", "spherical") if draft.in_space else ("revolute", "prismatic")
     joints = draft.content.get("joints", {})
@@ -147,7 +147,7 @@ def add_brake(draft: Draft) -> str:
 
 
 def _ends(draft: Draft, i: str, j: str) -> Content:
-    """Return markers at points that are apart."""
+    """Return markers at distinct points."""
     at, there = draft.near(i), draft.near(j)
     if np.linalg.norm(at - there) < 0.3:
         raise Unfit
@@ -155,13 +155,13 @@ def _ends(draft: Draft, i: str, j: str) -> Content:
 
 
 def _joined(draft: Draft, i: str, j: str) -> Content:
-    """Return markers at one place and direction, but for a small deformation."""
+    """Return markers at the same pose, except for a small deformation."""
     at, axes = draft.near(i), draft.axes()
     return {"i": draft.marker(i, at, axes), "j": draft.marker(j, at + draft.place(0.05), axes)}
 
 
 def _stiffness(draft: Draft) -> Content:
-    """Return stiffness and damping of as many components as there are, at times as a full matrix."""
+    """Return stiffness and damping of all components, sometimes as a full matrix."""
     moving, turning = draft.dimensions, draft.dimensions * (draft.dimensions - 1) // 2
     top = STIFF if draft.chance(0.15) else 300.0
     k = [*(draft.uniform(top / 10, top) for _ in range(moving)), *(draft.uniform(2, 20) for _ in range(turning))]
@@ -187,7 +187,7 @@ def _laws(draft: Draft, size: float) -> Content:
 
 
 def _curve(draft: Draft, size: float) -> Content:
-    """Return a table against a deflection, rising."""
+    """Return an increasing table over a deflection."""
     steps = np.cumsum([draft.uniform(0.05, 1) for _ in range(5)])
     values = (steps - steps[2]) * size / 3
     sort = draft.choice([{"akima": True}, {}, {"lines": True}] if draft.features.events else [{}])

@@ -1,4 +1,4 @@
-"""Random joints between two bodies, drawn so that they fit the bodies' poses."""
+"""Random joints between two bodies, consistent with their poses."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ EQUATIONS: Mapping[int, Mapping[str, int]] = MappingProxyType(
         },
     }
 )  # fmt: skip
-"""The number of equations of each kind; that of a thread with the cylindrical joint that it is drawn with."""
+"""Number of equations of each kind; a thread includes its cylindrical joint."""
 COORDINATES: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {
         "revolute": ("angle",), "prismatic": ("displacement",), "point_on_line": ("displacement",), "cylindrical": ("displacement", "angle"),
@@ -28,7 +28,7 @@ COORDINATES: Mapping[str, tuple[str, ...]] = MappingProxyType(
     }
 )  # fmt: skip
 HALF_PITCH = 0.05
-"""Advance of a screw in a radian, m, at most."""
+"""Largest advance of a screw per radian, m."""
 
 
 def add_joint(draft: Draft, kind: str, i: str, j: str) -> str:
@@ -83,7 +83,7 @@ def add_joint(draft: Draft, kind: str, i: str, j: str) -> str:
 
 
 def _curve(draft: Draft, kind: str) -> tuple[Content, np.ndarray, np.ndarray]:
-    """Return the fields of a curve, the place on it in its axes, and axes whose x is its tangent there."""
+    """Return the fields of a curve, a point on it in its axes, and axes with x along the tangent there."""
     sort = draft.choice(["slot", "table", "cam"])
     if sort == "cam":
         radius, part = draft.uniform(0.5, 1), draft.uniform(-0.1, 0.1)

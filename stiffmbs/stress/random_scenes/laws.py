@@ -5,21 +5,21 @@ from __future__ import annotations
 from .draft import Draft
 
 DRAG = 2.0
-"""Drag coefficients, N s/m, at most."""
+"""Largest drag coefficient, N s/m."""
 
 
 def law_of_motion(draft: Draft, body: str, size: float, name: str | None = None) -> str:
-    """Return a formula of what a body does, or of time, states, inputs and tables, about as large as a size.
+    """Return a formula of the motion of a body, time, states, inputs or tables, with values of a given size.
 
     Parameters
     ----------
     draft : Draft
     body : str
-        Whose coordinates the formula takes.
+        Body whose coordinates the formula uses.
     size : float
-        In SI units.
+        Size in SI units.
     name : str, optional
-        A state that the formula is not to use, as the formula is part of it.
+        State that contains the formula, and that the formula must not use.
     """
     sorts = ["spring", "drag", "measured"]
     features = draft.features
@@ -58,7 +58,7 @@ def law_of_motion(draft: Draft, body: str, size: float, name: str | None = None)
 
 
 def law_of_time(draft: Draft, size: float) -> str:
-    """Return a smooth formula of time that is zero at t = 0, about as large as a size."""
+    """Return a smooth formula of time that is zero at t = 0, with values of a given size."""
     A = draft.uniform(0.3, 1) * size
     sort = draft.choice(["wave", "rise", "constant rate"])
     if sort == "wave":
@@ -69,7 +69,7 @@ def law_of_time(draft: Draft, size: float) -> str:
 
 
 def table(draft: Draft) -> str:
-    """Add a table of time, with straight lines or smooth, and return its name."""
+    """Add a linear or smooth table over time, and return its name."""
     name = f"curve{len(draft.section('tables'))}"
     points = [[round(0.1 * k, 3), draft.uniform(-1, 1)] for k in range(int(draft.rng.integers(3, 7)))]
     draft.section("tables")[name] = {"table": points, **draft.choice([{"lines": True}, {"akima": True}, {}])}
@@ -77,12 +77,12 @@ def table(draft: Draft) -> str:
 
 
 def _apart(draft: Draft, i: str, j: str) -> bool:
-    """Return True if the origins of two bodies are apart, so that a distance has a direction."""
+    """Return True if the origins of two bodies are distinct, so that their distance has a direction."""
     return float(abs(draft.poses[i].point - draft.poses[j].point).max()) > 0.3
 
 
 def _coordinate(draft: Draft, body: str) -> str:
-    """Return a coordinate of a body, or a measure against another, of lengths alone."""
+    """Return a coordinate of a body, or a measure relative to another, with the dimension of length."""
     axis = draft.choice("xyz"[: draft.dimensions])
     other = draft.choice(draft.poses)
     if draft.chance(0.5) or other == body:

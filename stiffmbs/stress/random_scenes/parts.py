@@ -1,4 +1,4 @@
-"""The parts that come with the package, on a car's body that is held softly, or on the ground."""
+"""Library parts on a car body with soft bushings, or on the ground."""
 
 from __future__ import annotations
 
@@ -9,18 +9,18 @@ from .draft import Content, Draft, Pose, about_z
 SUSPENSIONS = ("double_wishbone", "macpherson", "multi_link", "trailing_arm", "rigid_axle")
 ALONE = ("wishbone", "link", "strut", "leaf_spring", "anti_roll_bar", "steering_rack", "aerodynamics")
 SOFT = 2e5
-"""N/m, of bushings."""
+"""Stiffness of bushings, N/m."""
 SMALL_PARTS: dict[str, tuple[str, ...]] = {
     "wishbone": ("outside",),
     "link": ("outside",),
     "strut": ("below",),
     "leaf_spring": ("axle",),
 }
-"""Mounts that need a body besides the one that carries them."""
+"""Mounts that need a second body."""
 
 
 def add_part(draft: Draft, part: str) -> str:
-    """Add a part on the body of a car, and an end body where it needs one."""
+    """Add a part on the body of a car, and an end body if it needs one."""
     chassis = _car(draft)
     name = f"part{len(draft.section('use'))}"
     use: Content = {"part": part, "on": chassis, "compliance": draft.choice(["rigid", "bushing"])}
@@ -62,7 +62,7 @@ def _car(draft: Draft) -> str:
 
 
 def _end(draft: Draft) -> str:
-    """Add a body that the end of a part holds, and a soft bushing to the ground."""
+    """Add a body at the end of a part, with a soft bushing to the ground."""
     point = draft.poses[draft.bodies[-1]].point + np.array([0.0, 0.6, 0.2])
     body = draft.add("bodies", "end", mass=draft.uniform(10, 30), inertia=[0.5, 0.6, 0.5], position=point.tolist())
     draft.poses[body] = Pose(point, np.eye(3))

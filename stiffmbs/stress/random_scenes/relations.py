@@ -1,4 +1,4 @@
-"""Random relations, drives and equations: what acts on coordinates of joints and bodies."""
+"""Random relations, drives and equations on coordinates of joints and bodies."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .laws import law_of_time
 
 
 def add_coupler(draft: Draft) -> str:
-    """Tie two coordinates of joints, of the same sort or not."""
+    """Couple two coordinates of joints."""
     first, second = _take(draft), _take(draft)
     _use_freedom(draft)
     scale = draft.choice([1.0, -1.0, draft.uniform(0.3, 2)])
@@ -19,7 +19,7 @@ def add_coupler(draft: Draft) -> str:
 
 
 def add_gear(draft: Draft) -> str:
-    """Add two wheels on one carrier that are in mesh."""
+    """Add two meshing gear wheels on one carrier."""
     carrier = draft.choice(draft.poses)
     first, second = (_wheel(draft, carrier, "revolute") for _ in range(2))
     _use_freedom(draft)
@@ -57,7 +57,7 @@ def add_drive(draft: Draft) -> str:
 
 
 def add_equation(draft: Draft) -> str:
-    """Keep a distance of two bodies along an axis as a smooth function of another one."""
+    """Prescribe a distance of two bodies along an axis as a smooth function of another one."""
     body, other = draft.two_bodies()
     axis, across = draft.choice("xy"), draft.choice("xy")
     A, B = draft.uniform(0.1, 0.5), draft.uniform(0.5, 2)
@@ -70,7 +70,7 @@ def add_equation(draft: Draft) -> str:
 
 
 def add_velocity_equation(draft: Draft) -> str:
-    """Keep a body from moving along one of its own axes, as a knife edge does."""
+    """Constrain the velocity of a body along one of its axes, like a knife edge."""
     body = draft.choice(draft.bodies)
     _use_freedom(draft)
     axis = draft.choice("xy")

@@ -1,4 +1,4 @@
-"""Random robots as MJCF and URDF files, of elements whose forces MuJoCo has without soft constraints."""
+"""Random robots as MJCF and URDF files, with elements that need no soft constraints in MuJoCo."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ def _numbers(values: Any) -> str:
 
 
 class _Draw:
-    """Random attributes of a robot's file, in a plane or in space."""
+    """Random attributes of a robot file, planar or spatial."""
 
     def __init__(self, rng: np.random.Generator) -> None:
         self.rng, self.planar = rng, bool(rng.uniform() < 0.4)
@@ -24,28 +24,28 @@ class _Draw:
         return bool(self.rng.uniform() < part)
 
     def some(self, part: float, text: str) -> str:
-        """A text, or nothing."""
+        """Return a text or an empty string."""
         return text if self.chance(part) else ""
 
     def uniform(self, low: float, high: float) -> str:
         return _numbers(self.rng.uniform(low, high))
 
     def range(self, size: float) -> str:
-        """Bounds around zero."""
+        """Return bounds around zero."""
         return f"{self.uniform(-size, -size / 4)} {self.uniform(size / 4, size)}"
 
     def point(self, size: float) -> str:
-        """A point; in the plane of x and z for a planar robot."""
+        """Return a point; in the plane of x and z for a planar robot."""
         return _numbers(self.rng.uniform(-size, size, 3) * ([1, 0, 1] if self.planar else [1, 1, 1]))
 
     def axis(self, kind: str) -> str:
-        """Of a hinge or a slide."""
+        """Return the axis of a hinge or a slide."""
         if self.planar:
             return "0 1 0" if kind == "hinge" else _numbers([self.rng.normal(), 0, self.rng.normal()])
         return _numbers(self.rng.normal(size=3))
 
     def turned(self, name: str) -> str:
-        """An attribute by which axes are turned, rad; none in the plane."""
+        """Return an attribute that rotates axes, rad; empty in the plane."""
         return "" if self.planar else f'{name}="{_numbers(self.rng.uniform(-1, 1, 3))}"'
 
 
@@ -74,7 +74,7 @@ def random_mjcf(rng: np.random.Generator) -> str:
 
 
 def _body(draw: _Draw, name: str, joints: list[str], depth: int) -> str:
-    """A body with its joints, one or two solids, and bodies on it."""
+    """Return a body with its joints, one or two solids, and child bodies."""
     rng, held = draw.rng, ""
     kinds = ["hinge", "hinge", "slide"] + ([] if draw.planar else ["ball"])
     if depth == 2 and draw.chance(0.15):

@@ -14,7 +14,7 @@ from .features import ALL, Features
 from .joints import EQUATIONS, add_joint
 
 PARTS_PART, TYRES_PART = 0.12, 0.15
-"""Parts of the scenes in space that have a part that comes with the package, and a wheel on a road."""
+"""Fractions of spatial scenes with a library part, and with a wheel on a road."""
 TRIES = 4
 DOUBLED = ("revolute", "prismatic", "cylindrical", "spherical", "fixed", "universal")
 
@@ -22,8 +22,8 @@ DOUBLED = ("revolute", "prismatic", "cylindrical", "spherical", "fixed", "univer
 def random_scene(rng: np.random.Generator, dimensions: int | None = None, features: Features = ALL) -> Content:
     """Return the content of a random scene file.
 
-    Bodies are drawn as their joints hold them; velocities need not fit, and are made to fit at the start of a run.  The
-    motion is short, damped and not chaotic, so that it can be reproduced.
+    Poses satisfy the joints; velocities are made consistent at the start of a run.  The motion is short, damped and not chaotic,
+    so that it is reproducible.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ def _add_part(draft: Draft) -> None:
 
 
 def _add_tree(draft: Draft) -> None:
-    """Add bodies, each with a random joint to one of those before or to the ground, or free."""
+    """Add bodies, each free or with a random joint to a previous body or the ground."""
     for _ in range(int(draft.rng.integers(1, 4 if draft.in_space else 5))):
         parent = draft.choice([*draft.poses, GROUND, GROUND])
         body = add_body(draft)
@@ -78,7 +78,7 @@ def _add_tree(draft: Draft) -> None:
 
 
 def _close_loop(draft: Draft) -> None:
-    """Add a joint of few equations between two bodies that have joints already."""
+    """Add a joint of few equations between two bodies that already have joints."""
     few = tuple(kind for kind, count in EQUATIONS[draft.dimensions].items() if count <= 2)
     _some_joint(draft, few, *draft.two_bodies())
 
@@ -93,14 +93,14 @@ def _some_joint(draft: Draft, kinds: tuple[str, ...], i: str, j: str) -> None:
 
 
 def _double_joint(draft: Draft) -> None:
-    """Add a joint once more, so that its equations are redundant."""
+    """Add a copy of a joint, so that its equations are redundant."""
     names = [name for name, joint in draft.content.get("joints", {}).items() if joint["type"] in DOUBLED]
     if names:
         draft.add("joints", "second", **copy.deepcopy(draft.content["joints"][draft.choice(names)]))
 
 
 def _some(draft: Draft, makers: tuple[Maker, ...], count: int) -> None:
-    """Add some elements; one that does not fit is left out after a few tries."""
+    """Add some elements; an element that does not fit is skipped after a few attempts."""
     fitting = [maker for maker in makers if draft.dimensions in maker.dimensions and draft.features.has(maker.needs)]
     for _ in range(count if fitting else 0):
         for _ in range(TRIES):
@@ -112,7 +112,7 @@ def _some(draft: Draft, makers: tuple[Maker, ...], count: int) -> None:
 
 
 def _add_requests(draft: Draft) -> None:
-    """Ask for a distance, an acceleration and a reaction, at times."""
+    """Add random requests of a distance, an acceleration and a reaction."""
     body, other = draft.two_bodies()
     if draft.chance(0.5):
         draft.section("requests")["apart"] = f"dm({body}, {other})"

@@ -17,7 +17,7 @@ def add_state(draft: Draft) -> str:
 
 
 def add_algebraic_state(draft: Draft) -> str:
-    """Add an algebraic state, of an increasing equation."""
+    """Add an algebraic state with a monotone equation."""
     name = draft.add("states", "solved", start=0.0)
     A, law = draft.uniform(0.2, 1), law_of_motion(draft, draft.choice(draft.bodies), 1.0, name)
     draft.content["states"][name]["zero"] = f"{name} + {A!r}*{name}^3 - ({law})"

@@ -1,1 +1,1 @@
-"""Vehicles on roads of straight lines, and an independent integration of a wheel on one."""
+"""Vehicles on piecewise linear roads, and an independent integration of a wheel."""

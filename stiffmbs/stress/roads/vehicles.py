@@ -1,4 +1,4 @@
-"""Vehicles that drive along x over a road: a quarter and half of a car on tyres that only carry, and the car of the examples."""
+"""Vehicles that drive along x: a quarter car and a half car on vertical tyres, and the car of the examples."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Points = list[list[float]]
 
 
 def lines(points: Points) -> str:
-    """Return a road of straight lines, as in a scene."""
+    """Return a piecewise linear road, as in a scene."""
     return f"{{type: table, profile: {{table: {points}, lines: true}}}}"
 
 
@@ -28,7 +28,7 @@ def left_lines(points: Points) -> str:
 
 
 def quarter_car(road: str, speed: float) -> Scene:
-    """Return a sprung body above a wheel, which keep upright and are free along the road."""
+    """Return a quarter car: a sprung body above a wheel, both upright and free along the road."""
     return read_scene(
         f"""
 dimensions: 3
@@ -76,7 +76,7 @@ forces:
 
 
 def car(compliance: str) -> Callable[[str, float], Scene]:
-    """Return a function that describes the car of the examples on `bushing` or `rigid` joints."""
+    """Return a function that creates the car of the examples with `bushing` or `rigid` joints."""
 
     def of_road(road: str, speed: float) -> Scene:
         changes = (

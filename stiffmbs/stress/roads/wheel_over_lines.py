@@ -1,7 +1,7 @@
-"""A sprung point over a road of straight lines by the regimes of its motion, without a model of this package.
+"""Independent integration of a sprung mass over a piecewise linear road, by smooth phases of its motion.
 
-Within a regime (the lines that its two places are over, in touch or not, loaded or not) the equations are smooth. A regime ends
-where one of its bounds falls to zero; the next one is that of a state slightly ahead.
+The equations are smooth within a phase, which is defined by the lines at its two points, contact, and load.  A phase ends when one of
+its bounds becomes zero; the next phase is that of the state slightly later.
 """
 
 from __future__ import annotations
@@ -14,19 +14,19 @@ import numpy as np
 
 GRAVITY = 9.81
 AHEAD = 1e-9
-"""Time ahead of an event at which the next regime is chosen, s."""
+"""Time after an event at which the next phase is determined, s."""
 LONGEST = 0.01
 """Time step, s."""
 
 
 class Lines(NamedTuple):
-    """Straight lines through points, which go on with the slopes of both ends."""
+    """Straight lines through points, extrapolated with the end slopes."""
 
     x: np.ndarray
     z: np.ndarray
 
     def at(self, x: float) -> int:
-        """Return the number of the line over a place."""
+        """Return the number of the line at a position."""
         return int(np.clip(np.searchsorted(self.x, x, side="right") - 1, 0, len(self.x) - 2))
 
     def slope(self, line: int) -> float:
@@ -34,17 +34,17 @@ class Lines(NamedTuple):
         return float((self.z[line + 1] - self.z[line]) / (self.x[line + 1] - self.x[line]))
 
     def height(self, line: int, x: float) -> float:
-        """Return the height of a line, beyond its ends too."""
+        """Return the height of a line, extended beyond its ends."""
         return float(self.z[line] + self.slope(line) * (x - self.x[line]))
 
     def bounds(self, line: int, x: float) -> tuple[float, float]:
-        """Return two numbers that are above zero over a line."""
+        """Return two numbers that are positive on a line."""
         last = len(self.x) - 2
         return (x - self.x[line] if line else 1.0), (self.x[line + 1] - x if line < last else 1.0)
 
 
 class Regime(NamedTuple):
-    """Lines under the centre and under the point of contact, and whether the tyre touches and carries."""
+    """Lines at the centre and at the point of contact, and flags for contact and for positive load."""
 
     first: int
     second: int
@@ -54,7 +54,7 @@ class Regime(NamedTuple):
 
 @dataclass(frozen=True)
 class SprungPoint:
-    """A mass on a spring and damper above straight lines; its state is x, z, vx, vz.
+    """Mass on a spring and damper above straight lines, with the state x, z, vx, vz.
 
     Attributes
     ----------
@@ -62,9 +62,9 @@ class SprungPoint:
     mass, radius, stiffness, damping : float
         kg, m, N/m, N s/m.
     upright : bool
-        Whether the force is vertical, from the height below the centre, as a formula has it; else it is that of a wheel's point
-        of contact: below the centre across the line there, then once more across the line at the point so found (Pacejka, Tire and
-        Vehicle Dynamics, 2012, sec. 2.2).
+        True if the force is vertical, from the height below the centre, as in a formula.  Otherwise it acts at a wheel's point of
+        contact: on the normal of the line below the centre, then on that of the line at this point (Pacejka, Tire and Vehicle
+        Dynamics, 2012, sec. 2.2).
     """
 
     lines: Lines
@@ -75,7 +75,7 @@ class SprungPoint:
     upright: bool = False
 
     def contact(self, y: np.ndarray, first: int) -> float:
-        """Return the place of contact along x."""
+        """Return the x coordinate of the contact."""
         s = self.lines.slope(first)
         below = y[1] - self.lines.height(first, y[0])
         return float(y[0] if self.upright else y[0] + below * s / (1 + s * s))
@@ -95,19 +95,19 @@ class SprungPoint:
         return self.radius - radius, -float(normal @ (vx, vz)), normal
 
     def load(self, y: np.ndarray, regime: Regime) -> tuple[float, float, np.ndarray]:
-        """Return the deflection, the force before it is cut at zero, and its direction."""
+        """Return the deflection, the force before it is limited to positive values, and its direction."""
         deflection, rate, normal = self.deflection(y, regime)
         return deflection, self.stiffness * deflection + self.damping * rate, normal
 
     def regime(self, y: np.ndarray) -> Regime:
-        """Return the regime of a state."""
+        """Return the phase of a state."""
         first = self.lines.at(y[0])
         regime = Regime(first, self.lines.at(self.contact(y, first)), True, True)
         deflection, load, _ = self.load(y, regime)
         return regime._replace(touches=deflection > 0, carries=load > 0)
 
     def bounds(self, y: np.ndarray, regime: Regime) -> tuple[float, ...]:
-        """Return numbers that are above zero within a regime."""
+        """Return numbers that are positive within a phase."""
         deflection, load, _ = self.load(y, regime)
         return (
             *self.lines.bounds(regime.first, y[0]),
@@ -123,7 +123,7 @@ class SprungPoint:
         return np.array([*y[2:], force[0] / self.mass, force[1] / self.mass - GRAVITY])
 
     def motion(self, start: Sequence[float], times: np.ndarray) -> np.ndarray:
-        """Return x and z at increasing times, shape (n, 2), the first of which is that of the start."""
+        """Return x and z at increasing times, shape (n, 2); the first is the start time."""
         from scipy.integrate import solve_ivp
 
         t, y = float(times[0]), np.array(start, dtype=float)

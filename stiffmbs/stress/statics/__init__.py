@@ -1,1 +1,1 @@
-"""Independent static equilibria for the fuzzers."""
+"""Independent static solver for the fuzzers."""

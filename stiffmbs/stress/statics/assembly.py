@@ -1,6 +1,6 @@
-"""Static equilibrium of elastic assemblies in space by plain force balances: an independent check of `kc`, `loads` and equilibria.
+"""Static equilibrium of elastic assemblies in space: an independent check of `kc`, `loads` and equilibria.
 
-Nothing here is shared with the solver: poses are rotation vectors, derivatives are finite differences.
+It shares no code with the solver: orientations are rotation vectors, derivatives are finite differences.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ class Wrenches:
 
 
 class Part(Protocol):
-    """One element: it adds its wrenches and returns the violations of its constraints, one for each of its unknowns."""
+    """Element that adds its wrenches and returns its constraint violations, one for each of its multipliers."""
 
     @property
     def unknowns(self) -> int:
@@ -51,13 +51,13 @@ class Part(Protocol):
         ...
 
     def act(self, wrenches: Wrenches, multipliers: np.ndarray, load: float) -> np.ndarray:
-        """Add the wrenches at multipliers, N, and at a part of the load from 0 to 1."""
+        """Add the wrenches for multipliers, N, and a load factor from 0 to 1."""
         ...
 
 
 @dataclass(frozen=True)
 class End:
-    """A point of a body, with axes: the columns of a rotation matrix in the axes of the body."""
+    """Point of a body with axes: the columns of a rotation matrix in body axes."""
 
     body: str
     point: np.ndarray
@@ -66,7 +66,7 @@ class End:
 
 @dataclass(frozen=True)
 class ElasticBushing:
-    """Six uncoupled stiffnesses, N/m and N m/rad, along the axes of j; rotations are a rotation vector."""
+    """Bushing with six uncoupled stiffnesses, N/m and N m/rad, along the axes of j; rotations are a rotation vector."""
 
     i: End
     j: End
@@ -82,7 +82,7 @@ class ElasticBushing:
         return np.concatenate([-self.stiffness[:3] * way, _torque_of_rotation_vector(turn, -self.stiffness[3:] * turn)])
 
     def act(self, wrenches: Wrenches, multipliers: np.ndarray, load: float) -> np.ndarray:
-        """Add the elastic wrench on i, and its opposite on j at the same place."""
+        """Add the elastic wrench on i, and its opposite on j at the same point."""
         axes = wrenches.poses[self.j.body].rotation @ self.j.axes
         along = self.load(wrenches.poses)
         force, torque = axes @ along[:3], axes @ along[3:]
@@ -94,7 +94,7 @@ class ElasticBushing:
 
 @dataclass(frozen=True)
 class Line:
-    """A linear spring between two points or, without a stiffness, a rod of fixed length."""
+    """Linear spring between two points or, without a stiffness, a rod of fixed length."""
 
     i: End
     j: End
@@ -103,7 +103,7 @@ class Line:
     unknowns: int = 0
 
     def act(self, wrenches: Wrenches, multipliers: np.ndarray, load: float) -> np.ndarray:
-        """Add the forces along the line; of a rod the multiplier is the pressure."""
+        """Add the forces along the line; the multiplier of a rod is its compressive force."""
         one, other = (wrenches.poses[end.body].at(end.point) for end in (self.i, self.j))
         way = one - other
         distance = np.linalg.norm(way)
@@ -115,7 +115,7 @@ class Line:
 
 @dataclass(frozen=True)
 class Ball:
-    """Two points that coincide."""
+    """Spherical joint: two points coincide."""
 
     i: End
     j: End
@@ -131,7 +131,7 @@ class Ball:
 
 @dataclass(frozen=True)
 class Pad:
-    """A vertical force that holds a point at a height, m, from that at rest to that under the whole load."""
+    """Vertical force that holds a point at a height, m, between those at zero and full load."""
 
     at: End
     rest: float
@@ -147,7 +147,7 @@ class Pad:
 
 @dataclass(frozen=True)
 class Push:
-    """A constant force, N, and torque, N m, in ground axes at a point, times the load; a weight acts whole from the start."""
+    """Constant force, N, and torque, N m, in ground axes at a point, times the load factor; weights act fully from the start."""
 
     at: End
     force: np.ndarray
@@ -167,7 +167,7 @@ class Push:
 def equilibria(
     places: dict[str, np.ndarray], parts: list[Part], loads: np.ndarray
 ) -> list[tuple[dict[str, Pose], np.ndarray]] | None:
-    """Return poses and multipliers at increasing parts of the load, or None if the iteration does not converge.
+    """Return poses and multipliers at increasing load factors, or None if the iteration does not converge.
 
     Parameters
     ----------
@@ -175,7 +175,7 @@ def equilibria(
         Origins of the bodies as described, m, with axes parallel to those of the ground.
     parts : list of Part
     loads : ndarray
-        Parts of the load, from 0.
+        Load factors, from 0.
     """
     names = list(places)
     count = sum(part.unknowns for part in parts)
@@ -227,11 +227,11 @@ def _newton(residual: Callable[[np.ndarray], np.ndarray], x: np.ndarray) -> np.n
 
 MOST_ITERATIONS = 30
 STEP = 1e-7
-"""Of forward differences, m, rad or `FORCE`."""
+"""Step of forward differences, m, rad or `FORCE`."""
 LONGEST = 0.1
-"""Longest move of an iteration, in the same units."""
+"""Largest step of an iteration, in the same units."""
 FORCE = 1e4
-"""Unit, N, in which forces are unknowns, so that they have the size of displacements."""
+"""Unit of forces, N, so that they have the size of displacements."""
 
 
 def _torque_of_rotation_vector(turn: np.ndarray, moment: np.ndarray) -> np.ndarray:

@@ -14,7 +14,7 @@ from ...case import Case, Verdict, measured
 
 MASS, ALLOWED = 2.0, 1e-7
 TENSOR = ((0.3, 0.02, 0.05), (0.02, 0.4, -0.03), (0.05, -0.03, 0.5))
-"""About the centre of mass in the body's own axes, kg m^2."""
+"""Inertia about the centre of mass in body axes, kg m^2."""
 TURNED = product(about(2, 0.7), about(0, 0.4))
 TIP = (0.1, 0.7, -0.3)
 ACCELERATIONS = ("ax", "ay", "az", "wdx", "wdy", "wdz")
@@ -22,7 +22,7 @@ LOADS = ("fx", "fy", "fz", "tx", "ty", "tz")
 
 
 def model(offset: tuple[float, ...], spin: tuple[float, ...], held: str) -> spatial.Model:
-    """One body, or two that are fixed to each other, with centres of mass off their origins."""
+    """Return one body, or two bodies fixed to each other, with centres of mass away from their origins."""
     made = spatial.Model("Offset", gravity=(0, 0, -9.81))
     at: dict[str, Any] = {"position": (1, 2, 3), "orientation": TURNED, "omega": spin}
     if held == "hinge":
@@ -38,7 +38,7 @@ def model(offset: tuple[float, ...], spin: tuple[float, ...], held: str) -> spat
 
 
 def expected(offset: tuple[float, ...], held: str, at_tip: bool) -> np.ndarray:
-    """Accelerations of the body for a unit of each load, angular ones in its own axes."""
+    """Return the accelerations of the body for unit loads; angular accelerations in body axes."""
     axes = matrix(TURNED)
     centre, place = axes @ offset, axes @ (TIP if at_tip else offset)
     load = np.block([[np.eye(3), np.zeros((3, 3))], [_cross(place - centre), np.eye(3)]])

@@ -1,4 +1,4 @@
-"""Modes of what rolls or slides on blades while it moves: velocities are fewer than poses."""
+"""Modes of moving systems on wheels or blades, which have fewer free velocities than poses."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from ...case import Case, Outcome, Verdict, measured
 from ...mechanisms.bicycle import bicycle, published
 
 NEUTRAL = 1e-6
-"""Eigenvalue, 1/s, that counts as zero."""
+"""Largest eigenvalue that counts as zero, 1/s."""
 ALLOWED = 1e-9
 
 SKATE = """
@@ -23,7 +23,7 @@ bodies: {{b: {{mass: 2, inertia: 0.5, velocity: [{speed}, 0], markers: {{blade: 
 joints: {{grip: {{type: velocity_equation, zero: "vy(b.blade)*cos(az(b)) - vx(b.blade)*sin(az(b))"}}}}
 forces: {{steer: {{type: torque, i: b, torque: "-{spring}*b.y - {damping}*b.omega - {centring}*b.angle"}}}}
 """
-"""2 kg, 0.5 kg m^2, on a blade at a distance behind the centre of mass."""
+"""Body of 2 kg and 0.5 kg m^2 on a blade at a distance behind the centre of mass."""
 TRAILER = """
 bodies: {{b: {{mass: 2, inertia: 0.5, velocity: [{speed}, 0], markers: {{hitch: {{point: [0.3, 0]}}, axle: {{point: [-0.5, 0]}}}}}}}}
 joints:
@@ -60,7 +60,7 @@ joints:
 
 
 def _against(scene: Callable[[], Any], degrees_of_freedom: int, expected: Callable[[], np.ndarray]) -> Verdict:
-    """Eigenvalues other than zero against closed forms, each once; and no more modes than eigenvalues allow."""
+    """Compare each nonzero eigenvalue with closed forms, and the number of modes with that of the eigenvalues."""
     found = modes(scene())
     values = [value for mode in found.modes for value in mode.eigenvalues if abs(value) > NEUTRAL]
     closed = [complex(value) for value in expected() if abs(value) > NEUTRAL]
@@ -77,7 +77,7 @@ def _against(scene: Callable[[], Any], degrees_of_freedom: int, expected: Callab
 
 
 def _skate(speed: float, ahead: float = 0.0, spring: float = 0.0, damping: float = 0.0, centring: float = 0.0) -> Case:
-    """With the angle p and y of the blade: (I + m a^2) p'' = -(m a V + d) p' - c p - k (y + a p), y' = V p."""
+    """Return the eigenvalues of (I + m a^2) p'' = -(m a V + d) p' - c p - k (y + a p), y' = V p; p and y of the blade."""
     inertia, carried = 0.5 + 2 * ahead**2, 2 * ahead * speed + damping
     roots = np.roots([inertia, carried, centring + spring * ahead, spring * speed])
     text = SKATE.format(speed=speed, ahead=ahead, spring=spring, damping=damping, centring=centring)
@@ -86,13 +86,13 @@ def _skate(speed: float, ahead: float = 0.0, spring: float = 0.0, damping: float
 
 
 def _trailer(speed: float) -> Case:
-    """p' = -V/L p, without a free velocity."""
+    """Return the eigenvalue of p' = -V/L p, which has no free velocity."""
     scene = partial(read_scene, TRAILER.format(speed=speed))
     return Case(f"trailer at {speed:g} m/s", "-V/L", partial(_against, scene, 0, lambda: np.array([-speed / 0.8])))
 
 
 def _wheel(speed: float) -> Case:
-    """M x'' + m l p'' = 0, (J + m l^2) p'' + m l x'' = -m g l p; M of wheel, its spin and bob."""
+    """Return the eigenvalues of M x'' + m l p'' = 0, (J + m l^2) p'' + m l x'' = -m g l p; M includes wheel, spin and bob."""
     total, swing, coupling = 3 + 0.2 / 0.4**2 + 1, 0.01 + 0.3**2, 0.3
     square = 9.81 * 0.3 / (swing - coupling**2 / total)
     scene = partial(read_scene, WHEEL_WITH_PENDULUM.format(speed=speed, spin=-speed / 0.4))
@@ -101,7 +101,7 @@ def _wheel(speed: float) -> Case:
 
 
 def _disc(part: float) -> Case:
-    """Thin disc: l^2 = (m g R A - C (C + m R^2) w^2)/(A (A + m R^2)); Neimark and Fufaev (1972), chapter III."""
+    """Return the eigenvalues of a thin disc: l^2 = (m g R A - C (C + m R^2) w^2)/(A (A + m R^2)); Neimark and Fufaev (1972), chapter III."""
     rate = part * float(np.sqrt(9.81 / 0.9))
     square = (2 * 9.81 * 0.3 * 0.045 - 0.09 * 0.27 * rate**2) / (0.045 * 0.225)
     root = np.sqrt(complex(square)) * np.array([1, -1])

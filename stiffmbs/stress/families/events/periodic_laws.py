@@ -1,4 +1,4 @@
-"""Laws periodic in a displacement, an angle, a velocity or a state, pushed for a small part of each period, over many whole periods."""
+"""Laws that are periodic in a displacement, angle, velocity or state and act in a small part of each period."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ PERIODS, DURATION = 120, 2.0
 EXPLICIT = {name: how for name, how in SOLVERS.items() if name != "bdf"}
 COARSE = {f"bdf {rtol:.0e}": {"solver": "bdf", "rtol": rtol} for rtol in (1e-2, 1e-3, 1e-4)}
 ALLOWED, OF_SMOOTH = (5e-4, 2e-2), (2e-3, 0.15)
-"""Error that is right by explicit steps at the default tolerance and by bdf at coarse ones; where the law is smooth, steps follow from the
-tolerance alone, which a thousand of them use up."""
+"""Allowed error of explicit schemes at the default tolerance, and of bdf at coarse ones; smooth laws follow from the tolerance alone, and
+errors of a thousand periods add up."""
 SMOOTH = ("bump", "rational", "power", "square")
 Function = Callable[[np.ndarray], np.ndarray]
 
 
 class Periodic(NamedTuple):
-    """A law of y = sin(a) of an argument a that turns evenly: its text and function, and the argument."""
+    """Law of y = sin(a) for an argument a that grows linearly: its text and function, and the argument."""
 
     law: str
     of: Function
@@ -56,7 +56,7 @@ RATE = 2 * np.pi * PERIODS / DURATION
 
 
 def _mean(of: Function) -> float:
-    """Over a period, by midpoints that are closer together near the peaks at pi/2 and 3 pi/2."""
+    """Return the mean over a period, by midpoints that are denser near the peaks at pi/2 and 3 pi/2."""
     z = np.linspace(-1.0, 1.0, 200_001)
     offset = np.pi / 2 * z**3
     middle = 0.5 * (offset[1:] + offset[:-1])
@@ -65,7 +65,7 @@ def _mean(of: Function) -> float:
 
 
 def _scene(periodic: Periodic) -> str:
-    """1 kg at rest that is to have 1 m/s at the end, and what carries the argument."""
+    """Return a scene of 1 kg that is accelerated from rest to 1 m/s, and of a body that carries the argument."""
     speed = 1.5
     plane, space = "{mass: 1, inertia: 1, ", "{mass: 1, inertia: [1, 1, 1], "
     more, parameters, joints, forces = "", "", "", ""
@@ -110,7 +110,7 @@ def _allowed(name: str) -> tuple[float, float]:
 
 
 FAST = "max(sin(1e9*w.x) - 0.9, 0)"
-"""A law with 10^8 periods, which no solver can follow."""
+"""Law with 10^8 periods, which no solver can resolve."""
 UNRESOLVED = tuple(
     simulation(
         f"too many periods, {solver}", "a note names the law", partial(
@@ -135,7 +135,7 @@ NARROW = tuple(
     )
     for sharpness in (2079, 4000) for solver in ("dopri5", "dop853") for rtol in (1e-4, 1e-5, 1e-6, 1e-7)
 )  # fmt: skip
-"""Steps that reach a bump from just before it and end where it has vanished."""
+"""Cases with steps that begin just before a bump and end after it."""
 
 CASES = (
     *(

@@ -1,4 +1,4 @@
-"""Laws over a displacement, angle, velocity or state that start exactly on a breakpoint, or touch one so that the value rounds to zero."""
+"""Laws that start exactly on a breakpoint, or graze one so that the value rounds to zero."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from .within_one_step import SOLVERS
 DEPTH = 1e-3
 """Width of the windows, m, rad or s."""
 TOLERANCES = {"bdf": 1e-3, "dop853": 1e-5, "dopri5": 1e-3, "auto": 1e-3}
-"""Error of the velocity that is right, relative to it, at the default relative tolerance."""
+"""Allowed relative error of the velocity at the default relative tolerance."""
 
 
 class Start(NamedTuple):
-    """A motion that starts on a breakpoint: its scene, the channel to compare at the end, and the value of that."""
+    """Motion that starts on a breakpoint: its scene, the compared channel, and its value at the end."""
 
     scene: str
     channel: str
@@ -30,12 +30,12 @@ class Start(NamedTuple):
 
 
 def _window(z: str, area: float) -> str:
-    """A parabola over 0 < z < `DEPTH` with this integral."""
+    """Return a parabola over 0 < z < `DEPTH` with a given integral."""
     return f"{6 * area / DEPTH**3!r}*max(({z})*({DEPTH} - ({z})), 0)"
 
 
 def _pushed(law: str, velocity: float = 1.0, body: str = "", **more: str) -> str:
-    """1 kg under a force along x."""
+    """Return a scene of 1 kg under a force along x."""
     others = "".join(f"\n{name}: {text}" for name, text in more.items())
     return (
         f"gravity: [0, 0]\nbodies: {{b: {{mass: 1, inertia: 1, velocity: [{velocity}, 0]{body}}}}}\n"
@@ -58,7 +58,7 @@ def _in_space(law: str, body: str = "velocity: [0, 0, 1]", kind: str = "force") 
 
 
 def _shallow(level: float, dimensions: int) -> str:
-    """Ten windows of a wheel at one revolution in a second, each worth 1 N s: just below the top of a sine."""
+    """Return a scene with ten impulses of 1 N s from a wheel at one revolution per second, just below the maximum of a sine."""
     height = np.pi / np.arccos(level)
     law = f"branch(sin({{}}) - {level!r}, 0, 0, {float(height)!r})"
     if dimensions == 2:
@@ -75,12 +75,12 @@ def _shallow(level: float, dimensions: int) -> str:
 
 
 FASTER = float(np.sqrt(1.2))
-"""Speed after a work of 0.1 J on 1 kg at 1 m/s."""
+"""Return the speed after a work of 0.1 J on 1 kg at 1 m/s."""
 G = 9.81
 
 
 def _fallen(t: float) -> float:
-    """Velocity after a fall from rest over a window that adds 0.1 J: the time in the window follows by quadrature."""
+    """Return the velocity after a fall from rest over a window that adds 0.1 J; the time in the window follows by quadrature."""
     depths = DEPTH * np.linspace(0.0, 1.0, 200_001) ** 2
     work = 0.1 * (3 * (depths / DEPTH) ** 2 - 2 * (depths / DEPTH) ** 3)
     speed = np.sqrt(2 * (G * depths + work))
@@ -143,7 +143,7 @@ JUMPS = {
     "angle": Start(_turned(JUMP.format("b.angle")), "b.omega", FASTER),
     "in space": Start(_in_space(JUMP.format("b.z")), "b.vz", FASTER),
 }  # fmt: skip
-"""Laws that jump where the motion starts: the law there is that to which the motion goes."""
+"""Laws that are discontinuous where the motion starts: the side that the motion enters applies."""
 
 
 def _off(solution: Solution, start: Start) -> float:

@@ -1,1 +1,1 @@
-"""Roads and tables: kinks, cars over straight lines, and interpolation between points."""
+"""Roads and tables: kinks, vehicles on piecewise linear roads, and interpolation."""

@@ -1,4 +1,4 @@
-"""Vehicles over crests, kerbs, potholes and speed bumps of straight lines: solvers agree within a micrometre."""
+"""Vehicles over piecewise linear crests, kerbs, potholes and speed bumps: solvers agree within a micrometre."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ WAY, LEAST = 12.5, 0.8
 AGREED = 1e-6
 """Bound on the difference of any two positions, m."""
 RTOL_CARRIED, RTOL_CARS = 1e-9, 1e-8
-"""Relative tolerances of all solvers. A wheel that flies for half a second multiplies the error at the kink."""
+"""Relative tolerances of all solvers.  Half a second without contact magnifies the error at the kink."""
 CARRIED = {"quarter car": quarter_car, "half car": half_car}
 CARS = {
     "car on bushings": (car("bushing"), lines),

@@ -1,4 +1,4 @@
-"""Forces of springs and dampers over kinks: event functions that jump through zero where the motion goes on, and those that slide."""
+"""Forces of springs and dampers over kinks: event functions that are discontinuous at zero, and sliding modes."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ PROFILES = {
     "pothole": [[-100, 0], [5, 0], [5.1, -0.06], [5.6, -0.06], [5.7, 0], [200, 0]],
     "bump": [[-100, 0], [5, 0], [5.3, 0.05], [5.6, 0.05], [5.9, 0], [200, 0]],
 }
-"""Height over x of roads of straight lines, m."""
+"""Height over x of piecewise linear roads, m."""
 MASS, RADIUS, STIFFNESS, HEIGHT = 400.0, 0.344, 280e3, 0.33
 POINTS, WAY = 151, 30.0
-"""Number of outputs, and the path along the road, m."""
+"""Number of outputs, and the distance along the road, m."""
 
 
 def wheel(profile: str, speed: float, damping: float) -> Scene:
-    """A wheel in space on a tyre that only carries."""
+    """Return a wheel in space on a vertical tyre."""
     return read_scene(
         "dimensions: 3\ngravity: [0, 0, -9.81]\n"
         f"roads: {{r: {{type: table, profile: {{table: {PROFILES[profile]}, lines: true}}}}}}\n"
@@ -44,7 +44,7 @@ def wheel(profile: str, speed: float, damping: float) -> Scene:
 
 
 def follower(profile: str, speed: float, damping: float) -> Scene:
-    """A point in the plane that a formula supports from below."""
+    """Return a point in the plane supported by a formula."""
     x, z = np.array(PROFILES[profile], dtype=float).T
     slopes = np.diff(z) / np.diff(x)
     bends = zip(x[1:-1], np.diff(slopes), strict=True)
@@ -69,7 +69,7 @@ def _off(solution: Solution, profile: str, speed: float, damping: float, upright
 
 
 def belts() -> Scene:
-    """A block that rubs on two belts in succession: it is slower than the second one, and comes to its speed at 4.74 s."""
+    """Return a block that slides on two belts in succession: it enters the second belt slower, and reaches its speed at 4.74 s."""
     return read_scene(
         "gravity: [0, 0]\nbodies: {b: {mass: 1, inertia: 1, velocity: [0.8, 0]}}\n"
         "forces: {f: {type: force, i: b, force: ['-0.1*sign(b.vx - branch(b.x - 1, 0.2, 1, 1))', 0]}}"
@@ -77,13 +77,13 @@ def belts() -> Scene:
 
 
 CROSSED = float(np.sqrt(0.64 - 0.2))
-"""Speed of the block where it meets the second belt, m/s."""
+"""Speed of the block as it reaches the second belt, m/s."""
 SLIDES = (0.8 - CROSSED) / 0.1 + (1 - CROSSED) / 0.1
-"""When it has the second belt's speed, s."""
+"""Time at which it has the speed of the second belt, s."""
 
 
 def _before(solution: Solution) -> float:
-    """Against x = 1 + v t + a t^2/2 on the second belt, up to the stop."""
+    """Compare with x = 1 + v t + a t^2/2 on the second belt, up to the stop."""
     late = solution.t - (0.8 - CROSSED) / 0.1
     expected = np.where(late < 0, 0.8 * solution.t - 0.05 * solution.t**2, 1 + CROSSED * late + 0.05 * late**2)
     return float(np.abs(solution["b.x"] - expected)[solution.t < SLIDES].max() + abs(solution.t[-1] - SLIDES) // 0.1)

@@ -1,4 +1,4 @@
-"""Joints that cannot be closed: the message has the gap as a length or an angle, known in closed form."""
+"""Joints that cannot be closed: the message has the gap as a length or an angle, with known values."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ SCENES: dict[str, tuple[str, str, str, float, str]] = {
     ),
     "a point above a plane": (SPACE, FIXED_IN_SPACE, "{type: point_on_plane, i: {body: b, point: [0, 0, 0.3]}, j: c}", 0.3, "m"),
 }  # fmt: skip
-"""Bodies, joints, the joint x that cannot hold, and the gap with its unit."""
+"""Bodies, joints, the joint x that cannot be satisfied, and the gap with its unit."""
 
 
 def _gap(base: str, joints: str, joint: str, expected: float, unit: str) -> Verdict:
