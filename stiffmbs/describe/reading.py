@@ -52,11 +52,11 @@ def read_scene(
     text : str
         YAML, as in a scene file.
     changes : sequence of (path, text)
-        Values put in place of the text's, such as ``("bodies.cart.mass", "12 kg")``.
+        Values that replace those of the text, such as ``("bodies.cart.mass", "12 kg")``.
     source : str
         Name of the scene in messages.
     file : Path, optional
-        The file that the text is of: what it includes is looked for beside it, or in the working folder without it.
+        File of the text; included files are relative to its folder, or to the working folder if it is None.
 
     Returns
     -------

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from ..case import Verdict, tried
 
-WHAT = "each analysis, study and converter in turn against an independent method (the fuzzers of single entry points)"
+WHAT = "each analysis, study and converter in turn against an independent method (runs other fuzzers)"
 PAIRS = ("sensitivities", "modes", "transfer", "equilibria", "stability", "studies", "fmu", "convert", "loads", "kc")
 """Fuzzers, each of which compares one entry point with an independent method."""
 

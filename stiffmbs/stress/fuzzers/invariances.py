@@ -23,7 +23,7 @@ from ..random_scenes.driven import driven_scene
 from ..random_scenes.scene import random_scene
 
 WHAT = (
-    "random scenes of all kinds, which must move alike when turned, moved, scaled, shifted in time, split, renamed, ..."
+    "random scenes against copies that are rotated, translated, scaled, shifted in time, split, renamed, ..."
 )
 CHANGES = 3
 """Number of transformations of each scene."""

@@ -16,7 +16,7 @@ from ...studies.suspension.kinematics_and_compliance import (
 from ..case import Verdict, measured, told
 from ..statics.assembly import Ball, ElasticBushing, End, Line, Pad, Part, Pose, Push, equilibria
 
-WHAT = "Random five-link and wishbone axles in bump, roll and under forces: `kc` against force balances."
+WHAT = "Random five-link and wishbone axles in bump, roll and under forces: `kc` against an independent static solver."
 POINTS = 5
 BOUND = 1e-6
 """Allowed error relative to the size of a curve."""

@@ -15,7 +15,7 @@ from ..case import Verdict, measured, told
 from ..statics.assembly import ElasticBushing, End, Part, Push, equilibria
 
 WHAT = (
-    "Random blocks on turned bushings under slow forces: `loads` (peaks in the bushings' axes) against force balances."
+    "Random blocks on rotated bushings under slow forces: `loads` (peaks in bushing axes) against an independent static solver."
 )
 POINTS = 3
 MOST_BLOCKS = 3

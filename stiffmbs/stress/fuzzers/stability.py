@@ -17,7 +17,7 @@ from ..case import Outcome, Verdict
 from ..random_statics import random_statics
 
 WHAT = (
-    "Equilibria with negative or positive damping: whether motions grow from them, against runs that start beside them."
+    "Equilibria with negative or positive damping: reported stability against runs from perturbed states."
 )
 PUSH, DURATION, RTOL = 1e-6, 4.0, 1e-9
 """Initial velocity, m/s, duration, s, and tolerance of a run."""

@@ -18,7 +18,7 @@ from ..random_scenes.events import random_events
 from ..random_scenes.scene import random_scene
 from .sensitivities import Path, changed, numbers_of
 
-WHAT = "cases of studies, and simulations step by step, of random scenes against single runs: also with zeros that change the structure"
+WHAT = "cases of studies and stepwise simulations of random scenes against single runs, also with zeros that change the structure"
 ALL_KINDS, SIMULATED = 0.1, 0.3
 """Fractions of scenes with all kinds of elements, and of scenes that are simulated."""
 FACTORS = (0.0, 0.5, 1.0, 1.01, 2.0, -1.0)

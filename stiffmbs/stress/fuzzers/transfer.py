@@ -27,7 +27,7 @@ from ..case import Outcome, Verdict, measured
 from ..random_scenes.features import SMOOTH
 from ..random_scenes.scene import random_scene
 
-WHAT = "Transfer functions of random scenes in motion: columns against starts under a load, rows against starts beside the state."
+WHAT = "Transfer functions of random scenes in motion: columns against starts under a load, rows against perturbed starts."
 INPUTS, OUTPUTS = 2, 6
 BESIDE = 1e-5
 """Variation of velocities and poses, SI units."""
@@ -62,7 +62,7 @@ def _start(scene: Scene, state: SavedState | None = None) -> SavedState:
 
 
 def _over_time(start: Mapping[str, float]) -> set[str]:
-    """Channels that are not functions of the state."""
+    """Return the channels that are not functions of the state."""
     return {name for name in start if name.startswith(("energy.", "constraint."))}
 
 
