@@ -26,9 +26,7 @@ from ..random_scenes.features import Features
 from ..random_scenes.robots import random_mjcf, random_urdf
 from ..random_scenes.scene import random_scene
 
-WHAT = (
-    "Random scenes converted to datasets and back, and random MJCF and URDF files against MuJoCo's accelerations."
-)
+WHAT = "Random scenes converted to datasets and back, and random MJCF and URDF files against MuJoCo's accelerations."
 EXPORTED = ("force", "torque", "line_force", "spring_damper", "torsion_spring", "bushing", "field", "beam")
 """Forces that a dataset can express; others are removed from a scene."""
 WITHOUT = Features(friction=False, tyres=False, parts=False, events=False)

@@ -22,9 +22,7 @@ from ..random_scenes.draft import Content, about_z, random_axes
 from ..random_scenes.driven import driven_scene
 from ..random_scenes.scene import random_scene
 
-WHAT = (
-    "random scenes against copies that are rotated, translated, scaled, shifted in time, split, renamed, ..."
-)
+WHAT = "random scenes against copies that are rotated, translated, scaled, shifted in time, split, renamed, ..."
 CHANGES = 3
 """Number of transformations of each scene."""
 FINE, COARSE = 1e-8, 1e-6

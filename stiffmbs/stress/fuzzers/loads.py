@@ -14,9 +14,7 @@ from ...studies.suspension.road_loads import COMPONENTS, road_loads
 from ..case import Verdict, measured, told
 from ..statics.assembly import ElasticBushing, End, Part, Push, equilibria
 
-WHAT = (
-    "Random blocks on rotated bushings under slow forces: `loads` (peaks in bushing axes) against an independent static solver."
-)
+WHAT = "Random blocks on rotated bushings under slow forces: `loads` (peaks in bushing axes) against an independent static solver."
 POINTS = 3
 MOST_BLOCKS = 3
 BOUND = 1e-6

@@ -16,9 +16,7 @@ from ...solve.trajectory import Outcome as Ending
 from ..case import Outcome, Verdict
 from ..random_statics import random_statics
 
-WHAT = (
-    "Equilibria with negative or positive damping: reported stability against runs from perturbed states."
-)
+WHAT = "Equilibria with negative or positive damping: reported stability against runs from perturbed states."
 PUSH, DURATION, RTOL = 1e-6, 4.0, 1e-9
 """Initial velocity, m/s, duration, s, and tolerance of a run."""
 EXPONENT, CLEAR = 6.0, 10.0

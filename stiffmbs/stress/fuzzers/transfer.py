@@ -27,7 +27,9 @@ from ..case import Outcome, Verdict, measured
 from ..random_scenes.features import SMOOTH
 from ..random_scenes.scene import random_scene
 
-WHAT = "Transfer functions of random scenes in motion: columns against starts under a load, rows against perturbed starts."
+WHAT = (
+    "Transfer functions of random scenes in motion: columns against starts under a load, rows against perturbed starts."
+)
 INPUTS, OUTPUTS = 2, 6
 BESIDE = 1e-5
 """Variation of velocities and poses, SI units."""
