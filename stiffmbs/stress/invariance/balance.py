@@ -142,14 +142,17 @@ def _wrenches(content: Content, channels: Channels, name: str, centre: np.ndarra
         ends = _ends(content, element)
         if ends is None:
             continue
-        signs = [sign for sign, end in zip((1.0, -1.0), ends, strict=True) if body_of(end) == name]
-        if not signs:
+        first, second = ends
+        apart = element.get("axes") == GROUND  # the force acts at each body's own marker
+        sides = [(1.0, first, first), (-1.0, second, second if apart else first)]
+        acting = [(sign, place) for sign, end, place in sides if body_of(end) == name]
+        if not acting:
             continue
         force = np.array([channels.get(f"{key}.f{axis}", 0.0 * centre[0]) for axis in "xyz"])
         torque = np.array([channels.get(f"{key}.t{axis}", 0.0 * centre[0]) for axis in "xyz"])
         torque[2] += channels.get(f"{key}.torque", 0.0)
-        arm = _point(content, channels, ends[0]) - centre
-        for sign in signs:
+        for sign, place in acting:
+            arm = _point(content, channels, place) - centre
             yield sign * force, sign * (torque + np.cross(arm, force, axis=0))
 
 
