@@ -83,6 +83,7 @@ def integrated(
         history,
         integrator.note(),
         long_steps=integrator.long_steps(),
+        displaced=integrator.engine.displaced(),
     )
 
 

@@ -110,6 +110,9 @@ class Trajectory:
         Which solvers have worked, where that was not for the user to say.
     long_steps : tuple of LongSteps
         Steps far longer than those before them, with the motion within them; for scenes with laws alone.
+    displaced : ndarray, shape (n_u,), or None
+        Estimated errors of positions by the end, as displacements along the velocities, m and rad
+        (`stiffmbs.solve.error_control.accumulated_errors`); None where they are not known.
     """
 
     t: np.ndarray
@@ -122,6 +125,7 @@ class Trajectory:
     note: str = ""
     solver: str = ""
     long_steps: tuple[LongSteps, ...] = ()
+    displaced: np.ndarray | None = None
 
     @property
     def step_times(self) -> np.ndarray:

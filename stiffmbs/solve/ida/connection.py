@@ -11,6 +11,7 @@ from ...compile.machine.layout import packed
 from ...compile.machine.routines import Routine, together
 from ...compile.state import State
 from ..dynamics import Dynamics
+from ..error_control.accumulated_errors import ErrorSums
 from ..events.event_functions import EventSearch
 from ..events.long_steps import LongStepLog
 from ..events.step_bound import StepBound
@@ -36,6 +37,7 @@ SWITCHES = Routine(MODULE, "event_functions", "int32(float64, int64, int64, floa
 FUNCTIONS = {
     "array_of": "N_VGetArrayPointer", "solve": "IDASolve", "interpolate": "IDAGetDky", "time_of": "IDAGetCurrentTime",
     "order_of": "IDAGetLastOrder", "step_of": "IDAGetLastStep", "stop_at": "IDASetStopTime", "next_step_of": "IDAGetCurrentStep",
+    "errors_of": "IDAGetEstLocalErrors",
 }  # fmt: skip
 """What compiled code calls of SUNDIALS, by its names in the table."""
 
@@ -69,6 +71,7 @@ class Connection:
     history : StepLog
     long_steps : LongStepLog or None
         None for scenes without laws.
+    accumulated : ErrorSums
     samples : ndarray, shape (SAMPLES, 1 + number of reported unknowns)
         Times and states of the last steps but for three of each four, in no order; NaN where none is yet.
     table : int
@@ -85,6 +88,7 @@ class Connection:
         self.history = StepLog()
         self.long_steps = LongStepLog(equations.system, len(self.reported)) if equations.system.has_laws else None
         self._long_steps = self.long_steps.table if self.long_steps else np.zeros(len(LONG_STEPS), dtype=np.int64)
+        self.accumulated = ErrorSums.of_equations(equations)
         self.samples = np.full((SAMPLES, 1 + len(self.reported)), np.nan)
         self.y_vector, self.yp_vector, self.output_vector = map(session.vector, (self.y, self.yp, self.output))
         self.output_correction, self.iteration, self.step_bound = OutputCorrection(equations), Iteration(n), StepBound()
@@ -121,6 +125,7 @@ class Connection:
                 "output_correction": self.output_correction.table, "iteration": self.iteration.table, "watch": self.watch.table,
                 "look_at_start": LOOK_AT_START.address if self.watch.n else 0, "look_within": LOOK_WITHIN.address if self.watch.n else 0,
                 "probe": self._probe, "long_steps": self._long_steps,
+                "accumulated": self.accumulated.table,
             },
         )  # fmt: skip
 
@@ -165,6 +170,7 @@ class Connection:
         self.history.forget()
         if self.long_steps:
             self.long_steps.forget()
+        self.accumulated.forget()
         self.output_correction.forget()
         self.error_norm.forget()
         if self._assembled.pivots is not None:

@@ -97,5 +97,8 @@ class Engine(Protocol):
     def long_steps(self) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
         """Begins and ends of steps far longer than those before them, and what is reported at nodes within them; None where it keeps none."""
 
+    def displaced(self) -> np.ndarray | None:
+        """Estimated errors of all positions, as displacements along velocities, shape (n_u,); None where they are not known."""
+
     def history(self) -> History:
         """Ends of the steps, and their orders where they are known."""

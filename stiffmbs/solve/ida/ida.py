@@ -164,6 +164,10 @@ class NativeIda:
         """Steps far longer than those before them; None for scenes without laws."""
         return self._ida.long_steps
 
+    def displaced(self) -> np.ndarray:
+        """Estimated errors of all positions, as displacements along velocities, shape (n_u,)."""
+        return self._ida.accumulated.displaced()
+
     @property
     def samples(self) -> np.ndarray:
         """Every fourth of the last 64 steps since the beginning: time and reported unknowns, the earliest first."""

@@ -277,6 +277,10 @@ class NativeEngine:
         log = self._ida.long_steps
         return log.kept() if log else None
 
+    def displaced(self) -> np.ndarray:
+        """Estimated errors of all positions, as displacements along velocities, shape (n_u,)."""
+        return self._ida.displaced()
+
     def history(self) -> History:
         """Ends of the steps and their orders."""
         return History(*self._ida.history.ends())

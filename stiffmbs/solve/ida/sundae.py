@@ -297,6 +297,9 @@ class SundaeEngine:
     def long_steps(self) -> None:
         """None are kept."""
 
+    def displaced(self) -> None:
+        """Not known: scikit-sundae does not give IDA's error estimates."""
+
     def history(self) -> History:
         """Ends of the steps; their orders are not known here."""
         return History(self.callbacks.step_times, np.empty(0, dtype=int))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from stiffmbs.compile.machine.native.access import address_of, compiled, equations_view, floats, shifted, state_view
 from stiffmbs.compile.machine.native.evaluate import SWITCH, add_entries, add_products, evaluate, load
+from stiffmbs.solve.native.accumulated_errors import accumulate, accumulated_errors_view
 from stiffmbs.solve.native.calls import call_int, copy_bytes, int32
 from stiffmbs.solve.native.event_search.bounds import event_search_view
 from stiffmbs.solve.native.event_search.event_signs import watched
@@ -134,6 +135,7 @@ def stepped(c, ida, toward, stop):
         c.history[row + 2] = c.size
         c.recorded += 1
         _sample(c)
+        _accumulate(c)
     if flag >= 0 and _stalled(c):
         return STALLED
     if flag >= 0 and c.look_within and call_int(c.look_within, (ida,)):
@@ -190,6 +192,18 @@ def _sample(c):
         _report(c, array_of(c, c.y), shifted(row, 1))
         c.since_sample = 0
         c.next_sample = k + 1 if k + 1 < SAMPLES else 0
+
+
+@compiled
+def _accumulate(c):
+    """Add up local errors, one each few steps: reading each of them takes a hundredth of a step."""
+    a = accumulated_errors_view(c.accumulated)
+    a.since += 1
+    a.span += c.size
+    if a.since >= STEPS_APART and call_int(c.errors_of, (c.memory, c.at_output)) == OK:
+        accumulate(a, array_of(c, c.y), c.output, float(a.since), a.span)
+        a.since = 0
+        a.span = 0.0
 
 
 @compiled

@@ -28,6 +28,14 @@ LONG_STEPS = Layout({
 states, of `width` numbers, at the nodes.  Cells: times the usual step beyond which a step is long, and of how many steps the usual one
 is the mean; rows there is room for (0 where none is kept), rows kept, the usual step."""
 
+ACCUMULATED_ERRORS = Layout({
+    "n": INT, "place": INTS, "mass": FLOATS, "displaced": FLOATS, "furthest": FLOATS,
+    "speed_error": FLOAT_CELL, "path": FLOAT_CELL, "time": FLOAT_CELL, "since": INT_CELL, "span": FLOAT_CELL,
+})  # fmt: skip
+"""What local errors of velocities come to (`stiffmbs.solve.native.accumulated_errors`): where the velocities stand among the unknowns, their
+masses, how far the position is displaced, and the largest amounts of that so far.  Cells: the error of the speed, the path so far, weighted
+with masses, and its time, s; steps since the last one whose error was read, and their length, s."""
+
 EXPLICIT = Layout({
     "dynamics": INTS, "eliminated": INTS, "eliminates": INT_CELL, "pivots_tell": INT, "scheme": INTS, "n": INT, "n_q": INT, "project": INT_CELL,
     "tolerance": FLOAT_CELL, "rtol": FLOAT_CELL, "atol": FLOATS, "longest": FLOAT_CELL, "stable": FLOAT_CELL, "shortest": FLOAT_CELL, "step_bound": INTS,
@@ -54,7 +62,7 @@ NATIVE_IDA = Layout({
     "stopping": FLOAT_CELL, "served": INT_CELL, "tiny": INT_CELL, "within": INT_CELL,
     "recorded": INT_CELL, "history": FLOATS, "since_sample": INT_CELL, "next_sample": INT_CELL, "samples": FLOATS,
     "output_correction": INTS, "iteration": INTS, "watch": INTS, "look_at_start": INT, "look_within": INT, "probe": FLOATS,
-    "long_steps": INTS,
+    "long_steps": INTS, "accumulated": INTS, "errors_of": INT,
     "trace": INT_CELL, "traced": INT_CELL, "seen": FLOAT_CELL,
 })  # fmt: skip
 """What the callbacks and the loop of the native IDA work on (`stiffmbs.solve.native.ida_loop`): functions and objects

@@ -1,0 +1,66 @@
+"""What the local errors of a run come to: estimated errors of positions, and when they are reported."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ...compile.coordinates import FIXED
+from ...compile.equations import Equations
+from ...compile.machine.layout import packed
+from ..native.tables.steps import ACCUMULATED_ERRORS
+
+
+class ErrorSums:
+    """Memory of the local errors that are added up during a run (`stiffmbs.solve.native.accumulated_errors`).
+
+    Parameters
+    ----------
+    place : ndarray of int
+        Where the integrated velocities stand among the unknowns.
+    mass : ndarray
+        Their masses, with those of the velocities that move with them.
+    follows, ratio : ndarrays, shapes (n_u,)
+        Number of the integrated velocity that each velocity moves with, and by which factor.
+
+    Attributes
+    ----------
+    table : ndarray of int
+        For compiled code.
+    """
+
+    def __init__(self, place: np.ndarray, mass: np.ndarray, follows: np.ndarray, ratio: np.ndarray) -> None:
+        self._follows, self._ratio = follows, ratio
+        self._sums = np.zeros((2, max(len(place), 1)))
+        self._kept = {"place": np.append(place, 0).astype(np.int64), "mass": np.append(mass, 0.0)}
+        self.table = packed(
+            ACCUMULATED_ERRORS,
+            {"n": len(place), **self._kept, "displaced": self._sums[0], "furthest": self._sums[1]},
+        )
+        self._cells = self.table.view(ACCUMULATED_ERRORS.cells)[0]
+
+    @classmethod
+    def of_equations(cls, equations: Equations) -> ErrorSums:
+        """For the unknowns of IDA."""
+        coordinates, mass = equations.coordinates, equations.system.mass
+        independent = coordinates.independent_u
+        leader, ratio = coordinates.relation("u")
+        moves = leader != FIXED
+        number = np.cumsum(independent) - 1
+        follows = np.where(moves, number[leader], 0)
+        carried = np.zeros(int(independent.sum()))
+        np.add.at(carried, follows[moves], (ratio**2 * mass)[moves])
+        return cls(equations.at["u"][independent], carried, follows, ratio)
+
+    def displaced(self) -> np.ndarray:
+        """Estimated errors of all positions, as displacements along velocities, shape (n_u,)."""
+        found: np.ndarray = np.abs(self._ratio) * self._sums[1, self._follows]
+        return found
+
+    def forget(self) -> None:
+        """Begin with another run."""
+        self._sums[:] = 0.0
+        for cell in self._cells.dtype.names:
+            self._cells[cell] = 0
