@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import cached_property
-
 import numpy as np
 
 from ...compile.coordinates import FIXED
 from ...compile.equations import Equations
 from ...compile.machine.layout import packed
+from ...compile.system import System
 from ..native.tables.steps import ACCUMULATED_ERRORS
 
 
@@ -53,6 +51,12 @@ class ErrorSums:
         carried = np.zeros(int(independent.sum()))
         np.add.at(carried, follows[moves], (ratio**2 * mass)[moves])
         return cls(equations.at["u"][independent], carried, follows, ratio)
+
+    @classmethod
+    def of_velocities(cls, system: System) -> ErrorSums:
+        """For states (q, u) of all coordinates and velocities."""
+        every = np.arange(system.n_u)
+        return cls(system.n_q + every, system.mass, every, np.ones(system.n_u))
 
     def displaced(self) -> np.ndarray:
         """Estimated errors of all positions, as displacements along velocities, shape (n_u,)."""

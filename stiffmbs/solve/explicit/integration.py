@@ -128,6 +128,10 @@ class Integration:
         begin, end, y = self._long_steps.kept()
         return (LongSteps(self._dynamics, begin, end, y[..., : self._n_q], y[..., self._n_q :]),)
 
+    def displaced(self) -> np.ndarray:
+        """Estimated errors of all positions, as displacements along velocities, shape (n_u,)."""
+        return self._memory.accumulated.displaced()
+
     def collect(self, rows: Rows) -> None:
         """Take over the rows and ends of steps that the last call stored, and leave their memory to the next."""
         count, before = self.count("rows"), self._collected

@@ -6,6 +6,7 @@ import numpy as np
 
 from ...compile.machine.layout import packed
 from ..dynamics import POSITION_TOLERANCE, Dynamics
+from ..error_control.accumulated_errors import ErrorSums
 from ..native.tables.steps import EXPLICIT
 from .routines import END_AT_EVENT
 from .scheme import Scheme
@@ -33,6 +34,7 @@ class StepMemory:
     y, end_rates, lam : ndarrays, shapes (n_q + n_u,), (n_q + n_u,), (n_c,)
         The state reached, its rates, and multipliers at a start.
     atol, times : ndarrays, shapes (n_q + n_u,), (n_times,)
+    accumulated : ErrorSums
     row_t, row_y, ends : ndarrays, shapes (capacity,), (capacity, n_q + n_u), (capacity,)
     table : ndarray of int
         Addresses and cells (`stiffmbs.solve.native.tables.steps.EXPLICIT`).
@@ -49,6 +51,7 @@ class StepMemory:
         stages = np.zeros((scheme.extended, n))
         self.end_rates = stages[scheme.stages]
         searched = system.n_values("event_function") > 0
+        self.accumulated = ErrorSums.of_velocities(system)
         nothing = np.zeros(1, dtype=np.int64)
         self._arrays = {
             "dynamics": dynamics.table, "eliminated": eliminated.table, "eliminates": eliminated.serves,
@@ -59,6 +62,7 @@ class StepMemory:
             "weight": np.zeros(n), "polynomial": np.zeros((3 + len(scheme.dense), n)),
             "n_times": n_times, "times": self.times,
             "capacity": capacity, "row_t": self.row_t, "row_y": self.row_y, "ends": self.ends,
+            "accumulated": self.accumulated.table, "halved": np.zeros(3 * n),
             "watch": nothing, "step_bound": nothing, "long_steps": nothing,
         }  # fmt: skip
         self.table = packed(EXPLICIT, self._arrays)
@@ -67,4 +71,5 @@ class StepMemory:
     def renew(self, watch: int, step_bound: int, long_steps: int) -> None:
         """Begin a run: cells as they are when new, and the addresses of tables that the run has set up."""
         self.table[:] = self._new
+        self.accumulated.forget()
         self.table[[WATCH, STEP_BOUND, LONG_STEPS]] = watch, step_bound, long_steps

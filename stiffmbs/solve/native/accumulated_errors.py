@@ -17,20 +17,30 @@ accumulated_errors_view = view_of("AccumulatedErrors", ACCUMULATED_ERRORS)
 
 
 @compiled
-def accumulate(a, y, error, steps, span):
-    """Add the error of a step that stands for `steps` steps of a length of `span`, s, in all; y and `error` have all unknowns."""
+def add_error(a, y, error, steps):
+    """Add the local error of a step that stands for so many; y and `error` have all unknowns."""
     energy = 0.0
     power = 0.0
     for k in range(a.n):
         u = y[a.place[k]]
         energy += a.mass[k] * u * u
         power += a.mass[k] * u * error[a.place[k]]
+    if energy > 0.0:
+        a.speed_error += steps * power / sqrt(energy)
+
+
+@compiled
+def displace(a, y, span):
+    """Displace positions by the error of the speed over a time, s."""
+    energy = 0.0
+    for k in range(a.n):
+        u = y[a.place[k]]
+        energy += a.mass[k] * u * u
     speed = sqrt(energy)
     a.path += speed * span
     a.time += span
-    if not speed > 0.0:
+    if not a.path > 0.0:
         return
-    a.speed_error += steps * power / speed
     moved = a.speed_error * span / max(speed, a.path / a.time)
     for k in range(a.n):
         a.displaced[k] += moved * y[a.place[k]]
