@@ -7,7 +7,7 @@ import numpy as np
 from ...compile.coordinates import FIXED
 from ...compile.equations import Equations
 from ...compile.machine.layout import packed
-from ...compile.system import System
+from ...compile.system import System, Term
 from ..native.tables.steps import ACCUMULATED_ERRORS
 
 
@@ -22,6 +22,8 @@ class ErrorSums:
         Their masses, with those of the velocities that move with them.
     follows, ratio : ndarrays, shapes (n_u,)
         Number of the integrated velocity that each velocity moves with, and by which factor.
+    damped : Term, optional
+        Derivatives of forces by velocities, where compiled code has them.
 
     Attributes
     ----------
@@ -29,13 +31,22 @@ class ErrorSums:
         For compiled code.
     """
 
-    def __init__(self, place: np.ndarray, mass: np.ndarray, follows: np.ndarray, ratio: np.ndarray) -> None:
+    def __init__(
+        self, place: np.ndarray, mass: np.ndarray, follows: np.ndarray, ratio: np.ndarray, damped: Term | None = None
+    ) -> None:
         self._follows, self._ratio = follows, ratio
         self._sums = np.zeros((2, max(len(place), 1)))
         self._kept = {"place": np.append(place, 0).astype(np.int64), "mass": np.append(mass, 0.0)}
+        self._kept |= _damped(damped, self._kept["place"], follows, ratio)
         self.table = packed(
             ACCUMULATED_ERRORS,
-            {"n": len(place), **self._kept, "displaced": self._sums[0], "furthest": self._sums[1]},
+            {
+                "n": len(place),
+                "n_damped": len(damped.source) if damped else 0,
+                **self._kept,
+                "displaced": self._sums[0],
+                "furthest": self._sums[1],
+            },
         )
         self._cells = self.table.view(ACCUMULATED_ERRORS.cells)[0]
 
@@ -50,7 +61,8 @@ class ErrorSums:
         follows = np.where(moves, number[leader], 0)
         carried = np.zeros(int(independent.sum()))
         np.add.at(carried, follows[moves], (ratio**2 * mass)[moves])
-        return cls(equations.at["u"][independent], carried, follows, ratio)
+        damped = equations.system.term(equations.formulation.matrix_set, "f_u")
+        return cls(equations.at["u"][independent], carried, follows, ratio, damped)
 
     @classmethod
     def of_velocities(cls, system: System) -> ErrorSums:
@@ -68,3 +80,16 @@ class ErrorSums:
         self._sums[:] = 0.0
         for cell in self._cells.dtype.names:
             self._cells[cell] = 0
+
+
+def _damped(damped: Term | None, place: np.ndarray, follows: np.ndarray, ratio: np.ndarray) -> dict[str, np.ndarray]:
+    """Entries of the derivatives of forces by velocities, in the places of the unknowns; an entry of zero at the end."""
+    nothing = np.zeros(1, dtype=np.int64)
+    if damped is None:
+        return {"damped_source": nothing, "damped_row": nothing, "damped_column": nothing, "damped_factor": np.zeros(1)}
+    return {
+        "damped_source": np.append(damped.source, 0).astype(np.int64),
+        "damped_row": np.append(place[follows[damped.row]], 0),
+        "damped_column": np.append(place[follows[damped.column]], 0),
+        "damped_factor": np.append(ratio[damped.row] * ratio[damped.column], 0.0),
+    }

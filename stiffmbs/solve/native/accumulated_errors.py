@@ -37,6 +37,7 @@ def displace(a, y, span):
         u = y[a.place[k]]
         energy += a.mass[k] * u * u
     speed = sqrt(energy)
+    a.speed_error /= 1.0 + max(a.damping, 0.0) * span
     a.path += speed * span
     a.time += span
     if not a.path > 0.0:
@@ -45,3 +46,28 @@ def displace(a, y, span):
     for k in range(a.n):
         a.displaced[k] += moved * y[a.place[k]]
         a.furthest[k] = max(a.furthest[k], abs(a.displaced[k]))
+
+
+@compiled
+def note_damping(a, y, values):
+    """Note the rate at which forces damp the motion at y, 1/s, by derivatives of forces by velocities."""
+    energy = 0.0
+    for k in range(a.n):
+        u = y[a.place[k]]
+        energy += a.mass[k] * u * u
+    power = 0.0
+    for k in range(a.n_damped):
+        power -= a.damped_factor[k] * values[a.damped_source[k]] * y[a.damped_row[k]] * y[a.damped_column[k]]
+    a.damping = power / energy if energy > 0.0 else 0.0
+
+
+@compiled
+def note_damping_by_difference(a, y, rate, faster_rate, part):
+    """Note the rate at which forces damp the motion at y, 1/s, by the accelerations there and with velocities greater by a part of them."""
+    energy = 0.0
+    power = 0.0
+    for k in range(a.n):
+        j = a.place[k]
+        energy += a.mass[k] * y[j] * y[j]
+        power -= a.mass[k] * y[j] * (faster_rate[j] - rate[j])
+    a.damping = power / (part * energy) if energy > 0.0 else 0.0

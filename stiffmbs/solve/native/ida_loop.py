@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from stiffmbs.compile.machine.native.access import address_of, compiled, equations_view, floats, shifted, state_view
 from stiffmbs.compile.machine.native.evaluate import SWITCH, add_entries, add_products, evaluate, load
-from stiffmbs.solve.native.accumulated_errors import accumulated_errors_view, add_error, displace
+from stiffmbs.solve.native.accumulated_errors import accumulated_errors_view, add_error, displace, note_damping
 from stiffmbs.solve.native.calls import call_int, copy_bytes, int32
 from stiffmbs.solve.native.event_search.bounds import event_search_view
 from stiffmbs.solve.native.event_search.event_signs import watched
@@ -202,6 +202,8 @@ def _accumulate(c):
     a.span += c.size
     if a.since >= STEPS_APART and call_int(c.errors_of, (c.memory, c.at_output)) == OK:
         y = array_of(c, c.y)
+        values = floats(state_view(c.state).values[equations_view(c.equations).matrix_set])
+        note_damping(a, y, values)
         add_error(a, y, c.output, a.since)
         displace(a, y, a.span)
         a.since = 0

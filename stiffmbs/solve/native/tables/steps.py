@@ -30,7 +30,8 @@ is the mean; rows there is room for (0 where none is kept), rows kept, the usual
 
 ACCUMULATED_ERRORS = Layout({
     "n": INT, "place": INTS, "mass": FLOATS, "displaced": FLOATS, "furthest": FLOATS,
-    "speed_error": FLOAT_CELL, "path": FLOAT_CELL, "time": FLOAT_CELL, "since": INT_CELL, "span": FLOAT_CELL,
+    "n_damped": INT, "damped_source": INTS, "damped_row": INTS, "damped_column": INTS, "damped_factor": FLOATS,
+    "speed_error": FLOAT_CELL, "damping": FLOAT_CELL, "path": FLOAT_CELL, "time": FLOAT_CELL, "since": INT_CELL, "span": FLOAT_CELL,
 })  # fmt: skip
 """What local errors of velocities come to (`stiffmbs.solve.native.accumulated_errors`): where the velocities stand among the unknowns, their
 masses, how far the position is displaced, and the largest amounts of that so far.  Cells: the error of the speed, the path so far, weighted
