@@ -5,12 +5,12 @@ from __future__ import annotations
 from math import isfinite
 
 from stiffmbs.compile.machine.native.access import compiled, shifted, state_view
-from stiffmbs.solve.native.accumulated_errors import accumulated_errors_view, displace
+from stiffmbs.solve.native.accumulated_errors import accumulated_errors_view, displace, is_due
 from stiffmbs.solve.native.calls import call_int
 from stiffmbs.solve.native.event_search.explicit_events import AT_ANOTHER_LAW, RETRIED, end_at_event, retaken
 from stiffmbs.solve.native.explicit.attempt import arrive, attempt
 from stiffmbs.solve.native.explicit.error_estimate import trusted_error
-from stiffmbs.solve.native.explicit.halved_step import HALVED_APART, add_measured, two_halves
+from stiffmbs.solve.native.explicit.halved_step import is_halved, note_difference, two_halves
 from stiffmbs.solve.native.explicit.interpolant import interpolated, prepare, store_rows, store_step
 from stiffmbs.solve.native.explicit.stages import copied
 from stiffmbs.solve.native.explicit.start import first_step, start_steps
@@ -26,8 +26,6 @@ __all__ = ["advance", "end_at_event", "fastest_rate", "fixed_steps"]
 SMALLEST_ERROR = 1e-4
 """What the step control remembers of an error at the least (as in DOPRI5)."""
 SAFETY, LEAST_FACTOR, LARGEST_FACTOR, FACTOR_AFTER_FAILURE = 0.9, 0.2, 10.0, 0.25
-STEPS_APART = 4
-"""Positions are displaced by errors once each few steps."""
 STRETCHED = 1.01
 """The last step may be this much longer than asked for, so that no tiny one is left."""
 FAR_BEYOND = 2.0
@@ -55,18 +53,6 @@ def _watch_stiffness(x, c, h):
     if h * h * rate > limit and move > 0.0:
         x.stiff_steps += 1
         x.far_beyond += 1 if h * h * rate > FAR_BEYOND**2 * limit else 0
-
-
-@compiled
-def _displace(x):
-    """Displace positions by the error of the speed."""
-    a = accumulated_errors_view(x.accumulated)
-    a.since += 1
-    a.span += x.t - x.t_before
-    if a.since >= STEPS_APART:
-        displace(a, x.y, a.span)
-        a.since = 0
-        a.span = 0.0
 
 
 @compiled
@@ -111,7 +97,7 @@ def _step(x, c, s, m, end):
     most = LARGEST_FACTOR
     moved = 0
     halved = 0.0
-    if x.steps % HALVED_APART == HALVED_APART - 1 and t + STRETCHED * h < end:
+    if is_halved(x) and t + STRETCHED * h < end:
         halved = h if two_halves(x, c, s, m, h) == 0 else 0.0
     while True:
         if t + STRETCHED * h >= end:
@@ -139,7 +125,7 @@ def _step(x, c, s, m, end):
                 x.h = h * min(most, max(LEAST_FACTOR, _factor(x, c, error)))
                 x.last_error = error
                 if h == halved:
-                    add_measured(x)
+                    note_difference(x)
                 _watch_stiffness(x, c, h)
                 return 0
         x.rejected += 1
@@ -219,7 +205,9 @@ def advance(end, steps, held, own_steps, explicit):
             continue
         x.ends[x.steps % x.capacity] = x.t
         x.steps += 1
-        _displace(x)
+        a = accumulated_errors_view(x.accumulated)
+        if is_due(a, x.t - x.t_before):
+            displace(a, x.y)
         _keep_if_long(x, c, s, m)
         if own_steps:
             store_step(x)

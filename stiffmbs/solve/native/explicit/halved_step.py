@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from stiffmbs.compile.machine.native.access import compiled, shifted
-from stiffmbs.solve.native.accumulated_errors import accumulated_errors_view, add_error, note_damping_by_difference
+from stiffmbs.solve.native.accumulated_errors import accumulated_errors_view, note_damping_by_difference, note_error
 from stiffmbs.solve.native.explicit.attempt import arrive, attempt
 from stiffmbs.solve.native.explicit.stages import copied, load_state, rates
 
@@ -11,6 +11,12 @@ HALVED_APART = 199
 """Steps from one that is measured to the next."""
 FASTER = 1e-3
 """Part of the velocities by which they are increased to see what damps them."""
+
+
+@compiled
+def is_halved(x):
+    """Return whether the next step is one that is measured: the middle one of so many."""
+    return x.steps % HALVED_APART == HALVED_APART // 2
 
 
 @compiled
@@ -56,8 +62,8 @@ def two_halves(x, c, s, m, h):
 
 
 @compiled
-def add_measured(x):
-    """Add the difference between the new state and that of two halves."""
+def note_difference(x):
+    """Note the difference between the new state and that of two halves as the error of the step."""
     for i in range(x.n):
         x.halved[i] = x.y[i] - x.halved[i]
-    add_error(accumulated_errors_view(x.accumulated), x.y, x.halved, HALVED_APART)
+    note_error(accumulated_errors_view(x.accumulated), x.y, x.halved)

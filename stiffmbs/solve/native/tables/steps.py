@@ -31,11 +31,12 @@ is the mean; rows there is room for (0 where none is kept), rows kept, the usual
 ACCUMULATED_ERRORS = Layout({
     "n": INT, "place": INTS, "mass": FLOATS, "displaced": FLOATS, "furthest": FLOATS,
     "n_damped": INT, "damped_source": INTS, "damped_row": INTS, "damped_column": INTS, "damped_factor": FLOATS,
-    "speed_error": FLOAT_CELL, "damping": FLOAT_CELL, "path": FLOAT_CELL, "time": FLOAT_CELL, "since": INT_CELL, "span": FLOAT_CELL,
+    "each": FLOAT_CELL, "damping": FLOAT_CELL, "speed_error": FLOAT_CELL, "path": FLOAT_CELL, "time": FLOAT_CELL, "since": INT_CELL, "span": FLOAT_CELL,
 })  # fmt: skip
 """What local errors of velocities come to (`stiffmbs.solve.native.accumulated_errors`): where the velocities stand among the unknowns, their
-masses, how far the position is displaced, and the largest amounts of that so far.  Cells: the error of the speed, the path so far, weighted
-with masses, and its time, s; steps since the last one whose error was read, and their length, s."""
+masses, how far positions are displaced, and the largest amounts of that so far; entries of the derivatives of forces by velocities.  Cells: what
+the last error that was read adds to the speed, the rate at which forces damp the motion, 1/s, the error of the speed, the path so
+far, weighted with masses, and its time, s; steps since positions were displaced, and their length, s."""
 
 EXPLICIT = Layout({
     "dynamics": INTS, "eliminated": INTS, "eliminates": INT_CELL, "pivots_tell": INT, "scheme": INTS, "n": INT, "n_q": INT, "project": INT_CELL,
