@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
@@ -16,6 +17,27 @@ from .terms import TERM_SETS
 ABSENT = -1
 FEW = 0.5
 """Part of all slots below which those that entries begin do not matter: a dense matrix is cleared as a whole."""
+
+
+class AlongMotion(NamedTuple):
+    """What kinetic energy and damping are computed from along the motion.
+
+    Attributes
+    ----------
+    arrays : dict of str to ndarray
+        For compiled code (`stiffmbs.solve.native.tables.steps.ACCUMULATED_ERRORS`), each with one more number at its end: independent
+        velocities with the masses of all that move with them, and the entries of f_u in the values of the matrix's set.
+    n, n_damped : int
+        How many of either.
+    follows, ratio : ndarrays, shapes (n_u,)
+        Among the independent velocities the number of that which each velocity moves with, and by which factor.
+    """
+
+    arrays: dict[str, np.ndarray]
+    n: int
+    n_damped: int
+    follows: np.ndarray
+    ratio: np.ndarray
 
 
 class Equations:
@@ -178,6 +200,25 @@ class Equations:
         slot[order] = np.cumsum(new) - 1
         self._slot, self._source = held_once(slot), held_once(source.astype(np.int32))
         self._constant, self._cj = held_once(constant.astype(float)), held_once(cj.astype(float))
+
+    @cached_property
+    def along_motion(self) -> AlongMotion:
+        """What kinetic energy and damping are computed from along the motion."""
+        independent_of, ratio = self.coordinates.relation("u")
+        place, term = self.at["u"], self.system.term(self.formulation.matrix_set, "f_u")
+        moving, independent = independent_of != FIXED, self.coordinates.independent_u
+        mass = np.zeros(len(place))
+        np.add.at(mass, independent_of[moving], (ratio**2 * self.system.mass)[moving])
+        kept = moving[term.row] & moving[term.column]
+        source, row, column = (np.append(part[kept], 0) for part in (term.source, term.row, term.column))
+        return AlongMotion(
+            {
+                "place": np.append(place[independent], 0), "mass": np.append(mass[independent], 0.0),
+                "damped_source": source.astype(np.int64), "damped_row": place[independent_of[row]],
+                "damped_column": place[independent_of[column]], "damped_factor": ratio[row] * ratio[column],
+            },
+            int(independent.sum()), int(kept.sum()), *self._leads["u"],
+        )  # fmt: skip
 
     def used(self) -> dict[str, np.ndarray]:
         """For the sets of the residual and of the matrix, which groups of the system write values that are read."""

@@ -106,7 +106,7 @@ class AdaptiveRun:
             history,
             note,
             long_steps=self.work.long_steps(),
-            displaced=self.work.displaced(),
+            displaced=self.work.displaced.copy(),
         )
 
     def _reason(self, status: int) -> str:

@@ -36,6 +36,8 @@ class Integration:
         The address of the table for compiled code.
     atol : ndarray, shape (n_q + n_u,)
         Absolute tolerances.
+    displaced : ndarray, shape (n_u,)
+        Estimated errors of positions, as displacements along velocities.
     """
 
     def __init__(
@@ -58,6 +60,7 @@ class Integration:
         self.q, self.u, self.at = memory.y[:n_q], memory.y[n_q:], address(memory.table)
         self.atol = dynamics.kept("tolerances", settings, lambda: absolute_tolerances(dynamics.system, settings))
         memory.atol[:] = self.atol
+        self.displaced = memory.displaced
         if grid.times is not None:
             memory.times[:] = grid.times
         self._cells = cells = memory.cells
@@ -127,10 +130,6 @@ class Integration:
         """Steps far longer than those before them."""
         begin, end, y = self._long_steps.kept()
         return (LongSteps(self._dynamics, begin, end, y[..., : self._n_q], y[..., self._n_q :]),)
-
-    def displaced(self) -> np.ndarray:
-        """Estimated errors of all positions, as displacements along velocities, shape (n_u,)."""
-        return self._memory.accumulated.displaced()
 
     def collect(self, rows: Rows) -> None:
         """Take over the rows and ends of steps that the last call stored, and leave their memory to the next."""

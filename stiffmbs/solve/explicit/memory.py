@@ -6,8 +6,7 @@ import numpy as np
 
 from ...compile.machine.layout import packed
 from ..dynamics import POSITION_TOLERANCE, Dynamics
-from ..error_control.accumulated_errors import ErrorSums
-from ..native.tables.steps import EXPLICIT
+from ..native.tables.steps import ACCUMULATED_ERRORS, EXPLICIT
 from .routines import END_AT_EVENT
 from .scheme import Scheme
 
@@ -34,7 +33,8 @@ class StepMemory:
     y, end_rates, lam : ndarrays, shapes (n_q + n_u,), (n_q + n_u,), (n_c,)
         The state reached, its rates, and multipliers at a start.
     atol, times : ndarrays, shapes (n_q + n_u,), (n_times,)
-    accumulated : ErrorSums
+    displaced : ndarray, shape (n_u,)
+        Estimated errors of positions (`stiffmbs.solve.native.accumulated_errors`).
     row_t, row_y, ends : ndarrays, shapes (capacity,), (capacity, n_q + n_u), (capacity,)
     table : ndarray of int
         Addresses and cells (`stiffmbs.solve.native.tables.steps.EXPLICIT`).
@@ -51,8 +51,16 @@ class StepMemory:
         stages = np.zeros((scheme.extended, n))
         self.end_rates = stages[scheme.stages]
         searched = system.n_values("event_function") > 0
-        self.accumulated = ErrorSums.of_velocities(system)
         nothing = np.zeros(1, dtype=np.int64)
+        self._sums = np.zeros((2, system.n_u))
+        self.displaced = self._sums[1]
+        self._of_errors = {
+            "n": system.n_u, "place": system.n_q + np.arange(system.n_u), "mass": np.ascontiguousarray(system.mass), "damped_source": nothing,
+            "damped_row": nothing, "damped_column": nothing, "damped_factor": np.zeros(1), "displaced": self._sums[0], "furthest": self._sums[1],
+            "n_damped": 0,
+        }  # fmt: skip
+        self._errors = packed(ACCUMULATED_ERRORS, self._of_errors)
+        self._new_errors = self._errors.copy()
         self._arrays = {
             "dynamics": dynamics.table, "eliminated": eliminated.table, "eliminates": eliminated.serves,
             "pivots_tell": eliminated.pivots_tell, "scheme": scheme.table, "n": n, "n_q": system.n_q,
@@ -62,7 +70,7 @@ class StepMemory:
             "weight": np.zeros(n), "polynomial": np.zeros((3 + len(scheme.dense), n)),
             "n_times": n_times, "times": self.times,
             "capacity": capacity, "row_t": self.row_t, "row_y": self.row_y, "ends": self.ends,
-            "accumulated": self.accumulated.table, "halved": np.zeros(3 * n),
+            "accumulated": self._errors, "halved": np.zeros(3 * n),
             "watch": nothing, "step_bound": nothing, "long_steps": nothing,
         }  # fmt: skip
         self.table = packed(EXPLICIT, self._arrays)
@@ -71,5 +79,6 @@ class StepMemory:
     def renew(self, watch: int, step_bound: int, long_steps: int) -> None:
         """Begin a run: cells as they are when new, and the addresses of tables that the run has set up."""
         self.table[:] = self._new
-        self.accumulated.forget()
+        self._errors[:] = self._new_errors
+        self._sums[:] = 0.0
         self.table[[WATCH, STEP_BOUND, LONG_STEPS]] = watch, step_bound, long_steps

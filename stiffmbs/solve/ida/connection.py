@@ -11,11 +11,10 @@ from ...compile.machine.layout import packed
 from ...compile.machine.routines import Routine, together
 from ...compile.state import State
 from ..dynamics import Dynamics
-from ..error_control.accumulated_errors import ErrorSums
 from ..events.event_functions import EventSearch
 from ..events.long_steps import LongStepLog
 from ..events.step_bound import StepBound
-from ..native.tables.steps import HISTORY_ROWS, LONG_STEPS, NATIVE_IDA, SAMPLES
+from ..native.tables.steps import ACCUMULATED_ERRORS, HISTORY_ROWS, LONG_STEPS, NATIVE_IDA, SAMPLES
 from .error_norm import ErrorNorm
 from .iteration import Iteration
 from .matrices import Matrix
@@ -71,7 +70,8 @@ class Connection:
     history : StepLog
     long_steps : LongStepLog or None
         None for scenes without laws.
-    accumulated : ErrorSums
+    furthest : ndarray
+        How far errors displace what moves at each independent velocity.
     samples : ndarray, shape (SAMPLES, 1 + number of reported unknowns)
         Times and states of the last steps but for three of each four, in no order; NaN where none is yet.
     table : int
@@ -88,7 +88,6 @@ class Connection:
         self.history = StepLog()
         self.long_steps = LongStepLog(equations.system, len(self.reported)) if equations.system.has_laws else None
         self._long_steps = self.long_steps.table if self.long_steps else np.zeros(len(LONG_STEPS), dtype=np.int64)
-        self.accumulated = ErrorSums.of_equations(equations)
         self.samples = np.full((SAMPLES, 1 + len(self.reported)), np.nan)
         self.y_vector, self.yp_vector, self.output_vector = map(session.vector, (self.y, self.yp, self.output))
         self.output_correction, self.iteration, self.step_bound = OutputCorrection(equations), Iteration(n), StepBound()
@@ -110,6 +109,12 @@ class Connection:
         for term_set in (formulation.residual_set, formulation.matrix_set):
             self._state.load(term_set)
         self._equations_table, self._slots = self._equations.table(self._assembled.slots)
+        along = self._equations.along_motion
+        self._sums = np.zeros((2, along.n + 1))
+        self.furthest = self._sums[1]
+        sums = {"n": along.n, "n_damped": along.n_damped, "displaced": self._sums[0], "furthest": self._sums[1]}
+        self._errors = packed(ACCUMULATED_ERRORS, {**along.arrays, **sums})
+        self._new_errors = self._errors.copy()
         self._state_table, self._calls = self._state.restricted(self._equations.used())
         return packed(
             NATIVE_IDA,
@@ -125,7 +130,7 @@ class Connection:
                 "output_correction": self.output_correction.table, "iteration": self.iteration.table, "watch": self.watch.table,
                 "look_at_start": LOOK_AT_START.address if self.watch.n else 0, "look_within": LOOK_WITHIN.address if self.watch.n else 0,
                 "probe": self._probe, "long_steps": self._long_steps,
-                "accumulated": self.accumulated.table,
+                "accumulated": self._errors,
             },
         )  # fmt: skip
 
@@ -170,7 +175,7 @@ class Connection:
         self.history.forget()
         if self.long_steps:
             self.long_steps.forget()
-        self.accumulated.forget()
+        self._errors[:], self._sums[:] = self._new_errors, 0.0
         self.output_correction.forget()
         self.error_norm.forget()
         if self._assembled.pivots is not None:

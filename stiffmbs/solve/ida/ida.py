@@ -164,9 +164,10 @@ class NativeIda:
         """Steps far longer than those before them; None for scenes without laws."""
         return self._ida.long_steps
 
-    def displaced(self) -> np.ndarray:
-        """Estimated errors of all positions, as displacements along velocities, shape (n_u,)."""
-        return self._ida.accumulated.displaced()
+    @property
+    def furthest(self) -> np.ndarray:
+        """How far errors of the steps displace what moves at each independent velocity, by estimates."""
+        return self._ida.furthest
 
     @property
     def samples(self) -> np.ndarray:

@@ -279,7 +279,9 @@ class NativeEngine:
 
     def displaced(self) -> np.ndarray:
         """Estimated errors of all positions, as displacements along velocities, shape (n_u,)."""
-        return self._ida.displaced()
+        along = self._equations.along_motion
+        found: np.ndarray = np.abs(along.ratio) * self._ida.furthest[along.follows]
+        return found
 
     def history(self) -> History:
         """Ends of the steps and their orders."""
