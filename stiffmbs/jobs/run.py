@@ -26,6 +26,7 @@ from ..results.of_run import RunResults, results_of_run
 from ..results.solution import Solution
 from ..solve.algebraic_states import failure
 from ..solve.dynamics import OutputRows
+from ..solve.error_control.accumulated_errors import ACCUMULATED
 from ..solve.missing_rows import reported
 from ..solve.settings import changed, settings_notes
 from ..solve.suspect import suspect
@@ -36,6 +37,9 @@ from .job import Job, Runnable, data_of, prepare
 from .python_faults import up_to_a_fault
 from .start_from import StartFrom
 from .taken_again import Computed, on_exact_constraints, seen_through
+
+OF_ANY_ERROR = ACCUMULATED.tolerances * ACCUMULATED.usual_rtol
+"""Estimated error of a position, relative to a mechanism's size, below which none is reported, whatever the tolerances."""
 
 
 @takes_settings
@@ -251,6 +255,10 @@ def _notes(job: Job, trajectory: Trajectory, structure: StructureNotes) -> Itera
         yield job.start.sentence()
     if trajectory.note:
         yield trajectory.note
+    if trajectory.displaced is not None and (trajectory.displaced > OF_ANY_ERROR * min(1.0, system.size)).any():
+        from ..diagnostics.accumulated_errors import accumulated_errors_sentence  # few runs have such errors
+
+        yield from accumulated_errors_sentence(system, job.settings, trajectory)
     yield from settings_notes(job.settings, system)
 
 
