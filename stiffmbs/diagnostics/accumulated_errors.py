@@ -34,8 +34,8 @@ def accumulated_errors_sentence(system: System, settings: RunSettings, trajector
         return
     what, unit = _position(system, worst)
     yield (
-        f"the errors of the steps may add up: {what} may be off by {displaced[worst]:.1g} {unit} by t = {trajectory.t[-1]:.6g} s, "
-        f"{errors[worst]:.1g} times the tolerance; choose a smaller rtol, or run with --verify for error bars"
+        f"the errors of the steps may add up: {what} may be off by {displaced[worst]:.2g} {unit} by t = {trajectory.t[-1]:.6g} s, "
+        f"{errors[worst]:.2g} times the tolerance; choose a smaller rtol, or run with --verify for error bars"
     )
 
 

@@ -12,8 +12,8 @@ from math import sqrt
 from stiffmbs.compile.machine.native.access import compiled, view_of
 from stiffmbs.solve.native.tables.steps import ACCUMULATED_ERRORS
 
-STEPS_APART = 4
-"""Positions are displaced once each few steps."""
+STEPS_APART = 7
+"""Steps from one time that positions are displaced to the next; an odd number does not keep step with IDA's equal steps."""
 
 accumulated_errors_view = view_of("AccumulatedErrors", ACCUMULATED_ERRORS)
 
@@ -37,27 +37,39 @@ def _energy(a, y):
 
 
 @compiled
-def note_error(a, y, error):
-    """Note the local error of a step that ends at y; it is taken for that of each step until the next one is noted."""
+def _power(a, y, error):
+    """Return u^T M e."""
     power = 0.0
     for k in range(a.n):
         power += a.mass[k] * y[a.place[k]] * error[a.place[k]]
-    speed = sqrt(_energy(a, y))
-    a.each = power / speed if speed > 0.0 else 0.0
+    return power
 
 
 @compiled
-def note_damping(a, y, values):
-    """Note the rate at which forces damp the motion at y, by their derivatives."""
-    power = 0.0
-    for k in range(a.n_damped):
-        power -= a.damped_factor[k] * values[a.damped_source[k]] * y[a.damped_row[k]] * y[a.damped_column[k]]
+def displace_by(a, y, error, values):
+    """Displace positions by the local error of the step that ends at y, which stands for those since that was last done.
+
+    Forces damp the motion by their derivatives among `values`.
+    """
     energy = _energy(a, y)
-    a.damping = power / energy if energy > 0.0 else 0.0
+    if energy > 0.0:
+        a.each = _power(a, y, error) / sqrt(energy)
+        damped = 0.0
+        for k in range(a.n_damped):
+            damped -= a.damped_factor[k] * values[a.damped_source[k]] * y[a.damped_row[k]] * y[a.damped_column[k]]
+        a.damping = damped / energy
+    _displace(a, y, energy)
 
 
 @compiled
-def note_damping_by_difference(a, y, rate, faster_rate, part):
+def note_error(a, y, error):
+    """Note the local error of a step that ends at y; it is taken for that of each step until the next one is noted."""
+    energy = _energy(a, y)
+    a.each = _power(a, y, error) / sqrt(energy) if energy > 0.0 else 0.0
+
+
+@compiled
+def note_damping(a, y, rate, faster_rate, part):
     """Note the rate at which forces damp the motion at y, by the accelerations there and with velocities greater by a part of them."""
     power = 0.0
     for k in range(a.n):
@@ -69,12 +81,17 @@ def note_damping_by_difference(a, y, rate, faster_rate, part):
 
 @compiled
 def displace(a, y):
-    """Displace positions over the steps since that was last done, the last of which ends at y."""
+    """Displace positions over the steps since that was last done, the last of which ends at y, by what has been noted."""
+    _displace(a, y, _energy(a, y))
+
+
+@compiled
+def _displace(a, y, energy):
     span = a.span
     gained = a.each * a.since
     a.since = 0
     a.span = 0.0
-    speed = sqrt(_energy(a, y))
+    speed = sqrt(energy)
     a.path += speed * span
     a.time += span
     if not a.path > 0.0:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from stiffmbs.compile.machine.native.access import address_of, compiled, equations_view, floats, shifted, state_view
 from stiffmbs.compile.machine.native.evaluate import SWITCH, add_entries, add_products, evaluate, load
-from stiffmbs.solve.native.accumulated_errors import accumulated_errors_view, displace, is_due, note_damping, note_error
+from stiffmbs.solve.native.accumulated_errors import accumulated_errors_view, displace_by, is_due
 from stiffmbs.solve.native.calls import call_int, copy_bytes, int32
 from stiffmbs.solve.native.event_search.bounds import event_search_view
 from stiffmbs.solve.native.event_search.event_signs import watched
@@ -196,13 +196,11 @@ def _sample(c):
 
 @compiled
 def _accumulate(c):
-    """Add up local errors, one each few steps: to read each of them costs a hundredth of a step."""
+    """Add up local errors, one each few steps: to read each of them would cost some hundredths of a step."""
     a = accumulated_errors_view(c.accumulated)
     if is_due(a, c.size) and call_int(c.errors_of, (c.memory, c.at_output)) == OK:
-        y = array_of(c, c.y)
-        note_error(a, y, c.output)
-        note_damping(a, y, floats(state_view(c.state).values[equations_view(c.equations).matrix_set]))
-        displace(a, y)
+        values = floats(state_view(c.state).values[equations_view(c.equations).matrix_set])
+        displace_by(a, array_of(c, c.y), c.output, values)
 
 
 @compiled

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from stiffmbs.compile.machine.native.access import compiled, shifted
-from stiffmbs.solve.native.accumulated_errors import accumulated_errors_view, note_damping_by_difference, note_error
+from stiffmbs.solve.native.accumulated_errors import accumulated_errors_view, note_damping, note_error
 from stiffmbs.solve.native.explicit.attempt import arrive, attempt
 from stiffmbs.solve.native.explicit.stages import copied, load_state, rates
 
@@ -20,14 +20,14 @@ def is_halved(x):
 
 
 @compiled
-def _note_damping(x, s, m, t):
+def _look_at_damping(x, s, m, t):
     """Note what damps the motion at the start of a step, by accelerations in the second stage; 0 or a negative status."""
     for i in range(x.n):
         x.halved[i] = x.y_before[i] * (1.0 + FASTER) if i >= x.n_q else x.y_before[i]
     load_state(s, x.halved)
     status = rates(x, s, m, 1, t)
     if status == 0:
-        note_damping_by_difference(accumulated_errors_view(x.accumulated), x.y_before, x.k, shifted(x.k, x.n), FASTER)
+        note_damping(accumulated_errors_view(x.accumulated), x.y_before, x.k, shifted(x.k, x.n), FASTER)
     return status
 
 
@@ -40,7 +40,7 @@ def two_halves(x, c, s, m, h):
     t = x.t_before
     copied(start, x.y_before, x.n)
     copied(rate, x.k, x.n)
-    status = _note_damping(x, s, m, t)
+    status = _look_at_damping(x, s, m, t)
     if status == 0:
         status = attempt(x, c, s, m, 0.5 * h)
     if status == 0:
