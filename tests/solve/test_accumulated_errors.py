@@ -111,8 +111,8 @@ def test_a_tight_tolerance_is_not_reported():
     ids=["damped", "overdamped", "forced"],
 )
 def test_what_damping_forgets_is_not_reported(scene, solver):
-    """Errors of the speed do not add up where forces damp the motion: some 1e-7 m are left."""
-    assert np.max(estimated(scene, **SOLVERS[solver])) < 1e-5
+    """Errors of the speed do not add up where forces damp the motion: some 1e-7 m are left, and estimates from one of 251 steps are rougher."""
+    assert np.max(estimated(scene, **SOLVERS[solver])) < 4e-5
     assert not noted(stiffmbs.run(scene, **SOLVERS[solver]))
 
 

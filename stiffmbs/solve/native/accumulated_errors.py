@@ -80,8 +80,10 @@ def note_damping(a, y, rate, faster_rate, part):
 
 
 @compiled
-def displace(a, y):
-    """Displace positions over the steps since that was last done, the last of which ends at y, by what has been noted."""
+def displace(a, y, span):
+    """Displace positions over one step that ends at y, by what has been noted."""
+    a.since = 1
+    a.span = span
     _displace(a, y, _energy(a, y))
 
 

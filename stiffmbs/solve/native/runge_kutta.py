@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import isfinite
 
 from stiffmbs.compile.machine.native.access import compiled, shifted, state_view
-from stiffmbs.solve.native.accumulated_errors import accumulated_errors_view, displace, is_due
+from stiffmbs.solve.native.accumulated_errors import accumulated_errors_view, displace
 from stiffmbs.solve.native.calls import call_int
 from stiffmbs.solve.native.event_search.explicit_events import AT_ANOTHER_LAW, RETRIED, end_at_event, retaken
 from stiffmbs.solve.native.explicit.attempt import arrive, attempt
@@ -205,9 +205,7 @@ def advance(end, steps, held, own_steps, explicit):
             continue
         x.ends[x.steps % x.capacity] = x.t
         x.steps += 1
-        a = accumulated_errors_view(x.accumulated)
-        if is_due(a, x.t - x.t_before):
-            displace(a, x.y)
+        displace(accumulated_errors_view(x.accumulated), x.y, x.t - x.t_before)
         _keep_if_long(x, c, s, m)
         if own_steps:
             store_step(x)
