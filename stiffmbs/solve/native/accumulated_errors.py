@@ -12,7 +12,7 @@ from math import sqrt
 from stiffmbs.compile.machine.native.access import compiled, view_of
 from stiffmbs.solve.native.tables.steps import ACCUMULATED_ERRORS
 
-STEPS_APART = 17
+STEPS_APART = 11
 """Steps from one time that positions are displaced to the next; a prime number does not keep step with periods."""
 
 accumulated_errors_view = view_of("AccumulatedErrors", ACCUMULATED_ERRORS)
