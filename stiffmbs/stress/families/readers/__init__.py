@@ -1,0 +1,1 @@
+"""Stress tests of the readers of other programs' files."""
