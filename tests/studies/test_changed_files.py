@@ -7,10 +7,8 @@ import subprocess
 import sys
 import textwrap
 
-import numpy as np
 import pytest
 
-import stiffmbs
 from stiffmbs import InputError, sweep
 from stiffmbs.describe.files.own_sources import digests_of_code
 
@@ -24,10 +22,8 @@ forces: {{tyre: {tyre}}}
 run: {{duration: 0.05, points: 3}}
 """
 VERTICAL = "{type: vertical_tyre, i: wheel, radius: 0.3, stiffness: 1e5, damping: 2000, road: field}"
-MAGIC = "{type: magic_formula_tyre, i: wheel, properties: car.tir, road: field}"
 FLAT = "{type: flat}"
 GRID = "4 6\n0 0 0\n10 0 0\n"
-CRG = "$ROAD_CRG\nreference_line_increment=1\n$\n$KD_DEFINITION\n#:LRFI\nD:long section at v = -9,m\nD:long section at v = 9,m\n$\n$$$$\n"
 BALL = """
 bodies: {b: {mass: 1, inertia: 1, position: [1, 0]}}
 forces: {pull: {type: own_pull, i: b}}
@@ -48,61 +44,6 @@ class OwnPull(stiffmbs.Force):
         return [(-helper.law(e.i.point[0]), e.i.point[0])]
 """
 HELPER = "STIFFNESS = 10\n\n\ndef law(x):\n    return STIFFNESS * x\n"
-INCLUDING = "include: more.yaml\nbodies: {b: {mass: 1, inertia: 1}}\nrun: {duration: 0.1, points: 3}\n"
-PART = """
-parts: {leg: {include: leg.yaml}}
-use: {one: {part: leg}}
-bodies: {b: {mass: 1, inertia: 1}}
-run: {duration: 0.1, points: 3}
-"""
-LEG = "bodies: {{foot: {{mass: 2, inertia: 1, velocity: [{v}, 0]}}}}\n"
-
-
-def crg(height):
-    return CRG + "".join(f"{height:10.5f}{height:10.5f}\n" for _ in range(20))
-
-
-KINDS = {
-    "tyre properties": (WHEEL.format(road=FLAT, mesh="", tyre=MAGIC), "car.tir", None, "wheel.z"),
-    "grid": (WHEEL.format(road="{type: grid, file: road.txt}", mesh="", tyre=VERTICAL), "road.txt",
-             (GRID, GRID.replace("0 0 0", "0 .01 .01", 1).replace("10 0 0", "10 .01 .01")), "wheel.z"),
-    "curved grid": (WHEEL.format(road="{type: crg, file: road.crg}", mesh="", tyre=VERTICAL), "road.crg",
-                    (crg(0.0), crg(0.01)), "wheel.z"),
-    "include": (INCLUDING, "more.yaml", ("gravity: [0, -1]\n", "gravity: [0, -2]\n"), "b.y"),
-    "include of a part": (PART, "leg.yaml", (LEG.format(v=1), LEG.format(v=2)), "one.foot.x"),
-    "mesh": (WHEEL.format(road=FLAT, mesh="{type: mesh, file: wheel.obj}", tyre=VERTICAL), "wheel.obj",
-             ("v 0 0 0\n", "v 0 0 1\n"), None),
-}  # fmt: skip
-"""A scene, the file that changes, its contents, and the channel that shows them."""
-
-
-def scene_in(folder, examples, text, name, contents):
-    (folder / "scene.yaml").write_text(text)
-    if contents is None:
-        tyre = (examples / "car.tir").read_text()
-        contents = tyre, tyre + "\n[MORE]\nLFZO = 0.5\nVERTICAL_STIFFNESS_2 = 1\n"
-        contents = tyre, re.sub(r"(VERTICAL_STIFFNESS\s*=\s*)(\S+)", r"\g<1>1e5", tyre)
-        assert contents[0] != contents[1]
-    (folder / name).write_text(contents[0])
-    return folder / "scene.yaml", contents[1]
-
-
-@pytest.mark.parametrize("kind", KINDS)
-def test_a_store_names_the_file_that_changed(tmp_path, examples, kind):
-    text, name, contents, channel = KINDS[kind]
-    scene, other = scene_in(tmp_path, examples, text, name, contents)
-    body = "wheel" if "wheel" in text else "b"
-    study = {"vary": {f"bodies.{body}.mass": [90.0, 110.0]}, "outputs": [f"final({channel or 'wheel.z'})"]}
-    first = sweep(scene, **study, store=tmp_path / "rows")
-    (tmp_path / name).write_text(other)
-    with pytest.raises(InputError, match=f"rows of another study, in which '.*{name}' had different content"):
-        sweep(scene, **study, store=tmp_path / "rows")
-    again = sweep(scene, **study)
-    (value,) = (variable for variable in first.data_vars if variable.startswith("final"))
-    changed = not np.array_equal(first[value], again[value])
-    assert changed == (channel is not None)
-    direct = stiffmbs.run(stiffmbs.load_scene(scene, [(f"bodies.{body}.mass", "110.0")]))
-    assert float(again[value][1]) == pytest.approx(direct[channel or "wheel.z"][-1], rel=1e-12)
 
 
 PROGRAM = """
