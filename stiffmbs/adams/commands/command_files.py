@@ -14,11 +14,9 @@ ARGUMENTS = ("MODEL", "COMMAND", "OUTPUT_PREFIX", "GRAPHICS", "REQUEST", "RESULT
 """Arguments of FILE."""
 Read = Callable[[str], str]
 """Returns the text of a command file by its name."""
-DEEPEST = 16
-"""Files that may be open at once: a file that executes itself has no end."""
 
 
-def all_commands(text: str, read: Read | None = None, depth: int = 1) -> Iterator[Statement]:
+def all_commands(text: str, read: Read | None = None, within: tuple[str, ...] = ()) -> Iterator[Statement]:
     """Yield the commands of a text and of the files that it executes, these with the line of their FILE/COMMAND.
 
     Parameters
@@ -27,22 +25,22 @@ def all_commands(text: str, read: Read | None = None, depth: int = 1) -> Iterato
         The content of a command file.
     read : callable, optional
         Reads another command file; without it FILE/COMMAND is refused.
-    depth : int
-        Files that are open.
+    within : tuple of str
+        The names of the files that execute this one.
 
     Raises
     ------
     DatasetFault
-        When a file cannot be read, or too many are open.
+        When a file cannot be read, or executes itself.
     """
     for command in commands(text):
         name = command_file_of(command)
         if name is None:
             yield command
             continue
-        content = _content(command, name, read, depth)
+        content = _content(command, name, read, within)
         try:
-            others = list(all_commands(content, read, depth + 1))
+            others = list(all_commands(content, read, (*within, name)))
         except DatasetFault as fault:
             raise DatasetFault(command.line, "FILE/COMMAND", f"{name}, {fault}") from None
         for other in others:
@@ -70,11 +68,11 @@ def with_first_argument(command: Statement) -> Statement:
     return replace(command, ident="", pieces=(*head, *command.pieces))
 
 
-def _content(command: Statement, name: str, read: Read | None, depth: int) -> str:
+def _content(command: Statement, name: str, read: Read | None, within: tuple[str, ...]) -> str:
     if read is None:
         reason = f"found COMMAND = {name}, expected the commands of that file in this one"
-    elif depth >= DEEPEST:
-        reason = f"found {DEEPEST} command files open at {name}, expected no file that executes itself"
+    elif name in within:
+        reason = f"found COMMAND = {name}, expected no file that executes itself"
     else:
         try:
             return read(name)
