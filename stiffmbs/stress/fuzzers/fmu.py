@@ -62,7 +62,7 @@ def trial(seed: int) -> Verdict:
             return told(f"{refusal} [{detail}]", ())
         paths = list(sys.path)  # an FMU puts its own copy of PythonFMU before the installed one
         try:
-            found, faults = _by_fmpy(fmu, content["run"]["duration"], given, channels)
+            found, faults = by_fmpy(fmu, content["run"]["duration"], given, channels)
         finally:
             sys.path[:] = paths
     if faults:
@@ -115,7 +115,7 @@ def _by_runs(scene: Path, given: Given, channels: tuple[str, ...]) -> np.ndarray
     return np.vstack(rows)
 
 
-def _by_fmpy(
+def by_fmpy(
     fmu: Path, duration: float, given: list[Given], channels: tuple[str, ...]
 ) -> tuple[list[np.ndarray | None], str]:
     """Return the same from FMU instances that step in turn, or None if a step is refused; and the faults that FMPy finds."""
