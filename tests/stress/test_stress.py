@@ -20,8 +20,12 @@ ALWAYS = 1
 """Cases of each family that are run without being asked for: compiling the kinds of all of them takes minutes."""
 COSTLY = ("space", "held_twice")
 """Families whose first case compiles more kinds than others."""
+WHOLE = ("changed_files", "opposed_actuators", "own_field_names")
+"""Families of which all cases are run without being asked for: no other test has their scenes."""
 QUICK = [
-    pytest.param(family, case, marks=pytest.mark.long if number >= ALWAYS or family in COSTLY else ())
+    pytest.param(
+        family, case, marks=pytest.mark.long if (number >= ALWAYS and family not in WHOLE) or family in COSTLY else ()
+    )
     for family, cases in catalogue().items()
     for number, case in enumerate(case for case in cases if case.quick)
 ]

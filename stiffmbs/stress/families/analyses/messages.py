@@ -13,7 +13,7 @@ from ....jobs.linearised.transfer import transfer
 from ....studies.fit import fit
 from ....studies.sensitivities.sensitivities import sensitivities
 from ....studies.sweep import sweep
-from ...answers import compared, refused, said
+from ...variants.answers import compared, refused, said
 
 BODY = {
     2: "bodies: {{b: {{mass: 2, inertia: 1, velocity: [{v}, 0]}}}}\n",
@@ -50,6 +50,11 @@ def found_at_rest(dimensions: int, law: str, place: float) -> float:
     return abs(float(equilibrium(slider(dimensions, law)).channels["b.x"]) - place)
 
 
+def notes_at_rest(dimensions: int, law: str) -> str:
+    """Return the notes of an equilibrium."""
+    return "; ".join(equilibrium(slider(dimensions, law)).notes)
+
+
 def fitted(dimensions: int, low: float, high: float) -> str:
     """Return the message of a fit of the stiffness to a vibration of 5 rad/s: k = 50."""
     t = np.linspace(0, 1, 30)
@@ -79,7 +84,7 @@ CASES = (
         )
     ),
     *(
-        said(f"slider without any force{' but a damper' * bool(law)} in {dimensions}D", "it is named", lambda d=dimensions, law=law: "; ".join(equilibrium(slider(d, law)).notes), "nothing holds b.vx")  # type: ignore[misc]
+        said(f"slider under the force {law or 'of nothing'} in {dimensions}D", "it is named", partial(notes_at_rest, dimensions, law), "nothing holds b.vx")
         for dimensions, law in ((2, "0"), (3, ""), (2, "-3*b.vx"))
     ),
     *(

@@ -17,8 +17,8 @@ from ....describe.scene import Scene
 from ....jobs.run import run
 from ....studies.outputs import outputs_of
 from ....studies.sensitivities.sensitivities import sensitivities
-from ...answers import compared, refused
 from ...case import Case
+from ...variants.answers import compared, refused
 
 NUMBERS = {"k": 40.0, "c": 1.0, "m": 2.0, "F": 20.0, "A": 0.1, "s": 0.0}
 SPRING, PLAIN = "-k*cart.x - c*cart.vx", "-k*cart.x"
@@ -112,7 +112,7 @@ CASES = (
     ),
     *(_compared(f"a bound that is passed by {over:g} m", partial(past_a_bound, over), 1e-3) for over in (1e-3, 1e-4)),
     *(
-        _compared(f"table with breakpoints on output instants{' in space' if space else ''}, {of}",
+        _compared(f"table with breakpoints on output instants{' in space' if space else ''}, {of} by {name}",
                   partial(difference, f"{SPRING} + F*tab(t - s)", space, {}, name, of, 1e-6 if name == "s" else 1e-2), 1e-3)
         for of, name, space in (
             ("integral(cart.x)", "s", False), ("integral(cart.ax)", "s", False), ("rms(cart.vx)", "s", True), ("mean(push.fx)", "s", False),

@@ -15,7 +15,7 @@ from ....describe.marker import Marker
 from ....describe.model import Model
 from ....describe.units.si import Number
 from ....jobs.run import run
-from ...answers import compared, refused
+from ...variants.answers import compared, refused
 
 STIFFNESS, RATE = 9.0, 0.5
 DURATION, ALLOWED = 2.0, 1e-6
@@ -43,7 +43,7 @@ def own(kind: str, dimensions: int, names: tuple[str, ...]) -> Any:
     return type("Own", (Joint,), given | {"equations": ("y",), "position": staticmethod(position)})
 
 
-def error(kind: str, dimensions: int, names: tuple[str, ...], solver: str) -> float:
+def error(kind: str, dimensions: int, names: tuple[str, ...], solver: Any) -> float:
     """Return the error of a vibration with sqrt(k) rad/s, or of the motion of a pin by rate sin t."""
     short, family = slice(None, dimensions), {2: (Model, Body, 1), 3: (spatial.Model, spatial.Body, (1, 2, 3))}
     made, body, inertia = cast(Any, family[dimensions])

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from .... import __file__ as package
 from ....errors import StiffmbsError
 from ....studies.sweep import sweep
-from ...answers import with_files
 from ...case import Case, Outcome, Verdict, told
+from ...variants.answers import with_files
 
 WHEEL = """
 dimensions: 3
@@ -80,7 +81,8 @@ ALLOWED = 1e-3
 def _judged(kind: str, folder: Path) -> Verdict:
     others, name, contents, of, expected = KINDS[kind]
     scene = folder / ("scene.adm" if "scene.adm" in {*others, name} else "scene.yaml")
-    study, found = {"vary": {"run.rtol": [1e-7, 1e-8]}, "outputs": [of]}, []
+    study: dict[str, Any] = {"vary": {"run.rtol": [1e-7, 1e-8]}, "outputs": [of]}
+    found = []
     for text in contents:
         (folder / name).write_text(text, encoding="utf-8")
         found += [float(x) for x in sweep(scene, **study)[of]]

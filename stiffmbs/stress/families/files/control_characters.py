@@ -7,9 +7,9 @@ import unicodedata
 from functools import partial
 from pathlib import Path
 
-from ...answers import with_files
 from ...case import Case, Outcome, Verdict
-from ...command_line import command
+from ...variants.answers import with_files
+from ...variants.command_line import command
 
 SCENE = """
 name: "a SIGN b"

@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 
 from ....studies.fmu.build import build_fmu
-from ...answers import with_files
 from ...case import Case, Outcome, Verdict, measured
 from ...fuzzers.fmu import SEGMENTS, STEPS, Given, by_fmpy
+from ...variants.answers import with_files
 
 MASS, DURATION, ALLOWED = 2.0, 1.0, 1e-6
 SCENE = {

@@ -6,16 +6,16 @@ import os
 from functools import partial
 from pathlib import Path
 
-from ...answers import with_files
 from ...case import Case, Outcome, Verdict, told
-from ...command_line import command
+from ...variants.answers import with_files
+from ...variants.command_line import command
 from .changed_files import MAGIC, wheel
 
 HUGE = 600_000_000
 """Bytes of a sparse file, more than is read of any file."""
 CART = {"scene.yaml": "bodies: {b: {mass: 1, inertia: 1}}\nrun: {duration: 0.01, points: 2}\n"}
 RUN = ["run", "scene.yaml"]
-ASKED = (
+ASKED: tuple[tuple[str, str, dict[str, str], list[str]], ...] = (
     ("device", "x.yaml", {}, ["run", "x.yaml"]), ("pipe", "x.adm", {}, ["check", "x.adm"]), ("device", "x.urdf", {}, ["run", "x.urdf"]),
     ("huge", "x.yaml", {"scene.yaml": "include: x.yaml\n"}, RUN), ("device", "car.tir", wheel(force=MAGIC), RUN),
     ("device", "x.txt", wheel("{type: grid, file: x.txt}"), RUN), ("pipe", "x.txt", wheel("{type: grid, file: x.txt}"), ["check", "scene.yaml"]),

@@ -5,14 +5,16 @@ from __future__ import annotations
 import re
 from functools import partial
 from pathlib import Path
+from typing import cast
 
 from ....adams.export.dataset_text import dataset_text
 from ....adams.load import read_adams
 from ....describe.reading import read_scene
+from ....describe.spatial.model import SpatialData
 from ....jobs.load_scene import load_scene
 from ....jobs.run import run
-from ...answers import compared, refused, with_files
 from ...case import Case, Outcome, Verdict, measured, told
+from ...variants.answers import compared, refused, with_files
 
 G, ALLOWED = 9.80665, 1e-6
 HEAD = """a model
@@ -90,7 +92,7 @@ def _until(command: str, folder: Path) -> float:
 
 def _written(head: str) -> Verdict:
     body, expected = SCENES[head]
-    text = dataset_text(read_scene(head + body))
+    text = dataset_text(cast(SpatialData, read_scene(head + body)))
     statements = [line for line in text.splitlines()[1:] if not line.startswith((",", "!", "END"))]
     bare = [line for line in statements if not re.match(r"[A-Z]+/", line)]
     if bare or not any(line.startswith("UNITS/") for line in statements):

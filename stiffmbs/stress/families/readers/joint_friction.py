@@ -8,7 +8,7 @@ import numpy as np
 
 from ....adams.load import read_adams
 from ....jobs.run import run
-from ...answers import compared
+from ...variants.answers import compared
 
 WEIGHT, STATIC, DYNAMIC, SLOW = 3 * 9.80665, 0.4, 0.3, 0.1
 """N, and the coefficients of friction with the velocity of transition, m/s."""

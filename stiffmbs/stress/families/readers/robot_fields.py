@@ -8,8 +8,8 @@ from pathlib import Path
 
 from ....jobs.run import run
 from ....robots.load import load_robot
-from ...answers import compared, refused, said, with_files
 from ...case import Case, Verdict, measured
+from ...variants.answers import compared, refused, said, with_files
 
 ALLOWED = 1e-6
 URDF = """<robot name="r">

@@ -10,7 +10,7 @@ from typing import Any
 from .... import spatial
 from ....describe.tyres.coefficients import TyreProperties
 from ....jobs.run import run
-from ...answers import compared, refused, said, with_files
+from ...variants.answers import compared, refused, said, with_files
 
 TYRE = """[UNITS]
 LENGTH = 'mm'

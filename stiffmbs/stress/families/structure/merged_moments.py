@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 from .... import spatial
 from ....describe.spatial.orientation import about, matrix, product
 from ....jobs.run import run
-from ...answers import compared
+from ...variants.answers import compared
 
 DURATION, ALLOWED = 0.5, 1e-6
 SPIN = np.array([1.0, -2.0, 3.0])
@@ -54,11 +54,14 @@ def error(bodies: int, odd: tuple[int, ...], chain: bool, seed: int, how: dict[s
     return float(np.abs(np.array([found[f"b0.w{axis}"] for axis in "xyz"]) - euler).max())
 
 
+VARIANTS: tuple[tuple[int, tuple[int, ...], bool, dict[str, Any]], ...] = (
+    (2, (0,), True, {}), (2, (1,), True, {"solver": "bdf"}), (2, (0, 1), True, {"solver": "projected"}), (3, (0,), True, {"solver": "bdf"}),
+    (3, (1,), False, {"solver": "projected"}), (3, (2,), True, {}), (3, (0, 2), False, {"solver": "bdf"}), (3, (0, 1, 2), True, {"solver": "projected"}),
+    (4, (3,), False, {}), (4, (1, 2), True, {"solver": "bdf"}), (4, (0, 3), True, {"presolve": False, "solver": "bdf"}), (5, (2, 4), False, {"solver": "bdf"}),
+)  # fmt: skip
+"""Bodies, those with any moments, whether they form a chain, and settings."""
+
 CASES = tuple(
     compared(f"{bodies} bodies in a {'chain' if chain else 'star'}, any moments of {odd}, {how}", "Euler's equations", partial(error, bodies, odd, chain, seed, how), ALLOWED)
-    for seed, (bodies, odd, chain, how) in enumerate((
-        (2, (0,), True, {}), (2, (1,), True, {"solver": "bdf"}), (2, (0, 1), True, {"solver": "projected"}), (3, (0,), True, {"solver": "bdf"}),
-        (3, (1,), False, {"solver": "projected"}), (3, (2,), True, {}), (3, (0, 2), False, {"solver": "bdf"}), (3, (0, 1, 2), True, {"solver": "projected"}),
-        (4, (3,), False, {}), (4, (1, 2), True, {"solver": "bdf"}), (4, (0, 3), True, {"presolve": False, "solver": "bdf"}), (5, (2, 4), False, {"solver": "bdf"}),
-    ))
+    for seed, (bodies, odd, chain, how) in enumerate(VARIANTS)
 )  # fmt: skip

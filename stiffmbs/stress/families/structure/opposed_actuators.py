@@ -10,7 +10,7 @@ import yaml
 from ....describe.reading import read_scene
 from ....jobs.check import check
 from ....jobs.run import run
-from ...answers import said
+from ...variants.answers import said
 
 PLANE = """
 bodies:

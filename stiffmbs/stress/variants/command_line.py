@@ -9,13 +9,13 @@ from pathlib import Path
 
 MEMORY = 6_000_000_000
 """Bytes that a command may have: what reads without bound ends there."""
-PATIENCE = 60.0
+PATIENCE = 20.0
 """Time, s, after which a command is ended."""
 
 
 def command(folder: Path, words: list[str]) -> tuple[int, str, str]:
     """Run a command in a folder, and return its exit status, standard output and standard error."""
-    package = str(Path(__file__).parents[2])
+    package = str(Path(__file__).parents[3])
     path = os.pathsep.join(filter(None, (package, os.environ.get("PYTHONPATH"))))
     done = subprocess.run(
         [sys.executable, "-m", "stiffmbs", *words], cwd=folder, stdin=subprocess.DEVNULL, capture_output=True, check=False,

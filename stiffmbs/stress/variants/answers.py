@@ -7,8 +7,8 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TypeVar
 
-from ..errors import StiffmbsError
-from .case import Case, Outcome, Verdict, measured, told
+from ...errors import StiffmbsError
+from ..case import Case, Outcome, Verdict, measured, told
 
 Answer = TypeVar("Answer")
 

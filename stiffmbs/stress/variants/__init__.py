@@ -1,0 +1,1 @@
+"""Judges and tools for tables of variants."""
