@@ -107,7 +107,7 @@ CASES = (
     *(
         refused(f"{law.split(' - A')[0]}: touched but for {over:g}{' in space' if space else ''}", "the motion turns at its breakpoint",
                 partial(lambda law, over, space: sensitivities(cart(f"{PLAIN} + {law.replace('OVER', f'({over!r})')}", space, {}, {}), ["k"], "final(cart.x)").to, law, over, space),
-                "'push' only grazes its breakpoint")
+                "grazes its breakpoint")
         for law in TOUCHING for over, space in ((0.0, False), (1e-15, True), (-1e-13, False), (-1e-11, True))
     ),
     *(_compared(f"a bound that is passed by {over:g} m", partial(past_a_bound, over), 1e-3) for over in (1e-3, 1e-4)),

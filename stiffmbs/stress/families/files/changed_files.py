@@ -93,7 +93,7 @@ def _judged(kind: str, folder: Path) -> Verdict:
         else:
             message = f"the store gives {again[of].values}"
     error = max(abs(x - wanted) / max(abs(wanted), 1) for x, wanted in zip(found, np.repeat(expected, 2), strict=True))
-    changed = "the scene" if name == "scene.yaml" or scene.suffix == ".adm" else f"{name}' had other content"
+    changed = "the scene" if name == "scene.yaml" or scene.suffix == ".adm" else f"{name}' had"
     return told(message, ("rows of another study", changed), error, ALLOWED)
 
 
