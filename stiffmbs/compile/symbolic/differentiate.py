@@ -163,6 +163,9 @@ class Derivatives:
                 return sp.Add(*(self.partial(part, v) for part in x.args))
             case sp.Mul():
                 return sp.Add(*(self._with_one_factor_changed(x, k, v) for k in range(len(x.args))))
+            case sp.Pow() if isinstance(x.base, sp.cosh) and x.exp.is_negative:
+                (argument,) = x.base.args  # sinh(a)/cosh(a)^2 is no number where both have left the range of numbers
+                return x.exp * x * sp.tanh(argument) * self.partial(argument, v)
             case sp.Pow() if not self._depends(x.exp, v):
                 return x.exp * x.base ** (x.exp - 1) * self.partial(x.base, v)
             case sp.Pow():

@@ -60,7 +60,7 @@ class EventSearch:
         angles = system.turning
         work = ("value_before", "rate_before", "value_after", "rate_after", "a", "a_rate", "b", "b_rate", "m", "m2", "left_low", "left_high", "noise", "zone_low", "zone_high", "apart")  # fmt: skip
         self._arrays = {
-            "longest": np.inf, "passage": np.inf, "n_turns": len(zones.turns), "turn": zones.turns,
+            "longest": np.inf, "passage": np.inf, "first": np.inf, "n_turns": len(zones.turns), "turn": zones.turns,
             "n": n, "n_event_functions": n_event_functions, "masked": self.masked,
             "first_edge": zones.first, "edges": zones.edges, "overlap": zones.overlap, "period": zones.period, **{name: np.zeros(n) for name in work}, "found": self.found,
             "n_state": n_state, "n_nodes": NODES, "node": (1 - np.cos(place)) / 2, "weight": weight,
@@ -75,7 +75,15 @@ class EventSearch:
 
     def resolve(self, duration: float) -> None:
         """Forget the last run, and bound the steps of one with this duration, s, by its arguments of sines."""
-        for cell, value in (("least", duration / MOST_STEPS), ("longest", np.inf), ("unresolved", 0)):
+        for cell, value in (
+            ("least", duration / MOST_STEPS),
+            ("duration", duration),
+            ("longest", np.inf),
+            ("unresolved", 0),
+            ("under_way", 0),
+            ("begins", np.inf),
+            ("narrow", 0),
+        ):
             self._cells[cell] = value
 
     def note(self) -> str:

@@ -36,7 +36,7 @@ SWITCHES = Routine(MODULE, "event_functions", "int32(float64, int64, int64, floa
 FUNCTIONS = {
     "array_of": "N_VGetArrayPointer", "solve": "IDASolve", "interpolate": "IDAGetDky", "time_of": "IDAGetCurrentTime",
     "order_of": "IDAGetLastOrder", "step_of": "IDAGetLastStep", "stop_at": "IDASetStopTime", "next_step_of": "IDAGetCurrentStep",
-    "errors_of": "IDAGetEstLocalErrors",
+    "errors_of": "IDAGetEstLocalErrors", "weights": "IDAGetErrWeights",
 }  # fmt: skip
 """What compiled code calls of SUNDIALS, by its names in the table."""
 
@@ -85,6 +85,7 @@ class Connection:
         self._session, self._state, self._equations = session, state, equations
         self.reported = np.ascontiguousarray(reported, dtype=np.int64)
         self.y, self.yp, self.output, self._probe = (np.zeros(n) for _ in range(4))
+        self._residual = np.zeros(2 * n)
         self.history = StepLog()
         self.long_steps = LongStepLog(equations.system, len(self.reported)) if equations.system.has_laws else None
         self._long_steps = self.long_steps.table if self.long_steps else np.zeros(len(LONG_STEPS), dtype=np.int64)
@@ -96,9 +97,9 @@ class Connection:
         self.watch = EventSearch(state)
         self.n_event_functions, self.masked = self.watch.n_event_functions, self.watch.masked
         self.signs = np.zeros(self.n_event_functions)
+        self.error_norm = ErrorNorm(n)
         self._table = self._packed()
         self.table, self.cells = self._table.ctypes.data, self._table.view(NATIVE_IDA.cells)[0]
-        self.error_norm = ErrorNorm(n)
         tables = self._state_table, self._equations_table
         self.error_norm.take_place(session, self.memory, self.y_vector, tables, self._assembled, self.iteration.table)
         self._initialise()
@@ -129,8 +130,8 @@ class Connection:
                 "step_bound": self.step_bound.table, "history": history, "samples": self.samples,
                 "output_correction": self.output_correction.table, "iteration": self.iteration.table, "watch": self.watch.table,
                 "look_at_start": LOOK_AT_START.address if self.watch.n else 0, "look_within": LOOK_WITHIN.address if self.watch.n else 0,
-                "probe": self._probe, "long_steps": self._long_steps,
-                "accumulated": self._errors,
+                "probe": self._probe, "residual": self._residual, "long_steps": self._long_steps,
+                "accumulated": self._errors, "error_norm": self.error_norm.table,
             },
         )  # fmt: skip
 

@@ -32,6 +32,7 @@ class ErrorNorm:
     def __init__(self, n: int) -> None:
         self.table = np.zeros(len(ERROR_NORM), dtype=np.int64)
         self._cells = self.table.view(ERROR_NORM.cells)[0]
+        self._cells["repeats"] = 1.0
         self._change, self._filtered = np.zeros(n), np.zeros(n)
 
     def take_place(
@@ -88,3 +89,4 @@ class ErrorNorm:
         """Forget failures of an earlier run."""
         for cell in self._cells.dtype.names:
             self._cells[cell] = 0
+        self._cells["repeats"] = 1.0

@@ -109,5 +109,5 @@ def error_norm(estimate, weights):
     if wanted and cj < float("inf") and _filtered(c, estimate):
         size = call_float(c.norm, (c.at_filtered, weights))
         if size < NO_ESTIMATE:
-            return size
-    return call_float(c.norm, (estimate, weights))
+            return c.repeats * size
+    return c.repeats * call_float(c.norm, (estimate, weights))

@@ -6,7 +6,8 @@ from stiffmbs.compile.machine.native.access import address_of, compiled, equatio
 from stiffmbs.compile.machine.native.evaluate import SWITCH, add_entries, add_products, evaluate, load
 from stiffmbs.solve.native.accumulated_errors import accumulated_errors_view, displace_by, is_due
 from stiffmbs.solve.native.calls import call_int, copy_bytes, int32
-from stiffmbs.solve.native.event_search.bounds import event_search_view
+from stiffmbs.solve.native.error_norm import error_norm_view
+from stiffmbs.solve.native.event_search.bounds import event_search_view, repeats
 from stiffmbs.solve.native.event_search.event_signs import watched
 from stiffmbs.solve.native.ida_memory import array_of, native_ida_view
 from stiffmbs.solve.native.iteration import MADE, iteration_view
@@ -18,8 +19,6 @@ from stiffmbs.solve.native.tables.steps import HISTORY_WIDTH, MOST_STEPS, SAMPLE
 
 STRETCHED = 1.01
 """The last step may be this much longer than inputs allow, so that no tiny one is left."""
-FIRST_PART = 0.125
-"""Part of the following steps that the first one of order 1 may take of a law's passage: its error is not made good by them."""
 STEPS_APART = 4
 """The last states are kept as samples, one each few steps."""
 STALLED = -101
@@ -92,7 +91,7 @@ def _longest_to_see(c, bound, t):
         if t < w.target:
             longest = min(longest, w.target - t)
         if t < w.passed:
-            longest = min(longest, w.passage if c.size > 0.0 else FIRST_PART * w.passage)
+            longest = min(longest, w.passage if c.size > 0.0 else w.first)
     return max(longest, MOST_TINY * TINY_STEP * abs(t))
 
 
@@ -103,6 +102,8 @@ def _see_inputs(c, stop):
     if bound.n > 0 or c.look_at_start:
         t = c.internal
         longest = _longest_to_see(c, bound, t)
+        if c.look_at_start and event_search_view(c.watch).n_turns > 0:
+            error_norm_view(c.error_norm).repeats = repeats(event_search_view(c.watch), t)
         if longest == float("inf") and c.stopping == stop:
             return
         call_int(c.next_step_of, (c.memory, address_of(c.next_size)))

@@ -81,7 +81,7 @@ def anew(t, ahead, counted, highest_order, table):
         return int32(UNFINISHED)
     behind = t
     if ahead > 0.0:
-        behind += moved_past(s, t, ahead, w.n_event_functions, w.q, w.values)
+        behind += moved_past(s, m, t, ahead, w.n_event_functions, w.q, w.values)
     counted_anew(w, s, behind)
     if accelerated(s, m, behind) < 0 or _beyond_limits(w, s, behind):
         return int32(UNFINISHED)

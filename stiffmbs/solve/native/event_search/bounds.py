@@ -24,6 +24,11 @@ WIDER = 2.0
 TURNED = 1.0
 """rad, by which a body or the argument of a sine may turn in a step without a look inside: rates at the ends tell nothing of whole turns."""
 
+BOUNDED = 0.99
+"""Part of the longest step by turns below which a feature bounds the step; what is left is rounding."""
+WHOLE_TURN = 6.283185307179586
+"""rad, by which the argument of a sine must not turn unseen."""
+
 event_search_view = view_of("EventSearch", EVENT_SEARCH)
 
 
@@ -171,6 +176,21 @@ def fastest_turn(w, rate):
     for i in range(w.n_turns):
         fastest = max(fastest, abs(rate[w.turn[i]]))
     return fastest
+
+
+@compiled
+def repeats(w, t):
+    """Return how often the fastest law that repeats does so in the run, where features of laws bound a step in each turn; else 1.
+
+    Errors in equal features have the same sign and add up, so each must be so much smaller than the tolerance.
+    """
+    fastest = fastest_turn(w, w.rate_before)
+    if w.longest * fastest < BOUNDED * TURNED:
+        w.narrow += 1
+    each_turn = w.narrow > 0 and w.narrow * WHOLE_TURN >= fastest * (t - w.begins)
+    if not (t < w.passed or each_turn):
+        return 1.0
+    return max(1.0, fastest * w.duration / WHOLE_TURN)
 
 
 @compiled

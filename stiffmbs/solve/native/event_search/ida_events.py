@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from stiffmbs.compile.machine.native.access import compiled, equations_view, floats, state_view
 from stiffmbs.compile.machine.native.evaluate import SWITCH, evaluate, evaluate_some, load
-from stiffmbs.compile.machine.native.orientation import add_rates
 from stiffmbs.solve.native.calls import call_int, int32
+from stiffmbs.solve.native.event_search.ahead import go_ahead, go_straight
 from stiffmbs.solve.native.event_search.bounds import (
     LOOKED_AT,
     TURNED,
@@ -29,15 +29,15 @@ from stiffmbs.solve.native.event_search.from_zero import (
     note_sides,
 )
 from stiffmbs.solve.native.event_search.nearby import note_mean_rates, note_near
+from stiffmbs.solve.native.event_search.passage import START_DIFFERENCE, bound_passage
 from stiffmbs.solve.native.event_search.within_step import DIFFERENCE, first_event, first_event_or_change, keep_row
 from stiffmbs.solve.native.ida_memory import array_of, native_ida_view
 from stiffmbs.solve.native.statuses import OK
 
 UNSEEN = float("inf")
 """No time at which event functions are known."""
-START_DIFFERENCE, ROUNDINGS = 1e-9, 1e-15
-"""Rates of event functions at a start are taken over this part of the time to the next stop; events nearer to a step's beginning
-than this part of the time are not told from it."""
+ROUNDINGS = 1e-15
+"""Events nearer to a step's beginning than this part of the time are not told from it."""
 MOST_TURNED = 3.0
 """rad, by which the argument of a sine may turn in a step."""
 SHORT_OF, UNSURE = 1e-8, 1e-4
@@ -46,29 +46,8 @@ GROWTH = 2.0
 """Times by which IDA's next step may be longer than the last one."""
 SHORTEST_OF, OF_A_ZONE = 1e-4, 0.25
 """Part of the longest step from which on zones are looked for, and part of a zone that is passed in half a step."""
-BISECTIONS, STEPS_OF_A_PASSAGE = 6, 16.0
-"""Halvings that find where the motion leaves the law at a start, and steps to there at the least."""
-FIRST_STEP, SOON = 1e-3, 1e-2
-"""Parts of the time to the next stop: IDA's first step at the most, and where its first steps are short enough by themselves."""
-
-
-@compiled
-def _go_straight(c, s, ahead):
-    """Load the state to which the one in c.y goes at its present rates, in a time that may be negative."""
-    y, yp = array_of(c, c.y), array_of(c, c.yp)
-    e = equations_view(c.equations)
-    for k in range(e.n):
-        c.probe[k] = y[k] + ahead * yp[k]
-    load(s, e, c.probe, yp)
-
-
-@compiled
-def _go_ahead(c, s, ahead):
-    """Load the state to which the one in c.y goes with its present accelerations."""
-    for k in range(s.n_u):
-        s.a[k] = 0.0  # coordinates that stand still are not loaded
-    _go_straight(c, s, ahead)
-    add_rates(s, s.a, 0.5 * ahead * ahead, s.q)
+FIRST_STEP = 1e-3
+"""Part of the time to the next stop that IDA's first step takes at the most."""
 
 
 @compiled
@@ -81,7 +60,7 @@ def _note_sides(c, w, s, toward):
     most = START_DIFFERENCE / FIRST_STEP * (toward - c.returned)
     ahead = max(SHORTEST * (toward - c.returned), ROUNDINGS * abs(c.returned))
     while ahead <= most:
-        _go_ahead(c, s, ahead)
+        go_ahead(c, s, ahead)
         if note_sides(w.a, evaluate(s, SWITCH, c.returned + ahead), w.m, w.m2, count) == 0:
             break
         ahead *= LONGER
@@ -89,38 +68,6 @@ def _note_sides(c, w, s, toward):
         if w.value_before[k] == 0.0:
             c.signs[k] = float(w.a[k] > 0.0) - float(w.a[k] < 0.0)
     leave_zero(w.value_before, w.a, count)
-
-
-@compiled
-def _bound_passage(c, w, s, toward):
-    """Bound steps up to where the motion, going on with the accelerations at the start, leaves a law again: what happens between
-    is seen by none of a step that leads over it."""
-    w.passage = float("inf")
-    ahead = START_DIFFERENCE * (toward - c.returned)
-    most = toward - c.returned if w.n_turns > 0 else SOON * (toward - c.returned)
-    while ahead < most and not _another_side(c, w, s, ahead):
-        ahead *= 2.0
-    if ahead < most:
-        low = 0.5 * ahead
-        for _ in range(BISECTIONS):
-            middle = 0.5 * (low + ahead)
-            if _another_side(c, w, s, middle):
-                ahead = middle
-            else:
-                low = middle
-        w.passage = ahead / STEPS_OF_A_PASSAGE
-        w.passed = c.returned + ahead
-
-
-@compiled
-def _another_side(c, w, s, ahead):
-    """Whether an event function leaves its side at the start in a time, or a law its zone."""
-    _go_ahead(c, s, ahead)
-    values = evaluate(s, SWITCH, c.returned + ahead)
-    others = 0
-    for k in range(w.n if w.n_turns > 0 else w.n_event_functions):
-        others += zone(w, k, values[k]) != zone(w, k, w.value_before[k])
-    return others > 0
 
 
 def look_at_start(toward, ida):
@@ -136,14 +83,14 @@ def look_at_start(toward, ida):
         c.seen = UNSEEN
         keep_row(w, s, 0)
         noted(w.value_before, evaluate(s, SWITCH, c.returned), w.n)
-        _go_straight(c, s, ahead)
+        go_straight(c, s, ahead)
         noted_rates(w.rate_before, w.value_before, evaluate(s, SWITCH, c.returned + ahead), ahead, w.n)
         if at_zero(w.value_before, w.n_event_functions) > 0:
             _note_sides(c, w, s, toward)
         if w.n_turns > 0:
             w.longest = longest_by_turns(w, w.rate_before, TURNED)
         w.target = float("inf")
-        _bound_passage(c, w, s, toward)
+        bound_passage(c, w, s, toward)
     return int32(OK)
 
 
@@ -196,9 +143,9 @@ def _resolve_zones(c, w, s):
     """Bound the next step so that the motion, going on with its accelerations, passes each zone of a law in several steps."""
     t, ahead, most = c.returned, SHORTEST_OF * w.longest, min(w.longest, GROWTH * c.size)
     while ahead < most:
-        _go_ahead(c, s, 0.5 * ahead)
+        go_ahead(c, s, 0.5 * ahead)
         noted(w.m, evaluate(s, SWITCH, t + 0.5 * ahead), w.n)
-        _go_ahead(c, s, ahead)
+        go_ahead(c, s, ahead)
         noted(w.m2, evaluate(s, SWITCH, t + ahead), w.n)
         if not _within_zones(w, w.m, w.m2):
             w.longest = max(ahead, w.least)
@@ -212,14 +159,14 @@ def _aim(c, w, s):
     t, ahead = c.returned, min(w.longest, GROWTH * c.size)
     for k in range(w.n_nodes):
         node = w.n_nodes - 1 - k
-        _go_ahead(c, s, ahead * w.node[node])
+        go_ahead(c, s, ahead * w.node[node])
         keep_row(w, s, node)
         if k == 0:
             noted(w.value_after, evaluate(s, SWITCH, t + ahead), w.n)
     place = first_event_or_change(w, s, t, ahead)
     for k in range(w.n):
         w.found[k] = 0
-    least = max(SHORT_OF * ahead, 10.0 * ROUNDINGS * abs(t))
+    least = max(SHORT_OF * w.longest, 10.0 * ROUNDINGS * abs(t))
     if 3.0 * least < ahead * place < ahead:
         w.target = t + ahead * place - max(least, UNSURE * ahead * place)
     load(s, equations_view(c.equations), array_of(c, c.y), array_of(c, c.yp))
@@ -254,7 +201,7 @@ def look_within(ida):
         _go_on(c, w, s)
         return int32(0)
     ahead = -DIFFERENCE * h
-    _go_straight(c, s, ahead)
+    go_straight(c, s, ahead)
     noted_rates(w.rate_after, w.value_after, _evaluate_near(w, s, c.returned + ahead), ahead, w.n)
     note_mean_rates(w, h)
     place = begun + LOOKED_AT * h

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from stiffmbs.compile.machine.native.access import compiled, state_view
-from stiffmbs.compile.machine.native.evaluate import SWITCH, evaluate
+from stiffmbs.compile.machine.native.evaluate import ACCELERATION, SWITCH, evaluate
 from stiffmbs.compile.machine.native.orientation import add_rates, take_unit_length
-from stiffmbs.solve.native.explicit.stages import copied
+from stiffmbs.solve.native.explicit.stages import add_rates_behind, copied
 from stiffmbs.solve.native.tables.views import dynamics_view
 
 SHORTER, ROUNDINGS = 0.125, 1e-15
@@ -13,11 +13,18 @@ SHORTER, ROUNDINGS = 0.125, 1e-15
 
 
 @compiled
-def _passed(s, t, ahead, q, count, values):
-    """How many of the first `count` event functions have another sign after going straight on from q for so long."""
+def _go(s, m, ahead, q):
+    """Take the positions and states to which those in q go straight on in a time, which may be negative."""
     copied(s.q, q, s.n_q)
     add_rates(s, s.u, ahead, s.q)
+    add_rates_behind(s, m, ahead, s.q)
     take_unit_length(s)
+
+
+@compiled
+def _passed(s, m, t, ahead, q, count, values):
+    """How many of the first `count` event functions have another sign after going straight on from q for so long."""
+    _go(s, m, ahead, q)
     later = evaluate(s, SWITCH, t + ahead)
     passed = 0
     for k in range(count):
@@ -26,25 +33,29 @@ def _passed(s, t, ahead, q, count, values):
 
 
 @compiled
-def moved_past(s, t, most, count, q, values):
+def moved_past(s, m, t, most, count, q, values):
     """Move the state at hand straight on, for so long at the most, to where event functions that change on that way have changed.
 
     How long that takes; 0 with the state as it was where none changes.  Memory: `q` for positions, `values` for event functions.
     """
     copied(q, s.q, s.n_q)
-    copied(values, evaluate(s, SWITCH, t), count)
-    passed = _passed(s, t, most, q, count, values)
+    if m.n_behind > 0:
+        evaluate(s, ACCELERATION, t)
+    _go(s, m, -most, q)  # at the state itself, rounding decides on the side
+    copied(values, evaluate(s, SWITCH, t - most), count)
+    passed = _passed(s, m, t, most, q, count, values)
     if passed == 0:
         copied(s.q, q, s.n_q)
         return 0.0
     ahead = most
-    while ahead * SHORTER > ROUNDINGS * abs(t) and _passed(s, t, ahead * SHORTER, q, count, values) == passed:
+    while ahead * SHORTER > ROUNDINGS * abs(t) and _passed(s, m, t, ahead * SHORTER, q, count, values) == passed:
         ahead *= SHORTER
     ahead = min(ahead / (SHORTER * SHORTER), most)  # nearer by, rounding may show the change too early
-    _passed(s, t, ahead, q, count, values)
+    _passed(s, m, t, ahead, q, count, values)
     return ahead
 
 
 def gone_past(t, most, count, q, values, dynamics):
     """`moved_past` from Python."""
-    return moved_past(state_view(dynamics_view(dynamics).state), t, most, count, q, values)
+    m = dynamics_view(dynamics)
+    return moved_past(state_view(m.state), m, t, most, count, q, values)

@@ -21,6 +21,7 @@ from stiffmbs.solve.native.event_search.bounds import (
     ALSO_AT,
     LOOKED_AT,
     TURNED,
+    WHOLE_TURN,
     beyond,
     cubic,
     fastest_turn,
@@ -46,8 +47,6 @@ WELL, MOST_MISSED = 0.03, 1e300
 power; what counts for a function without a number."""
 LEAST_PART, MOST_PARTS, FEW_PARTS = 1e-4, 5000, 100
 """The last one where no number of parts would follow an argument of a sine."""
-WHOLE_TURN = 6.283185307179586
-"""rad, by which the argument of a sine must not turn unseen."""
 DIFFERENCE = 1e-6
 """Part of a step, or of a part of one, over which rates are taken."""
 REFINED, REFINEMENTS = 0.02, 5

@@ -63,8 +63,8 @@ NATIVE_IDA = Layout({
     "returned": FLOAT_CELL, "internal": FLOAT_CELL, "size": FLOAT_CELL, "next_size": FLOAT_CELL, "order": INT_CELL,
     "stopping": FLOAT_CELL, "served": INT_CELL, "tiny": INT_CELL, "within": INT_CELL,
     "recorded": INT_CELL, "history": FLOATS, "since_sample": INT_CELL, "next_sample": INT_CELL, "samples": FLOATS,
-    "output_correction": INTS, "iteration": INTS, "watch": INTS, "look_at_start": INT, "look_within": INT, "probe": FLOATS,
-    "long_steps": INTS, "accumulated": INTS, "errors_of": INT,
+    "output_correction": INTS, "iteration": INTS, "watch": INTS, "look_at_start": INT, "look_within": INT, "probe": FLOATS, "residual": FLOATS, "weights": INT,
+    "long_steps": INTS, "accumulated": INTS, "errors_of": INT, "error_norm": INTS,
     "trace": INT_CELL, "traced": INT_CELL, "seen": FLOAT_CELL,
 })  # fmt: skip
 """What the callbacks and the loop of the native IDA work on (`stiffmbs.solve.native.ida_loop`): functions and objects
@@ -150,7 +150,7 @@ matrix is to be made anew."""
 ERROR_NORM = Layout({
     "memory": INT, "norm": INT, "array_of": INT, "steps_of": INT, "failures_of": INT, "order_of": INT,
     "trouble": FLOAT_CELL, "always": INT_CELL, "looked": FLOAT_CELL, "steps": INT_CELL, "failures": INT_CELL,
-    "known_steps": INT_CELL, "known_failures": INT_CELL, "until": INT_CELL, "order": INT_CELL,
+    "known_steps": INT_CELL, "known_failures": INT_CELL, "until": INT_CELL, "order": INT_CELL, "repeats": FLOAT_CELL,
     "equal_until": INT_CELL, "growth": FLOAT_CELL, "set_growth": INT,
     "iteration": INTS, "state": INTS, "equations": INTS, "solve": INT, "solver": INT, "matrix": INT, "at_change": INT, "change": FLOATS, "at_filtered": INT, "filtered": FLOATS,
 })  # fmt: skip
@@ -158,7 +158,7 @@ ERROR_NORM = Layout({
 
 Cells: failures of the error test, each counted less with each step since then; whether all estimates are filtered; cj when
 failures were last looked for; steps and failures of the error test, the same when they were last looked at; the step up to
-which estimates are filtered; the order of the last step; the step up to which steps may not grow (0: they may), and the factor by
+which estimates are filtered; the order of the last step; how often a law repeats where steps resolve one of its features, else 1; the step up to which steps may not grow (0: they may), and the factor by
 which the test must let them grow else."""
 
 EVENT_SEARCH = Layout({
@@ -168,7 +168,7 @@ EVENT_SEARCH = Layout({
     "zone_low": FLOATS, "zone_high": FLOATS, "apart": FLOATS, "n_calls": INT, "call": INTS, "near": INTS,
     "n_state": INT, "n_nodes": INT, "node": FLOATS, "weight": FLOATS, "row": FLOATS, "n_angles": INT, "angle": INTS, "n_turns": INT, "turn": INTS,
     "ready": INT_CELL, "begun": FLOAT_CELL, "depth": FLOAT_CELL,
-    "least": FLOAT_CELL, "longest": FLOAT_CELL, "target": FLOAT_CELL, "passage": FLOAT_CELL, "passed": FLOAT_CELL, "unresolved": INT_CELL, "fastest": INT_CELL, "first_unresolved": FLOAT_CELL,
+    "least": FLOAT_CELL, "duration": FLOAT_CELL, "longest": FLOAT_CELL, "target": FLOAT_CELL, "passage": FLOAT_CELL, "first": FLOAT_CELL, "under_way": INT_CELL, "begins": FLOAT_CELL, "narrow": INT_CELL, "passed": FLOAT_CELL, "unresolved": INT_CELL, "fastest": INT_CELL, "first_unresolved": FLOAT_CELL,
 })  # fmt: skip
 """What the search for events within a step works on (`stiffmbs.solve.native.event_search.within_step`): the event functions with their
 edges, their values and rates at both ends of the step and of a part of it, the kernel that computes each and which kernels
@@ -176,4 +176,5 @@ have one near an edge, states of the step at some nodes, and which functions are
 
 Cells: whether values at the start of the step are known, that start's time, and how far an event function must go beyond
 zero; the shortest and the longest step that the arguments of sines ask for, the longest step up to a time at which the motion is to leave the
-law at a start, and that time; steps in which an argument turned too far to be resolved, the number of the first such argument, and when."""
+law at a start, the longest first step there, whether the run has left its beginning, the time of which follows, how many steps a feature of a law has bounded,
+and that time; steps in which an argument turned too far to be resolved, the number of the first such argument, and when."""

@@ -1,0 +1,107 @@
+"""Passages: the time from a restart of IDA to where the motion leaves a law again, which a first step must not lead over.
+
+The error estimate of a step of order 1 compares the forces at its ends. Where these agree, as before and after a window, the step is accepted,
+and the forces in between are lost.
+"""
+
+from __future__ import annotations
+
+from stiffmbs.compile.machine.native.access import compiled, equations_view, shifted
+from stiffmbs.compile.machine.native.evaluate import SWITCH, add_products, evaluate
+from stiffmbs.solve.native.calls import call_int
+from stiffmbs.solve.native.event_search.ahead import go_ahead
+from stiffmbs.solve.native.event_search.bounds import zone
+from stiffmbs.solve.native.ida_memory import array_of
+
+START_DIFFERENCE = 1e-9
+"""Part of the time to the next stop over which rates of event functions at a start are taken, and from which on passages are searched."""
+SOON = 1e-2
+"""Part of the time to the next stop beyond which IDA's first steps are short enough by themselves (at most 1e-3 of it)."""
+BISECTIONS = 6
+"""Halvings that find the end of a passage."""
+STEPS, FIRST_PART = 16.0, 0.125
+"""Least steps of a passage in scenes with laws that repeat, and part of such a step that the first one of order 1 may take."""
+LIFTED = 1e-6
+"""Part of a run at its beginning in which every step of a passage is bounded."""
+INSIDE = 0.4
+"""Place within a passage where forces are compared with those at the start, and the longest first step: a window is symmetric about 0.5."""
+WORTH = 1.0
+"""Change of an unknown by the forces of a passage, in error tolerances, from which on a first step must not lead over it."""
+
+
+@compiled
+def bound_passage(c, w, s, toward):
+    """Bound steps up to where the motion, going on with the accelerations at the start, leaves a law again.
+
+    The first step is bounded where the forces of the passage would change an unknown by more than its tolerance. Every step of the passage is
+    bounded in scenes with laws that repeat, as changes below the tolerance add up over their periods, and at the beginning of a run, where
+    contacts that are just closed open and close by rounding.
+    """
+    if c.returned < w.begins:
+        w.begins = c.returned
+    w.passage, w.first = float("inf"), float("inf")
+    ahead = _passage(c, w, s, toward)
+    if ahead > 0.0:
+        w.passed = c.returned + ahead
+        if w.n_turns > 0 or not w.under_way:
+            w.passage = ahead / STEPS
+            w.first = FIRST_PART * w.passage
+        elif _matters(c, w, s, ahead):
+            w.first = INSIDE * ahead
+    if w.under_way == 0 and c.returned > w.begins + LIFTED * w.duration:
+        w.under_way = 1
+
+
+@compiled
+def _passage(c, w, s, toward):
+    """Return the time after which the motion leaves a law; 0 where it does not before long."""
+    ahead = START_DIFFERENCE * (toward - c.returned)
+    most = toward - c.returned if w.n_turns > 0 else SOON * (toward - c.returned)
+    while ahead < most and not _another_side(c, w, s, ahead):
+        ahead *= 2.0
+    if not ahead < most:
+        return 0.0
+    low = 0.5 * ahead
+    for _ in range(BISECTIONS):
+        middle = 0.5 * (low + ahead)
+        if _another_side(c, w, s, middle):
+            ahead = middle
+        else:
+            low = middle
+    return ahead
+
+
+@compiled
+def _another_side(c, w, s, ahead):
+    """Whether an event function leaves its side at the start in a time, or a law its zone."""
+    go_ahead(c, s, ahead)
+    values = evaluate(s, SWITCH, c.returned + ahead)
+    others = 0
+    for k in range(w.n if w.n_turns > 0 else w.n_event_functions):
+        others += zone(w, k, values[k]) != zone(w, k, w.value_before[k])
+    return others > 0
+
+
+@compiled
+def _matters(c, w, s, ahead):
+    """Return True if the forces within a passage change an unknown by more than its tolerance, compared with those at the start.
+
+    The residual with the rates at the start is the change of force; an unknown's own rate has the mass as its factor.
+    """
+    if call_int(c.weights, (c.memory, c.at_output)) < 0:
+        return True
+    e, rates, inside = equations_view(c.equations), array_of(c, c.yp), c.returned + INSIDE * ahead
+    go_ahead(c, s, INSIDE * ahead)
+    values, residual, own = evaluate(s, e.residual_set, inside), c.residual, shifted(c.residual, e.n)
+    add_products(e, values, c.probe, rates, residual)
+    for i in range(e.n):
+        own[i] = 0.0
+    for k in range(e.n_with_y, e.n_with_yp):
+        if e.r_row[k] == e.r_operand[k]:
+            own[e.r_row[k]] += e.r_factor[k] * values[e.r_source[k]]
+    largest = 0.0
+    for i in range(e.n):
+        change = ahead * c.output[i] * abs(residual[i])
+        if change > largest * abs(own[i]) and own[i] != 0.0:
+            largest = change / abs(own[i])
+    return largest > WORTH
