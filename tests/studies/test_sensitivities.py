@@ -252,3 +252,33 @@ def test_a_motion_that_chatters_is_not_solved_a_second_time(monkeypatch):
     with pytest.raises(SolverError, match="jumps back and forth"):
         sensitivities(stiffmbs.read_scene(text.replace("c: 1 N s/m, ", "")), ["k"], "final(sled.x)")
     assert len(solved) == 1
+
+
+AT_REST = """
+parameters: {{A: 0, k: {k}}}
+bodies: {{b: {{mass: 2, inertia: 1, velocity: [{v}, 0]}}}}
+joints: {{r: {{type: prismatic, i: b, j: ground}}}}
+forces: {{f: {{type: force, i: b, force: ["{law}", 0]}}}}
+run: {{duration: 1, rtol: 1e-7}}
+"""
+
+
+@pytest.mark.parametrize("v", [0.0, 3.0])
+@pytest.mark.parametrize(
+    ("law", "k", "exact"),
+    [
+        ("A", 0.0, 0.25),
+        ("A*sin(10*t)", 0.0, (1 - np.sin(10) / 10) / 20),
+        ("A - k*(b.x - {v}*t)", 50.0, (1 - np.cos(5)) / 50),
+    ],
+)
+def test_a_motion_at_rest_or_steady_has_short_enough_steps(law, k, exact, v):
+    """The error control of such a motion limits no step, but its variation needs short ones."""
+    scene = stiffmbs.read_scene(AT_REST.format(law=law.format(v=v), k=k, v=v))
+    assert stiffmbs.sensitivities(scene, "A", "final(b.x)").to["A"] == pytest.approx(exact, rel=1e-3)
+
+
+def test_a_vibration_that_no_step_resolves_is_refused():
+    scene = stiffmbs.read_scene(AT_REST.format(law="A - k*b.x", k=5e4, v=0))
+    with pytest.raises(SolverError, match="102400 steps do not resolve how 'final"):
+        stiffmbs.sensitivities(scene, "A", "final(b.x)")

@@ -79,6 +79,12 @@ class Recorder(Integrator):
         self.chatters = False
         self._numbers = 0
 
+    @property
+    def longest_step(self) -> float:
+        """Length of the longest step, s."""
+        times = (np.append(each.first[0], each.rows[:, 0]) for each in self.segments)
+        return max((float(np.diff(t).max(initial=0.0)) for t in times), default=0.0)
+
     def passed(self, duration: float) -> list[Segment]:
         """Return the segments of nonzero length.
 
