@@ -11,7 +11,7 @@ from stiffmbs.stress.fuzzers import modes, stability, transfer
 
 
 @pytest.mark.parametrize("fuzzer", [modes, transfer])
-@pytest.mark.parametrize("seed", [7, *(pytest.param(seed, marks=pytest.mark.long) for seed in (8, 16, 101, 102, 103))])
+@pytest.mark.parametrize("seed", [pytest.param(seed, marks=pytest.mark.long) for seed in (7, 8, 16, 101)])
 def test_nothing_is_wrong(fuzzer, seed):
     verdict = fuzzer.trial(seed)
     assert verdict.outcome in (Outcome.RIGHT, Outcome.TOLD), verdict
