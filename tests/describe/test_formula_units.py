@@ -4,7 +4,7 @@ import json
 import math
 
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 import stiffmbs
@@ -307,7 +307,7 @@ def value_of(text, units):
     return evaluate(parse(text), names.__getitem__, VALUES, float, OF_NUMBERS)
 
 
-@settings(max_examples=300)
+@settings(max_examples=300, suppress_health_check=[HealthCheck.too_slow])
 @given(TREES)
 def test_what_is_accepted_scales_as_its_dimension_says(text):
     """Bridgman, Dimensional Analysis (1922): a relation holds in all systems of units.

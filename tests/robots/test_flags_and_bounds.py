@@ -97,7 +97,7 @@ def test_accelerations_are_those_of_mujoco(tmp_path, variant, sign):
 
 
 def test_actuators_that_are_switched_off_are_noted(tmp_path):
-    assert any("left out: m1, m3" in note for note in load_robot(arm(tmp_path, "groups 1 and 3")).notes)
+    assert any("are ignored: m1, m3" in note for note in load_robot(arm(tmp_path, "groups 1 and 3")).notes)
 
 
 def test_a_total_of_several_actuators_on_one_side_of_zero_is_refused(tmp_path):
@@ -112,7 +112,7 @@ UNUSED = {
     (
         'name="a"',
         'name="a" solreflimit="0.1 1"',
-    ): "(constraints are exact here, and limits are not held): joint solref_limit of a",
+    ): "(constraints are exact here, and limits are not enforced): joint solref_limit of a",
     ('name="upper"', 'name="upper" mocap="false" sleep="never"'): "body sleep of upper",
     (
         'name="m1"',
