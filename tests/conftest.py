@@ -3,6 +3,7 @@
 import gc
 import os
 import sys
+from collections import Counter
 from pathlib import Path
 
 import numpy as np
@@ -19,6 +20,26 @@ G, CART, BAR, HALF, STIFFNESS = 9.81, 10.0, 1.0, 0.3, 270.0
 
 os.environ.setdefault("SYMPY_CACHE_SIZE", "None")  # as the command has it: deriving takes a fourth less
 gc.set_threshold(NEW_OBJECTS)  # as the command has it: 3 % of a run
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--all", action="store_true", help="run every test that is marked as sampled")
+
+
+@pytest.hookimpl(trylast=True)  # of what -k and -m leave
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Of the tests of a file that are marked sampled(n), keep every n-th, unless all are asked for."""
+    if config.getoption("all"):
+        return
+    seen: Counter[tuple[Path, int]] = Counter()
+    kept, left = [], []
+    for item in items:
+        mark = item.get_closest_marker("sampled")
+        sort = (item.path, mark.args[0]) if mark else None
+        (left if sort and seen[sort] % sort[1] else kept).append(item)
+        seen.update([sort] if sort else [])
+    config.hook.pytest_deselected(items=left)
+    items[:] = kept
 
 
 def pytest_runtest_teardown(item: pytest.Item, nextitem: pytest.Item | None) -> None:

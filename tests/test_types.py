@@ -87,6 +87,7 @@ def checked(folder: Path, text: str, *options: str) -> list[str]:
 
 @pytest.mark.long
 @pytest.mark.parametrize("plugin", ["", "pydantic.mypy"])
+@pytest.mark.sampled(2)
 def test_mypy_accepts_what_is_right_and_refuses_what_is_misspelt(tmp_path, plugin):
     start = RIGHT.count("\n")
     (tmp_path / "mypy.ini").write_text(f"[mypy]\nplugins = {plugin}\n")

@@ -61,6 +61,7 @@ def limited():
 @pytest.mark.long
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("use", USES)
+@pytest.mark.sampled(5)
 def test_unusual_files_are_refused(tmp_path, use, kind):
     if (use, kind) in MAY_WORK:
         pytest.skip("what is written to may be any file")

@@ -14,6 +14,8 @@ from ..random_parts import CASES, add_joints, random_element, refers_to_joints, 
 
 T = 0.37
 STEP = 3e-3
+MANY = (pytest.mark.long, pytest.mark.sampled(5))
+"""A number without a common factor with that of the formulations, so that all of them have their turn."""
 WEIGHTS = {1: 4 / 5, 2: -1 / 5, 3: 4 / 105, 4: -1 / 280}  # eighth order, centred
 TOLERANCE = 1e-8
 
@@ -58,9 +60,7 @@ def takes_long(case):
 
 
 @pytest.fixture(
-    params=[
-        pytest.param(case, marks=pytest.mark.long if takes_long(case) else (), id=case_name(case)) for case in CASES
-    ]
+    params=[pytest.param(case, marks=MANY if takes_long(case) else (), id=case_name(case)) for case in CASES]
 )
 def state(request):
     return state_with(*request.param)
@@ -181,7 +181,7 @@ def test_counters_have_the_rates_of_their_angles(state):
 @pytest.mark.parametrize(
     "formulation",
     [
-        pytest.param(formulation, marks=pytest.mark.long if name == "index1" else (), id=name)  # by kernels of its own
+        pytest.param(formulation, marks=MANY if name == "index1" else (), id=name)  # by kernels of its own
         for name, formulation in FORMULATIONS.items()
     ],
 )

@@ -217,6 +217,7 @@ def assembled(scene):
 @pytest.mark.long
 @pytest.mark.parametrize("settings", [BDF, DOP853], ids=["bdf", "dop853"])
 @pytest.mark.parametrize("kind", CASES)
+@pytest.mark.sampled(3)
 def test_each_kind_is_the_same_in_space(kind, settings):
     scene = assembled(case(kind))
     plane, space = both(scene, duration=0.4, points=41, **settings)

@@ -2,7 +2,6 @@
 
 import json
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,7 +13,8 @@ from stiffmbs.show.summary import as_json
 from stiffmbs.solve.segments import Segment, joined
 from stiffmbs.solve.solver import Traits
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
+from ..conftest import EXAMPLE_SCENES, EXAMPLES
+
 SOLVERS = {
     "bdf": {"solver": "bdf"},
     "dop853": {"solver": "projected"},
@@ -124,7 +124,7 @@ def test_a_half_car_is_not_reported():
 
 @pytest.mark.long
 def test_no_example_is_reported():
-    for path in sorted(EXAMPLES.rglob("*.yaml")):
+    for path in EXAMPLE_SCENES.values():
         assert not noted(stiffmbs.run(path)), path.name
 
 

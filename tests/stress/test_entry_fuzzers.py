@@ -6,6 +6,8 @@ from stiffmbs.stress.case import Outcome
 from stiffmbs.stress.fuzzers import fmu, injections
 from stiffmbs.studies.fmu import stepping
 
+MANY = (pytest.mark.long, pytest.mark.sampled(3))
+
 
 @pytest.mark.parametrize("seed", [1, *(pytest.param(seed, marks=pytest.mark.long) for seed in (6, 20, 21, 22))])
 def test_fmus_move_as_runs_do(seed):
@@ -21,9 +23,7 @@ def test_an_fmu_that_ignores_its_inputs_is_found(monkeypatch):
     assert fmu.trial(1).outcome is Outcome.WRONG
 
 
-@pytest.mark.parametrize(
-    "seed", [5, *(pytest.param(seed, marks=pytest.mark.long) for seed in (2, 8, *range(100, 112)))]
-)
+@pytest.mark.parametrize("seed", [5, *(pytest.param(seed, marks=MANY) for seed in (2, 8, *range(100, 112)))])
 def test_commands_end_with_a_sentence_under_faults(seed):
     verdict = injections.trial(seed)
     assert verdict.outcome is not Outcome.WRONG, verdict

@@ -107,7 +107,7 @@ def test_conversions_are_compared_and_the_comparison_can_fail(monkeypatch, seed,
 @pytest.mark.parametrize("name", sorted(set(fuzz.fuzzers()) - {"entry-points"}))
 def test_the_first_cases_of_a_fuzzer_are_not_wrong(name):
     found = [
-        trial.line() for trial in fuzz.trials(fuzz.module_of(name), range(3)) if trial.verdict.outcome is Outcome.WRONG
+        trial.line() for trial in fuzz.trials(fuzz.module_of(name), range(1)) if trial.verdict.outcome is Outcome.WRONG
     ]
     assert not found
 

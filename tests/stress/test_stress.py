@@ -22,20 +22,14 @@ COSTLY = ("space", "held_twice")
 """Families whose first case compiles more kinds than others."""
 WHOLE = ("changed_files", "opposed_actuators", "own_field_names")
 """Families of which all cases are run without being asked for: no other test has their scenes."""
+MANY = (pytest.mark.long, pytest.mark.sampled(5))
+"""As many families have each case for each of four solvers, no even number: every solver has its turn."""
 QUICK = [
-    pytest.param(
-        family, case, marks=pytest.mark.long if (number >= ALWAYS and family not in WHOLE) or family in COSTLY else ()
-    )
+    pytest.param(family, case, marks=MANY if (number >= ALWAYS and family not in WHOLE) or family in COSTLY else ())
     for family, cases in catalogue().items()
     for number, case in enumerate(case for case in cases if case.quick)
 ]
-SAMPLED = {"cars_over_lines": 6}
-"""Families of which every n-th long case is run; `stiffmbs stress FAMILY` runs all."""
-LONG = [
-    (family, case)
-    for family, cases in catalogue().items()
-    for case in [case for case in cases if not case.quick][:: SAMPLED.get(family, 1)]
-]
+LONG = [(family, case) for family, cases in catalogue().items() for case in cases if not case.quick]
 
 
 def _label(value):
@@ -49,6 +43,7 @@ def test_case(family, case):
 
 
 @pytest.mark.long
+@pytest.mark.sampled(7)
 @pytest.mark.parametrize(("family", "case"), LONG, ids=_label)
 def test_long_case(family, case):
     (row,) = outcomes([(family, case)])

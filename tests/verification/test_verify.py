@@ -193,7 +193,7 @@ LONG = ("bricard", "bushing_axle", "car", "governor", "leaf_sprung_car", "quarte
 @pytest.mark.parametrize(
     "path",
     [
-        pytest.param(path, marks=pytest.mark.long if path.stem in LONG else (), id=path.stem)
+        pytest.param(path, marks=(pytest.mark.long, pytest.mark.sampled(2)) if path.stem in LONG else (), id=path.stem)
         for path in EXAMPLE_SCENES.values()
     ],
 )
