@@ -124,8 +124,7 @@ def _step(x, c, s, m, end):
                 x.span = t_new - t
                 x.h = h * min(most, max(LEAST_FACTOR, _factor(x, c, error)))
                 x.last_error = error
-                if h == halved:
-                    note_difference(x)
+                x.measured = 1 if h == halved else 0
                 _watch_stiffness(x, c, h)
                 return 0
         x.rejected += 1
@@ -194,6 +193,7 @@ def advance(end, steps, held, own_steps, explicit):
         x.at_event = 0
         far_beyond = x.far_beyond
         status = _step(x, c, s, m, end)
+        reached = x.t
         if x.end_at_event:
             if status == STEP_TOO_SMALL:
                 status = _shortest_to_event(x, c, s, m, explicit)
@@ -205,6 +205,8 @@ def advance(end, steps, held, own_steps, explicit):
             continue
         x.ends[x.steps % x.capacity] = x.t
         x.steps += 1
+        if x.measured and x.t == reached:
+            note_difference(x)
         displace(accumulated_errors_view(x.accumulated), x.y, x.t - x.t_before)
         _keep_if_long(x, c, s, m)
         if own_steps:

@@ -19,12 +19,16 @@ WHAT = "force laws over a displacement, angle, velocity or state (windows, perio
 SOLVERS: tuple[dict[str, Any], ...] = (
     {"solver": "bdf"}, {"solver": "projected", "scheme": "dop853"}, {"solver": "projected", "scheme": "dopri5"}, {"solver": "auto"},
 )  # fmt: skip
-LEAST, OF_TOLERANCE, MOST = 2e-4, 200.0, 0.01
-"""Error of an impulse or work that is right: the least one, in relative tolerances (or one for each step), and the most besides twice that."""
+LEAST, STEPS, OF_STEP = 2e-4, 20.0, 10.0
+"""Error of an impulse or work that is right: the least one, the least number of steps, and the relative tolerances for each step."""
+MOST, OF_TOLERANCE, LOST = 0.01, 100.0, 0.1
+"""Largest such error: the least and the largest limit, between which it is so many relative tolerances, as in the note on errors of a run."""
 FASTER = 1.5
 """Times its speed at the start that a mass moves at most: its work is at most half of m v^2."""
 UNRESOLVED = "cannot be resolved"
 """Words of the note on laws that change faster than steps are taken."""
+ADD_UP = "errors of the steps may add up"
+"""Words of the note on errors of a run."""
 
 
 class Moving(NamedTuple):
@@ -100,9 +104,9 @@ def _judged(
         error = abs(0.5 * found**2 - 0.5 - work) / max(work, 0.5)
     else:
         error = abs(found - expected)
-    of_tolerance = max(OF_TOLERANCE, float(solution.solver["steps"])) * how["rtol"]
-    allowed = LEAST + min(of_tolerance, MOST) + 2.0 * how["rtol"]
-    if error > allowed and any(UNRESOLVED in note for note in solution.notes):
+    of_steps = OF_STEP * max(STEPS, float(solution.solver["steps"])) * how["rtol"]
+    allowed = LEAST + min(of_steps, max(MOST, min(OF_TOLERANCE * how["rtol"], LOST)))
+    if error > allowed and any(words in note for note in solution.notes for words in (UNRESOLVED, ADD_UP)):
         return told("; ".join(solution.notes), ())
     return measured(error, allowed, f"{solution.solver['steps']} steps, found {found:.6g}, {detail}")
 

@@ -45,14 +45,15 @@ EXPLICIT = Layout({
     "n_event_functions": INT, "end_at_event": INT, "signs": FLOATS, "at_event": INT_CELL, "uncertain": INT_CELL, "watch": INTS,
     "started": INT_CELL, "lam": FLOATS, "y": FLOATS, "y_before": FLOATS, "y_stage": FLOATS, "k": FLOATS, "difference": FLOATS, "weight": FLOATS, "polynomial": FLOATS,
     "dense_ready": INT_CELL, "steps": INT_CELL, "rejected": INT_CELL, "accelerations": INT_CELL, "stiff_steps": INT_CELL, "far_beyond": INT_CELL,
-    "long_steps": INTS, "accumulated": INTS, "halved": FLOATS,
+    "long_steps": INTS, "accumulated": INTS, "halved": FLOATS, "measured": INT_CELL,
     "n_times": INT, "times": FLOATS, "next_time": INT_CELL,
     "capacity": INT, "rows": INT_CELL, "row_t": FLOATS, "row_y": FLOATS, "ends": FLOATS,
 })  # fmt: skip
 """An explicit integration between two calls: the state y = (q, u) now and before the last step (of length `span`), the
 event functions' values there, the stages k, one over the tolerance of each number in the last step tried, how many polynomials describe
 the last step (0: they are not made), the counters, the output times (none: every step), and memory for the rows and ends of steps that one call stores.  Where steps are to start anew
-`started` is 0: the state, its accelerations in the last stage, and `lam` are consistent values then."""
+`started` is 0: the state, its accelerations in the last stage, and `lam` are consistent values then.  `measured` is 1 where `halved` has the
+state that two steps of half the length lead to."""
 
 NATIVE_IDA = Layout({
     "state": INTS, "equations": INTS, "array_of": INT, "matrix": INT, "pattern": INTS,

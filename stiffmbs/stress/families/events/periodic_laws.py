@@ -17,6 +17,9 @@ from .within_one_step import SOLVERS
 PERIODS, DURATION = 120, 2.0
 EXPLICIT = {name: how for name, how in SOLVERS.items() if name != "bdf"}
 COARSE = {f"bdf {rtol:.0e}": {"solver": "bdf", "rtol": rtol} for rtol in (1e-2, 1e-3, 1e-4)}
+OFTEN = {
+    f"bdf {rtol:.0e} with 401 outputs": {"solver": "bdf", "rtol": rtol, "points": 401} for rtol in (1e-2, 1e-3, 1e-4)
+}
 ALLOWED, OF_SMOOTH = (5e-4, 2e-2), (2e-3, 0.15)
 """Allowed error of explicit schemes at the default tolerance, and of bdf at coarse ones; smooth laws follow from the tolerance alone, and
 errors of a thousand periods add up."""
@@ -101,7 +104,7 @@ def _off(solution: Solution) -> float:
 def _case(name: str, periodic: Periodic, solver: str, how: dict[str, Any], allowed: float) -> Case:
     return simulation(
         f"{name}, {solver}", f"velocity after {PERIODS} periods against the impulse of each", lambda: read_scene(_scene(periodic)),
-        _off, allowed, duration=DURATION, points=2, **how,
+        _off, allowed, duration=DURATION, **({"points": 2} | how),
     )  # fmt: skip
 
 
@@ -143,7 +146,11 @@ CASES = (
         for name, law in LAWS.items()
         for solver, how in EXPLICIT.items()
     ),
-    *(_case(name, law, solver, how, _allowed(name)[1]) for name, law in LAWS.items() for solver, how in COARSE.items()),
+    *(
+        _case(name, law, solver, how, _allowed(name)[1])
+        for name, law in LAWS.items()
+        for solver, how in {**COARSE, **OFTEN}.items()
+    ),
     *NARROW,
     *UNRESOLVED,
 )
