@@ -3,7 +3,7 @@
 A bump of 0.1 m in a table over distance, or a Gaussian of it, may lie between the ends of a step.  The edges here part the
 argument of each law into zones such that within a zone nothing is overlooked: a cubic describes the table, tanh has
 saturated, exp has vanished.  Solvers see to it that no step passes a whole zone (`stiffmbs.solve.native.event_search.within_step`).
-The argument of a sine has no zones: what counts is how far it turns in a step.
+The argument of a sine has no zones: what counts is how far it turns in a step; for a periodic table of few zones both count.
 A law goes on beyond an edge as it was before it for a while, and a step that goes no further has overlooked nothing: a damper
 that swings by a millimetre a second over a knot of its table does not change its law.
 """
@@ -35,6 +35,8 @@ FIXED = {
 """Edges of functions: of exp, cosh and sinh (exp(-37) is rounding); of tanh (so is 1 - tanh(19)); of atan; of 1/x and other
 negative powers, none at 1, where 1 + x^2 and cos(x) turn round and rounding would decide.  They are graded, so that a step
 that begins near a feature is no longer than what it has seen of it."""
+FEW = 8
+"""Zones in the period of a table up to which its features are as long as parts of the period."""
 DESCRIBED = 1e-3
 """Part of the range of a table's values up to which one cubic describes pieces of it that then are one zone."""
 WITHIN = np.array([0.0, 0.25, 0.5, 0.75, 1.0])
@@ -64,7 +66,13 @@ class Zones(NamedTuple):
     period : ndarray, shape (n,)
         Of a law that repeats; 0 for others.
     turns : ndarray of int
-        Numbers of the functions that are arguments of sines.
+        Numbers of the functions that are arguments of sines or of periodic tables of few zones.
+    radians : ndarray
+        Of such an argument: 1 for a sine, 2 pi by the period for a table.
+    kinks : ndarray of int, shape (n,)
+        1 for arguments of tables of which an edge is a kink, 0 for others.
+    zoned : int
+        Number of functions with edges.
     """
 
     first: np.ndarray
@@ -72,19 +80,28 @@ class Zones(NamedTuple):
     overlap: np.ndarray
     period: np.ndarray
     turns: np.ndarray
+    radians: np.ndarray
+    kinks: np.ndarray
+    zoned: int
 
 
 def zones_of(system: System) -> Zones:
     """The zones of all event functions of a system."""
     of_event_function = np.zeros(1), np.zeros(1), 0.0
     found = [of_event_function] * system.n_event_functions + list(_of_arguments(system))
-    counts = [len(edges) for edges, _, _ in found]
+    counts = np.array([len(edges) for edges, _, _ in found], dtype=np.int64)
+    period = np.array([period for _, _, period in found])
+    repeated = (period > 0) & (counts <= FEW)
+    turns = np.flatnonzero([False] * system.n_event_functions + [name == TURN for name in _names(system)] | repeated)
     return Zones(
         np.concatenate([[0], np.cumsum(counts)]).astype(np.int64),
         np.concatenate([np.empty(0), *(edges for edges, _, _ in found)]),
         np.concatenate([np.empty(0), *(overlap for _, overlap, _ in found)]),
-        np.array([period for _, _, period in found]),
-        system.n_event_functions + np.flatnonzero([name == TURN for name in _names(system)]),
+        period,
+        turns,
+        np.divide(2 * np.pi, period[turns], out=np.ones(len(turns)), where=period[turns] > 0),
+        np.array([_has_kinks(edges, overlap, period) for edges, overlap, period in found], dtype=np.int64),
+        int(np.count_nonzero(counts)),
     )
 
 
@@ -133,6 +150,11 @@ def _of_table(data: bytes) -> tuple[np.ndarray, np.ndarray, float]:
     period = float(knots[-1] - knots[0]) if numbers[1] else 0.0
     at = np.array(starts if period else [*starts, count - 1])
     return knots[at], _overlaps(numbers, at, _narrower(knots[at], period)), period
+
+
+def _has_kinks(edges: np.ndarray, overlap: np.ndarray, period: float) -> bool:
+    """Return True if a law departs from its tangent at an edge at once."""
+    return bool(np.any((overlap > 0) & (overlap < 4 * BARELY * _narrower(edges, period))))
 
 
 def _overlaps(numbers: np.ndarray, at: np.ndarray, narrower: np.ndarray) -> np.ndarray:

@@ -198,3 +198,30 @@ def test_an_argument_that_rests_on_a_point_of_its_table_is_no_event():
     """)
     solution = stiffmbs.run(scene, duration=1.0, points=11, rtol=1e-7, presolve=False)
     assert solution.success and solution.solver["events"] < 20
+
+
+@pytest.mark.parametrize("rtol", [1e-2, 1e-3])
+def test_a_peak_is_seen_that_lies_before_another_place_of_its_zones(rtol):
+    """The argument 1 + z^2 falls to the peak at z = 0 and rises into another zone within one step."""
+    first, width, size = 0.04251988070687207, 5.908546782551748e-05, 1629.9929796030797
+    scene = pushed("{table: [[0, 0], [1, 1]]}", f"{size}*(1/(1 + 16*(((b.x - {first})/{width}) - 0.5)^2))")
+    found = stiffmbs.run(scene, duration=0.292, points=2, solver="projected", scheme="dopri5", rtol=rtol)["b.vx"][-1]
+    assert found == pytest.approx(np.sqrt(1 + 2 * size * width * np.pi / 4), abs=0.01)
+
+
+TEETH = "{lines: true, ends: periodic, table: [[0, 0], [0.7, 0], [0.85, 1], [1, 0]]}"
+
+
+@pytest.mark.parametrize(
+    ("how", "allowed"),
+    [({"solver": "projected", "scheme": "dop853"}, 1e-6), ({"solver": "projected", "scheme": "dopri5"}, 1e-6), ({"solver": "bdf"}, 1e-2)],
+    ids=["dop853", "dopri5", "bdf"],
+)  # fmt: skip
+@pytest.mark.parametrize("points", [2, 401])
+def test_a_thousand_teeth_of_a_table_do_the_work_under_them(how, allowed, points):
+    """The body passes 1000 periods of 1 mm; errors in equal teeth add up."""
+    solution = stiffmbs.run(pushed(TEETH, "2*p(1000*b.x)"), duration=0.9, points=points, rtol=1e-4, **how)
+    x, v = solution["b.x"][-1], solution["b.vx"][-1]
+    whole, part = divmod(1000 * x, 1)
+    area = np.trapezoid(np.interp(z := np.linspace(0, part, 10_001), [0, 0.7, 0.85, 1], [0, 0, 1, 0]), z)
+    assert (v**2 - 1) / 2 == pytest.approx(2 * (0.15 * whole + area) / 1000, rel=allowed)

@@ -24,6 +24,8 @@ class EventSearch:
     Parameters
     ----------
     state : State
+    lands : bool
+        Whether steps end at the edges of tables with kinks.
 
     Attributes
     ----------
@@ -39,7 +41,7 @@ class EventSearch:
         1 for the functions of the last event, 0 for others.
     """
 
-    def __init__(self, state: State) -> None:
+    def __init__(self, state: State, lands: bool = False) -> None:
         self._system = system = state.system
         state.load("event_function")
         n, n_event_functions, n_state = (
@@ -60,7 +62,7 @@ class EventSearch:
         angles = system.turning
         work = ("value_before", "rate_before", "value_after", "rate_after", "a", "a_rate", "b", "b_rate", "m", "m2", "left_low", "left_high", "noise", "zone_low", "zone_high", "apart")  # fmt: skip
         self._arrays = {
-            "longest": np.inf, "passage": np.inf, "first": np.inf, "n_turns": len(zones.turns), "turn": zones.turns,
+            "longest": np.inf, "passage": np.inf, "first": np.inf, "n_turns": len(zones.turns), "turn": zones.turns, "radians": zones.radians, "lands": np.int64(lands) * zones.kinks, "n_zoned": zones.zoned,
             "n": n, "n_event_functions": n_event_functions, "masked": self.masked,
             "first_edge": zones.first, "edges": zones.edges, "overlap": zones.overlap, "period": zones.period, **{name: np.zeros(n) for name in work}, "found": self.found,
             "n_state": n_state, "n_nodes": NODES, "node": (1 - np.cos(place)) / 2, "weight": weight,
@@ -83,6 +85,7 @@ class EventSearch:
             ("under_way", 0),
             ("begins", np.inf),
             ("narrow", 0),
+            ("passed", -np.inf),
         ):
             self._cells[cell] = value
 

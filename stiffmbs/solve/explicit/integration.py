@@ -50,7 +50,7 @@ class Integration:
         self.capacity, self._n_q, self._dynamics = memory.capacity, n_q, dynamics
         self.step_times: list[np.ndarray] = []
         self._collected = 0  # steps whose ends have been taken over
-        self.step_bound, self._watch = StepBound(), EventSearch(dynamics.state)
+        self.step_bound, self._watch = StepBound(), EventSearch(dynamics.state, lands=True)
         self._long_steps = dynamics.kept(
             "long_steps", len(memory.y), lambda: LongStepLog(dynamics.system, len(memory.y))
         )

@@ -7,7 +7,7 @@ from stiffmbs.compile.machine.native.evaluate import SWITCH, add_entries, add_pr
 from stiffmbs.solve.native.accumulated_errors import accumulated_errors_view, displace_by, is_due
 from stiffmbs.solve.native.calls import call_int, copy_bytes, int32
 from stiffmbs.solve.native.error_norm import error_norm_view
-from stiffmbs.solve.native.event_search.bounds import event_search_view, repeats
+from stiffmbs.solve.native.event_search.bounds import bounded_by_feature, event_search_view, repeats
 from stiffmbs.solve.native.event_search.event_signs import watched
 from stiffmbs.solve.native.ida_memory import array_of, native_ida_view
 from stiffmbs.solve.native.iteration import MADE, iteration_view
@@ -103,7 +103,9 @@ def _see_inputs(c, stop):
         t = c.internal
         longest = _longest_to_see(c, bound, t)
         if c.look_at_start and event_search_view(c.watch).n_turns > 0:
-            error_norm_view(c.error_norm).repeats = repeats(event_search_view(c.watch), t)
+            w = event_search_view(c.watch)
+            w.narrow += bounded_by_feature(w)
+            error_norm_view(c.error_norm).repeats = repeats(w, t, t < w.passed)
         if longest == float("inf") and c.stopping == stop:
             return
         call_int(c.next_step_of, (c.memory, address_of(c.next_size)))

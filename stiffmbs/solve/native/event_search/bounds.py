@@ -130,7 +130,7 @@ def _bound(start, start_rate, end, end_rate, missed, side):
 def reaches(w, k, start, start_rate, end, end_rate, missed):
     """Whether an event function may leave its side, or another function come into a zone that is none of those at the ends of the step."""
     one, other = zone(w, k, w.value_before[k]), zone(w, k, w.value_after[k])
-    if abs(one - other) > 1:
+    if abs(one - other) > 1 or (w.lands[k] and beyond(w, k, w.value_after[k], one, one, 0.0)):
         return True
     low, high = (
         _bound(start, start_rate, end, end_rate, missed, -1),
@@ -144,7 +144,7 @@ def reaches(w, k, start, start_rate, end, end_rate, missed):
 @compiled
 def turned(w, q_before, q_after, most):
     """Whether a body, or the argument of a sine, has turned by more than an angle."""
-    if w.n_turns == w.n:
+    if w.n_zoned == 0:
         return False
     farthest = turned_arguments(w, w.value_before, w.value_after)
     for k in range(w.n_angles):
@@ -157,7 +157,7 @@ def turned_arguments(w, before, after):
     """The largest change of an argument of a sine, rad."""
     farthest = 0.0
     for i in range(w.n_turns):
-        farthest = max(farthest, abs(after[w.turn[i]] - before[w.turn[i]]))
+        farthest = max(farthest, w.radians[i] * abs(after[w.turn[i]] - before[w.turn[i]]))
     return farthest
 
 
@@ -174,23 +174,27 @@ def fastest_turn(w, rate):
     """The largest rate of an argument of a sine, rad/s."""
     fastest = 0.0
     for i in range(w.n_turns):
-        fastest = max(fastest, abs(rate[w.turn[i]]))
+        fastest = max(fastest, w.radians[i] * abs(rate[w.turn[i]]))
     return fastest
 
 
 @compiled
-def repeats(w, t):
+def repeats(w, t, passing):
     """Return how often the fastest law that repeats does so in the run, where features of laws bound a step in each turn; else 1.
 
-    Errors in equal features have the same sign and add up, so each must be so much smaller than the tolerance.
+    Errors in equal features have the same sign and add up, so each must be so much smaller than the tolerance.  Also while `passing` a feature.
     """
     fastest = fastest_turn(w, w.rate_before)
-    if w.longest * fastest < BOUNDED * TURNED:
-        w.narrow += 1
     each_turn = w.narrow > 0 and w.narrow * WHOLE_TURN >= fastest * (t - w.begins)
-    if not (t < w.passed or each_turn):
+    if not (passing or each_turn):
         return 1.0
     return max(1.0, fastest * w.duration / WHOLE_TURN)
+
+
+@compiled
+def bounded_by_feature(w):
+    """Return True if a feature bounds the next step of IDA more than arguments of sines do."""
+    return w.longest * fastest_turn(w, w.rate_before) < BOUNDED * TURNED
 
 
 @compiled
@@ -199,7 +203,7 @@ def note_unresolved(w, t, before, after):
     if w.unresolved == 0:
         farthest = turned_arguments(w, before, after)
         for i in range(w.n_turns):
-            if abs(after[w.turn[i]] - before[w.turn[i]]) == farthest:
+            if w.radians[i] * abs(after[w.turn[i]] - before[w.turn[i]]) == farthest:
                 w.fastest = w.turn[i]
         w.first_unresolved = t
     w.unresolved += 1

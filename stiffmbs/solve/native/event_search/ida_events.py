@@ -110,8 +110,8 @@ def _go_on(c, w, s):
 @compiled
 def _look_ahead(c, w, s):
     """Have the next step pass zones in several steps, and end before an event."""
-    if 0 < w.n_turns < w.n and w.longest < float("inf"):
-        if w.n > w.n_event_functions + w.n_turns:
+    if w.n_turns > 0 and w.n_zoned > 0 and w.longest < float("inf"):
+        if w.n_zoned > w.n_event_functions:
             _resolve_zones(c, w, s)
         _aim(c, w, s)
 

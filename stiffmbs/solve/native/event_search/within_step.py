@@ -146,6 +146,8 @@ def _visits(w, k, value, low, high):
         w.left_low[k], w.left_high[k] = low, high  # nearer than one noted before, which may be where it has come back
     if k < w.n_event_functions:
         return here != one and abs(value) > w.depth
+    if w.lands[k]:
+        return beyond(w, k, value, one, one, w.depth)
     if abs(one - other) > 1:
         return here != one
     return beyond(w, k, value, one, other, w.depth)
@@ -184,15 +186,23 @@ def _first_within(w, s, begun, h, low, part):
         if left_out(w, k):
             continue
         start, start_rate, end, end_rate = w.a[k], part * w.a_rate[k], w.b[k], part * w.b_rate[k]
-        there = _visits(w, k, w.m[k], low, low + LOOKED_AT * part) or _visits(w, k, w.m2[k], low, low + ALSO_AT * part)
-        if not there and reaches(w, k, start, start_rate, end, end_rate, 0.0):
+        seen = 2.0
+        if _visits(w, k, w.m[k], low, low + LOOKED_AT * part):
+            seen = LOOKED_AT
+        elif _visits(w, k, w.m2[k], low, low + ALSO_AT * part):
+            seen = ALSO_AT
+        if reaches(w, k, start, start_rate, end, end_rate, 0.0):
             for which in range(2):
                 place = _extremum(start, start_rate, end, end_rate, which)
-                if place < 1.0 and not there:
-                    there = _visits_extremum(w, s, begun, h, k, low, low + place * part, part)
-        if not there and not (low + part > 1.0 - BEHIND and _seen_at_end(w, k)):
-            there = _visits(w, k, end, low, low + part)
-        if there:
+                if place < min(seen, 1.0) and _visits_extremum(w, s, begun, h, k, low, low + place * part, part):
+                    seen = place
+        if (
+            seen > 1.0
+            and not (low + part > 1.0 - BEHIND and _seen_at_end(w, k))
+            and _visits(w, k, end, low, low + part)
+        ):
+            seen = 1.0
+        if seen <= 1.0:
             place = _change(w, s, begun, h, k)
             if place < first:
                 first = place
@@ -223,7 +233,7 @@ def _turned_in_part(w, part):
     for i in range(w.n_turns):
         k = w.turn[i]
         moved = max(abs(w.b[k] - w.a[k]), max(abs(w.m[k] - w.a[k]), abs(w.m2[k] - w.a[k])))
-        farthest = max(farthest, max(moved, part * max(abs(w.a_rate[k]), abs(w.b_rate[k]))))
+        farthest = max(farthest, w.radians[i] * max(moved, part * max(abs(w.a_rate[k]), abs(w.b_rate[k]))))
     return farthest
 
 

@@ -167,13 +167,14 @@ EVENT_SEARCH = Layout({
     "value_before": FLOATS, "rate_before": FLOATS, "value_after": FLOATS, "rate_after": FLOATS,
     "a": FLOATS, "a_rate": FLOATS, "b": FLOATS, "b_rate": FLOATS, "m": FLOATS, "m2": FLOATS, "left_low": FLOATS, "left_high": FLOATS, "noise": FLOATS, "found": INTS,
     "zone_low": FLOATS, "zone_high": FLOATS, "apart": FLOATS, "n_calls": INT, "call": INTS, "near": INTS,
-    "n_state": INT, "n_nodes": INT, "node": FLOATS, "weight": FLOATS, "row": FLOATS, "n_angles": INT, "angle": INTS, "n_turns": INT, "turn": INTS,
+    "n_state": INT, "n_nodes": INT, "node": FLOATS, "weight": FLOATS, "row": FLOATS, "n_angles": INT, "angle": INTS, "n_turns": INT, "turn": INTS, "radians": FLOATS, "lands": INTS, "n_zoned": INT,
     "ready": INT_CELL, "begun": FLOAT_CELL, "depth": FLOAT_CELL,
     "least": FLOAT_CELL, "duration": FLOAT_CELL, "longest": FLOAT_CELL, "target": FLOAT_CELL, "passage": FLOAT_CELL, "first": FLOAT_CELL, "under_way": INT_CELL, "begins": FLOAT_CELL, "narrow": INT_CELL, "passed": FLOAT_CELL, "unresolved": INT_CELL, "fastest": INT_CELL, "first_unresolved": FLOAT_CELL,
 })  # fmt: skip
 """What the search for events within a step works on (`stiffmbs.solve.native.event_search.within_step`): the event functions with their
 edges, their values and rates at both ends of the step and of a part of it, the kernel that computes each and which kernels
-have one near an edge, states of the step at some nodes, and which functions are arguments of sines.
+have one near an edge, states of the step at some nodes, which functions are arguments of sines or of periodic tables of few zones with the
+radians of a unit of them, of which functions steps end at each edge, and how many functions have edges.
 
 Cells: whether values at the start of the step are known, that start's time, and how far an event function must go beyond
 zero; the shortest and the longest step that the arguments of sines ask for, the longest step up to a time at which the motion is to leave the
