@@ -133,6 +133,7 @@ def test_what_a_page_shows_is_true(page, workplace):
                 assert as_expected(text, shown), f"{page.name}:{line}: found {shown}"
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.long
 @pytest.mark.parametrize(
     "page", [page for page in PAGES if PLOT in page.read_text(encoding="utf-8")], ids=lambda page: page.stem

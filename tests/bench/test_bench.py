@@ -121,7 +121,7 @@ LONG_LOOKS = (
     "car_choice", "car_conditioning", "car_events",
     "car_equal_error", "car_jobs", "start_up", "tolerances",
 )  # fmt: skip
-MANY = (pytest.mark.long, pytest.mark.sampled(3))
+MANY = (pytest.mark.long, pytest.mark.sampled(5))
 BEYOND_THE_SOLVER = {
     "bushing_fit": 0.1,  # noise of the measured curves
     "car_conditioning": 3e-3,  # a car drifts along its road, by 40 to 1000 tolerances from one tolerance to the next
@@ -231,7 +231,7 @@ def test_families_are_named_in_any_folder(tmp_path, monkeypatch):
 
 @pytest.mark.long
 @pytest.mark.parametrize("car", CARS, ids=lambda car: car.name)
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(4)
 def test_places_of_a_car_are_off_by_little_more_than_one_error_at_the_start_makes(car):
     rows = Conditioning(car).measured()
     of_starts = max(row.error / RTOLS[0] for row in rows if row.solver != "bdf")

@@ -22,7 +22,7 @@ def test_a_random_equilibrium_is_balanced_still_and_stable(seed):
 
 @pytest.mark.long
 @pytest.mark.parametrize("first", range(0, 200, 20))
-@pytest.mark.sampled(5)
+@pytest.mark.sampled(11)
 def test_two_hundred_random_equilibria(first):
     """All found: 100 in the plane (even seeds), 100 in space."""
     verdicts = {seed: equilibria.trial(seed) for seed in range(first, first + 20)}

@@ -62,6 +62,7 @@ def gradient(accelerations, angles):
     return np.linalg.lstsq(powers, angles, rcond=None)[0][1]
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.long
 @pytest.mark.parametrize("word", ["bushing", "rigid"])
 def test_the_understeer_gradient_is_that_of_the_axles(word):

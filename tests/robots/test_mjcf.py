@@ -61,6 +61,7 @@ def _public(name):
     return Path(gymnasium.__file__).parent / "envs" / "mujoco" / "assets" / f"{name}.xml"
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.long
 @pytest.mark.parametrize("seed", [0, 1])
 def test_accelerations_with_every_kind_of_joint_and_actuator(tmp_path, seed):

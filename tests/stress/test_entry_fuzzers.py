@@ -6,7 +6,7 @@ from stiffmbs.stress.case import Outcome
 from stiffmbs.stress.fuzzers import fmu, injections
 from stiffmbs.studies.fmu import stepping
 
-MANY = (pytest.mark.long, pytest.mark.sampled(3))
+MANY = (pytest.mark.long, pytest.mark.sampled(5))
 
 
 @pytest.mark.parametrize("seed", [1, *(pytest.param(seed, marks=pytest.mark.long) for seed in (6, 20, 21, 22))])

@@ -37,6 +37,7 @@ def python(*arguments):
     return subprocess.run([sys.executable, *arguments], capture_output=True, text=True)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.long
 @pytest.mark.parametrize("cells", ["2 x 2 x 2", "4 x 4"])
 def test_a_lattice_stays_within_its_arrays(cells):

@@ -10,6 +10,7 @@ from stiffmbs.stress.case import Outcome
 from stiffmbs.stress.fuzzers import modes, stability, transfer
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("fuzzer", [modes, transfer])
 @pytest.mark.parametrize("seed", [pytest.param(seed, marks=pytest.mark.long) for seed in (7, 8, 16, 101)])
 def test_nothing_is_wrong(fuzzer, seed):

@@ -53,6 +53,7 @@ print(float(stiffmbs.sweep("scene.yaml", {"bodies.b.mass": [1.0]}, outputs=["fin
 """
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     ("file", "old", "new"),
     [("own.py", "-helper", "-2 * helper"), ("helper.py", "= 10", "= 20"), ("helper.py", "* x", "* x**3")],

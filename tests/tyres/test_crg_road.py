@@ -123,6 +123,7 @@ run: {duration: 1.5, output: 10 ms, rtol: 1e-8}
 """
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("bend", "filtered"),
     [

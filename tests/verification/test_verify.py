@@ -44,6 +44,7 @@ def example(name, *changes):
     return stiffmbs.load_scene(EXAMPLES / f"{name}.yaml", list(changes))
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.long
 @pytest.mark.parametrize(
     "problem", ["cart_pendulum", "half_car", "heavy_top", "spatial_slider_crank", "rolling_disc", "stick_slip"]
@@ -193,7 +194,7 @@ LONG = ("bricard", "bushing_axle", "car", "governor", "leaf_sprung_car", "quarte
 @pytest.mark.parametrize(
     "path",
     [
-        pytest.param(path, marks=(pytest.mark.long, pytest.mark.sampled(2)) if path.stem in LONG else (), id=path.stem)
+        pytest.param(path, marks=(pytest.mark.long, pytest.mark.sampled(5)) if path.stem in LONG else (), id=path.stem)
         for path in EXAMPLE_SCENES.values()
     ],
 )

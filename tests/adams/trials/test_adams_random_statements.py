@@ -17,7 +17,7 @@ def both(folder, seed):
 
 @pytest.mark.long
 @pytest.mark.parametrize("seed", range(12))
-@pytest.mark.sampled(3)
+@pytest.mark.sampled(7)
 def test_motion_and_reactions(tmp_path, seed):
     trial, found, history = both(tmp_path, seed)
     for k in range(len(trial.bodies)):
@@ -27,6 +27,7 @@ def test_motion_and_reactions(tmp_path, seed):
         near(table(found, name), wanted, 2e-4, max(np.abs(wanted).max(), 1e-3))
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.long
 @pytest.mark.parametrize("seed", range(100, 104))
 def test_a_sensor_ends_the_run_where_its_function_passes_the_value(tmp_path, seed):

@@ -49,7 +49,7 @@ def rubbing(i, j, arms, yokes):
 @pytest.mark.long
 @pytest.mark.parametrize("more", ["", ", YOKE=I_YOKE", ", YOKE=J_YOKE"])
 @pytest.mark.parametrize("kind", ["UNIVERSAL", "HOOKE"])
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(7)
 def test_both_arms_of_a_cross_rub_by_force_thrust_moment_and_preload(tmp_path, kind, more):
     base = euler(30, 70, 20)
     first, second = ARMS[kind]

@@ -7,7 +7,7 @@ from . import adams_joints as joints
 from .adams_oracle import Marker, Mechanism, Part, euler, tensor
 from .adams_trials import moves_alike, near, played, table
 
-pytestmark = pytest.mark.long
+pytestmark = [pytest.mark.long, pytest.mark.sampled(2)]
 
 WEIGHT = "ACCGRAV/KGRAV=-9.80665\n"
 TIMES = np.linspace(0, 1, 51)

@@ -72,7 +72,7 @@ def teeth(pinion, contact):
     ],
     ids=["in place", "in place, z backward", "across the axis", "across the axis, z backward", "too near"],
 )
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(7)
 def test_a_rack_on_a_turning_carrier(tmp_path, drawn, backward, swapped):
     """All parts and the reactions of all joints, those of the teeth on the pinion and on the rack.
 
