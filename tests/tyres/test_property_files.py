@@ -62,6 +62,7 @@ def test_unknown_keys_and_missing_weights_are_noted(read):
     assert "OWN1" in notes
     assert "friction ellipse" in notes
     assert "table [SHAPE]" in notes
+    assert "[UNITS]" not in notes  # no entry is a mass or an angle
 
 
 @pytest.mark.parametrize("kind", [60, 61, 62, 7, 21, 2012, 61.0, 51.5, 0, -5])

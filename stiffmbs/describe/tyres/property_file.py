@@ -177,11 +177,10 @@ def parse_properties(text: str, source: str) -> PropertyFile:
     if not sections:
         raise InputError(f"{source}: found no KEY = value, expected a file of tyre properties")
     tables = {f"[{name}]": Rows(line, tuple(numbers)) for name, (line, numbers) in rows.items()}
-    return PropertyFile(
-        source,
-        {name: Fields(f"[{name}]", "", own, DEFAULT_VALUES) for name, own in sections.items()},
-        Fields("table", "", tables),
-    )
+    found = {name: Fields(f"[{name}]", "", own, DEFAULT_VALUES) for name, own in sections.items()}
+    if "UNITS" in found:
+        found["UNITS"].request(*UNITS)  # also of dimensions that no entry has
+    return PropertyFile(source, found, Fields("table", "", tables))
 
 
 def _section(content: str, where: str) -> str:
