@@ -41,7 +41,14 @@ def no_search(monkeypatch):
     def far_away(system):
         count = len(zones_of(system).period)
         return Zones(
-            np.arange(count + 1), np.full(count, 1e300), np.zeros(count), np.zeros(count), np.empty(0, dtype=np.int64)
+            np.arange(count + 1),
+            np.full(count, 1e300),
+            np.zeros(count),
+            np.zeros(count),
+            np.empty(0, dtype=np.int64),
+            np.empty(0),
+            np.zeros(count, dtype=np.int64),
+            count,
         )
 
     monkeypatch.setattr(event_watch, "zones_of", far_away)

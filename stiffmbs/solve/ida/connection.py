@@ -29,7 +29,9 @@ JACOBIAN = Routine(
     MODULE, "jacobian", "int32(float64, float64, int64, int64, int64, int64, int64*, int64, int64, int64)"
 )
 LOOK_AT_START, LOOK_WITHIN = together(
-    "stiffmbs.solve.native.event_search.ida_events", look_at_start="int32(float64, int64*)", look_within="int32(int64*)"
+    "stiffmbs.solve.native.event_search.ida_events",
+    look_at_start="int32(float64, float64, int64*)",
+    look_within="int32(int64*)",
 )
 SWITCHES = Routine(MODULE, "event_functions", "int32(float64, int64, int64, float64*, int64*)")
 

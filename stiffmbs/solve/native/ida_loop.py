@@ -123,7 +123,7 @@ def stepped(c, ida, toward, stop):
     begun = c.returned
     c.within = 0
     if c.look_at_start:
-        call_int(c.look_at_start, (stop, ida))
+        call_int(c.look_at_start, (toward, stop, ida))
     _see_inputs(c, stop)
     flag = call_int(c.solve, (c.memory, toward, address_of(c.returned), c.y, c.yp, int32(ONE_STEP)))
     if flag == STOP_RETURN and c.returned < stop:

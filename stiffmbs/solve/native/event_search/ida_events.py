@@ -51,14 +51,14 @@ FIRST_STEP = 1e-3
 
 
 @compiled
-def _note_sides(c, w, s, stop):
+def _note_sides(c, w, s, toward):
     """Find the sides to which functions go that are zero at the start, as IDA's search for roots is to see them."""
     count = w.n_event_functions
     for k in range(count):
         w.a[k] = float(w.value_before[k] > 0.0) - float(w.value_before[k] < 0.0)
     begin_sides(w.m, w.m2, count)
-    most = START_DIFFERENCE / FIRST_STEP * (stop - c.returned)
-    ahead = max(SHORTEST * (stop - c.returned), ROUNDINGS * abs(c.returned))
+    most = START_DIFFERENCE / FIRST_STEP * (toward - c.returned)
+    ahead = max(SHORTEST * (toward - c.returned), ROUNDINGS * abs(c.returned))
     while ahead <= most:
         go_ahead(c, s, ahead)
         if note_sides(w.a, evaluate(s, SWITCH, c.returned + ahead), w.m, w.m2, count) == 0:
@@ -70,14 +70,14 @@ def _note_sides(c, w, s, stop):
     leave_zero(w.value_before, w.a, count)
 
 
-def look_at_start(stop, ida):
-    """Where the integrator starts anew, look at the event functions there."""
+def look_at_start(toward, stop, ida):
+    """Look at the event functions where the integrator starts anew: the next output point is at `toward`, the next breakpoint at `stop`."""
     c = native_ida_view(ida)
     w = event_search_view(c.watch)
     if not w.ready:
         w.ready = 1
         w.begun = c.returned
-        ahead = max(START_DIFFERENCE * (stop - c.returned), ROUNDINGS * abs(c.returned))
+        ahead = max(START_DIFFERENCE * (toward - c.returned), ROUNDINGS * abs(c.returned))
         s = state_view(c.state)
         load(s, equations_view(c.equations), array_of(c, c.y), array_of(c, c.yp))
         c.seen = UNSEEN
@@ -86,11 +86,11 @@ def look_at_start(stop, ida):
         go_straight(c, s, ahead)
         noted_rates(w.rate_before, w.value_before, evaluate(s, SWITCH, c.returned + ahead), ahead, w.n)
         if at_zero(w.value_before, w.n_event_functions) > 0:
-            _note_sides(c, w, s, stop)
+            _note_sides(c, w, s, toward)
         if w.n_turns > 0:
             w.longest = longest_by_turns(w, w.rate_before, TURNED)
         w.target = float("inf")
-        bound_passage(c, w, s, stop)
+        bound_passage(c, w, s, toward, stop)
     return int32(OK)
 
 

@@ -30,7 +30,7 @@ WORTH = 1.0
 
 
 @compiled
-def bound_passage(c, w, s, stop):
+def bound_passage(c, w, s, toward, stop):
     """Bound steps up to where the motion, going on with the accelerations at the start, leaves a law again.
 
     The first step is bounded where the forces of the passage would change an unknown by more than its tolerance. Every step of the passage is
@@ -40,7 +40,7 @@ def bound_passage(c, w, s, stop):
     if c.returned < w.begins:
         w.begins = c.returned
     w.passage, w.first = float("inf"), float("inf")
-    ahead = _passage(c, w, s, stop)
+    ahead = _passage(c, w, s, toward, stop)
     if ahead > 0.0:
         w.passed = c.returned + ahead
         if w.n_turns > 0 or not w.under_way:
@@ -53,10 +53,10 @@ def bound_passage(c, w, s, stop):
 
 
 @compiled
-def _passage(c, w, s, stop):
+def _passage(c, w, s, toward, stop):
     """Return the time after which the motion leaves a law; 0 where it does not before long."""
-    ahead = START_DIFFERENCE * (stop - c.returned)
-    most = stop - c.returned if w.n_turns > 0 else SOON * (stop - c.returned)
+    ahead = START_DIFFERENCE * (toward - c.returned)
+    most = stop - c.returned if w.n_turns > 0 else SOON * (toward - c.returned)
     while ahead < most and not _another_side(c, w, s, ahead):
         ahead *= 2.0
     if not ahead < most:
