@@ -17,7 +17,8 @@ MOST_OUTPUTS = 10_000_000
 """Output times of a run; a body and a joint take 2 GB at so many, in a temporary file."""
 FEWEST_APART, ROUNDINGS_APART = 1000, 2e-14
 """Stretches of time that a run must be able to tell apart, and how long each must be, relative to the times themselves."""
-
+SHORTEST = 1e-100
+"""Shortest duration, s: products of shorter steps underflow."""
 UNCOUNTED = 1e300
 
 
@@ -139,6 +140,8 @@ class RunSettings(Described):
     @model_validator(mode="after")
     def _told_apart(self) -> RunSettings:
         """Two output points must differ by more than the rounding of the time itself."""
+        if self.duration < SHORTEST:
+            raise ValueError(f"duration: found {self.duration:.3g} s, expected {SHORTEST:.0e} s or more")
         count = self.points - 1 if isinstance(self.points, int) else FEWEST_APART
         spacing = min(self.duration, self.output or self.duration / count)
         least = ROUNDINGS_APART * max(abs(self.start), abs(self.start + self.duration))

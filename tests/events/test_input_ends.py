@@ -87,3 +87,8 @@ def test_output_points_that_numbers_cannot_tell_apart_are_refused():
 def test_a_run_much_shorter_than_its_output_spacing_has_both_ends():
     solution = stiffmbs.run(sled(force="1"), duration=1e-12, output=0.1)
     np.testing.assert_array_equal(solution.time, [0.0, 1e-12])
+
+
+def test_a_duration_whose_steps_underflow_is_refused(examples):
+    with pytest.raises(stiffmbs.errors.InputError, match=r"duration: found 9\.99e-321 s, expected 1e-100 s or more"):
+        stiffmbs.run(stiffmbs.load_scene(examples / "cart_pendulum.yaml"), duration=1e-320)
