@@ -90,5 +90,5 @@ def test_a_run_much_shorter_than_its_output_spacing_has_both_ends():
 
 
 def test_a_duration_whose_steps_underflow_is_refused(examples):
-    with pytest.raises(stiffmbs.errors.InputError, match=r"duration: found 9\.99e-321 s, expected 1e-100 s or more"):
+    with pytest.raises(stiffmbs.errors.InputError, match=r"duration: found 1e-320 s, expected 1e-100 s or more"):
         stiffmbs.run(stiffmbs.load_scene(examples / "cart_pendulum.yaml"), duration=1e-320)
