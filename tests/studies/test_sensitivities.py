@@ -282,3 +282,18 @@ def test_a_vibration_that_no_step_resolves_is_refused():
     scene = stiffmbs.read_scene(AT_REST.format(law="A - k*b.x", k=5e4, v=0))
     with pytest.raises(SolverError, match="102400 steps do not resolve how 'final"):
         stiffmbs.sensitivities(scene, "A", "final(b.x)")
+
+
+def test_an_event_of_an_algebraic_state_takes_the_law_behind_it():
+    """The branch has another value at zero than on both sides; the time of the event changes by -1/z'(0) with the start."""
+    start = -0.0685166
+    scene = stiffmbs.read_scene(f"""
+gravity: [0, 0]
+parameters: {{start: {start}}}
+bodies: {{b: {{mass: 1, inertia: 1}}}}
+states: {{p: {{zero: "2*p - z", start: 0}}, z: {{rate: "0.2 - p*z", start: start}}}}
+forces: {{f: {{type: force, i: b, force: ["branch(p + 0.0124121, 15.9, 0, 6.5)", 0]}}}}
+run: {{duration: 0.5, points: 3}}
+""")
+    found = sensitivities(scene, of="final(b.vx)", to="start")
+    assert found.to["start"] == pytest.approx(-(15.9 - 6.5) / (0.2 - start**2 / 2), rel=1e-4)

@@ -216,8 +216,12 @@ class Jumps:
 
     def _start(self, segment: Segment, ahead: float) -> State:
         """The start of a segment, by the law that holds from there on: a little ahead, as at the very instant any law may."""
-        at = self._state(segment.first[0], segment.start.q, segment.start.u)
-        return self._state(at.t + ahead, at.q + ahead * at.q_rates, at.u + ahead * at.acceleration)
+        at, system = self._state(segment.first[0], segment.start.q, segment.start.u), self._dynamics.system
+        q_rates = at.q_rates.copy()
+        algebraic = system.algebraic_coordinates
+        if len(algebraic):
+            q_rates[algebraic] = self._block.motion(at.t, at.q, at.u, at.q_rates, at.acceleration).q[0, algebraic]
+        return self._state(at.t + ahead, at.q + ahead * q_rates, at.u + ahead * at.acceleration)
 
     def _state(self, t: float, q: np.ndarray, u: np.ndarray) -> State:
         dynamics = self._dynamics
