@@ -19,21 +19,12 @@ WHAT = "force laws over a displacement, angle, velocity or state (windows, perio
 SOLVERS: tuple[dict[str, Any], ...] = (
     {"solver": "bdf"}, {"solver": "projected", "scheme": "dop853"}, {"solver": "projected", "scheme": "dopri5"}, {"solver": "auto"},
 )  # fmt: skip
-LOOSEST = {"projected": 4}
-"""Exponents of the loosest tolerances, where these are not 2: explicit steps over a narrow peak are within a looser tolerance whatever they see."""
-LEAST, OF_WINDOW, STEPS, OF_STEP = 2e-4, 5e-3, 100.0, 10.0
-"""Error of an impulse or work that is right: the least one of a periodic law, which is a fifth of one of its features, and of a single window; the
-least number of steps, and the relative tolerances for each step."""
-MOST, OF_TOLERANCE, LOST = 0.02, 100.0, 0.1
-"""Largest such error: the least and the largest limit, between which it is so many relative tolerances, as in the note on errors of a run."""
+LEAST, OF_TOLERANCE, MOST = 2e-4, 200.0, 0.01
+"""Error of an impulse or work that is right: the least one, in relative tolerances (or one for each step), and the most besides twice that."""
 FASTER = 1.5
 """Times its speed at the start that a mass moves at most: its work is at most half of m v^2."""
-OF_OWN = 200.0
-"""Least width of a window over the own position, in relative tolerances: an error of the position moves the edges of the window."""
 UNRESOLVED = "cannot be resolved"
 """Words of the note on laws that change faster than steps are taken."""
-ADD_UP = "errors of the steps may add up"
-"""Words of the note on errors of a run."""
 
 
 class Moving(NamedTuple):
@@ -48,9 +39,10 @@ class Moving(NamedTuple):
 def trial(seed: int) -> Verdict:
     """One random law: pushing a free mass while its argument moves by itself, or over the position of that mass."""
     rng = np.random.default_rng(seed)
-    solver = SOLVERS[rng.integers(len(SOLVERS))]
-    loosest = LOOSEST.get(solver["solver"], 2)
-    how = solver | {"rtol": float(10.0 ** -rng.integers(loosest, 10)), "points": int(rng.choice([2, 11, 200]))}
+    how = SOLVERS[rng.integers(len(SOLVERS))] | {
+        "rtol": float(10.0 ** -rng.integers(2, 10)),
+        "points": int(rng.choice([2, 11, 200])),
+    }
     return _own(rng, how) if rng.uniform() < 0.3 else _driven(rng, how)
 
 
@@ -71,7 +63,6 @@ def _own(rng: np.random.Generator, how: dict[str, Any]) -> Verdict:
     space, duration, start = bool(rng.integers(2)), float(10.0 ** rng.uniform(-1, 2)), float(rng.choice([0.0, 0.3]))
     length = FASTER * duration
     law = (periodic if rng.uniform() < 0.6 else single_window)(rng, start, length)
-    how = how | {"rtol": min(how["rtol"], law.parameters.get("width", 1.0) / OF_OWN)}
     size = float(rng.uniform(0.05, 0.5)) / law.integral(start, start + length)
     zeros = [0.0] * (2 if space else 1)
     scene = _scene(law, "b.x", size, space, {})
@@ -109,10 +100,9 @@ def _judged(
         error = abs(0.5 * found**2 - 0.5 - work) / max(work, 0.5)
     else:
         error = abs(found - expected)
-    of_steps = OF_STEP * max(STEPS, float(solution.solver["steps"])) * how["rtol"]
-    least = OF_WINDOW if "width" in law.parameters else LEAST
-    allowed = least + min(of_steps, max(MOST, min(OF_TOLERANCE * how["rtol"], LOST)))
-    if error > allowed and any(words in note for note in solution.notes for words in (UNRESOLVED, ADD_UP)):
+    of_tolerance = max(OF_TOLERANCE, float(solution.solver["steps"])) * how["rtol"]
+    allowed = LEAST + min(of_tolerance, MOST) + 2.0 * how["rtol"]
+    if error > allowed and any(UNRESOLVED in note for note in solution.notes):
         return told("; ".join(solution.notes), ())
     return measured(error, allowed, f"{solution.solver['steps']} steps, found {found:.6g}, {detail}")
 

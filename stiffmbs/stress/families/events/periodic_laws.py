@@ -134,7 +134,7 @@ NARROW = tuple(
     _case(
         f"narrow bump {sharpness} over a velocity at {rtol:.0e}",
         Periodic(f"exp({sharpness}*(sin(A) - 1))", _bump(sharpness), "velocity"),
-        solver, EXPLICIT[solver] | {"rtol": rtol}, max(ALLOWED[0], 20 * rtol),
+        solver, EXPLICIT[solver] | {"rtol": rtol}, ALLOWED[0],
     )
     for sharpness in (2079, 4000) for solver in ("dopri5", "dop853") for rtol in (1e-4, 1e-5, 1e-6, 1e-7)
 )  # fmt: skip
