@@ -68,7 +68,7 @@ class Integration:
         cells["longest"], cells["stable"] = settings.max_step or np.inf, np.inf
         cells["shortest"] = SHORTEST_PART * (grid.end - grid.start)
         cells["t"] = cells["t_before"] = grid.start
-        cells["h"] = settings.step
+        cells["h"], cells["repeats"] = settings.step, 1.0
         self.begin(start)
 
     @property

@@ -14,6 +14,7 @@ from stiffmbs.solve.native.event_search.bounds import (
     note_unresolved,
     noted,
     noted_rates,
+    repeats,
     shift_ends,
     suspicious,
     turned_arguments,
@@ -342,6 +343,7 @@ def _ended_at_event(x, c, s, m):
     status = _taken_to_event(x, c, s, m, h, behind)
     w = event_search_view(x.watch)
     if status == NO_EVENT:
+        _note_repeats(x, w, 0)
         copied(x.signs, w.value_after, x.n_event_functions)
         shift_ends(w)
         if w.n_turns > 0:
@@ -355,10 +357,22 @@ def _ended_at_event(x, c, s, m):
         return _gone_back(x, c, x.span * MOST_TURNED / turned_arguments(w, w.value_before, w.value_after))
     error = trusted_error(x, c, x.span) if status == 0 else UNTRUSTED
     if not error <= MOST_ERROR:
-        return _gone_back(x, c, x.span * max(LEAST_FACTOR, 0.9 * error**-c.exponent))
-    _go_past(x, c, _way_past(x, c, s, 2.0 * behind, FARTHEST_PAST * h))
+        shorter = x.span * max(LEAST_FACTOR, 0.9 * error**-c.exponent)
+        if shorter >= x.shortest:
+            return _gone_back(x, c, shorter)
+    _note_repeats(x, w, 1)
+    _go_past(x, c, _way_past(x, c, s, 2.0 * behind, max(FARTHEST_PAST * h, x.shortest)))
     x.at_event = IN_ANOTHER_ZONE if _goes_on(x, s) else AT_ANOTHER_LAW
     return 0
+
+
+@compiled
+def _note_repeats(x, w, events):
+    """Note how often laws repeat that end a step in each turn: the errors of their turns add up."""
+    if w.n_turns > 0:
+        w.begins = min(w.begins, x.t_before)
+        w.narrow += events
+        x.repeats = repeats(w, x.t, False)
 
 
 @compiled
