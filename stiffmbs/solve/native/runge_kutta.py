@@ -137,7 +137,7 @@ def _step(x, c, s, m, end):
 
 @compiled
 def _shortest_to_event(x, c, s, m, explicit):
-    """The last step that was tried, up to an event in it; 0 or a negative status (the state is then as before).
+    """The last step that was tried, up to an event in it; 0, `RETRIED`, or a negative status (the state is then as before).
 
     A step over a jump has an error of its length times the jump.  A motion that is closer to the jump than the shortest step
     comes to it by no step that the error allows.
@@ -145,6 +145,8 @@ def _shortest_to_event(x, c, s, m, explicit):
     status = retaken(x, c, s, m, x.span) if x.span > 0.0 else STEP_TOO_SMALL
     if status == 0:
         status = call_int(x.end_at_event, (explicit,))
+    if status == RETRIED:
+        return status
     if status == 0 and x.at_event:
         x.at_event = AT_ANOTHER_LAW
         return 0
