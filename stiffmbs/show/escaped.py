@@ -84,6 +84,8 @@ def console(**options: Any) -> Console:
     from rich.segment import Segment
 
     class EscapingConsole(Console):
+        """Console that escapes text as it prints; control codes are unchanged."""
+
         def render(self, *arguments: Any, **keywords: Any) -> Iterator[Segment]:
             for segment in super().render(*arguments, **keywords):
                 yield segment if segment.control else segment._replace(text=escaped(segment.text))

@@ -209,6 +209,17 @@ def test_a_peak_is_seen_that_lies_before_another_place_of_its_zones(rtol):
     assert found == pytest.approx(np.sqrt(1 + 2 * size * width * np.pi / 4), abs=0.01)
 
 
+@pytest.mark.parametrize(("zones", "turns"), [(8, True), (9, False)])
+def test_a_periodic_table_of_few_zones_turns(zones, turns):
+    """Its features are long beside the period, as those of a sine are; features of a table of more zones bound steps by themselves."""
+    heights = [(-1) ** k * k for k in range(zones)]
+    table = {"lines": True, "ends": "periodic", "table": [[k, float(y)] for k, y in enumerate([*heights, heights[0]])]}
+    found = zones_of(compile_model(pushed(table, velocity=1.0)))
+    assert len(found.edges) == zones
+    assert found.turns.tolist() == [0] * turns
+    assert found.radians.tolist() == pytest.approx([2 * np.pi / zones] * turns)
+
+
 TEETH = "{lines: true, ends: periodic, table: [[0, 0], [0.7, 0], [0.85, 1], [1, 0]]}"
 
 

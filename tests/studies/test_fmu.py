@@ -176,7 +176,7 @@ STARTS = """
 import json, os, sys
 from fmpy import simulate_fmu
 print(json.dumps([float(simulate_fmu(path, stop_time=0.01, step_size=0.01)["where"][0]) for path in sys.argv[1:]]), flush=True)
-os._exit(0)  # one process in ten ends in "free(): corrupted unsorted chunks" when its libraries are unloaded
+os._exit(0)  # at exit, PythonFMU 0.7.0 deletes a static object after its destructor: "free(): corrupted unsorted chunks"
 """
 
 

@@ -207,6 +207,8 @@ class _Builder:
         pressed = self.reactions(name, reactions)
 
         def names(variables: tuple[sp.Expr, ...]) -> Callable[[str], sp.Expr]:
+            """Return the function that gives the symbols of names."""
+
             def value(word: str) -> sp.Expr:
                 """The symbol or expression that a name stands for."""
                 owner, _, coordinate = word.partition(".")
@@ -251,6 +253,8 @@ class _Builder:
         """The functions of formulas; those with breakpoints note where they are, if it is in the state."""
 
         def noting(name: str, function: FormulaFunction) -> Any:
+            """Return a function that notes its breakpoints or its law."""
+
             def turning(argument: sp.Expr) -> sp.Expr:
                 self.symbols.note_law(argument, "turn")
                 return SMOOTH[name](argument)

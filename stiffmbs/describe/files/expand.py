@@ -247,6 +247,7 @@ def _filled(where: str, value: Any, names: Mapping[str, Quantity], variable: str
         return value
 
     def number(match: re.Match[str]) -> str:
+        """Return the value of the expression in braces as text."""
         try:
             result = quantity(match[1], names).value
         except FormulaError as error:

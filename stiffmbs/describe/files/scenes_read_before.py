@@ -109,6 +109,7 @@ class _Pickler(pickle.Pickler):
     """Keeps what was validated with a scene, and refuses classes and functions of other packages."""
 
     def reducer_override(self, found: Any) -> Any:
+        """Refuse classes and functions of other packages, and keep unchanged values."""
         if isinstance(found, type | FunctionType) and found.__module__.partition(".")[0] not in OF_SCENES:
             raise pickle.PicklingError(f"found {found!r}, expected what is of this package")
         if isinstance(found, Unchanged):

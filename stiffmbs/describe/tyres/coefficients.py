@@ -128,6 +128,7 @@ class TyreProperties(Component):
         return self.use_mode is not None and self.use_mode < 0
 
     def in_equations(self) -> dict[str, Any]:
+        """Return the names and values that the equations use."""
         mode = 4 if self.use_mode is None else abs(self.use_mode) % WITH_LENGTHS
         own = {
             "is_combined": self.is_combined, "mode": str(mode), "is_mirrored": self.is_mirrored, "side": self.side,
@@ -136,6 +137,7 @@ class TyreProperties(Component):
         return {**DEFAULTS, **self.coefficients, **own}
 
     def notes(self) -> Iterator[str]:
+        """Yield sentences on settings that the equations do not use."""
         yield from self.remarks
         if self.use_mode is not None and abs(self.use_mode) > WITH_LENGTHS and not self.has_lengths:
             yield f"USE_MODE = {self.use_mode} asks for relaxation lengths, and there are none (PTX1, PTY1): slips are those of the steady state"

@@ -219,6 +219,7 @@ def _run(session: Session) -> tuple[int, bytes, bytes]:
     """Run a session; return exit status, standard output and standard error."""
 
     def limited() -> None:
+        """Restore the interrupt and limit the size of files in the child process."""
         signal.signal(signal.SIGINT, signal.SIG_DFL)
         if session.limit is not None:
             import resource

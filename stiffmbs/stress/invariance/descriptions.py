@@ -96,6 +96,7 @@ def as_one_body(content: Content, rng: np.random.Generator) -> Change:
     found = reframed({**content, "joints": rest}, frames, others)
 
     def back(channels: Channels, _: np.ndarray) -> Channels:
+        """Return the channels of the first body from those of the whole."""
         if f"{first}.x" not in channels:
             return channels
         kept = {name: series for name, series in channels.items() if name not in _accelerations(first)}

@@ -85,6 +85,7 @@ def _replace(velocity: np.ndarray, dimensions: int) -> Any:
     axes = "xyz"[:dimensions]
 
     def replace(node: ast.expr) -> str | None:
+        """Return the text of a coordinate or measure relative to the moving ground; None to keep it."""
         coordinate, call = coordinate_of(node), call_of(node)
         if coordinate:
             body, name = coordinate

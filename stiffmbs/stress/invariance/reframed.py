@@ -122,6 +122,7 @@ def _replace(frames: dict[str, Frame]) -> Callable[[ast.expr], str | None]:
     """Return the substitution for coordinates and measures of bodies in other frames."""
 
     def replace(node: ast.expr) -> str | None:
+        """Return the measure that replaces a coordinate, or a measure of other markers; None to keep it."""
         coordinate, call = coordinate_of(node), call_of(node)
         if coordinate and coordinate[0] in frames:
             return _measure(coordinate[0], coordinate[1], frames[coordinate[0]])

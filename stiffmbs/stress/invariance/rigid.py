@@ -117,6 +117,7 @@ class _Moved(Mapper):
         return replaced(value, self._replace)
 
     def marker(self, value: Any) -> Any:
+        """Place a marker of the ground in the moved axes."""
         if value == GROUND:
             return f"{GROUND}.{LAB}"
         if isinstance(value, dict) and value["body"] == GROUND:
@@ -156,6 +157,7 @@ def _replace(placing: Placing) -> Any:
         return "(" + " + ".join(f"({float(part)!r})*{name}" for part, name in zip(column, names, strict=True)) + ")"
 
     def replace(node: ast.expr) -> str | None:
+        """Return the text of a coordinate, measure or reaction in the axes before the motion; None to keep it."""
         coordinate, call = coordinate_of(node), call_of(node)
         if coordinate:
             body, name = coordinate

@@ -76,6 +76,7 @@ class _Scaled(Mapper):
         self._content, self._units, self._replace = content, units, replace
 
     def number(self, value: Any, measured: Measured, owner: Content) -> Any:
+        """Return a number in the new units."""
         if value is None:
             return None
         dimension = DIMENSIONS[measured.dimension][0]
@@ -84,6 +85,7 @@ class _Scaled(Mapper):
         return value * self._units.factor(dimension)
 
     def formula(self, value: Any, kind: FormulaOf, owner: Content) -> Any:
+        """Return a formula or a table in the new units, of arguments in the new units."""
         dimension = DIMENSIONS[kind.dimension][0] if kind.dimension != ANY else self._of_formula(value, owner)
         factor = self._units.factor(dimension)
         own = {
@@ -173,6 +175,7 @@ def _replace(units: Units, states: set[str]) -> Any:
     """Return the substitution for quantities with units."""
 
     def replace(node: ast.expr) -> str | None:
+        """Return the text of a quantity in the old units; None to keep it."""
         coordinate, call = coordinate_of(node), call_of(node)
         label = coordinate[1] if coordinate else call[0] if call else ""
         if is_time(node):

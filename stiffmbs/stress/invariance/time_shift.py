@@ -19,6 +19,8 @@ def shifted(content: Content, start: float) -> Change:
         return f"(t - ({start!r}))" if is_time(node) else None
 
     class Later(Mapper):
+        """Replace the time in formulas that may contain it."""
+
         def formula(self, value: Any, kind: FormulaOf, owner: Content) -> Any:
             return replaced(value, replace) if kind.time else value
 

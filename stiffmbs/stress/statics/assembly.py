@@ -182,6 +182,7 @@ def equilibria(
     ground = Pose(np.zeros(3), np.eye(3))
 
     def poses(x: np.ndarray) -> dict[str, Pose]:
+        """Return the poses of all bodies for the unknowns."""
         found = {GROUND: ground}
         for k, name in enumerate(names):
             moved = x[6 * k : 6 * k + 6]
@@ -189,7 +190,10 @@ def equilibria(
         return found
 
     def residual(load: float) -> Callable[[np.ndarray], np.ndarray]:
+        """Return the residual for a load factor."""
+
         def of(x: np.ndarray) -> np.ndarray:
+            """Return sums of forces and moments, and violations of the constraints."""
             wrenches, violations = Wrenches(poses(x)), []
             at = 6 * len(names)
             for part in parts:

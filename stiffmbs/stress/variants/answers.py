@@ -17,6 +17,7 @@ def refused(name: str, what: str, action: Callable[[], object], *words: str) -> 
     """Return a case that must end in an error with these words."""
 
     def judge() -> Verdict:
+        """Return the verdict on the error."""
         try:
             found = action()
         except StiffmbsError as refusal:
@@ -30,6 +31,7 @@ def said(name: str, what: str, text: Callable[[], str], *words: str, without: tu
     """Return a case whose text must have these words; without any, it must be without some others."""
 
     def judge() -> Verdict:
+        """Return the verdict on the text."""
         found = text()
         false = [word for word in without if word in found]
         if false:

@@ -71,7 +71,7 @@ def _note_sides(c, w, s, toward):
 
 
 def look_at_start(toward, stop, ida):
-    """Look at the event functions where the integrator starts anew: the next output point is at `toward`, the next breakpoint at `stop`."""
+    """Look at the event functions where IDA restarts: the next output point is at `toward`, the next breakpoint at `stop`."""
     c = native_ida_view(ida)
     w = event_search_view(c.watch)
     if not w.ready:

@@ -47,6 +47,7 @@ def difference(force: str, space: bool, more: dict[str, Any], name: str, of: str
     slope = sensitivities(cart(force, space, {}, more), [name], of).to[name]
 
     def quotient(h: float) -> float:
+        """Return the central difference of the output of runs."""
         above, below = (
             float(output.value(run(cart(force, space, {name: value + shift}, more), rtol=1e-11, solver="bdf")))
             for shift in (h, -h)
@@ -69,6 +70,7 @@ def past_a_bound(over: float) -> float:
     scene = cart(f"{PLAIN} + branch(-cart.x - A + ({over!r}), 0, 0, F)", False, {}, {})
 
     def end(k: float) -> float:
+        """Return x(1 s) of the closed form."""
         w = np.sqrt(k / 2)
         first = np.arccos(-1 + over / 0.1) / w
         x, v, middle = -0.1 + over, -0.1 * w * np.sin(w * first), 20 / k
