@@ -255,6 +255,8 @@ def test_an_event_nearer_than_rounding_of_a_state_is_passed(rtol):
     p = solution["p"]
     angles = rate * np.linspace(p[0], p[0] + 0.8 * speed, 2) + phase
     half = np.arccos(level)
-    centres = np.arange(np.ceil((angles[0] - np.pi / 2) / (2 * np.pi)), np.floor((angles[1] - np.pi / 2) / (2 * np.pi)) + 1)
+    centres = np.arange(
+        np.ceil((angles[0] - np.pi / 2) / (2 * np.pi)), np.floor((angles[1] - np.pi / 2) / (2 * np.pi)) + 1
+    )
     assert solution.success
     assert solution["b.vx"][-1] == pytest.approx(167 * len(centres) * 2 * half / (rate * speed), rel=1e-7)
