@@ -107,7 +107,7 @@ def _step(x, c, s, m, end):
             return STEP_TOO_SMALL
         status = attempt(x, c, s, m, h)
         x.span = h
-        error = max(x.repeats, 1.0) * trusted_error(x, c, h) if status == 0 else 0.0
+        error = x.repeats * trusted_error(x, c, h) if status == 0 else 0.0
         if not isfinite(error):
             status = NOT_FINITE
         if status == 0 and error <= 1.0:
