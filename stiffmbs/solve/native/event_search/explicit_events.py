@@ -355,7 +355,7 @@ def _ended_at_event(x, c, s, m):
         return status
     if status == TURNED_TOO_FAR:
         return _gone_back(x, c, x.span * MOST_TURNED / turned_arguments(w, w.value_before, w.value_after))
-    error = trusted_error(x, c, x.span) if status == 0 else UNTRUSTED
+    error = x.repeats * trusted_error(x, c, x.span) if status == 0 else UNTRUSTED
     if not error <= MOST_ERROR:
         shorter = x.span * max(LEAST_FACTOR, 0.9 * error**-c.exponent)
         if shorter >= x.shortest:
