@@ -8,6 +8,7 @@ from click.testing import CliRunner
 
 import stiffmbs
 from stiffmbs.adams.export.dataset_text import dataset_text
+from stiffmbs.adams.export.statements import statement
 from stiffmbs.adams.load import read_adams
 from stiffmbs.commands.main import main
 from stiffmbs.errors import InputError
@@ -153,3 +154,10 @@ def test_joints_that_are_no_joint_of_adams_are_refused_by_name(joints, said):
     )
     with pytest.raises(InputError, match=said):
         dataset_text(stiffmbs.read_scene(f"{text}\njoints: {{{joints}}}\n"))
+
+
+@pytest.mark.parametrize("operator", ["**", "1.5E+16*"])
+def test_a_line_ends_within_no_operator_and_no_number(operator):
+    for width in range(60, 90):
+        written = statement("SFORCE", 1, f"FUNCTION = {'x' * width}{operator}3")
+        assert operator in written

@@ -7,7 +7,8 @@ from collections.abc import Iterable
 
 WIDTH = 76
 """Signs to a line; Adams/Solver reads 80."""
-_CUT = re.compile(r"(?<=[,*/+)])")
+_CUT = re.compile(r"(?<=[,*/+)])(?<!\dE\+)(?!\*)")
+"""Neither within ** nor within an exponent."""
 
 
 def number(value: float) -> str:
