@@ -29,13 +29,13 @@ ARM = """
   <actuator>
     <motor name="m1" joint="a" gear="7" group="1" ctrllimited="true" ctrlrange="-1 1"/>
     <position name="m2" joint="a" kp="15" group="2"/>
-    <motor name="m3" tendon="belt" gear="5" group="3" forcelimited="true" forcerange="-3 2.5"/>
+    <motor name="m3" tendon="belt" gear="5" group="3" forcelimited="true" forcerange="{m3}"/>
     <motor name="m4" tendon="belt" gear="2" group="0"/>
     <motor name="m5" joint="c" group="4"/>
   </actuator>
 </mujoco>
 """
-PLAIN = dict.fromkeys(("option", "flag", "a", "b", "belt"), "") | {"free": "0"}
+PLAIN = dict.fromkeys(("option", "flag", "a", "b", "belt"), "") | {"free": "0", "m3": "-3 2.5"}
 VARIANTS = {
     "plain": {},
     "joint range above": {"a": 'actuatorfrcrange="-2 1.5"'},
@@ -45,6 +45,7 @@ VARIANTS = {
     "range not limited": {"a": 'actuatorfrclimited="false" actuatorfrcrange="-2 1.5"'},
     "tendon": {"belt": 'actuatorfrcrange="-1 1.2"'},
     "tendon and joint": {"belt": 'actuatorfrcrange="-1 1.2"', "b": 'actuatorfrcrange="-0.4 0.4"'},
+    "tendon and actuator": {"belt": 'actuatorfrcrange="-0.5 0.4"', "m3": "-0.6 0.5"},
     "group 0": {"option": 'actuatorgroupdisable="0"'},
     "groups 1 and 3": {"option": 'actuatorgroupdisable="1 3"'},
     "group nobody has": {"option": 'actuatorgroupdisable="9"'},

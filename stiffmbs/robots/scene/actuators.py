@@ -51,7 +51,7 @@ def actuators(robot: Robot, mechanism: Mechanism) -> Actuators:
 
 
 def _force(found: Actuators, mechanism: Mechanism, transmission: Transmission, holds: list[tuple[Hold, float]]) -> str:
-    """Add the formula of a transmission's force and return its name."""
+    """Add the formula of a transmission's force, before its bounds where that of its tendon is bounded first, and return its name."""
     name = mechanism.names.take(f"{transmission.name}_force")
     length = " + ".join(f"{plain(gear)}*{hold.coordinate}" for hold, gear in holds)
     rate = " + ".join(f"{plain(gear)}*{hold.rate}" for hold, gear in holds)
@@ -60,12 +60,12 @@ def _force(found: Actuators, mechanism: Mechanism, transmission: Transmission, h
         u = _activation(found, mechanism, transmission)
         gain = _affine(transmission.gain, length, rate)
         force = f"{_times(gain, u)} + {force}" if force != "0" else _times(gain, u)
-    found.variables[name] = _within(force, transmission.force)
+    found.variables[name] = force if transmission.total else _within(force, transmission.force)
     return name
 
 
 def _of_total(transmission: Transmission, name: str, along: list[str]) -> str:
-    """Return the force of an actuator if the total force on its tendon is bounded.
+    """Return the force of an actuator; MuJoCo bounds the total force on a tendon before that of each actuator.
 
     Raises
     ------
@@ -75,7 +75,7 @@ def _of_total(transmission: Transmission, name: str, along: list[str]) -> str:
     if transmission.total is None:
         return name
     if len(along) == 1:
-        return _within(name, transmission.total)
+        return _within(_within(name, transmission.total), transmission.force)
     low, high = transmission.total
     if not low < 0 < high:
         raise RobotFault(
@@ -83,7 +83,7 @@ def _of_total(transmission: Transmission, name: str, along: list[str]) -> str:
             "expected one below and one above zero"
         )
     total = f"({' + '.join(along)})"
-    return f"{name}/max(1, {total}/{plain(high)}, {total}/({plain(low)}))"
+    return _within(f"{name}/max(1, {total}/{plain(high)}, {total}/({plain(low)}))", transmission.force)
 
 
 def _activation(found: Actuators, mechanism: Mechanism, transmission: Transmission) -> str:
