@@ -9,6 +9,7 @@ import pytest
 import stiffmbs
 from stiffmbs import InputError, SolverError, sensitivities
 from stiffmbs.studies.outputs import outputs_of
+from stiffmbs.studies.sensitivities.formulas import Formula
 
 SLED = """
 parameters: {k: 100 N/m, c: 1 N s/m, x0: 0.1 m, m: 2 kg}
@@ -297,3 +298,11 @@ run: {{duration: 0.5, points: 3}}
 """)
     found = sensitivities(scene, of="final(b.vx)", to="start")
     assert found.to["start"] == pytest.approx(-(15.9 - 6.5) / (0.2 - start**2 / 2), rel=1e-4)
+
+
+@pytest.mark.parametrize(("size", "slope"), [(1e-17, 0.0), (1e-12, 0.1)])
+def test_the_magnitude_of_what_is_zero_up_to_rounding_has_the_mean_of_both_slopes(size, slope):
+    t = np.linspace(0, 1, 11)
+    x = size * np.where(np.arange(11) < 6, 1.0, -1.0)
+    found = Formula("integral(abs(x))", t, {"x": x}).dual({"x": np.ones((11, 1))})
+    assert found.slope == pytest.approx([slope], abs=1e-12)

@@ -20,6 +20,8 @@ SELECTED = {
 is zero at a peak, so the shift of the peak does not contribute to the derivative."""
 SAME, ALIKE = 1e-12, 1e-6
 """Relative differences below which values, and derivatives at output times with the same value, are equal."""
+ZERO = 1e-14
+"""Magnitude, SI units, below which all values of a channel are rounding of zero."""
 WHOLE = ("rms", "mean", "integral")
 """Reductions of all instants."""
 
@@ -185,7 +187,7 @@ def _operated(operator: ast.operator, a: Dual, b: Dual) -> Dual:
 
 
 SLOPES: dict[str, Any] = {
-    "abs": lambda x: np.where(np.abs(x) > SAME * np.max(np.abs(x)), np.sign(x), 0.0), "sqrt": lambda x: 0.5 / np.sqrt(x), "exp": np.exp, "log": lambda x: 1 / x, "sin": np.cos,
+    "abs": lambda x: np.where(np.abs(x) > max(SAME * np.max(np.abs(x)), ZERO), np.sign(x), 0.0), "sqrt": lambda x: 0.5 / np.sqrt(x), "exp": np.exp, "log": lambda x: 1 / x, "sin": np.cos,
     "cos": lambda x: -np.sin(x), "tan": lambda x: 1 / np.cos(x) ** 2,
 }  # fmt: skip
 """Derivatives of the functions of one number; for ``abs`` near zero, the mean of both sides."""
