@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import numpy as np
@@ -106,6 +107,9 @@ def as_one_body(content: Content, rng: np.random.Generator) -> Change:
         with_vector(
             kept, first, ("vx", "vy", "vz"), vector(channels, first, ("vx", "vy", "vz")) + np.cross(spin, arm, axis=0)
         )
+        for key, body in _equations(rest, (first, second)).items():
+            own = (centres[1] if body == second else one) - centre
+            _about(kept, key, np.einsum("nij,j->in", axes_over_time(channels, first), own))
         return kept
 
     return Change(f"with {first} and {second} as one body", found, back)
@@ -138,6 +142,24 @@ def _composite(first: Content, masses: list[float], centres: list[np.ndarray], t
     velocity = three(first.get("velocity", [])) + own @ np.cross(three(np.atleast_1d(omega)), arm)
     whole = (whole + whole.T) / 2
     return found | {"inertia": whole.tolist(), "position": position.tolist(), "velocity": velocity.tolist()}
+
+
+def _equations(joints: Content, pair: tuple[str, str]) -> dict[str, str]:
+    """Return the equations on one of two bodies, with its name."""
+    found: dict[str, str] = {}
+    for key, joint in joints.items():
+        if joint["type"] in ("equation", "velocity_equation"):
+            named = [body for body in pair if re.search(rf"\b{re.escape(body)}\b", joint["zero"])]
+            found |= {key: named[0]} if len(named) == 1 else {}
+    return found
+
+
+def _about(channels: Channels, key: str, arm: np.ndarray) -> None:
+    """Replace the moment of a reaction by that about a point at `arm` from its point of reference, shape (3, n)."""
+    force: Any = vector(channels, key, ("fx", "fy", "fz"))
+    for label, part in zip("xyz", np.cross(arm, force, axis=0), strict=True):
+        if f"{key}.t{label}" in channels:
+            channels[f"{key}.t{label}"] = channels[f"{key}.t{label}"] - part
 
 
 def _placed(marker: Any) -> tuple[np.ndarray, np.ndarray]:
