@@ -53,7 +53,7 @@ EXPLICIT = Layout({
 event functions' values there, the stages k, one over the tolerance of each number in the last step tried, how many polynomials describe
 the last step (0: they are not made), the counters, the output times (none: every step), and memory for the rows and ends of steps that one call stores.  Where steps are to start anew
 `started` is 0: the state, its accelerations in the last stage, and `lam` are consistent values then.  `measured` is 1 where `halved` has the
-state that two steps of half the length lead to."""
+state that two steps of half the length lead to; `repeats` is how often laws repeat whose features end a step in each turn."""
 
 NATIVE_IDA = Layout({
     "state": INTS, "equations": INTS, "array_of": INT, "matrix": INT, "pattern": INTS,
