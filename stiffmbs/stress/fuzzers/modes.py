@@ -29,7 +29,7 @@ STEP = 1e-4
 ALLOWED = 1e-5
 """Allowed error of a rate relative to the largest one."""
 DIRECTIONS = 2
-SMALL, DURATION, RTOL = 3e-6, 0.2, 1e-10
+SMALL, DURATION, RTOL = 3e-6, 0.2, 1e-11
 """Displacement (relative to the size of the mechanism, or rad), duration (s) and tolerance of small motions."""
 OFF = 3e-2
 """Allowed error of a small motion relative to its size."""
