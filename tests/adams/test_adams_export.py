@@ -117,6 +117,7 @@ def test_requests_are_read_again():
         ("forces: {f: {type: force, i: a, force: [b.q1, 0, 0]}}", "forces.f: found 'b.q1'"),
         ("joints: {p: {type: revolute_spherical, i: a, j: b.end, length: 1}}", "joints.p: found a joint of the type revolute_spherical"),
         ("forces: {s: {type: bushing, i: a, j: b, axes: ground, stiffness: [1, 1, 1, 0, 0, 0]}}", "forces.s: .*ground's axes"),
+        ("forces: {s: {type: torsion_spring, i: a, j: b, spring_law: 2*s^3}}", "forces.s: found curves of a torsion spring between axes"),
     ],
 )  # fmt: skip
 def test_what_adams_has_no_statement_for_is_named(more, message):
@@ -161,3 +162,40 @@ def test_a_line_ends_within_no_operator_and_no_number(operator):
     for width in range(60, 90):
         written = statement("SFORCE", 1, f"FUNCTION = {'x' * width}{operator}3")
         assert operator in written
+
+
+@pytest.mark.parametrize(
+    "joints",
+    [
+        "{one: {type: revolute, i: a, j: b}}",
+        "{one: {type: planar, i: a, j: ground}, other: {type: parallel, i: {body: b, point: [1, 0, 0]}, j: ground}}",
+        "{one: {type: fixed, i: {body: a, orientation: {z: [1, 0, 0]}}, j: {body: c, orientation: {z: [1, 0, 0]}}}, other: {type: screw, i: c, j: b, pitch: 0.1}}",
+    ],
+)  # fmt: skip
+def test_curves_of_torsion_springs_are_written_where_joints_keep_the_axes_parallel(joints):
+    scene = stiffmbs.read_scene(f"""
+        dimensions: 3
+        bodies: {{a: {{mass: 1, inertia: [1, 1, 1]}}, b: {{mass: 1, inertia: [1, 1, 1]}}, c: {{mass: 1, inertia: [1, 1, 1]}}}}
+        joints: {joints}
+        forces: {{s: {{type: torsion_spring, i: a, j: b, spring_law: 2*s^3}}}}
+    """)
+    assert "FUNCTION = -(2*" in dataset_text(scene)
+
+
+@pytest.mark.parametrize(
+    "joints",
+    [
+        "{one: {type: spherical, i: a, j: b}}",
+        "{one: {type: revolute, i: {body: a, orientation: {z: [1, 0, 0]}}, j: {body: b, orientation: {z: [1, 0, 0]}}}}",
+        "{one: {type: revolute, i: a, j: ground}}",
+    ],
+)
+def test_curves_of_torsion_springs_are_refused_elsewhere(joints):
+    scene = stiffmbs.read_scene(f"""
+        dimensions: 3
+        bodies: {{a: {{mass: 1, inertia: [1, 1, 1]}}, b: {{mass: 1, inertia: [1, 1, 1]}}}}
+        joints: {joints}
+        forces: {{s: {{type: torsion_spring, i: a, j: b, spring_law: 2*s^3}}}}
+    """)
+    with pytest.raises(InputError, match="no joints keep parallel"):
+        dataset_text(scene)

@@ -36,7 +36,7 @@ def dataset_text(scene: SpatialData, source: str = "scene") -> str:
     """
     numbering, names = Numbering(scene, touching(scene)), state_names(scene)
     functions = Functions(numbering, names, reactions(scene))
-    joints, forces = Joints(scene, numbering, functions), Forces(numbering, functions)
+    joints, forces = Joints(scene, numbering, functions), Forces(scene, numbering, functions)
     refused: list[str] = []
     made = [
         *_each("joints", scene.joints.items(), lambda name, joint: joints.statements(name, joint), refused),

@@ -16,6 +16,8 @@ from ...describe.spatial.forces.bushing import Bushing
 from ...describe.spatial.forces.field import FieldForce
 from ...describe.spatial.forces.shared import LineForce, SpringDamper
 from ...describe.spatial.forces.torsion_spring import TorsionSpring
+from ...describe.spatial.model import SpatialData
+from .alignment import kept_parallel
 from .formulas import Functions
 from .numbering import Numbering
 from .refusal import Refusal
@@ -27,12 +29,13 @@ class Forces:
 
     Parameters
     ----------
+    scene : SpatialData
     numbering : Numbering
     functions : Functions
     """
 
-    def __init__(self, numbering: Numbering, functions: Functions) -> None:
-        self._numbering, self._functions = numbering, functions
+    def __init__(self, scene: SpatialData, numbering: Numbering, functions: Functions) -> None:
+        self._scene, self._numbering, self._functions = scene, numbering, functions
         self._used = 0
 
     def statements(self, force: Force) -> Iterator[str]:
@@ -89,6 +92,11 @@ class Forces:
     @_made.register
     def _torsion(self, spring: TorsionSpring) -> Iterator[str]:
         if spring.spring_law is not None or spring.damper_law is not None:
+            if not kept_parallel(self._scene, spring.i, spring.j):
+                raise Refusal(
+                    "found curves of a torsion spring between axes that no joints keep parallel, "
+                    "expected joints such as a revolute one about the same axis, or no curves"
+                )
             yield self._by_laws(spring, spring.free_angle, "ROTATIONAL")
             return
         given = {"KT": spring.stiffness, "CT": spring.damping, "ANGLE": spring.free_angle, "TORQUE": -spring.preload}
