@@ -169,7 +169,7 @@ def test_a_line_ends_within_no_operator_and_no_number(operator):
     [
         "{one: {type: revolute, i: a, j: b}}",
         "{one: {type: planar, i: a, j: ground}, other: {type: parallel, i: {body: b, point: [1, 0, 0]}, j: ground}}",
-        "{one: {type: fixed, i: {body: a, orientation: {z: [1, 0, 0]}}, j: {body: c, orientation: {z: [1, 0, 0]}}}, other: {type: screw, i: c, j: b, pitch: 0.1}}",
+        "{one: {type: fixed, i: {body: a, orientation: {z: [1, 0, 0]}}, j: {body: c, orientation: {z: [1, 0, 0]}}}, other: {type: cylindrical, i: c, j: b}}",
     ],
 )  # fmt: skip
 def test_curves_of_torsion_springs_are_written_where_joints_keep_the_axes_parallel(joints):

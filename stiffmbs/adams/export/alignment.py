@@ -12,11 +12,10 @@ from ...describe.spatial.joints.parallel import Parallel
 from ...describe.spatial.joints.planar import Planar
 from ...describe.spatial.joints.prismatic import Prismatic
 from ...describe.spatial.joints.revolute import Revolute
-from ...describe.spatial.joints.screw import Screw
 from ...describe.spatial.model import SpatialData
 from ...describe.spatial.orientation import matrix
 
-ABOUT_Z = (Cylindrical, Parallel, Planar, Revolute, Screw)
+ABOUT_Z = (Cylindrical, Parallel, Planar, Revolute)
 """Joints that allow a rotation about their axis z alone."""
 NO_ROTATION = (Fixed, Orientation, Prismatic)
 SAME = 1e-9
