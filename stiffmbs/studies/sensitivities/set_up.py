@@ -108,16 +108,25 @@ class SetUp:
         return Numbers(tuple(map(np.ascontiguousarray, of_groups)), moved, mass)
 
     def _numbers_of_changed(self) -> list[np.ndarray]:
-        """Of the elements that are not those of the job's own scene."""
+        """Of the elements that are not those of the job's own scene, and of those that may refer to such a joint."""
         job, system = self._job, self._job.dynamics.system
         found = [np.zeros_like(group.numbers) for group in system.groups]
-        for section in ("joints", "forces"):
-            for name, element in getattr(job.data, section).items():
-                if any(getattr(scene, section)[name] is not element for scene in self.scenes):
-                    for scene, weight in zip(self.scenes, self._weights, strict=True):
-                        g, first, values = self._place(name, scene, getattr(scene, section)[name])
-                        found[g][first : first + len(values)] += weight * values
+        joints = self._changed("joints")
+        for section, names in (
+            ("joints", job.data.joints if joints else joints),
+            ("forces", job.data.forces if joints else self._changed("forces")),
+        ):
+            for name in names:
+                places = [self._place(name, scene, getattr(scene, section)[name]) for scene in self.scenes]
+                g, first, values = places[0]
+                if any(not np.array_equal(other, values) for _, _, other in places):
+                    found[g][first : first + len(values)] = self.derivative([values for _, _, values in places])
         return found
+
+    def _changed(self, section: str) -> list[str]:
+        """Return the names of the elements that are not those of the job's own scene."""
+        before = getattr(self._job.data, section)
+        return [name for name in before if any(getattr(scene, section)[name] is not before[name] for scene in self.scenes)]
 
     def _place(self, name: str, scene: Any, element: Any) -> tuple[int, int, np.ndarray]:
         """The group of an element, where its numbers begin there, and the numbers."""
