@@ -306,3 +306,40 @@ def test_the_magnitude_of_what_is_zero_up_to_rounding_has_the_mean_of_both_slope
     x = size * np.where(np.arange(11) < 6, 1.0, -1.0)
     found = Formula("integral(abs(x))", t, {"x": x}).dual({"x": np.ones((11, 1))})
     assert found.slope == pytest.approx([slope], abs=1e-12)
+
+
+REFERRING = """
+dimensions: 2
+gravity: [0, -9.81]
+parameters: {{at: {at}}}
+bodies: {{a: {{mass: 1, inertia: 1}}, b: {{mass: 2, inertia: 1, position: [1, 0]}}, c: {{mass: 1, inertia: 0.5, position: [2, 0], velocity: [0.3, 0]}}}}
+joints:
+  p: {{type: prismatic, i: {{body: a, point: [at, 0], angle: 20 deg}}, j: {{body: ground, point: [0.05, 0], angle: 20 deg}}}}
+  q: {{type: prismatic, i: {{body: b, point: [0.2*at, 0]}}, j: {{body: ground, point: [1, 0]}}}}
+  r: {{type: prismatic, i: {{body: c, point: [at, at]}}, j: {{body: ground, point: [2, at]}}}}
+  {referring}
+forces:
+  s: {{type: spring_damper, i: a, j: {{body: b, point: [0, 0.5]}}, stiffness: 40, damping: 1, free_length: 0.5}}
+  {force}
+"""
+
+
+@pytest.mark.parametrize(
+    ("referring", "force", "of"),
+    [
+        ("d: {{type: drive, joint: p, position: 0.1*sin(3*t)}}", "", ["a.x", "d.fx", "p.fy"]),
+        ("d: {{type: coupler, joint_1: p, joint_2: q, scale: -0.5}}", "", ["a.x", "b.vx", "p.fy"]),
+        ("", "f: {{type: joint_friction, joint: r, friction: 0.3, smooth_velocity: 0.01, length: 0.2}}", ["c.x", "c.vx"]),
+    ],
+    ids=["drive", "coupler", "friction"],
+)
+def test_what_refers_to_a_joint_follows_its_markers(referring, force, of):
+    def scene(at):
+        return stiffmbs.read_scene(REFERRING.replace("{referring}", referring).replace("{force}", force).format(at=at))
+
+    h = 1e-4
+    above, below = (stiffmbs.run(scene(0.3 + shift), duration=0.5, points=6, rtol=1e-10) for shift in (h, -h))
+    for each in of:
+        found = sensitivities(scene(0.3), ["at"], each, duration=0.5, points=6, rtol=1e-9).to["at"]
+        expected = (above[each] - below[each]) / (2 * h)
+        np.testing.assert_allclose(found, expected, rtol=1e-4, atol=1e-5 * max(1.0, np.abs(expected).max()), err_msg=each)
