@@ -52,10 +52,13 @@ def scaled(content: Content, units: Units) -> Change:
     Raises
     ------
     NotLegitimate
-        When numbers have a unit that is not declared.
+        When numbers have a unit that is not declared, or a tyre has relaxation lengths: its damping at rest has a time of its own
+        (`stiffmbs.describe.spatial.relaxation`).
     """
     if "use" in content:
         raise NotLegitimate("parts have numbers of their own")
+    if any("relaxation" in force for force in content.get("forces", {}).values()):
+        raise NotLegitimate("tyres at rest have a time of their own")
     replace = _replace(units, set(content.get("states", ())) | set(content.get("inputs", ())))
     mapper = _Scaled(content, units, replace)
     found = mapped_scene(with_other_formulas(copy.deepcopy(content), replace), mapper, defaults=True)
