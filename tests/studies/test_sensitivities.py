@@ -329,7 +329,11 @@ forces:
     [
         ("d: {{type: drive, joint: p, position: 0.1*sin(3*t)}}", "", ["a.x", "d.fx", "p.fy"]),
         ("d: {{type: coupler, joint_1: p, joint_2: q, scale: -0.5}}", "", ["a.x", "b.vx", "p.fy"]),
-        ("", "f: {{type: joint_friction, joint: r, friction: 0.3, smooth_velocity: 0.01, length: 0.2}}", ["c.x", "c.vx"]),
+        (
+            "",
+            "f: {{type: joint_friction, joint: r, friction: 0.3, smooth_velocity: 0.01, length: 0.2}}",
+            ["c.x", "c.vx"],
+        ),
     ],
     ids=["drive", "coupler", "friction"],
 )
@@ -342,4 +346,14 @@ def test_what_refers_to_a_joint_follows_its_markers(referring, force, of):
     for each in of:
         found = sensitivities(scene(0.3), ["at"], each, duration=0.5, points=6, rtol=1e-9).to["at"]
         expected = (above[each] - below[each]) / (2 * h)
-        np.testing.assert_allclose(found, expected, rtol=1e-4, atol=1e-5 * max(1.0, np.abs(expected).max()), err_msg=each)
+        np.testing.assert_allclose(
+            found, expected, rtol=1e-4, atol=1e-5 * max(1.0, np.abs(expected).max()), err_msg=each
+        )
+
+
+@pytest.mark.parametrize("reduction", ["max", "min", "peak"])
+def test_an_extremum_of_what_is_zero_up_to_rounding_has_no_single_time(reduction):
+    t = np.linspace(0, 1, 11)
+    x = 1e-17 * np.sin(np.arange(11))
+    with pytest.raises(SolverError, match=f"has its {reduction} at 11 output times"):
+        Formula(f"{reduction}(x)", t, {"x": x}).dual({"x": t[:, None]})

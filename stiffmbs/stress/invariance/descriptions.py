@@ -157,9 +157,10 @@ def _equations(joints: Content, pair: tuple[str, str]) -> dict[str, str]:
 def _about(channels: Channels, key: str, arm: np.ndarray) -> None:
     """Replace the moment of a reaction by that about a point at `arm` from its point of reference, shape (3, n)."""
     force: Any = vector(channels, key, ("fx", "fy", "fz"))
-    for label, part in zip("xyz", np.cross(arm, force, axis=0), strict=True):
-        if f"{key}.t{label}" in channels:
-            channels[f"{key}.t{label}"] = channels[f"{key}.t{label}"] - part
+    moments = dict(zip(("tx", "ty", "tz"), np.cross(arm, force, axis=0), strict=True))
+    for label, part in {**moments, "torque": moments["tz"]}.items():
+        if f"{key}.{label}" in channels:
+            channels[f"{key}.{label}"] = channels[f"{key}.{label}"] - part
 
 
 def _placed(marker: Any) -> tuple[np.ndarray, np.ndarray]:

@@ -26,9 +26,14 @@ WHOLE = ("rms", "mean", "integral")
 """Reductions of all instants."""
 
 
+def _rounding(x: np.ndarray) -> float:
+    """Return the magnitude below which differences of the values of a channel are rounding."""
+    return max(SAME * float(np.max(np.abs(x))), ZERO)
+
+
 def _largest(x: np.ndarray) -> np.ndarray:
     """Return the indices of the output times with the largest value."""
-    return np.flatnonzero(x >= np.max(x) - SAME * np.max(np.abs(x)))
+    return np.flatnonzero(x >= np.max(x) - _rounding(x))
 
 
 def of_whole_time(text: str) -> bool:
@@ -187,7 +192,7 @@ def _operated(operator: ast.operator, a: Dual, b: Dual) -> Dual:
 
 
 SLOPES: dict[str, Any] = {
-    "abs": lambda x: np.where(np.abs(x) > max(SAME * np.max(np.abs(x)), ZERO), np.sign(x), 0.0), "sqrt": lambda x: 0.5 / np.sqrt(x), "exp": np.exp, "log": lambda x: 1 / x, "sin": np.cos,
+    "abs": lambda x: np.where(np.abs(x) > _rounding(x), np.sign(x), 0.0), "sqrt": lambda x: 0.5 / np.sqrt(x), "exp": np.exp, "log": lambda x: 1 / x, "sin": np.cos,
     "cos": lambda x: -np.sin(x), "tan": lambda x: 1 / np.cos(x) ** 2,
 }  # fmt: skip
 """Derivatives of the functions of one number; for ``abs`` near zero, the mean of both sides."""

@@ -126,7 +126,9 @@ class SetUp:
     def _changed(self, section: str) -> list[str]:
         """Return the names of the elements that are not those of the job's own scene."""
         before = getattr(self._job.data, section)
-        return [name for name in before if any(getattr(scene, section)[name] is not before[name] for scene in self.scenes)]
+        return [
+            name for name in before if any(getattr(scene, section)[name] is not before[name] for scene in self.scenes)
+        ]
 
     def _place(self, name: str, scene: Any, element: Any) -> tuple[int, int, np.ndarray]:
         """The group of an element, where its numbers begin there, and the numbers."""
