@@ -18,11 +18,11 @@ from stiffmbs.stress.simulation import simulation
 
 ALWAYS = 1
 """Cases of each family that are run without being asked for: compiling the kinds of all of them takes minutes."""
-COSTLY = ("space", "held_twice")
+COSTLY = ("space", "held_twice", "cars_over_lines")
 """Families whose first case compiles more kinds than others."""
 WHOLE = ("changed_files", "opposed_actuators", "own_field_names")
 """Families of which all cases are run without being asked for: no other test has their scenes."""
-MANY = (pytest.mark.long, pytest.mark.sampled(7))
+MANY = (pytest.mark.long, pytest.mark.sampled(11))
 """As many families have each case for each of four solvers, no even number: every solver has its turn."""
 QUICK = [
     pytest.param(family, case, marks=MANY if (number >= ALWAYS and family not in WHOLE) or family in COSTLY else ())
@@ -43,7 +43,7 @@ def test_case(family, case):
 
 
 @pytest.mark.long
-@pytest.mark.sampled(11)
+@pytest.mark.sampled(13)
 @pytest.mark.parametrize(("family", "case"), LONG, ids=_label)
 def test_long_case(family, case):
     (row,) = outcomes([(family, case)])
