@@ -357,3 +357,20 @@ def test_an_extremum_of_what_is_zero_up_to_rounding_has_no_single_time(reduction
     x = 1e-17 * np.sin(np.arange(11))
     with pytest.raises(SolverError, match=f"has its {reduction} at 11 output times"):
         Formula(f"{reduction}(x)", t, {"x": x}).dual({"x": t[:, None]})
+
+
+def test_coordinates_at_rest_have_no_jumps():
+    """A door on a vertical hinge: the accelerations of its other coordinates are rounding."""
+    k, inertia = 15.0, 7 + 20 * 0.45**2
+    scene = stiffmbs.read_scene("""
+        dimensions: 3
+        gravity: [0, 0, -9.81]
+        bodies: {door: {mass: 20, inertia: [6, 1.5, 7], position: [0.45, 0, 0], velocity: [0, 0.9, 0], omega: [0, 0, 2]}}
+        joints: {hinge: {type: revolute, i: {body: door, point: [-0.45, 0, 0]}, j: ground}}
+        forces: {spring: {type: torsion_spring, i: {body: door, point: [-0.45, 0, 0]}, j: ground, stiffness: 15}}
+    """)
+    found = sensitivities(scene, ["forces.spring.stiffness"], "final(door.wz)", duration=1.0).to[
+        "forces.spring.stiffness"
+    ]
+    w = np.sqrt(k / inertia)
+    assert found == pytest.approx(-2 * np.sin(w) / (2 * w * inertia), rel=1e-5)

@@ -24,9 +24,9 @@ BACK, FURTHEST = 1e-13, 1e-6
 instant of an event is known to some roundings."""
 SHORTEST = 1e-13
 """Duration, relative to the run, below which a segment is empty: rounding detects an event twice."""
-SUDDEN, JUMP = 1e-9, 1e-3
-"""Step size, relative to the run, in which no force changes smoothly, and smallest discontinuity in such a step, relative to the
-largest acceleration."""
+SUDDEN, JUMP, FELT = 1e-9, 1e-3, 1e-6
+"""Step size, relative to the run, in which no force changes smoothly, and smallest discontinuity in such a step: relative to the
+largest acceleration of the coordinate, and to that of all coordinates, as some have rounding alone."""
 MOST_NUMBERS = 2e8
 """Numbers that are kept of a run, 1.6 GB."""
 
@@ -103,7 +103,9 @@ class Recorder(Integrator):
         """Refuse a force that is discontinuous without a declared breakpoint: steps become as short as rounding allows there."""
         n, at = self.equations.n, self.equations.at["u"]
         t, a = segment.rows[:, 0], segment.rows[:, 2 + n + at]
-        least = JUMP * np.abs(a).max(axis=0)
+        system, largest = self.dynamics.system, np.abs(a).max(axis=0)
+        scale = system.per_velocity(system.size, 1.0)
+        least = np.maximum(JUMP * largest, FELT * np.max(largest / scale) * scale)
         short = (np.diff(t) < sudden) & np.any(np.abs(np.diff(a, axis=0)) > least, axis=1)
         for k in np.flatnonzero(short):
             there = [self._accelerations(row[0], row[2 : 2 + n]) for row in segment.rows[k : k + 2]]
