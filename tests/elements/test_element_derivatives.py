@@ -14,7 +14,7 @@ from ..random_parts import CASES, add_joints, random_element, refers_to_joints, 
 
 T = 0.37
 STEP = 3e-3
-MANY = (pytest.mark.long, pytest.mark.sampled(7))
+MANY = (pytest.mark.long, pytest.mark.sampled(11))
 """A number without a common factor with that of the formulations, so that all of them have their turn."""
 WEIGHTS = {1: 4 / 5, 2: -1 / 5, 3: 4 / 105, 4: -1 / 280}  # eighth order, centred
 TOLERANCE = 1e-8

@@ -104,6 +104,7 @@ def test_conversions_are_compared_and_the_comparison_can_fail(monkeypatch, seed,
 
 
 @pytest.mark.long
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("name", sorted(set(fuzz.fuzzers()) - {"entry-points"}))
 def test_the_first_cases_of_a_fuzzer_are_not_wrong(name):
     found = [

@@ -43,7 +43,7 @@ def test_case(family, case):
 
 
 @pytest.mark.long
-@pytest.mark.sampled(13)
+@pytest.mark.sampled(23)
 @pytest.mark.parametrize(("family", "case"), LONG, ids=_label)
 def test_long_case(family, case):
     (row,) = outcomes([(family, case)])
