@@ -7,6 +7,7 @@ import pytest
 from click.testing import CliRunner
 
 import stiffmbs
+from stiffmbs.adams.export.alignment import kept_parallel
 from stiffmbs.adams.export.dataset_text import dataset_text
 from stiffmbs.adams.export.statements import statement
 from stiffmbs.adams.load import read_adams
@@ -199,3 +200,14 @@ def test_curves_of_torsion_springs_are_refused_elsewhere(joints):
     """)
     with pytest.raises(InputError, match="no joints keep parallel"):
         dataset_text(scene)
+
+
+@pytest.mark.parametrize(("sine", "kept"), [(0.7e-9, True), (1.5e-9, False)])
+def test_axes_are_parallel_up_to_rounding(sine, kept):
+    scene = stiffmbs.read_scene(f"""
+        dimensions: 3
+        bodies: {{a: {{mass: 1, inertia: [1, 1, 1]}}, b: {{mass: 1, inertia: [1, 1, 1]}}}}
+        joints: {{one: {{type: revolute, i: a, j: b}}}}
+        forces: {{s: {{type: torsion_spring, i: {{body: a, orientation: [1, {sine / 2!r}, 0, 0]}}, j: b, spring_law: 2*s^3}}}}
+    """)
+    assert kept_parallel(scene, scene.forces["s"].i, scene.forces["s"].j) is kept

@@ -5,6 +5,7 @@ import pytest
 
 import stiffmbs
 from stiffmbs import AppliedForce, Body, Drive, Model, Prismatic
+from stiffmbs.describe.settings import RunSettings
 from stiffmbs.solve.trajectory import Outcome
 
 SOLVERS = [
@@ -92,3 +93,9 @@ def test_a_run_much_shorter_than_its_output_spacing_has_both_ends():
 def test_a_duration_whose_steps_underflow_is_refused(examples):
     with pytest.raises(stiffmbs.errors.InputError, match=r"duration: found 1e-320 s, expected 1e-100 s or more"):
         stiffmbs.run(stiffmbs.load_scene(examples / "cart_pendulum.yaml"), duration=1e-320)
+
+
+def test_a_duration_is_refused_below_a_size():
+    RunSettings(duration=1.5e-100)
+    with pytest.raises(stiffmbs.errors.InputError, match="expected 1e-100 s or more"):
+        RunSettings(duration=0.7e-100)

@@ -2,12 +2,14 @@
 
 from functools import partial
 from importlib import import_module
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import stiffmbs
 from stiffmbs import InputError, SolverError, sensitivities
+from stiffmbs.solve.variations.recorded import Recorder, Segment
 from stiffmbs.studies.outputs import outputs_of
 from stiffmbs.studies.sensitivities.formulas import Formula
 
@@ -300,7 +302,7 @@ run: {{duration: 0.5, points: 3}}
     assert found.to["start"] == pytest.approx(-(15.9 - 6.5) / (0.2 - start**2 / 2), rel=1e-4)
 
 
-@pytest.mark.parametrize(("size", "slope"), [(1e-17, 0.0), (1e-12, 0.1)])
+@pytest.mark.parametrize(("size", "slope"), [(1e-17, 0.0), (0.7e-14, 0.0), (1.5e-14, 0.1), (1e-12, 0.1)])
 def test_the_magnitude_of_what_is_zero_up_to_rounding_has_the_mean_of_both_slopes(size, slope):
     t = np.linspace(0, 1, 11)
     x = size * np.where(np.arange(11) < 6, 1.0, -1.0)
@@ -374,3 +376,31 @@ def test_coordinates_at_rest_have_no_jumps():
     ]
     w = np.sqrt(k / inertia)
     assert found == pytest.approx(-2 * np.sin(w) / (2 * w * inertia), rel=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("step", "jumps", "refused"),
+    [
+        (0.7e-9, (0.5, 0.0), True),
+        (1.5e-9, (0.5, 0.0), False),  # a force may change so far in so long a step
+        (1e-12, (1.5e-3, 0.0), True),
+        (1e-12, (0.7e-3, 0.0), False),
+        (1e-12, (0.0, 1.5e-6), True),
+        (1e-12, (0.0, 0.7e-6), False),  # below a millionth of the other coordinate's acceleration
+    ],
+)
+def test_a_jump_of_accelerations_is_refused_from_a_size_on(step, jumps, refused):
+    """Accelerations of about 1 and 0 change by `jumps` within a step of a run of 1 s."""
+    recorder = Recorder.__new__(Recorder)
+    recorder.equations = SimpleNamespace(n=2, at={"u": np.arange(2)})
+    recorder.dynamics = SimpleNamespace(system=SimpleNamespace(size=1.0, per_velocity=lambda *_: np.ones(2)))
+    recorder._accelerations = lambda _, y: y
+    after = np.array([1.0, 0.0])
+    before = after - jumps
+    rows = np.array([[0.5, 1.0, *before, *before], [0.5 + step, 1.0, *after, *after]])
+    recorder.segments = [Segment(None, np.array([0.0, 1.0, *before, *before]), [rows])]
+    if refused:
+        with pytest.raises(SolverError, match="discontinuous"):
+            recorder.passed(1.0)
+    else:
+        recorder.passed(1.0)
