@@ -11,7 +11,7 @@ from ..bench.sweep import WINDOW
 from ..bench.turns import ONCE, Timed, seconds_of
 from ..describe.model_data import ModelData
 from ..describe.settings import RunSettings
-from ..errors import StiffmbsError
+from ..errors import InputError, StiffmbsError
 from ..jobs.job import Job, prepare
 from ..jobs.python_faults import up_to_a_fault
 from ..results.channels import channels_of
@@ -87,6 +87,8 @@ class Sweep:
                 point, given_up = self._first(job, entry, setting)
             except StiffmbsError as error:
                 yield Point(None, [], entry, setting, {}, 0, str(error))
+                if isinstance(error, InputError):
+                    return
                 continue
             yield point
             if target is not None and not point.message:

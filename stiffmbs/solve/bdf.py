@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from ..compile.system import System
 from ..describe.settings import RunSettings
-from ..errors import SolverError
+from ..errors import InputError, SolverError
 from .algebraic_states import no_value_ahead
 from .dynamics import Dynamics
 from .error_control.error_test import ErrorControl
 from .error_control.precision import SLOW, governed_by_rounding, too_fine
 from .events.refusals import FOLLOWED_STEPS, refuse_beyond_sense
-from .formulations import READ_BY_FORMULATIONS
+from .formulations import FORMULATIONS, READ_BY_FORMULATIONS
 from .ida.engine import Reached
 from .initial import InitialValues
 from .integrator import Integrator
@@ -37,9 +38,31 @@ def solve(
     """Integrate with IDA; the contract is in `stiffmbs.solve.trajectory`.
 
     At breakpoints in time, and where a force changes its law (a contact closes), the integrator stops and starts anew.
+
+    Raises
+    ------
+    InputError
+        When the formulation does not test velocities and forces follow reactions.
     """
+    _refuse_untested_reactions(dynamics.system, settings)
     dynamics.forget_pivots()
     return integrated(Integrator(dynamics, settings, control), start, grid, watch)
+
+
+def _refuse_untested_reactions(system: System, settings: RunSettings) -> None:
+    """Refuse forces that follow reactions in a formulation that tests positions alone.
+
+    A change of the step leaves an error in the velocities across the constraints, which the next steps remove.  Friction
+    turns the reaction that belongs to it into a change of the velocity along the constraints, which stays.
+    """
+    if "u" in FORMULATIONS[settings.formulation](settings).tested:
+        return
+    following = [name for group in system.groups if group.record.patterns.get("f_lam") for name in group.names]
+    if following:
+        raise InputError(
+            f"formulation {settings.formulation}: found forces that follow reactions ({', '.join(following)}), which this "
+            "formulation does not test; expected SI2, SI1 or index1"
+        )
 
 
 def integrated(

@@ -81,3 +81,11 @@ def test_relaxation_holds_a_heavy_load_still():
     solution = stiffmbs.run(model, duration=100.0, points=11, rtol=1e-8)
     assert np.max(np.abs(solution["mast.y"])) < 1e-9
     np.testing.assert_allclose(solution["pin.fy"], 9.81e5, rtol=1e-10)
+
+
+def test_index_3_refuses_forces_that_follow_reactions(examples):
+    scene = stiffmbs.load_scene(examples / "stick_slip.yaml")
+    with pytest.raises(stiffmbs.InputError, match=r"formulation I3: found forces that follow reactions \(rubbing\)"):
+        stiffmbs.run(scene, solver="bdf", formulation="I3")
+    rows = stiffmbs.compare(scene, solvers=("bdf",), formulations=("I3",), tolerances=(1e-3, 1e-4), repeats=1).rows
+    assert [row.message[:14] for row in rows] == ["formulation I3"]
