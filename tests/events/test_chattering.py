@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import stiffmbs
-from stiffmbs import AppliedForce, Body, Model, Prismatic, Revolute
+from stiffmbs import AlgebraicState, AppliedForce, Body, Model, Prismatic, Revolute
 from stiffmbs.describe.model import FORCES
 from stiffmbs.jobs.run import prepare
 from stiffmbs.solve import integrator
@@ -64,6 +64,17 @@ def held_pendulum():
     return model
 
 
+def relay():
+    """A speed kept by a relay that follows an algebraic state, against a spring and a damper."""
+    model = Model()
+    model.add("block", Body(mass=1, inertia=1))
+    model.add("rail", Prismatic(i="block", j="ground"))
+    model.add("p", AlgebraicState(zero="p - block.x - 0.975*block.vx"))
+    law = "branch(p - 0.03, 12.25, 0, 2.17) - 5.44 - 10*block.x - 0.9*block.vx"
+    model.add("push", AppliedForce(i="block", force=(law, 0)))
+    return model
+
+
 STUCK = {
     "friction on a block": (lambda: block("-5*sign(block.vx)", velocity=(1, 0)), 0.2),
     "friction on a block pulled at rest": (lambda: block("3 - 5*sign(block.vx)"), 0.0),
@@ -72,6 +83,7 @@ STUCK = {
     "two blocks that rub": (rubbing_blocks, 0.537),
     "a pendulum held by friction": (held_pendulum, 2.325),
     "a switching line": (lambda: block("branch(block.x + block.vx, 9, 0, -9)", position=(1, 0)), np.sqrt(11) / 3 - 1),
+    "a relay that follows an algebraic state": (relay, 0.0045),
 }
 
 

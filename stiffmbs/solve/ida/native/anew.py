@@ -31,14 +31,14 @@ def _beyond_limits(w, s, t):
 
 
 @compiled
-def _meets(w, s, t):
+def _meets(w, s, m, t):
     """Whether event functions that follow velocities have other signs on the other side of the state at hand, which stays."""
     count = w.n_event_functions
     copied(w.q, s.q, s.n_q)
     copied(w.u, s.u, s.n_u)
     meets = 0
-    if crossing(s, t, w.reach, w.q, w.u, w.along_q, w.along_u, count, w.found) > 0:
-        following_velocities(s, t, w.reach, w.q, w.u, w.along_u, count, w.values)
+    if crossing(s, m, t, w.reach, w.q, w.u, w.along_q, w.along_u, count, w.found) > 0:
+        following_velocities(s, m, t, w.reach, w.q, w.u, w.along_u, count, w.values)
         for k in range(count):
             if w.found[k] != 0 and w.values[k] != 0.0:
                 meets = 1
@@ -93,5 +93,5 @@ def anew(t, ahead, counted, highest_order, table):
         return int32(UNFINISHED)
     call_int(b.set_highest_order, (c.memory, int32(highest_order)))
     w.t = behind
-    w.meets = _meets(w, s, behind) if w.n_event_functions > 0 else 0
+    w.meets = _meets(w, s, m, behind) if w.n_event_functions > 0 else 0
     return int32(OK)

@@ -20,14 +20,22 @@ def _take(s, size, q, u, along_q, along_u):
 
 
 @compiled
-def crossing(s, t, size, q, u, along_q, along_u, count, found):
+def _event_functions(s, m, t):
+    """Values of the event functions at the state at hand, with the algebraic states that belong to it where these have a solution."""
+    if m.n_algebraic > 0:
+        consistent_accelerations(s, m, t)
+    return evaluate(s, SWITCH, t)
+
+
+@compiled
+def crossing(s, m, t, size, q, u, along_q, along_u, count, found):
     """Which of the first `count` event functions differ in sign between the two sides of a move; how many."""
     _take(s, size, q, u, along_q, along_u)
-    values = evaluate(s, SWITCH, t)
+    values = _event_functions(s, m, t)
     for k in range(count):
         found[k] = (values[k] > 0.0) - (values[k] < 0.0)
     _take(s, -size, q, u, along_q, along_u)
-    values = evaluate(s, SWITCH, t)
+    values = _event_functions(s, m, t)
     total = 0
     for k in range(count):
         opposite = (values[k] > 0.0) - (values[k] < 0.0)
@@ -38,32 +46,36 @@ def crossing(s, t, size, q, u, along_q, along_u, count, found):
 
 def crossed(t, size, q, u, along_q, along_u, count, found, dynamics):
     """`crossing` from Python."""
-    return crossing(state_view(dynamics_view(dynamics).state), t, size, q, u, along_q, along_u, count, found)
+    m = dynamics_view(dynamics)
+    return crossing(state_view(m.state), m, t, size, q, u, along_q, along_u, count, found)
 
 
 def switches(t, size, q, u, along_q, along_u, count, values, dynamics):
     """The first `count` event functions at a moved state, in `values`."""
-    s = state_view(dynamics_view(dynamics).state)
+    m = dynamics_view(dynamics)
+    s = state_view(m.state)
     _take(s, size, q, u, along_q, along_u)
-    copied(values, evaluate(s, SWITCH, t), count)
+    copied(values, _event_functions(s, m, t), count)
 
 
 @compiled
-def following_velocities(s, t, size, q, u, along_u, count, found):
+def following_velocities(s, m, t, size, q, u, along_u, count, found):
     """Which of the first `count` event functions change at all with velocities at a state."""
     copied(s.q, q, s.n_q)
     for k in range(s.n_u):
         s.u[k] = u[k] + size * max(1.0, abs(u[k])) * along_u[k]
-    copied(found, evaluate(s, SWITCH, t), count)
+    copied(found, _event_functions(s, m, t), count)
+    copied(s.q, q, s.n_q)
     copied(s.u, u, s.n_u)
-    values = evaluate(s, SWITCH, t)
+    values = _event_functions(s, m, t)
     for k in range(count):
         found[k] = found[k] != values[k]
 
 
 def by_velocities(t, size, q, u, along_u, count, found, dynamics):
     """`following_velocities` from Python."""
-    following_velocities(state_view(dynamics_view(dynamics).state), t, size, q, u, along_u, count, found)
+    m = dynamics_view(dynamics)
+    following_velocities(state_view(m.state), m, t, size, q, u, along_u, count, found)
 
 
 def side(t, size, interval, q, u, along_q, along_u, there, count, values, acceleration, rates, dynamics):
@@ -74,8 +86,8 @@ def side(t, size, interval, q, u, along_q, along_u, there, count, values, accele
     m = dynamics_view(dynamics)
     s = state_view(m.state)
     _take(s, size, q, u, along_q, along_u)
+    copied(values, _event_functions(s, m, t), count)
     copied(there, s.q, s.n_q)
-    copied(values, evaluate(s, SWITCH, t), count)
     add_rates(s, s.u, interval, there)
     status = consistent_accelerations(s, m, t)
     if status < 0:
@@ -85,7 +97,7 @@ def side(t, size, interval, q, u, along_q, along_u, there, count, values, accele
     take_unit_length(s)
     for k in range(s.n_u):
         s.u[k] += interval * acceleration[k]
-    ahead = evaluate(s, SWITCH, t + interval)
+    ahead = _event_functions(s, m, t + interval)
     for k in range(count):
         rates[k] = (ahead[k] - values[k]) / interval
     return status
