@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
+from ...describe.forces.friction import TINY
 from ..functions.expression import parse
 from ..functions.function import Function
 from ..functions.translate import Translation
@@ -23,8 +24,6 @@ AXES = "XYZ"
 TORQUE = "_torque"
 SLOW = 1e-6
 """Part of the stiction velocity that keeps the direction of sliding from being undefined at rest."""
-TINY = 1e-18
-"""N^2 or N^2 m^2, in SI, under the root of a load that may vanish."""
 
 
 def frictions(mechanism: Mechanism, translation: Translation) -> dict[str, Any]:

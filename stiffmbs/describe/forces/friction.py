@@ -9,8 +9,8 @@ from pydantic import Field
 from ..element import Force, Symbolic
 from ..units import si
 
-TINY = 1e-18
-"""N^2, added under the root of a reaction, so that its derivative exists where the reaction vanishes."""
+TINY = 1e-24
+"""N^2 or N^2 m^2, added under the root of a reaction, so that its derivative exists where the reaction vanishes."""
 AT_REST = 1e-6
 """Part of the smoothed speed that is added to a sliding speed in the same way."""
 

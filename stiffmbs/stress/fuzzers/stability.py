@@ -23,6 +23,8 @@ EXPONENT, CLEAR = 6.0, 10.0
 """Growth exponent of a run that is significant, and factor by which an unstable motion grows."""
 BEATS = 1e3
 """Transient growth of a stable motion."""
+ROUNDING = float(np.finfo(float).eps)
+"""Velocity relative to the push that a body which is held has by rounding."""
 
 
 def trial(seed: int) -> Verdict:
@@ -46,7 +48,7 @@ def trial(seed: int) -> Verdict:
     if solution.outcome is not Ending.DONE:
         return Verdict(Outcome.TOLD, detail=solution.message)
     moves = np.max([np.abs(solution[name]) for name in solution if name.endswith((".vx", ".vy", ".vz"))], axis=0)
-    factor = float(moves[-20:].max() / max(float(moves[:20].max()), 1e-300))
+    factor = float(moves[-20:].max() / max(float(moves[:20].max()), ROUNDING * PUSH))
     detail = f"a motion grows by {factor:.3g}, the fastest mode at {growth:.3g} 1/s: {found.notes}"
     missed = not told and factor > BEATS
     false = told and growth * DURATION > EXPONENT and factor < CLEAR
