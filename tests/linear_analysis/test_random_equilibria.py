@@ -21,6 +21,14 @@ def test_a_random_equilibrium_is_balanced_still_and_stable(seed):
 
 
 @pytest.mark.long
+@pytest.mark.parametrize("seed", [1000117, 1000671, 1000817])
+def test_soft_directions_of_stiff_bodies_are_balanced(seed):
+    """The last move along a soft direction rotates a stiff body, and leaves more than it found; the next one leaves nothing."""
+    verdict = equilibria.trial(seed)
+    assert verdict.outcome is Outcome.RIGHT, verdict.error
+
+
+@pytest.mark.long
 @pytest.mark.parametrize("first", range(0, 200, 20))
 @pytest.mark.sampled(11)
 def test_two_hundred_random_equilibria(first):

@@ -37,6 +37,8 @@ the step, and from which on it is taken back."""
 MOST_CORRECTIONS = 8
 WORTH_ANOTHER_MOVE = 0.5
 """Part that has to be left after one of the last moves for another one."""
+MOST_MISSES = 2
+"""Last moves in succession that leave more: Newton's convergence is quadratic behind one, and rounding governs behind two."""
 
 
 @dataclass(frozen=True)
@@ -174,19 +176,24 @@ def newton_move(dynamics: Dynamics, shift: float, known: Balance, whole: np.ndar
 
 
 def _polished(dynamics: Dynamics, t: float, known: Balance) -> tuple[Balance, int]:
-    """Newton's moves from a balanced pose as long as less and less is left, and their number."""
+    """Newton's moves from a balanced pose as long as less and less is left, and their number.
+
+    The first moves may leave more, as where a stiff body is rotated about a soft direction.
+    """
     state = dynamics.state
-    for count in range(MOST_CORRECTIONS):
-        before = state.q.copy()
+    best, there, misses, moves = known, state.q.copy(), 0, 0
+    while misses < MOST_MISSES and moves < MOST_CORRECTIONS:
         move = newton_move(dynamics, LEAST_SHIFT, known, at_start(known))
-        if not np.all(np.isfinite(move)):
-            return known, count
-        found = moved_on(dynamics, t, known, before, move)
-        if found is None or not np.max(np.abs(found.left)) < WORTH_ANOTHER_MOVE * np.max(np.abs(known.left)):
-            state.q[:] = before
-            return known, count
-        known = found
-    return known, MOST_CORRECTIONS
+        found = moved_on(dynamics, t, known, state.q.copy(), move) if np.all(np.isfinite(move)) else None
+        if found is None:
+            break
+        known, moves = found, moves + 1
+        if np.max(np.abs(known.left)) < WORTH_ANOTHER_MOVE * np.max(np.abs(best.left)):
+            best, there, misses = known, state.q.copy(), 0
+        else:
+            misses += 1
+    state.q[:] = there
+    return best, moves
 
 
 def at_start(known: Balance) -> np.ndarray:
