@@ -7,6 +7,7 @@ import pytest
 from click.testing import CliRunner
 
 import stiffmbs
+from stiffmbs import AppliedForce, Body, Marker, Model, Revolute
 from stiffmbs.commands.main import main
 from stiffmbs.describe.spatial.orientation import matrix
 from stiffmbs.errors import InputError
@@ -250,3 +251,13 @@ def test_a_held_body_has_a_response_at_zero_hertz_but_none_at_its_own_frequency(
     np.testing.assert_allclose(found.response(np.array([0.0])), 1 / 50, rtol=1e-7)
     with pytest.raises(InputError, match="the frequency of an undamped mode"):
         found.response(np.array([5 / (2 * np.pi)]))
+
+
+def test_feedthrough_of_forces_beside_large_reactions():
+    """The variation of a force follows the largest reaction: rounding of 3e6 N must not appear in D."""
+    model = Model()
+    model.add("bar", Body(mass=1, inertia=1, position=(1, 0)))
+    model.add("pin", Revolute(i=Marker(body="bar", point=(-1, 0)), j="ground"))
+    model.add("pull", AppliedForce(i="bar", force=(3e6, 0)))
+    found = transfer(model, ["bar.fx", "bar.fy"], ["pin.fx", "pin.fy"])
+    np.testing.assert_allclose(found.d, [[-1, 0], [0, -0.5]], atol=1e-9)

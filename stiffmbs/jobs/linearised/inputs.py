@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -49,14 +50,32 @@ def force_on(model: ModelBuilder[Any, Any, Any] | ModelData, name: str) -> Param
             f"{', '.join(components)}, or a parameter of the scene"
         )
 
-    place = _place(data, body, marker)
+    return ForceOnBody(data, _place(data, body, marker), components.index(component))
 
-    def with_force(value: float) -> ModelData:
-        loads = [value if label == component else 0.0 for label in components]
-        added = _applied(data.dimensions, place, loads)
-        return data.model_copy(update={"forces": {**data.forces, FORCE: added}})
 
-    return with_force
+@dataclass(frozen=True)
+class ForceOnBody:
+    """A model as a function of a force or torque on a body.
+
+    Attributes
+    ----------
+    data : ModelData
+    place : dict
+        Marker at which it acts.
+    component : int
+        Its number among the components of a reaction.
+    """
+
+    data: ModelData
+    place: dict[str, Any]
+    component: int
+
+    def __call__(self, value: float) -> ModelData:
+        """Return the model with the force, N or N m."""
+        loads = [0.0] * len(BODY_KINDS[self.data.dimensions].reactions)
+        loads[self.component] = value
+        added = _applied(self.data.dimensions, self.place, loads)
+        return self.data.model_copy(update={"forces": {**self.data.forces, FORCE: added}})
 
 
 def _input_of(data: ModelData, name: str) -> Parameterised:

@@ -21,15 +21,16 @@ from ...solve.dynamics import Dynamics
 from ..job import Runnable, prepare
 from ..start_from import StartFrom
 from .at_state import AtState, at_state
-from .inputs import Parameterised, force_on
+from .inputs import ForceOnBody, Parameterised, force_on
 from .sides import kink_at
 
 PLACES = ("dx", "dy", "dz", "dm", "ax", "ay", "az", "psi", "theta", "phi", "q0", "q1", "q2", "q3")
 """Measures of places and angles."""
 NO_RATE = 1e-6
 """Change of a prescribed velocity for each unit of an input, m/s or rad/s, that counts as none."""
-SHIFT = 1e-6
-"""Variation of states by which outputs are differentiated: relative to the mechanism's size, or rad."""
+STEP = float(np.cbrt(np.finfo(float).eps))
+"""Variation by which outputs are differentiated, relative to the mechanism's size, 1 rad or the largest force (central differences: Press
+et al., Numerical Recipes, 3rd ed., sec. 5.7)."""
 
 
 @dataclass(frozen=True)
@@ -106,7 +107,8 @@ def _column(
 ) -> tuple[np.ndarray, np.ndarray]:
     """What an input does to z' and to the outputs, by the models on both sides of the state."""
     system = about.found.dynamics.system
-    step = SHIFT * max(1.0, system.size)
+    of_force = isinstance(given, ForceOnBody)
+    step = STEP * _largest_force(about) if of_force else STEP * max(1.0, system.size)
     sides = [_with_value(about, name, given, value, changes) for value in (-step, step)]
     (force, gap, rate, of_states), (more, wider, faster, other) = (_acting(about, side) for side in sides)
     if np.any(np.abs(faster - rate) > NO_RATE * 2 * step):
@@ -126,6 +128,14 @@ def _column(
     if np.any(acts.velocity_of_rate):
         _refuse_rates(about, name, outputs)
     return acts.rates, (values[1] - values[0]) / (2 * step)
+
+
+def _largest_force(about: _About) -> float:
+    """The largest applied force or reaction on a body at the state, at least 1 N or N m."""
+    state = about.found.dynamics.state
+    state.evaluate("motion", about.found.t)
+    reactions = np.abs(state.matrix("motion", "J").T) @ np.abs(state.lam[: about.found.dynamics.system.n_c])
+    return float(max(1.0, np.max(reactions, initial=0.0), np.max(np.abs(state.vector("motion", "f")), initial=0.0)))
 
 
 def _with_value(about: _About, name: str, given: Parameterised, value: float, changes: Settings) -> Dynamics:
@@ -187,7 +197,7 @@ def _differentiated(about: _About, outputs: Sequence[str]) -> np.ndarray:
     parts = state.poses, state.velocities, of_states
     scales = np.concatenate([about.scale, about.scale, about.found.dynamics.system.state_scales])
     sizes = np.abs(np.vstack(parts) / scales[:, None]).max(axis=0)
-    steps = SHIFT / np.maximum(sizes, np.finfo(float).tiny)
+    steps = STEP / np.maximum(sizes, np.finfo(float).tiny)
     x, v, own = (np.hstack([-part * steps, part * steps]).T for part in parts)
     values = _channels(about, about.found.dynamics, x, v, own, outputs)
     found: np.ndarray = ((values[len(steps) :] - values[: len(steps)]) / (2 * steps[:, None])).T
