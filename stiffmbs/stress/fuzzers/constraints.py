@@ -32,6 +32,8 @@ ALLOWED = 1e-4
 """Difference of a coordinate or velocity, relative to its largest value and at least of 1 m, rad, m/s, rad/s."""
 DOUBTFUL = "the motion depends on the last digits"
 """In the note of a scene whose motion is no matter of its equations alone."""
+IN_DOUBT = "the results may be wrong"
+"""In a note of both runs, where they need not agree."""
 COORDINATES = ("x", "y", "z", "angle", "vx", "vy", "vz", "omega", "wx", "wy", "wz")
 
 
@@ -59,6 +61,8 @@ def _compared(scene: Scene, other: dict[str, Any], rtol: float) -> Verdict:
     if isinstance(with_it, str) or isinstance(without, str):
         return _refusals(with_it, without)
     doubt = next((note for note in with_it.notes if DOUBTFUL in note), None)
+    if all(any(IN_DOUBT in note for note in solution.notes) for solution in (with_it, without)):
+        doubt = doubt or next(note for note in with_it.notes if IN_DOUBT in note)
     count = min(len(with_it.t), len(without.t))
     error, channel = max(_errors(with_it, without, count), default=(0.0, ""))
     if doubt and not error <= ALLOWED:
