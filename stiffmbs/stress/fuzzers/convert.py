@@ -67,7 +67,7 @@ def _converted(rng: np.random.Generator) -> Verdict:
 
 def _compared(spatial: Any, again: Any, names: dict[str, str], duration: float, rtol: float, text: str) -> Verdict:
     """Compare the runs of two scenes whose bodies have different names."""
-    settings = {"duration": duration, "points": 11, "rtol": rtol}
+    settings: dict[str, Any] = {"duration": duration, "points": 11, "rtol": rtol}
     try:
         one, other = run(spatial, **settings), run(again, **settings)
     except StiffmbsError as refusal:

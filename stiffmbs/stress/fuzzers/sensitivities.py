@@ -38,8 +38,12 @@ FUNCTIONALS = (
 OUTPUTS = 12
 STEP, RTOL = 5e-4, 1e-11
 """Step of differences, relative to the number, and tolerance of their runs."""
-FINER = 1 / 300
-"""Fraction of the step with which differences are repeated that do not agree: an event or a kink may be as near as the step."""
+AGAIN: tuple[tuple[float, dict[str, Any]], ...] = (
+    (1 / 300, {"solver": "bdf"}),
+    (1.0, {"solver": "projected", "scheme": "dop853"}),
+)
+"""Fraction of the step, and solver, with which differences are repeated that do not agree: an event or a kink may be as near as the
+step, and bdf's rounding may be as large as a channel that is zero."""
 OFF, NOISE = 1e-4, 1e-10
 """Allowed relative error of a derivative; and error of runs, relative to the peak of the output."""
 SMALL = 1e-4
@@ -116,15 +120,15 @@ def _judged(content: Any, path: Path, name: str, slopes: dict[str, Any], outputs
     for key in path:
         value = value[key]
     step = STEP * (abs(value) or 1.0)
-    compared = _compared(content, path, value, step, slopes, outputs)
+    compared = _compared(content, path, value, step, slopes, outputs, AGAIN[0][1])
     if isinstance(compared, str):
         return told(f"{name} {compared}", ())
-    off = tuple(output for output in outputs if output.text in compared and compared[output.text][0] > 1.0)
-    if off:
-        nearer = _compared(content, path, value, FINER * step, slopes, off)
-        if isinstance(nearer, str):
-            return told(f"{name} {nearer}", ())
-        compared |= {text: min(found, compared[text]) for text, found in nearer.items()}
+    for part, how in AGAIN:
+        off = tuple(output for output in outputs if output.text in compared and compared[output.text][0] > 1.0)
+        other = _compared(content, path, value, part * step, slopes, off, how) if off else {}
+        if isinstance(other, str):
+            return told(f"{name} {other}", ())
+        compared |= {text: min(found, compared[text]) for text, found in other.items()}
     if not compared:
         return Verdict(Outcome.TOLD, detail=f"differences by {name} do not settle")
     text, (worst, detail) = max(compared.items(), key=lambda item: item[1])
@@ -132,13 +136,19 @@ def _judged(content: Any, path: Path, name: str, slopes: dict[str, Any], outputs
 
 
 def _compared(
-    content: Any, path: Path, value: float, step: float, slopes: dict[str, Any], outputs: tuple[Output, ...]
+    content: Any,
+    path: Path,
+    value: float,
+    step: float,
+    slopes: dict[str, Any],
+    outputs: tuple[Output, ...],
+    how: dict[str, Any],
 ) -> dict[str, tuple[float, str]] | str:
     """Return the errors over what is allowed, by output with differences that settle; or why a run was not made."""
     runs = {}
     for shift in (-2, -1, 1, 2):
         try:
-            found = run(_read(changed(content, path, value + shift * step)), rtol=RTOL, solver="bdf")
+            found = run(_read(changed(content, path, value + shift * step)), rtol=RTOL, **how)
         except StiffmbsError as refusal:
             return f"{shift * step:+g}: {refusal}"
         if found.outcome is not Ending.DONE:
