@@ -46,9 +46,10 @@ BEFORE_END, ALL = 1.0, 2.0
 """Which stages must not have seen another law: those at the end of a step that has been cut to a change may be just behind it."""
 AT_ANOTHER_LAW, IN_ANOTHER_ZONE = 1, 2
 """What a step has ended at: an event that integrators start anew from, or an edge of a law's zone, where they go on."""
-MOST_TURNED = 2.0
+MOST_TURNED = 1.0
 """rad, by which an argument of a sine may turn in a step (no part of a period, or each step would see the same); one that has turned by
-twice that is taken again."""
+twice that is taken again.  Six steps in a period integrate it as exactly as the trapezoidal rule; fewer pass a peak with an error estimate
+of zero."""
 MOST_ERROR, LEAST_FACTOR, RETRIED, NO_EVENT, TURNED_TOO_FAR = 1.0, 0.2, 1, 2, 3
 """A step that is taken again up to an event is as exact as any other, or a shorter one is tried."""
 
