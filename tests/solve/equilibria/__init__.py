@@ -1,0 +1,1 @@
+"""Static equilibria and steady motions: their derivatives, and what their search needs."""
