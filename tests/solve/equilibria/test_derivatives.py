@@ -105,3 +105,20 @@ def test_stiffness_of_the_balance(case):
         expected,
         atol=1e-7 * max(1.0, np.abs(expected).max(), np.abs(known.lam).max(initial=0)),
     )
+
+
+def test_the_imbalance_is_relative_to_the_largest_force():
+    """A body of 2 kg on a spring that is not stretched: its whole weight is left, 19.62 of 19.62 N; at half the deflection, half."""
+    text = """
+gravity: [0, -9.81]
+bodies: {weight: {mass: 2, inertia: 1, position: [0, %r]}}
+joints: {rail: {type: prismatic, i: {body: weight, angle: 90 deg}, j: {body: ground, angle: 90 deg}}}
+forces: {spring: {type: force, i: weight, force: [0, "-100*weight.y"]}}
+"""
+    for part in (0.0, 0.5):
+        job = prepare(stiffmbs.read_scene(text % (-part * 19.62 / 100)), presolve=False)
+        job.dynamics.state.q[:] = job.start.q
+        known = balance_at(job.dynamics, 0.0, _motion(job.data, job.dynamics, job.start, SteadyMotion()))
+        assert known.largest == pytest.approx(19.62)
+        assert known.imbalance == pytest.approx(1 - part)
+        assert known.imbalance * known.largest == pytest.approx(np.abs(known.left).max())
