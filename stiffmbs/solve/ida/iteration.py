@@ -21,6 +21,8 @@ class Iteration:
     ----------
     n : int
         Number of unknowns.
+    by_reactions : bool
+        Whether forces follow reactions, by laws that may bend where a reaction vanishes.
 
     Attributes
     ----------
@@ -28,8 +30,8 @@ class Iteration:
         For compiled code (`stiffmbs.solve.native.tables.steps.ITERATION`).
     """
 
-    def __init__(self, n: int) -> None:
-        self._n = n
+    def __init__(self, n: int, by_reactions: bool) -> None:
+        self._n, self._by_reactions = n, by_reactions
         self.table = np.zeros(len(ITERATION), dtype=np.int64)
         self._cells = self.table.view(ITERATION.cells)[0]
         self._cells["cj"] = np.inf
@@ -42,7 +44,7 @@ class Iteration:
             self.table,
             ITERATION,
             {
-                "n": self._n, "memory": memory,
+                "n": self._n, "by_reactions": int(self._by_reactions), "memory": memory,
                 "array_of": libraries.address("N_VGetArrayPointer"), "cj_of": libraries.address("IDAGetCurrentCj"),
                 "iteration_of": libraries.address("SUNNonlinSolGetCurIter"),
             },

@@ -9,8 +9,9 @@ Here the rate is foreseen from its two causes. With cj the matrix changes: IDA s
 being cj over that of the matrix, which for an equation u' = lambda u leaves |1 - 2 / (1 + r) (r - z) / (1 - z)| with
 z = lambda / cj; where nothing grows, Re z <= 0, that is at most |r - 1| / (r + 1). And bodies turn away from where
 the matrix was made: this part is taken to grow with the time since then, as fast as it did when a rate was last
-measured, also under earlier matrices. A rate that was measured where the matrix was new does not count. A matrix that
-has become slow, or with which the iteration cannot get there in the corrections that are left, is made anew.
+measured, also under earlier matrices. A rate that was measured where the matrix was new does not count. Where forces
+follow reactions and the iteration has been given up, the rate of the next matrix is measured: friction bends where a reaction
+vanishes, and a matrix for the predicted sign of the reaction leaves another force. A matrix that has become slow, or with which the iteration cannot get there in the corrections that are left, is made anew.
 
 How far the iteration is taken follows from the stiffness of the scene for long steps (`stiffmbs.solve.error_control.newton`). An
 error left in a position makes an acceleration, and that a velocity within the step; so shorter steps bear more, in
@@ -76,7 +77,8 @@ def _predicted(c):
         c.span = 0.0
     c.span += 1.0 / c.cj
     c.by_cj = abs(c.cj - c.matrix_cj) / (c.cj + c.matrix_cj)
-    known = c.growth >= 0.0 and (c.since <= TRUSTED or age == 0)
+    bends = age == 0 and c.by_reactions == 1 and c.given_up == 1
+    known = c.growth >= 0.0 and (c.since <= TRUSTED or age == 0) and not bends
     return c.by_cj + c.growth * c.span if known else 1.0
 
 
@@ -122,4 +124,9 @@ def converged(solver, total, correction, enough, weights, table):
     if c.done == 0:
         call_int(c.cj_of, (c.memory, address_of(c.cj)))
     allowed_residual = max(enough, min(LOOSEST, enough * c.cj / LONG_STEPS))
-    return int32(_first(c, size, allowed_residual) if c.done == 0 else _later(c, size, allowed_residual))
+    verdict = _first(c, size, allowed_residual) if c.done == 0 else _later(c, size, allowed_residual)
+    if verdict == GIVE_UP:
+        c.given_up = 1
+    elif verdict == SETTLED and c.age > 0:
+        c.given_up = 0
+    return int32(verdict)

@@ -1,5 +1,7 @@
 """Newton's iteration in a step: a rate of convergence is not believed for longer than it holds."""
 
+import json
+
 import numpy as np
 import pytest
 
@@ -7,6 +9,7 @@ import stiffmbs
 from stiffmbs.jobs.job import prepare
 from stiffmbs.solve.bdf import solve
 from stiffmbs.solve.error_control.error_test import ErrorControl
+from stiffmbs.stress.fuzzers import fmu
 
 IDAS_OWN, DOUBTFUL = ErrorControl(predicted_residual=False), ErrorControl(predicted_residual=True)
 
@@ -43,3 +46,15 @@ def test_steps_of_a_linear_scene_stay_what_they_were(examples):
     (_, counted), (_, before) = ends(scene, 1e-6, DOUBTFUL, IDAS_OWN, duration=1.0)
     assert counted["steps"] == pytest.approx(before["steps"], rel=0.02)
     assert counted["residuals"] < 1.1 * before["residuals"]
+
+
+def test_reactions_that_vanish_under_friction_do_not_stall_the_steps():
+    """The moment in a slider with friction changes its sign: reactions went back and forth between the two signs from step to step."""
+    content = fmu._scene(np.random.default_rng(1000474))
+    content["parameters"][fmu.GAIN] = 0.9455251332885011
+    inputs = 0.014703376842906568, 1.9601075123737801, 0.8376444829185199
+    scene = stiffmbs.read_scene(json.dumps(content))
+    simulated = stiffmbs.simulation(scene, rtol=1e-8, solver="bdf")
+    for k in range(fmu.STEPS):
+        simulated.step(scene.run.duration / fmu.STEPS, {fmu.GIVEN: inputs[np.searchsorted((6, 13), k, "right")]})
+    assert simulated._stepper._integrator.steps() < 5000

@@ -137,9 +137,9 @@ for an opening of 1 m, in units of what may be left, and for how many states tha
 that joints are closed by, and memory for a pose."""
 
 ITERATION = Layout({
-    "n": INT, "memory": INT, "array_of": INT, "cj_of": INT, "iteration_of": INT,
+    "n": INT, "by_reactions": INT, "memory": INT, "array_of": INT, "cj_of": INT, "iteration_of": INT,
     "cj": FLOAT_CELL, "matrix_cj": FLOAT_CELL, "first": FLOAT_CELL, "by_cj": FLOAT_CELL, "growth": FLOAT_CELL, "span": FLOAT_CELL,
-    "done": INT_CELL, "age": INT_CELL, "since": INT_CELL, "slow": INT_CELL,
+    "done": INT_CELL, "age": INT_CELL, "since": INT_CELL, "slow": INT_CELL, "given_up": INT_CELL,
 })  # fmt: skip
 """What the convergence test of Newton's iteration in a step works on (`stiffmbs.solve.native.iteration`).
 
