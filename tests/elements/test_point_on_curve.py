@@ -95,3 +95,20 @@ run: {duration: 2 s, points: 2001, max_step: 0.5 ms}
     solution = stiffmbs.run(scene, solver=solver)
     angle = np.mod(np.pi / 2 - 10 * solution.t + np.pi, 2 * np.pi) - np.pi
     np.testing.assert_allclose(solution["f.y"], 1 + 0.1 * np.exp(-(((angle - 0.96) / 0.01) ** 2)), atol=1e-9)
+
+
+def test_a_cam_in_space_lifts_its_follower_by_its_height():
+    """A barrel cam: a follower at the radius 0.5 is at the height 0.1 sin(2 theta) beside the cam's own."""
+    scene = read_scene(
+        """
+dimensions: 3
+bodies: {follower: {mass: 1, inertia: [1, 1, 1], position: [0.5, 0.2, 1.1], velocity: [0, 1, 0]}}
+joints:
+  cam: {type: point_on_curve, i: follower, j: {body: ground, point: [0, 0.2, 1]}, radius: 0.5, height: 0.1 + 0.1*sin(2*angle)}
+"""
+    )
+    solution = stiffmbs.run(scene, duration=2.0, points=41, rtol=1e-9)
+    x, y, z = solution["follower.x"], solution["follower.y"] - 0.2, solution["follower.z"] - 1
+    np.testing.assert_allclose(np.hypot(x, y), 0.5, atol=1e-9)
+    np.testing.assert_allclose(z, 0.1 + 0.1 * np.sin(2 * np.arctan2(y, x)), atol=1e-9)
+    assert np.ptp(z) > 0.1

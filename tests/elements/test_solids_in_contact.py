@@ -104,3 +104,23 @@ def test_a_sphere_meets_the_edge_of_a_box_at_its_distance():
 def test_friction_needs_both_coefficients():
     with pytest.raises(stiffmbs.InputError, match="found one of friction and static_friction"):
         solved(f"{CYLINDER}, {LAW}, friction: 0.2", BALL)
+
+
+@pytest.mark.parametrize("lean", [0.02, -0.03, 0.6])
+def test_both_ends_of_a_leaning_cylinder_press_on_the_plane(lean):
+    """k (-g)^1.5 at the lowest point of each rim, with its moment about the middle; 0.02 rad: both ends overlap."""
+    height, length, radius = 0.095, 0.4, 0.1
+    half = np.pi / 4 + lean / 2  # turns z to y, and down by the lean
+    body = f"inertia: [0.014, 0.014, 0.005], position: [0, 0, {height}], orientation: [{np.cos(half)}, {-np.sin(half)}, 0, 0]"
+    found = solved(f"{CYLINDER}, {LAW}", body, duration=1e-9, points=2)
+    force = moment = 0.0
+    for side in (0.5 * length, -0.5 * length):
+        y, z = side * np.cos(lean), height - side * np.sin(lean)
+        gap = z - radius * np.cos(lean)
+        press = 1e5 * max(-gap, 0.0) ** 1.5
+        force += press
+        moment += press * (y - radius * np.sin(lean))
+    assert force > 10
+    assert found["c.fz"][0] == pytest.approx(force, rel=1e-6)
+    assert found["b.az"][0] == pytest.approx(force - G, rel=1e-6)
+    assert abs(0.014 * found["b.wdx"][0]) == pytest.approx(abs(moment), rel=1e-5)
