@@ -31,6 +31,8 @@ FUNCTIONS = {
 """Functions that take the same arguments and return other values."""
 NOT_EXECUTED = (ast.Raise, ast.Assert, ast.JoinedStr, ast.Import, ast.ImportFrom)
 """Statements and expressions that are left alone: errors, their texts, imports."""
+SAMPLES = "forms", "SAMPLE"
+"""Names of examples of elements that are compiled ahead."""
 
 
 @dataclass(frozen=True)
@@ -116,8 +118,17 @@ def mutations(path: str, source: bytes) -> list[Mutation]:
 
 
 def _is_constant(statement: ast.stmt) -> bool:
-    """Return True for a named number of a module: a tuning parameter, whose halving and doubling has tests of its own."""
-    return isinstance(statement, ast.Assign | ast.AnnAssign) and isinstance(statement.value, ast.Constant)
+    """Return True for named numbers of a module: tuning parameters, whose halving and doubling has tests of its own."""
+    if not isinstance(statement, ast.Assign | ast.AnnAssign):
+        return False
+    values = statement.value.elts if isinstance(statement.value, ast.Tuple) else [statement.value]
+    return all(isinstance(value, ast.Constant) for value in values)
+
+
+def _is_sample(statement: ast.AST) -> bool:
+    """Return True for examples of elements that are compiled ahead, whose numbers have no meaning."""
+    targets = statement.targets if isinstance(statement, ast.Assign) else [getattr(statement, "target", None)]
+    return any(isinstance(target, ast.Name) and target.id in SAMPLES for target in targets)
 
 
 def _parses(source: bytes) -> bool:
@@ -142,5 +153,5 @@ def _executed(node: ast.AST) -> Iterator[ast.AST]:
         if name in {"annotation", "returns", "decorator_list", "type_params"}:
             continue
         for child in value if isinstance(value, list) else [value]:
-            if isinstance(child, ast.AST) and not isinstance(child, NOT_EXECUTED):
+            if isinstance(child, ast.AST) and not isinstance(child, NOT_EXECUTED) and not _is_sample(child):
                 yield from _executed(child)
