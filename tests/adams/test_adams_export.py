@@ -211,3 +211,14 @@ def test_axes_are_parallel_up_to_rounding(sine, kept):
         forces: {{s: {{type: torsion_spring, i: {{body: a, orientation: [1, {sine / 2!r}, 0, 0]}}, j: b, spring_law: 2*s^3}}}}
     """)
     assert kept_parallel(scene, scene.forces["s"].i, scene.forces["s"].j) is kept
+
+
+@pytest.mark.parametrize("motion", ["velocity: [0.3, 0, 0]", "omega: [0, 0, 2]"])
+def test_a_free_body_keeps_a_motion_of_one_kind(motion):
+    """Velocities of assembly are left to joints where nothing is given: one kind of motion is enough to give all."""
+    scene = stiffmbs.read_scene(f"dimensions: 3\nbodies: {{b: {{mass: 1, inertia: [1, 1, 1], {motion}}}}}\n")
+    again = read_adams(dataset_text(scene))
+    one, other = (stiffmbs.run(each, duration=0.5, points=3) for each in (scene, again))
+    (name,) = again.bodies
+    for channel in ("x", "vx", "wz"):
+        np.testing.assert_allclose(other[f"{name}.{channel}"], one[f"b.{channel}"], atol=1e-9)
