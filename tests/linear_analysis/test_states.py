@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import stiffmbs
-from stiffmbs import AppliedForce, Body, Model, Prismatic, State
+from stiffmbs import AlgebraicState, AppliedForce, Body, Model, Prismatic, State
 from stiffmbs.errors import SolverError
 
 MASS, KP, KI, KD, LOAD, TARGET = 2.0, 50.0, 30.0, 12.0, 7.0, 0.4
@@ -60,3 +60,18 @@ def test_the_frequency_response_goes_through_states():
     assert x == pytest.approx(compliance, rel=1e-8)
     assert total == pytest.approx(-compliance / s, rel=1e-8)
     assert rate == pytest.approx(-compliance, rel=1e-8)
+
+
+def test_algebraic_states_pass_on_states_to_rates_and_forces():
+    """p = 2 w - 5 x - 3 v; w' = p - 6 w and m x'' = 4 p + 7 w - k x: the eigenvalues of the three equations without p."""
+    model = Model()
+    model.add("cart", Body(mass=2, inertia=1))
+    model.add("rail", Prismatic(i="cart", j="ground"))
+    model.add("w", State(rate="-w"))
+    model.add("p", AlgebraicState(zero="2*p - 4*w + 10*cart.x + 6*cart.vx"))
+    model.add("push", AppliedForce(i="cart", force=("4*p + 7*w - 50*cart.x", 0)))
+    model.replace("w", State(rate="p - 6*w"))
+    found = stiffmbs.modes(model)
+    matrix = [[0, 1, 0], [(-20 - 50) / 2, -12 / 2, 15 / 2], [-5, -3, -4]]
+    values = sorted((v for mode in found.modes for v in mode.eigenvalues), key=lambda v: (v.real, v.imag))
+    assert values == pytest.approx(sorted(np.linalg.eigvals(matrix), key=lambda v: (v.real, v.imag)), rel=1e-8)

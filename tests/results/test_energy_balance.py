@@ -159,3 +159,30 @@ def test_a_request_without_a_value_is_told():
 def test_examples_have_no_note_of_balance_or_growth(name, solver):
     solution = stiffmbs.run(stiffmbs.load_scene(EXAMPLES / f"{name}.yaml"), solver=solver)
     assert solution.notes == ()
+
+
+def test_the_furthest_imbalance_is_that_of_all_instants_and_intervals():
+    t, none = np.arange(4.0), np.zeros(4)
+    small = np.array([0.0, 1e-3, -2e-3, 0.0])
+    assert Balance(t, small, none, none[:3], none[:3], 0.0, 1.0, True).furthest == pytest.approx(3e-3)
+    assert Balance(t, none, none, none[:3], none[:3], 0.0, 1.0, True).furthest == 0.0
+
+
+def test_a_scene_that_keeps_energy_needs_no_work():
+    solution = stiffmbs.run(sled(), duration=1.0, points=11)
+    balance = solution.balance
+    assert (
+        balance.resolved == 0.0
+        and not balance.work.any()
+        and balance.within.shape == (10,)
+        and not balance.within.any()
+    )
+
+
+def test_the_spring_of_wrong_sign_is_named_among_others_of_its_kind():
+    text = TORSION.replace("-200}", "-200, damping: 0}").replace(
+        "forces: {", "forces: {a: {type: torsion_spring, i: bar, j: ground, stiffness: 3}, "
+    )
+    solution = stiffmbs.run(stiffmbs.read_scene(text))
+    (note,) = [note for note in solution.notes if "negative" in note or "'s'" in note]
+    assert "'s'" in note and "'a'" not in note
