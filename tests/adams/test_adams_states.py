@@ -178,6 +178,8 @@ def test_contacts_that_are_not_read_are_refused(text, words):
         ("ARRAY/1, X\nMATRIX/1, FULL=RORDER, M=1, N=2, VALUES=1,2\nLSE/1, X=1, A=1", "found A of 1 by 2 numbers, expected 1 rows and 1 col"),
         ("MATRIX/1, FULL=RORDER, M=2, N=2, VALUES=1,2", "found 2 VALUES of 2 rows"),
         ("MATRIX/1, FILE=a.txt", "found FILE, expected the numbers"),
+        ("SFORCE/1, TRANSLATIONAL, ACTIONONLY, I=21, J=10, FUNCTION=ARYVAL(8,1)", r"found ARYVAL\(8, 1\), expected an ARRAY"),
+        ("ARRAY/8, IC, NUM=1,2\nSFORCE/1, TRANSLATIONAL, ACTIONONLY, I=21, J=10, FUNCTION=ARYVAL(8,3)", r"found ARYVAL\(8, 3\), expected"),
     ],
 )  # fmt: skip
 def test_systems_that_make_no_sense_are_refused(text, words):
