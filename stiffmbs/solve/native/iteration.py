@@ -11,7 +11,8 @@ z = lambda / cj; where nothing grows, Re z <= 0, that is at most |r - 1| / (r + 
 the matrix was made: this part is taken to grow with the time since then, as fast as it did when a rate was last
 measured, also under earlier matrices. A rate that was measured where the matrix was new does not count. Where forces
 follow reactions and the iteration has been given up, the rate of the next matrix is measured: friction bends where a reaction
-vanishes, and a matrix for the predicted sign of the reaction leaves another force. A matrix that has become slow, or with which the iteration cannot get there in the corrections that are left, is made anew.
+vanishes, and a matrix for the predicted sign of the reaction leaves another force. A matrix that has become slow, or with
+which the iteration cannot get there in the corrections that are left, is made anew.
 
 How far the iteration is taken follows from the stiffness of the scene for long steps (`stiffmbs.solve.error_control.newton`). An
 error left in a position makes an acceleration, and that a velocity within the step; so shorter steps bear more, in
