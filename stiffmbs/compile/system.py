@@ -80,6 +80,8 @@ class System:
         Whether an element has a formula or a table, and whether one calls a Python function.
     has_laws : bool
         Whether forces or joints have breakpoints or laws (formulas, tables), which may change within one step.
+    forces_by_reactions : tuple of str
+        The names of the elements whose forces follow reactions, as friction does.
     """
 
     bodies: tuple[str, ...]
@@ -107,6 +109,7 @@ class System:
     has_inputs: bool = field(init=False)
     has_laws: bool = field(init=False)
     has_functions: bool = field(init=False)
+    forces_by_reactions: tuple[str, ...] = field(init=False)
 
     def __post_init__(self) -> None:
         n_q, n_pose = len(self.q), self.of_body.n_q * len(self.bodies)
@@ -116,6 +119,7 @@ class System:
             n_counters=first_state - n_pose, has_inputs=any(group.has_inputs for group in self.groups),
             has_functions=any(group.has_functions for group in self.groups),
             has_laws=any(group.has_law for group in self.groups if group.entries["f"] or group.record.n_equations),
+            forces_by_reactions=tuple(name for group in self.groups if group.record.patterns.get("f_lam") for name in group.names),
         )  # fmt: skip
 
     def per_coordinate(self, linear: float, angular: float) -> np.ndarray:

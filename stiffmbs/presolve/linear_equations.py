@@ -59,7 +59,7 @@ def _candidates(system: System) -> np.ndarray:
         of_group[: group.record.n_holonomic] = group.record.removable
         last = group.first_row + group.count * len(of_group)
         rows[group.first_row : last] &= np.tile(of_group, group.count)
-    if any(group.record.patterns.get("f_lam") for group in system.groups):
+    if system.forces_by_reactions:
         rows[system.term("tangent", "f_lam").column] = False
     if system.states:
         rows[system.term("tangent", "rate_lam").column] = False

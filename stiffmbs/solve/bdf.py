@@ -57,10 +57,9 @@ def _refuse_untested_reactions(system: System, settings: RunSettings) -> None:
     """
     if "u" in FORMULATIONS[settings.formulation](settings).tested:
         return
-    following = [name for group in system.groups if group.record.patterns.get("f_lam") for name in group.names]
-    if following:
+    if system.forces_by_reactions:
         raise InputError(
-            f"formulation {settings.formulation}: found forces that follow reactions ({', '.join(following)}), which this "
+            f"formulation {settings.formulation}: found forces that follow reactions ({', '.join(system.forces_by_reactions)}), which this "
             "formulation does not test; expected SI2, SI1 or index1"
         )
 

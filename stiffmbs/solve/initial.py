@@ -158,8 +158,8 @@ def _sentence(dynamics: Dynamics, status: int, t: float) -> str:
 
 
 def _balance_sentence(dynamics: Dynamics) -> str:
-    rubbing = [n for group in dynamics.system.groups if group.record.patterns.get("f_lam") for n in group.names]
-    return f"the start has no accelerations: {FAILURES[NO_BALANCE]}, expected less of it in {', '.join(rubbing)}"
+    rubbing = ", ".join(dynamics.system.forces_by_reactions)
+    return f"the start has no accelerations: {FAILURES[NO_BALANCE]}, expected less of it in {rubbing}"
 
 
 def _violation_sentence(dynamics: Dynamics, t: float) -> str:

@@ -93,9 +93,8 @@ class Connection:
         self._long_steps = self.long_steps.table if self.long_steps else np.zeros(len(LONG_STEPS), dtype=np.int64)
         self.samples = np.full((SAMPLES, 1 + len(self.reported)), np.nan)
         self.y_vector, self.yp_vector, self.output_vector = map(session.vector, (self.y, self.yp, self.output))
-        by_reactions = len(equations.system.term("tangent", "f_lam").row) > 0
-        self.output_correction, self.iteration = OutputCorrection(equations), Iteration(n, by_reactions)
-        self.step_bound = StepBound()
+        self.output_correction, self.step_bound = OutputCorrection(equations), StepBound()
+        self.iteration = Iteration(n, bool(equations.system.forces_by_reactions))
         self._matrix, self._assembled = matrix, matrix.assembled(session, self.y_vector)
         self.memory = session.ida()
         self.watch = EventSearch(state)
