@@ -1,0 +1,34 @@
+"""The evaluations of runs and equilibria equal recorded ones: what changes step control or an iteration shows here.
+
+After a change that is wanted, ``python -m tests.solve.efforts.measure`` records them anew.
+"""
+
+import csv
+
+import numpy as np
+import pytest
+
+from .measure import RECORDED, cases, evaluations
+
+MEAN, EACH = 0.012, 0.25
+"""Relative differences that rounding may cause: of the geometric mean over all scenes, and of one scene."""
+
+
+def _recorded() -> dict[tuple[str, float], dict[str, int]]:
+    found: dict[tuple[str, float], dict[str, int]] = {}
+    with RECORDED.open() as file:
+        for row in csv.DictReader(file):
+            found.setdefault((row["analysis"], float(row["rtol"])), {})[row["scene"]] = int(row["evaluations"])
+    return found
+
+
+@pytest.mark.parametrize(("analysis", "rtol"), sorted(_recorded()))
+def test_evaluations_are_those_recorded(analysis, rtol):
+    recorded = _recorded()[analysis, rtol]
+    ratios = {name: evaluations(name, analysis, rtol) / number for name, number in recorded.items()}
+    assert {name: ratio for name, ratio in ratios.items() if abs(ratio - 1) > EACH} == {}
+    assert float(np.exp(np.mean(np.log(list(ratios.values()))))) == pytest.approx(1, abs=MEAN)
+
+
+def test_all_cases_are_recorded():
+    assert {(name, *key) for key, scenes in _recorded().items() for name in scenes} == set(cases())
