@@ -155,6 +155,8 @@ def test_force_of_a_motor_is_the_same_from_an_equation():
         ({"joint": "pin"}, r"found neither of 'position' and 'velocity', expected exactly one of them"),
         ({"joint": "pin", "coordinate": "a.x", "position": 0}, r"found both of 'joint' and 'coordinate'"),
         ({"joint": "pin", "velocity": 1, "position": 0}, r"found both of 'position' and 'velocity'"),
+        ({"joint": "pin", "velocity": 1, "i": "a"}, r"found the markers i or j beside a joint"),
+        ({"joint": "pin", "velocity": 1, "j": "a"}, r"found the markers i or j beside a joint"),
         ({"joint": "weld", "velocity": 1}, r"x.joint: found 'weld' of the type fixed, expected a joint with a coordinate"),
         ({"joint": "none", "velocity": 1}, r"x.joint: found the unknown joint 'none', expected one of pin, weld"),
         ({"coordinate": "2*t", "velocity": 1}, r"coordinate: found '2\*t', expected a formula with a body's coordinate"),

@@ -23,6 +23,7 @@ from stiffmbs import (
     Revolute,
     TorsionSpring,
 )
+from stiffmbs.compile.state import State
 
 G = 9.81
 RATE = 3.0
@@ -268,3 +269,13 @@ def test_markers_drawn_whole_turns_apart_wind_up_no_spring(kind, on, turns, sett
     np.testing.assert_allclose(solution["block.angle"], 0.0, atol=1e-9)
     turned = 0.01 * np.cos(np.sqrt(10.0 / 0.2) * solution.time)
     np.testing.assert_allclose(solution["arm.angle"], turned, atol=1e-6)
+
+
+def test_the_equation_of_a_distance_is_its_stretch():
+    """To first order: assembly and messages measure equations of positions in metres."""
+    model = Model(gravity=(0, 0))
+    model.add("a", Body(mass=1, inertia=1, position=(2.002, 0)))
+    model.add("rod", Distance(i="a", j="ground", length=2))
+    state = State(stiffmbs.compile_model(model.data()))
+    state.evaluate("position", 0.0)
+    assert state.vector("position", "C") == pytest.approx(0.002, rel=1e-3)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import stiffmbs
+from stiffmbs.jobs.run import prepare
 
 G = 9.81
 LAW = "stiffness: 1e5, exponent: 1.5"
@@ -124,3 +125,18 @@ def test_both_ends_of_a_leaning_cylinder_press_on_the_plane(lean):
     assert found["c.fz"][0] == pytest.approx(force, rel=1e-6)
     assert found["b.az"][0] == pytest.approx(force - G, rel=1e-6)
     assert abs(0.014 * found["b.wdx"][0]) == pytest.approx(abs(moment), rel=1e-5)
+
+
+@pytest.mark.parametrize(
+    "settings", [{"solver": "bdf"}, {"solver": "projected", "scheme": "dop853"}], ids=lambda s: s["solver"]
+)
+def test_a_push_that_damping_ends_is_an_event_of_its_own(settings):
+    """A ball touches, is no longer pushed while it still overlaps on its way back, and leaves."""
+    scene = stiffmbs.read_scene(
+        "dimensions: 3\ngravity: [0, 0, 0]\n"
+        f"bodies: {{b: {{mass: 1, {BALL}, position: [0, 0, 0.2], velocity: [0, 0, -3]}}}}\n"
+        "forces: {c: {type: ellipsoid_plane_impact, i: b, j: ground, x: 0.1, y: 0.1, z: 0.1, stiffness: 1e5, exponent: 1.5, "
+        "damping: 60, depth: 1e-6}}\n"
+        "run: {duration: 0.5, rtol: 1e-7}\n"
+    )
+    assert prepare(scene, **settings).integrate().statistics["events"] == 3

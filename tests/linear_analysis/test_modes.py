@@ -204,3 +204,27 @@ def test_the_command_prints_a_table_and_json():
     assert second["damping"] == pytest.approx(-second["eigenvalue"][0] / np.hypot(*second["eigenvalue"]))
     wrong = CliRunner().invoke(main, ["modes", "nowhere.yaml"])
     assert wrong.exit_code == 2
+
+
+def test_masses_of_very_different_size_have_their_own_frequencies():
+    """A milligram and 1000 t: each row of the inertia of free motions is measured by itself."""
+    masses, stiffness = {"small": 1e-6, "large": 1e6}, 100.0
+    scene = {
+        "gravity": [0, 0],
+        "bodies": {name: {"mass": m, "inertia": 1, "position": [1, 0]} for name, m in masses.items()},
+        "joints": {f"rail_{name}": {"type": "prismatic", "i": name, "j": "ground"} for name in masses},
+        "forces": {
+            f"spring_{name}": {
+                "type": "spring_damper",
+                "i": name,
+                "j": "ground",
+                "stiffness": stiffness,
+                "free_length": 1,
+            }
+            for name in masses
+        },
+    }
+    found = modes(read(json.dumps(scene)))
+    assert sorted(frequencies(found)) == pytest.approx(
+        sorted(np.sqrt(stiffness / m) / (2 * np.pi) for m in masses.values())
+    )

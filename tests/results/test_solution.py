@@ -10,7 +10,7 @@ import xarray
 from matplotlib import pyplot
 
 import stiffmbs
-from stiffmbs import InputError, Solution
+from stiffmbs import Body, InputError, Model, Solution
 from stiffmbs.results.energy_balance import Balance
 
 ENDINGS = (".csv", ".npz", ".nc")
@@ -188,3 +188,16 @@ def test_axes_have_units(solution):
     with pytest.raises(InputError, match=r"found no channel 'bar\.z'"):
         solution.plot("bar.z")
     assert not pyplot.get_fignums()
+
+
+def test_an_unknown_channel_is_answered_with_some_that_exist():
+    model = Model()
+    for name in "abc":
+        model.add(name, Body(mass=1, inertia=1))
+    found = stiffmbs.run(model, duration=0.1)
+    with pytest.raises(InputError, match=r"found no channel 'd\.x', expected one such as") as refused:
+        found["d.x"]
+    assert str(refused.value).count(", ") == 12  # one behind the name, eleven between twelve channels
+    with pytest.raises(InputError, match=r"expected one such as b\.x, .*b\.") as refused:
+        found["b.z"]
+    assert "a.x" not in str(refused.value)

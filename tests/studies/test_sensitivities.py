@@ -190,6 +190,7 @@ def test_differences_of_converged_runs(scene, name, value, of, settings):
         (["k", "k"], "final(sled.x)", "each once"),
         (["bodies.sled.position"], "final(sled.x)", "add a place such as .0"),
         (["bodies.sled.position.5"], "final(sled.x)", "a place of the vector"),
+        (["bodies.sled.position.x"], "final(sled.x)", "position.x"),
         (["k"], "final(sled.q)", "no channel 'sled.q'"),
         (["k"], "t_peak(sled.x)", "found t_peak"),
         (["k"], "final(constraint.position)", "has no derivatives"),
