@@ -86,7 +86,15 @@ class Zones(NamedTuple):
 
 
 def zones_of(system: System) -> Zones:
-    """The zones of all event functions of a system."""
+    """The zones of all event functions of a system; those of the last run where its tables have the same numbers."""
+    numbers = b"".join(group.numbers.tobytes() for group in system.groups if group.record.laws)
+    if system.known_zones.get("numbers") != numbers:
+        system.known_zones.update(numbers=numbers, zones=_zones_of(system))
+    found: Zones = system.known_zones["zones"]
+    return found
+
+
+def _zones_of(system: System) -> Zones:
     of_event_function = np.zeros(1), np.zeros(1), 0.0
     found = [of_event_function] * system.n_event_functions + list(_of_arguments(system))
     counts = np.array([len(edges) for edges, _, _ in found], dtype=np.int64)

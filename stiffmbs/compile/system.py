@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -275,6 +275,11 @@ class System:
     @cached_property
     def known_terms(self) -> dict[tuple[str, str], Term]:
         """Those asked for so far.  A set-up asks for them again and again, a run for few; those of a car take 0.8 MB."""
+        return {}
+
+    @cached_property
+    def known_zones(self) -> dict[str, Any]:
+        """The zones of laws (`stiffmbs.compile.law_zones`), and the numbers of the tables that they were found from."""
         return {}
 
     def term(self, term_set: str, name: str) -> Term:

@@ -48,6 +48,15 @@ def test_a_smooth_table_has_few_zones_and_a_bump_one_of_its_own():
     assert bump.tolist() == [0, 15, 15.05, 15.1, 30]
 
 
+def test_zones_follow_numbers_that_change_in_place():
+    system = compile_model(pushed("{table: [[0, 0], [1, 1], [2, 0]], lines: true}"))
+    before = zones_of(system)
+    assert zones_of(system) is before
+    (group,) = system.groups
+    group.numbers[group.numbers == 1.0] = 1.5
+    assert before.edges.tolist() == [0, 1, 2] and zones_of(system).edges.tolist() != [0, 1, 2]
+
+
 def test_a_reciprocal_has_no_edge_where_its_usual_arguments_turn_round():
     """1/(1 + x^2) and 1/cos(x) have their extremum at 1: whether it passes an edge there is left to rounding."""
     found = zones_of(compile_model(pushed("{table: [[0, 0], [1, 1]]}", "1/(1 + b.x^2)"))).edges

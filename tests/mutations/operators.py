@@ -68,7 +68,7 @@ class Mutation:
 def mutations(path: str, source: bytes) -> list[Mutation]:
     """Return all mutations of one file, in the order of the source.
 
-    Named numbers of the module and error messages are left alone.
+    Named numbers of the module, error messages and `strict` of `zip`, which is an assertion, are left alone.
     """
     lines = [0]
     for line in source.splitlines(keepends=True):
@@ -105,7 +105,7 @@ def mutations(path: str, source: bytes) -> list[Mutation]:
                 yield replaced(function, FUNCTIONS[name], "function")
             case ast.Subscript(slice=ast.Constant(value=int(value)) as index) if not isinstance(value, bool):
                 yield replaced(index, "1" if value == 0 else "0", "index")
-            case ast.Constant(value=bool(value)):
+            case ast.Constant(value=bool(value)) if id(node) not in strict:
                 yield replaced(node, str(not value), "logic")
             case ast.Constant(value=int(value) | float(value)) if id(node) not in indices:
                 yield replaced(node, "1" if value == 0 else f"(2*{value!r})", "number")
@@ -113,6 +113,7 @@ def mutations(path: str, source: bytes) -> list[Mutation]:
     tree = ast.parse(source)
     tree.body = [statement for statement in tree.body if not _is_constant(statement)]
     indices = {id(node.slice) for node in ast.walk(tree) if isinstance(node, ast.Subscript)}
+    strict = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.keyword) and node.arg == "strict"}
     found = (mutation for node in _executed(tree) for mutation in of(node))
     return sorted((m for m in found if _parses(m.applied(source))), key=lambda mutation: mutation.start)
 

@@ -37,7 +37,8 @@ def cases() -> list[tuple[str, str, float]]:
         for rtol in TOLERANCES
         if solver == "bdf" or name not in LONG
     ]
-    return [*runs, *((f"random_statics {seed}", "equilibrium", 0.0) for seed in SEEDS)]
+    car = [("vehicles/leaf_sprung_car", solver, 1e-6) for solver in RUNS]
+    return [*runs, *car, *((f"random_statics {seed}", "equilibrium", 0.0) for seed in SEEDS)]
 
 
 def evaluations(name: str, analysis: str, rtol: float) -> int:

@@ -10,6 +10,7 @@ from stiffmbs.solve.native.calls import int32
 from stiffmbs.solve.native.event_search.bounds import (
     LOOKED_AT,
     event_search_view,
+    fastest_turn,
     longest_by_turns,
     note_unresolved,
     noted,
@@ -50,6 +51,8 @@ MOST_TURNED = 1.0
 """rad, by which an argument of a sine may turn in a step (no part of a period, or each step would see the same); one that has turned by
 twice that is taken again.  Six steps in a period integrate it as exactly as the trapezoidal rule; fewer pass a peak with an error estimate
 of zero."""
+SHORT_TURN = 0.05
+"""rad, which a step turns on an average where each turn is a few steps long."""
 MOST_ERROR, LEAST_FACTOR, RETRIED, NO_EVENT, TURNED_TOO_FAR = 1.0, 0.2, 1, 2, 3
 """A step that is taken again up to an event is as exact as any other, or a shorter one is tried."""
 
@@ -369,11 +372,12 @@ def _ended_at_event(x, c, s, m):
 
 @compiled
 def _note_repeats(x, w, events):
-    """Note how often laws repeat that end a step in each turn: the errors of their turns add up."""
+    """Note how often laws repeat that end a step in each turn, which is a few steps long: the errors of their turns add up."""
     if w.n_turns > 0:
         w.begins = min(w.begins, x.t_before)
         w.narrow += events
-        x.repeats = repeats(w, x.t, False)
+        few = x.steps * SHORT_TURN < fastest_turn(w, w.rate_before) * (x.t - w.begins)
+        x.repeats = repeats(w, x.t, False) if few else 1.0
 
 
 @compiled

@@ -28,7 +28,7 @@ from stiffmbs.solve.native.event_search.from_zero import (
     leave_zero,
     note_sides,
 )
-from stiffmbs.solve.native.event_search.nearby import note_mean_rates, note_near
+from stiffmbs.solve.native.event_search.nearby import near_an_event, note_mean_rates, note_near
 from stiffmbs.solve.native.event_search.passage import START_DIFFERENCE, bound_passage
 from stiffmbs.solve.native.event_search.within_step import DIFFERENCE, first_event, first_event_or_change, keep_row
 from stiffmbs.solve.native.ida_memory import array_of, native_ida_view
@@ -109,67 +109,96 @@ def _go_on(c, w, s):
 
 @compiled
 def _look_ahead(c, w, s):
-    """Have the next step pass zones in several steps, and end before an event."""
-    if w.n_turns > 0 and w.n_zoned > 0 and w.longest < float("inf"):
+    """Have the next step pass zones in several steps, and end before an event, where the motion comes near the edges of zones."""
+    if w.n_turns == 0 or w.n_zoned == 0 or w.longest == float("inf"):
+        return
+    ahead = min(w.longest, GROWTH * c.size)
+    go_ahead(c, s, ahead)
+    noted(w.value_after, evaluate(s, SWITCH, c.returned + ahead), w.n)
+    if note_near(w, ahead, w.row, s.q):
+        event = near_an_event(w, ahead, w.row, s.q)
+        _look_at_middle(c, w, s, ahead)
         if w.n_zoned > w.n_event_functions:
-            _resolve_zones(c, w, s)
-        _aim(c, w, s)
+            ahead = _resolve_zones(c, w, s, ahead)
+        if event:
+            _aim(c, w, s, ahead)
+    load(s, equations_view(c.equations), array_of(c, c.y), array_of(c, c.yp))
 
 
 @compiled
-def _within_zones(w, middle, end):
-    """Whether laws move by less than a part of their zones from the start of a step to its middle, and from there to its end."""
+def _look_at_middle(c, w, s, ahead):
+    """Keep the values of functions near edges at a place within the way that the motion goes in a time with its accelerations."""
+    go_ahead(c, s, LOOKED_AT * ahead)
+    noted(w.m, evaluate_some(s, SWITCH, c.returned + LOOKED_AT * ahead, w.near), w.n)
+
+
+@compiled
+def _within_zones(w):
+    """Whether laws move by less than a part of their zones from the start of a step to the place within it, and from there to its end."""
     beyond = 0
     for k in range(w.n_event_functions, w.n):
-        if w.first_edge[k] == w.first_edge[k + 1]:
+        if w.first_edge[k] == w.first_edge[k + 1] or not w.near[w.call[k]]:
             continue
-        start = w.value_before[k]
-        narrowest = min(_width(w, k, start), min(_width(w, k, middle[k]), _width(w, k, end[k])))
-        beyond += max(abs(middle[k] - start), abs(end[k] - middle[k])) > OF_A_ZONE * narrowest
+        start, middle, end = w.value_before[k], w.m[k], w.value_after[k]
+        narrowest = min(_narrowest(w, k, start, middle), _narrowest(w, k, start, end))
+        beyond += max(abs(middle - start), abs(end - middle)) > OF_A_ZONE * narrowest
     return beyond == 0
 
 
 @compiled
-def _width(w, k, value):
-    """The width of the zone of a value; infinite for those at both ends."""
-    number, count = zone(w, k, value), w.first_edge[k + 1] - w.first_edge[k]
-    if w.period[k] == 0.0 and not 0 < number < count:
+def _narrowest(w, k, start, end):
+    """The narrowest zone of function k between two values; those that are narrower than their way from the start are seen from nearer."""
+    number, last = zone(w, k, start), zone(w, k, end)
+    way = 1 if last > number else -1
+    narrowest = min(_width(w, k, number), _width(w, k, last))
+    left = min(abs(last - number), w.first_edge[k + 1] - w.first_edge[k])
+    for _ in range(left):
+        near = edge(w, k, number if way > 0 else number - 1)
+        number += way
+        width = _width(w, k, number)
+        if width > abs(near - start):
+            narrowest = min(narrowest, width)
+    return narrowest
+
+
+@compiled
+def _width(w, k, number):
+    """The width of a zone; infinite for those at both ends."""
+    if w.period[k] == 0.0 and not 0 < number < w.first_edge[k + 1] - w.first_edge[k]:
         return float("inf")
     return edge(w, k, number) - edge(w, k, number - 1)
 
 
 @compiled
-def _resolve_zones(c, w, s):
+def _resolve_zones(c, w, s, most):
     """Bound the next step so that the motion, going on with its accelerations, passes each zone of a law in several steps."""
-    t, ahead, most = c.returned, SHORTEST_OF * w.longest, min(w.longest, GROWTH * c.size)
-    while ahead < most:
-        go_ahead(c, s, 0.5 * ahead)
-        noted(w.m, evaluate(s, SWITCH, t + 0.5 * ahead), w.n)
-        go_ahead(c, s, ahead)
-        noted(w.m2, evaluate(s, SWITCH, t + ahead), w.n)
-        if not _within_zones(w, w.m, w.m2):
-            w.longest = max(ahead, w.least)
-            most = ahead
-        ahead *= 2.0
+    ahead = most
+    while ahead > SHORTEST_OF * most and not _within_zones(w):
+        ahead *= LOOKED_AT
+        w.longest = max(ahead, w.least)
+        noted(w.value_after, w.m, w.n)
+        _look_at_middle(c, w, s, ahead)
+    return ahead
 
 
 @compiled
-def _aim(c, w, s):
+def _aim(c, w, s, ahead):
     """Have the next step end just before an event that the motion, going on with its accelerations, has within the longest step."""
-    t, ahead = c.returned, min(w.longest, GROWTH * c.size)
-    for k in range(w.n_nodes):
-        node = w.n_nodes - 1 - k
+    t, back = c.returned, -DIFFERENCE * ahead
+    go_ahead(c, s, ahead + back)
+    noted_rates(w.rate_after, w.value_after, evaluate_some(s, SWITCH, t + ahead + back, w.near), back, w.n)
+    note_mean_rates(w, ahead)
+    if not suspicious(w, ahead, w.row, s.q):
+        return
+    for node in range(w.n_nodes):
         go_ahead(c, s, ahead * w.node[node])
         keep_row(w, s, node)
-        if k == 0:
-            noted(w.value_after, evaluate(s, SWITCH, t + ahead), w.n)
     place = first_event_or_change(w, s, t, ahead)
     for k in range(w.n):
         w.found[k] = 0
     least = max(SHORT_OF * w.longest, 10.0 * ROUNDINGS * abs(t))
     if 3.0 * least < ahead * place < ahead:
         w.target = t + ahead * place - max(least, UNSURE * ahead * place)
-    load(s, equations_view(c.equations), array_of(c, c.y), array_of(c, c.yp))
 
 
 @compiled

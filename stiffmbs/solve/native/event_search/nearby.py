@@ -35,11 +35,25 @@ def note_near(w, h, q_before, q_after):
     for call in range(w.n_calls):
         w.near[call] = 1 if nearby else 0
     for k in range(w.n):
-        start, end = w.value_before[k], w.value_after[k]
-        apart = min(min(start, end) - w.zone_low[k], w.zone_high[k] - max(start, end))
-        if not apart > CLEAR * (abs(end - start) + h * abs(w.rate_before[k])):
+        if _is_near(w, h, k):
             w.near[w.call[k]] = 1
             nearby = True
+    return nearby
+
+
+@compiled
+def _is_near(w, h, k):
+    start, end = w.value_before[k], w.value_after[k]
+    apart = min(min(start, end) - w.zone_low[k], w.zone_high[k] - max(start, end))
+    return not apart > CLEAR * (abs(end - start) + h * abs(w.rate_before[k]))
+
+
+@compiled
+def near_an_event(w, h, q_before, q_after):
+    """Whether an event function comes near an edge of its zone, as `note_near` has it of all functions."""
+    nearby = turned(w, q_before, q_after, HARDLY_TURNED)
+    for k in range(w.n_event_functions):
+        nearby = nearby or _is_near(w, h, k)
     return nearby
 
 
