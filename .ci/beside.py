@@ -1,10 +1,11 @@
-"""Benchmark problems by two versions of the package in turn, so that what slows the machine for a while slows both.
+"""Time benchmark problems and examples by two versions of the package in turn, so that what slows the machine slows both.
 
     python .ci/beside.py OTHER [PROBLEM]...
 
-OTHER is the folder of another checkout, as `git worktree add` makes one.  A line for each solver and tolerance: the median of the
-ratios of two solutions that follow each other, this version's time over the other's, and the least times of both.
-All problems with solvers of this package are taken, cars on their manoeuvres among them, where none is named.
+OTHER is the folder of another checkout, as `git worktree add` makes one.  A PROBLEM is a name that `stiffmbs bench` knows, a
+file such as `examples/chain.yaml`, or `examples` for all of these; all problems by default, cars on their manoeuvres among them.
+A line for each solver and tolerance: the median of the ratios of two solutions that follow each other, this version's time over
+the other's, and the least times of both.  Last the geometric mean of all ratios.
 """
 
 from __future__ import annotations
@@ -45,27 +46,30 @@ class Version:
         return json.loads(self._process.stdout.readline())
 
 
-def compared(this: Version, other: Version, problem: str, solver: str, rtol: float) -> str:
-    """A line of the table."""
+def compared(this: Version, other: Version, problem: str, solver: str, rtol: float) -> float | None:
+    """Print a line of the table, and return its ratio."""
     seconds: dict[Version, list[float]] = {this: [], other: []}
     begun, pairs = time.monotonic(), 0
     while pairs < FEWEST or (time.monotonic() - begun < SHORTEST and pairs < MOST):
         for version in (this, other) if pairs % 2 else (other, this):
             taken = version.ask(problem, solver, rtol)
             if taken is None:
-                return f"{problem} {solver} {rtol:g}: does not come to its end"
+                print(f"{problem} {solver} {rtol:g}: does not come to its end")
+                return None
             seconds[version].append(taken)
         pairs += 1
         if time.monotonic() - begun > LONGEST:
             break
     ratio = statistics.median(a / b for a, b in zip(seconds[this], seconds[other], strict=True))
     least = [1e3 * min(seconds[version]) for version in (this, other)]
-    return f"{problem} {solver} {rtol:g}: {ratio:.3f}, {least[0]:.2f} ms beside {least[1]:.2f} ms"
+    print(f"{problem} {solver} {rtol:g}: {ratio:.3f}, {least[0]:.2f} ms beside {least[1]:.2f} ms", flush=True)
+    return ratio
 
 
 def answers() -> None:
     """Answer questions on standard input: the problems, the solvers of one, or the time of one of its solutions, s."""
     from stiffmbs.bench.contestant import Failed
+    from stiffmbs.errors import StiffmbsError
 
     problems = dict(_problems())
     known: dict[str, dict[str, Callable[[float], Callable[[], Any]]]] = {}
@@ -85,7 +89,7 @@ def answers() -> None:
                 begun = time.perf_counter()
                 at_hand[1]()
                 answer = time.perf_counter() - begun
-        except Failed:
+        except (Failed, StiffmbsError):
             answer = None
         print(json.dumps(answer), flush=True)
 
@@ -96,9 +100,9 @@ def _problems() -> Any:
     from stiffmbs.bench.drives import SOLVERS
     from stiffmbs.jobs.job import prepare
 
-    def driven(drive: Any) -> dict[str, Any]:
+    def by_all(scene: Callable[[], Any]) -> dict[str, Any]:
         def at(how: dict[str, Any]) -> Callable[[float], Callable[[], Any]]:
-            return lambda rtol: prepare(drive.car.model(drive.manoeuvre), rtol=rtol, **how).integrate
+            return lambda rtol: prepare(scene(), rtol=rtol, **how).integrate
 
         return {solver: at(how) for solver, how in SOLVERS.items()}
 
@@ -108,7 +112,9 @@ def _problems() -> Any:
             if kind == "Problem":
                 yield problem.name, lambda p=problem: {c.solver: c.at for c in p.contestants() if not c.peer}
             elif kind == "Drive":
-                yield problem.name, lambda d=problem: driven(d)
+                yield problem.name, lambda d=problem: by_all(lambda: d.car.model(d.manoeuvre))
+    for example in sorted(Path("examples").glob("**/*.yaml")):
+        yield example.as_posix(), lambda path=example: by_all(lambda: path)
 
 
 def main() -> None:
@@ -119,14 +125,19 @@ def main() -> None:
     asked = parser.parse_args()
     this, other = Version(HERE.parents[1]), Version(asked.other.resolve())
     both = [name for name in this.ask() if name in other.ask()]
-    for name in asked.problems:
+    examples = [name for name in both if name.startswith("examples/")]
+    wanted = [each for name in asked.problems for each in (examples if name == "examples" else [name])]
+    for name in wanted:
         if name not in both:
             parser.error(f"found the problem '{name}', expected one of {', '.join(both)}")
-    for name in asked.problems or both:
+    ratios = []
+    for name in wanted or both:
         solvers = other.ask(name)
         for solver in this.ask(name):
             for rtol in RTOLS if solver in solvers else ():
-                print(compared(this, other, name, solver, rtol), flush=True)
+                ratios.append(compared(this, other, name, solver, rtol))
+    known = [ratio for ratio in ratios if ratio]
+    print(f"geometric mean of {len(known)} ratios: {statistics.geometric_mean(known):.3f}")
 
 
 if __name__ == "__main__":
