@@ -6,6 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 import stiffmbs
 from stiffmbs import InputError, SolverError, sensitivities
@@ -80,6 +81,33 @@ def test_an_event_at_which_a_force_jumps():
         "bodies.sled.velocity.0": s + (v - R / m * s) * a / v**2,
     }  # fmt: skip
     assert found.to == pytest.approx(expected, rel=1e-7)
+
+
+def test_kinks_of_a_table_of_straight_lines():
+    """Against the variational equations of x'' = k p(x) for the velocity v at the start and for k, integrated from kink to kink."""
+    table = np.array([[-2, 33], [-0.2, 0.6], [0.1, -0.3], [2, -82]])
+    text = PUSHED.replace("F: 3 N, T: 0.4 s", "v: 1 m/s, k: 2").replace("branch(t - T, F, 0, 0)", "k*p(sled.x) N")
+    text = text.replace("velocity: [0.5, 0]", "velocity: [v, 0]").replace("duration: 1,", "duration: 12,")
+    scene = stiffmbs.read_scene(f"tables: {{p: {{table: {table.tolist()}, lines: true}}}}\n{text}")
+    slopes = np.diff(table[:, 1]) / np.diff(table[:, 0])
+    piece = 1
+
+    def rates(t, y):
+        x, v, x_v, v_v, x_k, v_k = y
+        force, slope = table[piece, 1] + slopes[piece] * (x - table[piece, 0]), slopes[piece]
+        return [v, force, v_v, slope * x_v, v_k, slope * x_k + force / 2]
+
+    t, y = 0.0, np.array([0.0, 1, 0, 1, 0, 0])
+    while t < 12:
+        edges = [lambda t, y, at=at: y[0] - at for at in table[piece : piece + 2, 0]]
+        for edge, direction in zip(edges, (-1, 1), strict=True):
+            edge.terminal, edge.direction = True, direction
+        found = solve_ivp(rates, (t, 12), y, method="DOP853", rtol=1e-12, atol=1e-13, events=edges)
+        t, y = found.t[-1], found.y[:, -1]
+        piece += len(found.t_events[1]) - len(found.t_events[0])
+    found = sensitivities(scene, ["v", "k"], "final(sled.x)")
+    assert found.value == pytest.approx(y[0], abs=1e-8)
+    assert found.to == pytest.approx({"v": y[2], "k": y[4]}, rel=1e-6)
 
 
 def test_a_bounce_on_a_stiff_floor():

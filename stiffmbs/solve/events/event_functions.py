@@ -24,8 +24,6 @@ class EventSearch:
     Parameters
     ----------
     state : State
-    lands : bool
-        Whether steps end at the edges of tables with kinks.
 
     Attributes
     ----------
@@ -41,7 +39,7 @@ class EventSearch:
         1 for the functions of the last event, 0 for others.
     """
 
-    def __init__(self, state: State, lands: bool = False) -> None:
+    def __init__(self, state: State) -> None:
         self._system = system = state.system
         state.load("event_function")
         n, n_event_functions, n_state = (
@@ -49,26 +47,34 @@ class EventSearch:
             system.n_event_functions,
             system.n_q + system.n_u,
         )
-        self.n, self.found = n, np.zeros(n, dtype=np.int64)
+        self.n, self.found, self._lands = n, np.zeros(n, dtype=np.int64), np.zeros(n, dtype=np.int64)
         self.n_event_functions, self.masked = n_event_functions, np.zeros(n_event_functions, dtype=np.int64)
         self.table = np.zeros(len(EVENT_SEARCH), dtype=np.int64)
         self._cells = self.table.view(EVENT_SEARCH.cells)[0]
         if not n:
             return  # nothing to search for: none of its arrays is read
         zones = zones_of(system)
+        self._overlap = zones.overlap.copy()
         place = np.arange(NODES) * np.pi / (NODES - 1)
         weight = (-1.0) ** np.arange(NODES)
         weight[[0, -1]] /= 2  # barycentric weights of Chebyshev points of the second kind
         angles = system.turning
         work = ("value_before", "rate_before", "value_after", "rate_after", "a", "a_rate", "b", "b_rate", "m", "m2", "left_low", "left_high", "noise", "zone_low", "zone_high", "apart")  # fmt: skip
         self._arrays = {
-            "longest": np.inf, "passage": np.inf, "first": np.inf, "n_turns": len(zones.turns), "turn": zones.turns, "radians": zones.radians, "lands": np.int64(lands) * zones.kinks, "n_zoned": zones.zoned,
+            "longest": np.inf, "passage": np.inf, "first": np.inf, "n_turns": len(zones.turns), "turn": zones.turns, "radians": zones.radians, "lands": self._lands, "n_zoned": zones.zoned,
             "n": n, "n_event_functions": n_event_functions, "masked": self.masked,
-            "first_edge": zones.first, "edges": zones.edges, "overlap": zones.overlap, "period": zones.period, **{name: np.zeros(n) for name in work}, "found": self.found,
+            "first_edge": zones.first, "edges": zones.edges, "overlap": self._overlap, "period": zones.period, **{name: np.zeros(n) for name in work}, "found": self.found,
             "n_state": n_state, "n_nodes": NODES, "node": (1 - np.cos(place)) / 2, "weight": weight,
             **_calls(system), "row": np.zeros((NODES + 1) * n_state), "n_angles": len(angles), "angle": angles,
         }  # fmt: skip
         fill(self.table, EVENT_SEARCH, self._arrays)
+
+    def end_steps_at_kinks(self) -> None:
+        """From now on, end steps where the argument of a table passes a kink."""
+        if self.n:
+            zones = zones_of(self._system)
+            self._lands[:] = zones.kinks
+            self._overlap[np.repeat(zones.kinks, np.diff(zones.first)) > 0] = 0.0
 
     def begin(self) -> None:
         """Forget the last step: the integrator starts anew."""

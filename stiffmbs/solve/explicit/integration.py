@@ -50,11 +50,12 @@ class Integration:
         self.capacity, self._n_q, self._dynamics = memory.capacity, n_q, dynamics
         self.step_times: list[np.ndarray] = []
         self._collected = 0  # steps whose ends have been taken over
-        self.step_bound, self._watch = StepBound(), EventSearch(dynamics.state, lands=True)
+        self.step_bound, self._watch = StepBound(), EventSearch(dynamics.state)
         self._long_steps = dynamics.kept(
             "long_steps", len(memory.y), lambda: LongStepLog(dynamics.system, len(memory.y))
         )
         self._long_steps.forget()
+        self._watch.end_steps_at_kinks()
         self._watch.resolve(grid.end - grid.start)
         memory.renew(*addresses(self._watch.table, self.step_bound.table, self._long_steps.table))
         self.q, self.u, self.at = memory.y[:n_q], memory.y[n_q:], address(memory.table)

@@ -272,6 +272,10 @@ class NativeEngine:
         """Size, s, and order of the last step, where they are known."""
         return self._ida.history.last
 
+    def end_steps_at_kinks(self) -> None:
+        """From now on, end steps where the argument of a table passes a kink, which restarts IDA."""
+        self._ida.connection.watch.end_steps_at_kinks()
+
     def long_steps(self) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
         """Begins and ends of steps far longer than those before them, and what is reported at nodes within them; None for scenes without laws."""
         log = self._ida.long_steps

@@ -59,7 +59,7 @@ class Segment:
 
 
 class Recorder(Integrator):
-    """Integrator that records its steps.
+    """Integrator that records its steps, which end at the kinks of tables: derivatives of forces are discontinuous there.
 
     Attributes
     ----------
@@ -69,12 +69,13 @@ class Recorder(Integrator):
     """
 
     def __init__(self, dynamics: Dynamics, settings: RunSettings) -> None:
-        super().__init__(dynamics, settings)
+        super().__init__(dynamics, settings, memory="recorder")
         if not isinstance(self.engine, NativeEngine):
             raise SolverError(
                 "sensitivities: found SUNDIALS' libraries in another form, expected those of scikit-sundae's wheels"
             )
         self.native: NativeEngine = self.engine
+        self.native.end_steps_at_kinks()
         self.segments: list[Segment] = []
         self.chatters = False
         self._numbers = 0
