@@ -244,3 +244,29 @@ def steep(found, name, of, h=1e-5):
         output.value(stiffmbs.run(read(found, **{name: value + shift}), rtol=1e-11, solver="bdf")) for shift in (-h, h)
     )
     return (above - below) / (2 * h)
+
+
+DRIVEN = """
+parameters: {a: 1.5, m: 1.3, I: 0.05}
+gravity: [0, -9.81]
+bodies:
+  arm: {mass: 2, inertia: 0.1, position: [0.4, 0]}
+  bob: {mass: m, inertia: I, position: [0.8, -0.35]}
+joints:
+  pin: {type: revolute, i: {body: arm, point: [-0.4, 0]}, j: ground}
+  link: {type: revolute, i: {body: bob, point: [0, 0.35]}, j: arm}
+  motor: {type: drive, joint: pin, velocity: "branch(t - 0.3, a, a, 2.5*a) rad/s"}
+run: {duration: 0.6, rtol: 1e-8, points: 7}
+"""
+
+
+@pytest.mark.parametrize(("name", "value"), [("a", 1.5), ("m", 1.3), ("I", 0.05)])
+def test_a_drive_whose_velocity_jumps_pushes_the_other_bodies(name, value):
+    """Velocities change by the smallest correction in the mass matrix, whose derivatives are part of the sensitivity."""
+    found = sensitivities(stiffmbs.read_scene(DRIVEN), [name], "final(bob.angle)")
+    h = 1e-4
+    ends = [
+        stiffmbs.run(stiffmbs.read_scene(DRIVEN, [(name, repr(value + shift))]), rtol=1e-11)["bob.angle"][-1]
+        for shift in (-h, h)
+    ]
+    assert found.to[name] == pytest.approx((ends[1] - ends[0]) / (2 * h), rel=2e-5)

@@ -22,7 +22,13 @@ def _recorded() -> dict[tuple[str, float], dict[str, int]]:
     return found
 
 
-@pytest.mark.parametrize(("analysis", "rtol"), sorted(_recorded()))
+CASES = [
+    pytest.param(analysis, rtol, marks=[pytest.mark.long] * (analysis == "equilibrium"))
+    for analysis, rtol in sorted(_recorded())
+]
+
+
+@pytest.mark.parametrize(("analysis", "rtol"), CASES)
 def test_evaluations_are_those_recorded(analysis, rtol):
     recorded = _recorded()[analysis, rtol]
     ratios = {name: evaluations(name, analysis, rtol) / number for name, number in recorded.items()}
