@@ -44,7 +44,7 @@ SHORT_OF, UNSURE = 1e-8, 1e-4
 """Parts of the longest step, and of the way to an event that is seen ahead, by which a step ends before it."""
 GROWTH = 2.0
 """Times by which IDA's next step may be longer than the last one."""
-SHORTEST_OF, OF_A_ZONE = 1e-4, 0.5
+SHORTEST_OF, OF_A_ZONE = 1e-4, 0.35
 """Part of the longest step that zones bound it to at the least, and part of a zone that may be passed on each side of a place within a step."""
 FIRST_STEP = 1e-3
 """Part of the time to the next stop that IDA's first step takes at the most."""
