@@ -189,5 +189,11 @@ def test_the_spring_of_wrong_sign_is_named_among_others_of_its_kind():
 
 
 def test_the_error_of_a_loose_tolerance_is_no_broken_balance():
-    found = stiffmbs.run(EXAMPLES / "dzhanibekov.yaml", solver="bdf", rtol=1e-2)
-    assert np.ptp(found["energy.total"]) > 0.01 and not any("broken" in note for note in found.notes)
+    """bdf damps a vibration of 30 periods by a fifth."""
+    text = "gravity: [0, 0]\nbodies: {b: {mass: 1, inertia: 1, position: [2, 0]}}\njoints: {rail: {type: prismatic, i: b, j: ground}}\n"
+    text += (
+        "forces: {s: {type: spring_damper, i: b, j: ground, stiffness: 39.5, free_length: 1}}\nrun: {duration: 30}\n"
+    )
+    found = stiffmbs.run(stiffmbs.read_scene(text), solver="bdf", rtol=1e-2)
+    assert np.ptp(found["energy.total"]) > 0.1 * found["energy.total"][0]
+    assert not any("broken" in note for note in found.notes)

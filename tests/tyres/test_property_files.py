@@ -1,9 +1,11 @@
 """Files of tyre properties: units, notes, and clear errors with their lines."""
 
 import pytest
+from scipy import constants
 
 from stiffmbs import InputError, load_scene
 from stiffmbs.describe.tyres.names import AS_BEFORE, LATER
+from stiffmbs.describe.tyres.property_file import UNITS
 from stiffmbs.tyres import TyreProperties
 
 FILE = """$ a tyre
@@ -171,3 +173,19 @@ def test_a_scene_finds_the_file_beside_it(read, tmp_path):
     (tmp_path / "front.tir").unlink()
     with pytest.raises(InputError, match=r"forces.tyre.properties: .*front.tir: found no such file"):
         load_scene(tmp_path / "scene.yaml")
+
+
+def test_units_are_those_of_scipy():
+    length = {"in": constants.inch, "inch": constants.inch, **dict.fromkeys(("foot", "feet", "ft"), constants.foot)}
+    force = {
+        **dict.fromkeys(("kg_force", "kgf"), constants.kgf),
+        **dict.fromkeys(("pound_force", "lbf"), constants.lbf),
+    }
+    mass = {
+        "pound_mass": constants.pound,
+        "slug": constants.slug,
+        "tonne": constants.metric_ton,
+        "gram": constants.gram,
+    }
+    for quantity, known in (("LENGTH", length), ("FORCE", force), ("MASS", mass)):
+        assert {name: UNITS[quantity][name] for name in known} == pytest.approx(known, rel=1e-12)
