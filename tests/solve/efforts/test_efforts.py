@@ -1,6 +1,6 @@
-"""The evaluations of runs and equilibria equal recorded ones: what changes step control or an iteration shows here.
+"""Evaluations of runs and equilibria compared with recorded numbers, which changes of step control or of an iteration alter.
 
-After a change that is wanted, ``python -m tests.solve.efforts.measure`` records them anew.
+If a change is intended, record the numbers again: ``python -m tests.solve.efforts.measure``.
 """
 
 import csv

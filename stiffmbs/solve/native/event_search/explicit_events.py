@@ -51,8 +51,6 @@ MOST_TURNED = 1.0
 """rad, by which an argument of a sine may turn in a step (no part of a period, or each step would see the same); one that has turned by
 twice that is taken again.  Six steps in a period integrate it as exactly as the trapezoidal rule; fewer pass a peak with an error estimate
 of zero."""
-SHORT_TURN = 0.05
-"""rad, which a step turns on an average where each turn is a few steps long."""
 MOST_ERROR, LEAST_FACTOR, RETRIED, NO_EVENT, TURNED_TOO_FAR = 1.0, 0.2, 1, 2, 3
 """A step that is taken again up to an event is as exact as any other, or a shorter one is tried."""
 
@@ -372,12 +370,16 @@ def _ended_at_event(x, c, s, m):
 
 @compiled
 def _note_repeats(x, w, events):
-    """Note how often laws repeat that end a step in each turn, which is a few steps long: the errors of their turns add up."""
+    """Set the factor of the error of a step: the number of turns in the run if laws end a step in each turn, as their errors add up.
+
+    Of the steps of a turn only one has the feature: if the argument turns by less than `MOST_TURNED` in a mean step, the factor is smaller
+    in the same ratio.
+    """
     if w.n_turns > 0:
         w.begins = min(w.begins, x.t_before)
         w.narrow += events
-        few = x.steps * SHORT_TURN < fastest_turn(w, w.rate_before) * (x.t - w.begins)
-        x.repeats = repeats(w, x.t, False) if few else 1.0
+        turned = fastest_turn(w, w.rate_before) * (x.t - w.begins)
+        x.repeats = max(1.0, min(1.0, turned / (MOST_TURNED * max(x.steps, 1))) * repeats(w, x.t, False))
 
 
 @compiled

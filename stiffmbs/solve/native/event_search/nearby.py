@@ -43,6 +43,7 @@ def note_near(w, h, q_before, q_after):
 
 @compiled
 def _is_near(w, h, k):
+    """Return True if a function comes near an edge of its zone, by its values at both ends of a step and its rate at the start."""
     start, end = w.value_before[k], w.value_after[k]
     apart = min(min(start, end) - w.zone_low[k], w.zone_high[k] - max(start, end))
     return not apart > CLEAR * (abs(end - start) + h * abs(w.rate_before[k]))
@@ -50,7 +51,7 @@ def _is_near(w, h, k):
 
 @compiled
 def near_an_event(w, h, q_before, q_after):
-    """Whether an event function comes near an edge of its zone, as `note_near` has it of all functions."""
+    """Return True if an event function comes near an edge of its zone, by the bound of `note_near`."""
     nearby = turned(w, q_before, q_after, HARDLY_TURNED)
     for k in range(w.n_event_functions):
         nearby = nearby or _is_near(w, h, k)
