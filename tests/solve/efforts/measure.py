@@ -18,11 +18,11 @@ from stiffmbs.stress.random_statics import random_statics
 ROOT = Path(__file__).parents[3]
 RECORDED = Path(__file__).with_name("recorded.csv")
 RUNS = ("bdf", "dop853", "dopri5")
-TOLERANCES = (1e-3, 1e-6, 1e-9)
+TOLERANCES = (1e-3, 1e-5, 1e-7)
 LONG = {"car", "governor", "stick_slip"}
 """Examples whose explicit runs take more than 5000 steps."""
-UNSURE = {"four_bars"}
-"""Examples whose bars become parallel: rounding decides how many steps that takes."""
+UNSURE = {"four_bars", "half_car"}
+"""Examples with bars that become parallel, and with a long rest: rounding decides how many steps that takes."""
 SEEDS = range(40)
 """Of random mechanisms whose equilibria are sought, in turns in the plane and in space."""
 
