@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ..comparison.turns import seconds_of
 from .benchmark import Row
 from .contestant import Contestant, Failed
 from .decades import error_of, over_decades
 from .peers import peers
 from .problem import Problem
-from .turns import seconds_of
 
 AT_A_GLANCE = 1e-6
 

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-import itertools
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from ..comparison.interpolation import WINDOW, value_at_error
+from ..comparison.turns import ONCE, Timed, seconds_of, take_turns
 from .benchmark import Row
 from .contestant import Contestant, Failed
-from .sweep import AT_TARGET, FEWEST, WINDOW, at_target_rows, on_line
-from .turns import ONCE, Timed, seconds_of, take_turns
+from .sweep import AT_TARGET, at_target_rows
 
 TOLERANCES = tuple(float(f"{10.0**exponent:.2g}") for exponent in np.linspace(-1, -13, 37))
 TARGETS = tuple(10.0**-k for k in range(2, 10))
@@ -33,6 +33,13 @@ class Point(Timed):
     setting: float
     error: float
     set_up: float
+
+    def measure(self) -> None:
+        """Time it once more, unless it is slow, or does not come to its end this time."""
+        try:
+            super().measure()
+        except Failed:
+            self.solve = None
 
     def row(self) -> Row:
         """As measured."""
@@ -69,22 +76,12 @@ def _set_up(contestant: Contestant, points: Sequence[Point]) -> Iterator[Row]:
 
 
 def at_errors(solver: str, peer: bool, rows: Sequence[Row], targets: Sequence[float]) -> Iterator[Row]:
-    """Times at errors: by a line through many points about each, or between two neighbours where they are few.
-
-    A setting that has a smaller error and takes less time than the line says counts with its own time: looser settings that
-    take longer, where steps follow stability and not the error, make no solver slower.
-    """
-    own = sorted((row for row in rows if row.solver == solver), key=lambda row: row.error)
+    """Interpolate times at errors, as `stiffmbs.comparison` does."""
+    own = [(row.error, row.seconds) for row in rows if row.solver == solver]
     for target in targets:
-        near = [row for row in own if target / WINDOW <= row.error <= target * WINDOW]
-        if len(near) < FEWEST:
-            near = [row for pair in itertools.pairwise(own) if pair[0].error <= target < pair[1].error for row in pair]
-        seconds = [row.seconds for row in own if row.error <= target]
-        if near and near[0].error <= target <= near[-1].error:
-            seconds.append(on_line(solver, peer, near, target).seconds)
-        elif not own or own[-1].error >= target:
-            continue
-        yield Row(solver, f"{AT_TARGET} {target:g}", target, min(seconds), peer)
+        seconds = value_at_error(own, target)
+        if seconds is not None:
+            yield Row(solver, f"{AT_TARGET} {target:g}", target, seconds, peer)
 
 
 def _points(contestant: Contestant, reference: np.ndarray, targets: Sequence[float]) -> Iterator[Point]:

@@ -6,25 +6,13 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from ..show.style import dress, legend_below, stroke
+from ..comparison.figure import curve, finished
 from .benchmark import Row
 from .machine import machine
 from .sweep import at_target_rows
 
-SIZE, NARROW = (8, 5.5), (7, 4.2)
-"""Of figures, inches: with and without a line on the machine."""
-
-
-def curve(axes: Any, x: Sequence[float], seconds: Sequence[float], label: str, marker: str = ".") -> None:
-    """Times of a solver, on logarithmic axes; lines differ in color and in stroke."""
-    axes.loglog(x, seconds, marker=marker, label=label, **stroke(len(axes.lines)))
-
-
-def finished(axes: Any, x: str, title: str) -> None:
-    """Give the axes their labels, grid and legend."""
-    axes.set(xlabel=x, ylabel="time of a solution, s", title=title)
-    dress(axes)
-    legend_below(axes.figure, [axes])
+SIZE = (8, 5.5)
+"""Of figures, inches, with a line on the machine."""
 
 
 def draw(problem: str, rows: Sequence[Row], folder: Path) -> Path:

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from ..comparison.turns import ONCE, seconds_of
 from ..describe.model_data import ModelData
 from ..jobs.job import prepare
 from ..solve.explicit.projected import TRAITS
@@ -18,7 +19,6 @@ from .decades import LONGEST, TARGETS, at_errors
 from .peers.scipy import explicit, states
 from .problem import Problem
 from .task import Task
-from .turns import ONCE, seconds_of
 
 TOLERANCES = tuple(float(f"{10.0**-k:.2g}") for k in np.arange(3, 12.1, 0.5))
 STEPS = tuple(10.0**-k for k in np.arange(2, 5.6, 0.25))

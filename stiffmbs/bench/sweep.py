@@ -8,14 +8,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..comparison.interpolation import FEWEST, WINDOW, on_line
+from ..comparison.turns import seconds_of
 from .benchmark import Row
 from .contestant import Contestant, Failed, Solve
-from .turns import seconds_of
 
-WINDOW = 10**1.5
-"""Errors within this factor of the target make the line from which the time at the target is read."""
-FEWEST = 4
-"""Points of a line."""
 AT_TARGET = "at error"
 
 
@@ -64,13 +61,8 @@ def at_target(contestant: Contestant, rows: Sequence[Row], target: float) -> Ite
     own = [row for row in rows if row.solver == contestant.solver]
     if len(own) < FEWEST or not min(r.error for r in own) <= target <= max(r.error for r in own):
         return
-    yield on_line(contestant.solver, contestant.peer, own, target)
-
-
-def on_line(solver: str, peer: bool, rows: Sequence[Row], target: float) -> Row:
-    """The time at an error, on the straight line through the logarithms of the times and errors of some rows."""
-    x, z = np.log([row.error / target for row in rows]), np.log([row.seconds for row in rows])
-    return Row(solver, f"{AT_TARGET} {target:g}", target, float(np.exp(np.polyfit(x, z, 1)[-1])), peer)
+    seconds = on_line([(row.error, row.seconds) for row in own], target)
+    yield Row(contestant.solver, f"{AT_TARGET} {target:g}", target, seconds, contestant.peer)
 
 
 def at_target_rows(rows: Sequence[Row]) -> list[Row]:

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..bench.benchmark import Row as Measured
-from ..bench.decades import at_errors
+from .interpolation import value_at_error
 from .row import Row
 
 CLOCK_RESOLUTION = 1e-9
@@ -59,7 +58,7 @@ def decades(rows: Sequence[Row], measure: str, resolved: float) -> list[float]:
 
 
 def times_at(rows: Sequence[Row], measure: str, resolved: float, targets: Sequence[float]) -> Iterator[AtError]:
-    """Times at errors, by lines through the measured points about each, as in `stiffmbs.bench`.
+    """Times at errors, by lines through the measured points about each.
 
     Parameters
     ----------
@@ -92,10 +91,5 @@ def times_at(rows: Sequence[Row], measure: str, resolved: float, targets: Sequen
 
 def _read(rows: Sequence[Row], measure: str, values: Sequence[float], target: float) -> float | None:
     """What one solver needs at an error, of values at each of its rows; None where its errors are all on one side."""
-    points = [
-        Measured(row.solver, row.setting, row.errors[measure], max(value, CLOCK_RESOLUTION), False)
-        for row, value in zip(rows, values, strict=True)
-    ]
-    return (
-        next((read.seconds for read in at_errors(points[0].solver, False, points, [target])), None) if points else None
-    )
+    least = [max(value, CLOCK_RESOLUTION) for value in values]
+    return value_at_error(zip((row.errors[measure] for row in rows), least, strict=True), target)

@@ -6,7 +6,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Unpack
 
-from ..bench.turns import take_turns
 from ..describe.settings import RunSettings, Settings, takes_settings
 from ..errors import InputError
 from ..jobs.job import Runnable, data_of
@@ -16,6 +15,7 @@ from .plan import LONGER_REFERENCE, LONGEST_RUN, REPEATS, TOLERANCES, Plan, base
 from .reference import Reference, Tell, reference
 from .row import Row
 from .sweep import Point, Sweep
+from .turns import take_turns
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Sheet

@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..bench.figure import NARROW, curve, finished
 from ..results.files import written_whole
+from ..show.style import dress, legend_below, stroke
 from .compare import Comparison
 from .comparison_over import ComparisonOver
 from .measures import MEASURES
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Sheet
+
+SIZE = (7, 4.2)
+"""Of figures, inches."""
 
 
 def write_figure(path: Path, sheet: Sheet) -> None:
@@ -30,7 +34,7 @@ def work_precision(comparison: Comparison) -> Sheet:
     """Time against error of each solver, both logarithmic."""
     from matplotlib.figure import Figure as Sheet
 
-    sheet = Sheet(figsize=NARROW, layout="constrained")
+    sheet = Sheet(figsize=SIZE, layout="constrained")
     axes = sheet.add_subplot()
     measure, resolved = comparison.measure, comparison.reference.resolved(comparison.measure)
     for name in dict.fromkeys(row.solver for row in comparison.rows):
@@ -47,7 +51,7 @@ def over_parameter(comparison: ComparisonOver) -> Sheet:
     """Time of each solver against the parameter, and where they cross."""
     from matplotlib.figure import Figure as Sheet
 
-    sheet = Sheet(figsize=NARROW, layout="constrained")
+    sheet = Sheet(figsize=SIZE, layout="constrained")
     axes = sheet.add_subplot()
     for entry in comparison.entries:
         pairs = [
@@ -68,3 +72,15 @@ def over_parameter(comparison: ComparisonOver) -> Sheet:
     error = f"{comparison.error:g} {MEASURES[comparison.measure].unit}"
     finished(axes, comparison.parameter, f"{comparison.name} at an error of {error}")
     return sheet
+
+
+def curve(axes: Any, x: Sequence[float], seconds: Sequence[float], label: str, marker: str = ".") -> None:
+    """Times of a solver, on logarithmic axes; lines differ in color and in stroke."""
+    axes.loglog(x, seconds, marker=marker, label=label, **stroke(len(axes.lines)))
+
+
+def finished(axes: Any, x: str, title: str) -> None:
+    """Give the axes their labels, grid and legend."""
+    axes.set(xlabel=x, ylabel="time of a solution, s", title=title)
+    dress(axes)
+    legend_below(axes.figure, [axes])

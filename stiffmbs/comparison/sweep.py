@@ -7,8 +7,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..bench.sweep import WINDOW
-from ..bench.turns import ONCE, Timed, seconds_of
 from ..describe.model_data import ModelData
 from ..describe.settings import RunSettings
 from ..errors import InputError, StiffmbsError
@@ -20,8 +18,10 @@ from ..solve.settings import near_constraints
 from ..solve.trajectory import Grid, Outcome, Trajectory
 from ..verification.solve_again import Deadline
 from .entries import Entry
+from .interpolation import WINDOW
 from .reference import Reference, Tell
 from .row import Row
+from .turns import ONCE, Timed, seconds_of
 
 ENOUGH_SETTINGS = 2
 """So many settings in succession that are far more accurate than asked for end a sweep."""

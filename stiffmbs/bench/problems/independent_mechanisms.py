@@ -10,12 +10,12 @@ from typing import Any
 
 import numpy as np
 
+from ...comparison.turns import Timed, take_turns
 from ...describe.model_data import ModelData
 from ...describe.reading import read_scene
 from ...jobs.job import prepare
 from ..benchmark import Row
 from ..drives import SOLVERS
-from ..turns import Timed, take_turns
 
 RTOL, ROUNDS = 1e-6, 21
 GRAVITY = 9.81

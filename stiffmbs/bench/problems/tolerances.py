@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
+from ...comparison.turns import seconds_of
 from ...describe.model_data import ModelData
 from ...describe.reading import read_scene
 from ...jobs.job import prepare
 from ..benchmark import Row
 from ..drives import CARS, SOLVERS, Seen, converged, seen
-from ..turns import seconds_of
 from .half_car import SCENE
 
 OF_HALF_CAR = (1e-6, 1e-3, 1e-4, 1e-5, 1e-7, 1e-8, 1e-9)

@@ -7,12 +7,12 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
+from ....comparison.turns import seconds_of
 from ....describe.model_data import ModelData
 from ....jobs.job import prepare
 from ....solve.trajectory import Outcome, ProgressCallback
 from ...benchmark import Row
 from ...drives import CARS, SOLVERS, Car, Seen, converged, seen
-from ...turns import seconds_of
 from ..linear_algebra import kernel_seconds
 
 RTOLS, ROUNDS = (1e-4, 1e-6), 3

@@ -6,12 +6,12 @@ import time
 from dataclasses import dataclass
 from itertools import product
 
+from ....comparison.turns import seconds_of
 from ....jobs.job import Job, prepare
 from ....solve.trajectory import Outcome
 from ....verification.solve_again import Deadline
 from ...benchmark import Row
 from ...drives import CARS, SOLVERS, Car, converged, seen
-from ...turns import seconds_of
 
 RTOL, ROUNDS = 1e-4, 3
 STIFFNESSES, DAMPING = ("1e5", "1e6", "1e7", "1e8", "1e9", "1e10"), ("0.01", "0.05", "0.2", "1")

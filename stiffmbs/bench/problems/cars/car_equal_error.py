@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from ....comparison.turns import seconds_of
 from ....jobs.job import prepare
 from ...benchmark import Row
 from ...decades import at_errors
 from ...drives import CARS, SOLVERS, Car, converged, seen
-from ...turns import seconds_of
 
 TARGET = 1e-4
 STIFFNESSES = ("1e8", "1e9")

@@ -8,8 +8,6 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
-from .contestant import Failed
-
 ONCE = 0.2
 """Solutions that take longer, s, are timed a single time."""
 Found = TypeVar("Found")
@@ -23,12 +21,9 @@ class Timed:
     seconds: list[float]
 
     def measure(self) -> None:
-        """Time it once more, unless it is slow, or does not come to its end this time."""
+        """Time it once more, unless it is slow."""
         if self.solve is not None:
-            try:
-                self.seconds.append(seconds_of(self.solve)[0])
-            except Failed:
-                self.solve = None
+            self.seconds.append(seconds_of(self.solve)[0])
 
     @property
     def median(self) -> float:
