@@ -2,7 +2,7 @@
 
     python .ci/beside.py OTHER [PROBLEM]...
 
-OTHER is the folder of another checkout, as `git worktree add` makes one.  A PROBLEM is a name that `stiffmbs bench` knows, a
+OTHER is the folder of another checkout, as `git worktree add` makes one.  A PROBLEM is a name that `python -m tests.bench` knows, a
 file such as `examples/chain.yaml`, or `examples` for all of these; all problems by default, cars on their manoeuvres among them.
 A line for each solver and tolerance: the median of the ratios of two solutions that follow each other, this version's time over
 the other's, and the least times of both.  Last the geometric mean of all ratios.
@@ -11,6 +11,7 @@ the other's, and the least times of both.  Last the geometric mean of all ratios
 from __future__ import annotations
 
 import argparse
+import importlib
 import json
 import os
 import statistics
@@ -68,8 +69,9 @@ def compared(this: Version, other: Version, problem: str, solver: str, rtol: flo
 
 def answers() -> None:
     """Answer questions on standard input: the problems, the solvers of one, or the time of one of its solutions, s."""
-    from stiffmbs.bench.contestant import Failed
     from stiffmbs.errors import StiffmbsError
+
+    failed = _of_bench("contestant").Failed
 
     problems = dict(_problems())
     known: dict[str, dict[str, Callable[[float], Callable[[], Any]]]] = {}
@@ -89,22 +91,30 @@ def answers() -> None:
                 begun = time.perf_counter()
                 at_hand[1]()
                 answer = time.perf_counter() - begun
-        except (Failed, StiffmbsError):
+        except (failed, StiffmbsError):
             answer = None
         print(json.dumps(answer), flush=True)
 
 
+def _of_bench(module: str) -> Any:
+    """Import a module of the benchmarks, which older versions have in the package."""
+    try:
+        return importlib.import_module(f"tests.bench.{module}")
+    except ModuleNotFoundError:
+        return importlib.import_module(f"stiffmbs.bench.{module}")
+
+
 def _problems() -> Any:
     """Names, and what makes the solvers of each: functions of a tolerance that prepare a solution."""
-    from stiffmbs.bench.benchmark import families
-    from stiffmbs.bench.drives import SOLVERS
     from stiffmbs.jobs.job import prepare
+
+    families, solvers = _of_bench("benchmark").families, _of_bench("drives").SOLVERS
 
     def by_all(scene: Callable[[], Any]) -> dict[str, Any]:
         def at(how: dict[str, Any]) -> Callable[[float], Callable[[], Any]]:
             return lambda rtol: prepare(scene(), rtol=rtol, **how).integrate
 
-        return {solver: at(how) for solver, how in SOLVERS.items()}
+        return {solver: at(how) for solver, how in solvers.items()}
 
     for family in families().values():
         for problem in family:

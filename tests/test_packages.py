@@ -15,7 +15,7 @@ import stiffmbs
 ROOT = Path(stiffmbs.__file__).parent
 ORDER = (
     "cache", "describe", "adams", "robots", "compile", "presolve", "solve", "linear_analysis", "structure", "results", "diagnostics", "jobs", "verification", "studies", "show",
-    "bench", "comparison", "stress", "commands",
+    "comparison", "commands",
 )  # fmt: skip
 """Packages; each imports from those before it alone."""
 ANYWHERE = {"errors", "interrupts", "solver_names"}
@@ -61,8 +61,6 @@ def _when_loaded(tree: ast.AST) -> Iterator[ast.AST]:
 def test_a_package_imports_from_packages_before_it_alone(path):
     module = _module(path)
     allowed = {*ORDER[: ORDER.index(module[1]) + 1], *ANYWHERE}
-    if module[1] in ("bench", "stress"):  # they use what a user has
-        allowed |= {"spatial"}
     tree = ast.parse(path.read_text())
     for statements, more in ((_when_loaded(tree), set()), (ast.walk(tree), METHODS.get(module, set()))):
         found = {name[1] for name in _imports(module, statements) if len(name) > 1}

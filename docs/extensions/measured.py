@@ -1,4 +1,4 @@
-"""Tables and figures of measured times, made from what ``stiffmbs bench --json`` printed."""
+"""Tables and figures of measured times, made from what ``python -m tests.bench --json`` printed."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
-from stiffmbs.bench.benchmark import Row
-from stiffmbs.bench.report import OWN, REFERENCE, read_json
-from stiffmbs.bench.sweep import at_target_rows
+from tests.bench.benchmark import Row
+from tests.bench.report import OWN, REFERENCE, read_json
+from tests.bench.sweep import at_target_rows
 
 PEER = "SciPy DOP853, minimal"
 HEAD = (
@@ -34,8 +34,8 @@ PLOT = """\
 
    from pathlib import Path
    from matplotlib import pyplot
-   from stiffmbs.bench.figure import draw_rows
-   from stiffmbs.bench.report import read_json
+   from tests.bench.figure import draw_rows
+   from tests.bench.report import read_json
 
    rows = read_json(Path("{path}").read_text(encoding="utf-8"))
    draw_rows(pyplot.figure().add_subplot(), "{problem}", rows["{problem}"])

@@ -4,104 +4,66 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Iterable
-from importlib.util import find_spec
-from pathlib import Path
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING
 
 import click
 
-from ..errors import InputError, needs
+from ..errors import InputError, StiffmbsError
 
 if TYPE_CHECKING:
-    from ..bench.benchmark import Benchmark
+    from ..comparison.compare import Comparison
 
-WRONG_INPUT = 2
+SOME_FAILED, WRONG_INPUT = 1, 2
 
 
-@click.command(short_help="Run time against error, beside yardsticks.")
-@click.argument("names", metavar="[PROBLEM]...", nargs=-1)
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON object a line for each problem.")
-@click.option("--quick", is_flag=True, help="The smallest of each problem, at a few tolerances.")
-@click.option("--solvers", is_flag=True, help="All formulations and schemes of this package, over decades of error.")
-@click.option("--peers", is_flag=True, help="Other tools beside this package, over decades of error.")
-@click.option(
-    "--plot", type=click.Path(file_okay=False, path_type=Path), help="Draw run time over error into a folder."
-)
-def bench(names: tuple[str, ...], as_json: bool, quick: bool, peers: bool, solvers: bool, plot: Path | None) -> None:
-    """Measure run time against error, with yardsticks beside it in the same process.
+@click.command(short_help="Run time against error of the examples.")
+@click.argument("names", metavar="[EXAMPLE]...", nargs=-1)
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object a line for each example.")
+def bench(names: tuple[str, ...], as_json: bool) -> None:
+    """Measure run time against error of bdf, dop853 and auto on the shipped examples.
 
-    PROBLEM is the name of a problem or of a family of problems; all without one.
+    EXAMPLE is a name that `stiffmbs examples list` shows; all examples without one.  Errors and times are those of
+    `stiffmbs compare`.
 
-    Exit status: 0 measured, 2 there is no such problem, or it cannot be measured in the way that is asked for.
+    Exit status: 0 measured, 1 some example could not be measured or the command was interrupted, 2 there is no such
+    example.
     """
-    if peers and solvers:
-        raise click.UsageError("found both --peers and --solvers, expected one of them")
-    if plot is not None and find_spec("matplotlib") is None:
-        raise click.UsageError("--plot: found no matplotlib, expected it installed: pip install 'stiffmbs[plot]'")
+    from ..comparison.compare import compare
+    from ..comparison.machine import machine_sentence
+    from .starting.shipped import scene_file, scene_files
+
     try:
-        with needs("numba", "bench"):
-            _measure(names, as_json, quick, peers, solvers, plot)
+        files = {name: scene_file(name) for name in names or scene_files()}
     except InputError as error:
-        _refuse(str(error))
-
-
-def _measure(names: tuple[str, ...], as_json: bool, quick: bool, peers: bool, solvers: bool, plot: Path | None) -> None:
-    from ..bench.report import as_json as object_of
-    from ..bench.report import machine_sentence, table
-
-    chosen = _chosen(names, quick)
-    if peers or solvers:
-        chosen = _over_decades(chosen, peers)
+        click.echo(f"stiffmbs: {error}", err=True)
+        sys.exit(WRONG_INPUT)
     if not as_json:
         click.echo(machine_sentence())
-    for benchmark in chosen:
-        rows = benchmark.glanced() if quick else benchmark.measured()
-        if as_json:
-            click.echo(json.dumps(object_of(benchmark.name, rows)))
-        else:
-            click.echo("\n".join(table(benchmark.name, rows)))
-        if plot is not None:
-            from ..bench.figure import draw
-
-            draw(benchmark.name, rows, plot)
-
-
-def _refuse(sentence: str) -> NoReturn:
-    click.echo(f"stiffmbs: {sentence}", err=True)
-    sys.exit(WRONG_INPUT)
+    some_failed = False
+    for name, path in files.items():
+        try:
+            found = compare(path)
+        except StiffmbsError as error:
+            click.echo(f"stiffmbs: {name}: {error}", err=True)
+            some_failed = True
+            continue
+        click.echo(_json_object(name, found) if as_json else _table(name, found))
+        if found.interrupted:
+            sys.exit(SOME_FAILED)
+    sys.exit(SOME_FAILED if some_failed else 0)
 
 
-def _chosen(names: Iterable[str], quick: bool) -> list[Benchmark]:
-    """The benchmarks of the names, of a family the smallest alone where that is asked for."""
-    from ..bench.benchmark import families
+def _json_object(name: str, found: Comparison) -> str:
+    from ..comparison.machine import machine
 
-    known = families()
-    single = {benchmark.name: benchmark for family in known.values() for benchmark in family}
-    chosen: list[Benchmark] = []
-    for name in names or known:
-        if name not in known and name not in single:
-            _refuse(
-                f"found the problem '{name}', expected one of {', '.join(known)}, or a problem of one of these such as {next(name for name in single if name not in known)}"
-            )
-        family = known.get(name) or (single[name],)
-        chosen += family[:1] if quick else family
-    return chosen
+    rows = [row.as_dict(found.measure) for row in found.rows]
+    return json.dumps({"problem": name, "machine": machine(), "rows": rows})
 
 
-def _over_decades(chosen: Iterable[Benchmark], peers: bool) -> list[Benchmark]:
-    """Of those that other tools have a task in: this package beside them, or all of its own solvers."""
-    from ..bench.beside_peers import BesidePeers
-    from ..bench.own_solvers import OwnSolvers
-    from ..bench.peers import missing
-    from ..bench.problem import Problem
-
-    known = [benchmark for benchmark in chosen if isinstance(benchmark, Problem)]
-    problems = [problem for problem in known if problem.task or (peers and problem.in_space)]
-    if not problems:
-        _refuse("found no problem among these that other tools have a task in, expected one such as cart_pendulum")
-    if not peers:
-        return [OwnSolvers(problem) for problem in problems]
-    for package in missing():
-        click.echo(f"stiffmbs: without {package}, which is not installed (pip install 'stiffmbs[peers]')", err=True)
-    return [BesidePeers(problem) for problem in problems]
+def _table(name: str, found: Comparison) -> str:
+    rows = [
+        f"  {row.solver:22} {row.setting:14} "
+        + (row.message or f"error {row.errors[found.measure]:8.1e}  {row.seconds * 1e3:10.3f} ms")
+        for row in found.rows
+    ]
+    return "\n".join([f"{name}: {found.conclusion}", *rows])

@@ -31,7 +31,6 @@ FILES = {
     "run": "run",
     "schema": "schema",
     "sensitivities": "sensitivities",
-    "stress": "stress",
     "study": "study",
     "version": "starting.version:show_version",
 }

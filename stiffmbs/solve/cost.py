@@ -1,6 +1,6 @@
 """What steps of the explicit and of the implicit integrator cost, for the choice between them.
 
-Microseconds on one machine, as ``python -m stiffmbs.bench.costs`` measures them; their ratios alone are used.  They are
+Microseconds on one machine, as ``python -m tests.bench.costs`` measures them; their ratios alone are used.  They are
 no clock, so that a scene is solved the same way each time.
 """
 

@@ -293,26 +293,6 @@ def test_importing_the_package_needs_none_of_its_heavy_parts():
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout.strip() == "[]"
 
 
-@pytest.mark.parametrize(
-    ("command", "words"),
-    [
-        (
-            ["bench", "cart_pendulum", "--quick"],
-            "stiffmbs: found no numba, expected it installed: pip install 'stiffmbs[bench]'",
-        ),
-        pytest.param(
-            ["stress", "--fuzz", "contacts", "--count", "1"], "pip install 'stiffmbs[bench]'", marks=pytest.mark.long
-        ),
-        pytest.param(["stress", "--fuzz"], "contacts (found no numba", marks=pytest.mark.long),
-    ],
-)
-def test_yardsticks_tell_the_extra_that_they_need(command, words):
-    without = "import sys; sys.modules['numba'] = None; from stiffmbs.commands.main import main; main()"
-    found = subprocess.run([sys.executable, "-c", without, *command], capture_output=True, text=True)
-    assert found.returncode == 2 and words in found.stderr
-    assert "Traceback" not in found.stderr
-
-
 @pytest.mark.long
 def test_a_scene_is_run_without_numba(in_folder, tmp_path, monkeypatch):
     monkeypatch.setenv("STIFFMBS_CACHE", str(tmp_path / "cache"))  # nothing compiled before

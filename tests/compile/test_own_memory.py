@@ -62,8 +62,8 @@ FAILING = """
     llvm.add_symbol(REALLOCATE, ctypes.cast(limited, ctypes.c_void_p).value)
 
     import stiffmbs
-    from stiffmbs.stress.framework import in_plane
-    from stiffmbs.stress.families.structure.lattices import lattice
+    from tests.stress.framework import in_plane
+    from tests.stress.families.structure.lattices import lattice
 
     try:
         solution = stiffmbs.run(in_plane(lattice(4, 4)), duration=0.1, points=3)

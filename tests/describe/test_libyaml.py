@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 from ruamel.yaml import YAML
 
 import stiffmbs
-from stiffmbs.bench.drives import SCENES
 from stiffmbs.describe.files import libyaml, yaml_text
 from stiffmbs.describe.files.libyaml import NotSureError, read_by_libyaml
 from stiffmbs.describe.files.yaml_text import LONG, read_yaml
+from tests.bench.drives import SCENES
 
 ROOT = Path(stiffmbs.__file__).parent
 FILES = sorted([*ROOT.glob("**/*.yaml"), *ROOT.parent.glob("examples/**/*.yaml"), *Path(SCENES).glob("*.yaml")])

@@ -7,7 +7,7 @@ import pytest
 
 import stiffmbs
 from stiffmbs.diagnostics.singular_passage import deepest_dips
-from stiffmbs.stress.families.structure.singular_passages import four_bar
+from tests.stress.families.structure.singular_passages import four_bar
 
 NOTE = "passes a singular pose near t = 0."
 

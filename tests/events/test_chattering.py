@@ -12,8 +12,8 @@ from stiffmbs.solve.dynamics import Dynamics
 from stiffmbs.solve.events.chattering import TRUSTED_EVENTS, WINDOW, Chattering
 from stiffmbs.solve.events.discontinuity import sliding
 from stiffmbs.solve.trajectory import Outcome
-from stiffmbs.stress.families.roads.kinks import SLIDES, belts, follower
-from stiffmbs.stress.families.roads.kinks import wheel as wheel_on_road
+from tests.stress.families.roads.kinks import SLIDES, belts, follower
+from tests.stress.families.roads.kinks import wheel as wheel_on_road
 
 SOLVERS = ["bdf", "callbacks", "auto", "dop853", "dopri5"]
 

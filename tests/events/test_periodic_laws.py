@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from stiffmbs import AppliedForce, Body, Model
-from stiffmbs.stress.case import Outcome
-from stiffmbs.stress.families.events import periodic_laws
-from stiffmbs.stress.fuzzers import laws
+from tests.stress.case import Outcome
+from tests.stress.families.events import periodic_laws
+from tests.stress.fuzzers import laws
 
 
 @pytest.mark.parametrize("case", periodic_laws.CASES, ids=lambda case: case.name)

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import stiffmbs
-from stiffmbs.stress.case import Outcome
-from stiffmbs.stress.families.events import starts_on_breakpoints
-from stiffmbs.stress.families.events.within_one_step import SOLVERS
+from tests.stress.case import Outcome
+from tests.stress.families.events import starts_on_breakpoints
+from tests.stress.families.events.within_one_step import SOLVERS
 
 
 @pytest.mark.parametrize("case", starts_on_breakpoints.CASES, ids=lambda case: case.name)

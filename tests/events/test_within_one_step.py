@@ -7,9 +7,9 @@ import stiffmbs
 from stiffmbs.compile.compile_model import compile_model
 from stiffmbs.compile.law_zones import zones_of
 from stiffmbs.jobs.job import prepare
-from stiffmbs.stress.case import Outcome
-from stiffmbs.stress.families.events import within_one_step
-from stiffmbs.stress.fuzzers import contacts
+from tests.stress.case import Outcome
+from tests.stress.families.events import within_one_step
+from tests.stress.fuzzers import contacts
 
 
 @pytest.mark.parametrize("case", within_one_step.CASES, ids=lambda case: case.name)

@@ -14,9 +14,9 @@ from stiffmbs.jobs import taken_again
 from stiffmbs.jobs.job import prepare
 from stiffmbs.jobs.run import solved
 from stiffmbs.solve.trajectory import Outcome
-from stiffmbs.stress.families.structure.large_multipliers import barely_held, pulled, swing_error
-from stiffmbs.stress.pendulum import bar_rate, swing
 from stiffmbs.studies import simulation
+from tests.stress.families.structure.large_multipliers import barely_held, pulled, swing_error
+from tests.stress.mechanisms.pendulum import bar_rate, swing
 
 HOW = {"duration": 2.0, "points": 101, "rtol": 1e-7}
 CREEP = "relaxed constraints (formulation SI2) let"

@@ -6,7 +6,7 @@ import pytest
 import stiffmbs
 from stiffmbs.errors import SolverError
 from stiffmbs.jobs.linearised.transfer import transfer
-from stiffmbs.stress.families.analyses.breakpoints_at_the_state import ball, slider
+from tests.stress.families.analyses.breakpoints_at_the_state import ball, slider
 
 
 def test_a_damper_of_one_direction_has_both_sides():

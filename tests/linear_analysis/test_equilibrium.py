@@ -10,7 +10,7 @@ import stiffmbs
 from stiffmbs.commands.main import main
 from stiffmbs.errors import SolverError
 from stiffmbs.jobs.equilibrium import equilibrium
-from stiffmbs.stress.random_tree import random_tree
+from tests.stress.random_tree import random_tree
 
 from ..conftest import EXAMPLES
 

@@ -1,7 +1,7 @@
 """Equilibria of random mechanisms with springs, bushings, contacts and closed loops, in the plane and in space.
 
 Each is found, has no accelerations by the equations of motion, stays at rest in a run, and is stable by its modes unless
-it is told to be unstable (`stiffmbs.stress.fuzzers.equilibria`).
+it is told to be unstable (`tests.stress.fuzzers.equilibria`).
 """
 
 import numpy as np
@@ -9,9 +9,9 @@ import pytest
 
 from stiffmbs.jobs.equilibrium import EquilibriumFound, equilibrium
 from stiffmbs.results.solution import Solution
-from stiffmbs.stress.case import Outcome
-from stiffmbs.stress.fuzzers import equilibria
-from stiffmbs.stress.random_statics import random_statics
+from tests.stress.case import Outcome
+from tests.stress.fuzzers import equilibria
+from tests.stress.random_statics import random_statics
 
 
 @pytest.mark.parametrize("seed", [0, pytest.param(1, marks=pytest.mark.long), 2, 4, 6])

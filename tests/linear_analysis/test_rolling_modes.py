@@ -6,8 +6,8 @@ import pytest
 import stiffmbs
 from stiffmbs.linear_analysis.modes import Motion
 from stiffmbs.show.modes import modes_text
-from stiffmbs.stress.families.analyses.rolling_modes import SKATE, TRAILER
-from stiffmbs.stress.mechanisms.bicycle import bicycle, published
+from tests.stress.families.analyses.rolling_modes import SKATE, TRAILER
+from tests.stress.mechanisms.bicycle import bicycle, published
 
 
 @pytest.mark.parametrize("speed", range(11))

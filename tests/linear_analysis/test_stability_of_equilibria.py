@@ -3,7 +3,7 @@
 import pytest
 
 import stiffmbs
-from stiffmbs.stress.families.analyses.flutter import LAWS, LOADS, column, slider
+from tests.stress.families.analyses.flutter import LAWS, LOADS, column, slider
 
 
 @pytest.mark.parametrize(("law", "unstable"), LAWS.items())

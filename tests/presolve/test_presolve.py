@@ -19,7 +19,7 @@ from stiffmbs.describe.model import FORCES, JOINTS
 from stiffmbs.describe.reading import read_scene
 from stiffmbs.jobs.job import prepare
 from stiffmbs.solve.trajectory import Outcome
-from stiffmbs.stress.random_tree import random_tree
+from tests.stress.random_tree import random_tree
 
 EXAMPLES = [
     "andrews", "bar_pendulum", "bouncing_ball", "cart_pendulum", "chain", "dead_centres", "four_bars", "half_car", "stick_slip",

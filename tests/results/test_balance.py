@@ -11,8 +11,8 @@ from stiffmbs.solve.ida.fixed_order import FixedOrder
 from stiffmbs.solve.ida.matrices import Banded, Dense, Sparse
 from stiffmbs.solve.ida.output_correction import OutputCorrection
 from stiffmbs.solve.linear.elimination_order import elimination_order
-from stiffmbs.stress.families.stiffness.stiffness import bar_on_bushing
-from stiffmbs.stress.pendulum import bar_rate, swing
+from tests.stress.families.stiffness.stiffness import bar_on_bushing
+from tests.stress.mechanisms.pendulum import bar_rate, swing
 
 from ..solve.ida.test_native_ida import Problem, hanging_chain
 

@@ -8,7 +8,7 @@ from stiffmbs import AppliedForce, Body, Bushing, Distance, Model, Prismatic
 from stiffmbs.jobs.job import prepare
 from stiffmbs.solve import auto
 from stiffmbs.solve.explicit.fastest_rate import fastest_rate
-from stiffmbs.stress.parallelogram import parallelogram, swing_error
+from tests.stress.mechanisms.parallelogram import parallelogram, swing_error
 
 
 @pytest.mark.parametrize("name", ["cart_pendulum", "four_bars", "bouncing_ball", "crank_slider"])

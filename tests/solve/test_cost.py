@@ -2,9 +2,9 @@
 
 import pytest
 
-from stiffmbs.bench.costs import SCENES
 from stiffmbs.jobs.job import prepare
 from stiffmbs.solve.cost import of_explicit_step
+from tests.bench.costs import SCENES
 
 
 @pytest.mark.parametrize(

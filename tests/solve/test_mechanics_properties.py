@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 import stiffmbs
 from stiffmbs import Body, Model
-from stiffmbs.stress.random_tree import random_tree
+from tests.stress.random_tree import random_tree
 
 from ..random_parts import random_element, three_bodies
 

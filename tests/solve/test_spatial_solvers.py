@@ -5,11 +5,11 @@ import pytest
 
 import stiffmbs
 from stiffmbs import spatial
-from stiffmbs.bench.error_bars import PROBLEMS
-from stiffmbs.bench.evenness import evenness
 from stiffmbs.describe.spatial.orientation import matrix
 from stiffmbs.solve import integrator
 from stiffmbs.solve.error_control.error_test import CHOSEN, ErrorControl
+from tests.bench.error_bars import PROBLEMS
+from tests.bench.evenness import evenness
 
 from ..spatial_closed_forms import matrices
 

@@ -24,8 +24,8 @@ from stiffmbs import (
     Revolute,
 )
 from stiffmbs.compile.state import State
-from stiffmbs.stress.random_tree import random_tree
 from stiffmbs.structure.loops import loops
+from tests.stress.random_tree import random_tree
 
 FEW = settings(max_examples=12, deadline=None, suppress_health_check=list(HealthCheck), derandomize=True)
 SEEDS = st.integers(0, 2**32 - 1)

@@ -58,7 +58,7 @@ def test_compiled_starts_give_the_states_of_starts_by_python(case, examples, mon
 
 def test_a_controlled_cart_is_where_its_minimal_equations_have_it():
     """As right as one run at the same tolerance, for all its starts."""
-    from stiffmbs.bench.problems.stepping import SCENE, control, reference
+    from tests.bench.problems.stepping import SCENE, control, reference
 
     sim, places = simulation(stiffmbs.read_scene(SCENE), inputs={"F": 0.0}), []
     for _ in range(500):

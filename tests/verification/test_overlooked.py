@@ -9,7 +9,7 @@ import stiffmbs
 from stiffmbs.compile.law_zones import Zones, zones_of
 from stiffmbs.jobs import taken_again
 from stiffmbs.solve.events import event_functions as event_watch
-from stiffmbs.stress.fuzzers import contacts
+from tests.stress.fuzzers import contacts
 
 from ..conftest import EXAMPLES
 

@@ -99,12 +99,14 @@ def _called(with_geometry: bool) -> str:
 
 @cache
 def compiled_routines(module: str, signatures: Signatures, unrolled: bool) -> dict[str, Compiled]:
-    """Compile functions of one of the package's ``native`` modules together, or load them from the cache.
+    """Compile functions of a ``native`` module together, or load them from the cache.
 
     Unrolled loops take LLVM a third longer.  Lists of a few entries are no faster by them (measured: 0 to 8 % slower on all
     examples), nor are products of dense blocks, but solutions with such blocks are (a car by blocks takes 6 to 8 % less).
     """
-    entry = store.name_of(store.ROUTINE, _language(), _native(), module, repr((signatures, unrolled)))
+    entry = store.name_of(
+        store.ROUTINE, _language(), _native(module.partition(".")[0]), module, repr((signatures, unrolled))
+    )
     words = f"the routines {module.rpartition('.')[2]}"
     return _loaded(entry, _Source(signatures, lambda: vars(importlib.import_module(module)), words, unrolled=unrolled))
 
@@ -116,10 +118,12 @@ def _language() -> str:
 
 
 @cache
-def _native() -> str:
-    """A digest of all native modules and of what they are laid out by: a routine may be built of any of them."""
+def _native(package: str) -> str:
+    """Return a digest of the native modules of stiffmbs and of a package that calls them, and of their memory layout."""
     here = Path(__file__).parent
-    return digest_of([*modules_within(here.parents[1], "native"), here / "layout.py"])
+    folders = {here.parents[1], Path(importlib.import_module(package).__path__[0])}
+    files = [file for folder in sorted(folders) for file in modules_within(folder, "native")]
+    return digest_of([*files, here / "layout.py"])
 
 
 def _loaded(entry: str, source: _Source) -> dict[str, Compiled]:

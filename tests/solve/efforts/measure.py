@@ -13,7 +13,7 @@ import numpy as np
 import stiffmbs
 from stiffmbs.jobs.run import prepare
 from stiffmbs.solve.equilibria.equilibrium import find_equilibrium
-from stiffmbs.stress.random_statics import random_statics
+from tests.stress.random_statics import random_statics
 
 ROOT = Path(__file__).parents[3]
 RECORDED = Path(__file__).with_name("recorded.csv")

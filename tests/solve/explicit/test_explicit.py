@@ -14,8 +14,8 @@ from stiffmbs.jobs.job import prepare
 from stiffmbs.solve.explicit import SCHEMES
 from stiffmbs.solve.linear.eliminated import ACCELERATE
 from stiffmbs.solve.trajectory import Outcome
-from stiffmbs.stress.parallelogram import parallelogram, swing_error
-from stiffmbs.stress.random_tree import random_tree
+from tests.stress.mechanisms.parallelogram import parallelogram, swing_error
+from tests.stress.random_tree import random_tree
 
 ADAPTIVE = ["dopri5", "dop853"]
 

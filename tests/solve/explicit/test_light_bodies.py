@@ -7,7 +7,7 @@ from scipy.integrate import solve_ivp
 import stiffmbs
 from stiffmbs import Body, Model, Prismatic, Revolute, TorsionSpring, spatial
 from stiffmbs.solve.dynamics import Dynamics
-from stiffmbs.stress.families.stiffness.light_bodies import sprung as sprung_at
+from tests.stress.families.stiffness.light_bodies import sprung as sprung_at
 
 G = 9.81
 

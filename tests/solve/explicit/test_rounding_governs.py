@@ -5,7 +5,7 @@ import pytest
 import stiffmbs
 from stiffmbs.solve.explicit import rounding
 from stiffmbs.solve.trajectory import Outcome
-from stiffmbs.stress.families.structure.large_multipliers import nearly_repeated, swing_error
+from tests.stress.families.structure.large_multipliers import nearly_repeated, swing_error
 
 HOW = {"duration": 2.0, "points": 101, "rtol": 1e-7}
 

@@ -7,7 +7,7 @@ import stiffmbs
 from stiffmbs.errors import InputError
 from stiffmbs.solve.ida import connection, error_norm
 from stiffmbs.solve.ida.libraries import Unavailable
-from stiffmbs.stress.families.stiffness.overdamped_nodes import node
+from tests.stress.families.stiffness.overdamped_nodes import node
 
 
 def solved(model, rtol, **settings):

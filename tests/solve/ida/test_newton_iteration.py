@@ -9,7 +9,7 @@ import stiffmbs
 from stiffmbs.jobs.job import prepare
 from stiffmbs.solve.bdf import solve
 from stiffmbs.solve.error_control.error_test import ErrorControl
-from stiffmbs.stress.fuzzers import fmu
+from tests.stress.fuzzers import fmu
 
 IDAS_OWN, DOUBTFUL = ErrorControl(predicted_residual=False), ErrorControl(predicted_residual=True)
 

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 import stiffmbs
-from stiffmbs.bench.drives import CARS
-from stiffmbs.bench.problems.chain_in_space import SCENE, chain_in_space
 from stiffmbs.describe.reading import read_scene
 from stiffmbs.jobs.job import prepare
 from stiffmbs.solve.native.tables.linear import DYNAMICS
+from tests.bench.drives import CARS
+from tests.bench.problems.chain_in_space import SCENE, chain_in_space
 
 ELIMINATES = list(DYNAMICS).index("eliminates")
 IDEAL = next(car for car in CARS if car.name == "example_car_ideal")

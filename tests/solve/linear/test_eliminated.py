@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 import stiffmbs
-from stiffmbs.bench.problems.chain_in_space import chain_in_space
 from stiffmbs.jobs.job import prepare
 from stiffmbs.solve.linear.eliminated import ACCELERATE
 from stiffmbs.solve.native.tables.linear import ELIMINATED as ELIMINATED_TABLE
-from stiffmbs.stress.random_space import random_space_tree
+from tests.bench.problems.chain_in_space import chain_in_space
+from tests.stress.random_space import random_space_tree
 
 
 def both_ways(dynamics):

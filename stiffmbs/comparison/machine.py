@@ -1,0 +1,44 @@
+"""The machine and the versions that times were measured with."""
+
+from __future__ import annotations
+
+import os
+import platform
+from importlib.metadata import PackageNotFoundError, version
+from typing import Any
+
+PACKAGES = ("stiffmbs", "numpy", "scipy", "numba", "scikit-sundae", "exudyn", "casadi")
+
+
+def machine() -> dict[str, Any]:
+    """Return the processor, the system, and versions of packages."""
+    return {
+        "processor": _processor(),
+        "cores": os.cpu_count(),
+        "system": platform.system(),
+        "python": platform.python_version(),
+        **{package: found for package in PACKAGES if (found := _version(package))},
+    }
+
+
+def machine_sentence() -> str:
+    """Return what times were measured on, in one line."""
+    return ", ".join(f"{name} {value}" for name, value in machine().items())
+
+
+def _processor() -> str:
+    """Return its name as the system tells it."""
+    try:
+        with open("/proc/cpuinfo", encoding="utf-8") as lines:
+            names = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
+    except OSError:
+        names = []
+    return names[0] if names else platform.processor() or platform.machine()
+
+
+def _version(package: str) -> str:
+    """Return the version of a package, empty where it is not installed."""
+    try:
+        return version(package)
+    except PackageNotFoundError:
+        return ""

@@ -1,0 +1,49 @@
+"""Measured rows as JSON, and as a table for people."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict
+from typing import Any
+
+from stiffmbs.comparison.machine import machine
+
+from .benchmark import Row
+from .decades_table import table as decades_table
+from .sweep import at_target_rows
+
+REFERENCE, OWN = "yardstick", ("bdf", "dop853")
+
+
+def as_json(problem: str, rows: Sequence[Row]) -> dict[str, Any]:
+    """The object of ``python -m tests.bench --json`` for one problem."""
+    return {"problem": problem, "machine": machine(), "rows": [asdict(row) for row in rows]}
+
+
+def read_json(text: str) -> dict[str, list[Row]]:
+    """The rows of each problem in what ``python -m tests.bench --json`` printed."""
+    objects = (json.loads(line) for line in text.splitlines())
+    return {found["problem"]: [Row(**row) for row in found["rows"]] for found in objects}
+
+
+def table(problem: str, rows: Sequence[Row]) -> Iterator[str]:
+    """Times at the target error with their ratios to the yardstick, or where there are none the rows as measured."""
+    targets = at_target_rows(rows)
+    if len({row.error for row in targets}) > 1:
+        yield from decades_table(problem, rows)
+        return
+    at_target = {row.solver: row.seconds for row in targets}
+    if not at_target:
+        yield problem
+        for row in rows:
+            yield f"  {row.solver:22} {row.setting:54} error {row.error:8.1e}  {row.seconds * 1e3:10.3f} ms"
+        return
+    ratios = ", and its ratio to the yardstick" if REFERENCE in at_target else ""
+    yield f"{problem}: time at an error of {targets[0].error:g}{ratios}"
+    for solver, seconds in at_target.items():
+        ratio = f"{seconds / at_target[REFERENCE]:8.2f}" if REFERENCE in at_target else ""
+        yield f"  {solver:22} {seconds * 1e3:10.3f} ms {ratio}"
+    best = min((at_target[solver] for solver in OWN if solver in at_target), default=None)
+    if best and "auto" in at_target:
+        yield f"  auto takes {at_target['auto'] / best:.2f} times as long as the better of bdf and dop853"

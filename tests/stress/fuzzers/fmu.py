@@ -1,0 +1,169 @@
+"""Compare FMUs of random scenes, simulated by FMPy with changing inputs, with runs of the scenes."""
+
+from __future__ import annotations
+
+import json
+import sys
+import tempfile
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from stiffmbs.errors import StiffmbsError, needs
+from stiffmbs.jobs.load_scene import load_scene
+from stiffmbs.jobs.run import run
+from stiffmbs.results.saved_state import SavedState
+from stiffmbs.solve.trajectory import Outcome as Ending
+from stiffmbs.studies.fmu.build import build_fmu
+
+from ..case import Outcome, Verdict, measured, told
+from ..random_scenes.features import ALL
+from ..random_scenes.scene import random_scene
+
+WHAT = "FMUs of random scenes in FMPy, one or several in a process, with parameters and changing inputs, against `run`."
+GAIN, GIVEN, PUSH = "fmu_gain", "fmu_given", "fmu_push"
+"""Parameter, input and force that are added to each scene."""
+STEPS, SEGMENTS = 20, 3
+"""Number of communication steps, and number of intervals with constant input."""
+COSTLY = 0.1
+"""Fractions of scenes with tyres and with parts, which take long to compile."""
+RTOL = 1e-8
+BOUND = 1e-5
+"""Allowed difference relative to the size of a channel: 1000 times the tolerance, because errors grow at events."""
+FLOOR = 1e-2
+"""Smallest size of a channel, m, rad, and these per second."""
+IN_DOUBT = "last digits", "more than one motion may follow"
+"""Words of notes on motions that need not agree."""
+
+
+@dataclass(frozen=True)
+class Given:
+    """Values of the parameter, and of the input in each interval, for one instance."""
+
+    gain: float
+    inputs: tuple[float, ...]
+
+
+def trial(seed: int) -> Verdict:
+    """Build one FMU, and simulate one or more instances of it."""
+    rng = np.random.default_rng(seed)
+    content = _scene(rng)
+    given = [
+        Given(float(rng.uniform(-1, 1)), tuple(rng.uniform(-2, 2, SEGMENTS))) for _ in range(rng.choice([1, 1, 2, 4]))
+    ]
+    detail = f"{content.get('dimensions', 2)}D, {len(given)} instances, {json.dumps(content)[:600]}"
+    with tempfile.TemporaryDirectory() as made:
+        scene, fmu = Path(made) / "scene.yaml", Path(made) / "scene.fmu"
+        scene.write_text(json.dumps(content), encoding="utf-8")
+        try:
+            channels = _channels(scene)
+            build_fmu(scene, fmu, channels)
+            known = [_by_runs(scene, each, channels) for each in given]
+        except StiffmbsError as refusal:
+            return told(f"{refusal} [{detail}]", ())
+        paths = list(sys.path)  # an FMU puts its own copy of PythonFMU before the installed one
+        try:
+            found, faults = by_fmpy(fmu, content["run"]["duration"], given, channels)
+        finally:
+            sys.path[:] = paths
+    if faults:
+        return Verdict(Outcome.WRONG, detail=f"{faults} [{detail}]")
+    if any(rows is None for rows in found):
+        return told(f"a step of the FMU was refused [{detail}]", ())
+    errors = {
+        name: max(_difference(rows[:, k], of_run[:, k]) for rows, (of_run, _) in zip(found, known, strict=True) if rows is not None)
+        for k, name in enumerate(channels)
+    }  # fmt: skip
+    worst = max(errors, key=lambda name: errors[name])
+    doubts = [note for _, notes in known for note in notes if any(words in note for words in IN_DOUBT)]
+    if doubts and not errors[worst] <= BOUND:
+        return told(f"{doubts[0]} [{detail}]", ())
+    return measured(errors[worst], BOUND, f"{worst}, {detail}")
+
+
+def _scene(rng: np.random.Generator) -> dict[str, Any]:
+    features = replace(ALL, tyres=bool(rng.random() < COSTLY), parts=bool(rng.random() < COSTLY))
+    content = random_scene(rng, features=features)
+    body = str(rng.choice(list(content["bodies"])))
+    zeros = [0.0] * (content.get("dimensions", 2) - 1)
+    content.setdefault("parameters", {})[GAIN] = 0.5
+    content.setdefault("inputs", {})[GIVEN] = 0.0
+    content.setdefault("forces", {})[PUSH] = {"type": "force", "i": body, "force": [f"{GAIN} + {GIVEN}", *zeros]}
+    content["run"] |= {"rtol": RTOL, "points": STEPS + 1}
+    return content
+
+
+def _channels(scene: Path) -> tuple[str, ...]:
+    """Return the names of the positions and velocities of all bodies, and of the states; only collisions make them discontinuous."""
+    data = load_scene(scene)
+    labels = "x y angle vx vy omega" if data.dimensions == 2 else "x y z vx vy vz wx wy wz"
+    bodies = [f"{body}.{label}" for body in data.bodies for label in labels.split()]
+    return (*bodies, *data.states)
+
+
+def _by_runs(scene: Path, given: Given, channels: tuple[str, ...]) -> tuple[np.ndarray, list[str]]:
+    """Return the channels after each communication step, by a run for each value of the input, shape (steps, channels); and notes."""
+    whole = load_scene(scene)
+    ends = np.linspace(0, STEPS, SEGMENTS + 1).astype(int)
+    step, state, rows = whole.run.duration / STEPS, None, []
+    notes: list[str] = []
+    for value, first, last in zip(given.inputs, ends[:-1], ends[1:], strict=True):
+        changes = [(f"parameters.{GAIN}", repr(given.gain)), (f"inputs.{GIVEN}", repr(float(value)))]
+        part: SavedState | None = state
+        solution = run(
+            load_scene(scene, changes), start_from=part, start=first * step, duration=(last - first) * step, points=int(last - first) + 1
+        )  # fmt: skip
+        if solution.outcome is not Ending.DONE:
+            raise StiffmbsError(solution.message)
+        state = solution.state()
+        notes += solution.notes
+        rows.append(np.column_stack([solution[name][1:] for name in channels]))
+    return np.vstack(rows), notes
+
+
+def by_fmpy(
+    fmu: Path, duration: float, given: list[Given], channels: tuple[str, ...]
+) -> tuple[list[np.ndarray | None], str]:
+    """Return the same from FMU instances that step in turn, or None if a step is refused; and the faults that FMPy finds."""
+    with needs("fmpy", "test"):
+        from fmpy import extract, read_model_description
+        from fmpy.fmi2 import FMU2Slave
+        from fmpy.validation import validate_fmu
+    if faults := validate_fmu(str(fmu)):
+        return [], f"the validation finds {faults}"
+    about, folder = read_model_description(str(fmu)), extract(str(fmu), fmu.parent / "extracted")
+    refs = {variable.name: variable.valueReference for variable in about.modelVariables}
+    instances = []
+    for k, each in enumerate(given):
+        instance = FMU2Slave(
+            guid=about.guid, unzipDirectory=folder, modelIdentifier=about.coSimulation.modelIdentifier, instanceName=f"{fmu.stem}{k}"
+        )  # fmt: skip
+        instance.instantiate()
+        instance.setupExperiment(startTime=0.0)
+        instance.enterInitializationMode()
+        instance.setReal([refs[GAIN], refs[GIVEN]], [each.gain, each.inputs[0]])
+        instance.exitInitializationMode()
+        instances.append(instance)
+    rows: list[Any] = [[] for _ in given]
+    step, ends = duration / STEPS, np.linspace(0, STEPS, SEGMENTS + 1).astype(int)
+    for number in range(STEPS):
+        for k, (instance, each) in enumerate(zip(instances, given, strict=True)):
+            if rows[k] is None:
+                continue
+            instance.setReal([refs[GIVEN]], [each.inputs[int(np.searchsorted(ends, number, "right")) - 1]])
+            try:
+                instance.doStep(number * step, step)
+            except Exception:  # FMPy's own, for a status other than OK
+                rows[k] = None
+                continue
+            rows[k].append(instance.getReal([refs[name] for name in channels]))
+    for instance in instances:
+        instance.terminate()
+        instance.freeInstance()
+    return [None if found is None else np.array(found) for found in rows], ""
+
+
+def _difference(found: np.ndarray, expected: np.ndarray) -> float:
+    return float(np.max(np.abs(found - expected)) / max(float(np.max(np.abs(expected))), FLOOR))

@@ -1,0 +1,56 @@
+"""Compare the reported stability of random equilibria with runs from a perturbed state."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from stiffmbs.describe.model import FORCES
+from stiffmbs.describe.spatial.model import FORCES as SPATIAL_FORCES
+from stiffmbs.errors import StiffmbsError
+from stiffmbs.jobs.equilibrium import equilibrium
+from stiffmbs.jobs.linearised.modes import modes
+from stiffmbs.jobs.run import run
+from stiffmbs.solve.trajectory import Outcome as Ending
+
+from ..case import Outcome, Verdict
+from ..random_statics import random_statics
+
+WHAT = "Equilibria with negative or positive damping: reported stability against runs from perturbed states."
+PUSH, DURATION, RTOL = 1e-6, 4.0, 1e-9
+"""Initial velocity, m/s, duration, s, and tolerance of a run."""
+EXPONENT, CLEAR = 6.0, 10.0
+"""Growth exponent of a run that is significant, and factor by which an unstable motion grows."""
+BEATS = 1e3
+"""Transient growth of a stable motion."""
+ROUNDING = float(np.finfo(float).eps)
+"""Velocity relative to the push that a body which is held has by rounding."""
+
+
+def trial(seed: int) -> Verdict:
+    """Test one mechanism with springs, and a force along the velocity of one of its bodies."""
+    rng, in_space = np.random.default_rng(seed), seed % 2 == 1
+    model = random_statics(rng, in_space)
+    body, gain = str(rng.choice(list(model.bodies))), float(rng.uniform(-15, 15))
+    law = [f"{gain!r}*{body}.vx", *[0.0] * (2 if in_space else 1)]
+    model.add("along", (SPATIAL_FORCES if in_space else FORCES)["force"](i=body, force=law))
+    try:
+        found = equilibrium(model)
+        growth = max(
+            (v.real for mode in modes(model, start_from=found.solution).modes for v in mode.eigenvalues), default=0.0
+        )
+        rest = found.solution.state()
+        pushed = {name: value + PUSH * (name.endswith(".vx")) for name, value in rest.channels.items()}
+        solution = run(model, start_from=replace(rest, channels=pushed), duration=DURATION, rtol=RTOL, points=201)
+    except StiffmbsError as refusal:
+        return Verdict(Outcome.TOLD, detail=str(refusal))
+    told = any("unstable" in note for note in found.notes)
+    if solution.outcome is not Ending.DONE:
+        return Verdict(Outcome.TOLD, detail=solution.message)
+    moves = np.max([np.abs(solution[name]) for name in solution if name.endswith((".vx", ".vy", ".vz"))], axis=0)
+    factor = float(moves[-20:].max() / max(float(moves[:20].max()), ROUNDING * PUSH))
+    detail = f"a motion grows by {factor:.3g}, the fastest mode at {growth:.3g} 1/s: {found.notes}"
+    missed = not told and factor > BEATS
+    false = told and growth * DURATION > EXPONENT and factor < CLEAR
+    return Verdict(Outcome.WRONG if missed or false else Outcome.RIGHT, factor, BEATS, detail)
