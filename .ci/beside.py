@@ -106,7 +106,7 @@ def _of_bench(module: str) -> Any:
 
 def _problems() -> Any:
     """Names, and what makes the solvers of each: functions of a tolerance that prepare a solution."""
-    from stiffmbs.jobs.job import prepare
+    from stiffmbs.analyses.job import prepare
 
     families, solvers = _of_bench("benchmark").families, _of_bench("drives").SOLVERS
 

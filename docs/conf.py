@@ -4,7 +4,7 @@ import sys
 from pathlib import Path
 
 HERE = Path(__file__).parent
-sys.path[:0] = [str(HERE / "extensions"), str(HERE.parent)]  # the second for tests.bench, whose results pages show
+sys.path[:0] = [str(HERE / "sphinx_plugins"), str(HERE.parent)]  # the second for tests.bench, whose results pages show
 
 import stiffmbs  # noqa: E402
 
@@ -25,7 +25,7 @@ extensions = [
     "measured",
     "shipped_parts",
 ]
-exclude_patterns = ["extensions"]
+exclude_patterns = ["sphinx_plugins"]
 suppress_warnings = ["toc.empty_glob"]  # a page that a pattern stands for may be missing
 default_role = "literal"
 

@@ -15,7 +15,7 @@ from .loaded_later import elements_of, loaded
 _MODEL = ".describe.spatial.model"
 _LATER = {
     "Body": ".describe.spatial.body", "Force": ".describe.element", "Joint": ".describe.element", "Marker": ".describe.spatial.marker",
-    "Model": _MODEL, "in_space": ".jobs.in_space",
+    "Model": _MODEL, "in_space": ".analyses.in_space",
 }  # fmt: skip
 
 

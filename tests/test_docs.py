@@ -156,7 +156,7 @@ def test_examples_in_docstrings_run(module, workplace):
 @pytest.mark.parametrize(("page", "family"), [("scenes", ""), ("scenes_in_space", "spatial.")])
 def test_the_overview_of_scenes_is_made_of_all_kinds(page, family, monkeypatch):
     pytest.importorskip("sphinx")
-    monkeypatch.syspath_prepend(str(HERE / "docs" / "extensions"))
+    monkeypatch.syspath_prepend(str(HERE / "docs" / "sphinx_plugins"))
     made = importlib.import_module("kinds")
     text = (HERE / "docs" / "reference" / f"{page}.md").read_text(encoding="utf-8")
     for section in ("joints", "forces"):

@@ -14,15 +14,15 @@ import stiffmbs
 
 ROOT = Path(stiffmbs.__file__).parent
 ORDER = (
-    "cache", "describe", "adams", "robots", "compile", "presolve", "solve", "linear_analysis", "structure", "results", "diagnostics", "jobs", "verification", "studies", "show",
+    "cache", "describe", "adams", "robots", "compile", "presolve", "solve", "linear_analysis", "redundancy", "results", "run_checks", "analyses", "verification", "studies", "show",
     "comparison", "commands",
 )  # fmt: skip
 """Packages; each imports from those before it alone."""
 ANYWHERE = {"errors", "interrupts", "solver_names"}
 METHODS = {
-    (ROOT.name, "describe", "building", "runnable_model"): {"studies", "jobs", "results", "show", "verification"},
+    (ROOT.name, "describe", "building", "runnable_model"): {"studies", "analyses", "results", "show", "verification"},
     (ROOT.name, "describe", "model_data"): {"show"},
-    (ROOT.name, "jobs", "check"): {"show"},
+    (ROOT.name, "analyses", "check"): {"show"},
     (ROOT.name, "results", "solution"): {"show"},
 }
 """What users hold offers what can be done with it as methods, which load it when they are called."""

@@ -176,7 +176,7 @@ def test_importing_the_package_loads_no_solver():
     program = (
         "import sys, stiffmbs; dir(stiffmbs);"
         "print([name for name in ('scipy', 'sympy', 'sksundae', 'llvmlite', 'pandas', 'xarray', 'stiffmbs.solve', 'stiffmbs.compile', "
-        "'stiffmbs.results', 'stiffmbs.jobs.run', 'stiffmbs.adams', 'stiffmbs.describe.spatial') if name in sys.modules])"
+        "'stiffmbs.results', 'stiffmbs.analyses.run', 'stiffmbs.adams', 'stiffmbs.describe.spatial') if name in sys.modules])"
     )
     found = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert found.stdout.strip() == "[]"

@@ -9,8 +9,8 @@ from typing import Any
 
 import click
 
+from ..analyses.load_scene import load_scene
 from ..errors import StiffmbsError
-from ..jobs.load_scene import load_scene
 from .runs import loaded_runs
 from .scene import STOPPED_EARLY, changes_of, file_beside, refuse, refuse_own_input, solve_scene, solving_options
 

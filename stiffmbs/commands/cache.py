@@ -58,10 +58,10 @@ def clear() -> None:
 @cache.command(short_help="Compile all usual elements and all solvers ahead.")
 def warm() -> None:
     """Compile all kinds of elements in their usual forms and all solvers, so that first runs need not wait."""
+    from ..analyses.warm import warm as fill
     from ..cache.entries import cache_directory
     from ..compile.machine.cache import KERNEL, RECORD, ROUTINE
     from ..compile.machine.cache_contents import stored
-    from ..jobs.warm import warm as fill
 
     fill()
     own = [found for kind, found in stored().items() if kind in (RECORD, KERNEL, ROUTINE)]

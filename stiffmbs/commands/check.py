@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 import click
 
+from ..analyses.load_scene import DATASET, load_scene
 from ..errors import StiffmbsError
-from ..jobs.load_scene import DATASET, load_scene
 from .scene import CHANGES, in_file, refuse
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ def check(scene: str, as_json: bool, changes: list[tuple[str, str]]) -> None:
 
     Exit status: 0 sound, 1 problems, 2 the input is wrong.
     """
-    from ..jobs.check import check as examine
+    from ..analyses.check import check as examine
 
     listed = _listed(scene)
     if not as_json:

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, get_args
 
 import click
 
+from ..analyses.load_scene import load_scene
 from ..errors import InputError, StiffmbsError
-from ..jobs.load_scene import load_scene
 from ..solver_names import SchemeName
 from .ranges import numbers_in, values_in
 from .scene import CHANGES, STOPPED_EARLY, in_file, refuse, refuse_own_input

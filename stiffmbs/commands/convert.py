@@ -73,9 +73,9 @@ def _as_dataset(
     """A dataset and its command file, by the names that they get."""
     from ..adams.export.dataset_text import command_text, dataset_text
     from ..adams.load import COMMANDS
+    from ..analyses.in_space import in_space
+    from ..analyses.load_scene import ROBOTS, load_scene
     from ..describe.spatial.scene import SpatialScene
-    from ..jobs.in_space import in_space
-    from ..jobs.load_scene import ROBOTS, load_scene
     from ..robots.load import load_robot
 
     beside = output.with_suffix(COMMANDS)
@@ -89,7 +89,7 @@ def _as_dataset(
 
 
 def _in_space(scene: str, changes: list[tuple[str, str]]) -> str:
-    from ..jobs.in_space import text_in_space
+    from ..analyses.in_space import text_in_space
 
     return text_in_space(scene, changes)
 
@@ -97,7 +97,7 @@ def _in_space(scene: str, changes: list[tuple[str, str]]) -> str:
 def _of_other(path: str, coordinates: tuple[str, ...], changes: list[tuple[str, str]]) -> str:
     """The text of a scene from a file of another program."""
     from ..adams.load import convert_file
-    from ..jobs.load_scene import ROBOTS
+    from ..analyses.load_scene import ROBOTS
     from ..robots.load import convert_robot
 
     suffix = Path(path).suffix.lower()

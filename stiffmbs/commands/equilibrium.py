@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from ..analyses.load_scene import load_scene
 from ..errors import StiffmbsError
-from ..jobs.load_scene import load_scene
 from .scene import (
     STOPPED_EARLY,
     changes_of,
@@ -57,7 +57,7 @@ def equilibrium(
 
     Exit status: 0 done, 1 no equilibrium was found or the file could not be written, 2 the input is wrong.
     """
-    from ..jobs.equilibrium import equilibrium as found_equilibrium
+    from ..analyses.equilibrium import equilibrium as found_equilibrium
     from ..results.files import check_output, write
     from ..show.equilibrium import equilibrium_text
 

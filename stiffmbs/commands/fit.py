@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
+from ..analyses.load_scene import load_scene
 from ..errors import InputError, StiffmbsError
-from ..jobs.load_scene import load_scene
 from .scene import STOPPED_EARLY, changes_of, in_file, refuse, solving_options
 
 if TYPE_CHECKING:

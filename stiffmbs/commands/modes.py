@@ -9,8 +9,8 @@ from typing import Any
 
 import click
 
+from ..analyses.load_scene import load_scene
 from ..errors import StiffmbsError
-from ..jobs.load_scene import load_scene
 from .scene import STOPPED_EARLY, changes_of, in_file, refuse, solving_options, start_of
 
 
@@ -44,7 +44,7 @@ def modes(
 
     Exit status: 0 done, 1 no motion leads to such a state or a file could not be written, 2 the input is wrong.
     """
-    from ..jobs.linearised.modes import modes as found_modes
+    from ..analyses.linearised.modes import modes as found_modes
     from ..results.files import check_output, write
     from ..show.modes import modes_text
 

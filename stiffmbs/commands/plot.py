@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from ..analyses.load_scene import load_scene
 from ..errors import InputError, StiffmbsError
-from ..jobs.load_scene import load_scene
 from .runs import RESULTS, runs_of
 from .scene import STOPPED_EARLY, changes_of, refuse, refuse_own_input, solving_options
 

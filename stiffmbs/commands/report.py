@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from ..analyses.load_scene import load_scene
 from ..describe.files.text_file import STANDARD_INPUT, file_text
 from ..errors import StiffmbsError
-from ..jobs.load_scene import load_scene
 from .scene import (  # fmt: skip
     STOPPED_EARLY,
     changes_of,
@@ -86,7 +86,7 @@ def _section(title: str, made: Callable[[], Section]) -> Section:
 
 
 def _equilibrium(scene: Scene) -> Section:
-    from ..jobs.equilibrium import equilibrium
+    from ..analyses.equilibrium import equilibrium
     from ..show.sections import equilibrium_section
 
     return equilibrium_section(equilibrium(scene), scene)

@@ -8,8 +8,8 @@ from typing import Any
 
 import click
 
+from ..analyses.load_scene import load_scene
 from ..errors import InputError, StiffmbsError
-from ..jobs.load_scene import load_scene
 from .scene import STOPPED_EARLY, changes_of, in_file, is_written, refuse, solving_options
 
 
@@ -45,8 +45,8 @@ def response(
     """
     import numpy as np
 
-    from ..jobs.linearised.inputs import force_on, parameter_of
-    from ..jobs.linearised.transfer import transfer
+    from ..analyses.linearised.inputs import force_on, parameter_of
+    from ..analyses.linearised.transfer import transfer
     from ..results.files import write_text
     from ..show.response import response_as_json, response_csv, response_text
 

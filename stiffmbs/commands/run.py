@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from ..analyses.load_scene import load_scene
 from ..errors import StiffmbsError
-from ..jobs.load_scene import load_scene
 from .scene import (
     STOPPED_EARLY,
     changes_of,

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..analyses.load_scene import load_scene
 from ..errors import InputError
-from ..jobs.load_scene import load_scene
 from .scene import changes_of, solve_scene
 
 if TYPE_CHECKING:

@@ -111,7 +111,7 @@ def solve_scene(path: str, scene: Scene, verified: bool, **start: Any) -> Soluti
     if verified:
         from ..verification.verify import verify as solve
     else:
-        from ..jobs.run import run as solve
+        from ..analyses.run import run as solve
     first = start.get("start", scene.run.start)
     with in_file(path), ProgressBar(first, first + scene.whole_duration) as progress:
         return solve(scene, watch=progress, **start)

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from ..analyses.load_scene import load_scene
 from ..errors import InputError, StiffmbsError
-from ..jobs.load_scene import load_scene
 from .scene import changes_of, in_file, refuse, solving_options
 
 if TYPE_CHECKING:

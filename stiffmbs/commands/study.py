@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from ..analyses.load_scene import load_scene
 from ..errors import StiffmbsError
-from ..jobs.load_scene import load_scene
 from ..show.escaped import console
 from .progress import SHOWN_AFTER
 from .scene import STOPPED_EARLY, changes_of, in_file, is_written, refuse, refuse_own_input, solving_options

@@ -6,9 +6,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Unpack
 
+from ..analyses.job import Runnable, data_of
 from ..describe.settings import RunSettings, Settings, takes_settings
 from ..errors import InputError
-from ..jobs.job import Runnable, data_of
 from .at_error import AtError, decades, times_at
 from .entries import USUAL, Entry
 from .plan import LONGER_REFERENCE, LONGEST_RUN, REPEATS, TOLERANCES, Plan, base_settings, plan_of

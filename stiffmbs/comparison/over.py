@@ -6,13 +6,13 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Unpack
 
+from ..analyses.job import Runnable, data_of
+from ..analyses.load_scene import load_scene
 from ..describe.files.text_file import STANDARD_INPUT, file_text, source_name
 from ..describe.reading import read_scene
 from ..describe.settings import RunSettings, Settings, takes_settings
 from ..describe.units.units import Dimension, Quantity, in_text
 from ..errors import AssemblyError, InputError, SolverError
-from ..jobs.job import Runnable, data_of
-from ..jobs.load_scene import load_scene
 from .at_error import times_at
 from .compare import measured, refuse_unmeasured
 from .comparison_over import AtValue, ComparisonOver

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..analyses.job import prepare
+from ..analyses.run import solved
 from ..describe.model_data import ModelData
 from ..describe.settings import RunSettings
 from ..errors import SolverError
-from ..jobs.job import prepare
-from ..jobs.run import solved
 from ..results.scales import kind_of, scales
 from ..results.solution import Solution
 from ..solve.settings import changed, traits_of

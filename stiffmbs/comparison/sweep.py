@@ -7,11 +7,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..analyses.job import Job, prepare
+from ..analyses.python_faults import up_to_a_fault
 from ..describe.model_data import ModelData
 from ..describe.settings import RunSettings
 from ..errors import InputError, StiffmbsError
-from ..jobs.job import Job, prepare
-from ..jobs.python_faults import up_to_a_fault
 from ..results.channels import channels_of
 from ..solve.missing_rows import reported
 from ..solve.settings import near_constraints

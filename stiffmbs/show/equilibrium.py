@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from ..analyses.equilibrium import EquilibriumFound
 from ..compile.bodies import BODY_KINDS
 from ..describe.model_data import ModelData
-from ..jobs.equilibrium import EquilibriumFound
 
 
 def equilibrium_text(found: EquilibriumFound, model: ModelData) -> str:

@@ -16,7 +16,7 @@ from .escaped import escaped
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Sheet
 
-    from ..jobs.check import Report
+    from ..analyses.check import Report
     from ..results.solution import Solution
 
 MOST_ROWS = 40

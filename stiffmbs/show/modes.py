@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ..jobs.linearised.modes import Modes
+from ..analyses.linearised.modes import Modes
 from ..linear_analysis.modes import Mode, Motion
 
 MOST_BODIES = 4

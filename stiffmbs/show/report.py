@@ -14,11 +14,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..analyses.check import Report, check
+from ..analyses.linearised.modes import modes
 from ..describe.figure import Figure
 from ..describe.scene import Scene
 from ..errors import InputError, StiffmbsError
-from ..jobs.check import Report, check
-from ..jobs.linearised.modes import modes
 from ..results.energy_balance_notes import balance_words
 from ..results.error_bars import UNKNOWN
 from ..results.files import refuse_path, write_text

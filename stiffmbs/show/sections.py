@@ -6,9 +6,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from ..analyses.equilibrium import EquilibriumFound
 from ..compile.bodies import BODY_KINDS
 from ..describe.model_data import ModelData
-from ..jobs.equilibrium import EquilibriumFound
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Sheet

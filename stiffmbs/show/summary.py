@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from ..adams.listing import ListedStatement
-    from ..jobs.check import Report
+    from ..analyses.check import Report
 
 UNBROKEN = 10_000
 """Characters of a line in files, pipes and texts."""

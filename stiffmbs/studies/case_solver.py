@@ -9,6 +9,10 @@ from typing import Any
 
 import numpy as np
 
+from ..analyses.job import Job, prepare
+from ..analyses.number_plan import NumberPlan, number_plan
+from ..analyses.renumber import renumbered
+from ..analyses.run import Finished, finished, solved
 from ..describe.files.files_read import recorded
 from ..describe.files.followed import NotFollowed
 from ..describe.files.other_forces import OtherForces
@@ -19,10 +23,6 @@ from ..describe.reading import made_scene
 from ..describe.scene import Scene
 from ..describe.settings import RunSettings
 from ..errors import InputError, StiffmbsError
-from ..jobs.job import Job, prepare
-from ..jobs.number_plan import NumberPlan, number_plan
-from ..jobs.renumber import renumbered
-from ..jobs.run import Finished, finished, solved
 from ..results.channels import channels_of
 from ..results.solution import Solution
 from ..solve.settings import changed
@@ -234,9 +234,9 @@ def written_scene(model: Any) -> WrittenScene:
     InputError
         When the file cannot be read, the scene was changed since, or the model cannot be written as a scene.
     """
+    from ..analyses.job import data_of
     from ..describe.model_text import model_text
     from ..describe.reading import read_scene
-    from ..jobs.job import data_of
 
     data = data_of(model)
     if isinstance(data, Scene) and not _as_written(data):

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from ..analyses.job import Runnable
+from ..analyses.run import solved
 from ..errors import InputError, SolverError, StiffmbsError
-from ..jobs.job import Runnable
-from ..jobs.run import solved
 from ..results.solution import Solution
 from ..solve.settings import changed
 from ..solve.trajectory import Grid, Outcome

@@ -8,12 +8,12 @@ from typing import Unpack
 
 import numpy as np
 
+from ..analyses.job import Job, Runnable, data_of, prepare
+from ..analyses.start_from import StartFrom
 from ..describe.requests.order import units
 from ..describe.scene import Scene
 from ..describe.settings import RunSettings, Settings, takes_settings
 from ..errors import InputError
-from ..jobs.job import Job, Runnable, data_of, prepare
-from ..jobs.start_from import StartFrom
 from ..results.channels import channels_of
 from ..results.energy_balance import energy_balance
 from ..results.solution import Solution

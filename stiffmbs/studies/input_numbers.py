@@ -8,10 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..analyses.job import Job
+from ..analyses.renumber import Change, changes_of_numbers, write_numbers
 from ..describe.scene import Scene
 from ..errors import InputError
-from ..jobs.job import Job
-from ..jobs.renumber import Change, changes_of_numbers, write_numbers
 from .case_solver import CaseSolver
 
 TRIED = (-1.7, -0.4, 0.3, 1.0, 2.9, 1e3)

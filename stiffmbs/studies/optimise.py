@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from ..analyses.job import Runnable
 from ..errors import InputError, SolverError, StiffmbsError
-from ..jobs.job import Runnable
 from ..solve.settings import changed
 from .case_solver import CaseSolver, Task, written_scene
 from .outputs import Output, outputs_of

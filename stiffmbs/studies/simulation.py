@@ -9,12 +9,12 @@ from typing import Any, Unpack
 
 import numpy as np
 
+from ..analyses.job import Job, Runnable, data_of, prepare
+from ..analyses.renumber import renumberable
+from ..analyses.start_from import StartFrom, started_from, state_to_start_from
+from ..analyses.taken_again import CREPT, exactly, relaxed
 from ..describe.settings import RunSettings, Settings, takes_settings
 from ..errors import AssemblyError, InputError, SolverError
-from ..jobs.job import Job, Runnable, data_of, prepare
-from ..jobs.renumber import renumberable
-from ..jobs.start_from import StartFrom, started_from, state_to_start_from
-from ..jobs.taken_again import CREPT, exactly, relaxed
 from ..results.channels import channels_of, turns_of
 from ..results.files import written_whole
 from ..results.saved_state import TURNS, SavedState

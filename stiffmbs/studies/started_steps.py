@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..analyses.job import Job
 from ..compile.inputs.features import InputFeatures
 from ..describe.settings import RunSettings
 from ..errors import SolverError
-from ..jobs.job import Job
 from ..solve.events.restart import just_after, just_before, restarted
 from ..solve.ida.engine import Reached
 from ..solve.ida.native_engine import NativeEngine

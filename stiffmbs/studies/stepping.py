@@ -8,8 +8,8 @@ from typing import Protocol
 
 import numpy as np
 
+from ..analyses.job import Job
 from ..errors import SolverError
-from ..jobs.job import Job
 from ..solve import SOLVERS
 from ..solve.events.restart import just_after, restarted
 from ..solve.ida.engine import Reached

@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..analyses.job import Runnable
 from ..describe.files.quoted import quoted
 from ..describe.scene import Scene
 from ..describe.settings import RunSettings
 from ..errors import InputError, StiffmbsError
-from ..jobs.job import Runnable
 from ..solve.settings import changed, output_grid
 from .case_solver import CaseSolver, Row, Task, written_scene
 from .cases import Cases, cases_of

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..analyses.job import Job
 from ..compile.inputs.features import InputFeatures
-from ..jobs.job import Job
 from ..results.error_bars import Fine
 from ..results.scales import kind_of
 from ..results.solution import Solution

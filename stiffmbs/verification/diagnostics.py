@@ -10,10 +10,10 @@ from functools import cached_property
 
 import numpy as np
 
-from ..diagnostics.singular_poses import SingularPose
-from ..jobs.job import Job
+from ..analyses.job import Job
 from ..results.error_bars import ErrorBar, Fine
 from ..results.solution import Solution
+from ..run_checks.singular_poses import SingularPose
 from ..solve.settings import traits_of
 from .dense_sampling import DenseSamples
 from .divergence import SENSITIVE, Divergence, distance, divergence

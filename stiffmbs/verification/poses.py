@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..diagnostics.singular_poses import PosesOnTheWay
-from ..jobs.job import Job
+from ..analyses.job import Job
 from ..results.body_axes import from_own_axes
 from ..results.solution import Solution
+from ..run_checks.singular_poses import PosesOnTheWay
 
 
 def poses_of(job: Job, solution: Solution) -> PosesOnTheWay:

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from ..analyses.job import Job
+from ..analyses.run import solved
 from ..errors import StiffmbsError
-from ..jobs.job import Job
-from ..jobs.run import solved
 from ..results.solution import Solution
 from ..solve.settings import changed
 from ..solve.trajectory import Grid, Outcome

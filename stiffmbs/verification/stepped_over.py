@@ -15,14 +15,14 @@ from typing import Any
 
 import numpy as np
 
+from ..analyses.job import Job
 from ..compile.reactions import reactions
 from ..compile.system import System
-from ..diagnostics.singular_poses import PosesOnTheWay
 from ..errors import StiffmbsError
-from ..jobs.job import Job
 from ..results.energy_balance import Balance, energy_balance
 from ..results.energy_balance_notes import may_be_missing
 from ..results.solution import Solution
+from ..run_checks.singular_poses import PosesOnTheWay
 from ..solve.dynamics import OutputRows
 from ..solve.events.restart import restarted
 from ..solve.missing_rows import reported

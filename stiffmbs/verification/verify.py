@@ -25,10 +25,10 @@ from typing import Any, Unpack
 
 import numpy as np
 
+from ..analyses.job import Job, Runnable, prepare
+from ..analyses.run import solved
+from ..analyses.start_from import StartFrom
 from ..describe.settings import RunSettings, Settings, takes_settings
-from ..jobs.job import Job, Runnable, prepare
-from ..jobs.run import solved
-from ..jobs.start_from import StartFrom
 from ..results.error_bars import UNKNOWN, ErrorBar, error_bar
 from ..results.scales import scales
 from ..results.solution import Solution

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.integrate import solve_ivp
 
+from stiffmbs.analyses.job import prepare
 from stiffmbs.describe.model_data import ModelData
-from stiffmbs.jobs.job import prepare
 from stiffmbs.solve.trajectory import Outcome
 
 if TYPE_CHECKING:

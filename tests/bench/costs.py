@@ -14,10 +14,10 @@ from typing import Any
 import numpy as np
 from scipy.optimize import nnls
 
+from stiffmbs.analyses.job import Job, prepare
 from stiffmbs.describe.model_data import ModelData
 from stiffmbs.describe.reading import read_scene
 from stiffmbs.describe.settings import RunSettings
-from stiffmbs.jobs.job import Job, prepare
 from stiffmbs.solve import cost
 from stiffmbs.solve.dynamics import Dynamics
 from stiffmbs.solve.integrator import Integrator

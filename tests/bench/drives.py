@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
+from stiffmbs.analyses.job import Job, prepare
+from stiffmbs.analyses.load_scene import load_scene
+from stiffmbs.analyses.run import solved
 from stiffmbs.describe.model_data import ModelData
-from stiffmbs.jobs.job import Job, prepare
-from stiffmbs.jobs.load_scene import load_scene
-from stiffmbs.jobs.run import solved
 from stiffmbs.results.solution import Solution
 from stiffmbs.solve.trajectory import Outcome
 

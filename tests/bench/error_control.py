@@ -14,6 +14,8 @@ from pathlib import Path
 
 import numpy as np
 
+from stiffmbs.analyses.job import Job, prepare
+from stiffmbs.analyses.load_scene import load_scene
 from stiffmbs.describe.body import Body
 from stiffmbs.describe.building.model_builder import ModelBuilder
 from stiffmbs.describe.forces.bushing import Bushing
@@ -21,8 +23,6 @@ from stiffmbs.describe.joints.revolute import Revolute
 from stiffmbs.describe.marker import Marker
 from stiffmbs.describe.model import Model
 from stiffmbs.describe.model_data import ModelData
-from stiffmbs.jobs.job import Job, prepare
-from stiffmbs.jobs.load_scene import load_scene
 from stiffmbs.solve.bdf import solve
 from stiffmbs.solve.error_control.error_test import ErrorControl
 from stiffmbs.solve.trajectory import Outcome

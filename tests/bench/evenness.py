@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stiffmbs.jobs.job import Job, prepare
+from stiffmbs.analyses.job import Job, prepare
 from stiffmbs.solve.bdf import solve
 from stiffmbs.solve.error_control.error_test import CHOSEN, ErrorControl
 from stiffmbs.solve.trajectory import Trajectory

@@ -8,8 +8,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from stiffmbs.analyses.run import run
 from stiffmbs.describe.scene import Scene
-from stiffmbs.jobs.run import run
 from stiffmbs.solve.settings import changed
 from stiffmbs.studies.case_solver import CaseSolver, Task, written_scene
 from stiffmbs.studies.outputs import outputs_of

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from stiffmbs.analyses.run import run
 from stiffmbs.describe.reading import read_scene
-from stiffmbs.jobs.run import run
 from stiffmbs.studies.fit import fit
 from stiffmbs.studies.variation import Range
 

@@ -10,9 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from stiffmbs.analyses.job import prepare
+from stiffmbs.analyses.other_numbers import with_numbers
 from stiffmbs.describe.model_data import ModelData
-from stiffmbs.jobs.job import prepare
-from stiffmbs.jobs.other_numbers import with_numbers
 
 from .benchmark import Row
 

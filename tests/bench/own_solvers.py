@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from stiffmbs.analyses.job import prepare
 from stiffmbs.comparison.turns import ONCE, seconds_of
 from stiffmbs.describe.model_data import ModelData
-from stiffmbs.jobs.job import prepare
 from stiffmbs.solve.explicit.projected import TRAITS
 from stiffmbs.solve.formulations import FORMULATIONS
 from stiffmbs.solve.trajectory import Outcome, Trajectory

@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
+from stiffmbs.analyses.job import prepare
 from stiffmbs.describe.model_data import ModelData
-from stiffmbs.jobs.job import prepare
 
 from .benchmark import Row
 from .by_hand.ida import Equations, Run

@@ -113,9 +113,9 @@ def test_completion_is_told_in_the_help_and_known_to_the_command(call, monkeypat
     [("-q", set()), ("-v", {"warned", "informed"}), ("-vv", {"warned", "informed", "detailed"})],
 )
 def test_logging_is_told_as_loudly_as_asked_for_and_only_by_this_command(call, monkeypatch, option, told):
-    from stiffmbs.jobs import load_scene
+    from stiffmbs.analyses import load_scene
 
-    logger = logging.getLogger("stiffmbs.jobs")
+    logger = logging.getLogger("stiffmbs.analyses")
     read = load_scene.__dict__["load_scene"]
 
     def telling(*arguments):

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 import stiffmbs
+from stiffmbs.analyses.job import prepare
 from stiffmbs.comparison.entries import entries_of
 from stiffmbs.comparison.reference import reference
 from stiffmbs.describe.settings import RunSettings
-from stiffmbs.jobs.job import prepare
 
 OSCILLATOR = """
 bodies: {block: {mass: 2, inertia: 1, position: [0.1, 0]}}

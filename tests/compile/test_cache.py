@@ -14,6 +14,8 @@ from click.testing import CliRunner
 
 import stiffmbs
 from stiffmbs import spatial
+from stiffmbs.analyses.usual_elements import usual_elements
+from stiffmbs.analyses.warm import routines
 from stiffmbs.cache import entries as kept
 from stiffmbs.commands.main import main
 from stiffmbs.compile import record
@@ -24,8 +26,6 @@ from stiffmbs.compile.machine.cache_contents import OTHERS, clear, stored
 from stiffmbs.describe import model
 from stiffmbs.describe.spatial import model as spatial_model
 from stiffmbs.describe.tyres.names import SAMPLE
-from stiffmbs.jobs.usual_elements import usual_elements
-from stiffmbs.jobs.warm import routines
 from stiffmbs.tyres import TyreProperties
 
 NAME = f"kernel-{'0' * 40}"
@@ -179,7 +179,7 @@ WARMED = """
 import sys
 from stiffmbs.compile.kernels import compile_usual
 from stiffmbs.compile.machine import cache
-from stiffmbs.jobs.warm import routines, usual_kinds
+from stiffmbs.analyses.warm import routines, usual_kinds
 
 read = cache.read
 def noted(name):

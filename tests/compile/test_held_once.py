@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import stiffmbs
+from stiffmbs.analyses.job import prepare
 from stiffmbs.compile.machine.layout import held_once
-from stiffmbs.jobs.job import prepare
 
 SCENE = """
 bodies: {cart: {mass: 10, inertia: 1}, bar: {mass: 1, inertia: 0.03, position: [0, -0.3], angle: -90 deg}}

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import stiffmbs
+from stiffmbs.analyses.job import prepare
 from stiffmbs.describe.reading import read_scene
-from stiffmbs.jobs.job import prepare
 from stiffmbs.solve.trajectory import Outcome
 
 SLED = """

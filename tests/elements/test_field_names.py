@@ -8,13 +8,13 @@ import sympy
 
 import stiffmbs
 from stiffmbs import InputError, si, spatial
+from stiffmbs.analyses.usual_elements import usual_elements
 from stiffmbs.compile.kind import sorted_out
 from stiffmbs.compile.symbolic.derive import derive
 from stiffmbs.compile.symbolic.generate import kernel_source
 from stiffmbs.compile.symbolic.referred import ReferredJoint
 from stiffmbs.compile.symbolic.symbols import INTERNAL
 from stiffmbs.describe.element import IN_EQUATIONS
-from stiffmbs.jobs.usual_elements import usual_elements
 
 FAMILIES = {"plane": stiffmbs, "space": spatial}
 ALLOWED = [

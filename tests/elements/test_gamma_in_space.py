@@ -2,10 +2,10 @@
 
 import pytest
 
+from stiffmbs.analyses.usual_elements import usual_elements
 from stiffmbs.compile.kind import sorted_out
 from stiffmbs.compile.symbolic.derive import derive
 from stiffmbs.compile.symbolic.generate import kernel_source
-from stiffmbs.jobs.usual_elements import usual_elements
 
 MOST = {"revolute_0": 240, "prismatic_0": 410, "cylindrical_0": 350, "distance_0": 175}
 

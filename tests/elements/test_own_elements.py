@@ -12,11 +12,11 @@ import sympy
 
 import stiffmbs
 from stiffmbs import Body, InputError, Marker, Model, spatial
+from stiffmbs.analyses.usual_elements import usual_elements
 from stiffmbs.compile import record
 from stiffmbs.describe import own_elements
 from stiffmbs.describe.own_elements import REGISTRY
-from stiffmbs.jobs.usual_elements import usual_elements
-from stiffmbs.structure.transmitted import transmitted
+from stiffmbs.redundancy.transmitted import transmitted
 
 from ..outside import plane, space
 from ..random_parts import forms_of
@@ -114,7 +114,7 @@ def test_they_are_compiled_ahead_in_their_forms(registered):
 
 def test_the_docs_have_a_section_and_a_row_for_them(registered, monkeypatch):
     pytest.importorskip("sphinx")
-    monkeypatch.syspath_prepend("docs/extensions")
+    monkeypatch.syspath_prepend("docs/sphinx_plugins")
     kinds = importlib.import_module("kinds")
     text = "\n".join(kinds.section("stiffmbs", "ring", plane.Ring))
     assert ".. autoclass:: tests.outside.plane.Ring" in text and "return [d.dot(d) - e.radius**2]" in text

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import stiffmbs
-from stiffmbs.jobs.run import prepare
+from stiffmbs.analyses.run import prepare
 
 G = 9.81
 LAW = "stiffness: 1e5, exponent: 1.5"

@@ -5,8 +5,8 @@ import pytest
 
 import stiffmbs
 from stiffmbs import AlgebraicState, AppliedForce, Body, Model, Prismatic, Revolute
+from stiffmbs.analyses.run import prepare
 from stiffmbs.describe.model import FORCES
-from stiffmbs.jobs.run import prepare
 from stiffmbs.solve import integrator
 from stiffmbs.solve.dynamics import Dynamics
 from stiffmbs.solve.events.chattering import TRUSTED_EVENTS, WINDOW, Chattering

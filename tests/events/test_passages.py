@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import stiffmbs
-from stiffmbs.jobs.run import prepare
+from stiffmbs.analyses.run import prepare
 
 
 def pushed(law, speed, start, duration, rtol):

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import stiffmbs
+from stiffmbs.analyses.job import prepare
 from stiffmbs.compile.compile_model import compile_model
 from stiffmbs.compile.law_zones import zones_of
-from stiffmbs.jobs.job import prepare
 from tests.stress.case import Outcome
 from tests.stress.families.events import within_one_step
 from tests.stress.fuzzers import contacts

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import stiffmbs
+from stiffmbs.analyses.linearised.transfer import transfer
 from stiffmbs.errors import SolverError
-from stiffmbs.jobs.linearised.transfer import transfer
 from tests.stress.families.analyses.breakpoints_at_the_state import ball, slider
 
 

@@ -7,9 +7,9 @@ import pytest
 from click.testing import CliRunner
 
 import stiffmbs
+from stiffmbs.analyses.equilibrium import equilibrium
 from stiffmbs.commands.main import main
 from stiffmbs.errors import SolverError
-from stiffmbs.jobs.equilibrium import equilibrium
 from tests.stress.random_tree import random_tree
 
 from ..conftest import EXAMPLES

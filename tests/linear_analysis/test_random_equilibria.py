@@ -7,7 +7,7 @@ it is told to be unstable (`tests.stress.fuzzers.equilibria`).
 import numpy as np
 import pytest
 
-from stiffmbs.jobs.equilibrium import EquilibriumFound, equilibrium
+from stiffmbs.analyses.equilibrium import EquilibriumFound, equilibrium
 from stiffmbs.results.solution import Solution
 from tests.stress.case import Outcome
 from tests.stress.fuzzers import equilibria

@@ -18,14 +18,14 @@ def test_zieglers_column_flutters_above_its_critical_load(given, unstable):
 
 
 def test_an_equilibrium_too_large_for_eigenvalues_says_so(monkeypatch):
-    monkeypatch.setattr("stiffmbs.jobs.settled.MOST_FOR_EIGENVALUES", 2)
+    monkeypatch.setattr("stiffmbs.analyses.settled.MOST_FOR_EIGENVALUES", 2)
     notes = stiffmbs.equilibrium(slider("-100*b.x + 2*b.vx")).notes
     assert notes == ("the dynamic stability of the equilibrium was not assessed: 3 velocities, at most 2 expected",)
 
 
 def test_forces_with_a_potential_need_no_eigenvalues(monkeypatch):
-    monkeypatch.setattr("stiffmbs.jobs.settled.MOST_FOR_EIGENVALUES", 2)
-    monkeypatch.setattr("stiffmbs.jobs.settled.MOST_CONSERVATIVE", 2)
+    monkeypatch.setattr("stiffmbs.analyses.settled.MOST_FOR_EIGENVALUES", 2)
+    monkeypatch.setattr("stiffmbs.analyses.settled.MOST_CONSERVATIVE", 2)
     assert not stiffmbs.equilibrium(slider("-100*b.x")).notes
 
 

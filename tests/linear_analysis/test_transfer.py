@@ -8,10 +8,10 @@ from click.testing import CliRunner
 
 import stiffmbs
 from stiffmbs import AppliedForce, Body, Marker, Model, Revolute
+from stiffmbs.analyses.linearised.transfer import transfer
 from stiffmbs.commands.main import main
 from stiffmbs.describe.spatial.orientation import matrix
 from stiffmbs.errors import InputError
-from stiffmbs.jobs.linearised.transfer import transfer
 
 from ..conftest import EXAMPLES
 

@@ -6,12 +6,12 @@ from click.testing import CliRunner
 
 import stiffmbs
 from stiffmbs import InputError, spatial
+from stiffmbs.analyses.job import prepare
 from stiffmbs.commands.main import main
 from stiffmbs.describe.element import Element
 from stiffmbs.describe.model import FORCES, JOINTS
 from stiffmbs.describe.reading import read_scene
 from stiffmbs.describe.spatial import model as spatial_model
-from stiffmbs.jobs.job import prepare
 
 from ..conftest import EXAMPLE_SCENES, EXAMPLES
 

@@ -22,7 +22,7 @@ class Area:
 
 
 ELEMENTS = ("tests/elements", "tests/mechanisms")
-RUNS = ("tests/solve", "tests/events", "tests/jobs", "tests/elements")
+RUNS = ("tests/solve", "tests/events", "tests/analyses", "tests/elements")
 AREAS = {
     "joints": Area(
         ("stiffmbs/describe/joints/*.py", "stiffmbs/describe/spatial/joints/*.py", "stiffmbs/describe/spatial/primitives.py"),
@@ -51,7 +51,7 @@ AREAS = {
         ("stiffmbs/studies/sensitivities/*.py", "stiffmbs/solve/variations/*.py"),
         ("tests/studies/test_sensitivities.py", "tests/studies"),
     ),
-    "results": Area(("stiffmbs/results/*.py", "stiffmbs/results/native/*.py"), ("tests/results", "tests/jobs", "tests/verification")),
+    "results": Area(("stiffmbs/results/*.py", "stiffmbs/results/native/*.py"), ("tests/results", "tests/analyses", "tests/verification")),
     "readers": Area(
         ("stiffmbs/adams/*/*.py", "stiffmbs/robots/*.py", "stiffmbs/robots/*/*.py", "stiffmbs/describe/files/*.py"),
         ("tests/robots", "tests/adams", "tests/tyres", "tests/describe"),

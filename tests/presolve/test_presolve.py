@@ -13,11 +13,11 @@ from hypothesis import strategies as st
 
 import stiffmbs
 from stiffmbs import Body, Marker, Model
+from stiffmbs.analyses.job import prepare
 from stiffmbs.commands.main import main
 from stiffmbs.compile.coordinates import all_independent
 from stiffmbs.describe.model import FORCES, JOINTS
 from stiffmbs.describe.reading import read_scene
-from stiffmbs.jobs.job import prepare
 from stiffmbs.solve.trajectory import Outcome
 from tests.stress.random_tree import random_tree
 
@@ -100,7 +100,7 @@ def assert_same(with_it, without, tolerance):
 
 
 def solved_unknowns(job):
-    from stiffmbs.structure.messages.presolve_report import unknowns
+    from stiffmbs.redundancy.messages.presolve_report import unknowns
 
     return unknowns(job.dynamics.system, job.subsystems, job.dynamics)
 

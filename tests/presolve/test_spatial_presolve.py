@@ -8,9 +8,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import stiffmbs
+from stiffmbs.analyses.job import prepare
 from stiffmbs.describe.reading import read_scene
 from stiffmbs.describe.spatial.orientation import conjugate, matrix, rotated
-from stiffmbs.jobs.job import prepare
 from stiffmbs.spatial import (
     Body,
     Drive,

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from stiffmbs import load_scene, run
+from stiffmbs.analyses.warm import usual_kinds
 from stiffmbs.compile.compile_model import kinds_of
-from stiffmbs.jobs.warm import usual_kinds
 from stiffmbs.presolve.spinning_bodies import spinning
 from stiffmbs.spatial import (
     AppliedForce,

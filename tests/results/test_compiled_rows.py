@@ -6,8 +6,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from stiffmbs.diagnostics.overlooked import contradicting_rows
 from stiffmbs.results.energy_balance import steps_inside, work_since_start
+from stiffmbs.run_checks.overlooked import contradicting_rows
 
 
 @pytest.fixture

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import stiffmbs
-from stiffmbs.diagnostics.accumulated_errors import accumulated_errors_sentence
-from stiffmbs.jobs.job import prepare
+from stiffmbs.analyses.job import prepare
+from stiffmbs.run_checks.accumulated_errors import accumulated_errors_sentence
 from stiffmbs.show.summary import as_json
 from stiffmbs.solve.segments import Segment, joined
 from stiffmbs.solve.solver import Traits

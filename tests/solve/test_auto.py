@@ -5,7 +5,7 @@ import pytest
 
 import stiffmbs
 from stiffmbs import AppliedForce, Body, Bushing, Distance, Model, Prismatic
-from stiffmbs.jobs.job import prepare
+from stiffmbs.analyses.job import prepare
 from stiffmbs.solve import auto
 from stiffmbs.solve.explicit.fastest_rate import fastest_rate
 from tests.stress.mechanisms.parallelogram import parallelogram, swing_error

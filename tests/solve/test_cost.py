@@ -2,7 +2,7 @@
 
 import pytest
 
-from stiffmbs.jobs.job import prepare
+from stiffmbs.analyses.job import prepare
 from stiffmbs.solve.cost import of_explicit_step
 from tests.bench.costs import SCENES
 

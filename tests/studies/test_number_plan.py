@@ -94,7 +94,7 @@ def test_a_planned_case_leaves_nothing_behind_for_one_that_is_read():
     first = solver.row(0, (100.0,)).values[:3]
     other = solver.row(1, (400.0,)).values[:3]
     job = solver.job(solver.scene((100.0,)))
-    read = stiffmbs.jobs.run.solved(job)
+    read = stiffmbs.analyses.run.solved(job)
     assert read["block.x"][-1] == first[0] != other[0]
 
 

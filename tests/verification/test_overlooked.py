@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import stiffmbs
+from stiffmbs.analyses import taken_again
 from stiffmbs.compile.law_zones import Zones, zones_of
-from stiffmbs.jobs import taken_again
 from stiffmbs.solve.events import event_functions as event_watch
 from tests.stress.fuzzers import contacts
 

@@ -7,10 +7,10 @@ import pytest
 from click.testing import CliRunner
 
 import stiffmbs
+from stiffmbs.analyses import taken_again
+from stiffmbs.analyses.job import prepare
+from stiffmbs.analyses.other_numbers import with_numbers
 from stiffmbs.commands.main import main
-from stiffmbs.jobs import taken_again
-from stiffmbs.jobs.job import prepare
-from stiffmbs.jobs.other_numbers import with_numbers
 from stiffmbs.solve.dynamics import Dynamics
 from stiffmbs.solve.native.statuses import NO_BALANCE
 

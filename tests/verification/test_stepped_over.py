@@ -5,9 +5,9 @@ import pytest
 
 import stiffmbs
 from stiffmbs import Body, Model
+from stiffmbs.analyses.job import prepare
+from stiffmbs.analyses.run import solved
 from stiffmbs.describe.model import FORCES
-from stiffmbs.jobs.job import prepare
-from stiffmbs.jobs.run import solved
 from stiffmbs.solve.trajectory import Outcome
 from stiffmbs.verification import verify as module
 from stiffmbs.verification.stepped_over import looked_along
@@ -40,7 +40,7 @@ def _unaware(monkeypatch, job):
     """The run of a body that flies straight on in one step, and every further one that is not given a longest step."""
     from dataclasses import replace
 
-    from stiffmbs.jobs.job import Job
+    from stiffmbs.analyses.job import Job
     from stiffmbs.solve.trajectory import History, Trajectory
 
     truly = Job.integrate

@@ -10,8 +10,8 @@ from click.testing import CliRunner
 
 import stiffmbs
 from stiffmbs import Body, Marker, Model, Prismatic, SpringDamper
+from stiffmbs.analyses import taken_again
 from stiffmbs.commands.main import main
-from stiffmbs.jobs import taken_again
 from stiffmbs.results.error_bars import between, error_bar
 from stiffmbs.show.digits import with_bar
 from tests.bench.error_bars import PROBLEMS, measured

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import click
 
+from ...analyses.load_scene import load_scene
 from ...errors import InputError, StiffmbsError
-from ...jobs.load_scene import load_scene
 from ..scene import CHANGES, STOPPED_EARLY, in_file, is_written, refuse
 
 

@@ -6,8 +6,8 @@ import json
 
 import click
 
+from ...analyses.load_scene import load_scene
 from ...errors import InputError, StiffmbsError
-from ...jobs.load_scene import load_scene
 from ..scene import CHANGES, in_file, refuse
 
 
@@ -25,7 +25,7 @@ def loads(scene: str, cases: tuple[str, ...], as_json: bool, changes: list[tuple
 
     Exit status: 0 done, 1 a run stopped early, 2 the input is wrong.
     """
-    from ...jobs.run import run
+    from ...analyses.run import run
     from ...show.road_loads import road_loads_text
     from ...studies.suspension.road_loads import road_loads
 

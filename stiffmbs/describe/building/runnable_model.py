@@ -13,11 +13,11 @@ if TYPE_CHECKING:
 
     from matplotlib.figure import Figure as Sheet
 
-    from ...jobs.check import Report
-    from ...jobs.equilibrium import EquilibriumFound
-    from ...jobs.given_inputs import Given
-    from ...jobs.linearised.modes import Modes
-    from ...jobs.start_from import StartFrom
+    from ...analyses.check import Report
+    from ...analyses.equilibrium import EquilibriumFound
+    from ...analyses.given_inputs import Given
+    from ...analyses.linearised.modes import Modes
+    from ...analyses.start_from import StartFrom
     from ...results.solution import Solution
     from ...studies.simulation import Simulation
 
@@ -41,7 +41,7 @@ class RunnableModel(ModelBuilder[Data, Body, BodyHandle]):
         **changes: Unpack[Settings],
     ) -> Solution:
         """Solve the model; parameters, result and errors are those of `stiffmbs.run`."""
-        from ...jobs.run import run
+        from ...analyses.run import run
 
         return run(self, settings, watch, start_from, inputs, **changes)
 
@@ -67,7 +67,7 @@ class RunnableModel(ModelBuilder[Data, Body, BodyHandle]):
         **changes: Unpack[Settings],
     ) -> EquilibriumFound:
         """The pose at rest, or in steady motion, in which all forces balance; parameters, result and errors are those of `stiffmbs.equilibrium`."""
-        from ...jobs.equilibrium import equilibrium
+        from ...analyses.equilibrium import equilibrium
 
         return equilibrium(self, settings, start_from, motion, **changes)
 
@@ -92,14 +92,14 @@ class RunnableModel(ModelBuilder[Data, Body, BodyHandle]):
         **changes: Unpack[Settings],
     ) -> Modes:
         """Natural frequencies, damping and shapes; parameters, result and errors are those of `stiffmbs.modes`."""
-        from ...jobs.linearised.modes import modes
+        from ...analyses.linearised.modes import modes
 
         return modes(self, settings, at, start_from, **changes)
 
     @takes_settings
     def check(self, settings: RunSettings | None = None, **changes: Unpack[Settings]) -> Report:
         """Examine the model: degrees of freedom, redundancy; parameters, result and errors are those of `stiffmbs.check`."""
-        from ...jobs.check import check
+        from ...analyses.check import check
 
         return check(self, settings, **changes)
 

@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 
+from ...analyses.job import data_of
+from ...analyses.run import run
 from ...describe.marker import MarkerReference
 from ...describe.model_data import ModelData
 from ...errors import InputError
-from ...jobs.job import data_of
-from ...jobs.run import run
 from ...results.files import refuse_path, written_whole
 from ...results.solution import Solution
 from ..page.data import page_data

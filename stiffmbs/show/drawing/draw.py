@@ -7,9 +7,9 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ...analyses.check import check
+from ...analyses.job import data_of
 from ...errors import InputError
-from ...jobs.check import check
-from ...jobs.job import data_of
 from ...results.files import refuse_path, written_whole
 from .as_json import drawing_json, poses_json
 from .derive import drawing_of

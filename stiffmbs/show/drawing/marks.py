@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from ...analyses.check import Report
 from ...describe.parts.names import owner_of
-from ...jobs.check import Report
 from .scene_graph import Mark
 
 

@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from ...analyses.linearised.at_state import at_state
 from ...describe.model_data import ModelData
 from ...describe.settings import RunSettings
-from ...jobs.linearised.at_state import at_state
 from ...results.channels import channels_of
 from .poses import Poses, poses_of
 

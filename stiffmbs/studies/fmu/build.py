@@ -13,10 +13,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from ...analyses.load_scene import load_scene
 from ...describe.files.scene_text import scene_text
 from ...describe.scene import Scene
 from ...errors import InputError, needs
-from ...jobs.load_scene import load_scene
 from ...results.files import refuse_path, written_whole
 from .stepping import CommunicationSteps, parameters_of
 

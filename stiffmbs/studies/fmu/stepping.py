@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
+from ...analyses.load_scene import load_scene
 from ...describe.scene import Scene
 from ...errors import InputError
-from ...jobs.load_scene import load_scene
 from ..simulation import Simulation, simulation
 
 

@@ -6,10 +6,10 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from ...analyses.job import Job
 from ...compile.directional.direction import Numbers
 from ...compile.reactions import reactions
 from ...compile.system import System
-from ...jobs.job import Job
 from ...results.body_axes import in_own_axes
 from ...results.channels import counters
 from ...results.requests import requested

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ...analyses.job import Job, prepare
+from ...analyses.renumber import renumbered
 from ...describe.files.written_scene import WrittenScene
 from ...describe.settings import RunSettings
-from ...jobs.job import Job, prepare
-from ...jobs.renumber import renumbered
 from ..parameters import Sought
 from .parameters import Scenes
 from .sensitivities import DifferentiatedRun, differentiable

@@ -8,13 +8,13 @@ from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
+from ...analyses.job import data_of
 from ...describe.files.other_forces import OtherForces
 from ...describe.files.unchanged import Unchanged
 from ...describe.files.written_scene import WrittenScene
 from ...describe.reading import made_scene
 from ...describe.scene import Scene
 from ...errors import InputError
-from ...jobs.job import data_of
 from ..case_solver import written_scene
 
 STEP = 1e-4

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from ...analyses.job import Job, Runnable, prepare
 from ...describe.settings import RunSettings
 from ...errors import InputError, SolverError
-from ...jobs.job import Job, Runnable, prepare
 from ...results.channels import channels_of
 from ...solve.bdf import integrated
 from ...solve.dynamics import OutputRows

@@ -13,6 +13,8 @@ from typing import Any
 
 import numpy as np
 
+from ...analyses.job import Job, start_of_job
+from ...analyses.start_from import started_from
 from ...compile.compile_model import compile_model
 from ...compile.directional.direction import Numbers
 from ...compile.inputs.features import input_features
@@ -20,8 +22,6 @@ from ...compile.kind import sorted_out
 from ...compile.system import System
 from ...describe.scene import Scene
 from ...errors import InputError, SolverError
-from ...jobs.job import Job, start_of_job
-from ...jobs.start_from import started_from
 from ...solve.dynamics import Dynamics
 from ...solve.variations.jumps import BreakpointRates
 from .parameters import Parameter

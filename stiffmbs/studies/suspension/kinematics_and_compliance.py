@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
+from ...analyses.job import Runnable, data_of
+from ...analyses.quasi_static import quasi_static
 from ...describe.table import Table
 from ...errors import InputError
-from ...jobs.job import Runnable, data_of
-from ...jobs.quasi_static import quasi_static
 from .characteristics import characteristics
 from .rig import INPUTS, SIDES, Axle, axle_of, design_height, on_rig
 

@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
+from ...analyses.job import Runnable, data_of
 from ...describe.marker import GROUND
 from ...describe.model_data import ModelData
 from ...describe.spatial.forces.elastic import Elastic
 from ...errors import InputError
-from ...jobs.job import Runnable, data_of
 from ...results.solution import Solution
 from .characteristics import direction
 

@@ -9,9 +9,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from stiffmbs.analyses.job import Job, prepare
 from stiffmbs.compile.machine.routines import Routine
 from stiffmbs.describe.model_data import ModelData
-from stiffmbs.jobs.job import Job, prepare
 
 from ..benchmark import Row
 from ..by_hand.chain_minimal import accelerations

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from stiffmbs import spatial
+from stiffmbs.analyses.job import prepare
 from stiffmbs.describe.model_data import ModelData
-from stiffmbs.jobs.job import prepare
 from stiffmbs.solve.trajectory import Outcome, Trajectory
 
 from ..contestant import Contestant, Failed, Solve

@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
+from stiffmbs.analyses.job import prepare
 from stiffmbs.describe.model_data import ModelData
 from stiffmbs.describe.reading import read_scene
-from stiffmbs.jobs.job import prepare
 
 from ..benchmark import Row
 

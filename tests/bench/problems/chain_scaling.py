@@ -10,7 +10,7 @@ from .chain import TIMES, chain, reference
 
 LENGTH = 1.0
 MEMORY_OF = (
-    "from tests.bench.problems.chain import chain; from stiffmbs.jobs.job import prepare; "
+    "from tests.bench.problems.chain import chain; from stiffmbs.analyses.job import prepare; "
     f"prepare(chain(n, {LENGTH}), rtol=1e-6).integrate()"
 )
 

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from stiffmbs.analyses.usual_elements import usual_elements
 from stiffmbs.cache.entries import DIRECTORY_VARIABLE
 from stiffmbs.compile.compile_model import compile_model
 from stiffmbs.compile.group import Group
@@ -18,7 +19,6 @@ from stiffmbs.compile.kernels import compile_usual
 from stiffmbs.compile.kind import sorted_out
 from stiffmbs.compile.state import State
 from stiffmbs.compile.system import System
-from stiffmbs.jobs.usual_elements import usual_elements
 
 from ..benchmark import Row
 

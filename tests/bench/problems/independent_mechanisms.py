@@ -10,10 +10,10 @@ from typing import Any
 
 import numpy as np
 
+from stiffmbs.analyses.job import prepare
 from stiffmbs.comparison.turns import Timed, take_turns
 from stiffmbs.describe.model_data import ModelData
 from stiffmbs.describe.reading import read_scene
-from stiffmbs.jobs.job import prepare
 
 from ..benchmark import Row
 from ..drives import SOLVERS

@@ -10,11 +10,11 @@ from functools import partial
 
 import numpy as np
 
+from stiffmbs.analyses.job import Job, prepare
 from stiffmbs.compile.equations import Equations
 from stiffmbs.compile.machine.routines import TERMS
 from stiffmbs.compile.terms import TERM_SETS
 from stiffmbs.describe.model_data import ModelData
-from stiffmbs.jobs.job import Job, prepare
 from stiffmbs.solve.error_control.error_test import CHOSEN
 from stiffmbs.solve.formulations import FORMULATIONS
 from stiffmbs.solve.ida.choice import PAIRED, fixed_cost

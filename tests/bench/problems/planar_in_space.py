@@ -9,11 +9,11 @@ from pathlib import Path
 
 import numpy as np
 
+from stiffmbs.analyses.in_space import in_space
+from stiffmbs.analyses.job import Job, prepare
+from stiffmbs.analyses.load_scene import load_scene
 from stiffmbs.compile.bodies import BODY_KINDS
 from stiffmbs.describe.model import PlanarData
-from stiffmbs.jobs.in_space import in_space
-from stiffmbs.jobs.job import Job, prepare
-from stiffmbs.jobs.load_scene import load_scene
 
 from ..benchmark import Row
 from ..scenes.examples import example_scenes

@@ -10,10 +10,10 @@ from pathlib import Path
 
 import numpy as np
 
-from stiffmbs.jobs.job import prepare
-from stiffmbs.jobs.load_scene import load_scene
-from stiffmbs.jobs.run import run
-from stiffmbs.structure.messages.presolve_report import unknowns
+from stiffmbs.analyses.job import prepare
+from stiffmbs.analyses.load_scene import load_scene
+from stiffmbs.analyses.run import run
+from stiffmbs.redundancy.messages.presolve_report import unknowns
 
 from ..benchmark import Row
 from ..scenes.examples import example_scenes

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
+from stiffmbs.analyses.job import prepare
 from stiffmbs.comparison.turns import seconds_of
 from stiffmbs.describe.model_data import ModelData
 from stiffmbs.describe.reading import read_scene
-from stiffmbs.jobs.job import prepare
 
 from ..benchmark import Row
 from ..drives import CARS, SOLVERS, Seen, converged, seen

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from stiffmbs.jobs.job import prepare
+from stiffmbs.analyses.job import prepare
 
 from ..contestant import Contestant, Solve, own
 from ..peers.trees.scene import scene_of

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 import stiffmbs
-from stiffmbs.jobs.run import prepare
+from stiffmbs.analyses.run import prepare
 from stiffmbs.solve.equilibria.equilibrium import find_equilibrium
 from tests.stress.random_statics import random_statics
 

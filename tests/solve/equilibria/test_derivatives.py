@@ -5,8 +5,8 @@ import pytest
 
 import stiffmbs
 from stiffmbs import SteadyMotion
-from stiffmbs.jobs.run import prepare
-from stiffmbs.jobs.steady import _motion
+from stiffmbs.analyses.run import prepare
+from stiffmbs.analyses.steady import _motion
 from stiffmbs.solve.equilibria.force_balance import _position_rates, balance_at, moved
 
 from ...conftest import EXAMPLES

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 import stiffmbs
 from stiffmbs import Body, Model
-from stiffmbs.jobs.job import prepare
+from stiffmbs.analyses.job import prepare
 from stiffmbs.solve.explicit import SCHEMES
 from stiffmbs.solve.linear.eliminated import ACCELERATE
 from stiffmbs.solve.trajectory import Outcome

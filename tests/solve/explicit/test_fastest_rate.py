@@ -5,7 +5,7 @@ import pytest
 
 import stiffmbs
 from stiffmbs import Body, Bushing, Marker, Model, Revolute
-from stiffmbs.jobs.job import prepare
+from stiffmbs.analyses.job import prepare
 from stiffmbs.solve.explicit.fastest_rate import fastest_rate
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import stiffmbs
-from stiffmbs.jobs.job import prepare
+from stiffmbs.analyses.job import prepare
 
 DOP853 = {"solver": "projected", "scheme": "dop853"}
 

@@ -5,7 +5,7 @@ from math import prod
 import numpy as np
 import pytest
 
-from stiffmbs.jobs.job import prepare
+from stiffmbs.analyses.job import prepare
 from stiffmbs.solve.explicit import SCHEMES
 from tests.bench.peers.trees.scene import scene_of
 from tests.bench.problems.trees_in_space import CONVERGED, OUTPUT, SOLVERS, arm

@@ -5,7 +5,7 @@ import pytest
 import yaml
 
 import stiffmbs
-from stiffmbs.jobs.run import prepare
+from stiffmbs.analyses.run import prepare
 from stiffmbs.solve.events.restart import restarted
 from stiffmbs.solve.ida.ida import NativeIda
 from stiffmbs.solve.ida.native_engine import NativeEngine

@@ -10,9 +10,9 @@ import pytest
 
 import stiffmbs
 from stiffmbs import AppliedForce, Body, Contact, Model, Revolute
+from stiffmbs.analyses.job import prepare
 from stiffmbs.compile.equations import Equations
 from stiffmbs.compile.state import State
-from stiffmbs.jobs.job import prepare
 from stiffmbs.solve.error_control.newton import Stiffness
 from stiffmbs.solve.formulations.si2 import SI2_EXACT
 from stiffmbs.solve.ida import choice, libraries, operations

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import stiffmbs
-from stiffmbs.jobs.job import prepare
+from stiffmbs.analyses.job import prepare
 from stiffmbs.solve.bdf import solve
 from stiffmbs.solve.error_control.error_test import ErrorControl
 from tests.stress.fuzzers import fmu

@@ -5,7 +5,7 @@ import pytest
 
 import stiffmbs
 from stiffmbs import Body, Bushing, Model
-from stiffmbs.jobs.job import prepare
+from stiffmbs.analyses.job import prepare
 from stiffmbs.solve.error_control import stability_limit as order_watch
 from stiffmbs.solve.integrator import Integrator
 from stiffmbs.solve.trajectory import Grid

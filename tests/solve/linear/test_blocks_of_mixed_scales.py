@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from stiffmbs.analyses.job import prepare
 from stiffmbs.describe.reading import read_scene
-from stiffmbs.jobs.job import prepare
 from stiffmbs.solve.ida.block_lu import BlockLU
 from stiffmbs.solve.native.tables.linear import BLOCK_LU
 from tests.bench.problems.linear_algebra import with_pivots

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import stiffmbs
-from stiffmbs.jobs.job import prepare
+from stiffmbs.analyses.job import prepare
 from stiffmbs.solve.linear.eliminated import ACCELERATE
 from stiffmbs.solve.native.tables.linear import ELIMINATED as ELIMINATED_TABLE
 from tests.bench.problems.chain_in_space import chain_in_space

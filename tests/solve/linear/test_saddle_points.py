@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from stiffmbs.analyses.run import prepare
 from stiffmbs.compile.state import State
-from stiffmbs.jobs.run import prepare
 from stiffmbs.solve.linear.saddle_point import ACCELERATIONS, POSITION_STEP, VELOCITY_STEP, saddle_points
 
 MOVES = (0.0, 1e-16, 1e-12, 1e-6, 1e-2)

@@ -6,7 +6,7 @@ from scipy.integrate import solve_ivp
 
 import stiffmbs
 from stiffmbs import AppliedForce, Body, Drive, Marker, Model, Prismatic, Revolute, State
-from stiffmbs.jobs.job import prepare
+from stiffmbs.analyses.job import prepare
 
 STIFFNESS, DELAY = 100.0, 0.1
 SOLVERS = [

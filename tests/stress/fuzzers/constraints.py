@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
+from stiffmbs.analyses.run import run
 from stiffmbs.describe.reading import read_scene
 from stiffmbs.describe.scene import Scene
 from stiffmbs.errors import StiffmbsError
-from stiffmbs.jobs.run import run
 from stiffmbs.results.solution import Solution
 from stiffmbs.solve.trajectory import Outcome as Ending
 

@@ -13,11 +13,11 @@ import numpy as np
 from stiffmbs.adams.export.dataset_text import dataset_text
 from stiffmbs.adams.load import read_adams
 from stiffmbs.adams.statements.dataset import read_dataset
+from stiffmbs.analyses.in_space import in_space
+from stiffmbs.analyses.run import run
 from stiffmbs.describe.reading import read_scene
 from stiffmbs.describe.spatial.scene import SpatialScene
 from stiffmbs.errors import StiffmbsError, needs
-from stiffmbs.jobs.in_space import in_space
-from stiffmbs.jobs.run import run
 from stiffmbs.results.solution import Solution
 from stiffmbs.robots.load import load_robot
 from stiffmbs.solve.trajectory import Outcome as Ending

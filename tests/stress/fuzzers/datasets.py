@@ -12,10 +12,10 @@ import numpy as np
 
 from stiffmbs.adams.listing import listed_statements
 from stiffmbs.adams.load import convert_file, load_adams
+from stiffmbs.analyses.check import check
+from stiffmbs.analyses.run import run
 from stiffmbs.describe.reading import read_scene
 from stiffmbs.errors import StiffmbsError
-from stiffmbs.jobs.check import check
-from stiffmbs.jobs.run import run
 from stiffmbs.results.solution import Solution
 from stiffmbs.solve.trajectory import Outcome as Ending
 

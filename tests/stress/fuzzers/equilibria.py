@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from stiffmbs.analyses.equilibrium import EquilibriumFound, equilibrium
+from stiffmbs.analyses.job import Runnable
+from stiffmbs.analyses.linearised.modes import modes
+from stiffmbs.analyses.run import run
 from stiffmbs.errors import StiffmbsError
-from stiffmbs.jobs.equilibrium import EquilibriumFound, equilibrium
-from stiffmbs.jobs.job import Runnable
-from stiffmbs.jobs.linearised.modes import modes
-from stiffmbs.jobs.run import run
 from stiffmbs.results.solution import Solution
 
 from ..case import Outcome, Verdict, measured

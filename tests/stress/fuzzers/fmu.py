@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 
+from stiffmbs.analyses.load_scene import load_scene
+from stiffmbs.analyses.run import run
 from stiffmbs.errors import StiffmbsError, needs
-from stiffmbs.jobs.load_scene import load_scene
-from stiffmbs.jobs.run import run
 from stiffmbs.results.saved_state import SavedState
 from stiffmbs.solve.trajectory import Outcome as Ending
 from stiffmbs.studies.fmu.build import build_fmu

@@ -9,9 +9,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from stiffmbs.analyses.run import run
 from stiffmbs.describe.reading import read_scene
 from stiffmbs.errors import StiffmbsError
-from stiffmbs.jobs.run import run
 from stiffmbs.solve.trajectory import Outcome as Ending
 
 from ..case import Verdict, measured, told

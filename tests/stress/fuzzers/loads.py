@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from stiffmbs.analyses.quasi_static import quasi_static
 from stiffmbs.describe.spatial.model import FORCES, Body, Model
 from stiffmbs.errors import StiffmbsError
-from stiffmbs.jobs.quasi_static import quasi_static
 from stiffmbs.studies.suspension.road_loads import COMPONENTS, road_loads
 
 from ..case import Verdict, measured, told

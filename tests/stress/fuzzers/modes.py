@@ -8,12 +8,12 @@ from dataclasses import replace
 import numpy as np
 from scipy.linalg import expm
 
+from stiffmbs.analyses.equilibrium import equilibrium
+from stiffmbs.analyses.job import Runnable, prepare
+from stiffmbs.analyses.linearised.at_state import AtState
+from stiffmbs.analyses.linearised.modes import Modes, modes
 from stiffmbs.describe.reading import read_scene
 from stiffmbs.errors import SolverError, StiffmbsError
-from stiffmbs.jobs.equilibrium import equilibrium
-from stiffmbs.jobs.job import Runnable, prepare
-from stiffmbs.jobs.linearised.at_state import AtState
-from stiffmbs.jobs.linearised.modes import Modes, modes
 from stiffmbs.linear_analysis.state_space import StateMatrix
 from stiffmbs.linear_analysis.tangent_space import Linearised, linearised
 from stiffmbs.results.solution import Solution

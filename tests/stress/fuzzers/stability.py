@@ -6,12 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from stiffmbs.analyses.equilibrium import equilibrium
+from stiffmbs.analyses.linearised.modes import modes
+from stiffmbs.analyses.run import run
 from stiffmbs.describe.model import FORCES
 from stiffmbs.describe.spatial.model import FORCES as SPATIAL_FORCES
 from stiffmbs.errors import StiffmbsError
-from stiffmbs.jobs.equilibrium import equilibrium
-from stiffmbs.jobs.linearised.modes import modes
-from stiffmbs.jobs.run import run
 from stiffmbs.solve.trajectory import Outcome as Ending
 
 from ..case import Outcome, Verdict

@@ -9,6 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from stiffmbs.analyses.linearised.modes import modes
+from stiffmbs.analyses.linearised.transfer import transfer
+from stiffmbs.analyses.run import run
 from stiffmbs.compile.bodies import BODY_KINDS
 from stiffmbs.describe.element import Force
 from stiffmbs.describe.model import FORCES
@@ -17,9 +20,6 @@ from stiffmbs.describe.scene import Scene
 from stiffmbs.describe.spatial.model import FORCES as SPATIAL_FORCES
 from stiffmbs.describe.spatial.orientation import conjugate, matrix, product
 from stiffmbs.errors import StiffmbsError
-from stiffmbs.jobs.linearised.modes import modes
-from stiffmbs.jobs.linearised.transfer import transfer
-from stiffmbs.jobs.run import run
 from stiffmbs.linear_analysis.state_space import StateMatrix
 from stiffmbs.linear_analysis.transfer import Transfer
 from stiffmbs.results.saved_state import SavedState

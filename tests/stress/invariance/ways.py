@@ -10,11 +10,11 @@ from typing import Any
 
 import numpy as np
 
+from stiffmbs.analyses.in_space import in_space
+from stiffmbs.analyses.run import run
 from stiffmbs.describe.model import PlanarData
 from stiffmbs.describe.reading import read_scene
 from stiffmbs.errors import InputError, SolverError
-from stiffmbs.jobs.in_space import in_space
-from stiffmbs.jobs.run import run
 from stiffmbs.results.solution import Solution
 from stiffmbs.solve.trajectory import Outcome
 from stiffmbs.studies.simulation import simulation

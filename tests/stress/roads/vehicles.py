@@ -6,9 +6,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 from stiffmbs import __file__ as package
+from stiffmbs.analyses.load_scene import load_scene
 from stiffmbs.describe.reading import read_scene
 from stiffmbs.describe.scene import Scene
-from stiffmbs.jobs.load_scene import load_scene
 
 CAR = Path(package).parent.parent / "examples" / "car.yaml"
 Points = list[list[float]]

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from stiffmbs.jobs.linearised import inputs
+from stiffmbs.analyses.linearised import inputs
 from stiffmbs.linear_analysis import tangent_space
 from tests.stress.case import Outcome
 from tests.stress.fuzzers import modes, stability, transfer
@@ -25,7 +25,7 @@ def test_a_wrong_sign_in_the_accelerations_is_found(monkeypatch):
         found = right(*state)
         return replace(found, acceleration_at_velocity=-found.acceleration_at_velocity)
 
-    monkeypatch.setattr("stiffmbs.jobs.linearised.modes.linearised", wrong)
+    monkeypatch.setattr("stiffmbs.analyses.linearised.modes.linearised", wrong)
     assert modes.trial(7).outcome is Outcome.WRONG
 
 
@@ -36,5 +36,5 @@ def test_a_load_at_the_origin_in_place_of_the_centre_of_mass_is_found(monkeypatc
 
 def test_a_growing_motion_without_a_note_is_found(monkeypatch):
     assert stability.trial(15).outcome is Outcome.RIGHT
-    monkeypatch.setattr("stiffmbs.jobs.settled._growth", lambda dynamics, t: [])
+    monkeypatch.setattr("stiffmbs.analyses.settled._growth", lambda dynamics, t: [])
     assert stability.trial(15).outcome is Outcome.WRONG

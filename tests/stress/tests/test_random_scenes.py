@@ -6,13 +6,13 @@ import re
 import numpy as np
 import pytest
 
+from stiffmbs.analyses.run import run
 from stiffmbs.describe import model as plane
 from stiffmbs.describe.parts.library import shipped_parts
 from stiffmbs.describe.reading import read_scene
 from stiffmbs.describe.spatial import model as space
 from stiffmbs.describe.states.section import KINDS
 from stiffmbs.errors import StiffmbsError
-from stiffmbs.jobs.run import run
 from tests.stress.random_scenes.catalogue import WITHOUT, kinds
 from tests.stress.random_scenes.driven import driven_scene
 from tests.stress.random_scenes.features import STATIC, TREE, Features

@@ -7,9 +7,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
+from stiffmbs.analyses.job import prepare
 from stiffmbs.comparison.turns import seconds_of
 from stiffmbs.describe.model_data import ModelData
-from stiffmbs.jobs.job import prepare
 from stiffmbs.solve.trajectory import Outcome, ProgressCallback
 
 from ...benchmark import Row

@@ -6,8 +6,8 @@ import time
 from dataclasses import dataclass
 from itertools import product
 
+from stiffmbs.analyses.job import Job, prepare
 from stiffmbs.comparison.turns import seconds_of
-from stiffmbs.jobs.job import Job, prepare
 from stiffmbs.solve.trajectory import Outcome
 from stiffmbs.verification.solve_again import Deadline
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stiffmbs.jobs.job import Job, prepare
+from stiffmbs.analyses.job import Job, prepare
 from stiffmbs.solve.bdf import solve
 from stiffmbs.solve.dynamics import Dynamics
 from stiffmbs.solve.error_control.tolerances import absolute_tolerances

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from stiffmbs.analyses.job import prepare
 from stiffmbs.comparison.turns import seconds_of
-from stiffmbs.jobs.job import prepare
 
 from ...benchmark import Row
 from ...decades import at_errors

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from stiffmbs.jobs.run import Job, prepare
+from stiffmbs.analyses.run import Job, prepare
 from stiffmbs.solve.ida.engine import Engine, Reached
 from stiffmbs.solve.integrator import Integrator
 

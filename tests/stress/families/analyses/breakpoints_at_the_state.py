@@ -7,11 +7,11 @@ from functools import partial
 
 import numpy as np
 
+from stiffmbs.analyses.linearised.modes import modes
+from stiffmbs.analyses.linearised.transfer import transfer
 from stiffmbs.describe.reading import read_scene
 from stiffmbs.describe.scene import Scene
 from stiffmbs.errors import SolverError
-from stiffmbs.jobs.linearised.modes import modes
-from stiffmbs.jobs.linearised.transfer import transfer
 
 from ...case import Case, Outcome, Verdict, measured, told
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
+from stiffmbs.analyses.equilibrium import equilibrium
 from stiffmbs.describe.reading import read_scene
 from stiffmbs.describe.scene import Scene
-from stiffmbs.jobs.equilibrium import equilibrium
 
 from ...case import Case, Outcome, Verdict, measured, told
 

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from stiffmbs.analyses.equilibrium import equilibrium
+from stiffmbs.analyses.linearised.transfer import transfer
 from stiffmbs.describe.reading import read_scene
-from stiffmbs.jobs.equilibrium import equilibrium
-from stiffmbs.jobs.linearised.transfer import transfer
 from stiffmbs.studies.fit import fit
 from stiffmbs.studies.sensitivities.sensitivities import sensitivities
 from stiffmbs.studies.sweep import sweep

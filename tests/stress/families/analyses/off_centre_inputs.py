@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from stiffmbs import spatial
+from stiffmbs.analyses.linearised.transfer import transfer
 from stiffmbs.describe.spatial.orientation import about, matrix, product
-from stiffmbs.jobs.linearised.transfer import transfer
 
 from ...case import Case, Verdict, measured
 

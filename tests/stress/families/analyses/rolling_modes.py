@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from stiffmbs.analyses.linearised.modes import modes
 from stiffmbs.describe.reading import read_scene
-from stiffmbs.jobs.linearised.modes import modes
 
 from ...case import Case, Outcome, Verdict, measured
 from ...mechanisms.bicycle import bicycle, published

@@ -12,9 +12,9 @@ from typing import Any
 
 import numpy as np
 
+from stiffmbs.analyses.run import run
 from stiffmbs.describe.reading import read_scene
 from stiffmbs.describe.scene import Scene
-from stiffmbs.jobs.run import run
 from stiffmbs.studies.outputs import outputs_of
 from stiffmbs.studies.sensitivities.sensitivities import sensitivities
 

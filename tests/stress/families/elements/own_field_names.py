@@ -9,12 +9,12 @@ import numpy as np
 import sympy
 
 from stiffmbs import spatial
+from stiffmbs.analyses.run import run
 from stiffmbs.describe.body import Body
 from stiffmbs.describe.element import Force, Joint
 from stiffmbs.describe.marker import Marker
 from stiffmbs.describe.model import Model
 from stiffmbs.describe.units.si import Number
-from stiffmbs.jobs.run import run
 
 from ...variants.answers import compared, refused
 

@@ -7,8 +7,8 @@ from typing import Literal
 
 import numpy as np
 
+from stiffmbs.analyses.run import run
 from stiffmbs.describe.model import Model
-from stiffmbs.jobs.run import run
 
 from ...case import Case, Verdict, measured
 from ...mechanisms.double_pendulum import double_pendulum

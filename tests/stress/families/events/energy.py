@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
+from stiffmbs.analyses.run import run
 from stiffmbs.describe.body import Body
 from stiffmbs.describe.marker import Marker
 from stiffmbs.describe.model import FORCES, JOINTS, Model
 from stiffmbs.describe.spatial import model as spatial
-from stiffmbs.jobs.run import run
 from stiffmbs.results.solution import Solution
 
 from ...case import Case, Outcome, Verdict, measured

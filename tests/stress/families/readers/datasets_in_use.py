@@ -9,10 +9,10 @@ from typing import cast
 
 from stiffmbs.adams.export.dataset_text import dataset_text
 from stiffmbs.adams.load import read_adams
+from stiffmbs.analyses.load_scene import load_scene
+from stiffmbs.analyses.run import run
 from stiffmbs.describe.reading import read_scene
 from stiffmbs.describe.spatial.model import SpatialData
-from stiffmbs.jobs.load_scene import load_scene
-from stiffmbs.jobs.run import run
 
 from ...case import Case, Outcome, Verdict, measured, told
 from ...variants.answers import compared, refused, with_files

@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 
 from stiffmbs.adams.load import read_adams
-from stiffmbs.jobs.run import run
+from stiffmbs.analyses.run import run
 
 from ...variants.answers import compared
 

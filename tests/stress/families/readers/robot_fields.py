@@ -6,7 +6,7 @@ from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
 
-from stiffmbs.jobs.run import run
+from stiffmbs.analyses.run import run
 from stiffmbs.robots.load import load_robot
 
 from ...case import Case, Verdict, measured

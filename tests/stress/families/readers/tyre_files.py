@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from stiffmbs import spatial
+from stiffmbs.analyses.run import run
 from stiffmbs.describe.tyres.coefficients import TyreProperties
-from stiffmbs.jobs.run import run
 
 from ...variants.answers import compared, refused, said, with_files
 

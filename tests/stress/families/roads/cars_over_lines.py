@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from stiffmbs.analyses.run import run
 from stiffmbs.describe.scene import Scene
-from stiffmbs.jobs.run import run
 from stiffmbs.solve.trajectory import Outcome as Ending
 
 from ...case import Case, Outcome, Verdict, measured

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from stiffmbs.analyses.run import run
 from stiffmbs.describe.reading import read_scene
-from stiffmbs.jobs.run import run
 from stiffmbs.results.solution import Solution
 
 from ...case import Case, Outcome, Verdict, measured, told

@@ -10,10 +10,10 @@ from typing import Any
 
 import numpy as np
 
+from stiffmbs.analyses.run import run
 from stiffmbs.describe.body import Body
 from stiffmbs.describe.model import JOINTS, Model
 from stiffmbs.describe.reading import read_scene
-from stiffmbs.jobs.run import run
 from stiffmbs.results.solution import Solution
 
 from ...case import Case, Verdict, measured

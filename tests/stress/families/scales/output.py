@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from stiffmbs.jobs.run import run
+from stiffmbs.analyses.run import run
 from stiffmbs.results.solution import Solution
 
 from ...case import Case, Verdict, measured

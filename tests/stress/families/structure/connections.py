@@ -6,12 +6,12 @@ from collections.abc import Callable
 from functools import partial
 
 from stiffmbs import spatial
+from stiffmbs.analyses.check import check
+from stiffmbs.analyses.run import run
 from stiffmbs.describe.body import Body
 from stiffmbs.describe.building.model_builder import ModelBuilder
 from stiffmbs.describe.marker import Marker
 from stiffmbs.describe.model import FORCES, JOINTS, Model
-from stiffmbs.jobs.check import check
-from stiffmbs.jobs.run import run
 
 from ...case import Case, Outcome, Verdict, measured, told
 

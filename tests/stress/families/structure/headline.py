@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 
 from stiffmbs import spatial
+from stiffmbs.analyses.run import run
 from stiffmbs.describe.model import FORCES
 from stiffmbs.describe.reading import read_scene
-from stiffmbs.jobs.run import run
 from stiffmbs.results.solution import Solution
 from stiffmbs.solve.trajectory import IN_DOUBT
 from stiffmbs.solve.trajectory import Outcome as Ending

@@ -10,14 +10,14 @@ from typing import Any
 import numpy as np
 
 from stiffmbs import spatial
+from stiffmbs.analyses.check import check
+from stiffmbs.analyses.run import run
 from stiffmbs.describe.body import Body
 from stiffmbs.describe.building.model_builder import ModelBuilder
 from stiffmbs.describe.marker import Marker
 from stiffmbs.describe.model import FORCES, JOINTS, Model
-from stiffmbs.jobs.check import check
-from stiffmbs.jobs.run import run
-from stiffmbs.structure.overconstraint import Overconstraint
-from stiffmbs.structure.transmitted import COMPONENTS
+from stiffmbs.redundancy.overconstraint import Overconstraint
+from stiffmbs.redundancy.transmitted import COMPONENTS
 
 from ...case import Case, Outcome, Verdict, measured
 from ...mechanisms.pendulum import GRAVITY

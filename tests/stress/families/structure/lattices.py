@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
+from stiffmbs.analyses.check import check
 from stiffmbs.describe.body import Body
 from stiffmbs.describe.marker import Marker
 from stiffmbs.describe.model import JOINTS, Model
-from stiffmbs.jobs.check import check
 
 from ...case import Case, Verdict, measured
 from ...framework import Framework, distance, in_plane, in_space

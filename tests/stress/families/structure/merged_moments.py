@@ -9,8 +9,8 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from stiffmbs import spatial
+from stiffmbs.analyses.run import run
 from stiffmbs.describe.spatial.orientation import about, matrix, product
-from stiffmbs.jobs.run import run
 
 from ...variants.answers import compared
 

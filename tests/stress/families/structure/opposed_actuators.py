@@ -7,9 +7,9 @@ from typing import Any
 
 import yaml
 
+from stiffmbs.analyses.check import check
+from stiffmbs.analyses.run import run
 from stiffmbs.describe.reading import read_scene
-from stiffmbs.jobs.check import check
-from stiffmbs.jobs.run import run
 
 from ...variants.answers import said
 

@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 
+from stiffmbs.analyses.job import examined
+from stiffmbs.analyses.run import run
 from stiffmbs.describe.body import Body
 from stiffmbs.describe.marker import Marker
 from stiffmbs.describe.model import JOINTS, Model
 from stiffmbs.errors import StiffmbsError
-from stiffmbs.jobs.job import examined
-from stiffmbs.jobs.run import run
 
 from ...case import Case, Verdict, measured
 from ...exact_rank import Guide, Pin, rank

@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
+from stiffmbs.analyses.run import run
 from stiffmbs.describe.body import Body
 from stiffmbs.describe.marker import Marker
 from stiffmbs.describe.model import JOINTS, Model
-from stiffmbs.jobs.run import run
 from stiffmbs.results.solution import Solution
 
 from ...case import Case, Outcome, Verdict, measured

@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 from functools import partial
 
+from stiffmbs.analyses.run import run
 from stiffmbs.describe.reading import read_scene
 from stiffmbs.errors import StiffmbsError
-from stiffmbs.jobs.run import run
 
 from ...case import Case, Outcome, Verdict, measured, told
 

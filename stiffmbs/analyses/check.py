@@ -1,0 +1,216 @@
+"""Checking a model without running it: degrees of freedom, redundant equations, reactions without a unique value."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Unpack
+
+from ..compile.system import System
+from ..compile.table_notes import table_notes
+from ..describe.scene import Scene, notes_of
+from ..describe.settings import RunSettings, Settings, takes_settings
+from ..errors import AssemblyError, SolverError
+from ..redundancy.idle_freedoms import IdleFreedom, idle_freedoms
+from ..redundancy.messages.presolve_report import presolve_sentences, unknowns
+from ..redundancy.messages.redundancy import (
+    inconsistency_sentences,
+    known_near_start,
+    overconstraint_sentences,
+    pose_sentences,
+    singular_sentence,
+)
+from ..redundancy.messages.unconnected import unconnected_sentence
+from ..redundancy.opposed_actuators import opposed_sentences
+from ..redundancy.overconstraint import Overconstraint, listed, overconstraints
+from ..solve.initial import InitialValues, initial_values
+from ..solve.moves import Move
+from ..solve.subsystems import Subsystem, presolved
+from .job import Examined, Runnable, data_of, examined
+
+MOST_MOVES = 50
+"""Bodies that are named of those which assembly moves; `Report.moved` has all."""
+
+
+@dataclass(frozen=True, repr=False)
+class Report:
+    """What `check` found.
+
+    Attributes
+    ----------
+    name : str
+        Of the scene.
+    degrees_of_freedom : int
+        n_u - rank.
+    equations, rank : int
+        Constraint equations, and how many of them are independent in general.
+    redundant : tuple of (str, str)
+        Joint and name of the equations that a run leaves out.
+    not_unique : tuple of str
+        Channels of reactions that have no unique value.
+    overconstraints : tuple of Overconstraint
+        What is held more than once, with reasons and remedies.
+    inconsistencies : tuple of str
+        Sentences on equations that no motion satisfies.
+    extra_freedoms : int
+        Degrees of freedom at the start beyond those in general: more than 0 at a singular pose.
+    unknowns : tuple of (int, int)
+        Of the formulation SI2: of all bodies and equations, and of what is solved for.
+    presolve : tuple of str
+        What is left out of the solution because it follows from the rest, a sentence each.
+    moved : tuple of Move
+        What assembly changes of the bodies as described.
+    messages : tuple of str
+        All else that there is to say, a sentence each.
+    sound : bool
+        Whether nothing stands in the way of a run with unique reactions.
+    """
+
+    name: str
+    degrees_of_freedom: int
+    equations: int
+    rank: int
+    redundant: tuple[tuple[str, str], ...]
+    not_unique: tuple[str, ...]
+    overconstraints: tuple[Overconstraint, ...]
+    inconsistencies: tuple[str, ...]
+    extra_freedoms: int
+    unknowns: tuple[int, int]
+    presolve: tuple[str, ...]
+    moved: tuple[Move, ...]
+    messages: tuple[str, ...]
+    sound: bool
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows."""
+        from ..show.html import report_html
+
+        return report_html(self)
+
+    def as_dict(self, scene: str) -> dict[str, Any]:
+        """The content of ``stiffmbs check --json``.
+
+        Parameters
+        ----------
+        scene : str
+            The file, or what else the scene is called.
+        """
+        return {
+            "scene": scene,
+            "degrees_of_freedom": self.degrees_of_freedom,
+            "equations": self.equations,
+            "rank": self.rank,
+            "redundant": [{"joint": joint, "equation": equation} for joint, equation in self.redundant],
+            "not_unique": list(self.not_unique),
+            "unknowns": {"before": self.unknowns[0], "after": self.unknowns[1]},
+            "messages": [*self.messages, *(f"presolve: {sentence}" for sentence in self.presolve)],
+        }
+
+    def __repr__(self) -> str:
+        return f"<Report {str(self).splitlines()[0]}; {'sound' if self.sound else 'problems'}>"
+
+    def __str__(self) -> str:
+        count = self.degrees_of_freedom
+        freedoms = f"{count} degree{'s' if count != 1 else ''} of freedom"
+        head = (
+            f"{self.name or 'model'}: {freedoms}, {self.equations} equations of rank "
+            f"{self.rank}, {self.unknowns[0]} unknowns"
+        )
+        presolve = [f"presolve: {sentence}" for sentence in self.presolve]
+        return "\n".join([head, *presolve, *(f"- {message}" for message in self.messages or ("no problems found",))])
+
+
+@takes_settings
+def check(model: Runnable, settings: RunSettings | None = None, **changes: Unpack[Settings]) -> Report:
+    """Examine a model: degrees of freedom, redundancy, uniqueness of reactions, singular poses, contradictions.
+
+    Parameters
+    ----------
+    model : Model, Scene, str or Path
+        A model, a scene, or a scene's file.
+    settings : RunSettings, optional
+        Whose ``drop_first``, ``start`` and ``duration`` are used; the scene's own by default.
+    **changes
+        Fields of the settings to change.
+
+    Returns
+    -------
+    Report
+
+    Raises
+    ------
+    InputError
+        When the model or a setting is wrong.
+    """
+    data = data_of(model)
+    if isinstance(data, Scene) and data.stages:
+        return _of_stages(data, [check(stage, settings, **changes) for stage in data.stage_scenes])
+    found = examined(data, settings, **changes)
+    redundancy, system = found.redundancy, found.redundancy.system
+    cases = tuple(overconstraints(redundancy))
+    against = tuple(inconsistency_sentences(redundancy))
+    held_twice = (
+        []
+        if against
+        else [
+            sentence
+            for case in cases
+            for sentence in overconstraint_sentences(case, known_near_start(case, redundancy))
+        ]
+    )
+    problems = [*against, *held_twice]
+    problems += [*singular_sentence(redundancy), *pose_sentences(redundancy)]
+    dynamics, subsystems, free = found.dynamics(), tuple[Subsystem, ...](), list[IdleFreedom]()
+    start: InitialValues | None = None
+    if not against:
+        try:
+            start = initial_values(dynamics, found.grid.start)
+            free = idle_freedoms(dynamics, found.grid.start)
+            subsystems = presolved(found.data, dynamics, start, found.grid, found.settings)
+            problems += [start.position_sentence(MOST_MOVES)] if start.moved_far else []
+        except (AssemblyError, SolverError) as error:
+            problems += [] if redundancy.extra_freedoms else [str(error)]
+    return Report(
+        name=found.data.name, degrees_of_freedom=redundancy.degrees_of_freedom, equations=system.n_c,
+        rank=redundancy.rank, redundant=redundancy.redundant, not_unique=redundancy.not_unique, overconstraints=cases,
+        inconsistencies=against, extra_freedoms=redundancy.extra_freedoms,
+        unknowns=unknowns(system, subsystems, dynamics), presolve=tuple(presolve_sentences(system, subsystems, dynamics)),
+        moved=start.moved if start else (),
+        messages=(*problems, *_assembly_sentence(start), *_freedom_sentences(found, system, free),
+                  *(opposed_sentences(system, found.data, start.q, found.grid) if start else ()), *notes_of(found.data), *table_notes(found.data)), sound=not problems,
+    )  # fmt: skip
+
+
+def _of_stages(scene: Scene, reports: Sequence[Report]) -> Report:
+    """The report on the first stage, with what there is to say of the others."""
+    first = reports[0]
+    messages = [
+        f"stage {k} of {len(reports)}: {message}"
+        for k, report in enumerate(reports, start=1)
+        for message in (f"{report.degrees_of_freedom} degrees of freedom", *report.messages)
+        if k == 1 or message not in first.messages
+    ]
+    sound = all(report.sound for report in reports)
+    return replace(first, name=scene.name, messages=tuple(messages), sound=sound)
+
+
+def _assembly_sentence(start: InitialValues | None) -> Iterator[str]:
+    """What assembly changes, where it is no problem."""
+    if start and not start.moved_far and (sentence := start.position_sentence(MOST_MOVES)):
+        yield sentence
+
+
+def _freedom_sentences(found: Examined, system: System, free: Sequence[IdleFreedom]) -> Iterator[str]:
+    if found.redundancy.degrees_of_freedom == 0:
+        yield "joints and drives hold every coordinate: 0 degrees of freedom, the motion is a matter of kinematics"
+    for freedom in free:
+        yield _idle_freedom_sentence(freedom)
+    yield from unconnected_sentence(system)
+
+
+def _idle_freedom_sentence(freedom: IdleFreedom) -> str:
+    body, motion, between = freedom.body, freedom.motion, listed(freedom.between)
+    if not freedom.held_by:
+        return f"{body} can {motion} by itself between {between}, which moves no other body"
+    hold = "holds" if len(freedom.held_by) == 1 else "hold"
+    return f"joints alone would let {body} {motion} by itself between {between}: {listed(freedom.held_by)} {hold} it"

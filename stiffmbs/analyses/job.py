@@ -1,0 +1,187 @@
+"""A job: a model compiled, examined for redundant equations and assembled, ready to be solved."""
+
+from __future__ import annotations
+
+import logging
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+from typing import Any, NamedTuple, TypeAlias
+
+from ..compile.compile_model import compile_model
+from ..describe.building.model_builder import ModelBuilder
+from ..describe.model_data import ModelData
+from ..describe.scene import Scene
+from ..describe.settings import RunSettings, SteadyMotion
+from ..errors import InputError
+from ..redundancy.redundancy import Redundancy, examine
+from ..results.saved_state import SavedState
+from ..run_checks.far_away import refuse_far_away
+from ..solve import SOLVERS
+from ..solve.dynamics import Dynamics
+from ..solve.events.input_ends import solve_up_to_the_inputs_end
+from ..solve.initial import InitialValues, consistent_values, initial_values
+from ..solve.nearest_turns import take_nearest_turns
+from ..solve.settings import changed, near_constraints, output_grid
+from ..solve.subsystems import Subsystem, presolved, solve_subsystems
+from ..solve.trajectory import Grid, ProgressCallback, Trajectory, unwatched
+from .load_scene import load_scene
+from .python_faults import told_faults
+from .start_from import StartFrom, started_from, starting_at, state_to_start_from
+
+LOGGER = logging.getLogger(__name__)
+
+
+class Examined(NamedTuple):
+    """A model compiled and examined for redundant equations."""
+
+    data: ModelData
+    settings: RunSettings
+    grid: Grid
+    redundancy: Redundancy
+    start_from: SavedState | None = None
+
+    def dynamics(self) -> Dynamics:
+        """Of the system without its redundant equations."""
+        system = self.redundancy.system
+        active = self.redundancy.active
+        return Dynamics(system if active.all() else replace(system, active=active))
+
+
+@dataclass(frozen=True)
+class Job:
+    """A model compiled and assembled, ready to be integrated any number of times."""
+
+    data: ModelData
+    settings: RunSettings
+    grid: Grid
+    redundancy: Redundancy
+    dynamics: Dynamics
+    start: InitialValues
+    subsystems: tuple[Subsystem, ...] = ()
+    start_from: SavedState | None = None
+
+    @cached_property
+    def on_constraints(self) -> bool:
+        """Whether states are on the constraints but for the tolerance."""
+        return near_constraints(self.settings)
+
+    def evaluations(self) -> int:
+        """How often the equations of the system and of its parts were evaluated so far."""
+        parts = (self.dynamics, *(subsystem.dynamics for subsystem in self.subsystems))
+        return sum(dynamics.state.evaluations for dynamics in parts)
+
+    def integrate(self, watch: ProgressCallback | None = None) -> Trajectory:
+        """Integrate from the start, what the presolve made of the model; see `stiffmbs.solve.trajectory`."""
+        solve, watch = SOLVERS[self.settings.solver].solve, watch or unwatched
+        LOGGER.info("solving %s by %s", self.data.name, self.settings.solver)
+
+        def over(grid: Grid) -> Trajectory:
+            if self.subsystems:
+                return solve_subsystems(solve, self.subsystems, self.start, grid, self.settings, watch)
+            return solve(self.dynamics, self.start, grid, self.settings, watch)
+
+        if not self.dynamics.system.has_inputs:
+            return over(self.grid)
+        return solve_up_to_the_inputs_end(self.dynamics, self.grid, over)
+
+
+Runnable: TypeAlias = ModelBuilder[Any, Any, Any] | ModelData | str | Path
+"""What can be solved: a model, a scene, or a scene's file."""
+
+
+def data_of(model: Runnable) -> ModelData:
+    """What a model or a file holds.
+
+    Raises
+    ------
+    InputError
+        When it is neither, or the file cannot be read.
+    """
+    match model:
+        case ModelBuilder():
+            data: ModelData = model.data()
+            return data
+        case ModelData():
+            return model
+        case str() | Path():
+            return load_scene(model)
+    raise InputError(f"found {model!r}, expected a Model, a Scene, or the name of a scene's file")
+
+
+def prepare(
+    model: Runnable, settings: RunSettings | None = None, start_from: StartFrom | None = None, **changes: Any
+) -> Job:
+    """Compile and assemble a model; parameters and errors as for `run`."""
+    found = examined(model, settings, start_from, **changes)
+    if found.redundancy.rank_results:
+        from ..redundancy.messages.redundancy import refuse_inconsistencies
+
+        refuse_inconsistencies(found.redundancy)
+    dynamics = found.dynamics()
+    LOGGER.info("assembling %s", found.data.name)
+    with told_faults(dynamics.system):
+        start = _start(found.data, dynamics, found.grid.start, found.start_from)
+        subsystems = presolved(found.data, dynamics, start, found.grid, found.settings)
+    dynamics.system.known_terms.clear()
+    return Job(found.data, found.settings, found.grid, found.redundancy, dynamics, start, subsystems, found.start_from)
+
+
+def start_of_job(job: Job) -> InitialValues:
+    """The start of a job whose numbers have changed; errors as for `run`."""
+    with told_faults(job.dynamics.system):
+        job.dynamics.return_to_start()
+        return _start(job.data, job.dynamics, job.grid.start, job.start_from)
+
+
+def _start(data: ModelData, dynamics: Dynamics, t: float, state: SavedState | None) -> InitialValues:
+    """The saved state that is given, else the equilibrium or the described state, whichever the scene asks for."""
+    if state is not None:
+        take_nearest_turns(dynamics, t, state.is_new)
+        start = consistent_values(dynamics, t)
+        return replace(
+            start, notes=(*start.notes, f"the run starts from the state at t = {state.t:g} s of {state.source}")
+        )
+    if isinstance(data, Scene) and data.at_start:
+        from .held_at_start import hold_at_start
+
+        hold_at_start(dynamics, data, t)
+        start = initial_values(dynamics, t).as_asked_by([*data.at_start])
+    else:
+        start = initial_values(dynamics, t)
+    asked = data.start if isinstance(data, Scene) else "described"
+    if isinstance(asked, SteadyMotion):
+        from .steady import start_in_motion
+
+        return start_in_motion(data, dynamics, start, t, asked)
+    if asked == "equilibrium":
+        from .settled import settled
+
+        return settled(dynamics, start, t).start
+    if asked == "settled":
+        from .settled import moving_in_equilibrium
+
+        return moving_in_equilibrium(dynamics, start, t)
+    return start
+
+
+def examined(
+    model: Runnable, settings: RunSettings | None = None, start_from: StartFrom | None = None, **changes: Any
+) -> Examined:
+    """Compile a model and look for redundant equations; parameters and errors as for `run`."""
+    data = data_of(model)
+    if isinstance(data, Scene) and data.stages:
+        raise InputError("found a scene with stages, which only a run follows, expected a scene of one run")
+    state = state_to_start_from(start_from)
+    given = settings or (data.run if isinstance(data, Scene) else RunSettings())
+    chosen = changed(given, starting_at(state, settings, changes))
+    grid = output_grid(chosen)
+    for name in chosen.drop_first:
+        if name not in data.joints:
+            raise InputError(f"drop_first: found no joint '{name}', expected one of {', '.join(data.joints) or 'none'}")
+    order = [*(name for name in data.joints if name not in chosen.drop_first), *chosen.drop_first]
+    system = compile_model(data)
+    refuse_far_away(system)
+    system = started_from(system, data, state)
+    with told_faults(system):
+        return Examined(data, chosen, grid, examine(system, grid.start, chosen.duration, order), state)

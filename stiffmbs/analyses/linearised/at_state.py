@@ -1,0 +1,85 @@
+"""A model at a state: its start, or where a run comes to."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ...describe.model_data import ModelData
+from ...describe.settings import RunSettings
+from ...errors import SolverError
+from ...redundancy.redundancy import Redundancy
+from ...solve.algebraic_states import failure
+from ...solve.dynamics import Dynamics
+from ..job import Runnable, prepare
+from ..start_from import StartFrom
+
+
+@dataclass(frozen=True)
+class AtState:
+    """A model whose state satisfies the constraints, with accelerations and multipliers.
+
+    Attributes
+    ----------
+    data : ModelData
+    redundancy : Redundancy
+    dynamics : Dynamics
+        Its state has q, u and lam.
+    t : float
+        s.
+    acceleration : ndarray, shape (n_u,)
+    """
+
+    data: ModelData
+    redundancy: Redundancy
+    dynamics: Dynamics
+    t: float
+    acceleration: np.ndarray
+
+
+def at_state(
+    model: Runnable,
+    settings: RunSettings | None = None,
+    at: float | None = None,
+    start_from: StartFrom | None = None,
+    **changes: Any,
+) -> AtState:
+    """A model at its start, or at an instant of its motion.
+
+    Parameters
+    ----------
+    model : Model, Scene, str or Path
+    settings : RunSettings, optional
+    at : float, optional
+        The instant, s; the start of the run by default.
+    start_from : Solution, str, Path or SavedState, optional
+        As for `stiffmbs.run`.
+    **changes
+        Fields of the settings to change.
+
+    Raises
+    ------
+    InputError, AssemblyError
+        As for `stiffmbs.run`.
+    SolverError
+        Where no motion leads to that instant.
+    """
+    job = prepare(model, settings, start_from, **changes)
+    t = job.grid.start
+    state = job.dynamics.state
+    state.q[:], state.u[:] = job.start.q, job.start.u
+    if at is not None and at != t:
+        job = prepare(model, settings, start_from, **{**changes, "duration": at - t, "points": 2})
+        trajectory = job.integrate()
+        if not np.isclose(trajectory.t[-1], at):
+            raise SolverError(f"no state was found at t = {at:g} s: {trajectory.message}")
+        t, state = at, job.dynamics.state
+        state.q[:], state.u[:] = trajectory.q[-1], trajectory.u[-1]
+        job.dynamics.assemble(t)
+        job.dynamics.correct_velocities(t)
+    status, acceleration = job.dynamics.accelerate(t)
+    if status < 0:
+        raise SolverError(f"no accelerations were found at t = {t:g} s: {failure(job.dynamics, status, t)}")
+    return AtState(job.data, job.redundancy, job.dynamics, t, acceleration)

@@ -1,0 +1,196 @@
+"""A run that ends, or goes on otherwise, where a request comes to a value.
+
+The whole time is solved once over the solver's own steps.  The first step in which a condition begins to hold is solved again, on
+finer and finer points, until straight lines between them give the instant; then the run is solved up to it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from ...describe.files.until import Until
+from ...errors import InputError
+from ...results.joined import joined
+from ...results.solution import Solution
+from ...solve.trajectory import IN_DOUBT
+from ..given_inputs import Given
+
+POINTS, LEVELS = 33, 3
+"""Points in a step that is looked at again, and how often: the last ones are 1/32768 of it apart."""
+MOST = 500
+"""Times that conditions may begin to hold in one stage."""
+SAME = 1e-9
+"""Part of a bound by which a value has to go back before it counts again, where nothing more is said."""
+Run = Callable[..., Solution]
+"""`stiffmbs.analyses.run.run` of one scene: takes changes of settings, ``start_from`` and ``inputs``."""
+
+
+@dataclass(frozen=True)
+class Ended:
+    """What a stage has come to.
+
+    Attributes
+    ----------
+    solution : Solution
+    by : str
+        The condition that ended it; empty where none did.
+    inputs : mapping of str to value
+        Those that conditions have set.
+    """
+
+    solution: Solution
+    by: str = ""
+    inputs: Mapping[str, Given] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Margin:
+    """What is below zero before a condition holds: ``factor (value - bound) + near``, from a time on."""
+
+    channel: str
+    factor: float
+    bound: float
+    near: float
+    armed: float
+
+    def __call__(self, solution: Solution) -> np.ndarray:
+        values = self.factor * (solution[self.channel] - self.bound) + self.near
+        return np.where(solution.time >= self.armed, values, np.nan)
+
+
+@dataclass(frozen=True)
+class Crossing:
+    """Where a condition begins to hold: behind a row of a solution."""
+
+    name: str
+    before: int
+    t: float
+
+
+def run_until(
+    run: Run,
+    conditions: Mapping[str, Until],
+    interval: float | None,
+    inputs: Mapping[str, Given] | None,
+    **changes: Any,
+) -> Ended:
+    """Solve up to where a condition ends the stage, or over the whole time.
+
+    Parameters
+    ----------
+    run : callable
+        Solves the scene.
+    conditions : mapping of str to Until
+    interval : float or None
+        Between output points, s; None for the solver's own steps.
+    inputs : mapping, optional
+        Given to the run.
+    **changes
+        Of settings, and ``start_from``.
+
+    Raises
+    ------
+    InputError
+        When a condition names no request, holds at the start, or begins to hold more than `MOST` times.
+    """
+    given, ended_by = dict(inputs or {}), ""
+    parts: list[Solution] = []
+    for _ in range(MOST):
+        part, name, rest = _up_to_the_first(run, conditions, interval, not parts, inputs=given, **changes)
+        parts.append(part)
+        if not name:
+            break
+        condition = conditions[name]
+        given |= {key: float(_channel(name, request, part)[-1]) for key, request in condition.sets.items()}
+        if condition.then != "on":
+            ended_by = name
+            break
+        if rest <= 0:
+            break
+        interval = condition.output or interval
+        state = replace(part.state(), source=f"'{name}'")
+        changes = {**changes, "start_from": state, "start": float(part.time[-1]), "duration": rest}
+    else:
+        raise InputError(f"found conditions that begin to hold more than {MOST} times, expected fewer")
+    doubtful = (part.message for part in parts if IN_DOUBT in part.message)
+    solution = replace(joined(parts[0].name, parts), message=next(doubtful, parts[-1].message))
+    return Ended(solution, ended_by, given)
+
+
+def _up_to_the_first(
+    run: Run, conditions: Mapping[str, Until], interval: float | None, fresh: bool, **changes: Any
+) -> tuple[Solution, str, float]:
+    """The run up to the first condition, its name (empty for none), and how long is left."""
+    whole = run(**{**changes, "points": "steps", "output": None})
+    margins = {name: _margin_of(name, condition, whole, fresh) for name, condition in conditions.items()}
+    for name, margin in margins.items():
+        if fresh and margin(whole)[0] >= 0:
+            raise InputError(
+                f"'{name}': found its condition true where the run starts, at t = {whole.time[0]:.9g} s, expected it to come "
+                "true on the way"
+            )
+    grid = {"output": interval, "points": None} if interval else {}
+    crossing = _first(margins, whole)
+    if crossing is None:
+        return run(**{**changes, **grid}), "", 0.0
+    start, found = float(whole.time[0]), whole
+    end, name = crossing.t, crossing.name
+    for _ in range(LEVELS):
+        a, b = (float(found.time[k]) for k in (crossing.before, crossing.before + 1))
+        step = {"start": a, "duration": b - a, "points": POINTS, "output": None}
+        fine = run(**{**changes, "start_from": found.state(at=a), **step})
+        nearer = _first({name: margins[name]}, fine)
+        if nearer is None:  # it only comes true with the last digits of the longer run
+            break
+        found, crossing, end = fine, nearer, nearer.t
+    solution = run(**{**changes, **grid, "duration": end - start})
+    if not solution.success:
+        return solution, "", 0.0
+    message = f"{'ended' if conditions[name].then != 'on' else 'changed'} at t = {end:.9g} s by '{name}'"
+    solution = replace(solution, message=message, notes=(*solution.notes, message))
+    return solution, name, float(whole.time[-1]) - end
+
+
+def _channel(name: str, request: str, solution: Solution) -> np.ndarray:
+    if request not in solution:
+        raise InputError(f"'{name}': found request = {request}, expected the name of a request")
+    return solution[request]
+
+
+def _margin_of(name: str, condition: Until, whole: Solution, fresh: bool) -> Margin:
+    """The margin of a condition in a run; in one that goes on, from where the value has gone back far enough."""
+    values = _channel(name, condition.request, whole)
+    bound = next(b for b in (condition.at_least, condition.at_most, condition.equals) if b is not None)
+    away = values - bound
+    back = max(condition.within, SAME * max(1.0, abs(bound)))
+    factor = 1.0 if condition.at_least is not None else -1.0
+    far = np.abs(away) > back if condition.equals is not None else factor * away < -back
+    rows = np.flatnonzero(far)
+    first = 0 if fresh else int(rows[0]) if len(rows) else len(away)
+    armed = float(whole.time[first]) if first < len(away) else np.inf
+    near = 0.0
+    if condition.equals is not None and first < len(away):
+        factor = -1.0 if away[first] > 0 else 1.0
+        past = factor * away[first:]
+        near = condition.within if np.nanmax(past) < 0 or past[0] >= -condition.within else 0.0
+    return Margin(condition.request, factor, bound, near, armed)
+
+
+def _first(margins: Mapping[str, Margin], solution: Solution) -> Crossing | None:
+    """The first condition that begins to hold, and where straight lines between the rows put it."""
+    found = None
+    for name, margin in margins.items():
+        values = margin(solution)
+        holds = np.flatnonzero((values[:-1] < 0) & (values[1:] >= 0) & (np.diff(solution.time) > 0))
+        if not len(holds):
+            continue
+        k = int(holds[0])
+        part = -values[k] / (values[k + 1] - values[k])
+        t = float(solution.time[k] + part * (solution.time[k + 1] - solution.time[k]))
+        if found is None or t < found.t:
+            found = Crossing(name, k, t)
+    return found

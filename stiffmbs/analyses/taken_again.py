@@ -1,0 +1,157 @@
+"""Runs that are taken again, as their results contradict the equations.
+
+Where steps passed over something, with a start at each instant that shows it: the step that ends there sees the force, and its
+error estimate makes it as short as it has to be.  Where relaxed constraints crept beyond the tolerance, with exact ones: SI2 holds J u + C_t = E_lam lam, with an E_lam so small that forces of usual size change nothing.  Where equations are nearly
+dependent, or forces are huge for the masses, lam is not: velocities creep, and energy is lost.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..run_checks.glance import Glance
+from ..run_checks.overlooked import Overlooked, overlooked, together
+from ..run_checks.within_long_steps import overlooked_in_long_steps
+from ..solve.dynamics import OutputRows
+from ..solve.error_control.relaxation import Creep, creep_of, creeps
+from ..solve.settings import changed, traits_of
+from ..solve.trajectory import Outcome, Trajectory
+
+if TYPE_CHECKING:
+    from ..compile.system import System
+    from ..describe.settings import RunSettings
+    from .job import Job
+
+ROUNDS, STARTS = 3, 1000
+"""How often a run is taken again, and with how many starts at the most."""
+AGAIN = "the run was taken again with a start there; what neither output instants nor long steps show, max_step or more output points do"
+LEFT = "the results may be wrong from there on; set max_step to far less than that"
+
+RELAXED, EXACT = "SI2", "SI2_exact"
+CREPT = 10.0
+"""Tolerances of a velocity, as a mean over the run, up to which creep is left alone: with 25 a pendulum's error is that many
+tolerances too.  The examples have 0 to 5."""
+LESS = 0.5
+"""Part of the creep that exact constraints may leave."""
+
+
+@dataclass(frozen=True)
+class Computed:
+    """Trajectory of a run with its reported values, notes on omitted output times, findings of the scan of the rows, and notes that
+    question the results."""
+
+    trajectory: Trajectory
+    rows: OutputRows
+    left_out: list[str]
+    seen: Glance | None
+    doubts: tuple[str, ...] = ()
+
+
+def seen_through(job: Job, compute: Callable[[Job], Computed]) -> tuple[Computed, list[str]]:
+    """Compute a job until no instant looked at contradicts its steps; what there is to say of that.
+
+    Parameters
+    ----------
+    job : Job
+    compute : callable
+        Integrates a job and reports it.
+    """
+    found = compute(job)
+    seen = left = _overlooked(job, found)
+    stops = np.empty(0)
+    for _ in range(ROUNDS):
+        if left is None or found.trajectory.outcome is Outcome.INTERRUPTED:
+            break
+        stops = np.union1d(stops, left.times)
+        if len(stops) > STARTS:
+            break
+        again = compute(replace(job, grid=replace(job.grid, stops=stops)))
+        if again.trajectory.outcome is Outcome.INTERRUPTED:
+            break
+        found, left = again, _overlooked(job, again)
+    if left is not None:
+        note = f"{left.sentence()}; {LEFT}"
+        return replace(found, doubts=(*found.doubts, note)), [note]
+    return found, [f"{seen.sentence()}; {AGAIN}"] if seen else []
+
+
+def _overlooked(job: Job, computed: Computed) -> Overlooked | None:
+    """What output instants, or instants within long steps, show."""
+    system, trajectory = job.dynamics.system, computed.trajectory
+    if not system.has_laws:
+        return None
+    long_steps = () if trajectory.outcome is Outcome.INTERRUPTED else trajectory.long_steps
+    of_rows = computed.seen is None or computed.seen.contradicting
+    found = [
+        overlooked(system, computed.rows, trajectory, job.settings) if of_rows else None,
+        *(overlooked_in_long_steps(steps, job.settings, float(trajectory.t[-1])) for steps in long_steps),
+    ]
+    return together([each for each in found if each is not None])
+
+
+def on_exact_constraints(job: Job, compute: Callable[[Job], Computed]) -> Computed:
+    """Compute a job, and once more by SI2_exact where its constraints crept; of that the result has a note.
+
+    Parameters
+    ----------
+    job : Job
+    compute : callable
+        Integrates a job and reports it.
+    """
+    found = compute(job)
+    compared = _compared(job, found)
+    if not relaxed(job) or not len(found.rows.t) or not creeps(*compared, CREPT):
+        return found
+    creep = _creep(job, found)
+    stopped = found.trajectory.outcome is Outcome.STOPPED
+    if not (creep.mean > CREPT or (stopped and creep.at_end > CREPT)):
+        return found
+    if found.trajectory.outcome is Outcome.INTERRUPTED:
+        return _doubted(found, f"{creep.sentence()}; the results may be wrong by that")
+    again = compute(exactly(job))
+    if len(again.rows.t) >= len(found.rows.t):
+        # what stays is no creep, but jumps of velocities that no breakpoint tells
+        if creep.mean > CREPT and _creep(job, again).mean > LESS * creep.mean:
+            return found
+        return _noted(again, f"{creep.sentence()}; the run was taken again by formulation {EXACT}")
+    if stopped:
+        return found
+    return _doubted(
+        found,
+        f"{creep.sentence()}; the results may be wrong by that, and formulation {EXACT} does not come as far: "
+        f"{again.trajectory.message}",
+    )
+
+
+def _creep(job: Job, computed: Computed) -> Creep:
+    breakpoints = job.dynamics.input_features(job.grid.start, job.grid.end).breakpoints
+    return creep_of(*_compared(job, computed), breakpoints)
+
+
+def _compared(job: Job, computed: Computed) -> tuple[System, OutputRows, Trajectory, RunSettings]:
+    """What creep is told by."""
+    return job.dynamics.system, computed.rows, computed.trajectory, job.settings
+
+
+def relaxed(job: Job) -> bool:
+    """Whether a run follows relaxed constraints."""
+    chosen = job.settings.formulation == RELAXED and "formulation" in traits_of(job.settings).reads
+    return chosen and job.on_constraints and job.dynamics.system.n_c > 0
+
+
+def exactly(job: Job) -> Job:
+    """The job with exact constraints."""
+    return replace(job, settings=changed(job.settings, {"formulation": EXACT}))
+
+
+def _noted(computed: Computed, note: str) -> Computed:
+    return replace(computed, left_out=[*computed.left_out, note])
+
+
+def _doubted(computed: Computed, note: str) -> Computed:
+    """Add a note that questions the results."""
+    return replace(_noted(computed, note), doubts=(*computed.doubts, note))

@@ -1,0 +1,48 @@
+"""Deriving and compiling ahead what first runs would wait for."""
+
+from __future__ import annotations
+
+import importlib
+import pkgutil
+from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
+
+from .. import compile as compile_package
+from .. import results as results_package
+from .. import run_checks as run_checks_package
+from .. import solve as solve_package
+from ..compile.compile_model import kinds_of
+from ..compile.kernels import compile_usual
+from ..compile.kind import Kind
+from ..compile.machine.routines import Routine
+from ..presolve.spinning_bodies import AXES, SpinningBodies
+from .usual_elements import usual_bearings, usual_elements
+
+
+def warm() -> None:
+    """Compile every kind of element in its usual forms, bearings of bodies that keep a spin of their own, and the routines of all solvers.
+
+    Formulas that stand in a scene make kinds of their own, which are compiled when they are first met, and so is what one
+    formulation alone uses.
+    """
+    with ProcessPoolExecutor(mp_context=get_context("spawn")) as processes:
+        list(processes.map(compile_usual, usual_kinds()))
+    for routine in routines():
+        routine.call  # noqa: B018 is loaded by being asked for
+
+
+def usual_kinds() -> tuple[Kind, ...]:
+    """All kinds of elements in their usual forms, and joints of bodies whose quaternions don't follow their spin."""
+    models = [usual_elements(dimensions).data() for dimensions in (2, 3)]
+    spun = [SpinningBodies(usual_bearings().data(), {"a": axis}) for axis in AXES]
+    return tuple(dict.fromkeys(kind for model in (*models, *spun) for kind in kinds_of(model)))
+
+
+def routines() -> Iterator[Routine]:
+    """Every compiled routine that a module of the package declares."""
+    for package in (compile_package, solve_package, results_package, run_checks_package):
+        for module in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
+            if ".native." not in f"{module.name}.":
+                found = vars(importlib.import_module(module.name)).values()
+                yield from (value for value in found if isinstance(value, Routine))

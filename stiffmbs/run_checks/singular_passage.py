@@ -1,0 +1,137 @@
+"""A motion that goes through a nearly singular pose: errors come back from it magnified, or decide which way it goes on.
+
+Two branches of the motion meet in a singular pose, and beside it they turn away from each other: at a distance d (the smallest
+singular value of the joints' J, relative to its usual value) within a way of d.  Errors e of a motion that passes there
+come back as about e/d^2.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+import numpy as np
+
+from ..redundancy.overconstraint import listed
+from ..solve.dynamics import Dynamics, OutputRows
+from .singular_poses import NEARLY_SINGULAR, PosesOnTheWay, SingularPose
+
+DIP = 0.25
+"""Part of the det of its neighbours to which the parabola through three outputs may fall before the motion between them is looked at.
+The det goes as the square of the distance from a singular pose; where poses stay a twentieth of the usual away it falls to 0.1 and more."""
+MOST_DIPS, INSTANTS = 5, 201
+"""Dips looked at, the deepest ones, and instants within each."""
+MAGNIFIED = 10.0
+"""Error behind the pose, as a part of the size, over rtol/d^2.  Measured on sliders on turning guides, parallelograms, kites and
+cranks in space by bdf and dop853 at rtol 1e-8, d from 1e-4 to 5e-2: 0.2 to 50."""
+DECIDED, WORTH_TELLING = 0.1, 1e-3
+"""Expected errors, as parts of the size, from which on chance decides the branch, and from which on they are told."""
+LAST_DIGITS = 1e-10
+"""The smallest rtol that is of use, and the last digits of lengths."""
+
+
+def singular_passage_sentence(
+    dynamics: Dynamics, rows: OutputRows, rtol: float, again: Callable[[np.ndarray], OutputRows]
+) -> Iterator[str]:
+    """A sentence on the first passage that is looked at, where chance decides it, else on the worst one.
+
+    Parameters
+    ----------
+    dynamics : Dynamics
+    rows : OutputRows
+    rtol : float
+        Of the run.
+    again : callable
+        The same run, up to the last of other instants, s, and reported at these.
+    """
+    dips = deepest_dips(rows.log_determinant)
+    if not dips:
+        return
+    poses = PosesOnTheWay(dynamics.system, rows.t, rows.q)
+    if not poses.usual:
+        return
+    first, *others = [np.linspace(rows.t[k - 1], rows.t[k + 1], INSTANTS) for k in sorted(dips)]
+    dense = again(first)
+    found, reached, asked = _nearest(poses, dense, [first]), dense.t, first[-1]
+    if others and not _decided_by_chance(found[0]):
+        dense = again(np.unique(np.concatenate(others)))
+        found = min(found, _nearest(poses, dense, others), key=lambda each: each[0])
+        reached, asked = dense.t, others[-1][-1]
+    d, pose = found
+    if not _decided_by_chance(d) and not (len(reached) and reached[-1] >= asked):
+        yield (
+            f"may pass a singular pose near t = {rows.t[min(dips)]:.6g} s or later, where more than one motion may follow: "
+            "a second run that looks at it was cut short"
+        )
+    elif pose is not None:
+        yield from _sentence(pose, d, rtol)
+
+
+def deepest_dips(log_determinant: np.ndarray) -> list[int]:
+    """The outputs about which the joints may lose rank: the det falls to, or towards, a small part of its neighbours.
+
+    Parameters
+    ----------
+    log_determinant : ndarray, shape (n,)
+        Of [M J^T; J 0].
+    """
+    if len(log_determinant) < 3 or np.ptp(log_determinant) < np.log(1.25 / (DIP + 0.25)):
+        return []  # at a least value the parabola is at most a quarter of its bend below
+    D = np.nan_to_num(np.exp(log_determinant - np.nanmedian(log_determinant)))
+    k = 1 + np.flatnonzero((D[1:-1] <= D[:-2]) & (D[1:-1] < D[2:]))
+    part = _least(D[k - 1], D[k], D[k + 1]) / np.maximum(D[k - 1], D[k + 1])
+    deepest = np.argsort(part, kind="stable")[:MOST_DIPS]
+    return [int(k[i]) for i in deepest if part[i] < DIP]
+
+
+def _least(before: np.ndarray, at: np.ndarray, after: np.ndarray) -> np.ndarray:
+    """The least value of the parabola through three equidistant values, of which that in the middle is less than the last."""
+    slope, bend = (after - before) / 2, (before - 2 * at + after) / 2
+    return at - slope * slope / (4 * bend)
+
+
+def _nearest(poses: PosesOnTheWay, dense: OutputRows, stretches: list[np.ndarray]) -> tuple[float, SingularPose | None]:
+    """The least distance from a singular pose within some stretches, and the pose."""
+    within = poses.at(dense.t, dense.q)
+    return min((_nearest_within(within, dense, stretch) for stretch in stretches), key=lambda found: found[0])
+
+
+def _nearest_within(poses: PosesOnTheWay, dense: OutputRows, stretch: np.ndarray) -> tuple[float, SingularPose | None]:
+    """The distance from a singular pose within a stretch, and the pose."""
+    inside = np.flatnonzero((dense.t >= stretch[0]) & (dense.t <= stretch[-1]))
+    if not len(inside):
+        return 1.0, None
+    D = np.nan_to_num(np.exp(dense.log_determinant[inside] - np.nanmax(dense.log_determinant[inside])))
+    least = int(np.argmin(D))
+    k, d = int(inside[least]), poses.distance(int(inside[least]))
+    if d > NEARLY_SINGULAR:
+        return d, None
+    if D[least] and 0 < least < len(D) - 1 and D[least] < D[least + 1]:
+        d *= float(np.sqrt(max(0.0, _least(*D[least - 1 : least + 2]) / D[least])))
+    return d, poses.nearest(float(dense.t[k]), float(dense.t[k]))
+
+
+def _magnified(d: float) -> float:
+    """How many times as large errors come back from a pose at a distance d."""
+    return float(MAGNIFIED / max(d * d, np.finfo(float).tiny))
+
+
+def _decided_by_chance(d: float) -> bool:
+    """Whether the last digits of the geometry decide what follows a pose at a distance d."""
+    return _magnified(d) * LAST_DIGITS >= DECIDED
+
+
+def _sentence(pose: SingularPose, d: float, rtol: float) -> Iterator[str]:
+    magnified = _magnified(d)
+    where = "; ".join(f"{body} at {place}" for body, place in zip(pose.bodies, pose.poses, strict=True))
+    at = f"near t = {pose.t:.6g} s, where {listed(list(pose.joints))} nearly depend on each other"
+    if _decided_by_chance(d):
+        yield (
+            f"passes a singular pose {at}: more than one motion may follow, and the motion depends on the last digits of the geometry "
+            f"({where})"
+        )
+    elif magnified * rtol >= WORTH_TELLING:
+        decided = "more than one motion may follow, and " if magnified * rtol >= DECIDED else ""
+        yield (
+            f"passes beside a singular pose {at}: {decided}errors come back about {magnified:.1g} times as large; set a smaller rtol "
+            f"({where})"
+        )

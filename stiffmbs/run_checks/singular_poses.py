@@ -1,0 +1,169 @@
+"""Singular poses on the way of a motion: where joints lose rank, and a motion may go on in more than one way."""
+
+from __future__ import annotations
+
+from copy import copy
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from ..compile.state import State
+from ..compile.system import System
+from ..redundancy.loops import loops
+
+NEARLY_SINGULAR = 0.03
+"""Part of the usual smallest singular value below which a pose counts as near a singular one: errors of the motion come
+magnified by its inverse into accelerations and reactions."""
+TAKES_PART = 0.3
+"""Weight, to the largest, with which an equation takes part in the loss of rank."""
+FLOOR, ITERATIONS = 1e-14, 8
+"""Added to squares of singular values so that factors exist at singular poses; steps of inverse iteration."""
+FEW_ROWS = 60
+"""Up to so many equations all singular values take less time than a sparse factorisation (measured: a fifth with 24)."""
+MOST_POSES, USUAL_POSES, EFFORT = 400, 20, 5e8
+"""Poses to look at on a stretch, and on the whole way; products in all decompositions together."""
+
+
+class SingularPose(NamedTuple):
+    """A pose near a singular one.
+
+    Attributes
+    ----------
+    t : float
+        s.
+    joints : tuple of str
+        Whose equations nearly depend on each other there.
+    bodies : tuple of str
+        Of the loops.
+    poses : tuple of str
+        Of those bodies, in words.
+    """
+
+    t: float
+    joints: tuple[str, ...]
+    bodies: tuple[str, ...]
+    poses: tuple[str, ...]
+
+
+class PosesOnTheWay:
+    """The poses of a motion, by how near they are to singular ones.
+
+    The measure is the smallest singular value of J of the joints in loops, with rows of unit length and arms in units
+    of the system's size, compared with the largest such value on the way.
+
+    Parameters
+    ----------
+    system : System
+        Without redundant equations.
+    t : ndarray, shape (n,)
+    q : ndarray, shape (n, n_q)
+    """
+
+    def __init__(self, system: System, t: np.ndarray, q: np.ndarray) -> None:
+        self._system, self._t, self._q = system, t, q
+        self._state = State(system)
+        self._state.q[:] = q[0]
+        self._state.evaluate("motion", float(t[0]))
+        self._loops = loops(system, self._state)
+        rows = np.concatenate([loop.rows for loop in self._loops]) if self._loops else np.empty(0, dtype=int)
+        self._rows = np.sort(rows[system.active[rows]])
+        self._scale = system.per_velocity(1.0, system.size)
+        self._known: dict[int, float] = {}
+
+    def at(self, t: np.ndarray, q: np.ndarray) -> PosesOnTheWay:
+        """Other poses of the same motion, compared with what is usual on the whole way."""
+        others = copy(self)
+        others.usual = self.usual
+        others._t, others._q, others._known = t, q, {}
+        return others
+
+    @cached_property
+    def usual(self) -> float:
+        """The largest measure at a few poses on the way; 0 without loops."""
+        if not self._loops:
+            return 0.0
+        looked_at = np.linspace(0, len(self._t) - 1, min(len(self._t), USUAL_POSES)).astype(int)
+        if len(self._rows) > FEW_ROWS:
+            return max(self._least(int(k))[0] for k in looked_at)
+        values = np.linalg.svd(np.array([self._scaled(int(k)) for k in looked_at]), compute_uv=False)
+        return float(np.sqrt(values[:, -1].max() ** 2 + FLOOR))
+
+    @property
+    def products(self) -> float:
+        """About how many products of numbers the decompositions at all poses looked at so far took."""
+        return float(len(self._known) * len(self._rows) ** 2 * self._system.n_u)
+
+    def distance(self, k: int) -> float:
+        """How far pose k is from a singular one: 0 at one, about 1 at most; always 1 without loops."""
+        if not self._loops:
+            return 1.0
+        if k not in self._known:
+            self._known[k] = self._least(k)[0] / self.usual
+        return self._known[k]
+
+    def at_singular(self, k: int) -> slice:
+        """The poses around k at which accelerations and reactions mean nothing, or a few more; empty where k is sound."""
+        if self.distance(k) >= NEARLY_SINGULAR:
+            return slice(k, k)
+        return slice(self._sound_from(k, -1) + 1, self._sound_from(k, 1))
+
+    def _sound_from(self, k: int, way: int) -> int:
+        """A pose beyond k, by strides that double, that is sound again."""
+        stride = 1
+        while 0 <= k < len(self._t) and self.distance(k) < NEARLY_SINGULAR:
+            k, stride = k + way * stride, 2 * stride
+        return max(-1, min(k, len(self._t)))
+
+    def nearest(self, start: float, end: float) -> SingularPose | None:
+        """The pose between two instants, s, that is nearest to a singular one; None where none comes near."""
+        inside = np.flatnonzero((self._t >= start) & (self._t <= end))
+        effort = max(1, len(self._rows) ** 2 * self._system.n_u)
+        most = int(np.clip(EFFORT / effort, USUAL_POSES, MOST_POSES))
+        inside = inside[:: max(1, len(inside) // most)]
+        distances = [self.distance(int(k)) for k in inside]
+        if not distances or min(distances) > NEARLY_SINGULAR:
+            return None
+        k = int(inside[int(np.argmin(distances))])
+        _, weights = self._least(k)
+        equations = self._rows[weights > TAKES_PART * weights.max()]
+        joints = tuple(dict.fromkeys(self._system.equations[row][0] for row in equations))
+        bodies = sorted({body for loop in self._loops for body in loop.bodies})
+        of_body = self._system.of_body
+        poses = tuple(of_body.pose(self._q[k], body) for body in bodies)
+        return SingularPose(float(self._t[k]), joints, tuple(self._system.bodies[body] for body in bodies), poses)
+
+    def _least(self, k: int) -> tuple[float, np.ndarray]:
+        """The smallest singular value of the scaled J, and the weight of each equation in its vector."""
+        return _smallest(self._scaled(k))
+
+    def _scaled(self, k: int) -> np.ndarray:
+        """The J of pose k with rows of unit length, and arms in units of the size."""
+        self._state.q[:] = self._q[k]
+        self._state.evaluate("motion", float(self._t[k]))
+        J = self._state.matrix("motion", "J")[self._rows]
+        J /= self._scale
+        J /= np.linalg.norm(J, axis=1, keepdims=True)
+        return J
+
+
+def _smallest(J: np.ndarray) -> tuple[float, np.ndarray]:
+    """The smallest singular value of J and the weights of its left vector; that of many rows by inverse iteration on the sparse J J^T."""
+    if len(J) <= FEW_ROWS:
+        vectors, values, _ = np.linalg.svd(J, full_matrices=False)
+        squares = values**2 + FLOOR
+        share = (
+            squares[-1] / squares
+        ) ** ITERATIONS  # what as many steps leave of each vector: of several as small, all count
+        return float(np.sqrt(squares[-1])), np.sqrt(vectors**2 @ share**2)
+    from scipy.sparse import csc_matrix, identity
+    from scipy.sparse.linalg import splu
+
+    rows = csc_matrix(J)
+    factors = splu((rows @ rows.T + FLOOR * identity(len(J))).tocsc())
+    vector = np.random.default_rng(1).standard_normal(len(J))
+    growth = 1.0
+    for _ in range(ITERATIONS):
+        vector = factors.solve(vector / np.linalg.norm(vector))
+        growth = float(np.linalg.norm(vector))
+    return 1 / np.sqrt(growth), np.abs(vector)
