@@ -6,35 +6,49 @@ import click
 
 from .terminal.subcommands import Subcommands
 
-FILES = {
-    "animate": "animate",
-    "bench": "bench",
-    "cache": "cache",
-    "check": "check",
-    "compare": "compare",
-    "convert": "convert",
-    "diff": "exchange.diff",
-    "draw": "draw",
-    "equilibrium": "equilibrium",
-    "examples": "starting.examples",
-    "fit": "fit",
-    "fmu": "exchange.fmu",
-    "init": "starting.init",
-    "kc": "suspension.kc",
-    "loads": "suspension.loads",
-    "modes": "modes",
-    "optimise": "fit",
-    "parts": "starting.parts",
-    "plot": "plot",
-    "report": "report",
-    "response": "response",
-    "run": "run",
-    "schema": "schema",
-    "sensitivities": "sensitivities",
-    "study": "study",
-    "version": "starting.version:show_version",
+SECTIONS = {
+    "Start": {
+        "init": "starting.init",
+        "examples": "starting.examples",
+        "parts": "starting.parts",
+        "schema": "schema",
+    },
+    "Analyses of a scene": {
+        "check": "check",
+        "run": "run",
+        "equilibrium": "equilibrium",
+        "modes": "modes",
+        "response": "response",
+    },
+    "Many runs": {
+        "study": "study",
+        "sensitivities": "sensitivities",
+        "fit": "fit",
+        "optimise": "fit",
+        "compare": "compare",
+        "bench": "bench",
+    },
+    "Suspensions": {
+        "kc": "suspension.kc",
+        "loads": "suspension.loads",
+    },
+    "Pictures and reports": {
+        "draw": "draw",
+        "animate": "animate",
+        "plot": "plot",
+        "report": "report",
+    },
+    "Other programs": {
+        "convert": "convert",
+        "diff": "exchange.diff",
+        "fmu": "exchange.fmu",
+    },
+    "Installation": {
+        "cache": "cache",
+        "version": "starting.version:show_version",
+    },
 }
-"""The subcommands, and where they stand."""
+"""Subcommands and their modules, by section of the help."""
 
 COMPLETION = """\b
 Completion of commands and options by the Tab key, from the next shell on:
@@ -44,7 +58,7 @@ Completion of commands and options by the Tab key, from the next shell on:
 """
 
 
-@click.group(cls=Subcommands, files=FILES, context_settings={"help_option_names": ["-h", "--help"]}, epilog=COMPLETION)
+@click.group(cls=Subcommands, sections=SECTIONS, context_settings={"help_option_names": ["-h", "--help"]}, epilog=COMPLETION)
 @click.version_option(package_name="stiffmbs")
 def main() -> None:
     """Stiff multibody dynamics: motion and joint forces of mechanisms described in scenes.

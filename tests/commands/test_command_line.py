@@ -301,3 +301,11 @@ def test_a_scene_is_run_without_numba(in_folder, tmp_path, monkeypatch):
         [sys.executable, "-c", without, "run", "scene.yaml", "--json"], capture_output=True, text=True
     )
     assert found.returncode == 0, found.stderr
+
+
+def test_help_lists_every_command_in_one_section():
+    lines = CliRunner().invoke(main, ["--help"]).output.splitlines()
+    for name in main.files:
+        (line,) = [line for line in lines if line.split()[:1] == [name]]
+        assert line.startswith(f"  {name} "), line
+    assert [line for line in lines if line.endswith(":") and not line.startswith(" ")][:2] == ["Options:", "Start:"]

@@ -17,13 +17,17 @@ class Subcommands(Process):
 
     Parameters
     ----------
-    files : mapping of str to str
-        The module of each command in `stiffmbs.commands`. Behind a colon its name there, where that is another.
+    sections : mapping of str to mapping of str to str
+        The module of each command in `stiffmbs.commands`, by section of the help.  After a colon the name of the command
+        in the module, if it differs.
     """
 
-    def __init__(self, *arguments: Any, files: Mapping[str, str] | None = None, **options: Any) -> None:
+    def __init__(
+        self, *arguments: Any, sections: Mapping[str, Mapping[str, str]] | None = None, **options: Any
+    ) -> None:
         super().__init__(*arguments, **options)
-        self.files = {} if files is None else files
+        self.sections = sections or {}
+        self.files = {name: module for section in self.sections.values() for name, module in section.items()}
 
     def list_commands(self, context: click.Context) -> list[str]:
         """Names of all commands, in the order of the alphabet."""
@@ -35,6 +39,19 @@ class Subcommands(Process):
             if wanted not in self.commands:
                 self.add_command(with_logging_options(self._loaded(wanted)), wanted)
         return super().get_command(context, name)
+
+    def format_commands(self, context: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the commands with their short help, section by section."""
+        longest = max(map(len, self.files), default=0)
+        for title, names in self.sections.items():
+            commands = {name: self.get_command(context, name) for name in names}
+            rows = [
+                (name.ljust(longest), command.get_short_help_str(formatter.width - longest - 4))
+                for name, command in commands.items()
+                if command is not None
+            ]
+            with formatter.section(title):
+                formatter.write_dl(rows)
 
     def _loaded(self, name: str) -> click.Command:
         module, _, own_name = self.files[name].partition(":")
