@@ -1,1 +1,1 @@
-"""Adams/Solver datasets (.adm): text to statements, statements to data, data to a scene."""
+"""Readers and writers of Adams/Solver datasets (.adm) and command files (.acf)."""

@@ -1,4 +1,4 @@
-"""The arguments of one statement by their full names, and the functions in them that cannot be used there."""
+"""Arguments of a statement by full name, and unsupported functions in them."""
 
 from __future__ import annotations
 
@@ -34,13 +34,13 @@ ANYWHERE = {
 }  # fmt: skip
 IN_REQUESTS = {*ANYWHERE, *COUPLED, *ACCELERATIONS, *ANGULAR_ACCELERATIONS, *ROUNDING_FUNCTIONS, "ORIENT"}
 REPORTED = ("REQUEST", "VARIABLE", "SENSOR")
-"""Statements whose functions may be such as requests alone can use; a VARIABLE that forces use is told when the scene is made."""
+"""Statements that may use request functions; a VARIABLE used by forces is checked when the scene is built."""
 Found = Mapping[str, tuple[int, tuple[str, ...]]]
 
 
 @dataclass(frozen=True)
 class _Heard(Statement):
-    """A statement that keeps what its arguments are read as."""
+    """Statement that records its arguments as they are read."""
 
     heard: dict[str, tuple[int, tuple[str, ...]]] = field(default_factory=dict)
 
@@ -49,7 +49,7 @@ class _Heard(Statement):
 
 
 def arguments_of(statement: Statement, name: str) -> Found:
-    """The arguments of a statement by their full names, each with its line and values; those up to a fault."""
+    """Return the arguments of a statement by full name, with line and values, up to the first fault."""
     heard = _Heard(**{each.name: getattr(statement, each.name) for each in fields(statement)})
     with suppress(DatasetFault):
         read_statement(name, heard, Units())
@@ -57,7 +57,7 @@ def arguments_of(statement: Statement, name: str) -> Found:
 
 
 def unread_functions(name: str, values: Sequence[str]) -> Iterator[str]:
-    """The functions in an argument of a statement that cannot be used there."""
+    """Yield the unsupported functions in an argument of a statement."""
     known = IN_REQUESTS if name in REPORTED else ANYWHERE
     for value in values:
         if not re.search(r"[A-Za-z_]\w*\s*\(", value):

@@ -1,4 +1,4 @@
-"""What becomes of each statement of a dataset, and of each command of the file beside it."""
+"""Listing of the statements of a dataset and the commands of its command file: read, ignored or refused."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ READ, OMITTED, NOT_READ = "read", "left out", "refused"
 
 @dataclass(frozen=True)
 class ListedStatement:
-    """One statement or command.
+    """Statement or command with its treatment.
 
     Attributes
     ----------
@@ -34,15 +34,15 @@ class ListedStatement:
         Its name.
     line : int
     statement : str
-        Its full name and number: ``JOINT/3``.
+        Full name and number: ``JOINT/3``.
     fate : str
         ``read``, ``left out`` or ``refused``.
     reason : str
-        Why it is left out or refused, or what it is read as.
+        Reason why it is left out or refused, or its meaning.
     argument : str
-        Which of its arguments, or which function in them, this is about; empty for the whole statement.
+        Argument, or function in an argument, that this entry is about; empty for the whole statement.
     arguments : tuple of str
-        Those of the whole statement that are read, by their full names.
+        Full names of the arguments that are read, for a whole statement.
     """
 
     file: str
@@ -59,20 +59,20 @@ class ListedStatement:
         return f"{self.file}, line {self.line}, {what}: {self.fate}{told}"
 
     def as_dict(self) -> dict[str, Any]:
-        """An entry of ``statements`` of ``stiffmbs check --json``."""
+        """Return an entry of ``statements`` of ``stiffmbs check --json``."""
         return asdict(self)
 
 
 def listed_statements(path: str | Path) -> tuple[ListedStatement, ...]:
-    """Every statement of a dataset's file and every command of the file beside it, in their order.
+    """Return every statement of a dataset file and every command of its command file, in order.
 
-    Arguments that are left out, and functions that are refused, have entries of their own behind that of their statement.  A
-    statement that is read alone may still not fit the others: that is told when the scene is made.
+    Ignored arguments and refused functions have separate entries after that of their statement. Each statement is
+    checked alone; inconsistencies between statements are reported when the scene is built.
 
     Raises
     ------
     InputError
-        When a file cannot be read as text.
+        If a file cannot be read as text.
     """
     text = file_text(path, ENCODING, ZERO_BYTE)
     faults = {fault.line: fault.reason for fault in faults_of(text)}
@@ -87,7 +87,7 @@ def listed_statements(path: str | Path) -> tuple[ListedStatement, ...]:
 
 
 def _solids(found: Iterable[Statement]) -> set[tuple[str, int]]:
-    """The GRAPHICS that contacts are between, by name and number."""
+    """Return the GRAPHICS used by contacts, by name and number."""
     contacts = (arguments_of(one, "CONTACT") for one in found if keyword(one.word) == "CONTACT")
     named = (value for given in contacts for side in ("IGEOM", "JGEOM") for value in given.get(side, (0, ()))[1])
     return {("GRAPHICS", int(value)) for value in named if value.strip().isdecimal()}

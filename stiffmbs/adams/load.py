@@ -1,4 +1,4 @@
-"""Scenes from datasets."""
+"""Loading of scenes from Adams datasets."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ from .statements.fault import CommandFault, DatasetFault
 from .statements.text import ZERO_BYTE
 
 COMMANDS = ".acf"
-"""How the name of a command file ends."""
+"""Extension of a command file."""
 ENCODING = "latin-1"
-"""Of a dataset that is not UTF-8, as older ones."""
+"""Encoding of a dataset that is not UTF-8."""
 
 
 def read_adams(text: str, changes: Sequence[tuple[str, str]] = (), source: str = "dataset") -> Scene:
@@ -39,27 +39,27 @@ def read_adams(text: str, changes: Sequence[tuple[str, str]] = (), source: str =
     ----------
     text : str
     changes : sequence of (path, text)
-        Values put in place of those that the dataset gives, such as ``("bodies.PART_2.mass", "12 kg")``.
+        Values that replace those of the dataset, such as ``("bodies.PART_2.mass", "12 kg")``.
     source : str
-        What messages call it.
+        Name of the dataset in messages.
 
     Raises
     ------
     InputError
-        When a statement cannot be read, or what the dataset says makes no model; names the line and the statement.
+        If a statement cannot be read, or the dataset is not a valid model; names the line and the statement.
     """
     dataset, found = _scene(text, source)
     return made_scene(found, changes, source, lambda path: _line(dataset, path))
 
 
 def load_adams(path: str | Path, changes: Sequence[tuple[str, str]] = ()) -> Scene:
-    """Read a scene from a dataset's file, and how to run it from the command file beside it; as `read_adams`."""
+    """Load a scene from a dataset file and the command file of the same name, if any; errors as `read_adams`."""
     dataset, found = _commanded(path)
     return made_scene(found, changes, source_name(path), lambda path: _line(dataset, path))
 
 
 def convert_file(path: str | Path) -> str:
-    """The scene of a dataset's file as the text of a scene file, with names of Adams/View as comments.
+    """Return the scene of a dataset file as the text of a scene file, with Adams/View names as comments.
 
     Errors are those of `read_adams`.
     """
@@ -69,19 +69,19 @@ def convert_file(path: str | Path) -> str:
 
 
 def command_file(path: str | Path) -> Path | None:
-    """The command file beside a dataset's file; None where there is none."""
+    """Return the command file of a dataset file; None if there is none."""
     beside = Path(path).with_suffix(COMMANDS)
     return None if beside.stem == STANDARD_INPUT or not os.path.isfile(beside) else beside
 
 
 def other_commands(beside: Path, name: str) -> str:
-    """Read the command file that FILE/COMMAND of another names, from the folder of that one on."""
+    """Read the command file named by FILE/COMMAND, relative to the folder of the file `beside`."""
     path = beside.parent / name
     return file_text(path if path.suffix else path.with_suffix(COMMANDS), ENCODING)
 
 
 def _with_aliases(dataset: Dataset, found: dict[str, Any]) -> dict[str, Any]:
-    """The scene with a comment beside what is called otherwise in Adams/View."""
+    """Return the scene with the Adams/View names of its elements as comments."""
     from ruamel.yaml.comments import CommentedMap
 
     aliases = {f"{x.label.replace('/', '_')}": x.alias for kind in dataset.statements.values() for x in kind.values()}
@@ -110,7 +110,7 @@ def _scene(text: str, source: str, changes: Changes = NO_CHANGES) -> tuple[Datas
 
 
 def _commanded(path: str | Path) -> tuple[Dataset, dict[str, Any]]:
-    """The scene of a dataset's file as the command file beside it says, if there is one."""
+    """Load a dataset file with the changes and simulations of its command file, if any."""
     beside = command_file(path)
     text, source = file_text(path, ENCODING, ZERO_BYTE), source_name(path)
     if beside is None:
@@ -142,7 +142,7 @@ def _commanded(path: str | Path) -> tuple[Dataset, dict[str, Any]]:
 
 
 def _line(dataset: Dataset, path: Sequence[Any]) -> int | None:
-    """The line of the statement that has become the part of the scene which a path leads to."""
+    """Return the line of the statement from which the scene element at a path was made."""
     for name in path[1:2]:
         keyword, _, rest = str(name).rpartition("_")
         number = re.match(r"\d+", rest)

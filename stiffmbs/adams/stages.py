@@ -1,4 +1,4 @@
-"""Segments of a command file as stages of a scene."""
+"""Conversion of command file segments to stages of a scene."""
 
 from __future__ import annotations
 
@@ -14,34 +14,34 @@ from .statements.dataset import Dataset
 from .statements.units import Units
 
 Described: TypeAlias = tuple[Dataset, dict[str, Any]]
-"""A dataset and its scene."""
+"""Dataset and its scene."""
 NOT_OF_A_STAGE = ("run", "notes", "start", "stages")
 POSES = ("position", "orientation", "velocity", "omega", "open")
-"""Of a body: where the first run starts, and the frame of its state."""
+"""Body fields that define the initial state and its frame."""
 BY_INITIAL_POSE = ("COUPLER", "GEAR", "SCREW", "RACKPIN", "CVCV")
-"""Constraints that hold joints as they are at the initial pose, or start from where parts are drawn."""
+"""Constraints that depend on the initial pose of joints or parts."""
 
 
 def followed(
     segments: Sequence[Segment], described: Described, read: Callable[[Segment], Described], source: str
 ) -> dict[str, Any]:
-    """What simulations add to the scene of their dataset: ``run``, ``start``, ``stages`` and ``notes``.
+    """Return the scene sections defined by simulations: ``run``, ``start``, ``stages`` and ``notes``.
 
     Parameters
     ----------
     segments : sequence of Segment
-        One at least.
+        At least one.
     described : (Dataset, mapping)
-        The dataset as the commands before the first simulation leave it, and its scene.
+        The dataset as changed by the commands before the first simulation, and its scene.
     read : callable
-        The same of a segment.
+        Returns dataset and scene of a segment.
     source : str
-        What notes call the command file.
+        Name of the command file in notes.
 
     Raises
     ------
     DatasetFault
-        When a simulation cannot be followed from where the one before it ends.
+        If a simulation cannot be continued from the end of its predecessor.
     """
     dataset, _ = described
     units = dataset.units
@@ -65,7 +65,7 @@ def followed(
 def _staged(
     segments: Sequence[Segment], described: Described, read: Callable[[Segment], Described], source: str, watched: bool
 ) -> dict[str, Any]:
-    """Stages one by one; where sensors may end some (`watched`), those up to a time end there wherever they start."""
+    """Return one stage per simulation; if sensors may end stages (`watched`), an end time stays absolute."""
     stages: list[dict[str, Any]] = []
     notes = [f"{source} asks for {len(segments)} simulation{'s' if len(segments) > 1 else ''}, one after the other"]
     units = described[0].units
@@ -98,7 +98,7 @@ def _in_si(segment: Segment, units: Units) -> dict[str, float]:
 
 
 def _changed(before: Described, now: Described, segment: Segment) -> dict[str, Any]:
-    """What a stage changes of the scene before it."""
+    """Return the changes of a stage relative to the previous scene."""
     patch = merge_patch(_without(before[1]), _without(now[1]))
     _refuse_other_turns(patch.get("joints") or {}, now[0], segment)
     _refuse_other_frames(patch.get("bodies") or {}, segment)
@@ -107,7 +107,7 @@ def _changed(before: Described, now: Described, segment: Segment) -> dict[str, A
 
 
 def _with_all_bodies(patch: Mapping[str, Any]) -> dict[str, Any]:
-    """A patch that leaves every body: the one where two curves have touched goes on alone when these no longer do."""
+    """Return a patch that removes no body: an auxiliary body of a deactivated CVCV moves on freely."""
     bodies = {name: part for name, part in (patch.get("bodies") or {}).items() if part is not None}
     others = {name: part for name, part in patch.items() if name != "bodies"}
     return others | ({"bodies": bodies} if bodies else {})
@@ -126,7 +126,7 @@ def _refuse_other_frames(bodies: Mapping[str, Any], segment: Segment) -> None:
 
 
 def _refuse_other_turns(joints: Mapping[str, Any], dataset: Dataset, segment: Segment) -> None:
-    """Refuse constraints that begin in a pose which is not the initial one and count from that."""
+    """Refuse constraints that depend on the initial pose but start later."""
     for kind in dataset.statements.values():
         for found in kind.values():
             if not joints.get(getattr(found, "name", "")):

@@ -1,1 +1,1 @@
-"""What is kept on disk from one run to the next, bound to its user."""
+"""Cache on disk, bound to its user."""

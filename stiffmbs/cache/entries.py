@@ -1,10 +1,10 @@
-"""Entries that are kept on disk: written once, read back where they are whole and the user's own.
+"""Entries of the cache: written once, read only if they are undamaged and the user's own.
 
-An entry is one file: a message authentication code, then the content.  It is written beside its place and moved there in
-one step, so that a crash or a second process can leave no half of it.  The code is an HMAC (RFC 2104) under a secret of the
-user's.  It covers the entry's name, its content, and what all entries of its folder depend on.  An entry that is damaged,
-stands in another's place, or was made by someone else does not match, and is made again.  Folders and files that others may
-write are refused with a note.
+An entry is one file: a message authentication code, then the content. It is written to a temporary file and moved in
+one step, so that a crash or a second process leaves no partial entry. The code is an HMAC (RFC 2104) with a secret of
+the user. It covers the entry's name, its content, and the dependencies of its folder. An entry that is damaged,
+misplaced, or made by someone else does not match, and is made again. Folders and files that others may write are
+refused with a note.
 """
 
 from __future__ import annotations
@@ -24,18 +24,18 @@ from .own_files import NotOwnError, check_folder, read_own
 
 DIRECTORY_VARIABLE = "STIFFMBS_CACHE"
 PART = ".part-"
-"""How the name of a file begins that is still being written."""
+"""Prefix of the name of a file that is being written."""
 SECRET = "secret"
-"""The file that holds the user's secret."""
+"""File that holds the user's secret."""
 SECRET_SIZE = CODE_SIZE = 32
 NOWHERE = Path(os.devnull) / "nowhere"
-"""A directory in which nothing can be kept."""
+"""Directory in which nothing can be stored."""
 
 
 def cache_directory() -> Path:
-    """Where all entries are kept: the variable STIFFMBS_CACHE, or the user's cache directory.
+    """Return the cache directory: that of STIFFMBS_CACHE, or the user's cache directory.
 
-    A directory that others may write to is refused with a note, and the user's cache directory serves in its place.
+    A directory that others may write to is refused with a note, and the user's cache directory is used instead.
     """
     chosen = os.environ.get(DIRECTORY_VARIABLE)
     if chosen:
@@ -54,7 +54,7 @@ def cache_directory() -> Path:
 
 
 def _fault(directory: Path) -> str:
-    """Why the files in a directory cannot be trusted; nothing where they can."""
+    """Return the reason why the files in a directory cannot be trusted, or an empty string."""
     try:
         check_folder(directory)
     except NotOwnError as fault:
@@ -64,20 +64,20 @@ def _fault(directory: Path) -> str:
 
 @cache
 def _tell(note: str) -> None:
-    """Say once, on standard error where the caller has set up no logging, why something is compiled anew."""
+    """Log a note once, by default to standard error."""
     logging.getLogger(__name__).warning("stiffmbs: note: %s", note)
 
 
 @dataclass(frozen=True)
 class Folder:
-    """Entries that depend on the same.
+    """Entries with the same dependencies.
 
     Attributes
     ----------
     kind : str
-        The first word of the folder's name.
+        First word of the folder's name.
     tag : str
-        What stands for all that its entries depend on besides their names.
+        Digest of the dependencies of its entries apart from their names.
     """
 
     kind: str
@@ -85,11 +85,11 @@ class Folder:
 
     @property
     def path(self) -> Path:
-        """Where its entries are."""
+        """Directory of its entries."""
         return cache_directory() / f"{self.kind}-{self.tag}"
 
     def read(self, name: str) -> bytes | None:
-        """The content of an entry, or None where there is none that is whole, the user's own, and of this name."""
+        """Return the content of an entry, or None if none of this name is undamaged and the user's own."""
         directory = self.path
         if (fault := _fault(directory)) or (secret := _secret(directory.parent)) is None:
             if fault:
@@ -106,7 +106,7 @@ class Folder:
         return content if hmac.compare_digest(self._code(secret, name, content), code) else None
 
     def write(self, name: str, content: bytes) -> None:
-        """Keep an entry; a directory that cannot be written to costs the work once more at the next run, and nothing else."""
+        """Store an entry; if the directory is not writable, nothing is stored."""
         directory = self.path
         with suppress(OSError):
             directory.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
@@ -116,7 +116,7 @@ class Folder:
                 _put(directory / name, self._code(secret, name, content) + content)
 
     def keep_newest(self, most: int, most_bytes: int) -> None:
-        """Where there are more entries, or more bytes in them, remove those that were written first until half as much is left."""
+        """Remove the oldest entries until half the limits remain, if their number or their bytes exceed a limit."""
         with suppress(OSError):
             found = sorted(
                 (entry.stat().st_mtime_ns, entry.stat().st_size, entry.path) for entry in os.scandir(self.path)
@@ -135,17 +135,17 @@ class Folder:
 
 
 def tag_of(*parts: str) -> str:
-    """A short name for what the entries of a folder depend on."""
+    """Return a short digest of the dependencies of a folder's entries."""
     return digest(*parts)[:12]
 
 
 def digest(*parts: str) -> str:
-    """A name for some texts, which may be names of files in any bytes."""
+    """Return a digest of some texts, which may contain arbitrary bytes of file names."""
     return hashlib.sha256("\0".join(parts).encode(errors="surrogateescape")).hexdigest()[:40]
 
 
 def _secret(directory: Path) -> bytes | None:
-    """The user's secret; None where there is none that only the user can read."""
+    """Return the user's secret, or None if there is none that only the user can read."""
     try:
         found = read_own(directory / SECRET, secret=True)
     except NotOwnError as fault:
@@ -155,7 +155,7 @@ def _secret(directory: Path) -> bytes | None:
 
 
 def _new_secret(directory: Path) -> bytes | None:
-    """A new secret, or that of another process which was faster."""
+    """Return a new secret, or that of another process that was faster."""
     with suppress(FileNotFoundError, IsADirectoryError):
         (directory / SECRET).unlink()
     handle, part = tempfile.mkstemp(dir=directory, prefix=PART)
@@ -170,7 +170,7 @@ def _new_secret(directory: Path) -> bytes | None:
 
 
 def _put(path: Path, content: bytes) -> None:
-    """Write a file beside its place, for the user alone, and move it there."""
+    """Write a file for the user alone to a temporary place, and move it."""
     handle, part = tempfile.mkstemp(dir=path.parent, prefix=PART)
     try:
         with os.fdopen(handle, "wb") as file:

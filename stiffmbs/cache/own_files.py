@@ -1,4 +1,4 @@
-"""Files and folders that belong to the user alone: what is loaded as machine code must come from no one else."""
+"""Files and folders that belong to the user alone, as machine code must not be loaded from others."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ OTHERS = stat.S_IRWXG | stat.S_IRWXO
 
 
 class NotOwnError(Exception):
-    """A file or folder that someone else made, or could have put there; the message says what was found."""
+    """File or folder that another user made or could have put there; the message names the reason."""
 
 
 def check_folder(path: Path) -> None:
-    """Refuse a folder in which someone else may replace files.
+    """Refuse a folder in which another user may replace files.
 
     Parameters
     ----------
     path : Path
-        One that does not exist is not refused.
+        A nonexistent one is not refused.
 
     Raises
     ------
@@ -34,25 +34,25 @@ def check_folder(path: Path) -> None:
         return
     if not _mine(found):
         raise NotOwnError(f"it belongs to the user with number {found.st_uid}")
-    # In a sticky folder others may add files, but replace none of the owner's.
+    # In a sticky folder others may add files, but not replace the owner's.
     if found.st_mode & OTHERS_WRITE and not found.st_mode & stat.S_ISVTX:
         raise NotOwnError(f"others may write to it (mode {stat.S_IMODE(found.st_mode):o})")
 
 
 def read_own(path: Path, secret: bool = False) -> bytes | None:
-    """The content of a regular file of the user's; None where there is none or it cannot be read.
+    """Return the content of a regular file of the user; None if it does not exist or cannot be read.
 
     Parameters
     ----------
     path : Path
-        A symbolic link is not followed, and no pipe or device is waited for.
+        Symbolic links are not followed; pipes and devices do not block.
     secret : bool
-        Whether others may not read it either.
+        Whether to refuse files that others may read.
 
     Raises
     ------
     NotOwnError
-        When something else stands there, or others may have written it.
+        When it is not a regular file, or others may have written it.
     """
     flags = os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_CLOEXEC", 0)
     try:

@@ -1,4 +1,4 @@
-"""The package's own files that entries of the cache depend on, and digests of what stands in them."""
+"""Source files of the package on which cache entries depend, and their digests."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ NOT_READ = "__pycache__"
 
 
 def digest_of(files: Iterable[Path]) -> str:
-    """A name for the contents of some files, in their order."""
+    """Return a digest of the contents of some files, in their order."""
     found = hashlib.sha256()
     for file in files:
         found.update(file.read_bytes() + b"\0")
@@ -20,19 +20,19 @@ def digest_of(files: Iterable[Path]) -> str:
 
 
 def python_files(folder: Path) -> list[Path]:
-    """The modules in a folder, by name."""
+    """Return the modules in a folder, sorted by name."""
     return [folder / name for name in sorted(os.listdir(folder)) if name.endswith(PYTHON)]
 
 
 def files_within(package: Path) -> Iterator[Path]:
-    """All files of a package, by name."""
+    """Yield all files of a package, sorted by name."""
     for place, folders, names in os.walk(package):
         folders[:] = sorted(set(folders) - {NOT_READ})
         yield from (Path(place, name) for name in sorted(names))
 
 
 def modules_within(package: Path, folder: str) -> Iterator[Path]:
-    """The modules in all folders of a name within a package, and in the folders of these, by name."""
+    """Yield the modules in all folders of a name within a package, and in their subfolders, sorted by name."""
     for place, folders, names in os.walk(package):
         folders[:] = sorted(set(folders) - {NOT_READ})
         if folder in Path(place).relative_to(package).parts:

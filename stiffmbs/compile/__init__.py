@@ -1,1 +1,1 @@
-"""From a description to a `System`: equations derived by SymPy, kernels as machine code, residuals from tables."""
+"""Compilation of a model to a `System`: equations derived with SymPy, kernels in machine code."""

@@ -1,4 +1,4 @@
-"""Which coordinates and velocities a body has, in the plane and in space."""
+"""Coordinates and velocities of planar and spatial bodies."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from .quaternions import CONJUGATE, rotation_vector, times, times_vector
 
 @dataclass(frozen=True)
 class BodyKind:
-    """The coordinates q, velocities u and accelerations u' of one body, by name.
+    """Names of the coordinates q, velocities u and accelerations u' of one body.
 
-    The first `linear` of each belong to its centre of mass, in ground axes; q' = Z(q) u.
+    The first `linear` of each belong to the centre of mass, in ground axes; q' = Z(q) u.
 
     Attributes
     ----------
@@ -22,9 +22,9 @@ class BodyKind:
         2 or 3.
     positions, velocities, accelerations : tuples of str
     reactions : tuple of str
-        The components of a force and a torque on it.
+        Components of force and torque.
     ground, ground_turn : tuples of float
-        The coordinates of the ground, and what kernels share of its orientation.
+        Coordinates of the ground, and its orientation values in the array `turn`.
     """
 
     dimensions: int
@@ -37,46 +37,46 @@ class BodyKind:
 
     @cached_property
     def n_q(self) -> int:
-        """Coordinates of a body."""
+        """Number of coordinates of a body."""
         return len(self.positions)
 
     @cached_property
     def n_u(self) -> int:
-        """Velocities of a body."""
+        """Number of velocities of a body."""
         return len(self.velocities)
 
     @cached_property
     def linear(self) -> int:
-        """How many of its coordinates, and of its velocities, are those of the centre of mass."""
+        """Number of coordinates, and of velocities, of the centre of mass."""
         return self.dimensions
 
     @property
     def turn_stride(self) -> int:
-        """Numbers in the array `turn` for each coordinate."""
+        """Entries of the array `turn` per coordinate."""
         return len(self.ground_turn) // self.n_q
 
     def pose(self, q: np.ndarray, body: int) -> str:
-        """The orientation of one body in words, from the coordinates of all."""
+        """Return the orientation of one body as text, from the coordinates of all."""
         own = q[self.n_q * body : self.n_q * (body + 1)]
         if self.dimensions == 2:
             return f"{own[2]:.4g} rad"
         return f"quaternion ({', '.join(f'{part:.4g}' for part in own[3:])})"
 
     def place(self, q: np.ndarray, body: int) -> str:
-        """Where one body is and how it is turned, in words, from the coordinates of all."""
+        """Return position and orientation of one body as text, from the coordinates of all."""
         own = q[self.n_q * body : self.n_q * (body + 1)]
         centre = f"({', '.join(f'{part:.6g}' for part in own[: self.linear])}) m"
         return f"{centre}, {np.degrees(own[2]):.6g} deg" if self.dimensions == 2 else f"{centre}, {self.pose(q, body)}"
 
     def straight(self, n_bodies: int) -> tuple[np.ndarray, np.ndarray]:
-        """The coordinates whose rate is a velocity, and these velocities, by number."""
+        """Return the indices of coordinates whose rate is a velocity, and of these velocities."""
         count = self.n_q if self.n_q == self.n_u else self.linear
         bodies = np.arange(n_bodies)[:, None]
         q, u = self.n_q * bodies + np.arange(count), self.n_u * bodies + np.arange(count)
         return q.ravel(), u.ravel()
 
     def position_rates(self, q: np.ndarray, u: np.ndarray) -> np.ndarray:
-        """q' = Z(q) u; what stands behind the bodies' coordinates is taken to rest."""
+        """Return q' = Z(q) u; the rates of coordinates after those of the bodies are zero."""
         if self.n_q == self.n_u:
             return _with_rest(u, q)
         of_q, of_u = self._parted(q, u)
@@ -87,12 +87,12 @@ class BodyKind:
         return rates
 
     def _parted(self, q: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Coordinates and velocities of the bodies, a row for each: views."""
+        """Return coordinates and velocities of the bodies as views, one row per body."""
         of_u = u.reshape(-1, self.n_u)
         return q[: self.n_q * len(of_u)].reshape(-1, self.n_q), of_u
 
     def moved(self, q: np.ndarray, step: np.ndarray) -> np.ndarray:
-        """The pose after a move that is given as velocities times time; quaternions stay of length 1."""
+        """Return the pose after a displacement given as velocities times time; quaternions remain normalised."""
         if self.n_q == self.n_u:
             return q + _with_rest(step, q)
         there = q.astype(float)
@@ -106,7 +106,7 @@ class BodyKind:
         return there
 
     def move(self, q: np.ndarray, there: np.ndarray) -> np.ndarray:
-        """What takes a pose of the bodies to another, as velocities times time: the inverse of `moved`, shape (n_u,)."""
+        """Return the displacement between two poses as velocities times time, shape (n_u,): the inverse of `moved`."""
         if self.n_q == self.n_u:
             return there - q
         of_q, of_there = q.reshape(-1, self.n_q), there.reshape(-1, self.n_q)
@@ -115,7 +115,7 @@ class BodyKind:
 
 
 def _with_rest(u: np.ndarray, q: np.ndarray) -> np.ndarray:
-    """Rates of the bodies' coordinates, and zeros for what stands behind these."""
+    """Return the rates of the bodies' coordinates, padded with zeros."""
     return u if len(u) == len(q) else np.append(u, np.zeros(len(q) - len(u)))
 
 
@@ -128,7 +128,7 @@ PLANE = BodyKind(
     (0.0, 0.0, 0.0),
     (1.0, 0.0, 0.0),
 )
-"""x, y and the angle phi; shared: cos phi and sin phi, in the places of x and y."""
+"""Planar body: x, y and the angle phi; `turn` holds cos phi and sin phi in the places of x and y."""
 SPACE = BodyKind(
     3,
     ("x", "y", "z", "q0", "q1", "q2", "q3"),
@@ -138,6 +138,6 @@ SPACE = BodyKind(
     (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0),
     (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 2.0, 0.0, 0.0, 0.0, 2.0),
 )
-"""x, y, z and a quaternion p; the angular velocity is that in the body's principal axes.  Shared: the rotation matrix A
-row by row, e = 2 p/|p|^2, and n = 2/|p|^2 (`stiffmbs.compile.machine.native.orientation`)."""
+"""Spatial body: x, y, z and a quaternion p; the angular velocity is in principal axes. `turn` holds the rotation matrix
+A by rows, e = 2 p/|p|^2, and n = 2/|p|^2."""
 BODY_KINDS = {kind.dimensions: kind for kind in (PLANE, SPACE)}

@@ -1,4 +1,4 @@
-"""Python functions that kernels call by address: their values, derivatives, and what they raise."""
+"""Callbacks from kernels to Python functions: values, derivatives and exceptions."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ if TYPE_CHECKING:
 
 _PROTOTYPE = ctypes.CFUNCTYPE(None, ctypes.c_int64, ctypes.c_int64, ctypes.c_int64, ctypes.c_int64, ctypes.c_void_p)
 DIFFERENCE, LEAST_ARGUMENT = 6e-6, 1e-3
-"""Step of central differences, relative to an argument (the cube root of the rounding error), which counts as `LEAST_ARGUMENT` at least."""
+"""Relative step of central differences (cube root of the rounding error), and least magnitude of an argument for it."""
 COMPLEX_STEP = 1e-30
 
 
 class Callback:
-    """A Python function as kernels call it.
+    """Python function called from kernels.
 
     Attributes
     ----------
     address : int
-        Of two words: the address of a C function, and whether a call of it was left unanswered.  The function takes the number of
-        values, the value's index, the argument to differentiate by (-1 for none), the number of arguments, and their address; its
-        answer goes behind them, where nan stands.
+        Address of two words: that of a C function, and a flag for a call without an answer. The function takes the
+        number of values, the value's index, the argument to differentiate by (-1 for none), the number of arguments,
+        and their address; it stores its answer after them, in place of a NaN.
     calls : int
     """
 
@@ -46,9 +46,9 @@ class Callback:
 
     @property
     def fault(self) -> BaseException | None:
-        """What the function raised.  Nothing is called any more from then on, and all values are nan.
+        """Exception of the function. After it, the function is not called and all values are NaN.
 
-        Ctrl-C may come before the first line of `_called`, and ctypes drops it: that call is then left unanswered.
+        Ctrl-C before the first line of `_called` is dropped by ctypes: that call then has no answer.
         """
         return self._raised or (KeyboardInterrupt() if self._words[1] else None)
 
@@ -86,7 +86,7 @@ class Callback:
         return values
 
     def _derivatives(self, x: np.ndarray, count: int) -> np.ndarray:
-        """Shape (count, len(x))."""
+        """Return the Jacobian, shape (count, len(x))."""
         return np.array([self._by(x, k, count) for k in range(len(x))]).T
 
     def _by(self, x: np.ndarray, k: int, count: int) -> np.ndarray:
@@ -101,18 +101,18 @@ class Callback:
 
 
 _KEPT: WeakKeyDictionary[PythonFunction, Callback] = WeakKeyDictionary()
-"""The callback of each function: compiled models hold its address, and through their elements the function."""
+"""Callback of each function, kept because compiled models hold its address."""
 
 
 def callback_of(function: PythonFunction) -> Callback:
-    """The callback of a function, the same each time."""
+    """Return the callback of a function, created once."""
     if function not in _KEPT:
         _KEPT[function] = Callback(function)
     return _KEPT[function]
 
 
 def callbacks(system: System) -> Iterator[tuple[str, Element, PythonFunction, Callback]]:
-    """The Python functions of a system's elements, with the elements and their names."""
+    """Yield the Python functions of a system's elements, with element name, element and callback."""
     for group in system.groups:
         if group.has_functions:
             for name, element in zip(group.names, group.elements, strict=True):
@@ -121,19 +121,19 @@ def callbacks(system: System) -> Iterator[tuple[str, Element, PythonFunction, Ca
 
 
 def has_fault(system: System) -> bool:
-    """Whether one of a system's functions has raised an exception."""
+    """Return True if a function of the system has raised an exception."""
     return any(callback.fault is not None for *_, callback in callbacks(system))
 
 
 class Fault(NamedTuple):
-    """What a Python function raised, and the clause on it, which names the element."""
+    """Exception of a Python function, and a clause that names the element."""
 
     raised: BaseException
     clause: str
 
 
 def fault_of(system: System) -> Fault | None:
-    """The fault of one of a system's functions, None where there is none; they are called again from then on."""
+    """Return the first fault of a system's functions, or None; afterwards the functions are called again."""
     found = None
     for name, element, _, callback in callbacks(system):
         if callback.fault is not None:
@@ -146,7 +146,7 @@ def fault_of(system: System) -> Fault | None:
 
 
 def notes_on_functions(system: System) -> Iterator[str]:
-    """What a user should know of elements whose law is a Python function."""
+    """Yield a note for each element with a Python function as its law."""
     for name, _, function, callback in callbacks(system):
         way = "a complex step" if function.derivatives == "complex_step" else "central differences"
         yield (

@@ -1,4 +1,4 @@
-"""From a model to its `System`: elements sorted by kind, kernels from the cache or newly made, every equation's row."""
+"""Compilation of a model: elements grouped by kind, kernels cached or generated, equations numbered."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from .system import System
 
 
 def compile_model(model: Compilable | ModelBuilder) -> System:
-    """Compile a model: kernels from the cache or newly made, and every term's place.
+    """Compile a model.
 
     Parameters
     ----------
@@ -31,12 +31,12 @@ def compile_model(model: Compilable | ModelBuilder) -> System:
     Returns
     -------
     System
-        What solvers see: sizes, mass, and the terms of all elements.
+        Interface to solvers: sizes, mass, and the terms of all elements.
 
     Raises
     ------
     InputError
-        When an element's equations cannot be compiled; names the element.
+        If an element's equations cannot be compiled; names the element.
     """
     if isinstance(model, ModelBuilder):
         return compile_model(model.data())
@@ -73,7 +73,7 @@ def compile_model(model: Compilable | ModelBuilder) -> System:
 
 
 def kinds_of(model: Compilable) -> list[Kind]:
-    """The kinds of a model's elements, each once."""
+    """Return the distinct kinds of a model's elements."""
     return list(_sorted_elements(model))
 
 
@@ -91,7 +91,7 @@ def _sorted_elements(model: Compilable) -> dict[Kind, list[_Member]]:
 
 
 def _followed(model: Compilable, of_body: BodyKind) -> np.ndarray:
-    """Which velocities coordinates follow."""
+    """Return 1 for each velocity that drives coordinates, 0 for a body's spin about its axis, shape (n_u,)."""
     followed = np.ones((len(model.bodies), of_body.n_u))
     axes = model.spin_axes() if model.dimensions == 3 else {}
     for k, body in enumerate(model.bodies):
@@ -101,7 +101,7 @@ def _followed(model: Compilable, of_body: BodyKind) -> np.ndarray:
 
 
 def _principal_axes(model: Compilable) -> np.ndarray:
-    """The quaternions of spatial bodies' principal axes in their own axes."""
+    """Return the quaternions of spatial bodies' principal axes in their body axes."""
     if model.dimensions == 2:
         return np.empty((len(model.bodies), 0))
     return np.array([body.principal_axes() for body in model.bodies.values()])
@@ -123,7 +123,7 @@ def _record(kind: Kind, name: str, place: str) -> KindRecord:
 def _rows(
     sorted_elements: Mapping[Kind, list[_Member]], records: Mapping[Kind, KindRecord]
 ) -> tuple[dict[str, int], list[tuple[str, str]], list[bool]]:
-    """The first row of each joint, and for each row its joint and equation and whether it has a position form."""
+    """Return the first row of each joint, and joint, equation name and holonomic flag of each row."""
     first: dict[str, int] = {}
     equations: list[tuple[str, str]] = []
     holonomic: list[bool] = []
@@ -140,7 +140,7 @@ def _rows(
 
 
 class _Places:
-    """Where bodies, equations, counters of turns and states stand in a system; counters are given out one after the other."""
+    """Indices of bodies, equations, turn counters and states in a system; counters are assigned consecutively."""
 
     def __init__(
         self,
@@ -159,7 +159,7 @@ class _Places:
         self._counter = n_q * len(bodies)
 
     def index(self, data: ElementData, first_number: int, n_counters: int) -> list[int]:
-        """An element's row of `Group.index`."""
+        """Return an element's row of `Group.index`."""
         counters = range(self._counter, self._counter + n_counters)
         self._counter += n_counters
         bodies = (place for body in data.bodies for place in self._of_body[body])

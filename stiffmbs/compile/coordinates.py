@@ -1,4 +1,4 @@
-"""Which coordinates a solver integrates, and how the others follow from them."""
+"""Independent coordinates, and relations of the others to them."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from .system import System
 FIXED = -1
 
 
-@dataclass(frozen=True, eq=False)  # arrays have no one truth value: two are the same if they are one object
+@dataclass(frozen=True, eq=False)  # array comparison has no single truth value: compare by identity
 class Coordinates:
-    """Every coordinate is independent, moves in a constant ratio with one that is, or stands still.
+    """Independent coordinates, coordinates in a constant ratio with one, and fixed coordinates.
 
     q_k = offset_k + ratio_k q_l with l = leader_k; the offsets are those of any pose that satisfies the constraints.
     Velocities likewise.
@@ -22,12 +22,12 @@ class Coordinates:
     Attributes
     ----------
     independent_of : ndarray of int, shape (n_q,)
-        The coordinate that each moves with, itself where it is independent; `FIXED` for those that stand still.
+        Leader of each coordinate, itself if independent; `FIXED` for fixed coordinates.
     ratio : ndarray, shape (n_q,)
     u_independent_of, u_ratio : ndarrays, shape (n_u,)
-        The same for velocities.
+        Leaders and ratios of velocities.
     satisfied : ndarray of bool, shape (n_c,)
-        The equations that are satisfied whatever the independent coordinates do.
+        Equations satisfied for any values of the independent coordinates.
     """
 
     independent_of: np.ndarray
@@ -38,7 +38,7 @@ class Coordinates:
 
     @cached_property
     def independent(self) -> np.ndarray:
-        """Which coordinates are independent, shape (n_q,)."""
+        """Mask of the independent coordinates, shape (n_q,)."""
         return self.independent_of == np.arange(len(self.independent_of))
 
     @cached_property
@@ -48,23 +48,23 @@ class Coordinates:
 
     @cached_property
     def independent_u(self) -> np.ndarray:
-        """Which velocities are independent, shape (n_u,)."""
+        """Mask of the independent velocities, shape (n_u,)."""
         return self.u_independent_of == np.arange(len(self.u_independent_of))
 
     def relation(self, name: str) -> tuple[np.ndarray, np.ndarray]:
-        """Leaders and ratios of the coordinates (``q``) or velocities (``u``)."""
+        """Return leaders and ratios of the coordinates (``q``) or velocities (``u``)."""
         return (self.independent_of, self.ratio) if name == "q" else (self.u_independent_of, self.u_ratio)
 
     def state(self, q: np.ndarray, u: np.ndarray) -> np.ndarray:
-        """The independent coordinates, then the independent velocities."""
+        """Return the independent coordinates followed by the independent velocities."""
         return np.concatenate([q[self.independent], u[self.independent_u]])
 
     def offset(self, q: np.ndarray) -> np.ndarray:
-        """The offsets of all coordinates, from a pose."""
-        return q - self.ratio * q[self.independent_of]  # the ratio of what stands still is zero
+        """Return the offsets of all coordinates from a pose."""
+        return q - self.ratio * q[self.independent_of]  # the ratio of a fixed coordinate is zero
 
 
 def all_independent(system: System) -> Coordinates:
-    """Coordinates without any relation: the constraint equations hold them together."""
+    """Return coordinates without relations: constraint equations hold them together."""
     q, u = np.arange(system.n_q), np.arange(system.n_u)
     return Coordinates(q, np.ones(len(q)), u, np.ones(len(u)), np.zeros(system.n_c, dtype=bool))

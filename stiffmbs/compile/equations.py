@@ -1,4 +1,4 @@
-"""A formulation of one system, compiled to flat lists, which `stiffmbs.compile.machine.native.evaluate` runs."""
+"""Compilation of a formulation to flat lists for `stiffmbs.compile.machine.native.evaluate`."""
 
 from __future__ import annotations
 
@@ -16,21 +16,21 @@ from .terms import TERM_SETS
 
 ABSENT = -1
 FEW = 0.5
-"""Part of all slots below which those that entries begin do not matter: a dense matrix is cleared as a whole."""
+"""Fraction of slots that start with an entry below which the whole matrix is cleared instead."""
 
 
 class AlongMotion(NamedTuple):
-    """What kinetic energy and damping are computed from along the motion.
+    """Data for kinetic energy and damping along the motion.
 
     Attributes
     ----------
     arrays : dict of str to ndarray
-        For compiled code (`stiffmbs.solve.native.tables.steps.ACCUMULATED_ERRORS`), each with one more number at its end: independent
-        velocities with the masses of all that move with them, and the entries of f_u in the values of the matrix's set.
+        Arrays for compiled code (`stiffmbs.solve.native.tables.steps.ACCUMULATED_ERRORS`), each padded by one number:
+        places of the independent velocities, masses that move with them, and entries of f_u in the matrix values.
     n, n_damped : int
-        How many of either.
+        Number of independent velocities and of entries of f_u.
     follows, ratio : ndarrays, shapes (n_u,)
-        Among the independent velocities the number of that which each velocity moves with, and by which factor.
+        Index of the independent velocity that each velocity follows, and the ratio.
     """
 
     arrays: dict[str, np.ndarray]
@@ -41,25 +41,25 @@ class AlongMotion(NamedTuple):
 
 
 class Equations:
-    """A formulation of one system, compiled: where each unknown stands, and the lists for residual and matrix.
+    """Compiled formulation of one system: positions of the unknowns, and lists for residual and matrix.
 
     Parameters
     ----------
     formulation : Formulation
     system : System
     coordinates : Coordinates, optional
-        Which coordinates are unknowns; all by default.  The equations of the others are added to those of the
-        coordinates that they move with (virtual work: N^T r(N z) with q = offset + N z).
+        Independent coordinates; all by default. The equations of dependent coordinates are added to those of their
+        leaders (virtual work: N^T r(N z) with q = offset + N z).
     place : ndarray of int, shape (n,), optional
-        Where each unknown of the natural order (kind after kind) stands instead.
+        Position of each unknown of the natural order (kind after kind).
 
     Attributes
     ----------
     n : int
         Number of unknowns.
     at : dict of str to ndarray
-        Where each kind of unknown stands in the vector of unknowns, `ABSENT` where it does not: coordinates that are
-        not independent, multipliers of redundant and satisfied equations, and mu of equations that have no position form.
+        Position of each kind of unknown in the vector of unknowns. `ABSENT` are dependent coordinates, multipliers of
+        redundant and satisfied equations, and mu of nonholonomic equations.
     pattern : tuple of ndarrays
         Row and column of each slot of the matrix, by columns.
     """
@@ -87,21 +87,21 @@ class Equations:
         self._compile_matrix()
 
     def reordered(self, place: np.ndarray) -> Equations:
-        """The same equations with the unknowns in another order."""
+        """Return the equations with reordered unknowns."""
         return Equations(self.formulation, self.system, self.coordinates, place)
 
     def start_from(self, q: np.ndarray) -> None:
-        """Take the offsets of dependent coordinates from a pose that satisfies the constraints."""
+        """Set the offsets of dependent coordinates from a pose that satisfies the constraints."""
         self._offset[:] = self.coordinates.offset(q)
 
     @cached_property
     def independent(self) -> np.ndarray:
-        """Where the independent coordinates, then their velocities, stand among the unknowns."""
+        """Positions of the independent coordinates, then of their velocities, among the unknowns."""
         carried = self.coordinates
         return np.concatenate([self.at["q"][carried.independent], self.at["u"][carried.independent_u]])
 
     def states(self, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """All coordinates and velocities from those that `independent` lists, one state in each row."""
+        """Return all coordinates and velocities from those of `independent`, one state per row."""
         count = self.coordinates.count
         q, u = rows[:, :count], rows[:, count:]
         if count == self.system.n_q:
@@ -109,15 +109,15 @@ class Equations:
         return self._offset + self._led("q", q), self._led("u", u)
 
     def _led(self, name: str, rows: np.ndarray) -> np.ndarray:
-        """How all coordinates or velocities move with the independent ones."""
+        """Return all coordinates or velocities, without offsets, from the independent ones."""
         place, ratio = self._leads[name]
-        if not rows.shape[1]:  # nothing moves
+        if not rows.shape[1]:  # no independent coordinates
             return np.zeros((len(rows), len(place)))
         return ratio * rows[:, place]
 
     @cached_property
     def _leads(self) -> dict[str, tuple[np.ndarray, np.ndarray]]:
-        """The place among the independent ones of what each coordinate and velocity moves with, and the ratio."""
+        """Index of the leader of each coordinate and velocity among the independent ones, and the ratio."""
         found = {}
         for name in ("q", "u"):
             independent_of, ratio = self.coordinates.relation(name)
@@ -126,14 +126,14 @@ class Equations:
         return found
 
     def _carried(self, name: str, own: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Where entries that belong to rows, columns or operands of a kind stand among the unknowns, and their factors."""
+        """Return the positions of a kind's entries among the unknowns, and their factors."""
         if name not in ("q", "u"):
             return self.at[name][own], np.ones(len(own))
         independent_of, ratio = self.coordinates.relation(name)
         return np.where(independent_of[own] == FIXED, ABSENT, self.at[name][independent_of[own]]), ratio[own]
 
     def _block(self, term_set: str, name: str, rows: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Source, row and column of a block's entries."""
+        """Return source, row and column of a block's entries."""
         system = self.system
         base, _, part = name.removesuffix(".T").partition(":")
         constants = system.constants(term_set)
@@ -203,7 +203,7 @@ class Equations:
 
     @cached_property
     def along_motion(self) -> AlongMotion:
-        """What kinetic energy and damping are computed from along the motion."""
+        """Data for kinetic energy and damping along the motion."""
         independent_of, ratio = self.coordinates.relation("u")
         place, term = self.at["u"], self.system.term(self.formulation.matrix_set, "f_u")
         moving, independent = independent_of != FIXED, self.coordinates.independent_u
@@ -221,7 +221,7 @@ class Equations:
         )  # fmt: skip
 
     def used(self) -> dict[str, np.ndarray]:
-        """For the sets of the residual and of the matrix, which groups of the system write values that are read."""
+        """Return the groups whose values are used, for the term sets of the residual and of the matrix."""
         residual_set, matrix_set = self.formulation.residual_set, self.formulation.matrix_set
         groups = {residual_set: self._writing(residual_set, self._r_source)}
         of_matrix = self._writing(matrix_set, self._source)
@@ -240,7 +240,7 @@ class Equations:
 
     @cached_property
     def _index(self) -> dict[str, np.ndarray]:
-        """Where compiled code finds coordinates and multipliers among the unknowns."""
+        """Positions of coordinates and multipliers among the unknowns, for compiled code."""
         empty = np.zeros(1, dtype=np.int64)
         lists: dict[str, np.ndarray] = {}
         for name in ("q", "u"):
@@ -254,12 +254,12 @@ class Equations:
         return {name: np.ascontiguousarray(part, dtype=np.int64) for name, part in lists.items()}
 
     def table(self, slots: np.ndarray | None = None) -> tuple[np.ndarray, list[np.ndarray]]:
-        """The table for compiled code, and the arrays that must live as long as it.
+        """Return the table for compiled code, and the arrays that must live as long as it.
 
         Parameters
         ----------
         slots : ndarray of int, optional
-            Where each slot of the pattern stands in the solver's matrix; its own order by default.
+            Position of each slot of the pattern in the solver's matrix; its own order by default.
         """
         slot = self._slot if slots is None else np.ascontiguousarray(slots[self._slot], dtype=np.int32)
         n_slots = len(self.pattern[0]) if slots is None else int(slots.max()) + 1
@@ -281,14 +281,15 @@ class Equations:
 def entry_lists(
     slot: np.ndarray, source: np.ndarray, constant: np.ndarray, cj: np.ndarray, n_slots: int
 ) -> dict[str, np.ndarray | int]:
-    """Entries of a matrix as compiled code adds them up: those that slots begin with, others of slots that do not depend on cj, then the rest.
+    """Return the matrix entries in their order of addition.
 
-    Slots that no entry begins are cleared: those that `m_bare` lists, or all (`n_cleared`).
+    First entries of slots independent of cj come first, then other entries of these slots, then those of other slots.
+    Slots without a first entry are cleared: those in `m_bare`, or all (`n_cleared`).
     """
     late = np.zeros(n_slots, dtype=bool)
     late[slot[cj != 0]] = True
     begins = np.full(n_slots, -1)
-    begins[slot[::-1]] = np.arange(len(slot))[::-1]  # of equal indices the last assignment counts: the first entry
+    begins[slot[::-1]] = np.arange(len(slot))[::-1]  # for equal indices the last assignment counts: the first entry
     begun = (begins >= 0) & ~late
     first = begins[begun] if np.count_nonzero(begun) >= FEW * n_slots else begins[:0]
     bare = np.flatnonzero(~begun).astype(np.int32) if len(first) else slot[:0]

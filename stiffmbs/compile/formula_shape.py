@@ -1,4 +1,4 @@
-"""The shape of a formula: its text without numbers, bodies, measures and tables."""
+"""Shape of a formula: its text without numbers, bodies, measures and tables."""
 
 from __future__ import annotations
 
@@ -21,30 +21,30 @@ if TYPE_CHECKING:
     from .kind import Compilable, ElementData
 
 Shape: TypeAlias = tuple[Any, ...]
-"""Which equations a field makes, without its numbers."""
+"""Structure of a field's equations without its numbers."""
 
 ShapeOf: TypeAlias = Callable[[Any, "Compilable", "ElementData"], Shape]
-"""The shape of any value, whose data are appended."""
+"""Function that returns the shape of a value and appends its data."""
 REACTION = "reaction"
-"""Before the number of a joint's reaction in a formula's shape."""
+"""Prefix of the index of a joint reaction in a formula's shape."""
 STATE = "state"
-"""Before the slot of a state in a formula's shape."""
+"""Prefix of the slot of a state in a formula's shape."""
 TAKEN_OUT = "taken_out"
-"""Under which a formula keeps what placeholders stand for in it."""
+"""Cache key of a formula's extracted values."""
 OWN = "own_"
-"""Before the name of a coordinate that is seen in a body's own axes, which need not be its principal ones."""
+"""Prefix of a coordinate in a body's own axes, which may differ from its principal axes."""
 
 
 @dataclass(frozen=True)
 class Part:
-    """A part of a formula.
+    """Part of a formula.
 
     Attributes
     ----------
     number : int
-        The same for parts that say the same word for word.
+        Equal for parts with the same text.
     constant : bool
-        Whether it holds neither time, coordinates, measures, states nor the field's own variables.
+        True without time, coordinates, measures, states and the field's variables.
     """
 
     number: int
@@ -52,7 +52,7 @@ class Part:
 
 
 class FormulaParts:
-    """What is known of the parts of a formula; each is looked at once.
+    """Parts of a formula, each analysed once.
 
     Parameters
     ----------
@@ -66,7 +66,7 @@ class FormulaParts:
         self._numbers: dict[tuple[object, ...], int] = {}
 
     def of(self, node: ast.expr) -> Part:
-        """A part by its node in the formula's tree."""
+        """Return the part of a node in the formula's tree."""
         if id(node) not in self._known:
             self._known[id(node)] = self._read(node)
         return self._known[id(node)]
@@ -94,11 +94,11 @@ class FormulaParts:
 
 
 class FormulaShape(ast.NodeVisitor):
-    """Takes numbers, bodies, measures and tables out of a formula.
+    """Visitor that extracts numbers, bodies, measures and tables from a formula.
 
-    Bodies become ``b0.x``, states ``state0``, variables ``v0``, measures ``measure0``, tables ``table0(...)``, and every part that is
-    constant one number ``p0``; whole exponents stay, as they decide about the derivatives.  What a formula repeats word
-    for word is the same once more, numbers included: the road's phase in a sine and in a cosine is then computed once.
+    Bodies become ``b0.x``, states ``state0``, variables ``v0``, measures ``measure0``, tables ``table0(...)``. Every
+    constant part becomes a number ``p0``, except integer exponents, which determine the derivatives. Parts with the
+    same text share one placeholder, so common subexpressions are computed once.
     """
 
     def __init__(self, formula: Formula, model: Compilable, data: ElementData, shape_of: ShapeOf) -> None:
@@ -112,7 +112,7 @@ class FormulaShape(ast.NodeVisitor):
         self._parts = FormulaParts(formula)
 
     def shape(self) -> Shape:
-        """The formula's shape; its numbers and markers are appended to the data."""
+        """Return the formula's shape; append its numbers and markers to the data."""
         text = self._read() if self.formula.states else self._read_once()
         self.data.numbers += self.numbers
         measures = tuple(
@@ -130,13 +130,13 @@ class FormulaShape(ast.NodeVisitor):
         return ("formula", text, counts, measures, *([reactions] if reactions else []))
 
     def _read(self) -> str:
-        """What is left of the formula once numbers, markers and tables are taken out."""
+        """Return the formula with placeholders for numbers, markers and tables."""
         return ast.unparse(self.visit(self.formula.tree))
 
     def _read_once(self) -> str:
-        """The same of a formula without states, kept with it: studies compile the same formulas again and again.
+        """Return the same for a formula without states, cached in the formula for repeated compilation.
 
-        The slots of bodies follow from those that an element has before.
+        The slots of bodies depend on those that the element already has.
         """
         kept, before = self.formula.kept, (TAKEN_OUT, tuple(self.data.bodies))
         if before not in kept:
@@ -150,7 +150,7 @@ class FormulaShape(ast.NodeVisitor):
         return str(text)
 
     def visit(self, node: ast.AST) -> Any:
-        """A placeholder for a number, and the number noted."""
+        """Replace a constant part by a placeholder, and record its value."""
         assert isinstance(node, ast.expr)
         part = self._parts.of(node)
         if part.constant:
@@ -173,7 +173,7 @@ class FormulaShape(ast.NodeVisitor):
         return ast.UnaryOp(node.op, self.visit(node.operand))
 
     def visit_Call(self, node: ast.Call) -> ast.AST:
-        """A placeholder for a measure, and the measure noted."""
+        """Replace a measure, reaction or table call by a placeholder, and record it."""
         if is_measure(node):
             self.measures.append((node.func.id, measured_markers(node)))  # type: ignore[attr-defined]
             return ast.Name(f"measure{len(self.measures) - 1}")
@@ -196,7 +196,7 @@ class FormulaShape(ast.NodeVisitor):
         return node if node.id == TIME else ast.Name(f"v{self.formula.variables.index(node.id)}")
 
     def _inlined(self, output: Formula) -> ast.AST:
-        """The shape of another formula that stands in this one."""
+        """Return the shape of another formula used in this one."""
         inner = FormulaShape(output, self.model, self.data, self._shape_of)
         inner.numbers, inner.measures, inner.tables, inner.reactions = (
             self.numbers,

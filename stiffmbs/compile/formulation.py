@@ -1,7 +1,7 @@
-"""Residuals and matrices written as tables of blocks, as in the textbook.
+"""Residuals and matrices as tables of blocks, as in textbooks.
 
-Each line of a residual is a block of the system (M, J, f, ...) times a vector of unknowns or of their derivatives, each
-line of a matrix a block in its rows and columns.  Nothing else is needed for a solver (`stiffmbs.compile.equations`).
+Each line of a residual is a block of the system (M, J, f, ...) times a vector of unknowns or of their derivatives; each
+line of a matrix is a block with its rows and columns. A solver needs nothing else (`stiffmbs.compile.equations`).
 """
 
 from __future__ import annotations
@@ -13,11 +13,11 @@ from typing import NamedTuple
 class Product(NamedTuple):
     """One line of a residual: in `rows`, factor * block @ operand.
 
-    `rows` and `operand` are names of unknowns (``q u mu lam``, ``x`` for algebraic states by themselves); an operand with a prime is a derivative; a vector
-    block (``f``, ``C``, ``V``, ``gamma``) has none.  ``I`` is a unit matrix, ``E`` one
-    without the rows of algebraic states, ``Z`` takes u to q', ``Z_q`` is
-    d(Z u)/dq, ``E_mu`` and ``E_lam`` are the relaxations of the rows, ``.T`` transposes, ``:rates`` keeps rows without a
-    position form, ``:turning`` those of quaternions.
+    `rows` and `operand` are names of unknowns (``q u mu lam``, ``x`` for algebraic states). An operand with a prime is
+    a derivative; a vector block (``f``, ``C``, ``V``, ``gamma``) has no operand. ``I`` is the identity, ``E`` the
+    identity without the rows of algebraic states; ``Z`` maps u to q', ``Z_q`` is d(Z u)/dq; ``E_mu`` and ``E_lam`` are
+    the relaxations of the rows. ``.T`` transposes, ``:rates`` keeps nonholonomic rows, ``:turning`` those of
+    quaternions.
     """
 
     rows: str
@@ -44,15 +44,15 @@ class Formulation(NamedTuple):
     name : str
         As in the settings of a run.
     unknowns : tuple of str
-        Of ``q u mu lam x``.
+        Some of ``q u mu lam x``.
     residual_set, matrix_set : str
-        The term sets that residual and matrix are made of.
+        Term sets of residual and matrix.
     residual : sequence of Product
     matrix : sequence of Block
     tested : tuple of str
-        Unknowns whose error the integrator controls.
+        Unknowns under error control.
     integrated : bool
-        Whether the unknowns mu and lam are integrals of the multipliers, which then are their derivatives.
+        True if the unknowns mu and lam are integrals of the multipliers.
     """
 
     name: str

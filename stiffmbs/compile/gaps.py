@@ -1,4 +1,4 @@
-"""Violations of constraint equations as lengths and angles: how far one body must move, or turn, for an equation to hold."""
+"""Constraint violations as lengths and angles: displacement or rotation of one body that satisfies an equation."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ import numpy as np
 from .state import State
 
 MOST_MOVES, CLOSED, TINY = 60, 1e-12, 1e-300
-"""Newton steps, the part of the first violation at which an equation holds, and the smallest derivative."""
+"""Limit of Newton steps, relative violation at which an equation is satisfied, and smallest derivative."""
 
 
 class Gap(NamedTuple):
-    """A violation and its unit, empty for an equation of states alone."""
+    """Violation and its unit, empty for an equation of states only."""
 
     size: float
     unit: str
@@ -23,15 +23,15 @@ class Gap(NamedTuple):
 
 
 def position_gap(state: State, t: float, row: int) -> Gap:
-    """Return the translation of one body, or its rotation, after which one equation of positions holds.
+    """Return the translation or rotation of one body that satisfies one position equation.
 
-    An equation may have any unit, as (d . d - L^2)/(2 L) of a rod. Newton's steps move the body on which the equation depends
-    most, along its derivative.
+    An equation may have any unit, as (d . d - L^2)/(2 L) of a rod. Newton's method moves the body with the largest
+    derivative, along that derivative.
 
     Parameters
     ----------
     state : State
-        Its coordinates are those of the violation, and stay.
+        Its coordinates violate the equation; they are restored.
     t : float
         s.
     row : int
@@ -63,7 +63,7 @@ def position_gap(state: State, t: float, row: int) -> Gap:
 
 
 def velocity_gap(state: State, t: float, row: int, violation: float) -> Gap:
-    """Return the velocity of one body that makes up for a violation of one equation of velocities."""
+    """Return the velocity of one body that corrects a violation of one velocity equation."""
     state.evaluate("motion", t)
     columns, unit = _moved_body(state, row)
     slope = float(np.linalg.norm(state.matrix("motion", "J")[row, columns])) if unit else 1.0
@@ -71,7 +71,7 @@ def velocity_gap(state: State, t: float, row: int, violation: float) -> Gap:
 
 
 def _moved_body(state: State, row: int) -> tuple[np.ndarray, str]:
-    """Return the columns of the body's translation, or of its rotation where no translation matters, and the unit."""
+    """Return the columns of the body's translation, or of its rotation if no translation matters, and the unit."""
     system = state.system
     count = system.of_body.n_u * len(system.bodies)
     along = np.abs(state.matrix("motion", "J")[row, :count])

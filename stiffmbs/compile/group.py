@@ -1,4 +1,4 @@
-"""The elements of one kind in a compiled model, and where the entries of their terms stand in the whole."""
+"""Elements of one kind in a compiled model, and the positions of their term entries in the system."""
 
 from __future__ import annotations
 
@@ -16,35 +16,35 @@ from .terms import TERM_AXES
 
 @dataclass(frozen=True)
 class Group:
-    """The elements of one kind.
+    """Elements of one kind.
 
     Attributes
     ----------
     names : tuple of str
-        Element by element.
+        Names of the elements.
     elements : list of Element
-        Those of these names; may be changed together with their numbers, as inputs are looked through by their formulas.
+        Elements in that order; may be replaced together with their numbers, as inputs are found through their formulas.
     of_body : BodyKind
         Coordinates and velocities of the bodies.
     index : ndarray of int, shape (count, 2 * bodies + 1 + joints + states + counters)
-        Offsets of each body in q and u (the ground's are past the end), of the element's first number, of the
-        first row of each joint that it refers to, and of its states and its counters of turns in q.
+        Offsets of each body in q and u (past the end for the ground) and of the element's first number. First row of
+        each joint that it refers to. Offsets of its states and turn counters in q.
     numbers : ndarray
-        Kernel parameters and tables, element after element; may be changed in place.
+        Kernel parameters and tables by element; may be changed in place.
     first_row : int
-        Of the first element's equations.
+        First row of the first element's equations.
     count : int
         Number of elements.
     entries : mapping of str to int
-        Number of entries that one element has in each term.
+        Number of entries of one element in each term.
     bodies : ndarray of int, shape (count, bodies)
-        Numbers of the bodies that each element acts on; the ground's is behind the last body's.
+        Indices of the bodies that each element acts on; the ground's follows the last body's.
     states, counters : ndarrays of int, shapes (count, states), (count, counters)
-        Numbers of the coordinates that are states of each element, and of those that count turns for it.
+        Indices in q of each element's states and turn counters.
     has_inputs, has_functions : bool
-        Whether the elements have formulas or tables, and whether they have Python functions.
+        True if the elements have formulas or tables, or Python functions.
     has_law : bool
-        Whether they have breakpoints, formulas or tables.
+        True if they have breakpoints, formulas, tables or Python functions.
     """
 
     kind: Kind
@@ -80,31 +80,31 @@ class Group:
 
     @property
     def first_behind(self) -> int:
-        """The first column of `index` that leads to coordinates behind those of the bodies."""
+        """First column of `index` for coordinates after those of the bodies."""
         return 2 * self.kind.n_bodies + 1 + self.kind.n_joints
 
     @property
     def keeps_energy(self) -> bool:
-        """Whether none of the elements brings anything into kinetic + potential energy, wherever it moves."""
+        """True if no element changes kinetic + potential energy."""
         if self.record.losses is None:
             return False
         first = self.index[:, 2 * self.kind.n_bodies]
         return not self.numbers[first[:, None] + np.array(self.record.losses, dtype=np.int64)[None, :]].any()
 
     def placed(self, term: str, first: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Source, row and column of a term's entries, element after element.
+        """Return source, row and column of a term's entries by element.
 
         Parameters
         ----------
         term : str
             One of `stiffmbs.compile.terms.TERM_AXES`.
         first : int
-            Where the first of its values stands among those of its set.
+            Position of its first value among those of its set.
 
         Returns
         -------
         ndarrays of int, shape (count * entries,)
-            Places among the values, and rows and columns in the whole; those of the ground are past the end.
+            Positions among the values, and system rows and columns; those of the ground are past the end.
         """
         axes = TERM_AXES[term]
         pattern = np.array(self.record.patterns.get(term, ()), dtype=np.int64).reshape(-1, 2)
@@ -115,11 +115,12 @@ class Group:
         return source.ravel(), row.ravel(), column.ravel()
 
     def coordinates(self, own: np.ndarray) -> np.ndarray:
-        """Numbers in the whole of the elements' own coordinates, shape (count, len(own)); those of the ground are past the end."""
+        """Return the system indices of the elements' coordinates, shape (count, len(own)); ground indices are past the
+        end."""
         return self._of_bodies("q", own)
 
     def _in_whole(self, axis: str, own: np.ndarray) -> np.ndarray:
-        """Numbers in the whole for the elements' own numbers, shape (count, entries)."""
+        """Return the system indices for the elements' own indices, shape (count, entries)."""
         elements = np.arange(self.count)[:, None]
         match axis:
             case "c":
@@ -133,7 +134,7 @@ class Group:
                 return np.broadcast_to(own[None, :], (self.count, len(own)))
 
     def _of_bodies(self, axis: str, own: np.ndarray) -> np.ndarray:
-        """For coordinates or velocities of the elements' bodies, behind which stand their states and counters of turns."""
+        """Return the system indices of body coordinates or velocities, followed by states and turn counters."""
         width = self.of_body.n_q if axis == "q" else self.of_body.n_u
         body, offset = own // width, own % width
         behind = own - width * self.kind.n_bodies
@@ -141,7 +142,7 @@ class Group:
         return first + np.where(behind < 0, offset, 0)
 
     def _joint_of_column(self, own: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """For columns that count the equations of all joints referred to: which joint, and which of its equations."""
+        """Return joint and equation index for columns that number the equations of all joints referred to."""
         starts = np.cumsum([0, *self.record.joint_equations])
         joint = np.searchsorted(starts, own, side="right") - 1
         return joint, own - starts[joint]

@@ -1,7 +1,7 @@
-"""Kinds: elements with the same equations, apart from their numbers, share one kind and so one kernel.
+"""Kinds: elements with the same equations, apart from their numbers, share one kind and one kernel.
 
-An element's fields are sorted into shapes (which equations) and data (bodies, numbers, tables, rows of joints that it
-refers to), so that a change of a number never changes a kernel.
+An element's fields are split into shapes (the form of its equations) and data (bodies, numbers, tables, rows of
+joints). A parameter change therefore never changes a kernel.
 """
 
 from __future__ import annotations
@@ -27,18 +27,18 @@ from .formula_shape import FormulaShape, Shape
 from .table_values import spline_data
 
 STATE_RATES = "state_rates"
-"""The field of a joint's kind with the rates of the states in its equations."""
+"""Field of a joint's kind with the rates of the states in its equations."""
 
 
 class Compilable(Protocol):
-    """What compiling asks of a model."""
+    """Interface of a model to the compiler."""
 
     @property
     def bodies(self) -> Mapping[str, Any]: ...
 
     @property
     def dimensions(self) -> int:
-        """2 for a planar model, 3 for one in space."""
+        """2 for a planar model, 3 for a spatial one."""
 
     @property
     def joints(self) -> Mapping[str, Any]: ...
@@ -48,32 +48,32 @@ class Compilable(Protocol):
         ...
 
     def elements(self) -> Iterator[tuple[str, Element]]:
-        """Every joint, force, counter of turns and weight with its name."""
+        """Yield every joint, force, turn counter and weight with its name."""
 
     def state_outputs(self) -> Mapping[str, Formula]:
-        """Formulas that others use by a name."""
+        """Return named formulas used by others."""
 
     def state_values(self) -> Mapping[str, StateValue]:
-        """The states of the user's own."""
+        """Return the user's states."""
 
     def carried(self, marker: Any) -> tuple[str, Any]:
-        """The body that carries a marker, and where it sits on it."""
+        """Return the body that carries a marker, and its placement on it."""
 
     def size(self) -> float:
-        """Of the mechanism at the start, m."""
+        """Return the size of the mechanism at the start, m."""
 
     def spin_axes(self) -> Mapping[str, str]:
-        """The bodies whose quaternions don't follow their spin, and the principal axis of each, ``x``, ``y`` or ``z``."""
+        """Return the bodies whose quaternions exclude their spin, with the spin axis ``x``, ``y`` or ``z``."""
 
 
 @dataclass(frozen=True)
 class Kind:
-    """What elements that share a kernel have in common.
+    """Structure that elements with one kernel have in common.
 
     Attributes
     ----------
     element : type
-        The class that holds the equations.
+        Class with the equations.
     dimensions : int
         2 or 3.
     n_bodies : int
@@ -81,16 +81,16 @@ class Kind:
     n_joints : int
         Joints that it refers to.
     n_states : int
-        States of the user's own that it reads or determines.
+        User states that it reads or determines.
     fields : tuple of (str, Shape)
-        Its fields by name; a shape says of what form a field is, never its numbers.
+        Fields by name; a shape is the form of a field without its numbers.
     spins : tuple of str
-        For each body the principal axis about which its quaternion doesn't turn with it, ``x``, ``y``, ``z`` or none; () where
-        all quaternions do, or the equations ask for no derivative of the pose that would tell.
+        Principal axis of each body about which its quaternion does not rotate, ``x``, ``y``, ``z`` or ''; () if all
+        quaternions rotate with their bodies, or the equations need no derivative of the pose.
     algebraic : tuple of int
-        Slots of the states that have no rate.
+        Slots of the states without a rate.
     n_own : int
-        How many of its states, the first, are the element's own.
+        Number of the element's own states, which come first.
     """
 
     element: type[Element]
@@ -104,7 +104,7 @@ class Kind:
     n_own: int = 0
 
     def holds(self, *forms: str) -> bool:
-        """Whether a field, or one of several values of a field, has one of some forms."""
+        """Return True if a field, or one of its values, has one of the given forms."""
         return any(_holds(shape, forms) for _, shape in self.fields)
 
 
@@ -113,29 +113,29 @@ def _holds(shape: Shape, forms: tuple[str, ...]) -> bool:
 
 
 def with_place(kind: Kind, place: str) -> str:
-    """A kind by its name, and its place among others in brackets where it is known."""
+    """Return the name of a kind, with its place among others in parentheses if known."""
     name = kind.element.kind or kind.element.__name__.lower()
     return f"{name} ({place})" if place else name
 
 
 @dataclass
 class ElementData:
-    """What distinguishes an element from others of its kind.
+    """Data that distinguish an element from others of its kind.
 
     Attributes
     ----------
     places : PlacedMarkers
-        Where markers sit.
+        Placement of markers.
     bodies : list of str
-        By slot; the first is the one on which the reaction is reported.
+        Bodies by slot; the reaction is reported on the first.
     numbers : list of float or Followed
-        Kernel parameters, in the order in which the kind's equations meet them.
+        Kernel parameters in the order of use in the kind's equations.
     tables : list of (int, ndarray)
-        Which of the numbers stands for a table, by its offset in `flat`, and the table's spline data.
+        Index in `numbers` of each table's offset, and the table's spline data.
     joints : list of str
         Joints whose multipliers the equations use.
     states : list of str
-        By slot.
+        States by slot.
     """
 
     places: PlacedMarkers
@@ -146,19 +146,19 @@ class ElementData:
     states: list[str] = field(default_factory=list)
 
     def slot(self, body: str) -> int:
-        """The slot of a body, a new one where it is new."""
+        """Return the slot of a body; add it if new."""
         if body not in self.bodies:
             self.bodies.append(body)
         return self.bodies.index(body)
 
     def state_slot(self, state: str) -> int:
-        """The slot of a state, a new one where it is new."""
+        """Return the slot of a state; add it if new."""
         if state not in self.states:
             self.states.append(state)
         return self.states.index(state)
 
     def flat(self) -> np.ndarray:
-        """Numbers and tables in one row, each table's number being its offset from the start of the row."""
+        """Return numbers and tables in one array; a table's number is its offset in it."""
         numbers = np.array(self.numbers, dtype=float)
         end = len(numbers)
         parts = [numbers]
@@ -169,7 +169,7 @@ class ElementData:
         return np.concatenate(parts)
 
     def marker_shape(self, marker: MarkerReference) -> Shape:
-        """The shape of a marker, whose place is appended to the numbers."""
+        """Return the shape of a marker; append its placement to the numbers."""
         body, numbers = self.places[marker]
         self.numbers += numbers
         return ("marker", self.slot(body))
@@ -178,8 +178,7 @@ class ElementData:
 def sorted_out(
     name: str, element: Element, model: Compilable, places: PlacedMarkers | None = None
 ) -> tuple[Kind, ElementData]:
-    """An element's kind, and what is its own: by its name its states are known, and markers whose places are known are not looked
-    for again."""
+    """Return an element's kind and data; `places` caches the placement of markers."""
     data = ElementData(places=PlacedMarkers(model) if places is None else places)
     own = element.own_states() if isinstance(element, Force) else ()
     data.states += [own_state(name, state) for state in own]
@@ -195,7 +194,7 @@ def sorted_out(
 
 
 def _spins(element: Element, model: Compilable, data: ElementData) -> tuple[str, ...]:
-    """`Kind.spins`: constraints are differentiated by time, and kinematics are derivatives; other forces see no difference."""
+    """Return `Kind.spins`; only constraints and kinematics, which are differentiated by time, need it."""
     if model.dimensions == 2 or not (isinstance(element, Joint) or getattr(element, "turns", False)):
         return ()
     axes = model.spin_axes()
@@ -205,7 +204,7 @@ def _spins(element: Element, model: Compilable, data: ElementData) -> tuple[str,
 
 
 def _rates_of_states(values: Mapping[str, StateValue], model: Compilable, data: ElementData) -> Iterator[Shape]:
-    """The shapes of the rates of all states that are read, also by these rates themselves."""
+    """Yield the shapes of the rates of all states that are read, including by these rates."""
     slot = 0
     while slot < len(data.states):
         name = data.states[slot]
@@ -219,7 +218,7 @@ def _rates_of_states(values: Mapping[str, StateValue], model: Compilable, data: 
 
 
 def _fields(element: Element, model: Compilable, data: ElementData) -> tuple[tuple[str, Shape], ...]:
-    values = vars(element)  # getattr asks pydantic for each
+    values = vars(element)  # getattr would call pydantic for each
     return _parts({name: values[name] for name in type(element).__pydantic_fields__}, model, data)
 
 
@@ -228,7 +227,7 @@ def _parts(values: Mapping[str, Any], model: Compilable, data: ElementData) -> t
 
 
 def _shape(value: Any, model: Compilable, data: ElementData) -> Shape:
-    """The shape of a field's value; its data are appended to `data`."""
+    """Return the shape of a field's value; append its data to `data`."""
     match value:
         case MarkerReference():
             return data.marker_shape(value)

@@ -1,11 +1,10 @@
-"""Zones of the laws that are called with something of the state: where a table, exp or tanh has features of its own.
+"""Intervals of force laws in the state between breakpoints of tables, exp, tanh and similar functions.
 
-A bump of 0.1 m in a table over distance, or a Gaussian of it, may lie between the ends of a step.  The edges here part the
-argument of each law into zones such that within a zone nothing is overlooked: a cubic describes the table, tanh has
-saturated, exp has vanished.  Solvers see to it that no step passes a whole zone (`stiffmbs.solve.native.event_search.within_step`).
-The argument of a sine has no zones: what counts is how far it turns in a step; for a periodic table of few zones both count.
-A law goes on beyond an edge as it was before it for a while, and a step that goes no further has overlooked nothing: a damper
-that swings by a millimetre a second over a knot of its table does not change its law.
+A bump in a table over distance may lie between the ends of a step. Breakpoints divide the argument of each law into
+intervals without hidden features: a cubic describes the table, tanh has saturated, exp has vanished. Solvers ensure
+that no step crosses a whole interval (`stiffmbs.solve.native.event_search.within_step`). A sine has no intervals: its
+phase change per step is limited, as is that of a periodic table with few intervals. A law continues unchanged for a
+distance beyond a breakpoint; a step that ends within it has missed nothing.
 """
 
 from __future__ import annotations
@@ -32,47 +31,46 @@ FIXED = {
     "reciprocal": _on_both_sides(0.0, *2.0 * 4.0 ** np.arange(-20, 21))[1:],
     TURN: np.empty(0),
 }
-"""Edges of functions: of exp, cosh and sinh (exp(-37) is rounding); of tanh (so is 1 - tanh(19)); of atan; of 1/x and other
-negative powers, none at 1, where 1 + x^2 and cos(x) turn round and rounding would decide.  They are graded, so that a step
-that begins near a feature is no longer than what it has seen of it."""
+"""Breakpoints of exp, cosh and sinh (exp(-37) is rounding), tanh (1 - tanh(19) is rounding), atan, and 1/x and other
+negative powers. None of these is at 1, an extremum of 1 + x^2 and cos(x), where rounding would decide. They are graded,
+so that a step near a feature is limited to its size."""
 FEW = 8
-"""Zones in the period of a table up to which its features are as long as parts of the period."""
+"""Number of intervals per period up to which the phase of a periodic table is limited too."""
 DESCRIBED = 1e-3
-"""Part of the range of a table's values up to which one cubic describes pieces of it that then are one zone."""
+"""Error, relative to the range of a table's values, up to which one cubic describes an interval."""
 WITHIN = np.array([0.0, 0.25, 0.5, 0.75, 1.0])
-"""Places within a piece at which that is looked at."""
+"""Sampling points within a piece for that error."""
 SMOOTH = 1e-3
-"""Part of the narrower zone beside an edge of a function over which the function is straight."""
+"""Part of the narrower interval at a breakpoint over which a function is straight."""
 DEPARTED, NOTHING = 1e-3, 1e-9
-"""Departure of a table from its tangent at an edge up to which it goes on as before the edge: part of its change from there, and
-of the range of its values in both zones."""
+"""Allowed departure of a table from its tangent at a breakpoint: relative to its change, and to its range of values."""
 BARELY = 2.0**-20
-"""Part of a zone over which a table goes on in any case: less is rounding of its argument."""
+"""Part of an interval over which a table always continues: less is rounding of its argument."""
 NEARER = 2.0 ** -np.arange(21)
-"""Parts of a zone at which that is looked at."""
+"""Sampling distances for the departure, as parts of an interval."""
 
 
 class Zones(NamedTuple):
-    """Zones of all event functions, in the order of the values of the set ``event_function``.
+    """Intervals of all event functions, in the order of the values of the set ``event_function``.
 
     Attributes
     ----------
     first : ndarray of int, shape (n + 1,)
-        Where the edges of each function begin among all.
+        Index of the first breakpoint of each function.
     edges : ndarray
-        Increasing for each function; of an event function zero alone.
+        Breakpoints in increasing order for each function; zero for an event function.
     overlap : ndarray
-        How far the law goes on beyond each edge, to both sides, as it was before the edge; zero for an event function.
+        Distance on both sides of each breakpoint over which the law continues unchanged; zero for an event function.
     period : ndarray, shape (n,)
-        Of a law that repeats; 0 for others.
+        Period of a law; 0 if it is not periodic.
     turns : ndarray of int
-        Numbers of the functions that are arguments of sines or of periodic tables of few zones.
+        Indices of the functions that are arguments of sines or of periodic tables with few intervals.
     radians : ndarray
-        Of such an argument: 1 for a sine, 2 pi by the period for a table.
+        Radians per unit of such an argument: 1 for a sine, 2 pi divided by the period for a table.
     kinks : ndarray of int, shape (n,)
-        1 for arguments of tables of which an edge is a kink, 0 for others.
+        1 for arguments of tables with a kink, 0 for others.
     zoned : int
-        Number of functions with edges.
+        Number of functions with breakpoints.
     """
 
     first: np.ndarray
@@ -86,7 +84,7 @@ class Zones(NamedTuple):
 
 
 def zones_of(system: System) -> Zones:
-    """The zones of all event functions of a system; those of the last run where its tables have the same numbers."""
+    """Return the intervals of all event functions of a system, cached for unchanged tables."""
     numbers = b"".join(group.numbers.tobytes() for group in system.groups if group.record.laws)
     if system.known_zones.get("numbers") != numbers:
         system.known_zones.update(numbers=numbers, zones=_zones_of(system))
@@ -114,14 +112,14 @@ def _zones_of(system: System) -> Zones:
 
 
 def _names(system: System) -> Iterator[str]:
-    """The name of the zones of each argument, in the order of the arguments."""
+    """Yield the name of the intervals of each argument."""
     for group in system.groups:
         for _ in group.index[:, 2 * group.kind.n_bodies] if group.record.laws else ():
             yield from (name for name, _ in group.record.laws)
 
 
 def _of_arguments(system: System) -> Iterator[tuple[np.ndarray, np.ndarray, float]]:
-    """Edges, overlaps and period for each argument: kind after kind, element after element."""
+    """Yield breakpoints, overlaps and period of each argument, by kind and element."""
     for group in system.groups:
         own = group.index[:, 2 * group.kind.n_bodies] if group.record.laws else ()
         for start in own:
@@ -135,7 +133,7 @@ def _of_arguments(system: System) -> Iterator[tuple[np.ndarray, np.ndarray, floa
 
 
 def _narrower(edges: np.ndarray, period: float = 0.0) -> np.ndarray:
-    """The width of the narrower zone beside each edge; beyond the outermost ones zones have no end, or the law repeats."""
+    """Return the width of the narrower interval at each breakpoint; outermost intervals are infinite or periodic."""
     if not len(edges):
         return edges
     around = edges[0] + period - edges[-1] if period else np.inf
@@ -145,7 +143,7 @@ def _narrower(edges: np.ndarray, period: float = 0.0) -> np.ndarray:
 
 @lru_cache(maxsize=256)
 def _of_table(data: bytes) -> tuple[np.ndarray, np.ndarray, float]:
-    """The edges of a table (`stiffmbs.compile.table_values.spline_data`), their overlaps, and its period."""
+    """Return breakpoints, overlaps and period of a table (`stiffmbs.compile.table_values.spline_data`)."""
     numbers = np.frombuffer(data)
     count = int(numbers[0])
     knots, pieces = numbers[2 : 2 + count], numbers[2 + count :].reshape(-1, 4)
@@ -161,12 +159,12 @@ def _of_table(data: bytes) -> tuple[np.ndarray, np.ndarray, float]:
 
 
 def _has_kinks(edges: np.ndarray, overlap: np.ndarray, period: float) -> bool:
-    """Return True if a law departs from its tangent at an edge at once."""
+    """Return True if a law departs from its tangent immediately at a breakpoint."""
     return bool(np.any((overlap > 0) & (overlap < 4 * BARELY * _narrower(edges, period))))
 
 
 def _overlaps(numbers: np.ndarray, at: np.ndarray, narrower: np.ndarray) -> np.ndarray:
-    """How far from the knots `at` a table keeps, on both sides, to its tangents on the other one."""
+    """Return the distances from the knots `at` over which a table follows the tangents of the other side."""
     knots, level, before, behind = (values[..., None] for values in ends_of(numbers))
     distances = narrower[:, None] * NEARER
     sides = {side: value_of(numbers, knots[at] + side * distances) - level[at] for side in (1.0, -1.0)}
@@ -180,7 +178,7 @@ def _overlaps(numbers: np.ndarray, at: np.ndarray, narrower: np.ndarray) -> np.n
 
 
 def _zones(x: np.ndarray, y: np.ndarray, first: int, end: int, allowed: float) -> Iterator[int]:
-    """The first pieces of the zones between two knots: halved until a cubic describes each."""
+    """Yield the first pieces of the intervals between two knots, halved until a cubic describes each."""
     if end - first == 1 or _described(x, y, first, end, allowed):
         yield first
         return
@@ -190,7 +188,7 @@ def _zones(x: np.ndarray, y: np.ndarray, first: int, end: int, allowed: float) -
 
 
 def _described(x: np.ndarray, y: np.ndarray, first: int, end: int, allowed: float) -> bool:
-    """Whether one cubic is within `allowed` of some pieces."""
+    """Return True if one cubic describes some pieces to within `allowed`."""
     part = slice(first * len(WITHIN), end * len(WITHIN))
     place = 2 * (x[part] - x[part][0]) / (x[part][-1] - x[part][0]) - 1
     powers = np.power.outer(place, np.arange(4))

@@ -1,11 +1,11 @@
-"""Local piecewise cubic interpolation: monotone (PCHIP) and Akima.  SciPy's modules would slow down the start of short runs."""
+"""Local piecewise cubic interpolation: monotone (PCHIP) and Akima. SciPy's modules take longer to import."""
 
 from __future__ import annotations
 
 import numpy as np
 
 UNDEFINED = 1e-9
-"""Differences of slopes, relative to the largest one, below which the weights of both sides are equal."""
+"""Difference of slopes, relative to the largest, below which both sides have equal weights."""
 
 
 def akima_pieces(x: np.ndarray, y: np.ndarray) -> np.ndarray:
@@ -30,8 +30,8 @@ def akima_pieces(x: np.ndarray, y: np.ndarray) -> np.ndarray:
 def monotone_pieces(x: np.ndarray, y: np.ndarray) -> np.ndarray:
     """Return the monotone piecewise cubic interpolant (PCHIP), which does not overshoot.
 
-    Fritsch, Butland, A Method for Constructing Local Monotone Piecewise Cubic Interpolants, SIAM J. Sci. Stat. Comput. 5
-    (1984) 300-304.
+    Fritsch, Butland, A Method for Constructing Local Monotone Piecewise Cubic Interpolants, SIAM J. Sci. Stat. Comput.
+    5 (1984) 300-304.
 
     Parameters
     ----------

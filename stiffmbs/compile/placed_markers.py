@@ -1,4 +1,4 @@
-"""Where the markers of a compiled element in space sit, read back from the numbers of its kernel."""
+"""Placement of markers of a compiled spatial element, from the numbers of its kernel."""
 
 from __future__ import annotations
 
@@ -9,20 +9,20 @@ from .quaternions import rotated
 from .system import System
 
 UP_TO = {"choice": 0, "number": 1, "marker": len(Placement().numbers())}
-"""Numbers of a field of each shape, of those that stand before a marker."""
+"""Count of numbers of a field by shape, for shapes that may precede a marker."""
 MATRIX = slice(3, 12)
-"""A marker's rotation matrix among its numbers, row by row."""
+"""Rotation matrix in a marker's numbers, by rows."""
 
 
 def marker_axes(system: System, name: str, field: str, q: np.ndarray) -> np.ndarray | None:
-    """The axes of a marker as columns in ground axes; None where the element has no such marker.
+    """Return the axes of a marker as columns in ground axes; None if the element has no such marker.
 
     Parameters
     ----------
     name : str
-        Of the element.
+        Element name.
     field : str
-        That holds the marker, such as ``j``.
+        Field with the marker, such as ``j``.
     q : ndarray, shape (n_q,)
         The pose.
     """

@@ -1,6 +1,6 @@
-"""Products of quaternions in arrays, the scalar part first; (..., 4) for quaternions, (..., 3) for vectors.
+"""Quaternion products in arrays, scalar part first; (..., 4) for quaternions, (..., 3) for vectors.
 
-Shoemake, Animating rotation with quaternion curves, SIGGRAPH 1985; conventions as in `stiffmbs.describe.spatial.orientation`.
+Shoemake, Animating rotation with quaternion curves, SIGGRAPH 1985.
 """
 
 from __future__ import annotations
@@ -8,11 +8,11 @@ from __future__ import annotations
 import numpy as np
 
 CONJUGATE = np.array([1.0, -1.0, -1.0, -1.0])
-"""What the parts of a quaternion are multiplied by for the turn back."""
+"""Factors of the components for the conjugate."""
 
 
 def times_vector(p: np.ndarray, w: np.ndarray) -> np.ndarray:
-    """p w for vectors w, taken for quaternions without scalar part."""
+    """Return p w for vectors w as quaternions without scalar part."""
     p0, p1, p2, p3 = p[..., 0], p[..., 1], p[..., 2], p[..., 3]
     w1, w2, w3 = w[..., 0], w[..., 1], w[..., 2]
     scalar = -p1 * w1 - p2 * w2 - p3 * w3
@@ -25,18 +25,18 @@ def times_vector(p: np.ndarray, w: np.ndarray) -> np.ndarray:
 
 
 def times(p: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """p q: the orientation q given in the axes of p."""
+    """Return p q: the orientation q given in the axes of p."""
     return other[..., :1] * p + times_vector(p, other[..., 1:])
 
 
 def rotated(p: np.ndarray, v: np.ndarray) -> np.ndarray:
-    """Vectors of the oriented axes in the axes that p is given in, p v conj(p), for quaternions of length 1."""
+    """Return vectors rotated by unit quaternions, p v conj(p)."""
     across = 2.0 * np.cross(p[..., 1:], v)
     return v + p[..., :1] * across + np.cross(p[..., 1:], across)
 
 
 def rotation_vector(p: np.ndarray) -> np.ndarray:
-    """Axis times angle (at most pi, rad) of the turns p, shape (..., 3)."""
+    """Return axis times angle (at most pi, rad) of rotations p, shape (..., 3)."""
     p = np.where(p[..., :1] < 0, -p, p)
     half = np.linalg.norm(p[..., 1:], axis=-1, keepdims=True)
     return p[..., 1:] * np.where(half > 0, 2 * np.arctan2(half, p[..., :1]) / np.where(half > 0, half, 1.0), 2.0)

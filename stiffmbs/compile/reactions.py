@@ -1,4 +1,4 @@
-"""Forces and torques of joints and force elements, from the multipliers of the block system; and what they report besides."""
+"""Reactions of joints and force elements from the multipliers of the block system, and other element channels."""
 
 from __future__ import annotations
 
@@ -15,25 +15,25 @@ if TYPE_CHECKING:
 
 
 def reactions(system: System, values: np.ndarray) -> dict[str, np.ndarray]:
-    """What each joint and force element does to its first body, and the channels that its kind has besides.
+    """Return the reaction of each joint and force element on its first body, and the other channels of its kind.
 
     Force in ground axes, N, and torque about the element's point, N m; for a joint the generalised force -J^T lam.
 
     Parameters
     ----------
     values : ndarray, shape (n, values)
-        Values of the output terms, one row per instant.
+        Values of the output terms, one row per time.
 
     Returns
     -------
     dict of str to ndarray
-        Channels such as ``"rail.fy"``, shape (n,), for elements that have a kind of their own (weights have none).
+        Channels such as ``"rail.fy"``, shape (n,), for elements with a kind (weights have none).
     """
     return {name: values[:, at] if at >= 0 else np.zeros(len(values)) for name, at in system.reported.items()}
 
 
 def reported_terms(system: System) -> Iterator[tuple[str, int]]:
-    """The channels of `reactions`, and where each stands among the values of the output terms; -1 for one that is zero."""
+    """Yield the channels of `reactions` with their index in the values of the output terms; -1 for zero."""
     for g, group in enumerate(system.groups):
         if group.kind.element.kind:
             yield from _of_term(system, g, group, "reaction", system.of_body.reactions)
@@ -41,7 +41,7 @@ def reported_terms(system: System) -> Iterator[tuple[str, int]]:
 
 
 def _of_term(system: System, g: int, group: Group, term: str, labels: Sequence[str]) -> Iterator[tuple[str, int]]:
-    """The rows of one term of a group's elements by name; what has no entry is zero."""
+    """Yield the rows of one term of a group's elements by name; -1 for rows without an entry."""
     pattern = group.record.patterns.get(term, [])
     first = int(system.places["output"][g, 1 + TERM_SETS["output"].index(term)])
     found = {f"{name}.{label}": -1 for name in group.names for label in labels}

@@ -1,6 +1,6 @@
-"""What compiling a kind leaves behind: the pattern of its terms and the source of its kernels, kept on disk.
+"""Records of derived kinds: patterns of terms and kernel sources, cached on disk.
 
-The record is all that a later run needs, so that SymPy is imported only where a kind is met for the first time.
+A later run needs the record only, so SymPy is imported only for new kinds.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from .symbolic.derive import Derived
 
 RARE = ("all_levels", "all_levels_tangent")
-"""Term sets that one formulation alone uses, index1: a third of the work of all, done when it is first asked for."""
+"""Term sets used by the formulation index1 only; derived on first use, as they are expensive."""
 
 _INDENTED_IMPORT = re.compile(r"^[ \t]+from (\.+)(\w[\w.]*) import", re.MULTILINE)
 
@@ -39,31 +39,30 @@ LOGGER = logging.getLogger(__name__)
 
 @dataclass(frozen=True)
 class KindRecord:
-    """The compiled form of a kind, apart from its machine code.
+    """Compiled form of a kind without its machine code.
 
     Attributes
     ----------
     n_equations, n_holonomic : int
-        Constraint equations of one element, and how many of them, the first, have a position form.
+        Number of constraint equations of one element, and of those with a position form, which come first.
     joint_equations : list of int
-        Equations of each joint that it refers to.
+        Number of equations of each joint that it refers to.
     n_counters : int
-        Angles of one element that count whole turns.
+        Number of turn counters of one element.
     laws : list of (str, int)
-        What each of its arguments is given to: a function of `stiffmbs.compile.law_zones`, or ``table`` and the place of
-        its offset among the element's numbers.
+        Law of each argument: a function of `stiffmbs.compile.law_zones`, or ``table`` and the index of its offset.
     patterns : dict
-        For each term the (row, column) of its entries in the element's own block.
+        (row, column) of the entries of each term in the element's own block.
     sources : dict
-        For each usual term set the source of its kernel; absent where the kind contributes nothing.
+        Kernel source of each common term set; absent if the kind contributes nothing.
     losses : list of int or None
-        Numbers of an element that must be zero for it to keep energy; None where nothing makes that certain.
+        Numbers of an element that must be zero for it to conserve energy; None if unknown.
     variation : list
-        For each entry of C_q its summands: factors, columns and whether bounded (`stiffmbs.compile.symbolic.variation.Summand`).
+        Fields of the `stiffmbs.compile.symbolic.variation.Summand` objects of each entry of C_q.
     removable : list of bool
-        For each equation with a position form whether it may be left out where its derivatives are constant.
+        True for position equations that may be eliminated where their derivatives are constant.
     timed : list of bool
-        For each equation whether time is in it.
+        True for equations that depend on time or states.
     """
 
     n_equations: int
@@ -80,23 +79,23 @@ class KindRecord:
 
     @cached_property
     def entries(self) -> defaultdict[str, int]:
-        """Number of entries that one element has in each term."""
+        """Number of entries of one element in each term."""
         return defaultdict(int, {term: len(pattern) for term, pattern in self.patterns.items()})
 
     def n_operations(self, term_set: str) -> int:
-        """Number of arithmetic operators in the source of a kernel, those of its places among numbers included."""
+        """Return the number of arithmetic operators in the source of a kernel, including index arithmetic."""
         source = self.sources.get(term_set, "")
         return sum(map(source.count, "+-*/"))
 
 
 def record_of(kind: Kind, place: str = "") -> KindRecord:
-    """Read a kind's record from the cache, or derive it and keep it.
+    """Return a kind's record from the cache, or derive and cache it.
 
     Parameters
     ----------
     kind : Kind
     place : str, optional
-        Its place among others that are asked for, such as ``2 of 7 kinds``; told while it is derived.
+        Position in a list, such as ``2 of 7 kinds``; logged while it is derived.
     """
     return _record_of(kind, Description(place))
 
@@ -116,7 +115,7 @@ def _record_of(kind: Kind, place: Description) -> KindRecord:
 
 
 def _read(entry: str) -> KindRecord | None:
-    """A record from the cache; None where there is none that can be read."""
+    """Return a record from the cache; None if missing or unreadable."""
     stored = store.read(entry)
     try:
         return None if stored is None else KindRecord(**json.loads(stored))
@@ -126,7 +125,7 @@ def _read(entry: str) -> KindRecord | None:
 
 @cache
 def source_of(kind: Kind, term_set: str) -> str | None:
-    """The source of a kind's kernel for a term set; None where the kind contributes nothing."""
+    """Return the source of a kind's kernel for a term set; None if the kind contributes nothing."""
     record = record_of(kind)
     if term_set in RARE and any(record.patterns.get(term) for term in TERM_SETS[term_set]):
         return _rare_source(kind, term_set)
@@ -148,7 +147,7 @@ def _rare_source(kind: Kind, term_set: str) -> str:
 
 @lru_cache(maxsize=4)
 def _terms(kind: Kind) -> Derived:
-    """The terms of a kind, for the kernels that are written of it one after the other."""
+    """Return the terms of a kind, cached for successive kernels."""
     from .symbolic.derive import derive
 
     return derive(kind)
@@ -173,8 +172,7 @@ def _derived(kind: Kind) -> KindRecord:
 
 
 def _entry(kind: Kind, *part: str) -> str | None:
-    """The cache's name for everything that the record, or a part of its own, follows from; None where the element's source
-    cannot be read."""
+    """Return the cache name of a record, or a part of it, from all its sources; None if a source cannot be read."""
     classes = [kind.element, *(found for _, shape in kind.fields for found in _classes_in(shape))]
     bases = [base for element in classes for base in element.__mro__ if _says_equations(base)]
     try:
@@ -203,15 +201,15 @@ def _entry(kind: Kind, *part: str) -> str | None:
 
 
 def _says_equations(base: type) -> bool:
-    """Whether a class of an element may state equations: not one such as ``Rod[Marker]``, which only gives a generic class its marker.
+    """Return True if a class may state equations, False for a parametrised generic such as ``Rod[Marker]``.
 
-    The module of such a class is the one that happened to ask for it first.
+    The module of a parametrised class is that of its first use.
     """
     return issubclass(base, Element | Component) and base.__pydantic_generic_metadata__["origin"] is None
 
 
 def _classes_in(shape: Shape) -> Iterator[type]:
-    """The classes of the joints and components that a field, or a formula in it, refers to."""
+    """Yield the classes of the joints and components that a field, or a formula in it, refers to."""
     if shape and shape[0] in ("joint", "component"):
         yield shape[1]
     for part in shape:
@@ -224,20 +222,20 @@ def _is_shipped(element: type) -> bool:
 
 
 def _files(elements: list[type]) -> list[str]:
-    """A digest of the files of classes of this package, and of what their equations may call."""
+    """Return a digest of the files of shipped classes, and of the functions that their equations may call."""
     return [digest_of([*(Path(inspect.getfile(element)) for element in elements), *sorted(_helpers(elements))])]
 
 
 def _equations(kind: Kind) -> list[str]:
-    """The equations of a user's own class as expressions: they may come from any module, variable or file of the user's."""
+    """Return the equations of a user's class as expressions: their sources cannot be traced."""
     from .symbolic.stated import text_of
 
     return [text_of(kind)]
 
 
 def _helpers(elements: list[type]) -> set[Path]:
-    """The files of the functions and classes that elements' equations may call: what their own modules import by name from
-    the same package, at the top or where it is used."""
+    """Return the files of functions and classes that elements' equations may call: members of their modules from this
+    package, and imports inside functions."""
     found = set()
     for module in {element.__module__ for element in elements}:
         package = module.partition(".")[0]
@@ -251,7 +249,7 @@ def _helpers(elements: list[type]) -> set[Path]:
 
 @cache
 def _imported_later(module: str) -> set[Path]:
-    """The files that the functions of a module import from, relative to it."""
+    """Return the files that the functions of a module import from, relative to it."""
     file = Path(inspect.getfile(sys.modules[module]))
     imports = _INDENTED_IMPORT.findall(file.read_text(encoding="utf-8"))
     found = [file.parents[len(dots) - 1].joinpath(*name.split(".")).with_suffix(".py") for dots, name in imports]
@@ -260,7 +258,7 @@ def _imported_later(module: str) -> set[Path]:
 
 @cache
 def _own_files() -> str:
-    """A digest of what derives, and of what elements are described by."""
+    """Return a digest of the modules for derivation and element description."""
     from importlib.metadata import version
 
     here, describe = Path(__file__).parent, Path(__file__).parent.parent / "describe"

@@ -1,4 +1,4 @@
-"""The working memory of one solver on one system."""
+"""Working memory of one solver on one system."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from .terms import TERM_AXES, TERM_SETS
 
 SETS = list(TERM_SETS)
 LEFT_OPEN = 1e-5
-"""What redundant equations, which are left out, may be off by where the others hold: they are given by so many digits.
-In rad, and in m for mechanisms of 1 m and more; relative to the size of smaller ones."""
+"""Tolerance of redundant equations, which are left out: input data have a limited number of digits. In rad and m;
+relative to the size of mechanisms smaller than 1 m."""
 
 
 class State:
@@ -29,11 +29,11 @@ class State:
     Attributes
     ----------
     q, u, a, lam, mu : ndarrays
-        Shapes (n_q,), (n_u,), (n_u,), (n_c,), (n_c,): what the kernels see.
+        Kernel inputs, shapes (n_q,), (n_u,), (n_u,), (n_c,), (n_c,).
     relaxations : ndarray, shape (2 * n_c,)
-        Of each constraint row, mu's and then lam's, that term sets loaded later begin with; `relax` sets them.
+        Relaxations of each constraint row, for mu and then lam, set by `relax`.
     values : dict of str to ndarray
-        For each loaded term set the values that its kernels write, then the system's constants.
+        Kernel values of each loaded term set, followed by the system's constants.
     table : ndarray of int
         Addresses for compiled code (`stiffmbs.compile.machine.native.tables.STATE`).
     """
@@ -74,16 +74,16 @@ class State:
 
     @property
     def evaluations(self) -> int:
-        """How often term sets were evaluated so far, by compiled code as well: a measure of work that no clock disturbs."""
+        """Number of evaluated term sets, including those by compiled code: a machine-independent measure of work."""
         return int(self._evaluated[0])
 
     def restricted(self, used: Mapping[str, np.ndarray]) -> tuple[np.ndarray, list[np.ndarray]]:
-        """A table of the same state in which some term sets leave out groups whose values nobody reads.
+        """Return a table of the same state in which term sets omit groups whose values are unused.
 
         Parameters
         ----------
         used : mapping of str to ndarray of bool
-            For each of these term sets, which have to be loaded, the groups of the system that stay.
+            Groups to keep for each of these term sets, which must be loaded.
 
         Returns
         -------
@@ -98,7 +98,7 @@ class State:
         return self._packed(n_calls, calls_at), [n_calls, calls_at, *kept]
 
     def load(self, term_set: str) -> None:
-        """Make a term set ready for compiled code: its kernels, and memory for its values."""
+        """Load a term set for compiled code: its kernels, and memory for its values."""
         if term_set in self.values:
             return
         system, k = self.system, SETS.index(term_set)
@@ -119,7 +119,7 @@ class State:
         self._values_at[k] = self.values[term_set].ctypes.data
 
     def relax(self, mu: np.ndarray, lam: np.ndarray) -> None:
-        """Set the relaxation of each constraint row, used by the formulations that have one."""
+        """Set the relaxation of each constraint row, for formulations that use it."""
         self.relaxations[: len(mu)], self.relaxations[len(mu) :] = mu, lam
         for term_set, values in self.values.items():
             first = self.system.constants(term_set)["E_mu"]
@@ -127,7 +127,7 @@ class State:
 
     @contextmanager
     def unchanged(self) -> Iterator[None]:
-        """Come back to the present coordinates, velocities and multipliers: an integrator may go on from what they hold."""
+        """Restore coordinates, velocities and multipliers on exit: integrators continue from these values."""
         vectors = (self.q, self.u, self.a, self.lam, self.mu)
         kept = [vector.copy() for vector in vectors]
         try:
@@ -142,21 +142,21 @@ class State:
         self._evaluate(t, SETS.index(term_set), self._at)
 
     def count_anew(self, t: float) -> None:
-        """Set the counters of turns to the very angles that they count."""
+        """Reset the turn counters to their current angles."""
         term = self.system.term("position", "continuous_angle")
         if len(term.row):
             self.evaluate("position", t)
             self.q[term.row] = self.values["position"][term.source]
 
     def vector(self, term_set: str, name: str) -> np.ndarray:
-        """A vector term from the last evaluation of its set, assembled."""
+        """Return a vector term from the last evaluation of its set, assembled."""
         term = self.system.term(term_set, name)
         result = np.zeros(self.system.extent(TERM_AXES[name]))
         np.add.at(result, term.row, self.values[term_set][term.source])
         return result
 
     def matrix(self, term_set: str, name: str) -> np.ndarray:
-        """A matrix term from the last evaluation of its set, dense."""
+        """Return a matrix term from the last evaluation of its set, dense."""
         term = self.system.term(term_set, name)
         result = np.zeros([self.system.extent(axis) for axis in TERM_AXES[name]])
         np.add.at(result, (term.row, term.column), self.values[term_set][term.source])

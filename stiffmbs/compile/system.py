@@ -1,7 +1,7 @@
-"""The compiled model: sizes, mass, and the terms of all elements with their places in the whole.
+"""Compiled model: sizes, mass, and the terms of all elements with their positions in the system.
 
-Solvers see a `System` and no element: the entries of each term, where they stand among the values that kernels
-write, and which equation and coordinate each belongs to.
+Solvers see a `System` but no elements: the entries of each term, their positions among the kernel values, and the
+equation and coordinate of each.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ from .terms import TERM_AXES, TERM_SETS, TURNED
 
 
 class Term(NamedTuple):
-    """Where the entries of a term stand: `source` in the values of its set, `row` and `column` in the whole.
+    """Positions of a term's entries: `source` in the values of its set, `row` and `column` in the system.
 
-    Entries that belong to the ground are left out.
+    Entries of the ground are omitted.
     """
 
     source: np.ndarray
@@ -37,51 +37,51 @@ class Term(NamedTuple):
 
 @dataclass(frozen=True)
 class System:
-    """A compiled model.
+    """Compiled model.
 
     Attributes
     ----------
     bodies : tuple of str
         In the order of their coordinates.
     states : tuple of str
-        Those of the user's own, whose values are the last coordinates.
+        User states, whose values are the last coordinates.
     state_scales : ndarray, shape (states,)
-        Sizes of them that matter.
+        Characteristic magnitudes of the states.
     algebraic : ndarray of bool, shape (states,)
-        Which of them have no rate: an equation determines them at every instant.
+        True for states without a rate, determined by an equation at every time.
     of_body : BodyKind
-        The coordinates and velocities that each of them has.
+        Coordinates and velocities of each body.
     q, u : ndarrays
-        Coordinates (m, rad; quaternions) and velocities at the start, as described.  Behind the bodies' coordinates
-        stand the counters of turns (`stiffmbs.compile.symbolic.continuous_angle`) and the states.
+        Initial coordinates (m, rad; quaternions) and velocities, as described. After the bodies' coordinates come the
+        turn counters (`stiffmbs.compile.symbolic.continuous_angle`) and the states.
     open_rates : ndarray of bool, shape (n_u,)
-        Which velocities at the start are not given, so that constraints decide about them first.
+        True for initial velocities that are not given; constraints determine them first.
     mass : ndarray, shape (n_u,)
-        The diagonal of the mass matrix: masses, and moments of inertia about principal axes.
+        Diagonal of the mass matrix: masses, and moments of inertia about principal axes.
     followed : ndarray, shape (n_u,)
-        0 for angular velocities that their body's quaternion doesn't follow (`stiffmbs.presolve.spinning_bodies`), else 1.
+        0 for angular velocities that a quaternion does not follow (`stiffmbs.presolve.spinning_bodies`), else 1.
     principal_axes : ndarray, shape (bodies, 4)
-        Quaternions of the principal axes in each body's own axes, which results are shown in; (bodies, 0) in the plane.
+        Quaternions of the principal axes in each body's own axes, used by results; (bodies, 0) in the plane.
     groups : tuple of Group
         Elements by kind.
     equations : tuple of (str, str)
         Joint and equation name of each constraint row.
     holonomic, active : ndarrays of bool, shape (n_c,)
-        Which rows have a position form, and which are not redundant and so are solved for.
+        True for rows with a position form, and for rows that are not redundant and therefore solved for.
     size : float
-        Of the mechanism at the start, m.
+        Size of the mechanism at the start, m.
     n_q, n_u, n_c : int
         Numbers of coordinates, velocities and constraint equations.
     n_pose, n_counters : int
-        Coordinates of the bodies, the first of all, and of those that count whole turns of angles.
+        Numbers of body coordinates, which come first, and of turn counters.
     first_state : int
-        The number of the first coordinate that is a state.
+        Index of the first state among the coordinates.
     has_inputs, has_functions : bool
-        Whether an element has a formula or a table, and whether one calls a Python function.
+        True if an element has a formula or a table, or calls a Python function.
     has_laws : bool
-        Whether forces or joints have breakpoints or laws (formulas, tables), which may change within one step.
+        True if forces or joints have breakpoints or laws (formulas, tables), which may change within one step.
     forces_by_reactions : tuple of str
-        The names of the elements whose forces follow reactions, as friction does.
+        Elements whose forces depend on reactions, such as friction.
     """
 
     bodies: tuple[str, ...]
@@ -123,24 +123,23 @@ class System:
         )  # fmt: skip
 
     def per_coordinate(self, linear: float, angular: float) -> np.ndarray:
-        """One number for the coordinates of every centre of mass, and another for those of orientations and all behind them,
-        shape (n_q,)."""
+        """Return one number for centre-of-mass coordinates, and another for all other coordinates, shape (n_q,)."""
         behind = np.full(self.n_q - self.n_pose, angular)
         return np.append(self._per_body(self.of_body.n_q, linear, angular), behind)
 
     @cached_property
     def straight(self) -> tuple[np.ndarray, np.ndarray]:
-        """The coordinates whose rate is a velocity, and these velocities, by number."""
+        """Indices of coordinates whose rate is a velocity, and of these velocities."""
         return self.of_body.straight(len(self.bodies))
 
     @cached_property
     def algebraic_coordinates(self) -> np.ndarray:
-        """The numbers of the coordinates that are algebraic states."""
+        """Indices of the coordinates that are algebraic states."""
         return self.first_state + np.flatnonzero(self.algebraic)
 
     @cached_property
     def following_reactions(self) -> np.ndarray:
-        """The numbers of the algebraic states, among the coordinates, that follow multipliers at once, directly or through others."""
+        """Indices of the algebraic states that depend on multipliers, directly or through others."""
         algebraic, among = self.algebraic_coordinates, self.term("tangent", "rate_q")
         found = algebraic[np.isin(algebraic, self.term("tangent", "rate_lam").row)]
         while True:
@@ -152,12 +151,12 @@ class System:
 
     @cached_property
     def quaternions(self) -> np.ndarray:
-        """The numbers of the coordinates that are parts of quaternions; none in the plane."""
+        """Indices of the coordinates that are quaternion components; empty in the plane."""
         return np.flatnonzero(~np.isin(np.arange(self.n_pose), self.straight[0]))
 
     @cached_property
     def mass_by_coordinate(self) -> np.ndarray:
-        """What the kinetic energy has for half the square of each coordinate's rate, at the least; 0 for those that are not of bodies, shape (n_q,)."""
+        """Smallest inertia of each coordinate in the kinetic energy, shape (n_q,); 0 for coordinates not of bodies."""
         of_bodies = self.mass.reshape(len(self.bodies), self.of_body.n_u)
         linear, angular = np.split(of_bodies, [self.of_body.linear], axis=1)
         flat = self.of_body.n_q == self.of_body.n_u
@@ -165,7 +164,7 @@ class System:
         return np.append(np.hstack([linear, turning]), np.zeros(self.n_q - self.n_pose))
 
     def per_velocity(self, linear: float, angular: float) -> np.ndarray:
-        """One number for the velocities of every centre of mass, and another for angular ones, shape (n_u,)."""
+        """Return one number for centre-of-mass velocities, and another for angular velocities, shape (n_u,)."""
         return self._per_body(self.of_body.n_u, linear, angular)
 
     def _per_body(self, width: int, linear: float, angular: float) -> np.ndarray:
@@ -174,12 +173,12 @@ class System:
         return numbers.reshape(-1)
 
     def move(self, q: np.ndarray, there: np.ndarray) -> np.ndarray:
-        """What takes the bodies from one pose to another, as velocities times time, shape (n_u,)."""
+        """Return the displacement of the bodies between two poses as velocities times time, shape (n_u,)."""
         of_bodies = slice(self.n_pose)
         return self.of_body.move(q[of_bodies], there[of_bodies])
 
     def name_of(self, k: int, labels: tuple[str, ...]) -> str:
-        """Such as ``cart.x``: the body of a coordinate or velocity, and which of a body's labels for these it has."""
+        """Return the name of a coordinate or velocity, such as ``cart.x``, from the labels of a body."""
         if k >= self.first_state:
             return self.states[k - self.first_state]
         if k >= len(labels) * len(self.bodies):
@@ -188,12 +187,12 @@ class System:
 
     @property
     def keeps_energy(self) -> bool:
-        """Whether kinetic + potential energy is constant for certain: no drive, damper, friction or force without a potential."""
+        """True if kinetic + potential energy is constant: no drive, damper, friction or force without a potential."""
         return all(group.keeps_energy for group in self.groups)
 
     @cached_property
     def joint_start(self) -> np.ndarray:
-        """The first row of each joint's equations, and the end of the last."""
+        """First row of each joint's equations, and the end of the last."""
         starts = [
             row for row, (joint, _) in enumerate(self.equations) if row == 0 or joint != self.equations[row - 1][0]
         ]
@@ -201,7 +200,7 @@ class System:
 
     @cached_property
     def places(self) -> dict[str, np.ndarray]:
-        """For each term set and group: the first equation, then each term's first value."""
+        """First equation, then first value of each term, for each term set and group."""
         return {term_set: self._places(term_set) for term_set in TERM_SETS}
 
     def _places(self, term_set: str) -> np.ndarray:
@@ -216,7 +215,7 @@ class System:
         return places
 
     def n_values(self, term_set: str) -> int:
-        """Number of values that the kernels of a set write; the constants stand behind them."""
+        """Return the number of kernel values of a set; constants follow them."""
         return self._numbers_of_values[term_set]
 
     @cached_property
@@ -227,7 +226,7 @@ class System:
         }
 
     def n_operations(self, term_set: str) -> int:
-        """Number of arithmetic operations in the kernels of a set, for estimates of their cost."""
+        """Return the number of arithmetic operations in the kernels of a set, for cost estimates."""
         return self._numbers_of_operations[term_set]
 
     @cached_property
@@ -239,12 +238,12 @@ class System:
 
     @cached_property
     def reported(self) -> dict[str, int]:
-        """The channels of joints and forces, and where each stands among the values of the output terms; -1 for one that is zero."""
+        """Channels of joints and forces with their index in the values of the output terms; -1 for zero."""
         return dict(reported_terms(self))
 
     @cached_property
     def timed(self) -> np.ndarray:
-        """Which equations have time in them, shape (n_c,)."""
+        """Mask of the equations that depend on time or states, shape (n_c,)."""
         rows = np.zeros(self.n_c, dtype=bool)
         for group in self.groups:
             last = group.first_row + group.count * group.record.n_equations
@@ -253,37 +252,37 @@ class System:
 
     @cached_property
     def first_limit(self) -> int:
-        """Where the limits of all forces begin among the values of the set ``event_function``."""
+        """Index of the first force limit among the values of the set ``event_function``."""
         return sum(group.count * group.entries["event_function"] for group in self.groups)
 
     @cached_property
     def n_event_functions(self) -> int:
-        """Number of event functions and limits, which are the first values of the set ``event_function``; arguments of laws follow."""
+        """Number of event functions and limits, the first values of the set ``event_function`` before law arguments."""
         return self.first_limit + sum(group.count * group.entries["limit"] for group in self.groups)
 
     @property
     def has_limits(self) -> bool:
-        """Whether the law of a force ends to hold somewhere."""
+        """True if a force law has a limit of validity."""
         return self.n_event_functions > self.first_limit
 
     @cached_property
     def turning(self) -> np.ndarray:
-        """The numbers of the coordinates that are angles; none in space."""
+        """Indices of the coordinates that are angles; empty in space."""
         flat = self.of_body.n_q == self.of_body.n_u
         return np.arange(self.of_body.linear, self.of_body.n_q * len(self.bodies) if flat else 0, self.of_body.n_q)
 
     @cached_property
     def known_terms(self) -> dict[tuple[str, str], Term]:
-        """Those asked for so far.  A set-up asks for them again and again, a run for few; those of a car take 0.8 MB."""
+        """Cache of requested terms."""
         return {}
 
     @cached_property
     def known_zones(self) -> dict[str, Any]:
-        """The zones of laws (`stiffmbs.compile.law_zones`), and the numbers of the tables that they were found from."""
+        """Cache of the intervals of laws (`stiffmbs.compile.law_zones`), and the numbers of their tables."""
         return {}
 
     def term(self, term_set: str, name: str) -> Term:
-        """The entries of a term in a set, those of the ground left out."""
+        """Return the entries of a term in a set, without those of the ground."""
         if (term_set, name) not in self.known_terms:
             self.known_terms[term_set, name] = self._term(term_set, name)
         return self.known_terms[term_set, name]
@@ -293,27 +292,27 @@ class System:
         axes = TERM_AXES[name]
         first = self.places[term_set][:, 1 + k].tolist()
         parts = [group.placed(name, first[g]) for g, group in enumerate(self.groups) if group.entries[name]]
-        nothing = np.empty(0, dtype=np.int64)  # of a scene without joints, forces and weight
+        nothing = np.empty(0, dtype=np.int64)  # for a scene without joints, forces and weight
         source, row, column = (np.concatenate([nothing, *(part[i] for part in parts)]) for i in range(3))
         inside = (row < self.extent(axes[0])) & (column < (self.extent(axes[1]) if len(axes) > 1 else 1))
         return Term(*(held_once(part[inside]) for part in (source, row, column)))
 
     def extent(self, axis: str) -> int:
-        """How many there are of what a term's rows or columns count (`stiffmbs.compile.terms.TERM_AXES`)."""
+        """Return the size of an axis of a term (`stiffmbs.compile.terms.TERM_AXES`)."""
         return {"q": self.n_q, "u": self.n_u, "c": self.n_c, "l": self.n_c}.get(axis, np.iinfo(np.int64).max)
 
     def kernel(self, term_set: str, group: Group, place: str = "") -> Compiled | None:
-        """The compiled kernel with which a group contributes to a set, if it does; `place` as for `kernel_of`."""
+        """Return the compiled kernel of a group for a set, or None; `place` as for `kernel_of`."""
         return kernel_of(group.kind, term_set, place)
 
     def elements_with_inputs(self) -> Iterator[Element]:
-        """Those in which formulas of time or tables may stand."""
+        """Yield the elements that may have formulas of time or tables."""
         for group in self.groups:
             if group.has_inputs:
                 yield from group.elements
 
     def turned(self, term_set: str) -> np.ndarray:
-        """The first coordinate of each body what is shared of whose orientation the kernels of a set read."""
+        """Return the first coordinate of each body whose shared orientation values the kernels of a set read."""
         read = [
             group.index[:, : 2 * group.kind.n_bodies : 2].ravel()
             for group in self.groups
@@ -323,7 +322,7 @@ class System:
         return np.flatnonzero(np.bincount(bodies)[: self.of_body.n_q * len(self.bodies)])
 
     def constants(self, term_set: str) -> dict[str, int]:
-        """Where the constants stand that follow the values of a set: mass entries, relaxations, a one."""
+        """Return the indices of the constants after the values of a set: mass entries, relaxations, a one."""
         return self._constants[term_set]
 
     @cached_property

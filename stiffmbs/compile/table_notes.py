@@ -13,7 +13,7 @@ from ..describe.table import Table
 from .table_values import parts_of
 
 BEYOND = 0.1
-"""Overshoot, relative to the range of a table's values, that is not noted."""
+"""Overshoot, relative to the range of a table's values, that is not reported."""
 SECTIONS = "joints", "forces", "states"
 CURVES = {"akima": "Akima's cubics", "spline": "a cubic spline"}
 """Interpolations that may overshoot."""

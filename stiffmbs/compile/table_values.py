@@ -1,4 +1,4 @@
-"""Tables as numbers that kernels take, and as functions of arrays."""
+"""Table data for kernels, and tables as functions of arrays."""
 
 from __future__ import annotations
 
@@ -15,21 +15,21 @@ NATURAL, PERIODIC = 0.0, 1.0
 
 
 def spline_data(table: Table) -> np.ndarray:
-    """Return the data of a table that a kernel reads: count, ends, knots, and the coefficients of each piece (highest first).
+    """Return the kernel data of a table: count, ends, knots, and the coefficients of each piece (highest first).
 
-    Splines are those of SciPy, monotone and Akima's cubics of `stiffmbs.compile.local_cubics`; straight lines are pieces without
-    curvature.
+    Splines are those of SciPy, monotone and Akima's cubics those of `stiffmbs.compile.local_cubics`; straight lines are
+    pieces without curvature.
 
     Raises
     ------
     InputError
-        When points are so close that a coefficient is not finite.
+        If points are so close that a coefficient is not finite.
     """
     x, y = np.array(table.table, dtype=float).T
     try:
         with np.errstate(all="ignore"):
             pieces = _pieces(table, x, y)
-    except (ValueError, np.linalg.LinAlgError):  # SciPy finds numbers that are none
+    except (ValueError, np.linalg.LinAlgError):  # SciPy reports non-finite numbers
         pieces = np.full(1, np.nan)
     if not np.all(np.isfinite(pieces)):
         raise InputError(
@@ -41,7 +41,7 @@ def spline_data(table: Table) -> np.ndarray:
 
 
 def _pieces(table: Table, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """The coefficients of each piece, highest first, a column for each."""
+    """Return the coefficients of each piece, highest first, as columns."""
     match table.interpolation:
         case "lines":
             slope = np.diff(y) / np.diff(x)
@@ -58,13 +58,13 @@ def _pieces(table: Table, x: np.ndarray, y: np.ndarray) -> np.ndarray:
 
 
 def curve(table: Table) -> Curve:
-    """The values of a table, as kernels compute them: outside its points it goes on straight, or repeats."""
+    """Return a function of the table's values as computed by kernels: extrapolated linearly, or periodic."""
     data = spline_data(table)
     return lambda arguments: value_of(data, np.asarray(arguments, dtype=float))
 
 
 def value_of(data: np.ndarray, at: np.ndarray) -> np.ndarray:
-    """The values of a table of `spline_data` at an array of arguments."""
+    """Return the values of a table of `spline_data` at an array of arguments."""
     x, pieces = _taken_apart(data)
     if data[1] == PERIODIC:
         at = x[0] + np.mod(at - x[0], x[-1] - x[0])
@@ -77,7 +77,7 @@ def value_of(data: np.ndarray, at: np.ndarray) -> np.ndarray:
 
 
 def ends_of(data: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """The knots of a table of `spline_data`, its values there, and its slopes before and behind each knot."""
+    """Return the knots of a table of `spline_data`, its values, and its slopes before and after each knot."""
     x, pieces = _taken_apart(data)
     h = np.diff(x)
     a, b, c, _ = pieces.T
@@ -89,12 +89,12 @@ def ends_of(data: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.nd
 
 
 def parts_of(table: Table) -> tuple[int, np.ndarray, np.ndarray]:
-    """Number of points, the points, and the coefficients of each piece, highest first."""
+    """Return the number of points, the points, and the coefficients of each piece, highest first."""
     x, pieces = _taken_apart(spline_data(table))
     return len(x), x, pieces
 
 
 def _taken_apart(data: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The points, and the coefficients of each piece."""
+    """Return the points, and the coefficients of each piece."""
     count = int(data[0])
     return data[2 : 2 + count], data[2 + count :].reshape(-1, 4)

@@ -1,4 +1,4 @@
-"""Which element wrote which values of a term set."""
+"""Elements that wrote given values of a term set."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from .terms import TERM_SETS
 
 
 def writer(system: System, term_set: str, at: int) -> str:
-    """The name of the element that writes the value at a place of a set."""
+    """Return the name of the element that writes the value with a given index."""
     group, element = _writer(system, term_set, at)
     return group.names[element]
 
 
 def beyond(system: System, limit: int) -> str:
-    """What is wrong where a limit is passed, a value of the set ``event_function``."""
+    """Return the message for a violated limit, given its index among the values of the set ``event_function``."""
     group, element = _writer(system, "event_function", limit)
     return f"'{group.names[element]}': {group.kind.element.beyond}"  # type: ignore[attr-defined]
 
@@ -32,7 +32,7 @@ def _writer(system: System, term_set: str, at: int) -> tuple[Group, int]:
 
 
 def values_of(system: System, values: np.ndarray, term_set: str, element: str) -> dict[str, np.ndarray]:
-    """The values that one element wrote for each term of a set."""
+    """Return the values that one element wrote for each term of a set."""
     found = {}
     for g, group in enumerate(system.groups):
         if element in group.names:

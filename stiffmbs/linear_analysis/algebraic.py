@@ -1,4 +1,4 @@
-"""Algebraic states put out of linearised equations: 0 = Z_x x + Z_v v + Z_s s + Z_l dlam + Z dz, solved for dz."""
+"""Elimination of algebraic states from linearised equations: 0 = Z_x x + Z_v v + Z_s s + Z_l dlam + Z dz."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ if TYPE_CHECKING:
     from .tangent_space import Linearised
 
 WITHOUT_UNIQUE_VALUES = 1e14
-"""Condition number of Z, relative to its rows, from which on algebraic states have no unique values."""
+"""Condition number of Z with normalised rows from which on algebraic states are not unique."""
 
 
 @dataclass(frozen=True)
 class Algebraic:
-    """How variations of algebraic states follow, and what they act on.
+    """Variations of algebraic states and their effects.
 
     Attributes
     ----------
@@ -26,7 +26,7 @@ class Algebraic:
     inverse : ndarray, shape (algebraic, algebraic)
         Z^-1.
     on_forces, on_rates : ndarrays, shapes (n_u, algebraic), (others, algebraic)
-        What they add to the forces, and to the rates of the other states.
+        Derivatives of the forces, and of the rates of the other states.
     """
 
     is_algebraic: np.ndarray
@@ -35,24 +35,24 @@ class Algebraic:
     on_rates: np.ndarray
 
     def passed_on(self, forces: np.ndarray, rates: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Forces, and rates of the other states, of an input that adds to forces and to the equations of all states."""
+        """Return the forces, and rates of the other states, due to an input on forces and equations of all states."""
         follow = -self.inverse @ rates[self.is_algebraic]
         return forces + self.on_forces @ follow, rates[~self.is_algebraic] + self.on_rates @ follow
 
     def among_all(self, others: np.ndarray) -> np.ndarray:
-        """Rows of the other states among those of all; zero for algebraic ones."""
+        """Return rows of the other states among those of all states, with zeros for algebraic ones."""
         rows = np.zeros((len(self.is_algebraic), others.shape[1]))
         rows[~self.is_algebraic] = others
         return rows
 
 
 def algebraic_of(is_algebraic: np.ndarray, by_states: np.ndarray, rate_by_states: np.ndarray) -> Algebraic:
-    """How algebraic states follow, from the derivatives of forces and rates by all states.
+    """Return the elimination of algebraic states, from the derivatives of forces and rates by all states.
 
     Raises
     ------
     SolverError
-        Where they have no unique values.
+        When they have no unique values.
     """
     own = rate_by_states[np.ix_(is_algebraic, is_algebraic)]
     sizes = np.linalg.norm(own, axis=1)[:, None]
@@ -69,7 +69,7 @@ def algebraic_of(is_algebraic: np.ndarray, by_states: np.ndarray, rate_by_states
 
 
 def without_algebraic(linear: Linearised) -> Linearised:
-    """The same equations in the other states alone."""
+    """Return the linearised equations in the other states only."""
     of = linear.algebraic
     own, others = of.is_algebraic, ~of.is_algebraic
     if not own.any():

@@ -1,7 +1,7 @@
-"""Eigenvalues of a state matrix, with those that are zero told from small ones by the rank of the matrix.
+"""Eigenvalues of a state matrix, with zero eigenvalues separated from small ones by the rank of the matrix.
 
-Rigid body motions have double zeros, which rounding would spread to the root of its size.  A basis of the null space
-splits them off (deflation): with V = (V_1, V_2) and A V_1 = 0 all other eigenvalues are those of V_2^T A V_2.
+Rigid body motions have double zeros, which rounding perturbs to the square root of its size. A basis of the null space
+deflates them: with V = (V_1, V_2) and A V_1 = 0 all other eigenvalues are those of V_2^T A V_2.
 """
 
 from __future__ import annotations
@@ -12,19 +12,19 @@ import numpy as np
 from scipy.linalg import eig, svd
 
 ZERO_SINGULAR = 10 * np.finfo(float).eps
-"""Singular value, relative to rows of length 1 and times their number, that counts as zero."""
+"""Singular value that counts as zero, relative to normalised rows, per row."""
 
 
 @dataclass(frozen=True)
 class Zeros:
-    """The zero eigenvalues of a matrix.
+    """Zero eigenvalues of a matrix.
 
     Attributes
     ----------
     eigenvectors : ndarray, shape (n, k)
-        A basis of its null space.
+        Basis of its null space.
     generalised : ndarray, shape (n, l)
-        Generalised eigenvectors, which the matrix takes there.
+        Generalised eigenvectors.
     """
 
     eigenvectors: np.ndarray
@@ -32,15 +32,15 @@ class Zeros:
 
 
 def eigen(matrix: np.ndarray, n_poses: int, n_states: int = 0) -> tuple[np.ndarray, np.ndarray, Zeros]:
-    """Eigenvalues that are not zero, their eigenvectors as columns, and the zeros.
+    """Return the nonzero eigenvalues, their eigenvectors as columns, and the zeros.
 
     Parameters
     ----------
     matrix : ndarray, shape (n, n)
     n_poses : int
-        Rows of poses, which velocities follow; those are measured over the fastest rate, so that all rows are alike.
+        Rows of poses, followed by those of velocities, which are divided by the fastest rate.
     n_states : int
-        Rows of states, which stand last and are left as they are.
+        Rows of states, which come last and are not scaled.
     """
     end = len(matrix) - n_states
     rate = np.sqrt(np.linalg.norm(matrix[n_poses:end, :n_poses], 2)) if n_poses < end else 0.0
@@ -66,7 +66,7 @@ def _of_length_one(matrix: np.ndarray) -> np.ndarray:
 
 
 def _deflated(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray, list[np.ndarray]]:
-    """Eigenvalues other than zero, eigenvectors, and for each order of generalised eigenvectors at zero a basis."""
+    """Return nonzero eigenvalues, eigenvectors, and a basis of the generalised eigenvectors at zero for each order."""
     n = len(matrix)
     if not np.any(matrix):
         return np.zeros(0), np.zeros((n, 0)), [np.eye(n)] if n else []

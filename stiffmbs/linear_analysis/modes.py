@@ -1,4 +1,4 @@
-"""Natural modes: eigenvalues of the state matrix as frequency and damping, shapes, and which bodies take part."""
+"""Natural modes: frequencies, damping ratios, mode shapes and kinetic energy of each body."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from .eigenvalues import Zeros, eigen
 from .state_space import StateMatrix
 
 NO_MOTION = 1e-12
-"""Displacement, in sizes of the mechanism, or rotation of an eigenvector of length 1 that counts as none."""
+"""Displacement, in sizes of the mechanism, or rotation of a normalised eigenvector that counts as zero."""
 NOT_FREE = 1e-6
 """Relative size of velocities of generalised eigenvectors above which constraints do not leave them free."""
 
 
 class Motion(Enum):
-    """How a mode moves by itself."""
+    """Type of motion of a mode."""
 
     OSCILLATING = "oscillating"
     APERIODIC = "aperiodic"
@@ -29,20 +29,20 @@ class Motion(Enum):
 
 @dataclass(frozen=True)
 class Mode:
-    """One mode: a pair of eigenvalues, or a single real one of states of the user's own.
+    """Mode: a pair of eigenvalues, or a single real one of user-defined states.
 
     Attributes
     ----------
     motion : Motion
-        Oscillating with a conjugate pair, aperiodic with two real eigenvalues (overdamped, or falling over), or a rigid
-        body motion without stiffness, whose eigenvalues are zero; one of the two may differ from zero by damping.
+        Oscillating with a conjugate pair, aperiodic with two real eigenvalues (overdamped or unstable), or a rigid body
+        motion without stiffness, whose eigenvalues are zero; damping may make one of the two nonzero.
     eigenvalues : tuple of complex
-        1/s; the one with positive imaginary part first; one alone where states bring more real ones than go in pairs.
+        1/s; the one with positive imaginary part first. A single one if states add unpaired real eigenvalues.
     shape : ndarray, shape (n_u,), complex
-        Displacements and rotations of all bodies in ground axes; the largest displacement, or rotation times the size of
-        the mechanism, is 1.
+        Displacements and rotations of all bodies in ground axes. The largest displacement, or rotation times the
+        size of the mechanism, is 1.
     participation : dict of str to float
-        The part of each body in the kinetic energy, largest first; their sum is 1.
+        Fraction of the kinetic energy of each body, largest first.
     """
 
     motion: Motion
@@ -57,24 +57,24 @@ class Mode:
 
     @property
     def natural_frequency(self) -> float:
-        """Undamped natural frequency, Hz: the root of |s_1 s_2|, over 2 pi; of one alone |s|, over 2 pi."""
+        """Undamped natural frequency, Hz: sqrt(|s_1 s_2|) / 2 pi, or |s| / 2 pi of a single eigenvalue."""
         product = abs(np.prod(self.eigenvalues))
         return float((np.sqrt(product) if len(self.eigenvalues) > 1 else product) / (2 * np.pi))
 
     @property
     def damping_ratio(self) -> float:
-        """Of the critical damping: -(s_1 + s_2)/2 over the undamped natural frequency; nan for a rigid body motion."""
+        """Damping ratio: -(s_1 + s_2)/2 over the undamped angular frequency; NaN for a rigid body motion."""
         natural = 2 * np.pi * self.natural_frequency
         mean = sum(self.eigenvalues).real / len(self.eigenvalues)
         return float(0.0 - mean / natural) if natural else float("nan")
 
     @property
     def is_stable(self) -> bool:
-        """Whether nothing in it grows exponentially."""
+        """True if no part of the mode grows exponentially."""
         return max(value.real for value in self.eigenvalues) <= 0
 
     def as_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Return the mode as a dictionary for JSON."""
         return {
             "frequency": self.natural_frequency,
             "damping": None if np.isnan(self.damping_ratio) else self.damping_ratio,
@@ -87,7 +87,7 @@ class Mode:
 
 
 def natural_modes(state: StateMatrix, mass: csr_array, bodies: tuple[str, ...], scale: np.ndarray) -> list[Mode]:
-    """The modes of a state matrix, as many as there are degrees of freedom and more of states, by undamped natural frequency.
+    """Return the modes of a state matrix, one per degree of freedom and more of states, by undamped natural frequency.
 
     Parameters
     ----------
@@ -123,8 +123,8 @@ def _without_oscillation(
 ) -> Iterator[Pair]:
     """Pair real eigenvalues: zeros of one rigid body motion, and real eigenvalues with the most similar shapes.
 
-    A further zero belongs to a free motion with a damper, or to a pose variation without a free velocity (rolling constraints).
-    The latter is not a mode.  A nonzero eigenvalue of such a pose variation is not paired, like those of states.
+    A further zero belongs to a free motion with a damper, or to a pose variation without a free velocity (rolling
+    constraints), which is no mode. A nonzero eigenvalue of such a pose variation is not paired, like those of states.
     """
     zero = zeros.eigenvectors.shape[1] + zeros.generalised.shape[1]
     rigid = _rigid_motions(state, zeros, scale)[:, : zero // 2]
@@ -138,7 +138,7 @@ def _without_oscillation(
     likeness = np.array(known).reshape(len(found), len(scale)) / scale
     pairs = list(_alike(likeness))
     others = max(0, state.degrees_of_freedom - int(np.sum(values.imag > 0)) - rigid.shape[1])
-    if state.n_states or len(found) > 2 * others:  # eigenvalues that are not paired
+    if state.n_states or len(found) > 2 * others:  # unpaired eigenvalues
         moving = [pair for pair in pairs if all(np.any(np.abs(likeness[k]) > NO_MOTION) for k in pair)]
         pairs = moving[:others]
         for k in set(range(len(found))) - {k for pair in pairs for k in pair}:
@@ -161,8 +161,7 @@ def _rigid_motions(state: StateMatrix, zeros: Zeros, scale: np.ndarray) -> np.nd
 
 
 def _neutral_poses(state: StateMatrix, zeros: Zeros, rigid: np.ndarray, scale: np.ndarray) -> np.ndarray:
-    """Return the poses of eigenvectors at zero, shape (n_u, eigenvectors), ordered by the contribution of free velocities other than
-    rigid motions."""
+    """Return poses of eigenvectors at zero, shape (n_u, k), in descending order of their non-rigid free velocities."""
     poses = state.poses @ zeros.eigenvectors / scale[:, None]
     if not poses.shape[1]:
         return poses
@@ -178,7 +177,7 @@ def _free_velocities(state: StateMatrix, scale: np.ndarray) -> np.ndarray:
 
 
 def _alike(shapes: np.ndarray) -> Iterator[tuple[int, int]]:
-    """Shapes in pairs, those most similar first (modal assurance criterion)."""
+    """Yield pairs of shapes, the most similar first (modal assurance criterion)."""
     unit = shapes / np.maximum(np.linalg.norm(shapes, axis=1, keepdims=True), np.finfo(float).tiny)
     likeness = np.triu(np.abs(unit @ unit.T), 1) - np.tril(np.ones((len(shapes), len(shapes))))
     for _ in range(len(shapes) // 2):
@@ -192,8 +191,8 @@ def _mode(
     both: tuple[complex, ...], shape: np.ndarray, mass: csr_array, bodies: tuple[str, ...], scale: np.ndarray
 ) -> Mode:
     motion = Motion.OSCILLATING if both[0].imag else Motion.APERIODIC if all(both) else Motion.RIGID
-    sizes = shape / scale * scale[0]  # the first of a body is a displacement
-    if np.max(np.abs(sizes), initial=0.0) <= NO_MOTION:  # of states alone
+    sizes = shape / scale * scale[0]  # the first entry of a body is a displacement
+    if np.max(np.abs(sizes), initial=0.0) <= NO_MOTION:  # states only
         return Mode(motion, both, np.zeros(len(shape), dtype=complex), {})
     shape = shape / sizes[np.argmax(np.abs(sizes))]
     energy = (shape.conj() * (mass @ shape)).real.reshape(len(bodies), -1).sum(axis=1)

@@ -1,4 +1,4 @@
-"""The stability of an equilibrium at rest, and what is free in it: K x + J^T l = w^2 M x, J x = 0 for the lowest w^2."""
+"""Stability of an equilibrium at rest: the lowest w^2 of K x + J^T l = w^2 M x, J x = 0, and its free motions."""
 
 from __future__ import annotations
 
@@ -11,22 +11,22 @@ from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigs, splu
 from .state_space import null_space
 
 MOST_DENSE = 300
-"""Velocities up to which all w^2 are computed (dense matrices)."""
+"""Largest number of velocities for which all w^2 are computed (dense matrices)."""
 STIFFNESS_ROUNDING = 2 * float(np.finfo(float).eps)
-"""Part of the sum of all parts of a motion's stiffness that its w^2 may be off by."""
+"""Error of w^2, relative to the sum of all contributions to a motion's stiffness."""
 BESIDE_IMBALANCE = 100.0
-"""Times the w^2 that what is left of the forces could make."""
+"""Factor on the w^2 that the residual of the forces could cause."""
 LEAST_SHIFT = 1e-14
-"""The least shift, relative to the largest w^2 that a body could have by itself."""
+"""Smallest shift, relative to the largest w^2 of a single body."""
 MOST_FREE, MOST_RESTARTS, ACCURACY = 6, 5, 1e-3
-"""Of Arnoldi's iteration: motions sought at the last shift, restarts, and relative accuracy."""
+"""Arnoldi iteration: motions at the last shift, restarts, and relative accuracy."""
 OWN = 0.05
-"""Part of a shift that a negative w^2 has at the least where that shift is the one nearest to it."""
+"""Smallest magnitude of a negative w^2 that is accepted at a shift, relative to it."""
 
 
 @dataclass(frozen=True)
 class Lowest:
-    """The lowest w^2 of an equilibrium, and their motions.
+    """Lowest w^2 of an equilibrium, and their motions.
 
     Attributes
     ----------
@@ -35,7 +35,7 @@ class Lowest:
     shapes : ndarray, shape (n_u, k)
         Motions, as velocities of all bodies.
     none : ndarray, shape (k,)
-        Up to which each w^2 counts as none.
+        Bound up to which each w^2 counts as zero.
     """
 
     squares: np.ndarray
@@ -44,31 +44,31 @@ class Lowest:
 
     @property
     def unstable(self) -> np.ndarray:
-        """The most unstable motion as the only column, shape (n_u, 1); (n_u, 0) where all are stable."""
+        """Most unstable motion as the only column, shape (n_u, 1); shape (n_u, 0) if all are stable."""
         found = np.flatnonzero(self.squares < -self.none)
         return self.shapes[:, found[np.argsort(self.squares[found])][:1]]
 
     @property
     def free(self) -> np.ndarray:
-        """Motions that nothing holds, in columns."""
+        """Motions without stiffness, in columns."""
         return self.shapes[:, np.abs(self.squares) <= self.none]
 
 
 def lowest(stiffness: csc_array, jacobian: csc_array, mass: np.ndarray, scale: np.ndarray, left: np.ndarray) -> Lowest:
-    """The lowest w^2 of an equilibrium.
+    """Return the lowest w^2 of an equilibrium.
 
     Parameters
     ----------
     stiffness : sparse array, shape (n_u, n_u)
-        K: how forces, with the reactions, fall with moves.
+        K: negative derivative of forces, with the reactions, by displacements.
     jacobian : sparse array, shape (n_c, n_u)
-        J of equations that do not depend on each other.
+        J of independent equations.
     mass : ndarray, shape (n_u,)
         The diagonal of M.
     scale : ndarray, shape (n_u,)
-        What moves are measured by.
+        Units of displacements.
     left : ndarray, shape (n_u,)
-        What is left of the forces.
+        Residual of the forces.
     """
     if len(mass) <= MOST_DENSE:
         squares, shapes = _all(stiffness, jacobian, mass, scale)
@@ -96,17 +96,17 @@ def _all(
 
 
 def _real_shapes(values: np.ndarray, shapes: np.ndarray) -> np.ndarray:
-    """Real motions that span the same: real and imaginary part of a pair, as rounding makes of a double root."""
+    """Return real motions with the same span: the real and imaginary parts of a pair."""
     return np.where(values.imag < 0.0, shapes.imag, shapes.real)
 
 
 def _near(
     stiffness: csc_array, jacobian: csc_array, mass: np.ndarray, scale: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Negative w^2, and those next to zero, by shifts below zero, a decade apart: a negative one has a shift that is nearer to
-    it than to any that is not.
+    """Return negative w^2, and those next to zero, by shift-invert Arnoldi iteration on the sparse equations.
 
-    Shift-invert Arnoldi iteration (Lehoucq, Sorensen, Yang, ARPACK Users' Guide, SIAM 1998) on the sparse equations.
+    The shifts are below zero, a decade apart: each negative w^2 has a shift nearer to it than to any nonnegative one
+    (Lehoucq, Sorensen, Yang, ARPACK Users' Guide, SIAM 1998).
     """
     n, rows = len(mass), jacobian.shape[0]
     largest = float(np.max(abs(stiffness) @ scale / (mass * scale), initial=0.0))
@@ -131,7 +131,7 @@ def _near(
 def _largest_of_inverse(
     whole: csc_array, mass: np.ndarray, count: int, start: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Eigenvalues of the largest size of x -> (K + s M)^-1 M x on the constraints; those that were found."""
+    """Return the converged largest eigenvalues of x -> (K + s M)^-1 M x on the constraints, and their eigenvectors."""
     n, rows = len(mass), whole.shape[0] - len(mass)
     solve = splu(whole).solve
     operator = LinearOperator((n, n), lambda x: solve(np.append(mass * x, np.zeros(rows)))[:n], dtype=float)

@@ -1,6 +1,7 @@
-"""The linearised equations in as many variations as there are degrees of freedom.
+"""State matrix of the linearised equations, with as many variations as degrees of freedom.
 
-Poses vary by x = W a + Q s with G W = 0 and G Q = -G_s, velocities by v = N b + P (a, s) with J N = 0, so that the constraints hold; with L^T B = 0 multipliers drop out (null space method; Negrut and Ortiz, J. Comput. Nonlinear Dyn. 1, 2006).
+Poses vary by x = W a + Q s with G W = 0 and G Q = -G_s; velocities vary by v = N b + P (a, s) with J N = 0. L^T B = 0
+eliminates the multipliers (null space method; Negrut and Ortiz, J. Comput. Nonlinear Dyn. 1, 2006).
 """
 
 from __future__ import annotations
@@ -13,19 +14,19 @@ from ..errors import SolverError
 from .tangent_space import Linearised
 
 DEPENDENT = 1e-9
-"""Pivot, relative to the largest, below which an equation depends on others at a pose."""
+"""Pivot, relative to the largest, below which an equation is dependent at a pose."""
 WITHOUT_INERTIA = 1e15
 """Condition number of the inertia of the free motions from which on one of them has none."""
 
 
 @dataclass(frozen=True)
 class StateMatrix:
-    """z' = A z with z = (a, b, s), and what z stands for; s are the user's own states.
+    """State matrix of z' = A z with z = (a, b, s); s are the user-defined states.
 
     Attributes
     ----------
     matrix : ndarray, shape (n, n)
-        A; n is twice the degrees of freedom, and more by one for each rolling constraint and each state.
+        A; n is twice the degrees of freedom, plus one for each rolling constraint and each state.
     poses : ndarray, shape (n_u, n)
         x from z: displacements and rotations of all bodies, ground axes.
     velocities : ndarray, shape (n_u, n)
@@ -50,7 +51,7 @@ class StateMatrix:
 
     @property
     def degrees_of_freedom(self) -> int:
-        """Length of b: the velocities that constraints leave free."""
+        """Length of b: the number of free velocities."""
         return len(self.matrix) - self.n_poses - self.n_states
 
 
@@ -61,12 +62,12 @@ def state_matrix(linear: Linearised, scale: np.ndarray) -> StateMatrix:
     ----------
     linear : Linearised
     scale : ndarray, shape (n_u,)
-        What a variation of each velocity is measured by: lengths for displacements, 1 for rotations.
+        Units of the variations of velocities: lengths for displacements, 1 for rotations.
 
     Raises
     ------
     SolverError
-        Where a motion that the constraints leave free has no mass.
+        When a free motion has no mass.
     """
     constraints = _Constraints(linear.velocity * scale)
     free = constraints.null_space * scale[:, None]
@@ -109,14 +110,14 @@ def state_matrix(linear: Linearised, scale: np.ndarray) -> StateMatrix:
 
 
 def _following(constraints: _Constraints, missing: np.ndarray, scale: np.ndarray) -> np.ndarray:
-    """The smallest velocities, or accelerations, with J times them and what is missing zero; none where nothing is."""
+    """Return the smallest velocities or accelerations that cancel a violation by J; zero if there is none."""
     if not np.any(missing):
         return np.zeros((len(scale), missing.shape[1]))
     return scale[:, None] * constraints.smallest(-missing)
 
 
 def _solved(inertia: np.ndarray, forces: np.ndarray) -> np.ndarray:
-    """Accelerations of the free motions from what acts on them."""
+    """Return the accelerations of the free motions from the forces."""
     if not len(inertia):
         return np.zeros(forces.shape)
     sizes = np.linalg.norm(inertia, axis=1)
@@ -129,7 +130,7 @@ def _solved(inertia: np.ndarray, forces: np.ndarray) -> np.ndarray:
 
 
 def null_space(matrix: np.ndarray) -> np.ndarray:
-    """An orthonormal basis of what a matrix takes to zero, by QR with column pivoting of its transpose.
+    """Return an orthonormal basis of the null space of a matrix, by QR of its transpose with column pivoting.
 
     Parameters
     ----------
@@ -143,7 +144,7 @@ def null_space(matrix: np.ndarray) -> np.ndarray:
 
 
 class _Constraints:
-    """The equations A x = b, factored: A^T with its rows of length 1, and pivots, is Q R.
+    """Factorized equations A x = b: A^T with normalised rows of A, pivoted, is Q R.
 
     Parameters
     ----------
@@ -164,11 +165,11 @@ class _Constraints:
 
     @property
     def null_space(self) -> np.ndarray:
-        """An orthonormal basis of what A takes to zero, shape (n, n - rank)."""
+        """Orthonormal basis of the null space of A, shape (n, n - rank)."""
         return np.ascontiguousarray(self._q[:, self._rank :])
 
     def smallest(self, right: np.ndarray) -> np.ndarray:
-        """The smallest x with A x = b for columns b that agree with each other where equations depend on others."""
+        """Return the smallest x with A x = b for columns b that are consistent where equations are dependent."""
         from scipy.linalg import solve_triangular
 
         first = self._rows[self._order[: self._rank]]

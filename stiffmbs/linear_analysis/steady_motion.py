@@ -1,4 +1,4 @@
-"""Motions beside a steady one, as eigenvalues in the frame that moves with it, in which the equations have constant coefficients."""
+"""Stability of steady motions: eigenvalues in the comoving frame, in which the coefficients are constant."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from .state_space import state_matrix
 from .tangent_space import linearised
 
 CONSTANT = 1e-6
-"""Part of the rates that may be left where the equations do have constant coefficients in that frame."""
+"""Largest residual of the rates, relative to them, for which coefficients count as constant in that frame."""
 
 
 def eigenvalues_beside(
     dynamics: Dynamics, t: float, motion: SteadyMotion, acceleration: np.ndarray
 ) -> np.ndarray | None:
-    """Eigenvalues of the motions beside a steady one, 1/s; None where coefficients are not constant in the frame that moves with it.
+    """Return the eigenvalues about a steady motion, 1/s; None if coefficients are not constant in the comoving frame.
 
-    With W x the rotation of the frame, variations in it change by x' = v - W x and v' = a - W v.  Neutral motions, such as
-    one along the motion itself, are among them as zeros.
+    With W x the rotation of the frame, variations in it change by x' = v - W x and v' = a - W v. Neutral motions, such
+    as one along the motion itself, are included as zeros.
 
     Parameters
     ----------
@@ -34,7 +34,7 @@ def eigenvalues_beside(
     Raises
     ------
     SolverError
-        Where a motion that the constraints leave free has no mass.
+        When a free motion has no mass.
     """
     system = dynamics.system
     scale = system.per_velocity(system.size, 1.0)

@@ -1,7 +1,7 @@
-"""The linearised equations of motion of all bodies at a state, in variations of poses and velocities in ground axes.
+"""Linearised equations of motion of all bodies at a state, in variations of poses and velocities in ground axes.
 
-A variation of a pose is a vector x of displacements and small rotations in ground axes, shape (n_u,); its rate is
-x' = v.  In these axes the equations of a symmetric rotor have constant coefficients, whatever its spin.
+A variation of a pose is a vector x of displacements and small rotations in ground axes, shape (n_u,); its rate is x' =
+v. In these axes the equations of a symmetric rotor have constant coefficients at any spin.
 """
 
 from __future__ import annotations
@@ -20,36 +20,36 @@ from .algebraic import Algebraic, algebraic_of, without_algebraic
 
 @dataclass(frozen=True)
 class Linearised:
-    """M v' = K x + D v + F s - B dlam, s' = R_x x + R_v v + R_s s + R_lam dlam, with G x + G_s s = 0, H x + J v + H_s s = 0
-    and J v' + H_x x + H_v v + A_s s = 0; s are variations of the user's own states with rates;
-    algebraic states are put out.
+    """Linearised equations in variations x, v and s of poses, velocities and user-defined differential states.
+
+    M v' = K x + D v + F s - B dlam; s' = R_x x + R_v v + R_s s + R_lam dlam; G x + G_s s = 0; H x + J v + H_s s = 0;
+    J v' + H_x x + H_v v + A_s s = 0. Algebraic states are eliminated.
 
     Attributes
     ----------
     mass : sparse array, shape (n_u, n_u)
         M.
     stiffness, damping : ndarrays, shape (n_u, n_u)
-        K and D; K and D are derivatives of forces, so that a spring has a negative K.
+        K and D, derivatives of forces, so that a spring has a negative K.
     reactions : ndarray, shape (n_u, n_c)
-        B: J^T less the derivative of forces that depend on multipliers.
+        B: J^T minus the derivative of forces by multipliers.
     position : ndarray, shape (holonomic, n_u)
-        G, the derivative of the constraints of positions.
+        G, the derivative of the position constraints.
     velocity, velocity_at_position : ndarrays, shape (n_c, n_u)
-        J and H, the derivatives of the constraints of velocities by v and by x.
+        J and H, the derivatives of the velocity constraints by v and x.
     acceleration_at_position, acceleration_at_velocity : ndarrays, shape (n_c, n_u)
-        H_x and H_v, of the constraints of accelerations.
+        H_x and H_v, of the acceleration constraints.
     by_states : ndarray, shape (n_u, states)
         F.
-    position_by_states, velocity_by_states, acceleration_by_states : ndarrays, shapes (holonomic, states), (n_c, states), (n_c, states)
+    position_by_states, velocity_by_states, acceleration_by_states : ndarrays, shapes (holonomic or n_c, states)
         G_s, H_s and A_s.
-    rate_by_pose, rate_by_velocity, rate_by_states, rate_by_reactions : ndarrays, shapes (states, n_u), (states, n_u), (states,
-            states), (states, n_c)
+    rate_by_pose, rate_by_velocity, rate_by_states, rate_by_reactions : ndarrays, shapes (states, n_u, states or n_c)
         R_x, R_v, R_s and R_lam.
     own_axes, spin : sparse arrays, shape (n_u, n_u)
-        From ground axes to those that u has, and w x of every body in ground axes: the variation of u' is
+        Transformation from ground axes to those of u, and w x of every body in ground axes: the variation of u' is
         own_axes (v' - w x v).
     algebraic : Algebraic
-        How algebraic states follow.
+        Elimination of algebraic states.
     """
 
     mass: csr_array
@@ -75,12 +75,12 @@ class Linearised:
 
 
 def linearised(dynamics: Dynamics, t: float, acceleration: np.ndarray) -> Linearised:
-    """The linearised equations at the state of a system.
+    """Return the linearised equations at the state of a system.
 
     Parameters
     ----------
     dynamics : Dynamics
-        At a state that satisfies the constraints, with the multipliers of that state.
+        At a state that satisfies the constraints, with its multipliers.
     t : float
         s.
     acceleration : ndarray, shape (n_u,)
@@ -134,13 +134,13 @@ def linearised(dynamics: Dynamics, t: float, acceleration: np.ndarray) -> Linear
 
 
 def _axes(system: System, q: np.ndarray) -> csr_array:
-    """From the axes that u has to those of the ground, shape (n_u, n_u): rotations of the bodies' principal axes."""
+    """Return the transformation from the axes of u to ground axes, shape (n_u, n_u)."""
     blocks = {own.start: rotated(orientation, np.eye(3)).T for own, orientation in _orientations(system, q)}
     return _block_diagonal(system, blocks, 1.0)
 
 
 def _spin(system: System, q: np.ndarray, u: np.ndarray) -> csr_array:
-    """w x for the angular velocity of every body in ground axes: with v = A du, A du' = v' - w x v."""
+    """Return w x for the angular velocity of every body in ground axes: with v = A du, A du' = v' - w x v."""
     blocks = {}
     for own, orientation in _orientations(system, q):
         x, y, z = rotated(orientation, u[own])
@@ -149,7 +149,7 @@ def _spin(system: System, q: np.ndarray, u: np.ndarray) -> csr_array:
 
 
 def _block_diagonal(system: System, blocks: dict[int, np.ndarray], elsewhere: float) -> csr_array:
-    """Blocks of angular velocities by the first of them; one number on the diagonal elsewhere."""
+    """Return a block diagonal matrix of blocks by their first row, with a constant on the rest of the diagonal."""
     at = np.array(list(blocks), dtype=int).reshape(-1, 1, 1)
     row, column = np.broadcast_arrays(at + np.arange(3)[:, None], at + np.arange(3))
     straight = np.setdiff1d(np.arange(system.n_u), row)
@@ -159,7 +159,7 @@ def _block_diagonal(system: System, blocks: dict[int, np.ndarray], elsewhere: fl
 
 
 def _orientations(system: System, q: np.ndarray) -> Iterator[tuple[slice, np.ndarray]]:
-    """The places of the angular velocity, and the quaternion, of every body in space."""
+    """Yield the slice of the angular velocity, and the quaternion, of every body in space."""
     of_body = system.of_body
     for body in range(len(system.bodies) if of_body.dimensions == 3 else 0):
         orientation = q[of_body.n_q * body + of_body.linear : of_body.n_q * (body + 1)]

@@ -1,7 +1,7 @@
 """Inputs and outputs about a state: z' = A z + B p, y = C z + D p, and the frequency response.
 
-An input p that moves a constraint, such as the travel of a drive, shifts the poses by X p with G X + C_p = 0; X is chosen
-so that L^T M X = 0, and b stands for v - X p' - N B_1 p, so that neither p' nor p'' is left in the equations.
+An input p that moves a constraint, such as the displacement of a drive, shifts the poses by X p with G X + C_p = 0.
+With L^T M X = 0 and b the variation of v - X p' - N B_1 p, the equations contain neither p' nor p''.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ NEAR_POLE = 1e-6
 
 @dataclass(frozen=True)
 class Input:
-    """What one input does to the equations, for each unit of it.
+    """Input of the linearised equations, per unit.
 
     Attributes
     ----------
@@ -33,9 +33,9 @@ class Input:
     force : ndarray, shape (n_u,)
         Generalised forces, ground axes.
     position : ndarray, shape (holonomic,)
-        C_p, the change of the constraints of positions.
+        C_p, the change of the position constraints.
     rates : ndarray, shape (states,)
-        Rates of the user's own states.
+        Rates of the user-defined states.
     """
 
     name: str
@@ -46,16 +46,16 @@ class Input:
 
 @dataclass(frozen=True)
 class Effect:
-    """An input in the equations of the free variations.
+    """Effect of an input on the free variations.
 
     Attributes
     ----------
     rates : ndarray, shape (n,)
-        B: z' for a unit of the input.
+        B: z' per unit of the input.
     pose, velocity : ndarrays, shape (n_u,)
-        x and v for a unit of the input, at z = 0.
+        x and v per unit of the input, at z = 0.
     velocity_of_rate : ndarray, shape (n_u,)
-        v for a unit of the input's rate.
+        v per unit of the input's rate.
     """
 
     rates: np.ndarray
@@ -65,12 +65,13 @@ class Effect:
 
 
 def effect(linear: Linearised, state: StateMatrix, given: Input, scale: np.ndarray) -> Effect:
-    """What an input does to the free variations, and to poses and velocities.
+    """Return the effect of an input on the free variations, poses and velocities.
 
     Raises
     ------
     InputError
-        When the input moves a constraint, and a state feels how fast, or the reaction.
+        When a state depends on the rate or reaction of an input that moves a constraint, or when constraints depend on
+        states and the input is not a force.
     """
     if np.any(linear.position_by_states) and (np.any(given.rates) or np.any(given.position)):
         raise InputError(
@@ -102,14 +103,14 @@ def effect(linear: Linearised, state: StateMatrix, given: Input, scale: np.ndarr
 
 @dataclass(frozen=True)
 class Transfer:
-    """A, B, C, D about a state, with names.
+    """Matrices A, B, C, D about a state, with names.
 
     Attributes
     ----------
     a, b, c, d : ndarrays
     inputs, outputs : tuples of str
     at : ndarray, shape (outputs,)
-        The outputs at the state itself.
+        Outputs at the state itself.
     """
 
     a: np.ndarray
@@ -121,7 +122,7 @@ class Transfer:
     at: np.ndarray
 
     def state_space(self) -> StateSpace:
-        """As `scipy.signal.StateSpace`."""
+        """Return the system as `scipy.signal.StateSpace`."""
         from scipy.signal import StateSpace
 
         return StateSpace(self.a, self.b, self.c, self.d)
@@ -144,7 +145,7 @@ class Transfer:
             return np.broadcast_to(self.d, (len(frequencies), *self.d.shape)).astype(complex)
         rates = 2j * np.pi * np.asarray(frequencies)
         self._refuse_poles(rates, values)
-        if np.linalg.cond(vectors) > 1e8:  # double eigenvalues, as of rigid body motions
+        if np.linalg.cond(vectors) > 1e8:  # double eigenvalues, such as those of rigid body motions
             unit = np.eye(len(values))
             solved = np.array([np.linalg.solve(rate * unit - self.a, self.b) for rate in rates])
             return np.asarray(self.c @ solved + self.d)

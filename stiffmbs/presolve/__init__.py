@@ -1,1 +1,1 @@
-"""What is solved for in place of the whole model: merged bodies, subsystems, constant coordinates."""
+"""Presolve: merged bodies, subsystems, and elimination of dependent coordinates."""

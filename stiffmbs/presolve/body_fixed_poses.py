@@ -1,4 +1,4 @@
-"""Where bodies sit on others that carry them, and how their states follow from those of their parent bodies."""
+"""Poses of bodies fixed to parent bodies, and their states from those of the parents."""
 
 from __future__ import annotations
 
@@ -13,35 +13,35 @@ IDENTITY = np.array([1.0, 0.0, 0.0, 0.0])
 
 
 class BodyFixedPoses(Protocol):
-    """The places of k bodies, each on its carrier."""
+    """Poses of k bodies on their parent bodies."""
 
     @property
     def moved(self) -> bool:
-        """Whether any body is elsewhere than its carrier."""
+        """True if any pose differs from that of its parent body."""
 
     def inverse(self) -> BodyFixedPoses:
-        """The carriers' places on the bodies."""
+        """Return the poses of the parent bodies on the bodies."""
 
     def like(self, q: np.ndarray, parent: np.ndarray) -> BodyFixedPoses:
-        """The same places, in numbers that give the bodies the coordinates q, shape (k, n_q), where these can be chosen.
+        """Return the same poses in the representation nearest to body coordinates q, shape (k, n_q).
 
         Parameters
         ----------
         parent : ndarray of int, shape (k,)
-            The number of each body's parent body.
+            Number of each body's parent body.
         """
 
     def carried(self, q: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """The states of the bodies from those of their parent bodies; shapes (..., k, n_q) and (..., k, n_u)."""
+        """Return the states of the bodies from those of their parents, shapes (..., k, n_q) and (..., k, n_u)."""
 
 
 class PlanarPoses(NamedTuple):
-    """In the plane.
+    """Poses in the plane.
 
     Attributes
     ----------
     point, angle : ndarrays, shapes (k, 2), (k,)
-        Where the centres of mass and axes are in those of the parent bodies, m, rad.
+        Centres of mass and axes in those of the parent bodies, m, rad.
     """
 
     point: np.ndarray
@@ -49,12 +49,12 @@ class PlanarPoses(NamedTuple):
 
     @classmethod
     def none(cls, count: int) -> PlanarPoses:
-        """Of bodies that are where their parent bodies are."""
+        """Return identity poses."""
         return cls(np.zeros((count, 2)), np.zeros(count))
 
     @classmethod
     def of(cls, placements: Sequence[Any]) -> PlanarPoses:
-        """Those of planar placements."""
+        """Return the poses of planar placements."""
         return cls(np.array([place.point for place in placements]), np.array([place.angle for place in placements]))
 
     @property
@@ -68,7 +68,6 @@ class PlanarPoses(NamedTuple):
         return self
 
     def carried(self, q: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Position and velocity of the body that the pose is fixed to, in the plane."""
         arm = _turned(q[..., 2], self.point)
         across = np.stack([-arm[..., 1], arm[..., 0]], axis=-1)
         place = np.concatenate([q[..., :2] + arm, (q[..., 2] + self.angle)[..., None]], axis=-1)
@@ -76,12 +75,12 @@ class PlanarPoses(NamedTuple):
 
 
 class SpatialPoses(NamedTuple):
-    """In space.
+    """Poses in space.
 
     Attributes
     ----------
     point, turn : ndarrays, shapes (k, 3), (k, 4)
-        Where the centres of mass and principal axes are in those of the parent bodies, m, quaternions.
+        Centres of mass and principal axes in those of the parent bodies, m, quaternions.
     """
 
     point: np.ndarray
@@ -89,12 +88,12 @@ class SpatialPoses(NamedTuple):
 
     @classmethod
     def none(cls, count: int) -> SpatialPoses:
-        """Of bodies that are where their parent bodies are."""
+        """Return identity poses."""
         return cls(np.zeros((count, 3)), np.tile(IDENTITY, (count, 1)))
 
     @classmethod
     def of(cls, placements: Sequence[Any]) -> SpatialPoses:
-        """Those of placements in space."""
+        """Return the poses of placements in space."""
         return cls(
             np.array([place.point for place in placements]), np.array([place.orientation for place in placements])
         )
@@ -108,14 +107,13 @@ class SpatialPoses(NamedTuple):
         return SpatialPoses(-rotated(back, self.point), back)
 
     def like(self, q: np.ndarray, parent: np.ndarray) -> SpatialPoses:
-        """Of both quaternions of a turn the one that goes on from that of the carrier's first body."""
+        """Choose the sign of each quaternion that is continuous with that of the parent's first body."""
         _, first, number = np.unique(parent, return_index=True, return_inverse=True)
         of_parent = times(q[first, 3:], CONJUGATE * self.turn[first])[number]
         against = np.sum(times(of_parent, self.turn) * q[:, 3:], axis=1) < 0
         return SpatialPoses(self.point, np.where(against[:, None], -self.turn, self.turn))
 
     def carried(self, q: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Position and velocity of the body that the pose is fixed to, in space."""
         p, w = q[..., 3:], u[..., 3:]
         arm = rotated(p, self.point)
         velocity = u[..., :3] + np.cross(rotated(p, w), arm)
@@ -124,7 +122,7 @@ class SpatialPoses(NamedTuple):
 
 
 def _turned(phi: np.ndarray, points: np.ndarray) -> np.ndarray:
-    """Points in the axes of bodies, in ground axes."""
+    """Rotate points from body axes to ground axes."""
     c, s, (xi, eta) = np.cos(phi), np.sin(phi), np.moveaxis(points, -1, 0)
     return np.stack([c * xi - s * eta, s * xi + c * eta], axis=-1)
 

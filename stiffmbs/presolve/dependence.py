@@ -1,4 +1,4 @@
-"""The entries of C_q of a whole system, and the coordinates that each depends on."""
+"""Entries of C_q of a system, and the coordinates on which each depends."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ from .relations import NEGLIGIBLE
 
 
 class Dependence(NamedTuple):
-    """The entries of C_q that are not zero at every pose; those of the ground are left out.
+    """Entries of C_q that are not identically zero, without those of the ground.
 
     Attributes
     ----------
     row, column : ndarrays of int, shape (n,)
     value : ndarray, shape (n,)
-        At the pose looked at.
+        At the current pose.
     entry, on : ndarrays of int, shape (k,)
-        Pairs of an entry and a coordinate that it depends on; some more than once.
+        Pairs of an entry and a coordinate on which it depends, with repetitions.
     """
 
     row: np.ndarray
@@ -34,17 +34,17 @@ class Dependence(NamedTuple):
     on: np.ndarray
 
     def varies(self, moves: np.ndarray) -> np.ndarray:
-        """Which entries change, where some coordinates move (shape (n_q,)) and the others stand still."""
+        """Return a mask of the entries that change when some coordinates (shape (n_q,)) move."""
         changing = np.zeros(len(self.row), dtype=bool)
         changing[self.entry[moves[self.on]]] = True
         return changing
 
 
 def dependence(system: System, term: Term, values: np.ndarray) -> Dependence:
-    """What the entries of C_q depend on, by the symbols of their kinds.
+    """Return the symbolic dependence of the entries of C_q on coordinates.
 
-    A summand of an entry is left out where its numbers are zero; where it is bounded, also where they are rounding beside
-    the largest entry of its row, as the arm of a pin is that is meant to be in the centre of mass.
+    Summands with zero numbers are omitted. So are bounded ones that are rounding relative to the largest entry of the
+    row, such as the arm of a pin at the centre of mass.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def dependence(system: System, term: Term, values: np.ndarray) -> Dependence:
 
 
 def curved(system: System, group: Group) -> np.ndarray:
-    """Which equations have derivatives that change by more than sines and cosines, shape (elements, equations)."""
+    """Return a mask of equations with unbounded derivatives, shape (elements, equations)."""
     of_kind = _summands(group.kind)
     row, column = np.array(group.record.patterns["C_q"], dtype=np.int64).reshape(-1, 2).T
     entry = of_kind.entry[of_kind.of]
@@ -81,19 +81,19 @@ def curved(system: System, group: Group) -> np.ndarray:
 
 
 class _Summands(NamedTuple):
-    """The summands of all entries of a kind, one after the other.
+    """Summands of all entries of a kind, concatenated.
 
     Attributes
     ----------
     numbers : ndarray of int
-        Of all products that occur, one after the other; of one without factors the number -1.
+        Of all distinct products, concatenated; -1 for a product without factors.
     factors, products : ndarrays of int
-        Where in `numbers` each factor, a sum of numbers, begins, and where in these each product.
+        Start of each factor, a sum of numbers, in `numbers`, and of each product in `factors`.
     product, entry : ndarrays of int, shape (n,)
         Of each summand.
     bounded : ndarray of bool, shape (n,)
     of, on : ndarrays of int
-        Pairs of a summand and a coordinate of the element that it depends on.
+        Pairs of a summand and a coordinate of the element on which it depends.
     """
 
     numbers: np.ndarray
@@ -145,7 +145,7 @@ def _of_group(system: System, g: int, group: Group, values: np.ndarray, rounding
 
 
 def _sizes(group: Group, of_kind: _Summands) -> np.ndarray:
-    """The magnitudes of the products of numbers, shape (elements, products); those of vectors are sums of their numbers'."""
+    """Return the magnitudes of the products, shape (elements, products), with sums of magnitudes as factors."""
     if not len(of_kind.products):
         return np.empty((group.count, 0))
     first = group.index[:, 2 * group.kind.n_bodies, None]

@@ -1,13 +1,13 @@
-"""Constraint equations that are linear with constant coefficients, and the coordinates that they save.
+"""Constraint equations that are linear with constant coefficients, and the coordinates that they eliminate.
 
-An equation in one coordinate holds it still; one in two ties them in a constant ratio, and so do two in three.  Such
-equations need no multiplier while the motion is solved for: a cart on a rail keeps one coordinate.  As in the presolve of
-linear programs (Andersen, Andersen, Presolving in linear programming, Math. Program. 71 (1995) 221-245: singleton rows
-and doubleton equations), each one found may turn others into one.  In space three equations in one orientation hold it
-still.
+An equation in one coordinate fixes it. An equation in two coordinates, or two equations in three, relate them by
+constant ratios. Such equations need no multiplier during integration: a cart on a rail keeps one coordinate. As in the
+presolve of linear programs, each one found may reduce others to such an equation (singleton and doubleton rows:
+Andersen, Andersen, Presolving in linear programming, Math. Program. 71 (1995) 221-245). In space, three equations in
+one orientation fix it.
 
-A coefficient is constant where its expression holds no coordinate that moves.  Values at other poses are not asked: the
-derivative of tanh or of exp is exactly zero in floating point over wide ranges.
+A coefficient is constant if its expression contains no coordinate that moves. Values at other poses are no proof: the
+derivative of tanh or exp is exactly zero in floating point over wide ranges.
 """
 
 from __future__ import annotations
@@ -24,13 +24,13 @@ from .relations import INDEPENDENT, NEGLIGIBLE, Relations
 
 
 def independent_coordinates(system: System, state: State, t: float) -> Coordinates:
-    """The coordinates that remain when equations with constant coefficients are used to leave out others.
+    """Return the coordinates that remain after elimination by equations with constant coefficients.
 
     Parameters
     ----------
     system : System
     state : State
-        At a pose that satisfies the constraints; left as it is.
+        At a pose that satisfies the constraints; it is not changed.
     t : float
         s.
     """
@@ -49,9 +49,9 @@ def independent_coordinates(system: System, state: State, t: float) -> Coordinat
 
 
 def _candidates(system: System) -> np.ndarray:
-    """Rows that may be left out: solved for, with a position form, without time or breakpoints, in no force of friction.
+    """Return a mask of removable rows: active, holonomic, without time or breakpoints, and not needed by friction.
 
-    Multipliers that forces depend on are needed.
+    Multipliers on which forces or states depend are needed.
     """
     rows = system.active & system.holonomic
     for group in system.groups:
@@ -69,9 +69,9 @@ def _candidates(system: System) -> np.ndarray:
 def _constant_rows(
     C_q: Dependence, moves: np.ndarray, open_rows: np.ndarray, system: System
 ) -> dict[int, list[tuple[int, float]]]:
-    """The rows whose derivatives by all coordinates that move are constants: by row the columns and these constants.
+    """Return the rows with constant derivatives by all moving coordinates, as columns and constants by row.
 
-    They hold no quaternions.
+    They contain no quaternions.
     """
     straight, _ = system.straight
     counts = moves[C_q.column]
@@ -91,9 +91,9 @@ def _constant_rows(
 def _held_orientations(
     C_q: Dependence, moves: np.ndarray, open_rows: np.ndarray, system: System
 ) -> Iterator[tuple[int, list[int]]]:
-    """Bodies that three rows hold, which depend on nothing that moves but the body's orientation, and these rows.
+    """Yield bodies whose orientation three rows fix, with these rows, which depend on no other moving coordinate.
 
-    Where such rows are independent, the orientation that fulfils them is isolated.
+    If such rows are independent, the orientation that satisfies them is isolated.
     """
     of_body = system.of_body
     if of_body.n_q == of_body.n_u:

@@ -1,4 +1,4 @@
-"""Bodies that fixed joints make one: merged before the equations are compiled, and found again afterwards."""
+"""Bodies connected by fixed joints: merged before the equations are compiled, and recovered afterwards."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ from ..describe.states.state import StateValue
 
 
 class MergedBodies(NamedTuple):
-    """A model whose bodies between fixed joints are merged.
+    """Model with merged bodies in place of those connected by fixed joints.
 
     Attributes
     ----------
     model : ModelData
         As described.
     bodies : dict of str to Body
-        Those left, each with the mass, centre of mass and inertia of all its members, and the name of the first.
+        Merged bodies, with the total mass, centre of mass and inertia of the members, named after the first.
     members : dict of str to (str, Placement)
-        For every body of the model the one that carries it, and where its own centre of mass and axes are on that.
+        Merged body of each body of the model, and the placement of its centre of mass and axes on that.
     joints_left_out : tuple of str
-        The fixed joints.
+        Fixed joints within merged bodies.
     """
 
     model: ModelData
@@ -38,7 +38,7 @@ class MergedBodies(NamedTuple):
 
     @property
     def dimensions(self) -> int:
-        """Of the model."""
+        """Dimensions of the model."""
         return self.model.dimensions
 
     @property
@@ -51,23 +51,23 @@ class MergedBodies(NamedTuple):
         return self.model.joint_at_initial_pose(name)
 
     def state_outputs(self) -> dict[str, Formula]:
-        """The outputs that formulas use by a name."""
+        """Return the outputs that formulas use by a name."""
         return self.model.state_outputs()
 
     def state_values(self) -> dict[str, StateValue]:
-        """The states, all of them."""
+        """Return the values of all states."""
         return self.model.state_values()
 
     def size(self) -> float:
-        """That of the model as described."""
+        """Return the size of the model as described, m."""
         return self.model.size()
 
     def spin_axes(self) -> dict[str, str]:
-        """None."""
+        """Return no axes."""
         return {}
 
     def elements(self) -> Iterator[tuple[str, Element]]:
-        """What acts on the bodies that are left, what they have of themselves (weights) too, and counters of turns."""
+        """Yield the elements that act on the merged bodies, with weights, counters of rotations and state equations."""
         for name, element in self.model.elements_at_initial_pose():
             if name not in self.joints_left_out:
                 yield name, element
@@ -76,7 +76,7 @@ class MergedBodies(NamedTuple):
         yield from self.model.inertial(self.bodies)
 
     def carried(self, marker: MarkerReference) -> tuple[str, Any]:
-        """The body that carries a marker, and where on it."""
+        """Return the merged body that carries a marker, and the marker's placement on it."""
         body, placed = self.model.carried(marker)
         if body == GROUND:
             return body, placed
@@ -85,21 +85,21 @@ class MergedBodies(NamedTuple):
 
 
 def merge(model: ModelData, held: Container[str]) -> MergedBodies | None:
-    """Merge the bodies between fixed joints.
+    """Merge the bodies connected by fixed joints.
 
-    Apart stay bodies whose coordinates a formula uses by name, bodies that a force or another joint acts between, and
-    those at a joint that another element refers to.
+    Bodies with coordinates named in a formula are kept separate. So are bodies between which a force or another joint
+    acts, and those of a joint to which another element refers.
 
     Parameters
     ----------
     model : ModelData
     held : container of str
-        Joints all of whose equations are solved for: redundant ones must not be made stronger than they are.
+        Joints without redundant equations, as a merged joint must not constrain more than the original.
 
     Returns
     -------
     MergedBodies or None
-        None where there is nothing to merge.
+        None if there is nothing to merge.
     """
     if not any(joint.kind == Fixed.kind for joint in model.joints.values()):
         return None
@@ -132,12 +132,12 @@ def _candidates(model: ModelData) -> Iterator[str]:
 
 
 def _geometry(dimensions: int) -> ModuleType:
-    """Placements of bodies on each other, in the plane or in space."""
+    """Return the module of placements for the plane or for space."""
     return import_module(f".{'planar' if dimensions == 2 else 'spatial'}_composite", __package__)
 
 
 class _Groups:
-    """Bodies that are one, each group with the places of its members on the first."""
+    """Groups of merged bodies, each with the placements of its members on the first."""
 
     def __init__(self, model: ModelData) -> None:
         self._model = model
@@ -148,7 +148,7 @@ class _Groups:
         self._acts_between = [(name, {marker.body for _, marker in element.markers()}) for name, element in acting]
 
     def join(self, name: str) -> bool:
-        """Merge the groups at both sides of a fixed joint; whether nothing else acts between them."""
+        """Merge the groups on both sides of a fixed joint; return False if something else acts between them."""
         joint = self._model.joints[name]
         (body_i, on_i), (body_j, on_j) = (self._model.carried(marker) for _, marker in joint.parts(MarkerReference))
         first, second = self._first[body_i], self._first[body_j]

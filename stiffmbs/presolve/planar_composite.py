@@ -1,4 +1,4 @@
-"""Placements on each other in the plane, and the body that several make up."""
+"""Composition of placements in the plane, and composite bodies."""
 
 from __future__ import annotations
 
@@ -10,26 +10,26 @@ from ..describe.marker import Placement
 
 
 def on(frame: Placement, placed: Placement) -> Placement:
-    """A placement given in a frame, in the axes that the frame is given in."""
+    """Return a placement that is given in a frame, in the axes in which the frame is given."""
     (x, y), (xi, eta), (c, s) = frame.point, placed.point, (math.cos(frame.angle), math.sin(frame.angle))
     return Placement(point=(x + c * xi - s * eta, y + s * xi + c * eta), angle=frame.angle + placed.angle)
 
 
 def inverse(placed: Placement) -> Placement:
-    """Where the axes that a placement is given in are, seen from it."""
+    """Return the inverse of a placement."""
     (x, y), (c, s) = placed.point, (math.cos(placed.angle), math.sin(placed.angle))
     return Placement(point=(-c * x - s * y, s * x - c * y), angle=-placed.angle)
 
 
 def composite(members: Sequence[tuple[Body, Placement]]) -> tuple[Body, list[Placement]]:
-    """The body that several make up, and where each of them is on it.
+    """Return the composite of several bodies, and the placement of each member on it.
 
-    Mass and first moments add up, and inertias with m d^2 (Huygens, Steiner).
+    Masses and first moments are added; inertias with the parallel axis theorem, m d^2.
 
     Parameters
     ----------
     members : sequence of (Body, Placement)
-        Each with the place of its centre of mass and axes in those of the first.
+        With the placement of each centre of mass and axes in those of the first.
     """
     first, _ = members[0]
     mass = sum(body.mass for body, _ in members)

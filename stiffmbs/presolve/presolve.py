@@ -1,8 +1,8 @@
-"""The presolve: what is solved for in place of the whole model, and how the whole follows from it.
+"""Presolve: smaller systems solved in place of the model, and recovery of the whole motion.
 
-Bodies between fixed joints are merged, quaternions kept from spinning with their bodies, and independent mechanisms solved
-apart.  Nothing is lost: the states of all bodies follow from those solved for, and every reaction from the equations of the
-whole.
+Bodies connected by fixed joints are merged, spins of axisymmetric bodies are removed from their quaternions, and
+independent mechanisms are solved separately. All body states follow from the solved ones, and all reactions from the
+equations of the whole model.
 """
 
 from __future__ import annotations
@@ -24,28 +24,28 @@ from .spinning_bodies import AXES, SpinningBodies, name_of_angle, spinning
 from .subsystems import A_STATE, behind_bodies, mechanisms, part_of
 
 MOST_APART = 8
-"""Mechanisms that are solved apart: each has a start and steps of its own, which many tiny ones would not be worth."""
+"""Largest number of mechanisms solved separately, as each has the cost of its own start and steps."""
 
 Alike = Callable[[Sequence[np.ndarray]], Sequence[Sequence[int]]]
 
 
 @dataclass(frozen=True)
 class Part:
-    """One mechanism to solve, and the bodies of the whole that its bodies carry.
+    """Mechanism to solve, and the bodies of the whole model that its bodies carry.
 
     Attributes
     ----------
     system : System
     bodies : ndarray of int
-        Numbers of the bodies of the whole.
+        Numbers of the bodies in the whole model.
     parent : ndarray of int
-        For each of them the number of the body in `system` that carries it.
+        Number in `system` of the body that carries each of them.
     poses : BodyFixedPoses
-        Where each of them is on that.
+        Poses of the bodies on their parents.
     behind : ndarray of int
-        The coordinates of the whole that the part's own counters of turns and states stand for.
+        Coordinates of the whole model that the part's rotation counters and states represent.
     kept : ndarray of int
-        The coordinates of the part that these are.
+        The corresponding coordinates of the part.
     spins : tuple of Spin
     """
 
@@ -58,7 +58,7 @@ class Part:
     spins: tuple[Spin, ...]
 
     def reduced(self, q: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """The coordinates and velocities of the part's bodies, from those of the whole that satisfy its constraints."""
+        """Return the coordinates and velocities of the part's bodies, from consistent ones of the whole model."""
         of, first = np.unique(self.parent, return_index=True)
         assert len(of) == len(self.system.bodies)
         behind, rates = np.zeros(self.system.n_q - self.system.n_pose), u.reshape(-1, self.system.of_body.n_u)
@@ -70,12 +70,10 @@ class Part:
         return np.concatenate([places[first].ravel(), behind]), rates[first].ravel()
 
     def put(self, q: np.ndarray, u: np.ndarray, into_q: np.ndarray, into_u: np.ndarray) -> None:
-        """Write the states of the bodies of the whole, one state a row, from those of the part's bodies."""
+        """Write the states of the bodies of the whole model, one state per row, from those of the part."""
         n_q, n_u, count = self.system.of_body.n_q, self.system.of_body.n_u, len(self.system.bodies)
         into_q[:, self.behind] = q[:, self.kept]
-        if (
-            self._is_whole and len(into_u[0]) == n_u * count
-        ):  # nothing to pick: with thousands of rows picking takes milliseconds
+        if self._is_whole and len(into_u[0]) == n_u * count:  # nothing to select, which is slow for thousands of rows
             into_q[:, : n_q * count], into_u[:] = q[:, : n_q * count], u
             self._turn(into_q[:, : n_q * count].reshape(len(q), count, n_q), into_u.reshape(len(u), count, n_u), q)
             return
@@ -90,29 +88,29 @@ class Part:
         into_u[:, n_u * self.bodies[:, None] + np.arange(n_u)] = rates
 
     def put_displaced(self, displaced: np.ndarray, into: np.ndarray) -> None:
-        """Write displacements of the bodies of the whole, from those of the part's bodies that carry them, shapes (n_u,)."""
+        """Write displacements of the bodies of the whole model from those of their parents, shapes (n_u,)."""
         n_u = self.system.of_body.n_u
         into.reshape(-1, n_u)[self.bodies] = displaced.reshape(-1, n_u)[self.parent]
 
     @cached_property
     def _is_whole(self) -> bool:
-        """Whether its bodies are those of the whole, in their order."""
+        """True if the part's bodies are those of the whole model, in the same order."""
         order = np.arange(len(self.system.bodies))
         return not self.poses.moved and np.array_equal(self.bodies, order) and np.array_equal(self.parent, order)
 
     def _turn(self, places: np.ndarray, rates: np.ndarray, q: np.ndarray) -> None:
-        """Turn what does not follow its spin, in arrays of shapes (rows, bodies, n_q) and (rows, bodies, n_u)."""
+        """Apply the spins to quaternions and velocities, shapes (rows, bodies, n_q) and (rows, bodies, n_u)."""
         for spin in self.spins:
             spin.turned(places, rates, q[:, spin.angle])
 
 
 def may_be_apart(system: System) -> bool:
-    """Whether some numbers might have a system's mechanisms solved apart, and others together."""
+    """Return True if parameter values may decide whether mechanisms are solved separately."""
     return 1 < len(mechanisms(system)) <= MOST_APART
 
 
 def parts_of(model: ModelData, whole: System, way: np.ndarray | None, alike: Alike | None = None) -> tuple[Part, ...]:
-    """The mechanisms to solve in place of a compiled model; empty where that is the model itself.
+    """Return the mechanisms to solve in place of a compiled model; empty if none replaces it.
 
     Parameters
     ----------
@@ -120,10 +118,10 @@ def parts_of(model: ModelData, whole: System, way: np.ndarray | None, alike: Ali
     whole : System
         With its redundant equations marked.
     way : ndarray, shape (n_u,), or None
-        The velocities at the start times the duration of the run; None where quaternions are to follow all spins.
+        Initial velocities times the duration of the run; None to keep all spins in the quaternions.
     alike : callable, optional
-        Which of several mechanisms, given by the numbers of their bodies in the whole, are to be solved together; without it
-        all are.
+        Return the sets of mechanisms to solve together, given their body numbers in the whole model. By default all are
+        solved together.
     """
     held = {joint for joint, _ in whole.equations} - {joint for (joint, _), on in zip(whole.equations, whole.active, strict=True) if not on}  # fmt: skip
     merged = merge(model, held)
@@ -143,7 +141,7 @@ def parts_of(model: ModelData, whole: System, way: np.ndarray | None, alike: Ali
 
 
 def _turns(merged: MergedBodies | None, whole: System, way: np.ndarray) -> dict[str, np.ndarray]:
-    """The angular part of a way for each body that is solved for, about its principal axes."""
+    """Return the angular displacement of each solved body about its principal axes."""
     of_bodies = way.reshape(len(whole.bodies), -1)[:, whole.of_body.linear :]
     turns = dict(zip(whole.bodies, of_bodies, strict=True))
     if merged is None or merged.dimensions == 2:
@@ -153,14 +151,14 @@ def _turns(merged: MergedBodies | None, whole: System, way: np.ndarray) -> dict[
 
 
 def _compiled(model: MergedBodies | SpinningBodies, whole: System) -> System:
-    """The model in place of the whole, compiled, with the same equations redundant and the same size."""
+    """Compile the model in place of the whole one, with the same redundant equations and the same size."""
     system = compile_model(model)
     on = dict(zip(whole.equations, whole.active, strict=True))
     return replace(system, active=np.array([on[equation] for equation in system.equations], dtype=bool))
 
 
 def _carried(bodies: np.ndarray, system: System, whole: System, merged: MergedBodies | None) -> np.ndarray:
-    """The numbers of the bodies of the whole that some bodies of the system to solve carry."""
+    """Return the numbers of the bodies in the whole model that some solved bodies carry."""
     if merged is None:
         return bodies
     names = {system.bodies[k] for k in bodies}

@@ -1,4 +1,4 @@
-"""Relations between coordinates, as equations with constant coefficients are found one after the other."""
+"""Linear relations between coordinates, accumulated from equations with constant coefficients."""
 
 from __future__ import annotations
 
@@ -11,27 +11,27 @@ from ..compile.coordinates import FIXED, Coordinates
 from ..compile.system import System
 
 NEGLIGIBLE = 1e-13
-"""Difference, relative to a row's largest derivative, that is rounding; a smaller coefficient is none."""
+"""Coefficient that counts as zero, relative to the largest of its row."""
 INDEPENDENT = 1e-6
-"""Least singular value, relative to the largest, of rows that hold as many coordinates as they are."""
+"""Smallest singular value of independent rows, relative to the largest."""
 
 
 @dataclass
 class Relations:
-    """What is known so far: leaders and ratios as in `Coordinates`, and the equations that are used up."""
+    """Relations found so far: leaders and ratios as in `Coordinates`, and the equations used."""
 
     independent_of: np.ndarray
     ratio: np.ndarray
     satisfied: np.ndarray
     held: list[int] = field(default_factory=list)
-    """Bodies whose orientation stands still."""
+    """Bodies with constant orientation."""
 
     @classmethod
     def none(cls, system: System) -> Relations:
         return cls(np.arange(system.n_q), np.ones(system.n_q), np.zeros(system.n_c, dtype=bool))
 
     def coordinates(self, system: System) -> Coordinates:
-        """With the velocities, which are related as the coordinates that they are rates of."""
+        """Return the coordinates, with velocities related as the coordinates of which they are the rates."""
         q, u = system.straight
         of_q = np.full(system.n_q, FIXED)
         of_q[q] = u
@@ -44,7 +44,7 @@ class Relations:
         return Coordinates(self.independent_of, self.ratio, independent_of, ratio, self.satisfied)
 
     def extended(self, rows: dict[int, list[tuple[int, float]]]) -> bool:
-        """Use the rows with one or two leaders, else some in the same leaders; whether there was any."""
+        """Use rows with one or two leaders, else a set with common leaders; return True if there was any."""
         used = False
         for row, entries in rows.items():
             coefficients = self._by_independent(entries)
@@ -59,7 +59,7 @@ class Relations:
         return used or self._tied(rows)
 
     def _tied(self, rows: dict[int, list[tuple[int, float]]]) -> bool:
-        """Use rows in the same leaders, as many as these or one less, as across a line that is slanted to all axes."""
+        """Use rows with common leaders, as many as leaders or one less; return True if there was any."""
         alike: dict[frozenset[int], dict[int, dict[int, float]]] = {}
         for row, entries in rows.items():
             coefficients = self._by_independent(entries)
@@ -78,7 +78,7 @@ class Relations:
         return False
 
     def _move_along(self, independents: list[int], direction: np.ndarray) -> None:
-        """Let leaders follow that which moves most in a direction; those that do not move there stand still."""
+        """Let leaders follow the one with the largest component of a direction; fix those with a zero component."""
         chief = int(np.argmax(np.abs(direction)))
         for independent_of, part in zip(independents, direction.tolist(), strict=True):
             if abs(part) <= NEGLIGIBLE:
@@ -87,7 +87,7 @@ class Relations:
                 self._follow(independent_of, independents[chief], part / direction[chief])
 
     def turned(self, bodies: Iterable[tuple[int, list[int]]], system: System) -> bool:
-        """Let orientations that some rows hold stand still; whether there was any."""
+        """Fix orientations that some rows determine; return True if there was any."""
         used = False
         for body, rows in bodies:
             orientation = slice(system.of_body.n_q * body + system.of_body.linear, system.of_body.n_q * (body + 1))
@@ -97,7 +97,7 @@ class Relations:
         return used
 
     def _by_independent(self, entries: list[tuple[int, float]]) -> dict[int, float]:
-        """The coefficients of a row by the coordinates that lead its own."""
+        """Return the coefficients of a row by the leaders of its coordinates."""
         coefficients: dict[int, float] = {}
         for column, value in entries:
             independent_of = int(self.independent_of[column])
@@ -107,7 +107,7 @@ class Relations:
         return {independent_of: value for independent_of, value in coefficients.items() if abs(value) > negligible}
 
     def _follow(self, follower: int, independent_of: int, ratio: float) -> None:
-        """Let a leader, and all that follow it, follow another, or stand still."""
+        """Let a leader and its followers follow another leader, or fix them."""
         followers = self.independent_of == follower
         self.independent_of[followers] = independent_of
         self.ratio[followers] *= ratio

@@ -1,4 +1,4 @@
-"""Placements on each other in space, and the body that several make up."""
+"""Composition of placements in space, and composite bodies."""
 
 from __future__ import annotations
 
@@ -12,26 +12,26 @@ from ..describe.spatial.orientation import conjugate, matrix, product, rotated
 
 
 def on(frame: Placement, placed: Placement) -> Placement:
-    """A placement given in a frame, in the axes that the frame is given in."""
+    """Return a placement that is given in a frame, in the axes in which the frame is given."""
     point = np.array(frame.point) + rotated(frame.orientation, placed.point)
     return Placement(point=_numbers(point), orientation=product(frame.orientation, placed.orientation))
 
 
 def inverse(placed: Placement) -> Placement:
-    """Where the axes that a placement is given in are, seen from it."""
+    """Return the inverse of a placement."""
     back = conjugate(placed.orientation)
     return Placement(point=_numbers(-rotated(back, placed.point)), orientation=back)
 
 
 def composite(members: Sequence[tuple[Body, Placement]]) -> tuple[Body, list[Placement]]:
-    """The body that several make up, and where each of them is on it, both by centres of mass and principal axes.
+    """Return the composite of several bodies, and the placement of each member on it, by centres and principal axes.
 
-    Mass and first moments add up, and inertia tensors, turned to common axes, with m (d^2 - d d^T) (Huygens, Steiner).
+    Masses and first moments are added; rotated inertia tensors with m (d^2 - d d^T) (parallel axis theorem).
 
     Parameters
     ----------
     members : sequence of (Body, Placement)
-        Each with the place of its centre of mass and principal axes in those of the first.
+        With the placement of each centre of mass and principal axes in those of the first.
     """
     first, _ = members[0]
     mass = sum(body.mass for body, _ in members)

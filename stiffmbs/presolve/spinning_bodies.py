@@ -1,8 +1,8 @@
-"""Bodies that spin about an axis of symmetry: their quaternions are kept from spinning with them.
+"""Removal of the spin about the symmetry axis from the quaternions of axisymmetric bodies.
 
-A wheel's quaternion turns as fast as the wheel does, and each turn costs an integrator steps.  Where nothing depends on the
-angle of the spin, the quaternion follows the angular velocity across the axis alone, and the angle is a state of its own.
-Forces stay as they are; what is differentiated by time, constraints and the angular momentum, follows the quaternion
+A wheel's quaternion rotates with the wheel, and each turn requires integrator steps. If nothing depends on the spin
+angle, the quaternion follows only the angular velocity across the axis, and the angle is a separate state. Forces are
+unchanged. Constraints and the angular momentum, which are differentiated by time, follow the quaternion
 (`stiffmbs.describe.spatial.forces.gyroscopic_torque`).
 """
 
@@ -23,21 +23,20 @@ from ..describe.states.state import StateValue
 
 AXES = "xyz"
 ALIKE = 1e-12
-"""What both moments across the axis may differ by, relative to each other; and how far a marker may be beside the axis and
-tilted against it, relative to the mechanism's size and to one."""
+"""Largest relative difference of the moments across the axis, offset of a marker from it in sizes, and tilt."""
 ANGLE = "spin_angle"
-"""Behind a body's name: the name of its state."""
+"""Suffix of a body's name for the name of its state."""
 
 
 class SpinningBodies(NamedTuple):
-    """A model some of whose quaternions don't follow the spin of their bodies.
+    """Model with quaternions that exclude the spin of some bodies.
 
     Attributes
     ----------
     model : Compilable
         As described, or with merged bodies.
     axes : mapping of str to str
-        The principal axis that each of these bodies spins about, ``x``, ``y`` or ``z``.
+        Principal axis of the spin of each of these bodies, ``x``, ``y`` or ``z``.
     """
 
     model: Compilable
@@ -45,7 +44,7 @@ class SpinningBodies(NamedTuple):
 
     @property
     def dimensions(self) -> int:
-        """Of the model."""
+        """Dimensions of the model."""
         return self.model.dimensions
 
     @property
@@ -63,27 +62,27 @@ class SpinningBodies(NamedTuple):
         return self.model.joint_at_initial_pose(name)
 
     def state_outputs(self) -> Mapping[str, Formula]:
-        """The outputs that formulas use by a name."""
+        """Return the outputs that formulas use by a name."""
         return self.model.state_outputs()
 
     def state_values(self) -> dict[str, StateValue]:
-        """The states of the model, and the angles of the spins, from zero on."""
+        """Return the values of the states of the model, and of the spin angles, which start at zero."""
         return {**self.model.state_values(), **{name_of_angle(body): StateValue(None, 0.0, 1.0) for body in self.axes}}
 
     def size(self) -> float:
-        """That of the model."""
+        """Return the size of the model, m."""
         return self.model.size()
 
     def carried(self, marker: Any) -> tuple[str, Any]:
-        """The body that carries a marker, and where on it."""
+        """Return the body that carries a marker, and the marker's placement on it."""
         return self.model.carried(marker)
 
     def spin_axes(self) -> Mapping[str, str]:
-        """The bodies whose quaternions don't follow their spin, with their axes."""
+        """Return the axes of the bodies whose quaternions exclude their spin."""
         return self.axes
 
     def elements(self) -> Iterator[tuple[str, Element]]:
-        """Those of the model, and the rates of the angles."""
+        """Yield the elements of the model, and the rates of the spin angles."""
         from ..describe.spatial.spin_angle import SpinAngle
 
         yield from self.model.elements()
@@ -93,23 +92,22 @@ class SpinningBodies(NamedTuple):
 
 
 def name_of_angle(body: str) -> str:
-    """The state that holds the angle of a body's spin."""
+    """Return the name of the state that holds the spin angle of a body."""
     return f"{body}.{ANGLE}"
 
 
 def spinning(model: Compilable, turns: Mapping[str, np.ndarray]) -> SpinningBodies | None:
-    """The same model with quaternions that don't follow spins, if there is such a body.
+    """Return the model with spins removed from quaternions, or None if no body qualifies.
 
-    A body may spin so if its moments across the axis are equal, and all that acts on it stays the same as it turns: no element
-    but those of `stiffmbs.describe.element.Element.spins_with`, no angle, no joint that another element refers to.  It does if
-    it turns in a bearing or rolls on a tyre, or spins at the start.
+    A body qualifies if its moments across the axis are equal and nothing that acts on it depends on its spin angle.
+    Only elements that `stiffmbs.describe.element.Element.spins_with` allows may act on it: no angles, no joint that
+    another element refers to. It must also rotate in a bearing, roll on a tyre, or spin at the start.
 
     Parameters
     ----------
     model : Compilable
-        In space or in the plane, where there is none.
     turns : mapping of str to ndarray, shape (3,)
-        How far each body would turn about its principal axes in the run at the angular velocity of the start, rad.
+        Rotation of each body about its principal axes during the run at the initial angular velocity, rad.
     """
     if model.dimensions == 2:
         return None
@@ -128,18 +126,18 @@ def spinning(model: Compilable, turns: Mapping[str, np.ndarray]) -> SpinningBodi
 
 
 REFUSED, POINT, BODY = "", "point", "body"
-"""Besides an axis what is asked of a marker on a body that spins (`stiffmbs.describe.element.Element.spins_with`)."""
+"""Requirements on a marker other than an axis (`stiffmbs.describe.element.Element.spins_with`)."""
 
 
 class _Demand(NamedTuple):
-    """What is asked of a marker that is placed on a body, and whether that lets the body turn about the marker's axis."""
+    """Requirement of an element on a marker, and whether it lets the body rotate about the marker's axis."""
 
     what: str
     placed: Any
     bears: bool
 
     def met(self, axis: int, size: float) -> bool:
-        """Whether the body may spin about one of its principal axes."""
+        """Return True if the body may spin about a principal axis."""
         if self.what in (REFUSED, BODY):
             return self.what == BODY
         beside = np.abs(np.delete(np.array(self.placed.point), axis)).max()
@@ -153,7 +151,7 @@ class _Demand(NamedTuple):
 
 
 def _demands(element: Element, model: Compilable) -> Iterator[tuple[MarkerReference, str, bool]]:
-    """The markers that an element uses, itself and in its formulas, what it asks of each, and whether it bears a spin."""
+    """Yield the markers that an element and its formulas use, with the requirement and whether it bears a spin."""
     allowed = element.spins_with()
     for field, marker in element.parts(MarkerReference):
         what = allowed.get(field, REFUSED)
@@ -171,17 +169,17 @@ def _demands(element: Element, model: Compilable) -> Iterator[tuple[MarkerRefere
 
 
 def _seen_in_coordinate(name: str) -> str:
-    """What a body's coordinate or velocity in a formula asks: wx, in the body's own axes, that these lie along the spin's."""
+    """Return the requirement of a body coordinate or velocity in a formula; wx requires the spin axis x."""
     return name[1] if name[0] == "w" else REFUSED if name[0] == "q" else BODY
 
 
 def _seen_in_measure(name: str) -> str:
-    """What a measure asks of its two markers: an angle sees the spin, an angular velocity needs no point."""
+    """Return the requirement of a measure on its markers: an angle forbids spin, an angular velocity needs no point."""
     return REFUSED if name[0] == "a" else BODY if name[0] == "w" else POINT
 
 
 def _axis(body: Any, demands: Sequence[_Demand], turns: np.ndarray, size: float) -> str:
-    """The principal axis that a body spins about; none for most bodies."""
+    """Return the principal axis of a body's spin, or an empty string."""
     for k, (axis, symmetric) in enumerate(zip(AXES, _symmetric_about(body), strict=True)):
         if symmetric and all(demand.met(k, size) for demand in demands) and _is_spun(demands, turns, k):
             return axis
@@ -189,7 +187,7 @@ def _axis(body: Any, demands: Sequence[_Demand], turns: np.ndarray, size: float)
 
 
 def _symmetric_about(body: Any) -> tuple[bool, bool, bool]:
-    """About which principal axes the moments across are equal."""
+    """Return a mask of the principal axes with equal moments across."""
     x, y, z = body.principal_moments()
     return _alike(y, z), _alike(z, x), _alike(x, y)
 
@@ -199,6 +197,6 @@ def _alike(one: float, other: float) -> bool:
 
 
 def _is_spun(demands: Sequence[_Demand], turns: np.ndarray, axis: int) -> bool:
-    """Whether something bears a spin of the body, or it spins from the start: a whole turn, and further than across."""
+    """Return True if an element bears a spin, or if the initial one is over a turn and the largest rotation."""
     across = [abs(turn) for k, turn in enumerate(turns) if k != axis]
     return any(demand.bears for demand in demands) or bool(abs(turns[axis]) > max(2 * np.pi, *across))

@@ -1,4 +1,4 @@
-"""Independent mechanisms of a system: bodies that no joint, force or state connects, but for the ground."""
+"""Independent mechanisms of a system: bodies that no joint, force or state connects, except through the ground."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from ..compile.group import Group
 from ..compile.system import System
 
 A_STATE = -1
-"""In place of the number of a counter of turns."""
+"""Marker of a state, in place of the number of a rotation counter."""
 NO_MECHANISM = np.iinfo(np.int64).max
 
 
 def mechanisms(system: System) -> list[np.ndarray]:
-    """The numbers of the bodies of each mechanism, in the order of their first bodies."""
+    """Return the body numbers of each mechanism, in the order of their first bodies."""
     if len(system.bodies) == 1:
         return [np.zeros(1, dtype=np.int64)]
     bodies = _first_bodies(system)[: len(system.bodies)]
@@ -23,9 +23,9 @@ def mechanisms(system: System) -> list[np.ndarray]:
 
 
 def _first_bodies(system: System) -> np.ndarray:
-    """For each body, the ground and each state the first body of its mechanism; of what hangs on no body the first of all."""
+    """Return the first body of the mechanism of each body, the ground and each state; body 0 if there is none."""
     count = len(system.bodies) + 1 + len(system.states)
-    label = np.arange(count)  # of each the least number that it is known to be connected with
+    label = np.arange(count)  # least number of a part known to be connected
     pairs = np.concatenate([np.empty((0, 2), dtype=np.int64), *(_pairs(system, group) for group in system.groups)])
     while True:
         least = np.minimum(label[pairs[:, 0]], label[pairs[:, 1]])
@@ -40,7 +40,7 @@ def _first_bodies(system: System) -> np.ndarray:
 
 
 def counters_of(system: System) -> dict[tuple[str, int], int]:
-    """The coordinates that count turns, by element and number among its own."""
+    """Return the coordinates of rotation counters by element and number within it."""
     return {
         (name, k): int(at)
         for group in system.groups
@@ -50,17 +50,17 @@ def counters_of(system: System) -> dict[tuple[str, int], int]:
 
 
 def behind_bodies(system: System) -> dict[tuple[str, int], int]:
-    """The same with the coordinates that are states, by name."""
+    """Return the coordinates of rotation counters and states by name."""
     return counters_of(system) | {(name, A_STATE): system.first_state + k for k, name in enumerate(system.states)}
 
 
 def _parts(system: System, group: Group) -> np.ndarray:
-    """The bodies, the ground and the states that each element acts on or reads, numbered in this order, shape (count, parts)."""
+    """Return the bodies, ground and states of each element, numbered in this order, shape (count, parts)."""
     return np.hstack([group.bodies, group.states - system.first_state + len(system.bodies) + 1])
 
 
 def _pairs(system: System, group: Group) -> np.ndarray:
-    """Each element's first body, or state, with each of its others, the ground left out, shape (pairs, 2)."""
+    """Return pairs of the first body or state of each element and its others, without the ground, shape (pairs, 2)."""
     parts, ground = _parts(system, group), len(system.bodies)
     if parts.shape[1] < 2:
         return np.empty((0, 2), dtype=np.int64)
@@ -70,12 +70,12 @@ def _pairs(system: System, group: Group) -> np.ndarray:
 
 
 def part_of(system: System, bodies: np.ndarray) -> System:
-    """The system of one mechanism; its elements' numbers stay those of the whole.
+    """Return the system of one mechanism; its elements keep the numbers of the whole system.
 
     Parameters
     ----------
     bodies : ndarray of int
-        Its bodies, none connected with any other.
+        Its bodies, which are connected with no others.
     """
     own_states = np.flatnonzero(np.isin(_first_bodies(system)[len(system.bodies) + 1 :], bodies))
     place = np.full(len(system.bodies) + 1, -1)
@@ -107,7 +107,7 @@ def part_of(system: System, bodies: np.ndarray) -> System:
 
 
 def _rows(group: Group, inside: np.ndarray) -> np.ndarray:
-    """The equations of the elements inside."""
+    """Return the equations of the selected elements."""
     count = group.record.n_equations
     return (group.first_row + count * np.flatnonzero(inside)[:, None] + np.arange(count)).ravel()
 

@@ -1,1 +1,1 @@
-"""What is known of a mechanism before it is solved: loops, rank of their equations, redundancy, unique reactions, remedies."""
+"""Structure of a mechanism before its solution: loops, rank, redundancy, unique reactions, remedies."""

@@ -1,4 +1,4 @@
-"""Directions that undetermined forces and torques keep: in the axes of the ground, or of a body."""
+"""Constant directions of indeterminate forces and torques, in ground or body axes."""
 
 from __future__ import annotations
 
@@ -11,22 +11,22 @@ from ..compile.quaternions import CONJUGATE, rotated, times
 from .loop_equations import LoopEquations, Pose
 
 SAME_DIRECTION = 1e-5
-"""Angle, rad, and part of a force across it, up to which a direction counts as the same."""
+"""Largest angle, rad, and relative perpendicular component of a force, for which directions count as equal."""
 
 
 class Direction(NamedTuple):
-    """Where what is undetermined of a reaction always lies.
+    """Direction of the indeterminate part of a reaction at all poses.
 
     Attributes
     ----------
     quantity : str
         ``force`` or ``torque``.
     axes : str
-        Whose axes keep it: a body, or ``ground``.
+        Axes in which it is constant: a body, or ``ground``.
     vector : tuple of float
-        Unit vector in these axes; either sign means the same.
+        Unit vector in these axes, with arbitrary sign.
     across : bool
-        Whether it lies across that vector (in space) and not along it.
+        Whether it is perpendicular to that vector (in space), not parallel.
     """
 
     quantity: str
@@ -42,19 +42,19 @@ def directions(
     owner: str,
     negligible: float,
 ) -> Iterator[Direction]:
-    """The directions of an element's undetermined force, and in space of its torque, where they stay.
+    """Yield the constant directions of an element's indeterminate force, and in space of its torque.
 
-    What a joint of its kind can transmit at all is no news, and is left out in space.
+    In space, a direction that the kind of joint implies is omitted.
 
     Parameters
     ----------
     poses : sequence of Pose
     changes : sequence of mapping of str to ndarray
-        At each of them, the change of each channel along each null vector, shape (vectors,).
+        At each pose, the change of each channel along each null vector, shape (vectors,).
     owner : str
-        The element.
+        Name of the element.
     negligible : float
-        Change that is none.
+        Change that counts as zero.
     """
     of_body = equations.state.system.of_body
     quantities = {"force": of_body.reactions[: of_body.linear]}
@@ -77,7 +77,7 @@ def directions(
 
 
 def _frames(equations: LoopEquations, poses: Sequence[Pose], owner: str) -> Iterator[tuple[str, list[np.ndarray]]]:
-    """The ground and an element's bodies, each with the matrices that turn vectors into its own axes at the poses."""
+    """Yield the ground and an element's bodies, each with the rotation matrices into its axes at the poses."""
     system = equations.state.system
     yield "ground", [np.eye(system.of_body.dimensions)] * len(poses)
     for body in next((joint.bodies for joint in equations.loop.joints if joint.name == owner), ()):
@@ -87,7 +87,7 @@ def _frames(equations: LoopEquations, poses: Sequence[Pose], owner: str) -> Iter
 
 
 def _into_own_axes(turn: np.ndarray, principal: np.ndarray) -> np.ndarray:
-    """The matrix for a body's angle, or for its quaternion and its principal axes in its own."""
+    """Return the rotation matrix for a body's angle, or for its quaternion and its principal axes in its own."""
     if len(turn) == 1:
         c, s = np.cos(turn[0]), np.sin(turn[0])
         return np.array([[c, s], [-s, c]])
@@ -95,7 +95,7 @@ def _into_own_axes(turn: np.ndarray, principal: np.ndarray) -> np.ndarray:
 
 
 def _space(change: np.ndarray, negligible: float) -> tuple[int, np.ndarray]:
-    """The number of directions of vectors (columns), and the one direction, or that across two."""
+    """Return the number of directions spanned by columns, and the one direction, or the normal to two."""
     axes, sizes, _ = np.linalg.svd(change, full_matrices=change.shape[1] < len(change))
     if sizes[0] <= negligible:
         return 0, axes[:, 0]
@@ -104,7 +104,7 @@ def _space(change: np.ndarray, negligible: float) -> tuple[int, np.ndarray]:
 
 
 def _same(a: np.ndarray, b: np.ndarray) -> bool:
-    """Whether unit vectors have one direction, whatever their sense."""
+    """Return True if two unit vectors are parallel or antiparallel."""
     return bool(min(np.linalg.norm(a - b), np.linalg.norm(a + b)) < SAME_DIRECTION)
 
 

@@ -1,4 +1,4 @@
-"""Which of a loop's redundant equations are dropped, and which others say the same."""
+"""Choice of a loop's redundant equations to drop, and of the equations on which they depend."""
 
 from __future__ import annotations
 
@@ -10,21 +10,20 @@ import numpy as np
 from .loop_rank import LoopRank
 
 WELL_CHOSEN = (0.1, 1e-2, 1e-4, 1e-7)
-"""Parts of the largest that a row's share in what is redundant must have, at every pose looked at; the next smaller one
-is tried where not enough rows have it.  A row with little share leaves equations that nearly depend on each other."""
+"""Smallest shares of a dropped row in the null spaces, relative to the largest, in the order of their trial."""
 TAKES_PART = 1e-6
-"""Share in a combination, relative to its largest, below which a row has no part in it."""
+"""Share in a combination, relative to its largest, below which a row is not part of it."""
 
 
 class Redundant(NamedTuple):
-    """One redundant equation.
+    """A redundant equation.
 
     Attributes
     ----------
     row : int
-        The equation that is dropped, counted in its loop.
+        Number of the dropped equation in its loop.
     others : tuple of int
-        The rows that say the same together.
+        Rows on which it depends.
     """
 
     row: int
@@ -34,16 +33,16 @@ class Redundant(NamedTuple):
 def redundant_rows(found: LoopRank, order: Sequence[str], holonomic: np.ndarray) -> list[Redundant]:
     """Choose the rows to leave out.
 
-    Leaving out a set of rows loses no constraint where the null space of J^T, restricted to them, is regular.  Rows
-    are taken from the last joint in `order` backwards, equations without a position form before all others; within a
-    joint first the one with the largest share.
+    Leaving out rows loses no constraint if the null space of J^T, restricted to them, is regular. Rows are taken from
+    the last joint in `order` backwards, nonholonomic equations first; within a joint, those with the largest share
+    first.
 
     Parameters
     ----------
     order : sequence of str
         Names of all joints; the last is dropped first.
     holonomic : ndarray of bool
-        Which of the loop's rows have a position form.
+        Mask of the loop's rows that have a position form.
     """
     if not found.redundancy:
         return []
@@ -65,7 +64,7 @@ def redundant_rows(found: LoopRank, order: Sequence[str], holonomic: np.ndarray)
 
 
 def _preference(found: LoopRank, order: Sequence[str], holonomic: np.ndarray) -> list[int]:
-    """The loop's rows, with those to drop first in front."""
+    """Return the loop's rows in the order in which they are dropped."""
     rank = {name: k for k, name in enumerate(order)}
     joint_of = [rank[joint.name] for joint in found.equations.loop.joints for _ in joint.rows]
     shares = _least_shares([space for _, space in found.null_spaces]).round(6)
@@ -73,18 +72,18 @@ def _preference(found: LoopRank, order: Sequence[str], holonomic: np.ndarray) ->
 
 
 def _least_shares(spaces: Sequence[np.ndarray]) -> np.ndarray:
-    """Each row's least share in null spaces."""
+    """Return each row's smallest share in the null spaces."""
     least: np.ndarray = np.min([_shares(space) for space in spaces], axis=0)
     return least
 
 
 def _shares(space: np.ndarray) -> np.ndarray:
-    """Each row's share in a null space, relative to the largest."""
+    """Return each row's share in a null space, relative to the largest."""
     norms = np.linalg.norm(space, axis=1)
     return norms / max(norms.max(), TAKES_PART)
 
 
 def _without(space: np.ndarray, row: int) -> np.ndarray:
-    """What is left of a null space when combinations with a row are left out."""
+    """Return the null space without combinations that contain a row."""
     direction = space[row] / np.linalg.norm(space[row])
     return space - np.outer(space @ direction, direction)

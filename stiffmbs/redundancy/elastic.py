@@ -1,4 +1,4 @@
-"""Which forces hold which bodies elastically: the tangent stiffness of each force on each of its bodies at a pose."""
+"""Elastic support of bodies: the tangent stiffness of each force on each of its bodies at a pose."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from ..compile.system import System
 from ..compile.terms import TERM_SETS
 
 STIFFNESS_ROUNDING = 1e-12
-"""Stiffness, relative to the largest on the body, that is rounding."""
+"""Stiffness that counts as rounding, relative to the largest on the body."""
 
 
 def stiffnesses(state: State, t: float) -> dict[int, dict[str, np.ndarray]]:
-    """By body and force the tangent stiffness -df/dq Z of the force on the body against the body's own moves.
+    """Return the tangent stiffness -df/dq Z of each force against displacements of each body, by body and force.
 
-    Weights, dampers, friction and contacts that are apart have none.
+    Weights, dampers, friction and open contacts have none.
 
     Parameters
     ----------
@@ -49,20 +49,20 @@ def stiffnesses(state: State, t: float) -> dict[int, dict[str, np.ndarray]]:
 
 
 def _acts(group: Group, values: np.ndarray) -> np.ndarray:
-    """Whether each element is stiff against each of its bodies, shape (count, bodies)."""
+    """Return a mask of the bodies against which each element is stiff, shape (count, bodies)."""
     slot = _own(group)
     return np.array([np.any(values[:, slot == k] != 0.0, axis=1) for k in range(group.kind.n_bodies)]).T
 
 
 def _own(group: Group) -> np.ndarray:
-    """Of the entries of df/dq the slot of the body whose force depends on its own coordinates; -1 for others."""
+    """Return the body slot of each entry of df/dq in which a body's force depends on its own coordinates, else -1."""
     row, column = np.array(group.record.patterns["f_q"]).T
     of_row, of_column = row // group.of_body.n_u, column // group.of_body.n_q
     return np.where(of_row == of_column, of_row, -1)
 
 
 def _block(group: Group, values: np.ndarray, k: int) -> np.ndarray:
-    """df/dq of one element for one of its bodies, shape (n_u, n_q)."""
+    """Return df/dq of one element for one of its bodies, shape (n_u, n_q)."""
     n_u, n_q = group.of_body.n_u, group.of_body.n_q
     own = _own(group) == k
     row, column = np.array(group.record.patterns["f_q"])[own].T
@@ -72,14 +72,14 @@ def _block(group: Group, values: np.ndarray, k: int) -> np.ndarray:
 
 
 def _moves(state: State, body: int) -> np.ndarray:
-    """Z of one body, q' = Z u, shape (n_q, n_u)."""
+    """Return Z of one body, q' = Z u, shape (n_q, n_u)."""
     of_body = state.system.of_body
     q = state.q[of_body.n_q * body : of_body.n_q * (body + 1)]
     return np.array([of_body.position_rates(q, unit) for unit in np.eye(of_body.n_u)]).T
 
 
 def held(stiffness: dict[str, np.ndarray], ways: np.ndarray, scale: np.ndarray) -> tuple[list[str], np.ndarray]:
-    """The forces that are stiff against some motions of a body, and the motions that none of them is stiff against.
+    """Return the forces that are stiff against motions of a body, and the motions without stiffness.
 
     Parameters
     ----------
@@ -88,7 +88,7 @@ def held(stiffness: dict[str, np.ndarray], ways: np.ndarray, scale: np.ndarray) 
     ways : ndarray, shape (ways, n_u)
         Independent motions, in units of `scale`.
     scale : ndarray, shape (n_u,)
-        m and rad that count as one.
+        Units of displacements, m and rad.
     """
     scaled = {name: scale[:, None] * K * scale for name, K in stiffness.items()}
     largest = max((np.abs(K).max() for K in scaled.values()), default=0.0)
@@ -101,10 +101,10 @@ def held(stiffness: dict[str, np.ndarray], ways: np.ndarray, scale: np.ndarray) 
 
 
 def screwed(system: System, q: np.ndarray, body: int, twist: np.ndarray) -> np.ndarray:
-    """Coordinates after the motion of one body along a constant twist: a screw, in the plane a turn about a point.
+    """Return coordinates after a motion of one body along a constant twist: a screw motion, in the plane a rotation.
 
-    With theta = |w|: the centre moves by (I + (1 - cos theta)/theta^2 [w] + (theta - sin theta)/theta^3 [w]^2) v (Lynch
-    and Park, Modern Robotics, 2017, eq. 3.88).
+    The centre moves by (I + (1 - cos theta)/theta^2 [w] + (theta - sin theta)/theta^3 [w]^2) v with theta = |w|: Lynch
+    and Park, Modern Robotics, 2017, eq. 3.88.
 
     Parameters
     ----------

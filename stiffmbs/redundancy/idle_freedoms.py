@@ -1,4 +1,4 @@
-"""Freedoms of single bodies between others: a rod on two balls turns about itself, and nothing else moves with it."""
+"""Idle freedoms: motions of one body that move no other, such as the spin of a rod between ball joints."""
 
 from __future__ import annotations
 
@@ -13,28 +13,28 @@ from .elastic import held, screwed, stiffnesses
 from .unproven import by_functions
 
 FREE = 1e-8
-"""Singular value, relative to the largest, of a motion that no joint hinders."""
+"""Singular value that counts as zero, relative to the largest."""
 PERTURBATION = 0.1
-"""Size of a move (sizes of the system, rad) to a second pose: what is free at one alone is a matter of that pose."""
+"""Displacement (sizes of the system, rad) to a second pose, as a motion that is free at one pose may be singular."""
 FURTHER = 0.3
-"""Size of a move along a motion of a body's own, where forces are looked at again: at the start they may stand across it."""
+"""Displacement along a free motion to a pose at which the stiffness of forces is checked again."""
 TURNS = 1e-6
-"""Part of a motion that is rounding."""
+"""Part of a motion that counts as rounding."""
 
 
 @dataclass(frozen=True)
 class IdleFreedom:
-    """A motion of one body that moves no other.
+    """Motion of one body that moves no other.
 
     Attributes
     ----------
     body : str
     between : tuple of str
-        The joints and forces that hold it between others.
+        Joints and forces that connect it to others.
     motion : str
-        ``turn``, ``slide`` or, where it is more than one of these, ``move``.
+        ``turn``, ``slide``, or ``move`` for several motions.
     held_by : tuple of str
-        The forces that are stiff against it; none where only joints and inertia act.
+        Forces that are stiff against it; empty if only joints and inertia act.
     """
 
     body: str
@@ -44,21 +44,20 @@ class IdleFreedom:
 
 
 def idle_freedoms(dynamics: Dynamics, t: float) -> list[IdleFreedom]:
-    """The bodies that can move by themselves although joints and elastic forces hold them between others.
+    """Return the bodies with idle freedoms between others to which joints and elastic forces connect them.
 
-    The motions are those that J of a body alone leaves free.  A force holds one where its tangent stiffness there is not
-    zero: what bushings and springs hold is told apart from what nothing holds.
+    The motions are the null space of a single body's J. A force holds a motion by a nonzero tangent stiffness.
 
     Parameters
     ----------
     dynamics : Dynamics
-        At an assembled pose; left as it is.
+        At an assembled pose; it is restored.
     t : float
         s.
     """
     system, state = dynamics.system, dynamics.state
     around = _joints_around(system)
-    for body in _held_by_functions(system):  # a formula that is flat here may hold the body elsewhere
+    for body in _held_by_functions(system):  # a formula with zero slope here may hold the body elsewhere
         around.pop(body, None)
     ways = dict(_free_ways(dynamics, list(around), t))
     if not ways:
@@ -74,7 +73,7 @@ def idle_freedoms(dynamics: Dynamics, t: float) -> list[IdleFreedom]:
 
 
 def _joints_around(system: System) -> dict[int, dict[str, set[int]]]:
-    """For each body that has joints these, each with the other bodies at it (the ground is one)."""
+    """Return the joints of each body that has any, each with its other bodies, including the ground."""
     around: dict[int, dict[str, set[int]]] = {}
     for group in system.groups:
         for name, bodies in zip(group.names, group.bodies.tolist(), strict=True) if group.record.n_equations else ():
@@ -84,7 +83,7 @@ def _joints_around(system: System) -> dict[int, dict[str, set[int]]]:
 
 
 def _held_by_functions(system: System) -> set[int]:
-    """The bodies in constraints with formulas or tables."""
+    """Return the bodies in constraints with formulas or tables."""
     J = system.term("motion", "J")
     return set((J.column[by_functions(system)[J.row]] // system.of_body.n_u).tolist())
 
@@ -92,7 +91,7 @@ def _held_by_functions(system: System) -> set[int]:
 def _classified(
     dynamics: Dynamics, body: int, free: np.ndarray, joints: dict[str, set[int]], t: float
 ) -> IdleFreedom | None:
-    """What is told of a body's motions that no joint hinders; None where it is held against one other only, or by forces."""
+    """Return the idle freedom of a body, or None if it is connected to a single other body or held by forces."""
     system = dynamics.system
     elastic = stiffnesses(dynamics.state, t).get(body, {})
     others = _others_of_forces(system)
@@ -110,7 +109,7 @@ def _classified(
 
 
 def _held(dynamics: Dynamics, body: int, free: np.ndarray, t: float) -> tuple[list[str], np.ndarray]:
-    """The forces that are stiff against motions of a body, and the motions that none is stiff against, here and further along."""
+    """Return the forces that are stiff against motions of a body, here and further along, and the other motions."""
     state = dynamics.state
     scale = dynamics.system.per_velocity(dynamics.system.size, 1.0)[: dynamics.system.of_body.n_u]
     names, loose = held(stiffnesses(state, t).get(body, {}), free, scale)
@@ -124,13 +123,13 @@ def _held(dynamics: Dynamics, body: int, free: np.ndarray, t: float) -> tuple[li
 
 
 def _others_of_forces(system: System) -> dict[str, set[int]]:
-    """By force the bodies that it acts on or reads (the ground is one)."""
+    """Return the bodies on which each force acts or depends, including the ground."""
     groups = (group for group in system.groups if not group.record.n_equations)
     return {name: set(bodies) for g in groups for name, bodies in zip(g.names, g.bodies.tolist(), strict=True)}
 
 
 def _free_ways(dynamics: Dynamics, bodies: list[int], t: float) -> Iterator[tuple[int, np.ndarray]]:
-    """Of some bodies those that no joint hinders from motions of their own, and these, a row each, in sizes and rad."""
+    """Yield bodies with motions that no joint prevents, and these motions as rows, in sizes and rad."""
     system, state = dynamics.system, dynamics.state
     state.evaluate("motion", t)
     term, width = system.term("motion", "J"), system.of_body.n_u
@@ -151,7 +150,7 @@ def _free_ways(dynamics: Dynamics, bodies: list[int], t: float) -> Iterator[tupl
 
 
 def _motion(ways: np.ndarray, linear: int) -> str:
-    """What motions (rows of velocities) amount to, in a word."""
+    """Return the type of some motions (rows of velocities)."""
     if len(ways) > 1:
         return "move"
     turning = ways[0, linear:]

@@ -1,4 +1,4 @@
-"""Redundant equations that say not the same but something else: no motion satisfies them all."""
+"""Redundant equations that contradict each other, so that no motion satisfies them."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from .loop_equations import AGREES, CLOSED, LoopEquations, Pose
 from .loop_rank import LoopRank
 
 INSTANTS = (0.0137, 0.0931, 0.2113, 0.3719, 0.6131, 0.8677, 0.9941)
-"""Parts of the run at which scenes that depend on time are looked at again, and as often in between as they move."""
+"""Times of the check of time-dependent scenes, as fractions of the run."""
 NEARLY = 1e-3
-"""Violation up to which equations that are independent by their disagreement alone would hold the same if they agreed."""
+"""Largest violation at which equations count as redundant apart from their disagreement."""
 INDEPENDENT_ROW = 0.2
-"""Part of a row of J that is at right angles to others from which on it is independent of them for sure."""
+"""Smallest component of a row of J perpendicular to others, relative to its norm, that makes it clearly independent."""
 DISAGREES = 1e-7
-"""Part of the largest prescribed velocity by which two equations may differ."""
+"""Largest difference of two equations, relative to the largest prescribed velocity."""
 LONGEST_MOVE = 20.0
-"""Length of the move that satisfies the other equations, in gaps, up to which the gap is put down to a contradiction."""
+"""Largest displacement that satisfies the other equations, in gaps, for which the gap counts as a contradiction."""
 STRIDE, MOST_STRIDES = 0.2, 150
-"""Longest move (arms, rad) between two instants, so that no other branch is met, and how many are made at the most."""
+"""Longest displacement (arms, rad) between two poses, to stay on one branch, and the largest number of poses."""
 REGULAR = 1e-5
-"""Least singular value for a velocity to be computed from the equations kept."""
+"""Smallest singular value for a velocity to be computed from the remaining equations."""
 
 
 class Inconsistency(NamedTuple):
@@ -53,16 +53,16 @@ class Inconsistency(NamedTuple):
 
 
 def time_dependent(equations: LoopEquations, pose: Pose, duration: float) -> np.ndarray:
-    """Which rows have time in them, or prescribe velocities, as seen at instants of the run."""
+    """Return a mask of the rows that depend on time or prescribe velocities, evaluated at times of the run."""
     rates = [equations.pose(pose.q, pose.t + part * duration).rates for part in (0.0, *INSTANTS)]
     return equations.timed | np.any(np.array(rates) != 0.0, axis=0)
 
 
 def inconsistencies(found: LoopRank, redundant: list[Redundant], duration: float) -> list[Inconsistency]:
-    """Redundant equations of a loop that cannot hold together with the others, at the first instant where that shows.
+    """Return the redundant equations of a loop that contradict others, at the first time at which they do.
 
-    Each redundant equation must hold where the others do: in position at the assembled pose, and in velocity
-    (J u + C_t = 0 for the u of the others).
+    Each redundant equation must hold if the others do: in position at the assembled pose, and in velocity (J u + C_t =
+    0 for the u of the others).
     """
     if not redundant and not AGREES < found.start.gap < NEARLY:
         return []
@@ -94,7 +94,7 @@ def _gaps(equations: LoopEquations, pose: Pose, level: str, off: dict[int, float
 
 
 def _followed(equations: LoopEquations, start: Pose, duration: float) -> Iterator[Pose]:
-    """The start, and poses along one motion that the equations allow, up to the first that cannot be assembled."""
+    """Yield the start and poses along a motion that the equations allow, up to the first that cannot be assembled."""
     yield start
     pose, strides = start, 0
     for part in INSTANTS:
@@ -116,7 +116,7 @@ def _followed(equations: LoopEquations, start: Pose, duration: float) -> Iterato
 
 
 def _disagreement(equations: LoopEquations, redundant: list[Redundant], pose: Pose) -> tuple[str, dict[int, float]]:
-    """The level, and the rows that do not hold where others do, with what they are off by."""
+    """Return the level, and the violations of rows that do not hold if the others do."""
     kept = np.ones(len(pose.C), dtype=bool)
     kept[[r.row for r in redundant]] = False
     if not pose.J.finite:
@@ -127,20 +127,20 @@ def _disagreement(equations: LoopEquations, redundant: list[Redundant], pose: Po
 
 
 def _nearby(equations: LoopEquations, redundant: list[Redundant], pose: Pose) -> dict[int, float]:
-    """The rows that do not hold where those hold that are independent for sure; the others hold nearly the same."""
+    """Return the violations of rows that do not hold if clearly independent rows do."""
     first = np.ones(len(pose.C), dtype=bool)
     first[[r.row for r in redundant]] = False
     return _off(equations, _position_violations(equations, pose, _clearly_independent(pose, first)), AGREES)
 
 
 def _off(equations: LoopEquations, gaps: np.ndarray, most: float) -> dict[int, float]:
-    """The rows that are off by more than rounding, the worst first, each in its own unit."""
+    """Return the rows with violations above a bound, the largest first, in their own units."""
     worst = sorted(np.flatnonzero(gaps > most).tolist(), key=lambda row: -gaps[row])
     return {row: float(gaps[row] / equations.row_scale[row]) for row in worst}
 
 
 def _velocity_violations(pose: Pose, kept: np.ndarray) -> np.ndarray:
-    """What the rows left out miss by at the velocities of those kept: nothing where all rates are zero."""
+    """Return the violations of the omitted rows at the velocities of the kept ones; zero if all rates are zero."""
     if not np.any(pose.rates):
         return np.zeros(len(pose.rates))
     u, _, _, values = np.linalg.lstsq(pose.J.of_rows(kept).dense(), -pose.rates[kept])
@@ -149,7 +149,7 @@ def _velocity_violations(pose: Pose, kept: np.ndarray) -> np.ndarray:
 
 
 def _position_violations(equations: LoopEquations, pose: Pose, kept: np.ndarray) -> np.ndarray:
-    """What the rows left out miss by nearby, where those kept hold; nothing where these do not close either."""
+    """Return the violations of omitted rows at the nearest pose of the kept ones; zero if there is none."""
     alone = equations.assembled(pose.q, pose.t, kept)
     closes = (
         np.abs(alone.C[kept]).max(initial=0.0) <= CLOSED and equations.distance(pose, alone) < LONGEST_MOVE * pose.gap
@@ -159,7 +159,7 @@ def _position_violations(equations: LoopEquations, pose: Pose, kept: np.ndarray)
 
 
 def _clearly_independent(pose: Pose, first: np.ndarray) -> np.ndarray:
-    """Rows that hardly depend on each other, some asked first: the others hold the same as these, or something else."""
+    """Return a mask of clearly independent rows, with preferred ones first."""
     J, kept = pose.J.dense(), np.zeros(len(first), dtype=bool)
     basis = np.zeros((0, J.shape[1]))
     for row in np.argsort(~first, kind="stable"):
@@ -172,7 +172,7 @@ def _clearly_independent(pose: Pose, first: np.ndarray) -> np.ndarray:
 
 
 def _blamed(pose: Pose, gaps: dict[int, float]) -> list[Redundant]:
-    """The row that is off most, with those that hold nearly the same."""
+    """Return the row with the largest violation, with those that it nearly depends on."""
     if not gaps:
         return []
     row, J = next(iter(gaps)), pose.J.dense()

@@ -1,4 +1,4 @@
-"""The equations of one loop, without units, and its assembly where they are redundant."""
+"""Dimensionless equations of one loop, and its assembly with redundant equations."""
 
 from __future__ import annotations
 
@@ -12,23 +12,23 @@ from .loops import Loop
 from .sparse_matrix import SparseMatrix
 
 CLOSED = 1e-11
-"""Largest violation, relative to the loop's size, of a pose that counts as assembled."""
+"""Largest violation of an assembled pose, relative to the loop's size."""
 AGREES = 1e-6
-"""The same, where equations are redundant and given by some digits only."""
+"""Largest violation of an assembled pose with redundant equations of limited precision."""
 MOST_STEPS = 40
-"""Steps of an assembly; where equations agree a few are enough."""
+"""Largest number of steps of an assembly."""
 LONGEST_STEP = 1.0
-"""Longest move of one step (arms, rad), so that assembly stays near the pose described."""
+"""Longest step (arms, rad), so that assembly stays near the described pose."""
 STATIONARY = 1e-9
-"""Slope of |C|, relative to itself, below which equations that disagree come no closer to holding."""
+"""Slope of |C|, relative to |C|, below which contradicting equations are as close as possible."""
 LEAST_DAMPING = 1e-13
-"""Keeps C_q C_q^T regular where equations are redundant; far below the squares of singular values that count."""
+"""Smallest damping, which keeps C_q C_q^T regular with redundant equations."""
 LEAST_NORM = 1e-9
-"""A row is scaled as if it were at least this part of the others: one that vanishes must not be blown up."""
+"""Smallest row norm for the scaling, relative to the others, as a row that vanishes must not be amplified."""
 
 
 class Pose(NamedTuple):
-    """A loop at an instant and pose, everything in the loop's own rows and columns and without units.
+    """Dimensionless equations of a loop at a time and pose, in the loop's rows and columns.
 
     Attributes
     ----------
@@ -37,11 +37,11 @@ class Pose(NamedTuple):
     t : float
         s.
     gap : float
-        Largest violation of the positions.
+        Largest position violation.
     C : ndarray, shape (n,)
         Violations.
     C_q, J : SparseMatrix, shape (n, velocities)
-        Derivatives of the positions by moves, and of the velocity level.
+        Derivatives of the positions by displacements, and of the velocity level.
     rates : ndarray, shape (n,)
         J u + C_t at u = 0, 1/s.
     """
@@ -56,24 +56,24 @@ class Pose(NamedTuple):
 
 
 class LoopEquations:
-    """C, J and C_t of a loop at any pose: lengths in units of its joints' arms, each row of J of length one.
+    """C, J and C_t of a loop at any pose: lengths in units of its joints' arms, rows of J normalised.
 
     Parameters
     ----------
     loop : Loop
     state : State
-        Working memory; its pose is where rows are scaled.
+        Working memory; rows are scaled at its pose.
     t : float
         s.
 
     Attributes
     ----------
     length : float
-        Root mean square arm of the joints, m: velocities count in it, so that units of length do not matter.
+        Root mean square arm of the joints, m, as the unit of length.
     row_scale : ndarray, shape (n,)
-        What each equation is multiplied by; so lam = row_scale * w for a null vector w of the scaled J^T.
+        Factor of each equation; lam = row_scale * w for a null vector w of the scaled J^T.
     timed : ndarray of bool, shape (n,)
-        Which equations have time in them.
+        Mask of the equations that contain time.
     """
 
     def __init__(self, loop: Loop, state: State, t: float) -> None:
@@ -95,12 +95,12 @@ class LoopEquations:
         self.scale_rows([J.scaled(self.row_scale, self._column_scale)])
 
     def scale_rows(self, matrices: list[SparseMatrix]) -> None:
-        """Scale rows so that the longest form that each takes in matrices scaled so far has length one."""
+        """Scale rows so that the largest norm of each in the given scaled matrices is one."""
         norms = np.max([J.norms() for J in matrices], axis=0)
         self.row_scale /= np.maximum(norms, LEAST_NORM * np.median(norms) or 1.0)
 
     def pose(self, q: np.ndarray, t: float) -> Pose:
-        """The equations at given coordinates of the loop's bodies."""
+        """Return the equations at given coordinates of the loop's bodies."""
         state, rows = self.state, self.row_scale
         state.q[self.loop.coordinates] = q
         state.u[self.loop.columns] = 0.0
@@ -111,31 +111,31 @@ class LoopEquations:
         return Pose(q, t, float(np.abs(C).max()), C, C_q, J, rows * self._vector("V"))
 
     def moved(self, q: np.ndarray, move: np.ndarray) -> np.ndarray:
-        """Coordinates after a move without units."""
+        """Return coordinates after a dimensionless displacement."""
         return self.state.system.of_body.moved(q, self._column_scale * move)
 
     def velocities(self, rates: np.ndarray) -> np.ndarray:
-        """Velocities of the loop's bodies from such without units of length."""
+        """Return velocities of the loop's bodies from dimensionless ones."""
         return self._column_scale * rates
 
     def distance(self, a: Pose, b: Pose) -> float:
-        """Length of the move between two poses, without units."""
+        """Return the dimensionless distance of two poses."""
         return float(np.linalg.norm(self.state.system.of_body.move(a.q, b.q) / self._column_scale))
 
     def assembled(self, q: np.ndarray, t: float, kept: np.ndarray | None = None) -> Pose:
-        """The pose nearby where the equations hold, or come closest to holding.
+        """Return the nearest pose at which the equations hold, or come closest to holding.
 
-        Levenberg and Marquardt's steps with the damping |C|^2 (Yamashita and Fukushima, Computing Suppl. 15, 2001),
-        which converge quadratically to solutions that are not isolated, whatever the rank of C_q there.
+        Levenberg-Marquardt steps with the damping |C|^2 (Yamashita and Fukushima, Computing Suppl. 15, 2001) converge
+        quadratically to non-isolated solutions for any rank of C_q.
 
         Parameters
         ----------
         kept : ndarray of bool, optional
-            The rows to satisfy; all by default.
+            Mask of the rows to satisfy; all by default.
         """
         rows = np.ones(len(self.loop.rows), dtype=bool) if kept is None else kept
         pose = self.pose(q, t)
-        closed = False  # one step more once closed, not more: where C_q is singular they would creep towards that pose
+        closed = False  # one more step once closed; further ones would drift towards a pose with singular C_q
         for _ in range(MOST_STEPS):
             C, C_q = pose.C[rows], pose.C_q if kept is None else pose.C_q.of_rows(rows)
             if closed or not C_q.finite or not np.any(C):
@@ -154,13 +154,13 @@ class LoopEquations:
         return pose
 
     def _places(self, name: str) -> tuple[np.ndarray, ...]:
-        """Source, row and column of a term's entries in this loop."""
+        """Return source, row and column of a term's entries in this loop."""
         term = self.state.system.term("motion", name)
         inside = self._row_at[term.row] >= 0
         return term.source[inside], self._row_at[term.row[inside]], self._column_at[term.column[inside]]
 
     def _pattern_of_J(self) -> tuple[np.ndarray, np.ndarray, SparseMatrix]:
-        """Sources of the entries of J, the place to which each adds, and the places."""
+        """Return the sources of the entries of J, the place to which each adds, and the places."""
         source, row, column = self._places("J")
         width = len(self.loop.columns)
         places, add_to = np.unique(row * width + column, return_inverse=True)
@@ -179,7 +179,7 @@ class LoopEquations:
 
 
 def _root_mean_square_arm(J: SparseMatrix, turning: np.ndarray, size: float) -> float:
-    """Of the rows that hold points: the part in angular velocities (`turning`) over that in velocities, m."""
+    """Return the arm in m from rows that hold points: the norm in angular velocities over that in velocities."""
     along, about = (J.of_columns(part).norms() for part in (~turning, turning))
     of_points = along * size > 1e-6 * about
     arms = about[of_points] / along[of_points]

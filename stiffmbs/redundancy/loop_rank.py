@@ -1,4 +1,4 @@
-"""The rank of one loop's equations: at the start, and in general, seen at perturbed assembled poses."""
+"""Rank of one loop's equations: at the start, and in general, at perturbed assembled poses."""
 
 from __future__ import annotations
 
@@ -11,21 +11,21 @@ from .loop_equations import AGREES, CLOSED, LoopEquations, Pose
 from .small_singular import small_singular
 
 SOUND = 1e-5
-"""Least singular value of the scaled J above which the equations are independent beyond doubt."""
+"""Smallest singular value of the scaled J above which the equations are clearly independent."""
 DEPENDENT = 1e-8
-"""Singular values of the scaled J below this, at poses away from singular ones, belong to redundant equations."""
+"""Singular value of the scaled J below which an equation is redundant, at regular poses."""
 BY_GAP = 30.0
-"""Singular values below so many gaps do so too, where equations agree to some digits only."""
+"""Bound of redundancy in gaps of the start, for equations of limited precision."""
 UNCLEAR = 1e-9, 1e-5
-"""A pose with singular values between these, near a singular one by chance, is not asked where others are clear."""
+"""Interval of singular values that exclude a pose, as nearly singular, if there are others."""
 SINGULAR_START = 1e-5
-"""Part of the general pose's least singular value below which the start counts as singular."""
+"""Singular value at the start, relative to the least in general, below which the start is singular."""
 POSES, PERTURBATION, SHRINKS = 3, 0.1, 5
-"""Poses to confirm the rank at, the size of a perturbation (arms, rad), and how often it is made smaller in vain."""
+"""Number of poses that confirm the rank, the perturbation (arms, rad), and the number of its reductions."""
 
 
 class LoopRank(NamedTuple):
-    """What the singular values of one loop's scaled J say.
+    """Rank of one loop's scaled J.
 
     Attributes
     ----------
@@ -33,13 +33,13 @@ class LoopRank(NamedTuple):
     start : Pose
         Assembled.
     rank : int
-        In general: the greatest that is found.
+        In general: the largest rank at any pose.
     start_rank : int
         At the start; less than `rank` at a singular pose.
     least : float
-        The smallest singular value that counts in the rank.
+        Smallest singular value that counts in the rank.
     null_spaces : list of (Pose, ndarray, shape (n, n - rank))
-        At general poses, and at the start where that is one: combinations of rows of the scaled J that vanish.
+        Left null vectors of the scaled J at general poses, including the start if it is one.
     """
 
     equations: LoopEquations
@@ -56,10 +56,10 @@ class LoopRank(NamedTuple):
 
 
 def loop_rank(equations: LoopEquations, q: np.ndarray, t: float) -> LoopRank:
-    """Find the rank of a loop's equations near a pose.
+    """Return the rank of a loop's equations near a pose.
 
-    A singular pose has a smaller rank than its neighbours; redundant equations depend on each other everywhere.  So
-    only where the rank is not full at the start is it sought by singular values, there and at perturbed poses.
+    A singular pose has a smaller rank than its neighbours; redundant equations are dependent at every pose. Singular
+    values, there and at perturbed poses, are computed only if the rank is not full at the start.
 
     Parameters
     ----------
@@ -90,22 +90,22 @@ def loop_rank(equations: LoopEquations, q: np.ndarray, t: float) -> LoopRank:
 
 
 def _last(vectors: np.ndarray, count: int) -> np.ndarray:
-    """The last columns, so many of them."""
+    """Return the last `count` columns."""
     return vectors[:, vectors.shape[1] - count :]
 
 
 def _clear(values: list[np.ndarray]) -> list[np.ndarray]:
-    """The singular values of poses that are not near a singular one."""
+    """Return the singular values of poses that are not nearly singular."""
     return [s for s in values if not np.any((s > UNCLEAR[0]) & (s < UNCLEAR[1]))]
 
 
 def _is_general(values: np.ndarray, rank: int, least: float, asked: bool) -> bool:
-    """Whether a pose has the rank that there is in general."""
+    """Return True if a pose has the general rank."""
     return asked and int(np.sum(values > SINGULAR_START * least)) == rank
 
 
 def _perturbed(equations: LoopEquations, start: Pose) -> Iterator[Pose]:
-    """Assembled poses near the start; smaller moves where larger ones cannot be assembled."""
+    """Yield assembled poses near the start, with smaller perturbations if larger ones cannot be assembled."""
     rng = np.random.default_rng(1)
     size, found = PERTURBATION, 0
     for _ in range(POSES + SHRINKS if start.gap <= AGREES else POSES):

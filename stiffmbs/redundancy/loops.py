@@ -1,4 +1,4 @@
-"""Which bodies and joints form loops: only there can equations be redundant."""
+"""Kinematic loops of bodies and joints, the only parts in which equations can be redundant."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from ..compile.terms import TERM_SETS
 from ..describe.element import Joint
 
 FULL_RANK = 1e-8
-"""Determinant of the Gram matrix of scaled rows above which a joint surely holds a body with all its equations."""
+"""Determinant of the Gram matrix of normalised rows above which a joint's equations are independent on a body."""
 
 
 class LoopJoint(NamedTuple):
-    """A joint with its rows and bodies.
+    """Joint with its rows and bodies.
 
     Attributes
     ----------
     rows : ndarray of int
-        Of its equations in the whole.
+        Its equations in the whole system.
     bodies : tuple of int
-        Numbers of its bodies, the ground left out.
+        Numbers of its bodies, without the ground.
     """
 
     name: str
@@ -35,7 +35,7 @@ class LoopJoint(NamedTuple):
 
 
 class Loop(NamedTuple):
-    """Bodies and joints of a mechanism that is no tree, connected by more than the ground.
+    """Bodies and joints of loops that are connected by more than the ground.
 
     Attributes
     ----------
@@ -43,7 +43,7 @@ class Loop(NamedTuple):
     bodies : tuple of int
         Their numbers in the system.
     rows, columns, coordinates : ndarrays of int
-        The joints' equations, and the bodies' velocities and coordinates, in the whole.
+        The joints' equations, and the bodies' velocities and coordinates, in the whole system.
     """
 
     joints: tuple[LoopJoint, ...]
@@ -54,15 +54,15 @@ class Loop(NamedTuple):
 
 
 def loops(system: System, state: State) -> list[Loop]:
-    """The parts of a system in which equations could depend on each other, those that share no body apart.
+    """Return the parts of a system in which equations may be dependent, separated if they share no body.
 
-    A body with a single joint is taken away with it where the joint's rows are independent on that body's velocities
-    alone: such rows depend on no others.  What is left when no such body remains are the loops; of a tree, nothing.
+    A body with a single joint is removed with the joint if the joint's rows are independent on that body's velocities,
+    as such rows depend on no others. The loops remain; of a tree, nothing remains.
 
     Parameters
     ----------
     state : State
-        With the set ``motion`` evaluated at the pose to look at.
+        With the set ``motion`` evaluated at the pose.
     """
     joints = [joint for g, group in enumerate(system.groups) for joint in _joints(system, state, g, group)]
     joints_of: list[set[int]] = [set() for _ in system.bodies]
@@ -85,7 +85,7 @@ def loops(system: System, state: State) -> list[Loop]:
 
 
 def _joints(system: System, state: State, g: int, group: Group) -> Iterator[tuple[LoopJoint, set[int]]]:
-    """The joints of a group, each with the bodies on whose velocities alone its rows are independent."""
+    """Yield the joints of a group, each with the bodies on whose velocities alone its rows are independent."""
     count = group.record.n_equations
     if not count:
         return
@@ -97,7 +97,7 @@ def _joints(system: System, state: State, g: int, group: Group) -> Iterator[tupl
     J[:, row, column // width, column % width] = values
     J[..., straight:] /= system.size
     norms = np.linalg.norm(J, axis=(2, 3), keepdims=True)
-    with np.errstate(invalid="ignore"):  # a joint that is not defined at this pose holds nothing for sure
+    with np.errstate(invalid="ignore"):  # a joint that is undefined at this pose has no independent rows
         J /= np.where(norms > 0, norms, 1.0)
         parts = J.transpose(0, 2, 1, 3)
         independent = np.linalg.det(parts @ parts.transpose(0, 1, 3, 2)) > FULL_RANK
@@ -110,7 +110,7 @@ def _joints(system: System, state: State, g: int, group: Group) -> Iterator[tupl
 
 
 def _connected(system: System, joints: list[LoopJoint], joints_of: list[set[int]]) -> Iterator[Loop]:
-    """The joints that are left, in parts that share no body."""
+    """Yield the remaining joints, in parts that share no body."""
     seen: set[int] = set()
     for start, around in enumerate(joints_of):
         if not around or start in seen:

@@ -31,9 +31,9 @@ SHORT = 1e-300
 def opposed_sentences(system: System, data: ModelData, q: np.ndarray, grid: Grid) -> tuple[str, ...]:
     """Return a sentence on each controller whose force has a component along the free motions only without the drives.
 
-    A controller is a force that depends on time or states, and that measures motion directly or through states.  Springs, dampers
-    and forces that depend on time alone are not controllers: the reaction of a drive to these is a common result.  A force on a
-    body is assumed to act on bodies connected to it by bushings as well, such as the housing of a rack.
+    A controller is a force that depends on time or states, and that measures motion directly or through states. The
+    reaction of a drive to springs, dampers and forces of time alone is a common result. A force on a body is assumed to
+    act on bodies connected to it by bushings as well, such as the housing of a rack.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ def opposed_sentences(system: System, data: ModelData, q: np.ndarray, grid: Grid
     """
     drives = [name for name, joint in data.joints.items() if joint.kind == "drive"]
     controllers = [name for name, force in data.forces.items() if drives and _measures(force, data)]
-    if not controllers or system.has_functions:  # a Python function may refuse made-up states
+    if not controllers or system.has_functions:  # a Python function may reject arbitrary states
         return ()
     found = _Directions(State(system), q, (grid.start, grid.end))
     rows = {name: found.rows_of(name) for name in drives}
@@ -151,7 +151,7 @@ class _Directions:
             column = bodies[row // width] * width + row % width
             moving = bodies[row // width] < len(self.system.bodies)
             samples = np.array([values[first : first + group.entries["f"]] for values in self._samples])
-            samples = samples[np.isfinite(samples).all(axis=1)]  # made-up states may be out of a function's range
+            samples = samples[np.isfinite(samples).all(axis=1)]  # arbitrary states may be out of a function's range
             changes = np.zeros((len(samples), self.system.n_u))
             for k, change in enumerate(samples - samples[:1]):
                 np.add.at(changes[k], column[moving], change[moving])

@@ -1,4 +1,4 @@
-"""Redundant equations in a designer's words: what is held twice, what that leaves open, and what would settle it."""
+"""Overconstraints in design terms: joints involved, indeterminate reactions and remedies."""
 
 from __future__ import annotations
 
@@ -23,24 +23,24 @@ MOST_NAMES = 6
 
 
 class Overconstraint(NamedTuple):
-    """Joints that together hold something more than once.
+    """Joints that together constrain a motion more than once.
 
     Attributes
     ----------
     joints : tuple of str
-        All that take part.
+        All joints involved.
     redundant : tuple of (str, str)
-        Joint and name of the equations that are dropped.
+        Joint and name of the dropped equations.
     indeterminate : tuple of Indeterminate
-        The reactions that have no unique value because of it.
+        Reactions that are not unique because of it.
     shared : bool
-        Whether all hold the same bodies against each other, so that what they carry together is unique.
+        Whether all joints connect the same bodies, so that their total reaction is unique.
     remedies : tuple of tuple of str
-        Joints that would have to be left out, all of one tuple together, for every reaction to be unique.
+        Joints to remove, all of one tuple together, for every reaction to be unique.
     elastic : tuple of str
-        Joints that would have to be elastic, all together, for their stiffness to decide about every reaction.
+        Joints to make elastic, all together, for their stiffness to determine every reaction.
     replacements : tuple of tuple of (str, str)
-        Joints and the kinds that would let go of just what is held too often: each that does alone, or a few together.
+        Joints and kinds that release just the redundant constraints: each joint alone, or a few together.
     reason, remedy : str
         Each a sentence without a full stop.
     """
@@ -57,7 +57,7 @@ class Overconstraint(NamedTuple):
 
 
 def overconstraints(redundancy: Redundancy) -> Iterator[Overconstraint]:
-    """What is held more than once in a system, independent cases apart."""
+    """Yield the independent overconstraints of a system."""
     blocks = [(rank_result, block) for rank_result in redundancy.rank_results for block in _blocks(rank_result)]
     what = "all reactions" if len(blocks) == 1 else "these reactions"
     for rank_result, block in blocks:
@@ -65,14 +65,14 @@ def overconstraints(redundancy: Redundancy) -> Iterator[Overconstraint]:
 
 
 def listed(names: Sequence[str]) -> str:
-    """Names in a row, the last after an 'and'; long rows are cut short."""
+    """Join names with commas and 'and'; a long list is shortened."""
     if len(names) > MOST_NAMES:
         names = [*names[: MOST_NAMES - 1], f"{len(names) - MOST_NAMES + 1} more"]
     return f"{', '.join(names[:-1])} and {names[-1]}" if len(names) > 1 else "".join(names)
 
 
 def _blocks(rank_result: LoopRankResult) -> list[list[Redundant]]:
-    """Redundant equations that are repeated by common rows, or among the same joints, together."""
+    """Group redundant equations with common rows or the same joints."""
     joint_of = [joint.name for joint in rank_result.rank.equations.loop.joints for _ in joint.rows]
     blocks: list[tuple[set[int], list[Redundant]]] = []
     for part in rank_result.redundant:
@@ -87,14 +87,14 @@ def _blocks(rank_result: LoopRankResult) -> list[list[Redundant]]:
 def _alike(
     blocks: list[tuple[set[int], list[Redundant]]], joint_of: list[str]
 ) -> tuple[set[int], list[Redundant]] | None:
-    """A block that belongs together with the last one."""
+    """Return a block that belongs to the last one."""
     *others, (rows, _) = blocks
     joints = {joint_of[row] for row in rows}
     return next((o for o in others if o[0] & rows or {joint_of[row] for row in o[0]} == joints), None)
 
 
 def _overconstraint(system: System, rank_result: LoopRankResult, block: list[Redundant], what: str) -> Overconstraint:
-    """What is said of one block; `what` becomes unique by a remedy."""
+    """Describe one block; `what` becomes unique by a remedy."""
     loop = rank_result.rank.equations.loop
     joint_of = [joint for joint in loop.joints for _ in joint.rows]
     rows = sorted({row for part in block for row in (part.row, *part.others)})
@@ -136,7 +136,7 @@ def _reason(system: System, joints: list[LoopJoint], driven: list[str], count: i
 
 
 def _between_the_same(joints: list[LoopJoint]) -> bool:
-    """Whether joints hold the same bodies against each other."""
+    """Return True if joints connect the same bodies."""
     return all(set(joint.bodies) == set(joints[0].bodies) for joint in joints)
 
 
@@ -149,7 +149,7 @@ def _in_space(
 
 
 def _of_block(rank_result: LoopRankResult, space: np.ndarray, block: list[Redundant]) -> np.ndarray:
-    """The null vectors that belong to redundant equations, one for each."""
+    """Return the null vectors of some redundant equations, one for each."""
     chosen = [rank_result.redundant.index(part) for part in block]
     one_each: np.ndarray = space @ np.linalg.inv(space[[part.row for part in rank_result.redundant]])
     return one_each[:, chosen]
@@ -158,7 +158,7 @@ def _of_block(rank_result: LoopRankResult, space: np.ndarray, block: list[Redund
 def _remedies(
     rank_result: LoopRankResult, space: np.ndarray, joints: list[LoopJoint]
 ) -> Iterator[tuple[LoopJoint, ...]]:
-    """Each joint that alone would settle it; where there is none, a few that do together."""
+    """Yield each joint that is a remedy alone, or else a few that are together."""
     count = space.shape[1]
     own = list(_own_rows(rank_result, joints))
     alone = [joint for joint, rows in zip(joints, own, strict=True) if _rank(space[rows]) == count]
@@ -169,11 +169,11 @@ def _remedies(
 
 
 def _together(space: np.ndarray, own: list[np.ndarray], elastic: list[bool]) -> Iterator[int]:
-    """Joints, by their rows of a null space, that have all of it: each next one has the most of what is left."""
+    """Yield joints whose rows span a null space, each with the largest part of the remainder."""
     place = np.full((len(own), max(map(len, own))), len(space))
     for k, rows in enumerate(own):
         place[k, : len(rows)] = rows
-    rest = np.vstack([space, np.zeros(space.shape[1])])  # its last row stands for those that a joint has not
+    rest = np.vstack([space, np.zeros(space.shape[1])])  # the last row pads joints with fewer rows
     while True:
         grams = rest[place] @ rest[place].transpose(0, 2, 1)
         gains = np.sum(np.linalg.eigvalsh(grams) > TAKES_PART**2, axis=1).tolist()
@@ -187,7 +187,7 @@ def _together(space: np.ndarray, own: list[np.ndarray], elastic: list[bool]) -> 
 
 
 def _own_rows(rank_result: LoopRankResult, joints: list[LoopJoint]) -> Iterator[np.ndarray]:
-    """The rows of each joint in the loop."""
+    """Yield the rows of each joint in the loop."""
     first = {joint.name: row for row, joint in _first_rows(rank_result)}
     yield from (np.arange(first[joint.name], first[joint.name] + len(joint.rows)) for joint in joints)
 
@@ -207,7 +207,7 @@ def _rank(rows: np.ndarray) -> int:
 def _remedy(
     remedies: list[tuple[LoopJoint, ...]], elastic: tuple[LoopJoint, ...], chosen: list[Choice], what: str
 ) -> str:
-    """What makes reactions determinate by statics, and what lets stiffness decide."""
+    """Return a sentence on changes that make reactions statically determinate or determined by stiffness."""
     ways = [f"with {kinds}" for kinds in _replaced(chosen)]
     left_out = [joint.name for joint, *more in remedies if not more and not joint.element.elastic]
     if left_out or not (ways or elastic):
@@ -222,7 +222,7 @@ def _remedy(
 
 
 def _elastic_words(elastic: Sequence[LoopJoint]) -> str:
-    """Bushings and springs in place of joints, in words."""
+    """Describe bushings and springs in place of joints."""
     of_kind: dict[str, list[str]] = {}
     for joint in elastic:
         of_kind.setdefault(joint.element.elastic, []).append(joint.name)
@@ -234,7 +234,7 @@ def _all_of(names: Sequence[str]) -> str:
 
 
 def _replaced(chosen: list[Choice]) -> Iterator[str]:
-    """The joints and their other kinds in words, those of one kind together."""
+    """Yield the joints and their replacement kinds in words, by kind."""
     if chosen and len(chosen[0]) > 1:
         yield listed([f"{_a(kind)} in place of {joint}" for joint, kind in chosen[0]])
         return

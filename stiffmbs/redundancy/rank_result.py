@@ -1,7 +1,7 @@
-"""All that is found about one loop.
+"""Results on one loop.
 
-`loop_rank` finds the rank of its equations, `drop_first` those to leave out, `uniqueness` the reactions that stay
-undetermined, `inconsistencies` equations that cannot hold together.
+`loop_rank` finds the rank of its equations, `drop_first` those to leave out, `uniqueness` the indeterminate reactions,
+`inconsistencies` contradicting equations.
 """
 
 from __future__ import annotations
@@ -21,19 +21,19 @@ from .uniqueness import Indeterminate, forces_change, indeterminate
 
 
 class LoopRankResult(NamedTuple):
-    """A loop whose equations are not independent at the start, and what follows.
+    """Results on a loop with dependent equations at the start.
 
     Attributes
     ----------
     rank : LoopRank
     redundant : list of Redundant
-        The equations that are dropped.
+        Dropped equations.
     indeterminate : list of Indeterminate
     inconsistencies : list of Inconsistency
     driven : ndarray of bool
-        Which of the loop's rows depend on time.
+        Mask of the loop's rows that depend on time.
     motion_unique : bool
-        False where friction depends on reactions that are not unique.
+        False if friction depends on reactions that are not unique.
     """
 
     rank: LoopRank
@@ -45,19 +45,19 @@ class LoopRankResult(NamedTuple):
 
     @property
     def extra_freedoms(self) -> int:
-        """Degrees of freedom at the start beyond those in general: more than 0 at a singular pose."""
+        """Degrees of freedom at the start beyond those in general: positive at a singular pose."""
         return self.rank.rank - self.rank.start_rank
 
     @property
     def nearly_dependent(self) -> bool:
-        """Whether equations differ by so little that the motion depends on rounding."""
+        """True if equations are so nearly dependent that the motion depends on rounding."""
         return not self.extra_freedoms and self.rank.least < SOUND
 
 
 def rank_result_of(
     loop: Loop, state: State, start: float, duration: float, order: Sequence[str]
 ) -> LoopRankResult | None:
-    """Examine one loop near the pose described.
+    """Examine one loop near the described pose.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def rank_result_of(
     Returns
     -------
     LoopRankResult or None
-        None where all equations are independent, or not defined (the search for initial values names the element).
+        None if all equations are independent, or undefined (initial value assembly then names the element).
     """
     equations = LoopEquations(loop, state, start)
     pose = equations.pose(state.system.q[loop.coordinates], start)

@@ -1,7 +1,7 @@
 """Degrees of freedom, redundant equations, and reactions without a unique value.
 
-The degrees of freedom are n_u minus the rank of the velocity Jacobian J.  Rows of a tree are always independent, so
-only loops are looked at, each by itself: `loops` finds them, and `rank_result` puts together what there is to say of one.
+The degrees of freedom are n_u minus the rank of the velocity Jacobian J. Rows of a tree are always independent, so only
+loops (`loops`) are examined, each separately (`rank_result`).
 """
 
 from __future__ import annotations
@@ -21,16 +21,16 @@ if TYPE_CHECKING:
 
 
 class Redundancy(NamedTuple):
-    """What the examination of a system found.
+    """Result of the examination of a system.
 
     Attributes
     ----------
     system : System
         As examined.
     rank_results : tuple of LoopRankResult
-        Of the loops whose equations are not independent at the start.
+        Of the loops with dependent equations at the start.
     active : ndarray of bool, shape (n_c,)
-        Which equations stay.
+        Mask of the equations that are kept.
     """
 
     system: System
@@ -39,27 +39,27 @@ class Redundancy(NamedTuple):
 
     @property
     def rank(self) -> int:
-        """Of J, in general."""
+        """General rank of J."""
         return int(self.active.sum())
 
     @property
     def degrees_of_freedom(self) -> int:
-        """n_u - rank."""
+        """Number of degrees of freedom, n_u - rank."""
         return self.system.n_u - self.rank
 
     @property
     def redundant(self) -> tuple[tuple[str, str], ...]:
-        """Joint and name of the equations that are dropped."""
+        """Joint and name of the dropped equations."""
         return tuple(self.system.equations[row] for row in np.flatnonzero(~self.active))
 
     @property
     def indeterminate(self) -> tuple[Indeterminate, ...]:
-        """The reactions without a unique value."""
+        """Reactions without a unique value."""
         return tuple(part for rank_result in self.rank_results for part in rank_result.indeterminate)
 
     @property
     def not_unique(self) -> tuple[str, ...]:
-        """Their channels."""
+        """Channels of the reactions without a unique value."""
         return tuple(dict.fromkeys(name for part in self.indeterminate for name in part.channels))
 
     @property
@@ -69,7 +69,7 @@ class Redundancy(NamedTuple):
 
 
 def examine(system: System, start: float, duration: float, order: Sequence[str]) -> Redundancy:
-    """Examine a system's loops.
+    """Examine the loops of a system.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ def examine(system: System, start: float, duration: float, order: Sequence[str])
     active = np.ones(system.n_c, dtype=bool)
     rank_results = []
     for loop in loops(system, state):
-        from .rank_result import rank_result_of  # trees do not pay for it
+        from .rank_result import rank_result_of  # not imported for trees
 
         rank_result = rank_result_of(loop, state, start, duration, order)
         if rank_result is None:

@@ -1,7 +1,7 @@
-"""Which joints in space could be of a kind that transmits less, so that every reaction is unique.
+"""Replacement of spatial joints by kinds that transmit less, so that every reaction is unique.
 
-A joint of a weaker kind between the same markers lets go of some components of its reaction.  With as many of them let go
-as equations are redundant, and these independent along the null space of J^T, nothing stays undetermined, and no freedom is added.
+A joint of a weaker kind between the same markers releases components of its reaction. If as many are released as
+equations are redundant, independently along the null space of J^T, all reactions are unique and no freedom is added.
 """
 
 from __future__ import annotations
@@ -19,26 +19,26 @@ from .transmitted import COMPONENTS, transmitted
 from .uniqueness import changes_of
 
 INDEPENDENT_COMPONENT = 1e-3
-"""Least singular value, relative to the largest reaction, of components that are independent."""
+"""Smallest singular value of independent components, relative to the largest reaction."""
 MOST_JOINTS, MOST_CHANGED, MOST_TRIALS = 10, 4, 2000
-"""Joints to choose from, the last ones; joints to change at once; choices looked at."""
+"""Largest numbers of joints to choose from (the last ones), of joints to change at once, and of choices to try."""
 IDEAL = ("spherical", "cylindrical", "revolute", "prismatic", "planar")
-"""Kinds that machines have; the others are parts of such, tried where these do not do."""
+"""Kinds of real joints; the others are tried if these are not sufficient."""
 
 Choice = tuple[tuple[str, str], ...]
 
 
 @dataclass(frozen=True)
 class _Option:
-    """A joint as a weaker kind.
+    """Replacement of a joint by a weaker kind.
 
     Attributes
     ----------
     joint, kind : str
     let_go : list of ndarray, shape (components, null vectors)
-        What it no longer transmits along each null vector, at each pose.
+        Released components along each null vector, at each pose.
     count : int
-        Equations that it has less.
+        Number of released equations.
     """
 
     joint: str
@@ -50,14 +50,14 @@ class _Option:
 def replacements(
     equations: LoopEquations, spaces: Sequence[tuple[Pose, np.ndarray]], joints: Sequence[LoopJoint]
 ) -> list[Choice]:
-    """Joints and the kinds that they should have: each joint that does it alone, else a few together; empty where none do.
+    """Return the joints and replacement kinds: each joint that suffices alone, else a few together, else none.
 
     Parameters
     ----------
     spaces : sequence of (Pose, ndarray)
-        Poses, and null vectors of the scaled J^T there for what is redundant.
+        Poses, and null vectors of the scaled J^T there for the redundant equations.
     joints : sequence of LoopJoint
-        To choose from; the last is changed first.
+        Joints to choose from; the last is changed first.
     """
     count, last = spaces[0][1].shape[1], joints[-MOST_JOINTS:]
     seen = [_in_marker_axes(equations, pose, space, last) for pose, space in spaces]
@@ -81,7 +81,7 @@ def replacements(
 def _in_marker_axes(
     equations: LoopEquations, pose: Pose, space: np.ndarray, joints: Sequence[LoopJoint]
 ) -> dict[str, np.ndarray]:
-    """The joints' reactions along each null vector in the axes of their markers j, shape (6, vectors)."""
+    """Return the joints' reactions along each null vector in the axes of their markers j, shape (6, vectors)."""
     change, found = changes_of(equations, pose, space), {}
     for joint in joints:
         axes = marker_axes(equations.state.system, joint.name, "j", equations.state.q)
@@ -104,7 +104,7 @@ def _options(
 
 
 def _does(choice: Sequence[_Option], count: int) -> bool:
-    """Whether options let go of as many components as equations are redundant, all of them independent."""
+    """Return True if options release as many components as equations are redundant, all of them independent."""
     return sum(option.count for option in choice) == count and _independent(choice)
 
 
@@ -118,12 +118,12 @@ def _independent(choice: Sequence[_Option]) -> bool:
 
 
 def _one_each(alone: Sequence[tuple[_Option]]) -> Iterator[tuple[_Option]]:
-    """Of each joint the first option."""
+    """Yield the first option of each joint."""
     yield from {choice[0].joint: choice for choice in reversed(alone)}.values()
 
 
 def _together(options: Sequence[Sequence[_Option]], count: int) -> Iterator[tuple[_Option, ...]]:
-    """Choices of options of several joints that do it."""
+    """Yield sufficient choices of options of several joints."""
     trials = 0
     for size in range(2, min(MOST_CHANGED, len(options)) + 1):
         for joints in itertools.combinations(options, size):

@@ -1,10 +1,9 @@
-"""Which joints have to be elastic for elasticity to decide how they share what rigid bodies leave undetermined.
+"""Joints that must be elastic for stiffness to determine reactions that rigid bodies leave indeterminate.
 
-With compliances c of the rows of some joints, of all multipliers lam + N w that move the mechanism alike the one with the
-least complementary energy, 1/2 sum c_k (lam_k + (N w)_k)^2, is that of the elastic mechanism (Castigliano's second theorem).
-A single elastic joint among rigid ones that hold the same is unloaded: w makes its own energy zero, whatever its stiffness,
-so that it shows what leaving it out shows.  Stiffness decides where, without any one of the elastic joints, the others
-still determine w.
+With compliances c of some joints' rows, all multipliers lam + N w cause the same motion. The elastic mechanism has
+those with the least complementary energy, 1/2 sum c_k (lam_k + (N w)_k)^2 (Castigliano's second theorem). A single
+elastic joint parallel to rigid ones is unloaded, as w makes its energy zero at any stiffness. Stiffness determines the
+reactions if w is determined without any one of the elastic joints.
 """
 
 from __future__ import annotations
@@ -18,19 +17,19 @@ from .loops import LoopJoint
 
 
 def elastic_joints(joints: Sequence[LoopJoint], shares: Sequence[np.ndarray]) -> tuple[LoopJoint, ...]:
-    """The joints that have to be elastic together; of those at both ends of one rod, where there are other paths, the last.
+    """Return the joints to make elastic together; of those on one load path, if there are others, the last.
 
     Parameters
     ----------
     joints : sequence of LoopJoint
-        All that take part.
+        All joints involved.
     shares : sequence of ndarray, shape (rows, redundant equations)
         The rows of each joint in the null space N of J^T.
 
     Returns
     -------
     tuple of LoopJoint
-        Empty where joints take part that no elastic element can replace, and too few are left.
+        Empty if too few joints can be replaced by elastic elements.
     """
     usable = [k for k, share in enumerate(shares) if joints[k].element.elastic and np.abs(share).max() > TAKES_PART]
     for chosen in (_last_of_each_path(joints, usable), usable):
@@ -40,7 +39,7 @@ def elastic_joints(joints: Sequence[LoopJoint], shares: Sequence[np.ndarray]) ->
 
 
 def _decides(shares: Sequence[np.ndarray]) -> bool:
-    """Whether the stiffness of elastic joints decides: w is determined without any one of them too."""
+    """Return True if stiffness determines the reactions: w is determined without any one of the elastic joints."""
     if len(shares) < 2:
         return False
     count = shares[0].shape[1]
@@ -48,7 +47,7 @@ def _decides(shares: Sequence[np.ndarray]) -> bool:
 
 
 def _last_of_each_path(joints: Sequence[LoopJoint], usable: Sequence[int]) -> list[int]:
-    """Of joints that a load passes one after the other, through bodies with two joints, the last one."""
+    """Return the last joint of each load path through bodies with two joints."""
     path = list(range(len(joints)))
     for body in {body for joint in joints for body in joint.bodies}:
         around = [k for k, joint in enumerate(joints) if body in joint.bodies]

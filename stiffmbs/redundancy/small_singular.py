@@ -1,4 +1,4 @@
-"""The small singular values of a matrix and their left singular vectors: of all where it is small, else of these alone."""
+"""Singular values and left singular vectors of a matrix: all of a small matrix, else the small ones."""
 
 from __future__ import annotations
 
@@ -7,20 +7,22 @@ import numpy as np
 from .sparse_matrix import SparseMatrix
 
 KNOWN_BY_SQUARES = 1e-3
-"""Singular values below this are not taken from eigenvalues of J J^T, which know them to 1e-8 only."""
+"""Singular value below which eigenvalues of J J^T, accurate to 1e-8, are not used."""
 WHOLE_UP_TO = 1000
-"""Rows up to which all singular values are computed."""
+"""Largest number of rows for which all singular values are computed."""
 FEW = 3
-"""Small singular values are sought alone where they are fewer than the rows divided by this."""
+"""Largest fraction of the rows, as its inverse, for which small singular values are computed alone."""
 MORE, SHIFT, ITERATIONS = 10, 1e-10, 4
-"""Vectors beside those sought, shift of J J^T, and iterations: each makes vectors of larger values than `KNOWN_BY_SQUARES` smaller by
-SHIFT/KNOWN_BY_SQUARES^2 against those of zero."""
+"""Additional vectors of the subspace, shift of J J^T, and iterations.
+
+Each one reduces vectors of singular values above `KNOWN_BY_SQUARES` by SHIFT/KNOWN_BY_SQUARES^2.
+"""
 
 
 def small_singular(J: SparseMatrix) -> tuple[np.ndarray, np.ndarray]:
-    """Singular values, shape (n,), the largest first, and the left singular vectors of the last of them.
+    """Return the singular values, shape (n,), in descending order, and left singular vectors of the last of them.
 
-    Of a large matrix, those above `KNOWN_BY_SQUARES` but for the last ones are not computed: one of these stands for them.
+    For a large matrix, one of those above `KNOWN_BY_SQUARES` replaces all larger ones.
 
     Parameters
     ----------
@@ -36,9 +38,9 @@ def small_singular(J: SparseMatrix) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _of_all(J: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """As eigenvalues of J J^T, which is some times faster than by the decomposition of J.
+    """Compute all from eigenvalues of J J^T, which is faster than the decomposition of J.
 
-    Those too small to be told from rounding there are found anew by the decomposition of J^T on their eigenvectors alone.
+    Small ones are recomputed by the decomposition of J^T on their eigenvectors.
     """
     squares, vectors = np.linalg.eigh(J @ J.T)
     count = int(np.sum(squares < KNOWN_BY_SQUARES**2))
@@ -50,8 +52,7 @@ def _of_all(J: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _by_iteration(J: SparseMatrix, width: int) -> tuple[np.ndarray, np.ndarray]:
-    """By inverse iteration on a subspace (Bathe and Wilson, Large eigenvalue problems in dynamic analysis, J. Eng. Mech.
-    Div. 98, 1972), and the decomposition of J^T on it."""
+    """Compute the small ones by subspace iteration (Bathe and Wilson, J. Eng. Mech. Div. 98, 1972) and J^T on it."""
     n = J.shape[0]
     vectors = np.random.default_rng(1).standard_normal((n, width))
     for _ in range(ITERATIONS):

@@ -1,4 +1,4 @@
-"""The matrices of loops by their entries, and what is asked of J J^T: dense where they are small, sparse where not."""
+"""Sparse matrices of loops, and operations on J J^T: dense if small, else sparse."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 
 DENSE_UP_TO = 300
-"""Rows up to which dense factors are made sooner than SciPy's sparse ones are imported."""
+"""Largest number of rows for dense factors, which need no import of SciPy's sparse ones."""
 
 
 @dataclass(frozen=True)
 class SparseMatrix:
-    """A matrix by the entries that are not zero for its structure, each place once.
+    """Sparse matrix with unique places.
 
     Attributes
     ----------
@@ -29,22 +29,22 @@ class SparseMatrix:
 
     @property
     def finite(self) -> bool:
-        """Whether all entries are finite numbers."""
+        """True if all entries are finite."""
         return bool(np.all(np.isfinite(self.value)))
 
     def dense(self) -> np.ndarray:
-        """As a full matrix."""
+        """Return the full matrix."""
         result = np.zeros(self.shape)
         result[self.row, self.column] = self.value
         return result
 
     def scaled(self, rows: np.ndarray, columns: np.ndarray) -> SparseMatrix:
-        """Each row and each column multiplied by a factor."""
-        with np.errstate(invalid="ignore"):  # where equations are not defined; the caller looks for finite numbers
+        """Return the matrix with each row and each column multiplied by a factor."""
+        with np.errstate(invalid="ignore"):  # equations may be undefined; the caller checks for finite numbers
             return replace(self, value=rows[self.row] * self.value * columns[self.column])
 
     def of_rows(self, kept: np.ndarray) -> SparseMatrix:
-        """The rows that are marked."""
+        """Return the marked rows."""
         inside = kept[self.row]
         number = np.cumsum(kept) - 1
         return SparseMatrix(
@@ -52,36 +52,36 @@ class SparseMatrix:
         )
 
     def of_columns(self, kept: np.ndarray) -> SparseMatrix:
-        """The matrix with zeros in the columns that are not marked."""
+        """Return the matrix with zeros in the columns that are not marked."""
         inside = kept[self.column]
         return SparseMatrix(self.row[inside], self.column[inside], self.value[inside], self.shape)
 
     def norms(self) -> np.ndarray:
-        """The length of each row."""
+        """Return the norm of each row."""
         return np.sqrt(np.bincount(self.row, self.value**2, self.shape[0]))
 
     def times(self, vector: np.ndarray) -> np.ndarray:
-        """The product with a vector."""
+        """Return the product with a vector."""
         return np.bincount(self.row, self.value * vector[self.column], self.shape[0])
 
     def transposed_times(self, vector: np.ndarray) -> np.ndarray:
-        """The product of the transpose with a vector."""
+        """Return the product of the transpose with a vector."""
         return np.bincount(self.column, self.value * vector[self.row], self.shape[1])
 
     def transposed_times_all(self, vectors: np.ndarray) -> np.ndarray:
-        """The products of the transpose with the columns of a matrix."""
+        """Return the product of the transpose with a matrix."""
         product: np.ndarray = self._sparse().T @ vectors
         return product
 
     def solved_gram(self, shift: float, right: np.ndarray) -> np.ndarray:
-        """x of (A A^T + shift I) x = right, which may have several columns; the shift is greater than zero."""
+        """Return x of (A A^T + shift I) x = right, with one or several columns; the shift is positive."""
         if self.shape[0] <= DENSE_UP_TO:
             return np.linalg.solve(self._dense_gram(shift), right)
         result: np.ndarray = _factors(self._sparse_gram(shift)).solve(right)
         return result
 
     def singular_values_above(self, least: float) -> bool:
-        """Whether all of them are: A A^T - least^2 I is positive definite."""
+        """Return True if all singular values exceed a bound: A A^T - least^2 I is positive definite."""
         if self.shape[0] > self.shape[1]:
             return False
         if self.shape[0] <= DENSE_UP_TO:
@@ -92,13 +92,13 @@ class SparseMatrix:
             return True
         try:
             factors = _factors(self._sparse_gram(-(least**2)))
-        except RuntimeError:  # SuperLU's word for a pivot that is zero
+        except RuntimeError:  # SuperLU's error for a zero pivot
             return False
         # Pivots on the diagonal have the signs of the eigenvalues (Sylvester's law of inertia).
         return bool(np.array_equal(factors.perm_r, factors.perm_c) and np.all(factors.U.diagonal() > 0.0))
 
     def singular_values_below(self, bound: float) -> int | None:
-        """How many there are; None where factors of A A^T - bound^2 I do not tell."""
+        """Return the number of singular values below a bound, or None if the factors do not determine it."""
         try:
             factors = _factors(self._sparse_gram(-(bound**2)))
         except RuntimeError:
@@ -126,7 +126,7 @@ class SparseMatrix:
 
 
 def _factors(gram: Any) -> Any:
-    """SuperLU's factors of a symmetric matrix, with its pivots on the diagonal."""
+    """Return SuperLU's factors of a symmetric matrix, with diagonal pivots."""
     from scipy.sparse.linalg import splu
 
     return splu(gram, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})

@@ -1,4 +1,4 @@
-"""What joints in space transmit."""
+"""Reaction components that joints in space transmit."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ COMPONENTS = ("fx", "fy", "fz", "tx", "ty", "tz")
 
 
 def transmitted() -> dict[str, tuple[str, ...]]:
-    """What each kind of joint in space transmits, of those that state it (`Joint.transmits`).
+    """Return the components that each kind of joint in space transmits (`Joint.transmits`), if declared.
 
-    Kinds that transmit forces alone come first, and of these those that transmit most: guides by points are easier to make
-    than those by orientations.
+    Kinds that transmit only forces come first, those with most components leading, as point guides are easier to make
+    than orientation guides.
     """
     from ..describe.spatial.model import JOINTS
 

@@ -1,4 +1,4 @@
-"""Which reactions redundant equations leave without a unique value (Wojtyra, Mech. Mach. Theory 40, 2005)."""
+"""Reactions that redundant equations leave without a unique value (Wojtyra, Mech. Mach. Theory 40, 2005)."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ CHANGES = 1e-6
 """Change of a reaction, relative to the largest, from which on it is not unique."""
 TORQUES = ("torque", "tx", "ty", "tz")
 SPEED = 1.0
-"""Velocity (arms and rad per second) at which forces that depend on reactions are looked at: friction has none at rest."""
+"""Velocity (arms and rad per second) for forces that depend on reactions, as friction is zero at rest."""
 
 
 class Indeterminate(NamedTuple):
-    """What of a joint's or force's reaction has no unique value.
+    """Indeterminate part of the reaction of a joint or force.
 
     Attributes
     ----------
@@ -28,7 +28,7 @@ class Indeterminate(NamedTuple):
     channels : tuple of str
         Components in ground axes, such as ``hinge.fx``.
     directions : tuple of Direction
-        Where the indeterminate force always lies, and in space the torque; what is at right angles to that is unique.
+        Constant directions of the indeterminate force, and in space of the torque; perpendicular components are unique.
     """
 
     element: str
@@ -37,7 +37,7 @@ class Indeterminate(NamedTuple):
 
 
 def indeterminate(found: LoopRank, null_spaces: list[tuple[Pose, np.ndarray]]) -> list[Indeterminate]:
-    """The reactions that change along the null space of J^T.
+    """Return the reactions that change along the null space of J^T.
 
     Parameters
     ----------
@@ -46,8 +46,8 @@ def indeterminate(found: LoopRank, null_spaces: list[tuple[Pose, np.ndarray]]) -
 
     Notes
     -----
-    M u' = f - J^T lam leaves lam free along the null space of J^T; a reaction is unique where it does not change
-    along it.  What changes at one of the poses is not unique as a history.
+    M u' = f - J^T lam leaves lam free along the null space of J^T; a reaction is unique if it does not change along it.
+    A reaction that changes at one pose is not unique over time.
     """
     equations = found.equations
     changes = [changes_of(equations, pose, space) for pose, space in null_spaces]
@@ -63,7 +63,7 @@ def indeterminate(found: LoopRank, null_spaces: list[tuple[Pose, np.ndarray]]) -
 
 
 def forces_change(found: LoopRank, null_spaces: list[tuple[Pose, np.ndarray]]) -> bool:
-    """Whether applied forces (friction) depend on reactions that are not unique: then the motion is not unique either."""
+    """Return True if applied forces (friction) depend on indeterminate reactions, so that the motion is not unique."""
     equations = found.equations
     state = equations.state
     if not (
@@ -83,7 +83,7 @@ def forces_change(found: LoopRank, null_spaces: list[tuple[Pose, np.ndarray]]) -
 
 
 def changes_of(equations: LoopEquations, pose: Pose, space: np.ndarray) -> dict[str, np.ndarray]:
-    """For each channel its change along each null vector, scaled so that the largest is one; torques by arms."""
+    """Return the change of each channel along each null vector, scaled to a maximum of one, torques by arms."""
     state = equations.state
     _place(equations, pose)
     rows = []
@@ -106,7 +106,7 @@ def _place(equations: LoopEquations, pose: Pose) -> None:
 
 
 def _multipliers(equations: LoopEquations, space: np.ndarray) -> np.ndarray:
-    """Null vectors of J^T, scaled so that the generalised forces of their rows are of order one."""
+    """Return null vectors of J^T, scaled so that the generalised forces of their rows are of order one."""
     return equations.row_scale[:, None] * equations.length * space
 
 

@@ -1,7 +1,7 @@
-"""Redundant equations that are known to be so near the start alone, as formulas or tables are in them.
+"""Redundant equations that are proven near the start only, as they contain formulas or tables.
 
-That equations depend on each other is found by numbers at a few poses.  For joints of points, lines and angles this says
-the same of all poses, as their equations are analytic.  A formula may be flat over a wide range and not elsewhere.
+Dependence of equations is found numerically at a few poses. For joints of points, lines and angles it holds at all
+poses, as their equations are analytic. A formula may be constant over a wide range only.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from .redundancy import Redundancy
 
 
 def unproven(redundancy: Redundancy) -> dict[int, tuple[int, ...]]:
-    """The redundant equations that hold the same as others by formulas or tables: by their rows those of the others."""
+    """Return the redundant equations that depend on others through formulas or tables: the other rows by row."""
     if not redundancy.redundant:
         return {}
     of_functions = by_functions(redundancy.system)
@@ -33,10 +33,10 @@ def unproven(redundancy: Redundancy) -> dict[int, tuple[int, ...]]:
 
 
 def by_functions(system: System) -> np.ndarray:
-    """The rows in which formulas or tables of the pose or of time stand, but for linear ones of the pose."""
+    """Return a mask of the rows with formulas or tables of pose or time, except linear ones of the pose."""
     rows = np.zeros(system.n_c, dtype=bool)
     for group in system.groups:
-        if group.record.n_equations and _has_functions(group.elements[0]):  # those of one kind have the same formulas
+        if group.record.n_equations and _has_functions(group.elements[0]):  # elements of a group have the same formulas
             last = group.first_row + group.count * group.record.n_equations
             rows[group.first_row : last] = (curved(system, group) | _timed_or_nonsmooth(group)).ravel()
     return rows
@@ -47,7 +47,7 @@ def _has_functions(element: Element) -> bool:
 
 
 def _timed_or_nonsmooth(group: Group) -> np.ndarray:
-    """Which equations of one element know time or breakpoints, or velocities alone."""
+    """Return a mask of the equations of an element that depend on time, have breakpoints or are nonholonomic."""
     found = np.ones(group.record.n_equations, dtype=bool)
     found[: group.record.n_holonomic] = ~np.array(group.record.removable, dtype=bool)
     return found

@@ -1,1 +1,1 @@
-"""Robots described by other programs (URDF, MuJoCo's MJCF) as scenes."""
+"""Scenes from robot descriptions (URDF, MuJoCo's MJCF)."""

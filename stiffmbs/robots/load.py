@@ -1,4 +1,4 @@
-"""Scenes from robots' files."""
+"""Loading of scenes from robot files."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from .robot import Robot, RobotFault
 from .scene.scene import scene
 
 URDF = ".urdf"
-"""How the name of a URDF file ends; others are MJCF."""
+"""Extension of URDF files; others are MJCF."""
 AS_DRAWN: Mapping[str, float] = MappingProxyType({})
 
 
@@ -30,21 +30,21 @@ def load_robot(
     coordinates: Mapping[str, float] = AS_DRAWN,
     rates: Mapping[str, float] = AS_DRAWN,
 ) -> Scene:
-    """Read a scene from a robot's file.
+    """Read a scene from a robot file.
 
     Parameters
     ----------
     path : str or Path
-        URDF where its name ends in ``.urdf``; MJCF in ``.xml`` or ``.mjcf``, which needs the package mujoco.
+        URDF if its name ends in ``.urdf``; otherwise MJCF (``.xml``, ``.mjcf``), which needs the package mujoco.
     changes : sequence of (path, text)
-        Values put in place of those that the file gives, such as ``("bodies.hand.mass", "2 kg")``.
+        Values that replace those of the file, such as ``("bodies.hand.mass", "2 kg")``.
     coordinates, rates : mappings of str to float
-        Of hinges and slides at the start, rad or m and their rates, by joint; others are as drawn, and at rest.
+        Initial coordinates of hinges and slides, rad or m, and their rates, by joint; others are as drawn, and at rest.
 
     Raises
     ------
     InputError
-        When the file cannot be read, or its robot makes no scene.
+        If the file cannot be read, or its robot is not a valid scene.
     """
     return made_scene(_found(path, coordinates, rates), changes, source_name(path), lambda _: None)
 
@@ -52,8 +52,8 @@ def load_robot(
 def convert_robot(
     path: str | Path, *, coordinates: Mapping[str, float] = AS_DRAWN, rates: Mapping[str, float] = AS_DRAWN
 ) -> str:
-    """The scene of a robot's file as the text of a scene file; parameters and errors are those of `load_robot`."""
-    load_robot(path, coordinates=coordinates, rates=rates)  # says what is wrong with it
+    """Return the scene of a robot file as the text of a scene file; parameters and errors as `load_robot`."""
+    load_robot(path, coordinates=coordinates, rates=rates)  # raises errors of the scene
     return scene_text(_found(path, coordinates, rates))
 
 

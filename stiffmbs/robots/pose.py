@@ -1,4 +1,4 @@
-"""Where the links of a robot are, from the coordinates of their joints (forward kinematics along the tree)."""
+"""Forward kinematics of a robot: poses of the links from joint coordinates."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from .robot import SAME_AXES, Link, LinkJoint, Robot
 
 @dataclass(frozen=True)
 class Placed:
-    """A frame in the world, and how it moves.
+    """Frame in the world with its velocity.
 
     Attributes
     ----------
     position : ndarray, shape (3,)
         m.
     orientation : tuple of float
-        Quaternion, the scalar first.
+        Quaternion, scalar first.
     velocity, omega : ndarray, shape (3,)
-        Of its origin, m/s, and angular, rad/s; both in ground axes.
+        Velocity of its origin, m/s, and angular velocity, rad/s; both in ground axes.
     """
 
     position: np.ndarray
@@ -31,19 +31,19 @@ class Placed:
     omega: np.ndarray
 
     def point(self, local: tuple[float, ...]) -> np.ndarray:
-        """A point of the frame in the world, m."""
+        """Return a point of the frame in the world, m."""
         return self.position + rotated(self.orientation, local)
 
     def velocity_at(self, point: np.ndarray) -> np.ndarray:
-        """Velocity of a point that moves with the frame, m/s."""
+        """Return the velocity of a point that moves with the frame, m/s."""
         return self.velocity + np.cross(self.omega, point - self.position)
 
     def local(self, point: np.ndarray) -> np.ndarray:
-        """A point of the world in the frame, m."""
+        """Return a point of the world in the frame, m."""
         return rotated(conjugate(self.orientation), point - self.position)
 
     def axes(self, orientation: tuple[float, ...]) -> tuple[float, ...]:
-        """An orientation in the world as one in the frame."""
+        """Return an orientation in the world relative to the frame."""
         return product(conjugate(self.orientation), orientation)
 
 
@@ -51,13 +51,13 @@ WORLD = Placed(np.zeros(3), SAME_AXES, np.zeros(3), np.zeros(3))
 
 
 def frames(robot: Robot, coordinates: Mapping[str, float], rates: Mapping[str, float]) -> dict[str, tuple[Placed, ...]]:
-    """The frames of each link: where its parent carries it, then after each of its joints; the last is the link's own.
+    """Return the frames of each link: on its parent, then after each of its joints; the last is the link's own.
 
     Parameters
     ----------
     robot : Robot
     coordinates, rates : mappings of str to float
-        Of hinges and slides by name, rad or m, and their rates; those that are missing are at zero of the drawing.
+        Coordinates of hinges and slides by name, rad or m, and their rates; missing ones are as drawn, and at rest.
     """
     found: dict[str, tuple[Placed, ...]] = {}
     for link in robot.links:
@@ -82,7 +82,7 @@ def _along(link: Link, start: Placed, coordinates: Mapping[str, float], rates: M
 
 
 def _moved(frame: Placed, joint: LinkJoint, s: float, rate: float) -> Placed:
-    """The frame on the far side of a joint whose coordinate is s from its zero."""
+    """Return the frame after a joint whose coordinate is s from its zero."""
     axis = rotated(frame.orientation, joint.axis)
     if joint.kind == "slide":
         position = frame.position + s * axis

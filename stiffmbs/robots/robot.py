@@ -1,4 +1,4 @@
-"""A robot as links in a tree: what URDF and MJCF files say, before it becomes a scene."""
+"""Robot as a tree of links: the common content of URDF and MJCF files."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ SAME_AXES = (1.0, 0.0, 0.0, 0.0)
 
 
 class RobotFault(Exception):
-    """What stands in a robot's file and makes no scene; the message names the link, joint or actuator."""
+    """Invalid or unsupported content of a robot file; the message names the link, joint or actuator."""
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,7 @@ class LinkJoint:
 
 @dataclass(frozen=True)
 class Link:
-    """A rigid link.
+    """Rigid link.
 
     Attributes
     ----------
@@ -68,16 +68,16 @@ class Link:
     parent : str or None
         None for the world.
     position, orientation : tuple of float
-        Of its frame in the parent's where all joints are at their zero: m, quaternion with the scalar first.
+        Frame of the link in the parent's with all joints at their zero: m, quaternion with the scalar first.
     mass : float
     center_of_mass : tuple of float
         In its frame, m.
     inertia : ndarray, shape (3, 3)
-        About the centre of mass along the axes of its frame, kg m^2.
+        About the centre of mass in the axes of its frame, kg m^2.
     joints : tuple of LinkJoint
-        From the parent on; none where it is fixed.
+        In order from the parent; empty if the link is fixed.
     lifted : float
-        The fraction of its weight that is balanced (MJCF: gravcomp).
+        Fraction of its weight that is balanced (MJCF: gravcomp).
     """
 
     name: str
@@ -92,7 +92,7 @@ class Link:
 
     @property
     def is_heavy(self) -> bool:
-        """Return True for a link with mass or inertia."""
+        """True for a link with mass or inertia."""
         return self.mass > 0 or bool(np.any(self.inertia))
 
 
@@ -133,7 +133,7 @@ class Transmission:
 
 @dataclass(frozen=True)
 class Relation:
-    """Ties joint coordinates: joint - zero = sum of c_k (other - its zero)^k; without `other` the joint is held at c_0."""
+    """Coupling of joints: joint - zero = sum of c_k (other - its zero)^k; without `other` the joint is held at c_0."""
 
     name: str
     joint: str
@@ -143,7 +143,7 @@ class Relation:
 
 @dataclass(frozen=True)
 class Connection:
-    """A loop closed between two links (None: the world): by a ball at a point of each, or rigidly.
+    """Loop closure between two links (None: the world): by a ball joint, or rigidly.
 
     Attributes
     ----------
@@ -152,7 +152,7 @@ class Connection:
     point, other_point : tuple of float
         Each in its link's frame, m.
     orientation : tuple of float or None
-        Of the other link's frame in the first one's where it is rigid; None for a ball.
+        Orientation of the other link's frame in the first one's if rigid; None for a ball joint.
     """
 
     name: str
@@ -165,7 +165,7 @@ class Connection:
 
 @dataclass(frozen=True)
 class Robot:
-    """Links, each after its parent, and what acts on and between them.
+    """Links, each after its parent, with actuators and constraints.
 
     Attributes
     ----------
@@ -174,10 +174,8 @@ class Robot:
     gravity : tuple of float
         m/s^2.
     transmissions, relations, connections : tuples
-    coordinates, rates : mappings of str to tuple of float
-        Where the scene starts, by joint: one number of a hinge or slide; other joints start as placed.
     notes : tuple of str
-        What was left out.
+        Omitted content.
     """
 
     name: str
@@ -189,5 +187,5 @@ class Robot:
     notes: tuple[str, ...] = ()
 
     def joints(self) -> dict[str, LinkJoint]:
-        """All joints by name."""
+        """Return all joints by name."""
         return {joint.name: joint for link in self.links for joint in link.joints}

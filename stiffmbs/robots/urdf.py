@@ -21,7 +21,7 @@ DEFAULTS: Mapping[str, Mapping[str, Any]] = {
     "robot": {"version": "1.0"},
     "joint/limit": {"velocity": 0.0, "lower": 0.0, "upper": 0.0},
 }
-"""Values of unused attributes that have no effect."""
+"""Values of unused attributes without effect."""
 SHAPES, HARDWARE = "shapes and contacts are left out", "actuators of transmissions are left out"
 REASONS: Mapping[str, Mapping[str, str]] = {
     "link": {"<visual>": SHAPES, "<collision>": SHAPES}, "robot": {"<material>": SHAPES},
@@ -34,13 +34,13 @@ REASONS: Mapping[str, Mapping[str, str]] = {
 def read_urdf(text: str) -> Robot:
     """Read a robot from the text of a URDF file.
 
-    The root link is fixed to ground.  Joints with a ``<transmission>`` have an effort as input; where the file has no
-    transmission at all, joints with an effort limit above zero have.
+    The root link is fixed to ground. Joints with a ``<transmission>`` have an effort as input. If the file has no
+    transmission, joints with a positive effort limit have one.
 
     Raises
     ------
     RobotFault
-        Where the text is no URDF, or its links and joints make no tree; names the link or joint.
+        If the text is not URDF, or its links and joints are not a tree; names the link or joint.
     """
     root = _parsed(text)
     links = dict(_named(root, "link"))
@@ -83,7 +83,7 @@ def _named(root: Node, tag: str) -> Iterator[tuple[str, Node]]:
 
 
 def _children(joints: dict[str, Node], links: dict[str, Node]) -> dict[str, str]:
-    """The joint that carries each link."""
+    """Return the joint that carries each link."""
     found: dict[str, str] = {}
     for name, element in joints.items():
         if element.get("type") not in (*KINDS, FIXED, PLANAR):
@@ -107,7 +107,7 @@ def _end(joint: Node, role: str) -> str | None:
 
 
 def _from_the_root(links: dict[str, Node], joints: dict[str, Node], child_of: dict[str, str]) -> list[str]:
-    """Links, each after its parent."""
+    """Return the links, each after its parent."""
     roots = [name for name in links if name not in child_of]
     if len(roots) != 1:
         found = ", ".join(roots) or "none"
@@ -116,7 +116,7 @@ def _from_the_root(links: dict[str, Node], joints: dict[str, Node], child_of: di
     for child, joint in child_of.items():
         carried.setdefault(_end(joints[joint], "parent") or "", []).append(child)
     ordered = roots
-    for name in ordered:  # grows while it is gone through
+    for name in ordered:  # grows during the loop
         ordered.extend(carried.get(name, ()))
     if len(ordered) < len(links):
         lost = ", ".join(name for name in links if name not in ordered)
@@ -136,7 +136,7 @@ def _link(name: str, element: Node, joint: str | None, joints: dict[str, Node]) 
 
 
 def _inertial(name: str, element: Node | None) -> tuple[float, tuple[float, ...], np.ndarray]:
-    """Mass, centre of mass and inertia of a link, along the link's axes; nothing without an <inertial>."""
+    """Return mass, centre of mass and inertia of a link in the link's axes; zeros without an <inertial>."""
     if element is None:
         return 0.0, ORIGIN, np.zeros((3, 3))
     where = f"link {name}"
@@ -152,7 +152,7 @@ def _inertial(name: str, element: Node | None) -> tuple[float, tuple[float, ...]
 
 
 def _moving(name: str, element: Node) -> Iterator[LinkJoint]:
-    """The joints that a joint of URDF is: none of a fixed one, two slides and a hinge of a planar one."""
+    """Yield the equivalent joints of a URDF joint: none if fixed, two slides and a hinge if planar."""
     kind = element.get("type")
     if kind == FIXED:
         return
@@ -195,7 +195,7 @@ def _efforts(root: Node, moving: dict[str, Node]) -> Iterator[Transmission]:
 
 
 def _mimics(joints: dict[str, Node], child_of: dict[str, str]) -> Iterator[Relation]:
-    """Return the relations of joints that mimic others; if the other joint is fixed, the joint is fixed at its offset."""
+    """Yield the relations of joints that mimic others; one that mimics a fixed joint is fixed at its offset."""
     for name in child_of.values():
         mimic = joints[name].find("mimic")
         if mimic is None or joints[name].get("type") == FIXED:
@@ -230,7 +230,7 @@ def _still(joints: dict[str, Node]) -> Iterator[str]:
 
 
 def _origin(where: str, element: Node) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Position and orientation of an <origin>: turns by roll, pitch and yaw about the fixed axes x, y and z."""
+    """Return position and orientation of an <origin>: roll, pitch and yaw about the fixed axes x, y and z."""
     origin = element.find("origin")
     if origin is None:
         return ORIGIN, SAME_AXES

@@ -1,1 +1,1 @@
-"""What a plain run examines of its own results, and says in its notes."""
+"""Checks that a run applies to its own results, with notes."""

@@ -1,4 +1,4 @@
-"""Errors of positions that the steps of a run may have added up to."""
+"""Accumulated position errors of the steps of a run."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ AXES = ("x", "y", "z")
 
 
 def accumulated_errors_sentence(system: System, settings: RunSettings, trajectory: Trajectory) -> Iterator[str]:
-    """Yield a sentence on the position with the largest estimated error, where it is beyond what goes without saying.
+    """Yield a sentence on the position with the largest estimated error, if it exceeds a number of tolerances.
 
     Parameters
     ----------
     system : System
-        Of the whole.
+        Of the whole model.
     settings : RunSettings
     trajectory : Trajectory
         With estimates.
@@ -40,7 +40,7 @@ def accumulated_errors_sentence(system: System, settings: RunSettings, trajector
 
 
 def _position(system: System, velocity: int) -> tuple[str, str]:
-    """Return the name of what a velocity changes, and its unit."""
+    """Return the name of the position that a velocity changes, and its unit."""
     of_body = system.of_body
     body, k = divmod(velocity, of_body.n_u)
     name = system.bodies[body]

@@ -1,4 +1,4 @@
-"""Where on the way equations cease to hold that were left out, as they held the same as others near the start."""
+"""Detection of dropped equations that cease to hold during a run, as they were redundant near the start only."""
 
 from __future__ import annotations
 
@@ -12,23 +12,23 @@ from ..solve.dynamics import Dynamics
 from ..solve.trajectory import Trajectory
 
 SAMPLES, LEAST_SAMPLES = 20, 4000
-"""Poses to look at between two outputs, the second one included, and at least on the whole way."""
+"""Poses to check between two outputs, including the second, and in total at least."""
 LEFT_OUT = 10.0
-"""Violations of equations left out, relative to the largest of the others at a pose between outputs, that interpolation makes."""
+"""Largest violation of dropped equations, relative to that of the others, that is due to interpolation."""
 MOST_ASSEMBLIES = 500
-"""Poses between outputs that are brought to the constraints."""
+"""Largest number of poses between outputs that are assembled."""
 
 
 @dataclass(frozen=True)
 class Departure:
-    """An equation left out that does not hold.
+    """Dropped equation that does not hold.
 
     Attributes
     ----------
     output : int
-        The last output before.
+        Last output before.
     t : float
-        When, s.
+        Time, s.
     row : int
     """
 
@@ -38,17 +38,17 @@ class Departure:
 
 
 def departure(dynamics: Dynamics, rows: Sequence[int], way: Trajectory) -> Departure | None:
-    """The first instant at which rows left out do not hold where the others do.
+    """Return the first violation of dropped rows where the others hold, or None.
 
-    Poses between outputs are interpolated; where rows left out are violated by more than that explains, the pose is brought to
-    the constraints.
+    Poses between outputs are interpolated. A pose is assembled if the violation of dropped rows exceeds that due to
+    interpolation.
 
     Parameters
     ----------
     dynamics : Dynamics
         Its state is changed.
     rows : sequence of int
-        Rows left out.
+        Dropped rows.
     way : Trajectory
     """
     system, state = dynamics.system, dynamics.state
@@ -74,7 +74,7 @@ def departure(dynamics: Dynamics, rows: Sequence[int], way: Trajectory) -> Depar
 
 
 def _poses(dynamics: Dynamics, way: Trajectory) -> Iterator[tuple[int, float, np.ndarray]]:
-    """The outputs, and poses between them on cubics that have their velocities: the output before, the time, s, and the pose."""
+    """Yield poses at outputs and on Hermite interpolants between them: number of the output before, time, s, pose."""
     of_body, bodies = dynamics.system.of_body, dynamics.system.of_body.n_q * len(dynamics.system.bodies)
     count = max(SAMPLES, LEAST_SAMPLES // len(way.t))
     parts = np.arange(1, count + 1) / count

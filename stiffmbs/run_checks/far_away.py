@@ -1,4 +1,4 @@
-"""Mechanisms so far from the origin that the rounding of their coordinates is as large as what joints hold."""
+"""Check for mechanisms so far from the origin that rounding of coordinates affects the joints."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from ..compile.system import System
 from ..errors import InputError
 
 COARSE = 1e-6
-"""Part of a mechanism's size up to which its coordinates may be rounded."""
+"""Largest rounding of coordinates, relative to a mechanism's size."""
 
 
 def refuse_far_away(system: System) -> None:
-    """Refuse joints whose equations are rounding: no solver can satisfy them, however short its steps.
+    """Refuse joints whose equations are dominated by rounding, which no step size can satisfy.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What all rows of a run show at a glance, so that those of most runs need not be looked at one by one."""
+"""Scan of the output rows for NaN, drift and contradictions."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ GLANCE = Routine(
 
 
 class Glance(NamedTuple):
-    """What rows show that are all finite, at increasing times.
+    """Result of a scan of finite rows at increasing times.
 
     Attributes
     ----------
     exchanged : float
         Energy: the largest kinetic energy, change of the potential energy, or work, J.
     missing : float
-        The most that is missing in the energy balance, since the start or between two rows, J.
+        Largest error of the energy balance, since the start or between two rows, J.
     width_q, width_u : float
-        Bounds on how far any coordinate, and any velocity, comes from its start and from zero.
+        Bounds of the displacement of any coordinate from its start, and of any velocity.
     contradicting : int
         Rows that contradict the next one within a step (`stiffmbs.run_checks.overlooked`).
     """
@@ -43,7 +43,7 @@ class Glance(NamedTuple):
 
 
 def glance_at(system: System, rows: OutputRows, steps: np.ndarray, part: float) -> Glance | None:
-    """One pass over all rows; None where not all is finite at increasing times, or where there are very many.
+    """Scan all rows in one pass; return None if they are not finite at increasing times, or are too many.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ def glance_at(system: System, rows: OutputRows, steps: np.ndarray, part: float) 
     steps : ndarray
         Ends of the solver's own steps, s.
     part : float
-        Of the larger acceleration, by which rows contradict each other.
+        Difference that is a contradiction, relative to the larger acceleration.
     """
     count = len(rows.t)
     if not 0 < count < MOST_INSTANTS or not (

@@ -1,4 +1,4 @@
-"""Results that make no sense, whatever the solver says of its steps: growth without bound, open joints."""
+"""Detection of impossible results: unbounded growth and open joints."""
 
 from __future__ import annotations
 
@@ -14,24 +14,24 @@ from ..solve.storage import blocks, release
 from .glance import Glance
 
 RESOLVED = 1e-6
-"""Part of the mechanism's size that rounding of coordinates may take."""
+"""Largest rounding of coordinates, relative to the mechanism's size."""
 OPEN, DRIFTED = 1e-6, 1e-2
-"""Parts of the mechanism's size by which a joint may be open: on the constraints, and where drift is shown as it is."""
+"""Largest opening of a joint in sizes of the mechanism: with projection onto the constraints, and with drift."""
 
 
 def senseless(dynamics: Dynamics, rows: OutputRows, on_constraints: bool, seen: Glance | None) -> Iterator[str]:
-    """What no motion of the scene can be, a sentence each.
+    """Yield a sentence on each impossible property of a motion.
 
     Parameters
     ----------
     dynamics : Dynamics
-        Of the whole; its state is changed.
+        Of the whole model; its state is changed.
     rows : OutputRows
         Of the run.
     on_constraints : bool
-        Whether states are brought back to the constraints; else their drift is shown as it is.
+        Whether states are projected onto the constraints; otherwise drift is shown.
     seen : Glance or None
-        What the rows show at a glance.
+        Result of the scan.
     """
     with np.errstate(all="ignore"):
         grown = "" if seen and _within_bounds(dynamics, seen) else _grown(dynamics.system, rows)
@@ -43,13 +43,13 @@ def senseless(dynamics: Dynamics, rows: OutputRows, on_constraints: bool, seen: 
 
 
 def _within_bounds(dynamics: Dynamics, seen: Glance) -> bool:
-    """Whether a glance shows that nothing has grown, as in nearly all runs."""
+    """Return True if the scan excludes growth."""
     furthest, fastest = dynamics.kept("bounds of growth", None, lambda: _bounds(dynamics.system))
     return seen.width_q <= furthest and seen.width_u <= fastest
 
 
 def _bounds(system: System) -> tuple[float, float]:
-    """Widths of coordinates and of velocities up to which nothing has grown beyond sense."""
+    """Return the widths of coordinates and of velocities up to which growth is excluded."""
     if not system.bodies:
         return np.inf, np.inf
     limit, resolved = _limits(system)
@@ -57,12 +57,12 @@ def _bounds(system: System) -> tuple[float, float]:
 
 
 def _limits(system: System) -> tuple[float, float]:
-    """Distances, m, beyond which growth makes no sense, and beyond which rounding takes what is resolved."""
+    """Return the distances, m, beyond which growth is impossible, and beyond which rounding exceeds the resolution."""
     return UNBOUNDED_MOTION * system.size, RESOLVED * system.size / float(np.finfo(float).eps)
 
 
 def _grown(system: System, rows: OutputRows) -> str:
-    """A sentence on growth beyond sense; empty where there is none."""
+    """Return a sentence on impossible growth, or an empty string."""
     if not system.bodies:
         return ""
     of_places, of_rates = reaches(system), system.per_velocity(1.0, system.size)
@@ -85,7 +85,7 @@ def _grown(system: System, rows: OutputRows) -> str:
 
 
 def _connected(system: System) -> bool:
-    """Whether anything holds bodies together: its deformation is a difference of coordinates."""
+    """Return True if an element connects bodies, as its deformation is a difference of coordinates."""
     ground = len(system.bodies)
     return any(
         group.kind.element.kind
@@ -104,13 +104,13 @@ def _growth_sentence(system: System, rows: OutputRows, values: np.ndarray, limit
 
 
 def _body(system: System, rows: OutputRows, row: int) -> str:
-    """The body that is furthest at an instant."""
+    """Return the fastest body at a row."""
     way = np.abs(rows.u[row]) * system.per_velocity(1.0, system.size)
     return f"'{system.bodies[int(np.nanargmax(way)) // system.of_body.n_u]}'"
 
 
 def _strongest(system: System, rows: OutputRows, row: int) -> str:
-    """The force element, or else the joint, that acts hardest at an instant."""
+    """Return a clause on the force element, or else the joint, with the largest reaction at a row."""
     joints = {joint for joint, _ in system.equations}
     acting = {
         name: abs(float(values[0]))
@@ -126,7 +126,7 @@ def _strongest(system: System, rows: OutputRows, row: int) -> str:
 
 
 def _open_joint(dynamics: Dynamics, rows: OutputRows, on_constraints: bool) -> str:
-    """A sentence on a joint that is open; empty where none is."""
+    """Return a sentence on an open joint, or an empty string."""
     system, violation = dynamics.system, rows.position_violation
     if not system.n_c or np.isnan(violation).all():
         return ""

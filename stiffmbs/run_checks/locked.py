@@ -1,4 +1,4 @@
-"""Where a run ends, although the integrator went on: a mechanism locks, or its joints contradict each other."""
+"""Early end of a run although the integrator continued: a mechanism locks, or its joints contradict each other."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .unfollowed import Unfollowed, unfollowed
 
 
 def locked(dynamics: Dynamics, redundancy: Redundancy, way: Trajectory) -> tuple[int, str] | None:
-    """How many outputs are sound, at least the start, and a sentence on what does not hold after them; None where all are."""
+    """Return the number of valid outputs (at least the start) and a sentence on the violation after them, or None."""
     velocity = unfollowed(dynamics, way)
     if velocity is not None:
         return max(1, velocity.output), _unfollowed_sentence(dynamics.system, way, velocity)

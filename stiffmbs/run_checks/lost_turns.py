@@ -1,4 +1,4 @@
-"""A note on angles over whole turns whose turn is not certain."""
+"""Note on unwrapped angles with missed revolutions."""
 
 from __future__ import annotations
 
@@ -19,18 +19,18 @@ APART_FROM_COUNTERS = Routine(
 )
 
 UNCERTAIN_TURN = 1.0
-"""Angle between an orientation and the integral of its rate, rad, from which on the turn is not certain: half a turn changes it."""
+"""Difference of an orientation and the integral of its rate, rad, from which on the turn is uncertain."""
 MOST_INSTANTS = 2000
-"""Instants that are looked at."""
+"""Largest number of checked output times."""
 
 
 def lost_turns_sentence(dynamics: Dynamics, rows: OutputRows) -> Iterator[str]:
-    """The angle that is furthest from the counter of its turns, in a sentence; nothing where all are near.
+    """Yield a sentence on the angle that differs most from the counter of its turns, if the turn is uncertain.
 
     Parameters
     ----------
     dynamics : Dynamics
-        Of the whole; its state is changed.
+        Of the whole model; its state is changed.
     rows : OutputRows
         Of the run.
     """
@@ -53,7 +53,7 @@ def lost_turns_sentence(dynamics: Dynamics, rows: OutputRows) -> Iterator[str]:
 
 
 def _apart(state: State, t: np.ndarray, q: np.ndarray, source: np.ndarray, row: np.ndarray) -> np.ndarray:
-    """Distances of angles, values of the positions, from their counters, rad, shape (len(t), len(row))."""
+    """Return the distances of angles (position terms) from their counters, rad, shape (len(t), len(row))."""
     state.load("position")
     apart = np.empty((len(t), len(row)))
     source, row = (np.ascontiguousarray(places, dtype=np.int64) for places in (source, row))

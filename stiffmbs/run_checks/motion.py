@@ -1,4 +1,4 @@
-"""What a run examines of its own motion."""
+"""Checks of a run on its own motion."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ class MotionNotes(NamedTuple):
     Attributes
     ----------
     senseless : tuple of str
-        What no motion of the scene can be: growth without bound, open joints.
+        Impossible results: unbounded growth, open joints.
     uncertain : tuple of str
-        What rounding decides or tolerances may: passages of singular poses, lost turns, forces far outside of their use.
+        Results that depend on rounding or tolerances: singular poses, missed revolutions, forces outside their range.
     """
 
     senseless: tuple[str, ...]
@@ -34,21 +34,21 @@ def motion_notes(
     dynamics: Dynamics, rows: OutputRows, on_constraints: bool, seen: Glance | None, rtol: float,
     again: Callable[[np.ndarray], OutputRows],
 ) -> MotionNotes:  # fmt: skip
-    """What there is to say of a motion.
+    """Return the notes on a motion.
 
     Parameters
     ----------
     dynamics : Dynamics
-        Of the whole; its state is changed.
+        Of the whole model; its state is changed.
     rows : OutputRows
     on_constraints : bool
-        Whether the states are brought back to the constraints, so that drift is not shown.
+        Whether states are projected onto the constraints, so that drift is not shown.
     seen : Glance or None
-        What the rows show at a glance.
+        Result of the scan.
     rtol : float
         Of the run.
     again : callable
-        The same run, up to the last of other instants, s, and reported at these.
+        Rerun up to the last of other times, s, and report at these.
     """
     return MotionNotes(
         tuple(senseless(dynamics, rows, on_constraints, seen)),

@@ -1,4 +1,4 @@
-"""A note on forces that come near the limits of their laws: the motion goes on, but no mechanism is built for it."""
+"""Note on forces near the limits of their laws, in motions for which no mechanism is designed."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from ..compile.system import System
 from ..solve.dynamics import Dynamics, OutputRows
 
 MOST_INSTANTS = 400
-"""Instants that are looked at."""
+"""Largest number of checked output times."""
 
 
 def near_limits_sentence(dynamics: Dynamics, rows: OutputRows) -> Iterator[str]:
-    """The first force that comes where its kind calls a motion doubtful, in a sentence; nothing where none does.
+    """Yield a sentence on the first force outside the range in which its kind is reliable.
 
     Parameters
     ----------
     dynamics : Dynamics
-        Of the whole; its state is changed.
+        Of the whole model; its state is changed.
     rows : OutputRows
         Of the run.
     """
@@ -42,7 +42,7 @@ def near_limits_sentence(dynamics: Dynamics, rows: OutputRows) -> Iterator[str]:
 
 
 def _doubts(system: System) -> tuple[np.ndarray, tuple[str, ...]]:
-    """For each limit of a force, the value below which the motion is doubtful, and what is doubtful there."""
+    """Return, for each limit of a force, the value below which the motion is doubtful, and the doubt."""
     found = [
         (group.kind.element.doubtful, f"'{name}' {group.kind.element.doubt}")  # type: ignore[attr-defined]
         for group in system.groups

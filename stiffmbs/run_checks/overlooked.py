@@ -1,10 +1,9 @@
-"""What no step has seen, found where the forces at output instants contradict the step that leads over them.
+"""Missed events: forces at output times that contradict the step containing them.
 
-Within a step an integrator has a polynomial, and at every output instant the block system gives accelerations anyway.
-Between two instants of one step their mean, times the time between, is the change of the velocities.  Along smooth motions
-it is so but for a small part, as a step is short beside what it has seen; what stiff forces make of errors within the
-tolerance stays within some ten thousand tolerances over a step (measured).  A force that has begun and ended within the
-step, and is met by an output instant, is beyond both.
+The integrator has a polynomial in each step, and the block system gives accelerations at every output time. Between two
+output times in one step, the mean of their accelerations times the interval is the velocity change. For smooth motions
+the difference is small, and errors within the tolerance cause a limited number of tolerances. A force that acts within
+the step only, and at an output time, exceeds both.
 """
 
 from __future__ import annotations
@@ -30,26 +29,26 @@ CONTRADICTING_ROWS = Routine(
 )
 
 OVERLOOKED_TOLERANCES = 3e5
-"""Times the tolerance of a velocity that the contradiction makes over a step, beyond which something was overlooked."""
+"""Velocity contradiction over a step, in tolerances, from which on an event counts as missed."""
 OVERLOOKED_PART = 0.3
-"""Part of what the larger of two accelerations, weighted with masses, makes in the time between, by which the change differs."""
+"""Velocity contradiction, relative to the larger mass-weighted acceleration times the interval, of a missed event."""
 
 
 @dataclass(frozen=True)
 class Overlooked:
-    """What the steps of a run passed over.
+    """Events that the steps of a run missed.
 
     Attributes
     ----------
     times : ndarray
-        Where it is shown, s: in each step the output instant with the largest accelerations of the first pair that does,
-        and in long steps the instants with the largest accelerations.
+        Output times that show them, s: in each step that of the largest acceleration of the first contradicting pair,
+        and in long steps those of the largest accelerations.
     step : float
         Length of the first of these steps, s.
     velocity : str
-        The velocity that would have changed most there.
+        Velocity that would have changed most there.
     element : str
-        The law with the largest force there; empty for none.
+        Force law with the largest force there, or an empty string.
     """
 
     times: np.ndarray
@@ -58,7 +57,7 @@ class Overlooked:
     element: str
 
     def sentence(self) -> str:
-        """Where it was."""
+        """Return a sentence on the first missed event."""
         more = f" and at {len(self.times) - 1} more instants" if len(self.times) > 1 else ""
         law = f"'{self.element}'" if self.element else "a law"
         return (
@@ -68,7 +67,7 @@ class Overlooked:
 
 
 def together(found: Sequence[Overlooked]) -> Overlooked | None:
-    """What was found in several ways as one, told by the earliest; None for nothing."""
+    """Merge several results, described by the earliest; None if there is none."""
     if not found:
         return None
     return replace(
@@ -78,15 +77,15 @@ def together(found: Sequence[Overlooked]) -> Overlooked | None:
 
 
 def overlooked(system: System, rows: OutputRows, trajectory: Trajectory, settings: RunSettings) -> Overlooked | None:
-    """What the steps of a run passed over; None for nothing, and where no law could be.
+    """Return the events that the steps of a run missed; None if there are none or no force law has breakpoints.
 
     Parameters
     ----------
     system : System
-        Of the whole.
+        Of the whole model.
     rows : OutputRows
     trajectory : Trajectory
-        Whose steps are looked at.
+        Trajectory to check.
     settings : RunSettings
     """
     steps = trajectory.step_times
@@ -112,7 +111,7 @@ def overlooked(system: System, rows: OutputRows, trajectory: Trajectory, setting
 def contradicting_rows(
     rows: OutputRows, mass: np.ndarray, steps: np.ndarray, part: float = OVERLOOKED_PART
 ) -> np.ndarray:
-    """Numbers of the rows that contradict the next one, where both are inside one step.
+    """Return the numbers of the rows that contradict the next one in the same step.
 
     Parameters
     ----------
@@ -122,7 +121,7 @@ def contradicting_rows(
     steps : ndarray
         Ends of the steps, s.
     part : float
-        Of the larger acceleration, beyond which they do.
+        Difference that is a contradiction, relative to the larger acceleration.
     """
     found = np.empty(len(rows.t), dtype=np.int64)
     t, u, acceleration, mass, steps = map(np.ascontiguousarray, (rows.t, rows.u, rows.acceleration, mass, steps))
@@ -132,7 +131,7 @@ def contradicting_rows(
 
 
 def _contradictions(rows: OutputRows, pairs: np.ndarray) -> np.ndarray:
-    """By how much the change of velocities until the next instant, in a second, differs from the mean of their accelerations."""
+    """Return the mean rate of the velocities up to the next row minus the mean of their accelerations."""
     following = pairs + 1
     change = (rows.u[following] - rows.u[pairs]) / (rows.t[following] - rows.t[pairs])[:, None]
     mean: np.ndarray = 0.5 * (rows.acceleration[pairs] + rows.acceleration[following])
@@ -140,7 +139,7 @@ def _contradictions(rows: OutputRows, pairs: np.ndarray) -> np.ndarray:
 
 
 def acting(system: System, rows: OutputRows, k: int) -> str:
-    """The law with the largest force or torque at an instant."""
+    """Return the force law with the largest force or torque at a row."""
     laws = {name for group in system.groups if group.has_law for name in group.names}
     found = reactions(system, rows.values[k : k + 1])
     of_laws = {name: abs(float(value[0])) for name, value in found.items() if name.rpartition(".")[0] in laws}

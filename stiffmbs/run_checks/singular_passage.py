@@ -1,8 +1,8 @@
-"""A motion that goes through a nearly singular pose: errors come back from it magnified, or decide which way it goes on.
+"""Note on a motion through a nearly singular pose, which magnifies errors or decides the branch of the motion.
 
-Two branches of the motion meet in a singular pose, and beside it they turn away from each other: at a distance d (the smallest
-singular value of the joints' J, relative to its usual value) within a way of d.  Errors e of a motion that passes there
-come back as about e/d^2.
+Two branches of the motion meet at a singular pose and separate near it: at a distance d (the smallest singular value of
+the joints' J, relative to its usual value) within a displacement of d. Errors e of a motion that passes there become
+about e/d^2.
 """
 
 from __future__ import annotations
@@ -16,23 +16,21 @@ from ..solve.dynamics import Dynamics, OutputRows
 from .singular_poses import NEARLY_SINGULAR, PosesOnTheWay, SingularPose
 
 DIP = 0.25
-"""Part of the det of its neighbours to which the parabola through three outputs may fall before the motion between them is looked at.
-The det goes as the square of the distance from a singular pose; where poses stay a twentieth of the usual away it falls to 0.1 and more."""
+"""Minimum of a parabola through the det at three outputs, relative to its ends, below which a rerun resolves it."""
 MOST_DIPS, INSTANTS = 5, 201
-"""Dips looked at, the deepest ones, and instants within each."""
+"""Largest number of dips to check, the deepest ones, and of times within each."""
 MAGNIFIED = 10.0
-"""Error behind the pose, as a part of the size, over rtol/d^2.  Measured on sliders on turning guides, parallelograms, kites and
-cranks in space by bdf and dop853 at rtol 1e-8, d from 1e-4 to 5e-2: 0.2 to 50."""
+"""Error after the pose, as a fraction of the size, over rtol/d^2."""
 DECIDED, WORTH_TELLING = 0.1, 1e-3
-"""Expected errors, as parts of the size, from which on chance decides the branch, and from which on they are told."""
+"""Expected errors, as fractions of the size, at which chance decides the branch, and at which they are reported."""
 LAST_DIGITS = 1e-10
-"""The smallest rtol that is of use, and the last digits of lengths."""
+"""Smallest useful rtol, and relative rounding of lengths."""
 
 
 def singular_passage_sentence(
     dynamics: Dynamics, rows: OutputRows, rtol: float, again: Callable[[np.ndarray], OutputRows]
 ) -> Iterator[str]:
-    """A sentence on the first passage that is looked at, where chance decides it, else on the worst one.
+    """Yield a sentence on the first checked passage if chance decides it, else on the worst one.
 
     Parameters
     ----------
@@ -41,7 +39,7 @@ def singular_passage_sentence(
     rtol : float
         Of the run.
     again : callable
-        The same run, up to the last of other instants, s, and reported at these.
+        Rerun up to the last of other times, s, and report at these.
     """
     dips = deepest_dips(rows.log_determinant)
     if not dips:
@@ -67,7 +65,7 @@ def singular_passage_sentence(
 
 
 def deepest_dips(log_determinant: np.ndarray) -> list[int]:
-    """The outputs about which the joints may lose rank: the det falls to, or towards, a small part of its neighbours.
+    """Return the outputs near which the joints may lose rank: the det falls to a small fraction of its neighbours.
 
     Parameters
     ----------
@@ -75,7 +73,7 @@ def deepest_dips(log_determinant: np.ndarray) -> list[int]:
         Of [M J^T; J 0].
     """
     if len(log_determinant) < 3 or np.ptp(log_determinant) < np.log(1.25 / (DIP + 0.25)):
-        return []  # at a least value the parabola is at most a quarter of its bend below
+        return []  # a parabola falls below its smallest point by at most a quarter of its second difference
     D = np.nan_to_num(np.exp(log_determinant - np.nanmedian(log_determinant)))
     k = 1 + np.flatnonzero((D[1:-1] <= D[:-2]) & (D[1:-1] < D[2:]))
     part = _least(D[k - 1], D[k], D[k + 1]) / np.maximum(D[k - 1], D[k + 1])
@@ -84,19 +82,19 @@ def deepest_dips(log_determinant: np.ndarray) -> list[int]:
 
 
 def _least(before: np.ndarray, at: np.ndarray, after: np.ndarray) -> np.ndarray:
-    """The least value of the parabola through three equidistant values, of which that in the middle is less than the last."""
+    """Return the minimum of the parabola through three equidistant values; the middle one is less than the last."""
     slope, bend = (after - before) / 2, (before - 2 * at + after) / 2
     return at - slope * slope / (4 * bend)
 
 
 def _nearest(poses: PosesOnTheWay, dense: OutputRows, stretches: list[np.ndarray]) -> tuple[float, SingularPose | None]:
-    """The least distance from a singular pose within some stretches, and the pose."""
+    """Return the smallest distance from a singular pose within some intervals, and the pose."""
     within = poses.at(dense.t, dense.q)
     return min((_nearest_within(within, dense, stretch) for stretch in stretches), key=lambda found: found[0])
 
 
 def _nearest_within(poses: PosesOnTheWay, dense: OutputRows, stretch: np.ndarray) -> tuple[float, SingularPose | None]:
-    """The distance from a singular pose within a stretch, and the pose."""
+    """Return the distance from a singular pose within an interval, and the pose."""
     inside = np.flatnonzero((dense.t >= stretch[0]) & (dense.t <= stretch[-1]))
     if not len(inside):
         return 1.0, None
@@ -111,12 +109,12 @@ def _nearest_within(poses: PosesOnTheWay, dense: OutputRows, stretch: np.ndarray
 
 
 def _magnified(d: float) -> float:
-    """How many times as large errors come back from a pose at a distance d."""
+    """Return the magnification of errors by a pose at a distance d."""
     return float(MAGNIFIED / max(d * d, np.finfo(float).tiny))
 
 
 def _decided_by_chance(d: float) -> bool:
-    """Whether the last digits of the geometry decide what follows a pose at a distance d."""
+    """Return True if rounding of the geometry decides the motion after a pose at a distance d."""
     return _magnified(d) * LAST_DIGITS >= DECIDED
 
 

@@ -1,4 +1,4 @@
-"""Singular poses on the way of a motion: where joints lose rank, and a motion may go on in more than one way."""
+"""Singular poses in a motion: joints lose rank there, and several motions may follow."""
 
 from __future__ import annotations
 
@@ -13,31 +13,30 @@ from ..compile.system import System
 from ..redundancy.loops import loops
 
 NEARLY_SINGULAR = 0.03
-"""Part of the usual smallest singular value below which a pose counts as near a singular one: errors of the motion come
-magnified by its inverse into accelerations and reactions."""
+"""Smallest singular value, relative to the usual one, below which a pose counts as nearly singular."""
 TAKES_PART = 0.3
-"""Weight, to the largest, with which an equation takes part in the loss of rank."""
+"""Smallest weight, relative to the largest, of an equation that contributes to the loss of rank."""
 FLOOR, ITERATIONS = 1e-14, 8
-"""Added to squares of singular values so that factors exist at singular poses; steps of inverse iteration."""
+"""Shift of squared singular values, so that factors exist at singular poses; steps of inverse iteration."""
 FEW_ROWS = 60
-"""Up to so many equations all singular values take less time than a sparse factorisation (measured: a fifth with 24)."""
+"""Largest number of equations for which all singular values are computed by a dense decomposition."""
 MOST_POSES, USUAL_POSES, EFFORT = 400, 20, 5e8
-"""Poses to look at on a stretch, and on the whole way; products in all decompositions together."""
+"""Largest number of poses to check in an interval, number in the whole motion, and limit of operations."""
 
 
 class SingularPose(NamedTuple):
-    """A pose near a singular one.
+    """Nearly singular pose.
 
     Attributes
     ----------
     t : float
         s.
     joints : tuple of str
-        Whose equations nearly depend on each other there.
+        Joints with nearly dependent equations.
     bodies : tuple of str
-        Of the loops.
+        Bodies of the loops.
     poses : tuple of str
-        Of those bodies, in words.
+        Their poses, in words.
     """
 
     t: float
@@ -47,10 +46,10 @@ class SingularPose(NamedTuple):
 
 
 class PosesOnTheWay:
-    """The poses of a motion, by how near they are to singular ones.
+    """Poses of a motion and their distances from singular ones.
 
-    The measure is the smallest singular value of J of the joints in loops, with rows of unit length and arms in units
-    of the system's size, compared with the largest such value on the way.
+    The distance is the smallest singular value of J of the joints in loops, relative to the largest such value in the
+    motion. Rows of J are normalised, with arms in units of the system's size.
 
     Parameters
     ----------
@@ -72,7 +71,7 @@ class PosesOnTheWay:
         self._known: dict[int, float] = {}
 
     def at(self, t: np.ndarray, q: np.ndarray) -> PosesOnTheWay:
-        """Other poses of the same motion, compared with what is usual on the whole way."""
+        """Return other poses of the same motion, with its usual singular value."""
         others = copy(self)
         others.usual = self.usual
         others._t, others._q, others._known = t, q, {}
@@ -80,7 +79,7 @@ class PosesOnTheWay:
 
     @cached_property
     def usual(self) -> float:
-        """The largest measure at a few poses on the way; 0 without loops."""
+        """Largest smallest singular value at a few poses of the motion; 0 without loops."""
         if not self._loops:
             return 0.0
         looked_at = np.linspace(0, len(self._t) - 1, min(len(self._t), USUAL_POSES)).astype(int)
@@ -91,11 +90,11 @@ class PosesOnTheWay:
 
     @property
     def products(self) -> float:
-        """About how many products of numbers the decompositions at all poses looked at so far took."""
+        """Approximate number of multiplications in all decompositions so far."""
         return float(len(self._known) * len(self._rows) ** 2 * self._system.n_u)
 
     def distance(self, k: int) -> float:
-        """How far pose k is from a singular one: 0 at one, about 1 at most; always 1 without loops."""
+        """Return the distance of pose k from a singular one: 0 at one, about 1 at most, and 1 without loops."""
         if not self._loops:
             return 1.0
         if k not in self._known:
@@ -103,20 +102,20 @@ class PosesOnTheWay:
         return self._known[k]
 
     def at_singular(self, k: int) -> slice:
-        """The poses around k at which accelerations and reactions mean nothing, or a few more; empty where k is sound."""
+        """Return poses around k without meaningful accelerations and reactions; empty if k is regular."""
         if self.distance(k) >= NEARLY_SINGULAR:
             return slice(k, k)
         return slice(self._sound_from(k, -1) + 1, self._sound_from(k, 1))
 
     def _sound_from(self, k: int, way: int) -> int:
-        """A pose beyond k, by strides that double, that is sound again."""
+        """Return the first regular pose after k in strides that double."""
         stride = 1
         while 0 <= k < len(self._t) and self.distance(k) < NEARLY_SINGULAR:
             k, stride = k + way * stride, 2 * stride
         return max(-1, min(k, len(self._t)))
 
     def nearest(self, start: float, end: float) -> SingularPose | None:
-        """The pose between two instants, s, that is nearest to a singular one; None where none comes near."""
+        """Return the most nearly singular pose between two times, s, or None."""
         inside = np.flatnonzero((self._t >= start) & (self._t <= end))
         effort = max(1, len(self._rows) ** 2 * self._system.n_u)
         most = int(np.clip(EFFORT / effort, USUAL_POSES, MOST_POSES))
@@ -134,11 +133,11 @@ class PosesOnTheWay:
         return SingularPose(float(self._t[k]), joints, tuple(self._system.bodies[body] for body in bodies), poses)
 
     def _least(self, k: int) -> tuple[float, np.ndarray]:
-        """The smallest singular value of the scaled J, and the weight of each equation in its vector."""
+        """Return the smallest singular value of the scaled J, and the weight of each equation in its vector."""
         return _smallest(self._scaled(k))
 
     def _scaled(self, k: int) -> np.ndarray:
-        """The J of pose k with rows of unit length, and arms in units of the size."""
+        """Return J of pose k with normalised rows and arms in units of the size."""
         self._state.q[:] = self._q[k]
         self._state.evaluate("motion", float(self._t[k]))
         J = self._state.matrix("motion", "J")[self._rows]
@@ -148,13 +147,13 @@ class PosesOnTheWay:
 
 
 def _smallest(J: np.ndarray) -> tuple[float, np.ndarray]:
-    """The smallest singular value of J and the weights of its left vector; that of many rows by inverse iteration on the sparse J J^T."""
+    """Return the smallest singular value of J and the weights of its left vector, of many rows by inverse iteration."""
     if len(J) <= FEW_ROWS:
         vectors, values, _ = np.linalg.svd(J, full_matrices=False)
         squares = values**2 + FLOOR
         share = (
             squares[-1] / squares
-        ) ** ITERATIONS  # what as many steps leave of each vector: of several as small, all count
+        ) ** ITERATIONS  # reduction by inverse iteration; several equally small values all count
         return float(np.sqrt(squares[-1])), np.sqrt(vectors**2 @ share**2)
     from scipy.sparse import csc_matrix, identity
     from scipy.sparse.linalg import splu

@@ -1,4 +1,4 @@
-"""Where on the way prescribed velocities are not followed any more: the mechanism locks, and there is no motion beyond."""
+"""Detection of prescribed velocities that are not attained: the mechanism locks, and no motion exists beyond."""
 
 from __future__ import annotations
 
@@ -10,22 +10,22 @@ from ..solve.dynamics import Dynamics
 from ..solve.trajectory import Trajectory
 
 UNFOLLOWED_PART, UNFOLLOWED_VELOCITY = 1e-2, 1e-3
-"""Violation of a velocity equation, relative to its summands and at least in m/s or rad/s, that no tolerance explains."""
+"""Violation of a velocity equation that no tolerance explains: relative to its terms, and in m/s or rad/s at least."""
 MOST_OUTPUTS = 200
-"""Outputs to look at: a mechanism that has locked does not follow its drive afterwards either."""
+"""Number of checked outputs; a mechanism that has locked violates its drive at later outputs too."""
 
 
 @dataclass(frozen=True)
 class Unfollowed:
-    """A velocity equation that does not hold.
+    """Velocity equation that does not hold.
 
     Attributes
     ----------
     output : int
-        The first output at which it does not.
+        First output at which it does not hold.
     row : int
     gap : float
-        What it is off by, m/s or rad/s.
+        Violation, m/s or rad/s.
     """
 
     output: int
@@ -34,10 +34,10 @@ class Unfollowed:
 
 
 def unfollowed(dynamics: Dynamics, way: Trajectory) -> Unfollowed | None:
-    """The first output at which an equation without a position form does not hold.
+    """Return the violation at the first output at which a nonholonomic equation does not hold, or None.
 
-    The relaxed formulation lets velocities creep where multipliers grow without bound; equations with a position form cannot
-    stay violated so.
+    The relaxed formulation lets velocities drift if multipliers grow without bound. Holonomic equations cannot remain
+    violated in this way.
 
     Parameters
     ----------
@@ -58,7 +58,7 @@ def unfollowed(dynamics: Dynamics, way: Trajectory) -> Unfollowed | None:
 
 
 def _first(dynamics: Dynamics, rows: np.ndarray, way: Trajectory, outputs: np.ndarray) -> Unfollowed | None:
-    """Of some equations that which is off most at the first of some outputs at which any is off by too much."""
+    """Return the largest violation of some equations at the first of some outputs at which one is too large."""
     system, state = dynamics.system, dynamics.state
     V, J = system.term("motion", "V"), system.term("motion", "J")
     used = np.isin(J.row, rows)

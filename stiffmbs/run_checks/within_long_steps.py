@@ -1,7 +1,7 @@
-"""What steps far longer than those before them have passed over, whether output instants lie within them or not.
+"""Missed events in steps much longer than their predecessors.
 
-Within a step the integrator's polynomial has a rate of the velocities.  Where that contradicts the accelerations that the
-block system gives at the polynomial's own state, the step has not seen the forces there.
+The integrator's polynomial has a rate of the velocities within a step. If it contradicts the accelerations of the block
+system at the polynomial's own state, the step has missed the forces there.
 """
 
 from __future__ import annotations
@@ -16,27 +16,26 @@ from ..solve.settings import near_constraints
 from .overlooked import OVERLOOKED_PART, Overlooked, acting
 
 CONTRADICTED_TOLERANCES = 1e4
-"""Times the tolerance of a velocity that the contradiction makes over a step, beyond which something was overlooked.  Measured: up to
-1.2e3 in steps of stick and slip, with the slopes of all forces taken into account."""
+"""Velocity contradiction over a step, in tolerances, from which on an event counts as missed."""
 PARTS_OF_A_RUN = 20_000
-"""Parts of a run's time in which Python functions are looked at: nothing else tells where these have features."""
+"""Number of samples over a run with Python functions, whose features are unknown."""
 WORTH_A_NOTE = 0.1
-"""Part of both bounds up to which nothing was overlooked, by accelerations at states that are not brought back to the constraints."""
+"""Fraction of both bounds below which no event counts as missed, for accelerations at states that are not projected."""
 SLIGHT = 0.01
-"""Part of the tolerance by which positions and velocities within a step may be off: a stiff force makes much of that."""
+"""Error of positions and velocities within a step, in tolerances, whose effect on stiff forces is tolerated."""
 
 
 def overlooked_in_long_steps(found: LongSteps, settings: RunSettings, end: float) -> Overlooked | None:
-    """What long steps have passed over; None for nothing.
+    """Return the events that long steps missed, or None.
 
-    They are looked at in their middle, and all along where a law is a Python function.
+    The steps are checked at their midpoint, and throughout if a force law is a Python function.
 
     Parameters
     ----------
     found : LongSteps
     settings : RunSettings
     end : float
-        Of what is reported: later steps do not count, s.
+        End of the output, s; later steps are ignored.
     """
     count = int(np.searchsorted(found.begin, end))
     steps = np.arange(count) if found.whole else _doubtful(found, count, settings)
@@ -52,7 +51,7 @@ def overlooked_in_long_steps(found: LongSteps, settings: RunSettings, end: float
 
 
 def _doubtful(found: LongSteps, count: int, settings: RunSettings) -> np.ndarray:
-    """Which of the first `count` steps are to be judged; few, so that the others cost nothing."""
+    """Return the few of the first `count` steps that need a full check."""
     system = found.dynamics.system
     atol = found.dynamics.kept("tolerances", settings, lambda: absolute_tolerances(system, settings))
     tolerances = settings.rtol, atol[system.n_q :]
@@ -63,7 +62,7 @@ def _doubtful(found: LongSteps, count: int, settings: RunSettings) -> np.ndarray
 
 
 def _all_along(found: LongSteps, steps: np.ndarray, settings: RunSettings) -> tuple[np.ndarray, np.ndarray]:
-    """Steps and parts of them, evenly spread in time: an odd number in each step, so that its middle is among them."""
+    """Return steps and fractions of them, evenly spaced in time; an odd number in each includes its midpoint."""
     spacing = settings.duration / PARTS_OF_A_RUN
     counts = 2 * ((found.end - found.begin)[steps] / (2.0 * spacing)).astype(int) + 1
     of_step = np.repeat(steps, counts)
@@ -96,13 +95,13 @@ def _judged(
 
 
 def _peaks(places: np.ndarray, steps: np.ndarray, size: np.ndarray) -> list[int]:
-    """The place with the largest accelerations of each set of neighbours within one step."""
+    """Return the place with the largest acceleration of each group of neighbours within one step."""
     ends = np.flatnonzero((np.diff(places) > 1) | (np.diff(steps[places]) > 0)) + 1
     return [int(part[np.argmax(size[part])]) for part in np.split(places, ends) if len(part)]
 
 
 def _of_errors(found: LongSteps, rows: OutputRows, k: int, settings: RunSettings) -> np.ndarray:
-    """By how much errors far below the tolerance change the accelerations at an instant: where forces are stiff, by much."""
+    """Return the change of accelerations at a row by errors far below the tolerance; stiff forces make it large."""
     dynamics, state = found.dynamics, np.concatenate([rows.q[k], rows.u[k]])
     errors = SLIGHT * (absolute_tolerances(dynamics.system, settings) + settings.rtol * np.abs(state))
     states = np.vstack([state, state + np.diag(errors)])

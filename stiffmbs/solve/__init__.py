@@ -1,4 +1,4 @@
-"""Initial values and integrators.  They see a `System`, never a kind of element."""
+"""Initial values and integrators. They work on a `System` and know no kinds of element."""
 
 from .solver import loaded_when_used
 
@@ -8,4 +8,4 @@ SOLVERS = {
     "projected": loaded_when_used(".explicit.projected", __name__),
     "kinematic": loaded_when_used(".kinematic", __name__),
 }
-"""By the name in the settings; a new solver is one entry here, and its name in `RunSettings.solver`."""
+"""Solvers by their name in the settings. A new solver needs an entry here and its name in `RunSettings.solver`."""

@@ -1,4 +1,4 @@
-"""Algebraic states at a state of a run: how fast they change, and why they have no value where that is so."""
+"""Algebraic states: their rates, and messages on missing or non-unique values."""
 
 from __future__ import annotations
 
@@ -9,17 +9,17 @@ from .failures import FAILURES
 from .native.statuses import NO_STATE
 
 RATE_INTERVAL = 1e-6
-"""Time over which the rates of algebraic states are taken, s: they only begin a prediction, which the error test then judges."""
+"""Interval of the difference quotient for rates of algebraic states, s. They only enter the first prediction."""
 BEYOND_LAST_STATE = (1e-9, 1e-7, 1e-5)
-"""How far beyond the last state a value is looked for that does not exist, relative to the time, s."""
+"""Times after the last state, relative to the time, s, at which missing values are searched for."""
 ZERO_SLOPE = 1e-10
-"""Derivative of an equation by its states, relative to scales and values, that counts as none."""
+"""Scaled derivative of an algebraic equation by its states below which it counts as zero."""
 
 
 def rates_of_algebraic(
     dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, acceleration: np.ndarray
 ) -> np.ndarray:
-    """How fast the algebraic states change along the motion, shape (algebraic states,); the state at hand is left as it is."""
+    """Return the rates of the algebraic states along the motion, shape (algebraic states,); zero if they have none."""
     places = dynamics.system.algebraic_coordinates
     if not len(places):
         return np.zeros(0)
@@ -34,9 +34,9 @@ def rates_of_algebraic(
 
 
 def rates_by_states(dynamics: Dynamics) -> np.ndarray:
-    """How the rates of the other states change with these as algebraic states follow; the set ``tangent`` is up to date.
+    """Return the Jacobian of the rates of differential states by these states, with algebraic states eliminated.
 
-    Not a number where algebraic states have no unique values.
+    The term set ``tangent`` must be up to date. Entries are NaN where the algebraic states are not unique.
     """
     system = dynamics.system
     own = slice(system.first_state, None)
@@ -51,12 +51,12 @@ def rates_by_states(dynamics: Dynamics) -> np.ndarray:
 
 
 def failure(dynamics: Dynamics, status: int, t: float) -> str:
-    """Why accelerations were not found at the state at hand, as a clause; names the algebraic state that has no value."""
+    """Return a clause on why accelerations have no solution; it names an algebraic state without a value."""
     return (no_value(dynamics, t) if status == NO_STATE else "") or FAILURES[status]
 
 
 def no_value_ahead(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> str:
-    """A clause on the algebraic state that has no value at a state, or from there on; empty where all have one."""
+    """Return a clause on the algebraic state that has no value at or just after a state, or an empty string."""
     system, state = dynamics.system, dynamics.state
     if not system.algebraic.any():
         return ""
@@ -77,7 +77,7 @@ def no_value_ahead(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -
 
 
 def no_value(dynamics: Dynamics, t: float) -> str:
-    """A clause on the algebraic state whose equation has no solution near its value at hand; empty where each has a regular one."""
+    """Return a clause on the algebraic state without a regular solution near its current value, or an empty string."""
     system, state = dynamics.system, dynamics.state
     places = system.algebraic_coordinates
     state.evaluate("tangent", t)

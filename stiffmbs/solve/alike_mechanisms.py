@@ -1,4 +1,4 @@
-"""Which independent mechanisms take steps so alike that they are cheaper to solve together."""
+"""Grouping of independent mechanisms with similar step sizes, which cost less when solved together."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from .dynamics import Dynamics
 from .initial import InitialValues
 
 ITERATIONS = 5
-"""Of von Mises' power iteration, as many as `stiffmbs.solve.native.fastest_rate` takes."""
+"""Iterations of the power method, as in `stiffmbs.solve.native.fastest_rate`."""
 MOVE = 1e-7
-"""Largest change of a coordinate or velocity, m, rad, m/s, rad/s."""
+"""Largest perturbation of a coordinate or velocity in the difference quotient, m, rad, m/s, rad/s."""
 IMPLICIT_STEPS, EXPLICIT_STEPS = 30.0, 2.0
-"""Steps of BDF and of DOP853 in the time that a motion takes for a radian, at rtol 1e-6 (measured on a pendulum)."""
+"""Steps of BDF and of DOP853 per radian of the motion, at rtol 1e-6."""
 
 
 def alike(
@@ -26,23 +26,22 @@ def alike(
     implicit: bool,
     mechanisms: Sequence[np.ndarray],
 ) -> list[list[int]]:
-    """Sets of mechanisms to solve together, so that the estimated cost is least.
+    """Return the sets of mechanisms to solve together that minimize the estimated cost.
 
-    The largest number of steps is that of the fastest mechanism of a set, and each step has a cost of its own beside that
-    of its unknowns.  Mechanisms with formulas, tables, events or states are left to themselves: their breakpoints would start the
-    others anew.
+    The fastest mechanism of a set determines its number of steps. Each step has a fixed cost and a cost per unknown.
+    Mechanisms with formulas, tables, events or states are solved separately, as each of their breakpoints is a restart.
 
     Parameters
     ----------
     dynamics : Dynamics
-        Of the whole.
+        Of the whole system.
     start : InitialValues
     during : tuple of float
         Start and end of the run, s.
     implicit : bool
         Whether BDF solves it.
     mechanisms : sequence of ndarray of int
-        Numbers of the bodies of each.
+        Body numbers of each mechanism.
     """
     system = dynamics.system
     width = system.of_body.n_u
@@ -72,7 +71,7 @@ def alike(
 
 
 def _with_laws(system: System) -> np.ndarray:
-    """Whether each body has a joint or force with breakpoints, formulas, tables or states, shape (bodies,)."""
+    """Return a mask of the bodies with elements that have breakpoints, formulas, tables or states, shape (bodies,)."""
     found = np.zeros(len(system.bodies) + 1, dtype=bool)
     for group in system.groups:
         if group.has_law or group.states.shape[1]:
@@ -81,10 +80,10 @@ def _with_laws(system: System) -> np.ndarray:
 
 
 def _rates(dynamics: Dynamics, t: float, start: InitialValues, label: np.ndarray, count: int) -> np.ndarray:
-    """A rate of the motion of each mechanism at the start, 1/s.
+    """Return a characteristic rate of each mechanism at the start, 1/s; infinite where accelerations have no solution.
 
-    The largest of its natural angular frequencies, of its decay rates, of its angular velocities, and of the root of its
-    angular accelerations.
+    It is the largest of the natural angular frequencies, the decay rates, the angular velocities and the square roots
+    of the angular accelerations.
     """
     system, state = dynamics.system, dynamics.state
     q, u = start.q, start.u
@@ -113,9 +112,9 @@ def _growth(
     label: np.ndarray,
     of_pose: bool,
 ) -> np.ndarray:
-    """How much larger than a move of the pose, or a change of velocities, the accelerations are that it makes.
+    """Return the norm of the derivative of accelerations by the pose, or by velocities, of each mechanism.
 
-    Of each mechanism by itself: its accelerations depend on its own motion alone.
+    The power method treats all mechanisms at once, as the accelerations of each depend on its own motion alone.
     """
     (q, u), state, mass = at, dynamics.state, dynamics.system.mass
     own = np.flatnonzero(label >= 0)

@@ -1,9 +1,8 @@
-"""The explicit integrator, and the implicit one where and while the scene is stiff: a run may switch on its way.
+"""Automatic choice between the explicit integrator and BDF, which a run may repeat as its stiffness changes.
 
-How short stability would keep explicit steps, the fastest rate of the motion tells: asked at the start, and where the
-explicit steps show, at no cost, that stability and not accuracy holds them back.  How long BDF's steps would be,
-nothing tells in advance (a vibration that rings, or that BDF's own order makes ring, shortens them a hundredfold): it
-is tried, for as long as it keeps ahead, and best from the start, before explicit steps have followed every vibration.
+The fastest rate of the motion bounds the explicit steps by stability. It is computed at the start, and when step
+rejections indicate that stability, not accuracy, limits the steps. The step size of BDF is not known in advance, as
+vibrations may shorten it. BDF is therefore tried, preferably from the start, and kept while it costs less.
 """
 
 from __future__ import annotations
@@ -33,54 +32,48 @@ from .solver import Traits
 from .trajectory import Grid, Outcome, ProgressCallback, Trajectory, unwatched
 
 LOOK = 32
-"""Explicit steps between two looks at what holds them back."""
+"""Explicit steps between two checks for stiffness."""
 HELD_BACK = 0.05
-"""Part of those steps that stability held back, from which on the scene counts as stiff: where it holds all of them,
-steps swing about its limit, and a tenth to a half shows it; elsewhere hardly one does."""
+"""Fraction of steps limited by stability from which on the scene counts as stiff."""
 LOOK_AT_IMPLICIT = 3.0
-"""Starts of the implicit integrator, without their steps, that its steps between two looks cost: a look takes a tenth of one."""
+"""Cost of the BDF steps between two checks, in BDF starts without their small steps."""
 MAY_LOSE = 0.45
-"""The implicit integrator is left when it has fallen behind explicit steps by a start and such a part of what these still cost up to
-the end, by a start alone in further trials: vibrations that the start excites shorten its steps until they have died out, and then it makes up for what it lost."""
+"""Fraction of the remaining explicit cost that BDF may lose, in addition to a start, in its first trial; later 0."""
 WORTH_A_TRIAL, AT_RTOL, MOST = 7.0, 1e-4, 7.0
-"""What is left for explicit steps must cost so many starts of the implicit integrator before one is made, at a tolerance and at the
-most: its steps are longer for looser tolerances, as rtol^(1/5), and those that stability holds back are not."""
+"""Remaining explicit cost that justifies a trial, in BDF starts at the tolerance `AT_RTOL`, and its upper bound."""
 QUIET, FEWER = 100.0, 1 / 3
-"""Change of a velocity, in tolerances, that accelerations at a start make in an explicit step: below, the start excites so little of
-vibrations that a third of so many starts makes a trial worth while."""
+"""Velocity change in an explicit step, in tolerances, that excites few vibrations, and a factor on `WORTH_A_TRIAL`."""
 AT_REST, FEWEST = 1e-4, 1.5
-"""Such a change below which the start excites nothing, and starts of the implicit integrator that make a trial worth while then."""
+"""Velocity change that excites no vibrations, in tolerances, and the replacement for `WORTH_A_TRIAL` then."""
 DEARER = 1.5
-"""Times what the implicit integrator took for a second before it was left, from which on it is taken again, and so many times as much
-after each return: explicit steps may be held back by accuracy too, which the fastest rate does not tell."""
+"""Ratio of explicit cost to that of BDF at which BDF is tried again; multiplied by itself after each return."""
 AMENDS = 3.0
-"""After a trial that has failed, explicit steps must have cost so many times as much before the next is made, and twice
-as many times after each further one."""
+"""Explicit cost before the next trial, in the cost of a failed trial; it doubles after each further one."""
 MOST_MESSAGES = 3
-"""Switches of the integrator that the note has one by one."""
+"""Switches of integrator that the note lists."""
 
 
 def traits(settings: RunSettings) -> Traits:
-    """Those of `bdf`: the explicit scheme is `dop853`, with projection, whose settings are among them."""
+    """Return the traits of `bdf`. The settings of the explicit scheme, projected `dop853`, are among them."""
     return replace(bdf.traits(settings), name="auto", switches=True)
 
 
 def solve(
     dynamics: Dynamics, start: InitialValues, grid: Grid, settings: RunSettings, watch: ProgressCallback
 ) -> Trajectory:
-    """Integrate with `dop853`, and with `bdf` while that is cheaper; the contract is in `stiffmbs.solve.trajectory`."""
+    """Integrate with `dop853`, and with `bdf` while it costs less; the contract is in `stiffmbs.solve.trajectory`."""
     dynamics.forget_pivots()
     return _Shared(dynamics, grid, settings, watch).run(start)
 
 
 def begins_implicit(dynamics: Dynamics, start: InitialValues, grid: Grid, settings: RunSettings) -> bool:
-    """Whether the fastest rate at the start has `bdf` tried from the first on."""
+    """Return True if `bdf` is tried from the start because of the fastest rate there."""
     return _Shared(dynamics, grid, settings, unwatched)._is_stiff_at_once(start)
 
 
 @dataclass
 class _Pace:
-    """The way of an integrator between two looks: time, steps."""
+    """Time and step counters of the explicit integrator at a check: accepted, attempted, limited by stability."""
 
     t: float
     steps: int = 0
@@ -89,19 +82,19 @@ class _Pace:
 
 
 class _Spent(NamedTuple):
-    """What the implicit integrator has taken so far: time of the motion, starts at breakpoints and events, cost."""
+    """Totals of the implicit integrator: time of the motion, restarts at breakpoints and events, cost."""
 
     t: float
     restarts: int
     cost: float
 
     def since(self, before: _Spent) -> _Spent:
-        """What it has taken from there on."""
+        """Return the totals since an earlier record."""
         return _Spent(self.t - before.t, self.restarts - before.restarts, self.cost - before.cost)
 
 
 class _Shared:
-    """One run that two integrators share."""
+    """A run shared by two integrators."""
 
     def __init__(self, dynamics: Dynamics, grid: Grid, settings: RunSettings, watch: ProgressCallback) -> None:
         self._dynamics, self._grid, self._watch = dynamics, grid, watch
@@ -109,22 +102,22 @@ class _Shared:
         self._explicit_step = cost.of_explicit_step(dynamics)
         self._implicit: Integrator | None = None
         self._costs = cost.ImplicitCost.of(dynamics)
-        self._starts = WORTH_A_TRIAL * (AT_RTOL / settings.rtol) ** 0.2  # that make a trial worth while
+        self._starts = WORTH_A_TRIAL * (AT_RTOL / settings.rtol) ** 0.2  # BDF starts that justify a trial
         self._pace = _Pace(grid.start)
-        self._explicit_cost = np.inf  # of a second of the motion, where stability holds it back
-        self._implicit_cost = np.inf  # the same of BDF, before it was left
+        self._explicit_cost = np.inf  # per second of the motion, where stability limits the steps
+        self._implicit_cost = np.inf  # of BDF per second, before it was left
         self._dearer = DEARER
-        self._amends = 0.0  # what explicit steps must have cost before the next trial
+        self._amends = 0.0  # explicit cost before the next trial
         self._segments: list[Segment] = []
         self._messages: list[str] = []
-        self._lost = 0.0  # by BDF against explicit steps since it was last ahead of them
+        self._lost = 0.0  # cost of BDF in excess of explicit steps, since it was last lower
         self._may_lose = MAY_LOSE
-        self._gave_up = False  # whether explicit steps could not go on
+        self._gave_up = False  # explicit steps failed
 
     def run(self, start: InitialValues) -> Trajectory:
-        """All segments, put together; all of them again by the implicit integrator where explicit steps could not go on.
+        """Integrate all segments and join them; rerun with the implicit integrator alone if explicit steps fail.
 
-        They stop at singular poses, near which no other integrator could start: an integrator passes them on its way.
+        They fail at singular poses, near which no integrator can start but which an integrator can pass.
         """
         t: float | None = self._grid.start
         explicit = not self._is_stiff_at_once(start)
@@ -140,7 +133,7 @@ class _Shared:
         return self._together()
 
     def _is_stiff_at_once(self, start: InitialValues) -> bool:
-        """Whether BDF is to be tried from the first on."""
+        """Return True if BDF is to be tried from the start."""
         rate = self._rate_at(self._grid.start, start.q, start.u)
         worth = self._worth_a_trial(self._grid.start, self._starts_from(start, rate))
         if worth:
@@ -148,13 +141,13 @@ class _Shared:
         return worth
 
     def _rate_at(self, t: float, q: np.ndarray, u: np.ndarray) -> float:
-        """The fastest rate at a state, by which explicit steps are counted from there on."""
+        """Return the fastest rate at a state, and update the cost of explicit steps by it."""
         rate = fastest_rate(self._dynamics, t, q, u)
         self._explicit_cost = self._explicit_step * rate / DOP853.stability
         return rate
 
     def _worth_a_trial(self, t: float, starts: float) -> bool:
-        """Whether steps as short as stability asks for cost more, up to the end, than so many starts of BDF."""
+        """Return True if stability-limited explicit steps up to the end cost more than a number of BDF starts."""
         left, starts = (self._grid.end - t) * self._explicit_cost, min(starts, MOST)
         if self._implicit is None and left > starts * self._costs.start:
             self._implicit = Integrator(self._dynamics, self._settings)
@@ -162,7 +155,7 @@ class _Shared:
         return left > starts * self._costs.start
 
     def _starts_from(self, start: InitialValues, rate: float) -> float:
-        """Starts of BDF that explicit steps must cost where it is to be tried from a start, by what accelerations excite there."""
+        """Return the BDF starts that explicit steps must cost for a trial, by the vibrations that the start excites."""
         if not rate:
             return self._starts
         system, settings = self._dynamics.system, self._settings
@@ -172,14 +165,14 @@ class _Shared:
         return FEWEST if excited < AT_REST else self._starts * (FEWER if excited < QUIET else 1.0)
 
     def _rest(self, t: float) -> Grid:
-        """What is left of the grid."""
+        """Return the grid from a time on."""
         times = self._grid.times
         if t == self._grid.start:
             return self._grid
         return replace(self._grid, start=t, times=None if times is None else np.append(t, times[times > t]))
 
     def _explicit_segment(self, start: InitialValues, t: float) -> float | None:
-        """Explicit steps from t on; the time at which they were left, or None at the end."""
+        """Integrate explicitly from t; return the time at which the integrator was left, or None at the end."""
         self._pace = _Pace(t)
         run = AdaptiveRun(DOP853, self._dynamics, start, self._rest(t), self._settings, self._watch)
         segment = run.integrate(Leaving(LOOK, self._should_try_implicit))
@@ -194,11 +187,11 @@ class _Shared:
         return run.work.t
 
     def _should_try_implicit(self, work: Integration) -> bool:
-        """Whether stability holds the explicit steps back, for so long a way that trying BDF costs little beside it."""
+        """Return True if stability limits the explicit steps and the rest of them would cost far more than a trial."""
         seen = _Pace(
             work.t, work.count("steps"), work.count("steps") + work.count("rejected"), work.count("stiff_steps")
         )
-        if seen.steps == self._pace.steps:  # a look for the sake of output points alone
+        if seen.steps == self._pace.steps:  # a return at output points only
             return False
         before, self._pace = self._pace, seen
         if self._is_dearer(before, seen):
@@ -210,7 +203,7 @@ class _Shared:
             return False
         rest = (self._grid.end - seen.t) / (seen.t - before.t)
         if rest * (seen.tried - before.tried) * self._explicit_step <= MOST * self._costs.start:
-            return False  # rejected and short steps are among these: they cost more than the rate tells
+            return False  # these include rejected and short steps, which cost more than the rate indicates
         rate = self._rate_at(work.t, work.q, work.u)
         worth = self._worth_a_trial(work.t, self._starts)
         if worth:
@@ -221,7 +214,7 @@ class _Shared:
         return worth
 
     def _is_dearer(self, before: _Pace, seen: _Pace) -> bool:
-        """Whether explicit steps have come to cost far more than those of BDF did, for long enough that a start of it costs little beside."""
+        """Return True if explicit steps now cost far more than those of BDF did, and the saving exceeds a BDF start."""
         pace = (seen.tried - before.tried) * self._explicit_step / (seen.t - before.t)
         saved = (self._grid.end - seen.t) * (pace - self._dearer * self._implicit_cost)
         if not saved > self._costs.start:
@@ -231,7 +224,7 @@ class _Shared:
         return True
 
     def _implicit_segment(self, start: InitialValues, t: float) -> float | None:
-        """Implicit steps from t on; the time at which they were left, or None at the end."""
+        """Integrate with BDF from t; return the time at which the integrator was left, or None at the end."""
         self._implicit = self._implicit or Integrator(self._dynamics, self._settings)
         self._look_after = int(LOOK_AT_IMPLICIT * self._costs.memory / self._costs.step)
         self._implicit.engine.pause_after(self._look_after)
@@ -251,10 +244,10 @@ class _Shared:
         return reached.t
 
     def _implicit_pays(self, reached: Reached) -> bool:
-        """Whether what BDF has lost against explicit steps since it was last ahead of them is little beside what these still cost."""
+        """Return True if the cost of BDF in excess of explicit steps is small compared with their remaining cost."""
         assert self._implicit is not None
         steps = self._implicit.steps()
-        if steps < self._next_look or self._is_breakpoint(reached.t):  # at an event between two looks
+        if steps < self._next_look or self._is_breakpoint(reached.t):  # an event between two checks
             return True
         self._next_look = steps + self._look_after
         before, self._spent = self._spent, self._spent_up_to(reached.t)
@@ -266,12 +259,12 @@ class _Shared:
         return self._lost <= self._costs.start + self._may_lose * left
 
     def _is_breakpoint(self, t: float) -> bool:
-        """Whether inputs may still show at t what they were before: no integrator can start there."""
+        """Return True if t is within rounding of an input breakpoint, where no integrator can start."""
         breakpoints = self._dynamics.input_features(self._grid.start, self._grid.end).breakpoints
         return bool(np.any((breakpoints >= just_before(t)) & (breakpoints <= just_after(t))))
 
     def _spent_up_to(self, t: float) -> _Spent:
-        """What the implicit integrator has taken so far."""
+        """Return the totals of the implicit integrator so far."""
         assert self._implicit is not None
         counted = self._implicit.statistics()
         restarts = int(counted["breakpoints"]) + int(counted["events"])
@@ -279,7 +272,7 @@ class _Shared:
         return _Spent(t, restarts, work)
 
     def _together(self) -> Trajectory:
-        """The segments as one trajectory, and how it came about."""
+        """Join the segments to one trajectory with a note on the switches."""
         messages = self._messages[:MOST_MESSAGES]
         if len(self._messages) > MOST_MESSAGES:
             messages += [f"and so on, {len(self._messages)} changes in all"]

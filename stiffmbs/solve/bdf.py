@@ -1,4 +1,4 @@
-"""BDF of variable order and step: SUNDIALS IDA, as Adams' GSTIFF."""
+"""Variable-order, variable-step BDF by SUNDIALS IDA, as Adams' GSTIFF."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ from .suspect import suspect
 from .trajectory import Ending, Grid, ProgressCallback, Rows, Trajectory
 
 READ = ("formulation", "rtol", "atol", "max_step", "max_order")
-"""Settings that it follows."""
+"""Settings that the solver reads."""
 
 
 def traits(settings: RunSettings) -> Traits:
-    """Those of the formulation in the settings, which may read settings of its own."""
+    """Return the traits of BDF with a formulation, which may read further settings."""
     of_formulation = READ_BY_FORMULATIONS.get(settings.formulation, ())
     return Traits("bdf", (*READ, *of_formulation), implicit=True)
 
@@ -37,12 +37,12 @@ def solve(
 ) -> Trajectory:  # fmt: skip
     """Integrate with IDA; the contract is in `stiffmbs.solve.trajectory`.
 
-    At breakpoints in time, and where a force changes its law (a contact closes), the integrator stops and starts anew.
+    The integrator restarts at breakpoints in time and at events of force laws (a contact closes).
 
     Raises
     ------
     InputError
-        When the formulation does not test velocities and forces follow reactions.
+        When the formulation does not test velocities and forces depend on reactions.
     """
     _refuse_untested_reactions(dynamics.system, settings)
     dynamics.forget_pivots()
@@ -50,10 +50,10 @@ def solve(
 
 
 def _refuse_untested_reactions(system: System, settings: RunSettings) -> None:
-    """Refuse forces that follow reactions in a formulation that tests positions alone.
+    """Refuse forces that depend on reactions in a formulation whose error test excludes velocities.
 
-    A change of the step leaves an error in the velocities across the constraints, which the next steps remove.  Friction
-    turns the reaction that belongs to it into a change of the velocity along the constraints, which stays.
+    A step size change causes velocity errors that violate the constraints, which the next steps remove. Friction turns
+    their reactions into velocity errors along the constraints, which remain.
     """
     if "u" in FORMULATIONS[settings.formulation](settings).tested:
         return
@@ -71,12 +71,12 @@ def integrated(
     watch: ProgressCallback,
     pays: Callable[[Reached], bool] | None = None,
 ) -> Trajectory:
-    """Integrate with an integrator that may be used again.
+    """Integrate with an integrator that may be reused.
 
     Parameters
     ----------
     pays : callable, optional
-        Asked now and then whether to go on; where it does not, the run is left where `integrator.reached` says.
+        Called after each return of the engine. The run ends at `integrator.reached` when it returns False.
     """
     system = integrator.dynamics.system
     rows = Rows(system.n_q, system.n_u, len(grid.times) if grid.times is not None else 1024)
@@ -110,7 +110,7 @@ def integrated(
 
 
 def _failure(integrator: Integrator, reached: Reached) -> str:
-    """Why a run ends where it has come; empty where it goes on."""
+    """Return the reason why the run ends at this state, or an empty string."""
     by_rounding = integrator.steps() > SLOW and governed_by_rounding(integrator.statistics())
     if not (by_rounding or reached.failure):
         return ""

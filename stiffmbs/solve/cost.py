@@ -1,7 +1,7 @@
-"""What steps of the explicit and of the implicit integrator cost, for the choice between them.
+"""Cost model of explicit and implicit steps, for the choice between the integrators.
 
-Microseconds on one machine, as ``python -m tests.bench.costs`` measures them; their ratios alone are used.  They are
-no clock, so that a scene is solved the same way each time.
+Costs are in microseconds of one machine (``python -m tests.bench.costs``); only their ratios are used. No clock is
+read, so that the choice is reproducible.
 """
 
 from __future__ import annotations
@@ -11,40 +11,37 @@ from dataclasses import dataclass
 from .dynamics import Dynamics
 
 EXPLICIT_STEP = (1.96, 0.002, 0.139)
-"""Of order 8, with 12 accelerations: for itself, for an operation of the kernels of accelerations, and for a constraint equation."""
+"""Cost of a DOP853 step: fixed, per operation of the acceleration kernels, per constraint equation."""
 BY_ELIMINATION, BY_LARGE_BLOCKS = 0.007, (50.0, 0.0022)
-"""More for a multiplication of the elimination that finds accelerations; where these are many, they are in large blocks: for what each
-block costs beside them, and for one of them."""
+"""Cost per multiplication of the elimination; in large blocks, used for many: fixed, and per multiplication."""
 BY_LU = 0.007
-"""More for a multiplication of the LU of the whole where accelerations are not found by elimination (0.004 on a hub with 60 arms, 0.010 on
-cars on ideal joints)."""
+"""Cost per multiplication of the LU of the full block system, where accelerations are not found by elimination."""
 RESIDUAL = (0.34, 0.0131)
-"""Of BDF, with what else a step consists of: for itself, and for an unknown."""
+"""Cost of a BDF residual with its share of the step: fixed, and per unknown."""
 MATRIX = (0.00029, 1.9)
-"""For an operation of the kernels of the iteration matrix, and times as long as its linear solver is estimated to take."""
+"""Cost per operation of the iteration matrix kernels, and factor on the estimated time of its linear solver."""
 LEAST_FACTORS = 0.044
-"""Of the linear solver for an unknown, before it is chosen: those of a chain; others take up to six times as long."""
+"""Cost of the linear solver per unknown, used before it is chosen: that of a chain, a lower bound."""
 RESIDUALS, MATRICES = 1.5, 0.2
-"""Of a step of BDF on average."""
+"""Average numbers of residuals and iteration matrices per BDF step."""
 START = (250.0, 3.5)
-"""Consistent values and the integrators' memory, when a run switches integrator: for itself, and for an unknown."""
+"""Cost of consistent initial values and integrator memory at a switch of integrator: fixed, and per unknown."""
 STEPS_OF_A_START = 40
-"""Of BDF, from order 1 on to where its own steps are."""
+"""Small BDF steps from order 1 up to the regular step size."""
 STEPS_OF_A_RESTART = 27
-"""Explicit ones, rejected ones among them, more than stability asks for at a breakpoint or an event: 5 to 23 on cars, where one takes up to
-two starts, each as dear as two steps."""
+"""Explicit steps, including rejected ones, that a breakpoint or an event adds to those that stability requires."""
 
 
 @dataclass(frozen=True)
 class ImplicitCost:
-    """What BDF costs.
+    """Cost of BDF.
 
     Attributes
     ----------
     residual, matrix : float
-        One of each, with the solutions by the matrix.
+        Cost of each, with the solutions of the linear system.
     memory : float
-        Of a start, but for its first steps.
+        Cost of a start, excluding its small steps.
     """
 
     residual: float
@@ -53,7 +50,7 @@ class ImplicitCost:
 
     @classmethod
     def of(cls, dynamics: Dynamics, factors: float | None = None) -> ImplicitCost:
-        """That of a scene; `factors` is what a matrix' factors and solutions are estimated to take, None where that is not known."""
+        """Return the cost for a scene; `factors` is the estimated time of the linear solver, None if unknown."""
         n = unknowns(dynamics)
         operation, times = MATRIX
         factors = LEAST_FACTORS * n if factors is None else factors
@@ -64,22 +61,22 @@ class ImplicitCost:
         )
 
     def work(self, residuals: float, matrices: float) -> float:
-        """So many residuals and iteration matrices."""
+        """Return the cost of a number of residuals and iteration matrices."""
         return residuals * self.residual + matrices * self.matrix
 
     @property
     def step(self) -> float:
-        """A step, as they are on average."""
+        """Average cost of a step."""
         return self.work(RESIDUALS, MATRICES)
 
     @property
     def start(self) -> float:
-        """A start, with its small steps."""
+        """Cost of a start, including its small steps."""
         return self.memory + STEPS_OF_A_START * self.step
 
 
 def of_explicit_step(dynamics: Dynamics) -> float:
-    """A step of DOP853."""
+    """Return the cost of a DOP853 step."""
     itself, operation, equation = EXPLICIT_STEP
     system = dynamics.system
     linear = (
@@ -91,13 +88,13 @@ def of_explicit_step(dynamics: Dynamics) -> float:
 
 
 def _of_elimination(multiplications: int) -> float:
-    """Those of a step."""
+    """Return the cost of the multiplications of a step."""
     blocks, each = BY_LARGE_BLOCKS
     return min(BY_ELIMINATION * multiplications, blocks + each * multiplications)
 
 
 def unknowns(dynamics: Dynamics) -> int:
-    """Of the implicit integrator: coordinates, velocities, and multipliers for both."""
+    """Return the number of unknowns of BDF: coordinates, velocities, and two multipliers per constraint."""
     coordinates = dynamics.coordinates
     solved_for = dynamics.system.active & ~coordinates.satisfied
     free = coordinates.independent.sum() + coordinates.independent_u.sum()

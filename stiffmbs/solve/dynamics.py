@@ -1,4 +1,4 @@
-"""The dynamics of one system at a state: assembly, projections, accelerations, and what is reported."""
+"""Dynamics of a system at a state: assembly, projections, accelerations and output rows."""
 
 from __future__ import annotations
 
@@ -39,29 +39,28 @@ ENERGIES = Routine(
 )
 
 WORTH_ELIMINATING = 10_000
-"""Multiplications of the LU above which reports and restarts take the elimination: below, they save microseconds each, and a machine's
-first run would compile it for them, 1.4 s."""
+"""Multiplications of the LU above which output rows and restarts use the elimination, which must be compiled."""
 POSITION_TOLERANCE = 1e-12
-"""Largest violation that a projection onto the positions leaves, in the equations' own units (m, rad), but for rounding."""
+"""Largest violation after a projection onto the positions, apart from rounding, m or rad."""
 
 
 @dataclass(frozen=True)
 class OutputRows:
-    """What is reported at a number of instants, one row each.
+    """Output rows, one per output time.
 
     Attributes
     ----------
     t, q, u, acceleration, lam : ndarrays
     values : ndarray
-        The values of the output terms (`stiffmbs.compile.terms`).
+        Output terms (`stiffmbs.compile.terms`).
     kinetic, potential, power : ndarrays, shape (n,)
-        Energies, J, and the power of what has no potential, W.
+        Energies, J, and the power of non-conservative forces, W.
     position_violation, velocity_violation, drift : ndarrays
-        Largest violation of a joint, the norm over its equations, in C and in J u + C_t, and in C before projection.
+        Largest violation of a joint (norm over its equations): of C, of J u + C_t, and of C before projection.
     log_determinant : ndarray, shape (n,)
-        log |det| of [M J^T; J 0], without the logarithms of units: small where joints nearly lose rank.
+        log |det| of [M J^T; J 0], without the logarithms of units: small near singular poses.
     status : int
-        Why the instant after the last row has no solution (`stiffmbs.solve.failures`); 0 where all have one.
+        Failure after the last row (`stiffmbs.solve.failures`), or 0.
     """
 
     t: np.ndarray
@@ -80,7 +79,7 @@ class OutputRows:
     status: int
 
     def at(self, instants: np.ndarray) -> OutputRows:
-        """Return the rows of some instants, by number."""
+        """Return the rows of some output times, by number."""
         found = {each.name: getattr(self, each.name) for each in fields(self)}
         return OutputRows(
             **{name: each[instants] if isinstance(each, np.ndarray) else each for name, each in found.items()}
@@ -88,7 +87,7 @@ class OutputRows:
 
     @property
     def finite(self) -> bool:
-        """Whether every instant has all values: nothing that channels are made of is nan or infinite."""
+        """True if all values that enter channels are finite."""
         return all_finite(
             self.q, self.u, self.acceleration, self.values, self.kinetic, self.potential, self.position_violation,
             self.velocity_violation,
@@ -105,10 +104,10 @@ class Dynamics:
     Attributes
     ----------
     coordinates : Coordinates
-        Those that integrators may take for unknowns, all unless set otherwise.  The block systems always hold all of
-        them, so that every reaction is found.
+        Coordinates that integrators may take as unknowns, by default all. The block systems always contain all, so that
+        every reaction is computed.
     state : State
-        The current q, u and lam.
+        Current q, u and lam.
     table : ndarray of int
         Addresses for compiled code.
     """
@@ -168,7 +167,7 @@ class Dynamics:
         self._at, self._cells = self.table.ctypes.data, self.table.view(DYNAMICS.cells)[0]
 
     def kept(self, name: str, settings: object, make: Callable[[], T]) -> T:
-        """What a solver has set up for this state and such settings; made where there is none, one for each name."""
+        """Return the object that a solver keeps under a name for these settings, or make it."""
         key = (settings, self.coordinates)
         if name not in self._kept or self._kept[name][0] != key:
             self._kept[name] = (key, make())
@@ -176,25 +175,25 @@ class Dynamics:
         return cast(T, self._kept[name][1])
 
     def forget_pivots(self) -> None:
-        """Have pivots sought anew, so that a run's rounding does not depend on earlier runs."""
+        """Discard all pivot sequences, so that the rounding of a run does not depend on earlier runs."""
         for system in (self._positions, self._velocities, self._accelerations):
             system.forget_pivots()
         if "eliminated" in self.__dict__:
             self.eliminated.forget()
 
     def forget_inputs(self) -> None:
-        """Have the features of inputs sought anew, as formulas of time were changed in place."""
+        """Discard the cached features of inputs after formulas of time were changed in place."""
         self._features = np.inf, -np.inf, NO_FEATURES
         self._input_end = np.nan, np.nan, None
 
     def take_input_features(self, other: Dynamics) -> None:
-        """Take over the features of inputs of another system where these stand in the very same elements."""
+        """Copy the features of inputs from another system if both contain the identical elements with inputs."""
         own, others = ([*dynamics.system.elements_with_inputs()] for dynamics in (self, other))
         if len(own) == len(others) and all(one is another for one, another in zip(own, others, strict=True)):
             self._features, self._input_end = other._features, other._input_end
 
     def return_to_start(self) -> None:
-        """Put the state to the system's start, as described, without multipliers and relaxation: as it is when new."""
+        """Reset the state to the described start, with zero multipliers and no relaxation."""
         state, system = self.state, self.system
         state.q[:], state.u[:] = system.q, system.u
         for vector in (state.a, state.lam, state.mu):
@@ -203,18 +202,18 @@ class Dynamics:
 
     @cached_property
     def eliminated(self) -> Eliminated:
-        """The quicker way to accelerations that explicit steps take where it serves."""
+        """Elimination for accelerations, faster than the LU; explicit steps use it where it serves."""
         from .linear.eliminated import Eliminated
 
         return Eliminated(self.state, self.lu_updates)
 
     @property
     def lu_updates(self) -> int:
-        """Multiplications of the LU of the block system of accelerations."""
+        """Multiplications of the LU of the block system for accelerations."""
         return self._accelerations.order.updates
 
     def input_features(self, start: float, end: float) -> InputFeatures:
-        """The features of the inputs between two instants, sought once for all runs within them."""
+        """Return the features of the inputs between two times; they are cached for all runs within them."""
         if not self.system.has_inputs:
             return NO_FEATURES
         first, last, found = self._features
@@ -224,21 +223,21 @@ class Dynamics:
         return found.within(start, end)
 
     def input_end(self, start: float, end: float) -> InputEnd | None:
-        """Where the first formula of time ends between two instants, sought once for all runs between them."""
+        """Return the first end of a formula of time between two times, cached for runs over the same interval."""
         if self.system.has_inputs and self._input_end[:2] != (start, end):
             self._input_end = start, end, first_input_end(self.system, start, end)
         return self._input_end[2]
 
     def assemble(self, t: float, tolerance: float = POSITION_TOLERANCE, most: int = 50) -> int:
-        """Move positions by Newton's smallest moves until |C| <= tolerance; the number of moves, or a failure."""
+        """Correct positions by minimum-norm Newton moves until |C| <= tolerance; return their number or a failure."""
         return ASSEMBLE.short_call(t, tolerance, most, self._at)
 
     def correct_velocities(self, t: float) -> int:
-        """The smallest correction of u in the mass matrix that satisfies J u + C_t = 0; 0 or a failure."""
+        """Apply the smallest correction of u in the mass norm with J u + C_t = 0; return 0 or a failure."""
         return CORRECT_VELOCITIES.short_call(t, self._at)
 
     def accelerate(self, t: float) -> tuple[int, np.ndarray]:
-        """0 or a failure (`stiffmbs.solve.native.statuses`), and u' from the block system; the multipliers are in the state's lam."""
+        """Return 0 or a failure (`stiffmbs.solve.native.statuses`), and u'. The multipliers are in `state.lam`."""
         acceleration = np.empty(self.system.n_u)
         return ACCELERATE.short_call(t, address(acceleration), self._at), acceleration
 
@@ -246,19 +245,19 @@ class Dynamics:
         self, ends: tuple[np.ndarray, np.ndarray], apart: float, states: tuple[np.ndarray, np.ndarray],
         tolerances: tuple[float, np.ndarray], bounds: tuple[float, float],
     ) -> np.ndarray:  # fmt: skip
-        """Numbers of the steps whose polynomial contradicts the accelerations in its middle.
+        """Return the numbers of the steps whose polynomial contradicts the accelerations at the midpoint.
 
         Parameters
         ----------
         ends : tuple of ndarrays, shape (n,)
             Begin and end of each step, s.
         apart : float
-            Part of a step on both sides of its middle at which `states` are given.
+            Distance from the midpoint, as a fraction of the step, at which `states` are given on both sides.
         states : tuple of ndarrays, shapes (n, 2, n_q), (n, 2, n_u)
         tolerances : tuple of float and ndarray, shape (n_u,)
             Of velocities: rtol and atol.
         bounds : tuple of floats
-            Difference, as a part of accelerations weighted with masses and in tolerances over the step, that is exceeded.
+            Largest difference: as a fraction of the mass-weighted accelerations, and in tolerances over the step.
         """
         (begin, end), (q, u), (rtol, atol) = ends, states, tolerances
         found, rate = np.empty(len(begin), dtype=np.int64), np.empty(self.system.n_u)
@@ -270,10 +269,7 @@ class Dynamics:
         return np.flatnonzero(found) if count else np.empty(0, dtype=int)
 
     def position_rates(self, q: np.ndarray, u: np.ndarray) -> np.ndarray:
-        """q' at a state at which accelerations were just computed, so that the rates of counters of turns and states are known.
-
-        That of an algebraic state is given as zero.
-        """
+        """Return q' at a state whose accelerations were just computed; that of an algebraic state is zero."""
         rates = self.system.of_body.position_rates(q, self.system.followed * u)
         source, row = self._behind
         if len(row):
@@ -281,13 +277,13 @@ class Dynamics:
         return rates
 
     def report(self, t: np.ndarray, q: np.ndarray, u: np.ndarray, project: bool) -> OutputRows:
-        """What is reported at given instants and states, up to the first that has no solution.
+        """Return the output rows at given times and states, up to the first that has no solution.
 
         Parameters
         ----------
         t, q, u : ndarrays, shapes (n,), (n, n_q), (n, n_u)
         project : bool
-            Whether each state is first brought back to the constraints.
+            Whether to project each state onto the constraints first.
         """
         system, count, n_output = self.system, len(t), self._n_output
         widths = (system.n_q, system.n_u, system.n_u, system.n_c, n_output, 4)

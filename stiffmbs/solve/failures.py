@@ -1,4 +1,4 @@
-"""Why the dynamics could not be solved at a state, in words."""
+"""Failures of the dynamics, in words."""
 
 from __future__ import annotations
 
@@ -13,4 +13,4 @@ FAILURES = {
     NO_STATE: "the equations of algebraic states have no solution near their last values",
     NO_MEMORY: "there is too little memory for the factors of the block system; give fewer bodies, or close other programs",
 }
-"""Each failure of the compiled routines (`stiffmbs.solve.native.statuses`) as a clause."""
+"""Clause for each failure of the compiled routines (`stiffmbs.solve.native.statuses`)."""

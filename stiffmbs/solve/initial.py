@@ -1,4 +1,4 @@
-"""Initial values: positions assembled, velocities corrected, accelerations and multipliers solved for."""
+"""Consistent initial values: assembled positions, corrected velocities, accelerations and multipliers."""
 
 from __future__ import annotations
 
@@ -18,23 +18,23 @@ from .native.statuses import NO_BALANCE, NO_CONVERGENCE, NOT_FINITE, SINGULAR
 from .nearest_turns import take_nearest_turns
 
 MOST_TOLD = 3
-"""Bodies that a run's note names, those with the largest moves."""
+"""Bodies with the largest moves that the note of a run names."""
 
 
 @dataclass(frozen=True)
 class InitialValues:
-    """A consistent start.
+    """Consistent initial values.
 
     Attributes
     ----------
     q, u, acceleration, lam : ndarrays
         Coordinates, velocities, accelerations and multipliers that satisfy the constraints on every level.
     moved : tuple of Move
-        What was changed of each body noticeably.
+        Noticeable changes of bodies by the assembly.
     size : float
-        Of the mechanism as described, m.
+        Size of the mechanism as described, m.
     notes : tuple of str
-        What there is to say of it, a sentence each.
+        Notes, one sentence each.
     """
 
     q: np.ndarray
@@ -46,7 +46,7 @@ class InitialValues:
     notes: tuple[str, ...] = ()
 
     def sentence(self) -> str:
-        """What was changed, in words: the largest moves of bodies, and of their velocities; empty where nothing was."""
+        """Return a sentence on the largest moves of bodies and changes of their velocities, or an empty string."""
         return self._changed(self._levels())
 
     def _levels(self) -> str:
@@ -54,12 +54,12 @@ class InitialValues:
         return " and ".join(filter(None, levels))
 
     def as_asked_by(self, names: Sequence[str]) -> InitialValues:
-        """The same where the moves are asked for, by joints that hold at the start alone: a note tells them."""
+        """Replace the moves by a note, where joints that hold at the start only require them."""
         told = f"to satisfy {', '.join(names)} at the start, assembly changed {self._levels() or 'nothing'}"
         return replace(self, moved=(), notes=(*self.notes, told))
 
     def position_sentence(self, most: int) -> str:
-        """The bodies that were moved, in words, up to so many by name; empty where none was."""
+        """Return a sentence on the bodies that were moved, the first `most` by name, or an empty string."""
         return self._changed(position_words(self.moved, self.size, most))
 
     def _changed(self, told: str) -> str:
@@ -67,7 +67,7 @@ class InitialValues:
 
     @property
     def moved_far(self) -> tuple[Move, ...]:
-        """The moves that correct no drawing: one of the numbers behind them is wrong, or the scene is not drawn closed."""
+        """Moves too large for a correction of a drawing: an input is wrong, or the scene is not drawn closed."""
         return tuple(move for move in self.moved if move.is_large(self.size))
 
     def _too_far(self) -> str:
@@ -82,7 +82,7 @@ class InitialValues:
 
 
 def rates_of(dynamics: Dynamics, t: float, start: InitialValues) -> np.ndarray:
-    """q' at consistent values, which the dynamics' state becomes: rates of counters and of states of the user's own are computed there."""
+    """Return q' at consistent values, and set the dynamics' state to them."""
     state, system = dynamics.state, dynamics.system
     state.q[:], state.u[:], state.lam[:] = start.q, start.u, start.lam
     if system.n_q > system.n_pose:
@@ -93,15 +93,14 @@ def rates_of(dynamics: Dynamics, t: float, start: InitialValues) -> np.ndarray:
 def initial_values(dynamics: Dynamics, t: float) -> InitialValues:
     """Make the described start consistent.
 
-    Positions by Newton's smallest moves, velocities by the smallest correction in the mass matrix (of those that are not
-    given before those that are), accelerations
-    and multipliers from [M J^T; J 0][u'; lam] = [f; gamma].
+    Positions are corrected by minimum-norm Newton moves. Velocities get the smallest correction in the mass norm, those
+    that are not given first. Accelerations and multipliers follow from [M J^T; J 0][u'; lam] = [f; gamma].
 
     Raises
     ------
     AssemblyError
         When no assembled position is found (names the joint with the largest gap), the equations are dependent, or
-        friction and reactions find no balance.
+        friction and reactions have no balance.
     """
     if dynamics.system.n_counters:
         take_nearest_turns(dynamics, t)
@@ -109,7 +108,7 @@ def initial_values(dynamics: Dynamics, t: float) -> InitialValues:
 
 
 def consistent_values(dynamics: Dynamics, t: float) -> InitialValues:
-    """The same with angles in the turns in which they are counted, as in a state of a run; errors as there."""
+    """Make the start consistent as `initial_values` does, without angle unwrapping."""
     system, state = dynamics.system, dynamics.state
     q0, u0 = system.q.copy(), system.u.copy()
     status = dynamics.assemble(t)
@@ -132,7 +131,7 @@ def consistent_values(dynamics: Dynamics, t: float) -> InitialValues:
 
 
 def _close_open_rates(dynamics: Dynamics, t: float) -> None:
-    """Have velocities that are not given follow those that are: their smallest change that satisfies J u + C_t = 0 best."""
+    """Fit velocities that are not given to J u + C_t = 0 by the smallest change in the mass norm."""
     system, state = dynamics.system, dynamics.state
     ways = np.flatnonzero(system.open_rates)
     if not len(ways):
@@ -145,7 +144,7 @@ def _close_open_rates(dynamics: Dynamics, t: float) -> None:
 
 
 def _sentence(dynamics: Dynamics, status: int, t: float) -> str:
-    """Why there is no consistent start, with the element that is to blame."""
+    """Return a sentence on why no consistent start exists, with the element at fault."""
     if status == NO_CONVERGENCE:
         return _violation_sentence(dynamics, t)
     if status == SINGULAR:
@@ -188,7 +187,7 @@ def _dependent_sentence(dynamics: Dynamics) -> str:
 
 
 def _most_dependent_row(jacobian: np.ndarray) -> int:
-    """The row that QR with pivoting of the transposed matrix leaves for last."""
+    """Return the last row in the pivot order of QR of the transposed matrix."""
     from scipy.linalg import qr
 
     *_, order = qr(jacobian.T, mode="economic", pivoting=True)

@@ -1,4 +1,4 @@
-"""IDA over the pieces of a run: begun, and begun anew at breakpoints and where a force changes its law."""
+"""IDA over the pieces of a run, restarted at breakpoints and events."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ from .initial import InitialValues, rates_of
 from .trajectory import Grid
 
 MOST_PASSED = 64
-"""Breakpoints at which the integrator may start anew before it is heard of."""
+"""Largest number of breakpoints at which the engine may restart before it returns."""
 
 
 class Integrator:
-    """IDA over the pieces of a run: from breakpoint to breakpoint, from event to event.
+    """IDA over the pieces of a run, from breakpoint to breakpoint and from event to event.
 
     Parameters
     ----------
@@ -38,14 +38,14 @@ class Integrator:
     settings : RunSettings
     control : ErrorControl, optional
     memory : str
-        The name by which the dynamics keep the engine for the next integrator of that name.
+        Name under which the dynamics keep the engine for the next integrator of that name.
 
     Attributes
     ----------
     reached : Reached or None
-        Where it was last heard of.
+        Last return of the engine.
     factors : float
-        Estimated time for the factors of an iteration matrix and the solutions with them, us.
+        Estimated time to factorize an iteration matrix and solve with it, us.
     """
 
     def __init__(
@@ -77,21 +77,21 @@ class Integrator:
         self._events = self._breakpoints = 0
 
     def note(self) -> str:
-        """What the user should know: how IDA runs, jumps of velocities, an order held down."""
+        """Return the notes: how IDA runs, velocity jumps, an order held down."""
         return "; ".join(filter(None, (*self._notes, self._of_inputs, self._jumps.sentence(), self.engine.note())))
 
     def split(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """q and u from a vector of unknowns."""
+        """Return q and u of a vector of unknowns."""
         (q,), (u,) = self.equations.states(y[None, self.equations.independent])
         return q, u
 
     def run(self, start: InitialValues, grid: Grid, passing: bool = False) -> Iterator[Reached]:
-        """Where the integrator comes at the times of the grid, or after its steps; a failure comes last.
+        """Yield the progress at the times of the grid, or after each step; a failure comes last.
 
         Parameters
         ----------
         passing : bool
-            Whether it may start anew at breakpoints on the way to where it is heard of next.
+            Whether the engine may restart at several breakpoints before it returns.
         """
         t = grid.start
         self._jumps.clear()
@@ -125,7 +125,7 @@ class Integrator:
                 q, u = self.split(reached.y)
                 if self._masked.any:
                     self._masked.note(t, q, u, self.steps(), reached.fired)
-                if t >= stops[0]:  # min(2*t, 1) still rises at its breakpoint: what follows is told behind it
+                if t >= stops[0]:  # min(2*t, 1) still rises at its breakpoint; its later branch holds after it
                     t = just_after(t)
                 ready, t = self._anew(q, u, before, t, self._ahead(reached, stops[0]), chattering)
                 yield from self._at_once(before, t, grid)
@@ -135,8 +135,10 @@ class Integrator:
     def _anew(
         self, q: np.ndarray, u: np.ndarray, before: float, t: float, ahead: float, chattering: Chattering
     ) -> tuple[InitialValues | None, float]:
-        """Go on at t from a state that was reached `before`, and past events on the way `ahead`: consistent values to start from, or None
-        where the engine has started, and their time."""
+        """Restart at t from a state reached at `before`, past events within `ahead`.
+
+        Return consistent values to start from, or None if the engine has restarted, and their time.
+        """
         self.engine.leave_out(self._masked.steps)
         begun = self.engine.begin_anew(q, u, t, ahead)
         if begun is None:
@@ -151,28 +153,28 @@ class Integrator:
     def _consistent(
         self, q: np.ndarray, u: np.ndarray, before: float, t: float, ahead: float
     ) -> tuple[InitialValues, float]:
-        """Consistent values near a state at t that was reached `before`, past events on the way `ahead`, and their time."""
+        """Return consistent values near a state reached at `before`, past events within `ahead`, and their time."""
         start, t = restarted_past(self.dynamics, t, q, u, ahead)
         self._jumps.note(before, start.u - u)
         return start, t
 
     def _ahead(self, reached: Reached, stop: float) -> float:
-        """How far beyond an event others that come with it are passed."""
+        """Return the time after an event within which simultaneous events are passed, s."""
         last = self.engine.last_step() if reached.fired else None
         ahead = straight_on(reached.t, last[0], self.settings.rtol) if last else 0.0
         return ahead if just_after(reached.t + ahead) < stop else 0.0
 
     def steps(self) -> int:
-        """Taken so far."""
+        """Return the number of steps so far."""
         return self.engine.steps()
 
     def long_steps(self) -> tuple[LongSteps, ...]:
-        """Steps far longer than those before them, as far as they are kept."""
+        """Return the recorded steps that are much longer than their predecessors."""
         kept = self.engine.long_steps()
         return (LongSteps.of(self.dynamics, self.equations, *kept),) if kept and len(kept[0]) else ()
 
     def _explained(self, reached: Reached) -> Reached:
-        """A failure in the words of the force that causes it, where it jumps back and forth."""
+        """Replace a failure by one that names the chattering force, if there is one."""
         jumping = self._masked.failed(reached.t, *self.split(reached.y))
         return reached._replace(failure=jumping or reached.failure)
 
@@ -183,9 +185,9 @@ class Integrator:
         return self.engine.to_times(grid.within(just_after(t), stops[-1]), stops)
 
     def _at_once(self, before: float, t: float, grid: Grid) -> Iterator[Reached]:
-        """Output times that rounding alone keeps from t, as 0.1 s * 7 from a breakpoint at 0.7 s: theirs is the state at t, at hand.
+        """Yield the state at t for output times equal to t apart from rounding, such as 7 * 0.1 s and 0.7 s.
 
-        Those up to `before` have been given.
+        Output times up to `before` have been yielded already.
         """
         times = grid.within(before, just_after(t))
         if len(times):
@@ -201,7 +203,7 @@ class Integrator:
             self._begin_step_by_step(start, t)
 
     def _begin_step_by_step(self, start: InitialValues, t: float) -> None:
-        """A start that does not need the compiled one: for algebraic states, infinite stiffness, and scikit-sundae's callbacks."""
+        """Start without the compiled routine: algebraic states, infinite stiffness, callbacks of scikit-sundae."""
         equations, at = self.equations, self.equations.at
         state, coordinates = self.dynamics.state, equations.coordinates
         rates = rates_of(self.dynamics, t, start)
@@ -223,5 +225,5 @@ class Integrator:
         self.engine.begin(t, y, yp, newton, stiffness)
 
     def statistics(self) -> dict[str, int | float | str]:
-        """The linear solver, IDA's counters, and how often it started anew."""
+        """Return the linear solver, IDA's counters, and the numbers of restarts at breakpoints and events."""
         return {**self.engine.statistics(), "breakpoints": self._breakpoints, "events": self._events}

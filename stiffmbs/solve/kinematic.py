@@ -1,4 +1,4 @@
-"""Kinematic analysis: the motion of a scene whose drives fix every coordinate, by Newton with continuation."""
+"""Kinematic analysis: the motion of a scene whose drives prescribe every coordinate, by Newton continuation."""
 
 from __future__ import annotations
 
@@ -22,42 +22,42 @@ from .solver import Traits
 from .trajectory import Ending, Grid, ProgressCallback, Rows, Trajectory
 
 LARGEST_SURPRISE = 0.05
-"""Part of a step's own length by which the positions found may miss the predicted ones."""
+"""Largest distance from predicted to corrected positions, as a fraction of the step's displacement."""
 LARGEST_TURN = 0.5
-"""Part of its length by which the velocity found may miss the predicted one."""
+"""Largest distance from predicted to corrected velocities, as a fraction of their norm."""
 LARGEST_ROTATION = 2.0
-"""Angle, rad, that a body turns in one step at the most: the pose found tells no whole turns."""
+"""Largest rotation of a body in one step, rad; a pose does not determine whole turns."""
 SHORTEST_STEP = 1e-10
-"""Part of the duration below which a step that still fails means that the mechanism locks."""
+"""Shortest step, as a fraction of the duration. A shorter one that fails means that the mechanism locks."""
 MOST_MOVES = 12
-"""Newton's moves of one step; a step that asks for more was too long."""
+"""Largest number of Newton moves of a step; the step is shortened beyond it."""
 
 
 def _length(vector: np.ndarray) -> float:
-    """The Euclidean norm, in a tenth of the time that `numpy.linalg.norm` takes for a few numbers."""
+    """Return the Euclidean norm, faster than `numpy.linalg.norm` for short vectors."""
     return math.sqrt(vector.dot(vector))
 
 
 def traits(settings: RunSettings) -> Traits:
-    """It takes no tolerance and no step from the settings."""
+    """Return the traits of the kinematic solver, which reads neither tolerances nor step from the settings."""
     return Traits("kinematic", exact=True)
 
 
 def solve(
     dynamics: Dynamics, start: InitialValues, grid: Grid, settings: RunSettings, watch: ProgressCallback
 ) -> Trajectory:
-    """Follow the motion that the drives prescribe; the contract is in `stiffmbs.solve.trajectory`.
+    """Compute the motion that the drives prescribe; the contract is in `stiffmbs.solve.trajectory`.
 
-    Each step predicts q + h u + h^2/2 u' and corrects it by Newton; it is halved until positions and velocities come
-    out near their prediction, so that the solution cannot jump to another branch.  Velocities that drives prescribe are
-    integrated to 1e-11 (`IntegratedMotion`).  A mechanism that locks (a dead centre under its drive) stops there with a
-    message that names instant and pose.  At breakpoints of the drives in time, where velocities may jump, they are taken
-    anew, and no step is longer than what the drives do in between.
+    Each step predicts q + h u + h^2/2 u' and corrects it by Newton's method. It is halved until positions and
+    velocities are near their prediction, so that the solution cannot jump to another branch. Velocities that drives
+    prescribe are integrated to 1e-11 (`IntegratedMotion`). If the mechanism locks (dead centre under its drive), the
+    run stops with a message that names time and pose. Velocities and accelerations are recomputed after breakpoints of
+    the drives. The features of the drives between breakpoints bound the step.
 
     Raises
     ------
     InputError
-        When the drives leave a freedom or prescribe one twice.
+        When the drives leave a freedom, prescribe one twice, or depend on a state.
     """
     _refuse_freedoms(dynamics)
     _refuse_followed_states(dynamics)
@@ -91,7 +91,7 @@ def solve(
 
 
 def _refuse_followed_states(dynamics: Dynamics) -> None:
-    """Refuse drives and constraints that follow states: the motion then is not prescribed beforehand."""
+    """Refuse drives and constraints that depend on states, as the motion is then not prescribed."""
     system = dynamics.system
     of_velocities = system.term("tangent", "V_q")
     rows = [*system.term("tangent", "C_x").row, *of_velocities.row[of_velocities.column >= system.first_state]]
@@ -113,13 +113,13 @@ def _refuse_freedoms(dynamics: Dynamics) -> None:
 
 
 def _by_velocities(dynamics: Dynamics) -> bool:
-    """Whether some drive or joint prescribes a velocity without a position."""
+    """Return True if a drive or joint prescribes a velocity without a position."""
     system = dynamics.system
     return bool(np.any(system.active & ~system.holonomic))
 
 
 class _Motion:
-    """The state that is followed in time, with its velocities and accelerations."""
+    """Prescribed motion with its current positions, velocities and accelerations."""
 
     def __init__(
         self, dynamics: Dynamics, start: InitialValues, t: float, shortest: float, features: InputFeatures
@@ -133,12 +133,12 @@ class _Motion:
         state.q[:], state.u[:] = start.q, start.u
         self._polish(t)
         self.q, self.u = state.q.copy(), state.u.copy()
-        self._turns = dynamics.system.per_velocity(0.0, 1.0)  # 1 for angles, 0 for places
+        self._turns = dynamics.system.per_velocity(0.0, 1.0)  # 1 for angles, 0 for lengths
         self._counters = slice(dynamics.system.n_pose, dynamics.system.first_state)
         self._turning = self._rates_of_counters(t)
 
     def go_to(self, end: float) -> None:
-        """Follow the motion to a later time, in as many steps as it takes."""
+        """Compute the motion up to a later time, in as many steps as necessary."""
         h = end - self.t
         while self.t < end:
             h = min(h, end - self.t, max(self._features.longest_step(self.t), 2 * self._shortest))
@@ -147,14 +147,14 @@ class _Motion:
                 h *= 2
             elif h > self._shortest:
                 h /= 2
-            elif self.t == self._begun:  # a drive such as max(0, t) bends at the very start
+            elif self.t == self._begun:  # a drive such as max(0, t) has a kink at the start
                 self.go_past(self.t)
                 h = end - self.t
             else:
                 raise SolverError(self._stuck())
 
     def go_past(self, breakpoint: float) -> None:
-        """Follow the motion to just before a breakpoint, and take velocities and accelerations anew just behind it."""
+        """Compute the motion to a breakpoint, then recompute velocities and accelerations on its far side."""
         self.go_to(breakpoint - self._shortest)
         state, t = self._dynamics.state, breakpoint + self._shortest
         state.q[:], state.u[:] = self.q, self.u
@@ -163,7 +163,7 @@ class _Motion:
             raise SolverError(self._stuck())
 
     def _step(self, t: float, h: float) -> bool:
-        """Try one step; whether positions and velocities came out near their prediction."""
+        """Try one step; return True if positions and velocities are near their prediction."""
         state, dynamics = self._dynamics.state, self._dynamics
         step = h * self.u + h * h / 2 * self.a
         self._status = 0
@@ -186,13 +186,13 @@ class _Motion:
         if not self._take(t):
             return False
         secant = (self.u - before) / h
-        if h * _length(self.a - secant) > LARGEST_TURN * size + 1e-9:  # forces of 1e23 N leave no digit of it
+        if h * _length(self.a - secant) > LARGEST_TURN * size + 1e-9:  # forces of 1e23 N leave no significant digit
             self.a = secant
         self.steps, self.moves = self.steps + 1, self.moves + moves
         return True
 
     def _take(self, t: float) -> bool:
-        """Make the state at hand, with its accelerations, the one that is reached; whether it has them."""
+        """Accept the current state and its accelerations as reached; return True if they exist."""
         state = self._dynamics.state
         self._polish(t)
         turning = self._rates_of_counters(t)
@@ -207,7 +207,7 @@ class _Motion:
         return self._status == 0
 
     def _rates_of_counters(self, t: float) -> np.ndarray:
-        """How fast the counters of turns run at the state at hand, rad/s."""
+        """Return the rates of the rotation counters at the current state, rad/s."""
         state = self._dynamics.state
         if not self._dynamics.system.n_counters:
             return np.empty(0)
@@ -220,12 +220,12 @@ class _Motion:
         return bool(_length(miss) <= LARGEST_SURPRISE * own + 1e-9)
 
     def _polish(self, t: float) -> None:
-        """Take positions to rounding, by two more moves whether they get there or not, and velocities with them."""
+        """Correct positions to rounding by up to two more Newton moves, then velocities."""
         self._dynamics.assemble(t, tolerance=0.0, most=2)
         self._dynamics.correct_velocities(t)
 
     def _stuck(self) -> str:
-        """Why even the shortest step fails: the mechanism locks, unless the last try failed for a reason of its own."""
+        """Return why the shortest step failed: the mechanism locks, unless the last attempt has another cause."""
         if self._status in (NOT_FINITE, NO_BALANCE, NO_MEMORY, NO_STATE):
             return f"stopped after t = {self.t:.9g} s: {failure(self._dynamics, self._status, self.t)}"
         return self._locked()

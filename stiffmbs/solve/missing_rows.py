@@ -1,4 +1,4 @@
-"""Reporting past single instants that have no accelerations and reactions, such as a flat pose met to the digit."""
+"""Output rows past isolated times without accelerations and reactions, such as an exactly singular pose."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from .failures import FAILURES
 from .trajectory import Trajectory
 
 MOST_MISSING = 100
-"""Gaps after which the results end."""
+"""Largest number of gaps; the rows end after it."""
 
 
 def reported(dynamics: Dynamics, trajectory: Trajectory, project: bool) -> tuple[OutputRows, list[str]]:
-    """What is reported at the instants of a trajectory, and a note for each that is left out.
+    """Return the output rows of a trajectory, and a note for each row without a solution.
 
-    An instant without a solution between two that have one keeps its coordinates and velocities as they were
-    integrated; all else there is not a number.  Where two in succession have none, the rows end.
+    A time without a solution between two that have one keeps its integrated coordinates and velocities; all else is
+    NaN. The rows end where two in succession have none.
     """
     t, q, u = trajectory.t, trajectory.q, trajectory.u
     parts: list[OutputRows] = [dynamics.report(t, q, u, project)]
@@ -40,7 +40,7 @@ def reported(dynamics: Dynamics, trajectory: Trajectory, project: bool) -> tuple
 
 
 def _unknown(like: OutputRows, t: float, q: np.ndarray, u: np.ndarray) -> OutputRows:
-    """A row of nothing but its time, coordinates and velocities."""
+    """Return a row of NaN except for time, coordinates and velocities."""
     known: dict[str, Any] = {"t": np.array([t]), "q": q[None], "u": u[None], "status": 0}
     for name in (field.name for field in fields(OutputRows) if field.name not in known):
         known[name] = np.full((1, *getattr(like, name).shape[1:]), np.nan)

@@ -1,4 +1,4 @@
-"""What assembly changes of a described start, body by body, in words."""
+"""Changes of the described start by the assembly, body by body, in words."""
 
 from __future__ import annotations
 
@@ -11,19 +11,19 @@ import numpy as np
 from ..compile.system import System
 
 WORTH_TELLING = 1e-9
-"""Changes (m, rad, m/s, rad/s) below this are not mentioned."""
+"""Smallest change that is reported (m, rad, m/s, rad/s)."""
 MUCH_LESS = 1e-3
-"""Part of a body's change below which its other part (a shift beside a turn) is not mentioned."""
+"""Smallest reported part of a change (translation or rotation), as a fraction of the larger part."""
 ALONG = 0.999
-"""Part of a shift from which on it is told by the coordinate that it is along."""
+"""Fraction of a translation along one axis from which on it is reported by that coordinate."""
 DEGREES = math.radians(1.0)
-"""Turns from here on are told in degrees too."""
+"""Smallest rotation that is also reported in degrees."""
 LARGE_SHIFT, LARGE_TURN = 0.25, math.radians(45.0)
-"""Part of the mechanism's size and angle from which on a move is no correction of a drawing."""
+"""Translation, in sizes of the mechanism, and rotation beyond which a move is no correction of a drawing."""
 
 
 class Move(NamedTuple):
-    """What assembly changed of one body.
+    """Change of one body by the assembly.
 
     Attributes
     ----------
@@ -31,11 +31,11 @@ class Move(NamedTuple):
     shift : tuple of float
         Of the centre of mass, m.
     turn : float
-        rad; in space the angle of the rotation.
+        Rotation, rad; in space its angle.
     velocity : tuple of float
         Change of the centre's velocity, m/s.
     omega : float
-        Change of the angular velocity, rad/s; in space its size.
+        Change of the angular velocity, rad/s; in space its norm.
     """
 
     body: str
@@ -46,29 +46,29 @@ class Move(NamedTuple):
 
     @property
     def distance(self) -> float:
-        """Length of the shift, m."""
+        """Length of the translation, m."""
         return math.hypot(*self.shift)
 
     def is_large(self, size: float) -> bool:
-        """Whether the body is moved by more than a correction of a drawing, for a mechanism of a size in m."""
+        """Return True if the move is larger than a correction of a drawing, for a mechanism of a size in m."""
         return self.distance > LARGE_SHIFT * size or abs(self.turn) > LARGE_TURN
 
     def of_position(self, size: float) -> tuple[float, float]:
-        """Its shift in sizes of the mechanism, and its turn."""
+        """Return the translation in sizes of the mechanism, and the rotation."""
         return self.distance / size, abs(self.turn)
 
     def of_velocity(self, size: float) -> tuple[float, float]:
-        """Change of its velocity in sizes of the mechanism, 1/s, and of its angular velocity."""
+        """Return the velocity change in sizes of the mechanism, 1/s, and the angular velocity change."""
         return math.hypot(*self.velocity) / size, abs(self.omega)
 
 
 def moves(system: System, q: np.ndarray, u: np.ndarray) -> tuple[Move, ...]:
-    """The changes of each body that are worth telling.
+    """Return the reportable changes of each body.
 
     Parameters
     ----------
     q, u : ndarrays, shape (n_u,)
-        Moves and changes of velocities of all bodies.
+        Displacements and velocity changes of all bodies.
     """
     if max(np.abs(q).max(initial=0.0), np.abs(u).max(initial=0.0)) <= WORTH_TELLING:
         return ()
@@ -86,12 +86,12 @@ def moves(system: System, q: np.ndarray, u: np.ndarray) -> tuple[Move, ...]:
 
 
 def position_words(moved: Sequence[Move], size: float, most: int) -> str:
-    """The bodies that were moved, the largest moves first; those beyond the first `most` by their number."""
+    """List the bodies that were moved, the largest moves first; those beyond the first `most` are counted."""
     return _listed(moved, lambda move: move.of_position(size), _position, most)
 
 
 def velocity_words(moved: Sequence[Move], size: float, most: int) -> str:
-    """The bodies whose velocities were changed, the largest changes first."""
+    """List the bodies whose velocities were changed, the largest changes first, as `position_words` does."""
     return _listed(moved, lambda move: move.of_velocity(size), _velocity, most)
 
 
@@ -123,14 +123,14 @@ def _velocity(move: Move, sizes: tuple[float, float]) -> list[str]:
 
 
 def _both(sizes: tuple[float, float], shift: tuple[float, ...], of_shift: str, turn: float, of_turn: str) -> list[str]:
-    """What is told of a body: its shift and its turn, without what is rounding or far less than the other."""
+    """Return the reported parts of a move, without rounding and parts far smaller than the other."""
     least = MUCH_LESS * max(sizes)
     straight = [of_shift] if math.hypot(*shift) > WORTH_TELLING and sizes[0] >= least else []
     return straight + ([of_turn] if abs(turn) > WORTH_TELLING and sizes[1] >= least else [])
 
 
 def _shift(body: str, shift: tuple[float, ...], prefix: str, unit: str) -> str:
-    """A shift by its coordinate where it is along one, else by its length."""
+    """Describe a translation by its coordinate if it is along one, else by its length."""
     k = max(range(len(shift)), key=lambda n: abs(shift[n]))
     length = math.hypot(*shift)
     if abs(shift[k]) >= ALONG * length:

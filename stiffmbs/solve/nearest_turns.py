@@ -1,4 +1,4 @@
-"""In which turn the angles of a described start are: a drawing tells them up to whole turns."""
+"""Angle unwrapping of a described start, as a drawing determines angles up to whole turns."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ TURN = 2 * math.pi
 
 
 def take_nearest_turns(dynamics: Dynamics, t: float, wanted: Callable[[str], bool] = lambda name: True) -> None:
-    """Start the first angle of each equation of the wanted elements in the turn in which the equation has the least left.
+    """Set the first angle of each equation of the wanted elements to the turn with the smallest violation.
 
-    A drive from 200 degrees finds its joint at -160 degrees, one turn short; without this, assembly would look for the
-    turn in other poses.
+    A drive from 200 degrees finds its joint at -160 degrees, one turn short. Without unwrapping, assembly would search
+    for the turn in other poses.
     """
     groups = [group for group in dynamics.system.groups if group.record.n_counters and group.record.n_holonomic]
     if not groups:
@@ -38,7 +38,7 @@ def take_nearest_turns(dynamics: Dynamics, t: float, wanted: Callable[[str], boo
 
 
 def _violations(dynamics: Dynamics, groups: list[Group], t: float) -> np.ndarray:
-    """C of each element of some groups, one element a row, filled up with zeros."""
+    """Return C of the elements of some groups, one element per row, padded with zeros."""
     dynamics.state.evaluate("position", t)
     C = dynamics.state.vector("position", "C")
     widest = max(group.record.n_equations for group in groups)

@@ -1,4 +1,4 @@
-"""The segments of a run that switched between two integrators, as one trajectory."""
+"""Joining the segments of a run that switched between two integrators."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from .trajectory import History, Trajectory, summed
 
 @dataclass(frozen=True)
 class Segment:
-    """A part of a run, and what solved it."""
+    """A part of a run, and the traits of its solver."""
 
     trajectory: Trajectory
     traits: Traits
 
 
 def joined(segments: Sequence[Segment]) -> Trajectory:
-    """Segments as one trajectory; each begins with the row at which the last one ended."""
+    """Join segments to one trajectory; each begins with the last row of its predecessor."""
     parts = [segment.trajectory for segment in segments]
     t, q, u = (
         np.concatenate([getattr(part, name)[int(k > 0) :] for k, part in enumerate(parts)]) for name in ("t", "q", "u")
@@ -36,18 +36,18 @@ def joined(segments: Sequence[Segment]) -> Trajectory:
 
 
 def _last_of_each_kind(segments: Sequence[Segment]) -> list[Trajectory]:
-    """Every explicit segment, and the last implicit one: its integrator counts from its first start on."""
+    """Return all explicit segments and the last implicit one, whose integrator counts from its first start."""
     explicit = [segment.trajectory for segment in segments if not segment.traits.implicit]
     return explicit + [segment.trajectory for segment in segments if segment.traits.implicit][-1:]
 
 
 def _summed(segments: Sequence[Trajectory], counted: Sequence[Trajectory]) -> dict[str, int | float | str]:
-    """The counters of those that count, and the time of all."""
+    """Sum the statistics of some segments, and the time of all."""
     seconds = summed([{"seconds": segment.statistics["seconds"]} for segment in segments])
     return {**summed([segment.statistics for segment in counted]), **seconds}
 
 
 def _history(counted: Sequence[Trajectory]) -> History:
-    """The steps of all segments; orders where all are known."""
+    """Merge the steps of all segments, without orders."""
     t = np.concatenate([segment.history.t for segment in counted])
     return History(np.sort(t), np.empty(0, dtype=int))

@@ -1,4 +1,4 @@
-"""What the settings of a run mean for it: the solver's traits, the instants to report, what its states are good for, what is asked in vain."""
+"""Interpretation of run settings: solver traits, output grid, presolve, and settings without effect."""
 
 from __future__ import annotations
 
@@ -17,23 +17,23 @@ DEFAULT_POINTS = 1001
 
 
 def traits_of(settings: RunSettings) -> Traits:
-    """The traits of the solver that the settings choose."""
+    """Return the traits of the solver that the settings choose."""
     return SOLVERS[settings.solver].traits(settings)
 
 
 def may_presolve(settings: RunSettings) -> bool:
-    """Whether a smaller problem has the same results: explicit steps of fixed length and drifts are shown as they are."""
+    """Return True if presolve is on and keeps the results: not for exact, fixed-step or unprojected solvers."""
     return settings.presolve and not traits_of(settings).exact and near_constraints(settings)
 
 
 def near_constraints(settings: RunSettings) -> bool:
-    """Whether states are on the constraints but for the tolerance; those of explicit fixed steps are shown as they are."""
+    """Return True if states satisfy the constraints to tolerance: not with fixed steps or without projection."""
     traits = traits_of(settings)
     return not traits.fixed_steps and (settings.projection or "projection" not in traits.reads)
 
 
 def changed(settings: RunSettings, changes: dict[str, Any]) -> RunSettings:
-    """The settings with some fields changed, checked as a whole.
+    """Return the settings with some fields changed, validated as a whole.
 
     Raises
     ------
@@ -49,7 +49,7 @@ def changed(settings: RunSettings, changes: dict[str, Any]) -> RunSettings:
 
 
 def output_grid(settings: RunSettings) -> Grid:
-    """The instants to report, from the settings: ends included."""
+    """Return the output times of the settings, including both ends."""
     start, end = settings.start, settings.start + settings.duration
     if settings.points == "steps":
         return Grid(start, end, None)
@@ -64,7 +64,7 @@ def output_grid(settings: RunSettings) -> Grid:
 
 
 def settings_notes(settings: RunSettings, system: System) -> Iterator[str]:
-    """Settings that were given and have no effect, and events that the steps may pass over."""
+    """Yield notes on settings without effect and on events that steps may miss."""
     traits = traits_of(settings)
     yield from _ignored(settings, traits)
     if not traits.locates_events and system.n_values("event_function"):

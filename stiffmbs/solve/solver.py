@@ -1,4 +1,4 @@
-"""What a solver is to the other packages: a function, and traits that it declares, so that none asks for its name."""
+"""Solver interface: a function, and declared traits, so that no caller depends on a solver's name."""
 
 from __future__ import annotations
 
@@ -12,29 +12,29 @@ from ..describe.settings import RunSettings
 from .trajectory import Solver, Trajectory
 
 FOR_ALL_SOLVERS = frozenset({"duration", "start", "output", "points", "solver", "presolve", "drop_first"})
-"""Settings that are read before a solver begins; every other one is for the solvers that declare it."""
+"""Settings that are read before a solver begins; all others are read by the solvers that declare them."""
 
 
 @dataclass(frozen=True)
 class Traits:
-    """What a solver, with its scheme or formulation, is like.
+    """Traits of a solver with its scheme or formulation.
 
     Attributes
     ----------
     name : str
-        What messages call it.
+        Name in messages.
     reads : tuple of str
-        The settings that it follows, besides those for all solvers.
+        Settings that it reads, in addition to those for all solvers.
     implicit : bool
-        Whether it takes implicit steps; their dynamics leave out coordinates that others determine.
+        Whether it takes implicit steps; dependent coordinates are then eliminated from the dynamics.
     fixed_steps : bool
-        Whether all its steps have the length `step`, whatever the error.
+        Whether all steps have the length `step`, without error control.
     exact : bool
-        Whether states follow from drives alone, exact but for rounding.
+        Whether states follow from drives alone, exact apart from rounding.
     locates_events : bool
-        Whether it stops where a force changes its law, or has no need to.
+        Whether it stops at events of force laws, or does not need to.
     switches : bool
-        Whether it goes from one integrator to another during a run.
+        Whether it switches between integrators during a run.
     """
 
     name: str
@@ -46,7 +46,7 @@ class Traits:
     switches: bool = False
 
     def ignored(self, settings: RunSettings) -> dict[str, object]:
-        """Settings that were given and that the solver does not read, with their values."""
+        """Return the given settings that the solver does not read, with their values."""
         given = {
             name: getattr(settings, name) for name in RunSettings.model_fields if name in settings.model_fields_set
         }
@@ -58,13 +58,13 @@ class Traits:
 
 
 class Registered(NamedTuple):
-    """A solver by the name in the settings.
+    """Registered solver.
 
     Attributes
     ----------
     solve : Solver
     traits : callable
-        Its traits with the scheme or formulation that the settings choose.
+        Return the traits for the scheme or formulation in the settings.
     """
 
     solve: Solver
@@ -72,7 +72,7 @@ class Registered(NamedTuple):
 
 
 def loaded_when_used(module: str, package: str) -> Registered:
-    """The solver in a module of a package that has functions ``solve`` and ``traits``."""
+    """Return the solver in a module with functions ``solve`` and ``traits``, imported at its first call."""
 
     @cache
     def loaded() -> Any:

@@ -1,4 +1,4 @@
-"""Steps, by Python's logging."""
+"""Logging of integrator steps."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ LOGGER = logging.getLogger(__name__)
 
 
 def is_logged() -> bool:
-    """Whether steps are logged; asked before one is looked up."""
+    """Return True if steps are logged."""
     return LOGGER.isEnabledFor(logging.DEBUG)
 
 
@@ -22,7 +22,7 @@ def log_step(t: float, size: float, order: int = 0) -> None:
     size : float
         s.
     order : int, optional
-        Of its formula, where that varies.
+        Order of the formula, if variable.
     """
     of_order = f", order {order}" if order else ""
     LOGGER.debug("t = %.6g s, step %.3g s%s", t, size, of_order, extra={"step": size, "order": order})

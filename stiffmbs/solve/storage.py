@@ -1,4 +1,4 @@
-"""Memory for results: in memory, and in a temporary file where they are large."""
+"""Storage of results in memory, or in a temporary file if they are large."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ import numpy as np
 from ..errors import InputError
 
 LARGEST_IN_MEMORY = 2**26
-"""Bytes of an array that is still held in memory."""
+"""Size of the largest array held in memory, bytes."""
 
 BLOCK = 100_000
-"""Rows that are written or read before memory is let go of."""
+"""Rows that are written or read before memory is released."""
 
 
 def allocated(*shape: int) -> np.ndarray:
-    """An array of floats of any content.
+    """Return an uninitialized array of floats.
 
-    Where it is large it lies in a file that vanishes with it: the system keeps in memory what it has space for.
+    A large array is mapped to a temporary file, which is deleted with it.
 
     Raises
     ------
@@ -39,7 +39,7 @@ def allocated(*shape: int) -> np.ndarray:
 
 
 def _reserve(file: int, size: int) -> None:
-    """Give a file its size and, where the system can, its space: on a full disk a write through memory ends the process."""
+    """Set the size of a file and reserve its space, as writing to a mapping on a full disk ends the process."""
     try:
         os.truncate(file, size)
         if hasattr(os, "posix_fallocate"):
@@ -50,12 +50,12 @@ def _reserve(file: int, size: int) -> None:
                 f"found too little space in {tempfile.gettempdir()}, expected {size / 1e9:.2g} GB for a part of the results: "
                 "ask for fewer output points, or let the variable TMPDIR name a larger folder"
             ) from None
-        if error.errno not in (errno.EOPNOTSUPP, errno.EINVAL):  # of file systems that cannot reserve
+        if error.errno not in (errno.EOPNOTSUPP, errno.EINVAL):  # file systems that cannot reserve
             raise
 
 
 def release(*arrays: np.ndarray) -> None:
-    """Let go of the memory of arrays that lie in files; what they hold stays."""
+    """Release the memory of arrays that are mapped to files; their contents stay."""
     for array in arrays:
         memory = _mapped(array)
         if memory is not None and hasattr(memory, "madvise"):
@@ -63,24 +63,24 @@ def release(*arrays: np.ndarray) -> None:
 
 
 def blocks(count: int) -> Iterator[slice]:
-    """The rows of a table in blocks."""
+    """Yield the rows of a table in blocks."""
     for first in range(0, count, BLOCK):
         yield slice(first, min(first + BLOCK, count))
 
 
 def all_finite(*arrays: np.ndarray) -> bool:
-    """Whether all numbers of some arrays are finite."""
+    """Return True if all numbers of some arrays are finite."""
     return all(map(_finite, arrays))
 
 
 def with_gaps(channels: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """The channels of which not all values are finite, by blocks of rows: one of a large run lies in a file."""
+    """Return the channels with values that are not finite."""
     return {name: values for name, values in channels.items() if not _finite(values)}
 
 
 def _finite(values: np.ndarray) -> bool:
     for block in blocks(len(values)):
-        # a sum of large values overflows
+        # a sum of large values may overflow
         finite = math.isfinite(values[block].sum()) or np.isfinite(values[block]).all()
         release(values)
         if not finite:
@@ -89,7 +89,7 @@ def _finite(values: np.ndarray) -> bool:
 
 
 def _mapped(array: np.ndarray) -> mmap.mmap | None:
-    """The mapping that an array, or what it is a view of, lies in."""
+    """Return the mapping that holds an array or the base of a view, or None."""
     owner: object = array
     while isinstance(owner, np.ndarray):
         owner = owner.base

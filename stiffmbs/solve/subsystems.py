@@ -1,4 +1,4 @@
-"""Solving the mechanisms that the presolve found, each by itself, and putting their motions together."""
+"""Separate solution of the mechanisms that the presolve found, and assembly of their motions."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Subsystem(NamedTuple):
     Attributes
     ----------
     part : Part
-        Which bodies of the whole it moves.
+        Bodies of the whole system that it moves.
     dynamics : Dynamics
     start : InitialValues
     """
@@ -40,7 +40,7 @@ class Subsystem(NamedTuple):
 
 
 def subsystem_of(part: Part, start: InitialValues, t: float) -> Subsystem:
-    """A subsystem's dynamics and start, from the start of the whole.
+    """Return the dynamics and start of a subsystem, from the start of the whole system.
 
     Raises
     ------
@@ -52,9 +52,9 @@ def subsystem_of(part: Part, start: InitialValues, t: float) -> Subsystem:
 
 
 def leave_out_coordinates(dynamics: Dynamics, t: float) -> None:
-    """Let integrators take the independent coordinates alone for unknowns; the state must satisfy the constraints.
+    """Reduce the unknowns of integrators to independent coordinates; the state must satisfy the constraints.
 
-    Where nothing moves all stay, as an integrator needs an unknown.
+    All coordinates stay if none is independent, as an integrator needs an unknown.
     """
     found = independent_coordinates(dynamics.system, dynamics.state, t)
     if found.independent.any():
@@ -64,17 +64,17 @@ def leave_out_coordinates(dynamics: Dynamics, t: float) -> None:
 def presolved(
     model: ModelData, dynamics: Dynamics, start: InitialValues, grid: Grid, settings: RunSettings
 ) -> tuple[Subsystem, ...]:
-    """The mechanisms to solve in place of the whole; none where that is the whole, or the settings ask for it.
+    """Return the mechanisms to solve in place of the whole system; empty if there is one only or presolve is off.
 
-    For implicit steps their dynamics, or those of the whole, then leave out coordinates that others determine.  Where
-    steps are implicit from the start on, quaternions do not follow spins; explicit ones would only come nearer to the limit of
-    their stability.
+    For implicit solvers, dependent coordinates are eliminated from their dynamics or from those of the whole system. If
+    steps are implicit from the start, the spin of axisymmetric bodies is removed from their quaternions. Explicit steps
+    would only come closer to their stability limit.
 
     Parameters
     ----------
     model : ModelData
     dynamics : Dynamics
-        Of the whole, at its start.
+        Of the whole system, at its start.
     start : InitialValues
     grid : Grid
     settings : RunSettings
@@ -94,7 +94,7 @@ def presolved(
 
 
 def _begins_implicit(dynamics: Dynamics, start: InitialValues, grid: Grid, settings: RunSettings) -> bool:
-    """Whether a solver that may switch takes implicit steps first; asked in space alone, where bodies may spin."""
+    """Return True if a solver that may switch starts with implicit steps; False in the plane, where no body spins."""
     if dynamics.system.of_body.dimensions == 2:
         return False
     state = dynamics.state
@@ -112,17 +112,16 @@ def solve_subsystems(
     settings: RunSettings,
     watch: ProgressCallback,
 ) -> Trajectory:
-    """Solve one mechanism after the other; the contract is in `stiffmbs.solve.trajectory`.
+    """Solve the mechanisms one after the other; the contract is in `stiffmbs.solve.trajectory`.
 
-    Where one cannot go on or is interrupted, the whole ends there, as its forces and those of the others belong to one
-    instant; the others are still solved up to there.
+    If one stops early or is interrupted, the whole run ends there. The following ones are solved up to that time.
 
     Parameters
     ----------
     solve : Solver
         For each of them.
     start : InitialValues
-        Of the whole.
+        Of the whole system.
     """
     found: list[Trajectory] = []
     rows = None if grid.times is None else len(grid.times)
@@ -145,12 +144,12 @@ def _up_to(grid: Grid, rows: int) -> Grid:
 
 
 def _share(watch: ProgressCallback, grid: Grid, k: int, count: int) -> ProgressCallback:
-    """Progress of one of several runs over the same time, as progress of all."""
+    """Convert the progress of one of several runs over the same time to overall progress."""
     return lambda t: watch(grid.start + (k * (grid.end - grid.start) + t - grid.start) / count)
 
 
 def _together(subsystems: Sequence[Subsystem], found: Sequence[Trajectory], start: InitialValues) -> Trajectory:
-    """The motion of the whole, up to the last instant that all have reached; what was not solved stays at the start."""
+    """Assemble the motion of the whole system up to the last common time; unsolved bodies stay at the start."""
     rows = min(len(trajectory.t) for trajectory in found) if len(found) == len(subsystems) else 1
     q, u = allocated(rows, len(start.q)), allocated(rows, len(start.u))
     q[:], u[:] = start.q, start.u
@@ -171,7 +170,7 @@ def _together(subsystems: Sequence[Subsystem], found: Sequence[Trajectory], star
 
 
 def _merged(histories: Sequence[History]) -> History:
-    """The steps of all, in the order of time."""
+    """Merge the steps of all histories in the order of time."""
     t, order = (np.concatenate(parts) for parts in zip(*((h.t, h.order) for h in histories), strict=True))
     sequence = np.argsort(t, kind="stable")
     return History(t[sequence], order[sequence] if len(order) == len(t) else order)

@@ -1,4 +1,4 @@
-"""The element that a run most likely stopped for."""
+"""The element that most likely caused a run to stop."""
 
 from __future__ import annotations
 
@@ -11,27 +11,24 @@ from ..compile.written_values import writer
 from .dynamics import Dynamics
 
 BEYOND_LAST_STATE = (0.0, 1e-12, 1e-9, 1e-6)
-"""How far beyond the last state a value is looked for that does not exist, relative to the time, s."""
+"""Times after the last state, relative to the time, s, at which undefined values are searched for."""
 LOCKED_VIOLATION = 1e-5
-"""Violation of a constraint, m or rad, that tells a mechanism that locks."""
+"""Violation of a constraint, m or rad, from which on a mechanism counts as locked."""
 TERM_SETS = ("motion", "acceleration")
 
 
 def suspect(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> str:
-    """A clause on the element that has no finite value at, or just beyond, a state; else on a joint that is open; else on
-    the element that pulls hardest.
+    """Return a clause on the element that probably caused a run to stop, or an empty string.
+
+    It is an element with an undefined value at or just after a state, else an open joint, else the element with the
+    largest acceleration of a body.
 
     Parameters
     ----------
     t : float
         s.
     q, u : ndarrays, shapes (n_q,), (n_u,)
-        The last state that was reached.
-
-    Returns
-    -------
-    str
-        Empty where nothing acts.
+        Last state that was reached.
     """
     for ahead in BEYOND_LAST_STATE:
         later = ahead * max(1.0, abs(t))
@@ -50,13 +47,13 @@ def _move(dynamics: Dynamics, q: np.ndarray, u: np.ndarray) -> None:
 
 
 def _undefined(system: System, values: np.ndarray, term_set: str) -> str:
-    """The first element that wrote a value that is not finite."""
+    """Return the first element that wrote a value that is not finite."""
     wrong = np.flatnonzero(~np.isfinite(values[: system.n_values(term_set)]))
     return writer(system, term_set, int(wrong[0])) if len(wrong) else ""
 
 
 def _open(dynamics: Dynamics, t: float) -> str:
-    """The joint whose equations are furthest from satisfied, where that is more than an error of integration."""
+    """Return the joint with the largest violation if it exceeds an error of integration."""
     system, state = dynamics.system, dynamics.state
     state.evaluate("motion", t)
     gaps = np.abs(state.vector("motion", "C")) * system.active
@@ -67,7 +64,7 @@ def _open(dynamics: Dynamics, t: float) -> str:
 
 
 def _hardest(dynamics: Dynamics, t: float) -> str:
-    """The element that accelerates a body most."""
+    """Return the element that accelerates a body most."""
     if dynamics.accelerate(t)[0] < 0:
         return ""
     largest, name, k = max(_pulls(dynamics, t), default=(0.0, "", 0))
@@ -77,7 +74,7 @@ def _hardest(dynamics: Dynamics, t: float) -> str:
 
 
 def acceleration_name(system: System, k: int) -> str:
-    """The name of a velocity's rate; angular ones in space are about principal axes, which results do not know."""
+    """Return the name of a velocity's rate; in space, angular rates about principal axes have no channel."""
     of_body = system.of_body
     if of_body.dimensions == 3 and k % of_body.n_u >= of_body.linear:
         return f"the turning of {system.bodies[k // of_body.n_u]}"
@@ -85,7 +82,7 @@ def acceleration_name(system: System, k: int) -> str:
 
 
 def _pulls(dynamics: Dynamics, t: float) -> Iterator[tuple[float, str, int]]:
-    """The hardest pull of a force, and that of a joint: its size, the element, and the velocity that it changes."""
+    """Yield the largest acceleration by a force, and by a joint, with the element and the velocity that it changes."""
     system, state = dynamics.system, dynamics.state
     state.evaluate("motion", t)
     values, lam = state.values["motion"], state.lam

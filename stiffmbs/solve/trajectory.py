@@ -1,13 +1,13 @@
-"""What an integrator is given and what it gives back: the contract of all solvers.
+"""Contract of all solvers: arguments and results of an integrator.
 
-A solver is a function in a file of its own: `solve(dynamics, start, grid, settings, watch) -> Trajectory`.  What else
-others need to know of it are its traits (`stiffmbs.solve.solver`).
+A solver is a function in a file of its own: `solve(dynamics, start, grid, settings, watch) -> Trajectory`. Other
+packages read its traits (`stiffmbs.solve.solver`).
 
 1. It starts from consistent initial values and works on the dynamics' state; it knows no kinds of element.
-2. It returns the state at every instant of `grid`, or at its own steps where the grid's `times` is None.
-3. It calls `watch(t)` often enough for a progress bar (a few times a second at the least).
-4. It never loses what it has: when it cannot go on, or is interrupted, it returns the rows up to there with the
-   outcome that says so: its loop stands in a ``with Ending()``.
+2. It returns the state at every time of `grid`, or at its own steps if the grid's `times` is None.
+3. It calls `watch(t)` at least a few times a second.
+4. When it cannot go on or is interrupted, it returns the rows so far with the outcome: its loop is in a
+   ``with Ending()``.
 """
 
 from __future__ import annotations
@@ -33,11 +33,11 @@ ProgressCallback = Callable[[float], None]
 
 
 def unwatched(t: float) -> None:
-    """Of a run whose progress nobody follows."""
+    """Ignore the progress."""
 
 
 class Outcome(Enum):
-    """How a run ended, as a sentence for a person."""
+    """Outcome of a run, as a sentence."""
 
     DONE = "the whole time was solved"
     INTERRUPTED = "interrupted by the user; the results up to there are kept"
@@ -45,19 +45,19 @@ class Outcome(Enum):
 
 
 IN_DOUBT = "the end was reached, but the results are in doubt"
-"""What is said of a run in place of `Outcome.DONE` where notes on it say that its results may be wrong."""
+"""Sentence in place of `Outcome.DONE` for a run whose notes say that its results may be wrong."""
 
 
 @dataclass(frozen=True)
 class History:
-    """A solver's own steps.
+    """Steps of a solver.
 
     Attributes
     ----------
     t : ndarray
         Ends of the steps, s.
     order : ndarray of int
-        Order of the formula in each step; empty where it is fixed or not known.
+        Order of the formula in each step; empty if fixed or unknown.
     """
 
     t: np.ndarray
@@ -66,9 +66,9 @@ class History:
 
 @dataclass(frozen=True)
 class Grid:
-    """When to report: the ends of the run, and output times (ends included) or None for the solver's own steps.
+    """Ends of the run, and output times (ends included) or None for the solver's own steps.
 
-    Solvers that choose their steps start anew at `stops`, as at breakpoints of inputs.
+    Solvers with variable steps restart at `stops`, as at input breakpoints.
     """
 
     start: float
@@ -77,13 +77,13 @@ class Grid:
     stops: np.ndarray = field(default_factory=lambda: np.empty(0))
 
     def with_stops(self, breakpoints: np.ndarray) -> np.ndarray:
-        """Where to start anew: at breakpoints of inputs, and at the stops within the run."""
+        """Return the restart times: input breakpoints, and the stops within the run."""
         if not len(self.stops):
             return breakpoints
         return np.union1d(breakpoints, self.stops[(self.stops > self.start) & (self.stops < self.end)])
 
     def within(self, after: float, until: float) -> np.ndarray:
-        """The output times that lie after one time and not after another."""
+        """Return the output times in the interval (after, until]."""
         if self.times is None:
             return np.empty(0)
         first, end = self.times.searchsorted((after, until), side="right")
@@ -99,20 +99,20 @@ class Trajectory:
     t, q, u : ndarrays, shapes (n,), (n, n_q), (n, n_u)
     outcome : Outcome
     message : str
-        One sentence: what happened, and for an early stop where and why.
+        One sentence: the outcome, and for an early stop where and why.
     statistics : dict
-        ``steps``, ``seconds`` and what else the solver counts.
+        ``steps``, ``seconds`` and other counters of the solver.
     history : History
-        The solver's own steps, as far as it tells them.
+        The solver's own steps, if known.
     note : str
-        What the user should know besides; empty for nothing.
+        Notes for the user, or an empty string.
     solver : str
-        Which solvers have worked, where that was not for the user to say.
+        Solvers used, if the user did not choose them.
     long_steps : tuple of LongSteps
-        Steps far longer than those before them, with the motion within them; for scenes with laws alone.
+        Steps much longer than their predecessors, with the motion within them; only if force laws have breakpoints.
     displaced : ndarray, shape (n_u,), or None
-        Estimated errors of positions by the end, as displacements along the velocities, m and rad
-        (`stiffmbs.solve.error_control.accumulated_errors`); None where they are not known.
+        Estimated position errors at the end, as displacements along the velocities, m and rad
+        (`stiffmbs.solve.error_control.accumulated_errors`); None if unknown.
     """
 
     t: np.ndarray
@@ -134,7 +134,7 @@ class Trajectory:
 
 
 class Ending:
-    """How a run ends, told by what ends the block of a ``with``: a `SolverError`, an interruption, or nothing.
+    """Context manager that records how a run ends: by a `SolverError`, an interruption, or normally.
 
     Attributes
     ----------
@@ -142,7 +142,7 @@ class Ending:
     message : str
         One sentence.
     seconds : float
-        Time that the block took.
+        Time spent in the block.
     """
 
     def __init__(self) -> None:
@@ -161,12 +161,12 @@ class Ending:
         return isinstance(error, SolverError | KeyboardInterrupt)
 
     def stop(self, message: str) -> None:
-        """The solver stopped early, and why."""
+        """Record an early stop and its reason."""
         self.outcome, self.message = Outcome.STOPPED, message
 
 
 class Solver(Protocol):
-    """See above."""
+    """Solver function; the contract is in the module's docstring."""
 
     def __call__(
         self, dynamics: Dynamics, start: InitialValues, grid: Grid, settings: RunSettings, watch: ProgressCallback, /
@@ -174,7 +174,7 @@ class Solver(Protocol):
 
 
 def summed(parts: Sequence[Mapping[str, int | float | str]]) -> dict[str, int | float | str]:
-    """Statistics of several runs as one: counts add up, orders do not, and words are put in a row."""
+    """Combine the statistics of several runs: add counters, take the largest order, and join words."""
     together: dict[str, int | float | str] = {}
     for name in dict.fromkeys(name for part in parts for name in part):
         values = [part[name] for part in parts if name in part]
@@ -185,7 +185,7 @@ def summed(parts: Sequence[Mapping[str, int | float | str]]) -> dict[str, int | 
 
 
 class Rows:
-    """Growing storage for states: appended to row by row, whatever their number."""
+    """Growing storage for states."""
 
     def __init__(self, n_q: int, n_u: int, expected: int = 1024) -> None:
         self._t, self._q, self._u = allocated(expected), allocated(expected, n_q), allocated(expected, n_u)
@@ -198,7 +198,7 @@ class Rows:
         self._count += 1
 
     def extend(self, t: np.ndarray, q: np.ndarray, u: np.ndarray) -> None:
-        """Store states, one in each row."""
+        """Store states, one per row."""
         self._enlarge(len(t))
         added = slice(self._count, self._count + len(t))
         self._t[added], self._q[added], self._u[added] = t, q, u

@@ -1,1 +1,1 @@
-"""Trust in a run: the scene solved again, tighter and in another way; error bars, and what is in doubt."""
+"""Verification of a run: reruns with tighter tolerances and another integrator, error bars and doubts."""

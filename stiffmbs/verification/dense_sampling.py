@@ -1,4 +1,4 @@
-"""Looking between output instants: a run at many more of them, but for those at singular poses."""
+"""Sampling between output times: a run at many more times, except those at singular poses."""
 
 from __future__ import annotations
 
@@ -16,34 +16,33 @@ from .poses import poses_of
 from .solve_again import Again
 
 BLOWN_UP = 0.05
-"""Part of its scale by which a channel must exceed what output instants show before the pose there is looked at."""
+"""Excess of a channel over its output values, relative to its scale, from which on the pose is checked."""
 AT_OUTPUT = 1e-9
-"""Part of an interval by which an instant must differ from an output instant."""
+"""Smallest distance of a time from an output time, relative to the interval."""
 PARTS_OF_IMPLICIT_STEPS, PARTS = 2, 4
-"""Into how many parts the time between two instants is cut: a polynomial of order 5 or less goes through an implicit
-step, one of order 8 through an explicit one."""
+"""Parts of an interval between two times, for implicit (order up to 5) and explicit steps (order 8)."""
 MOST_OF_INPUTS = 5000
-"""Instants that show what inputs do."""
+"""Largest number of times that resolve inputs."""
 MOST_VALUES = 3e7
-"""Values of a run; more would fill the memory."""
+"""Largest number of values of a run, limited by memory."""
 MOST_PRODUCTS = 3e9
-"""In the decompositions of poses: a second or so."""
+"""Largest number of multiplications in the decompositions of poses."""
 
 
 @dataclass(frozen=True)
 class DenseSamples:
-    """What lies between output instants.
+    """Samples between output times.
 
     Attributes
     ----------
     solution : Solution
-        At many instants.
+        At many times.
     sound : ndarray of bool
-        Those at which accelerations and reactions are determined, and the output instants.
+        Mask of the times with determined accelerations and reactions, and of the output times.
     at : ndarray of int
-        The output instants among the sound ones.
+        Positions of the output times among the sound ones.
     singular : tuple of float
-        When the others are, s.
+        Other times, s.
     """
 
     solution: Solution
@@ -52,14 +51,14 @@ class DenseSamples:
     singular: tuple[float, ...]
 
     def fine(self, channel: str) -> Fine:
-        """Instants, values there, and which of them are reported."""
+        """Return the sound times, the channel's values there, and the positions of the output times."""
         return self.solution.time[self.sound], self.solution[channel][self.sound], self.at
 
 
 def more_instants(first: Solution, features: InputFeatures) -> np.ndarray:
-    """Output instants, ends of the solver's steps, and instants between these; fewer where there are too many.
+    """Return output times, ends of steps, and times between these; fewer if there are too many.
 
-    Where the inputs have features narrower than the time between output instants, a few instants in each besides.
+    If inputs have features narrower than the output interval, a few times in each are added.
     """
     reported, own = first.time, first.step_times
     most = int(MOST_VALUES / len(first))
@@ -77,18 +76,17 @@ def more_instants(first: Solution, features: InputFeatures) -> np.ndarray:
 
 
 def apart(more: np.ndarray, found: np.ndarray) -> np.ndarray:
-    """Those of the instants that no rounding makes the same as others."""
+    """Return the times that differ from others by more than rounding."""
     k = np.clip(np.searchsorted(found, more), 1, len(found) - 1)
     nearest = np.minimum(np.abs(found[k] - more), np.abs(more - found[k - 1]))
     return more[nearest > AT_OUTPUT * (found[-1] - found[0]) / len(found)]
 
 
 def dense_samples(job: Job, run: Again, sizes: Mapping[str, float]) -> DenseSamples | None:
-    """What a run at many instants shows between the reported ones; None where it did not come to the end, or too many poses ask
-    for a look.
+    """Return the samples of a run; None if it stopped early or too many poses need a check.
 
-    Where accelerations and reactions are far beyond those at output instants, the pose may be singular: there they are
-    quotients of roundings, and are left out.
+    If accelerations and reactions are far larger than at output times, the pose may be singular. They are then
+    dominated by rounding, and such times are omitted.
 
     Parameters
     ----------
@@ -122,14 +120,14 @@ def dense_samples(job: Job, run: Again, sizes: Mapping[str, float]) -> DenseSamp
 def _peaks(
     solution: Solution, names: list[str], sound: np.ndarray, at: np.ndarray, sizes: Mapping[str, float]
 ) -> set[int]:
-    """Sound instants at which channels are far beyond what they are at the reported ones."""
+    """Return the sound times at which channels are far larger than at output times."""
     kept = np.flatnonzero(sound)
     reported = np.searchsorted(kept, at)
     return {int(kept[k]) for name in names for k in _blown_up(solution[name][kept], reported, BLOWN_UP * sizes[name])}
 
 
 def _blown_up(values: np.ndarray, at: np.ndarray, much: float) -> list[int]:
-    """Where the least and the greatest value lie, as far as they are beyond the reported ones."""
+    """Return the positions of the minimum and maximum if they are far beyond the output values."""
     low, high = int(np.nanargmin(values)), int(np.nanargmax(values))
     found = [low] if np.nanmin(values[at]) - values[low] > much else []
     return found + ([high] if values[high] - np.nanmax(values[at]) > much else [])

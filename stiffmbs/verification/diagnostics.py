@@ -1,4 +1,4 @@
-"""What a comparison of runs gives reason to doubt, in sentences."""
+"""Doubts about a run from comparison with others, in sentences."""
 
 from __future__ import annotations
 
@@ -21,19 +21,18 @@ from .poses import poses_of
 from .solve_again import Again
 
 AMPLIFIED, VISIBLE, LOOSE = 1e6, 1e-2, 100.0
-"""An error may be so many times the tolerance, but no more than a hundredth of the channel's scale, unless so many times
-the tolerance is more."""
+"""Acceptable error in tolerances, its limit as a fraction of the channel's scale, and its lower bound in tolerances."""
 CONVERGES = 2.0
-"""Factor by which the error must shrink at a ten times tighter tolerance."""
+"""Smallest reduction of the error at a tolerance tighter by a factor of ten."""
 MISSED = 0.05
-"""Part of its scale by which a peak may lie above the output instants before it is told."""
+"""Excess of a peak over the output values, relative to its scale, from which on it is reported."""
 NAMED = 3
-"""Channels that a sentence names."""
+"""Largest number of channels that a sentence names."""
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """A run and those that it is compared with.
+    """A run and those with which it is compared.
 
     Attributes
     ----------
@@ -44,7 +43,7 @@ class Comparison:
     other : Again or None
         By the other solver.
     between : DenseSamples or None
-        What lies between output instants.
+        Samples between output times.
     bars : mapping of str to ErrorBar
     sizes : mapping of str to float
         Scales of the channels.
@@ -60,7 +59,7 @@ class Comparison:
 
     @property
     def acceptable(self) -> float:
-        """Part of its scale by which a peak may be wrong before it is told."""
+        """Largest error of a peak that is not reported, relative to its scale."""
         settings = self.job.settings
         if traits_of(settings).fixed_steps:
             return VISIBLE
@@ -68,7 +67,7 @@ class Comparison:
 
     @cached_property
     def uncertain(self) -> dict[str, float]:
-        """Channels with a peak of which less is known than acceptable, the worst first: parts of the channel's scale."""
+        """Channels with unacceptably uncertain peaks, the worst first, and their uncertainties in scales."""
         parts = {name: self._part(name, bar) for name, bar in self.bars.items() if self.sizes[name]}
         beyond = {name: part for name, part in parts.items() if part > self.acceptable}
         return dict(sorted(beyond.items(), key=lambda item: -item[1]))
@@ -78,7 +77,7 @@ class Comparison:
         return of_solver / self.sizes[name]
 
     def divergences(self) -> list[Divergence | None]:
-        """Where the first run parts from the next tighter one, that from the next, and the first from the other's."""
+        """Return the divergences, or None, between successive tighter runs, and of the first run from the other's."""
         runs = [self.first.channels, *({name: run.reported(name) for name in self.first} for run in self.tighter)]
         pairs = [*itertools.pairwise(runs)]
         if self.other is not None:
@@ -91,12 +90,12 @@ class Comparison:
 
     @property
     def suspicious(self) -> bool:
-        """Whether differences are larger than they should be."""
+        """True if differences are larger than acceptable."""
         return bool(self.uncertain) or any(self.divergences())
 
 
 def diagnostics(comparison: Comparison) -> Iterator[str]:
-    """Everything that the runs give reason to doubt, a sentence each; nothing where they agree as they should."""
+    """Yield a sentence on each doubt; nothing if the runs agree."""
     divergences = comparison.divergences()
     met = [found for found in divergences if found is not None]
     if met:
@@ -146,7 +145,7 @@ def _run_names(comparison: Comparison) -> list[str]:
 
 
 def _pose(comparison: Comparison, found: Divergence) -> SingularPose | None:
-    """The singular pose on the way to where the runs part, if there is one."""
+    """Return the singular pose before the divergence of the runs, or None."""
     solution = comparison.between.solution if comparison.between else comparison.first
     return poses_of(comparison.job, solution).nearest(found.begun, found.t)
 
@@ -168,7 +167,7 @@ def _peak(comparison: Comparison, name: str) -> str:
 
 
 def _remedy(comparison: Comparison, name: str, parted: bool) -> str:
-    """What a tighter tolerance would bring, as far as the runs tell."""
+    """Return a clause on the effect of a tighter tolerance, from the convergence of the runs."""
     settings, first = comparison.job.settings, comparison.first
     fixed = traits_of(settings).fixed_steps
     what, ratio = (f"step {settings.step:.3g} s", 2.0) if fixed else (f"rtol {settings.rtol:.3g}", 10.0)
@@ -191,7 +190,7 @@ def _remedy(comparison: Comparison, name: str, parted: bool) -> str:
 
 
 def _missed(comparison: Comparison) -> list[str]:
-    """Channels whose peaks lie between output instants, the worst first."""
+    """Return the channels with peaks between output times, the worst first."""
     if comparison.between is None:
         return []
     parts = {
@@ -203,7 +202,7 @@ def _missed(comparison: Comparison) -> list[str]:
 
 
 def _beyond(fine: Fine) -> tuple[float, float]:
-    """How far a channel goes below and above what it is at output instants."""
+    """Return the excess of a channel below and above its output values."""
     _, values, at = fine
     return float(np.nanmin(values[at]) - np.nanmin(values)), float(np.nanmax(values) - np.nanmax(values[at]))
 

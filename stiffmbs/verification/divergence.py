@@ -1,4 +1,4 @@
-"""Where the motions of two runs part, and why: a singular pose, a motion that magnifies all errors, or loose tolerances."""
+"""Divergence of two runs: at a singular pose, by sensitivity, or by loose tolerances."""
 
 from __future__ import annotations
 
@@ -12,26 +12,26 @@ from ..compile.quaternions import CONJUGATE, rotation_vector, times
 from ..results.scales import kind_of
 
 DIVERGED = 0.05
-"""Part of the motion's size, or rad, by which positions must differ for two motions to have parted."""
+"""Smallest difference of positions, relative to the motion's size, or in rad, of diverged motions."""
 TOGETHER = 1e-3
-"""Part of `DIVERGED` at which the difference began to grow."""
+"""Fraction of `DIVERGED` at which the difference begins to grow."""
 TURNING = (*SPACE.positions[SPACE.linear :], *SPACE.velocities[SPACE.linear :])
 LEAST_LENGTH = 1e-300
-"""Lengths that are divided by are at least this, so that what does not turn has no axis."""
+"""Lower bound of divisors, so that a body without rotation has no axis."""
 SENSITIVE = 2.0
-"""A motion is sensitive where a tighter tolerance puts the divergence off by less than this factor of time."""
+"""Smallest factor of time by which a tighter tolerance delays the divergence of a motion that is not sensitive."""
 
 
 @dataclass(frozen=True)
 class Divergence:
-    """Two motions that part.
+    """Divergence of two motions.
 
     Attributes
     ----------
     body : str
-        That does so first.
+        First body that diverges.
     begun, t : float
-        When the difference began to grow, and when it was to be seen, s.
+        Times at which the difference begins to grow, and at which it counts as divergence, s.
     """
 
     body: str
@@ -42,14 +42,14 @@ class Divergence:
 def distance(
     first: Mapping[str, np.ndarray], other: Mapping[str, np.ndarray], count: int, sizes: Mapping[str, float]
 ) -> dict[str, np.ndarray]:
-    """How far each body is from where it is in another run, relative to the motion's size and in rad, over time.
+    """Return the distance of each body from that in another run over time, relative to the motion's size or in rad.
 
     Parameters
     ----------
     first, other : mappings of str to ndarray
-        Channels at the same instants.
+        Channels at the same times.
     count : int
-        Number of instants to compare.
+        Number of times to compare.
     sizes : mapping of str to float
         Scales of the channels.
     """
@@ -72,13 +72,14 @@ def distance(
 
 
 def _turned_apart(first: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """By how much two motions differ in orientation over time: about all axes but that of the turning in rad, about this
-    one relative to all that the first turns by, if that is more than 1 rad (as for angles in the plane).
+    """Return the difference of two motions in orientation over time, in rad.
+
+    About the rotation axis it is relative to the total rotation of the first motion if that exceeds 1 rad.
 
     Parameters
     ----------
     first, other : ndarrays, shape (7, n)
-        Quaternion, of which either sign is the same orientation, and angular velocity in the body's own axes.
+        Quaternion with arbitrary sign, and angular velocity in the body's own axes.
     """
     p, w = first[:4], first[4:]
     turn = rotation_vector(times(CONJUGATE * p.T, other[:4].T))
@@ -90,7 +91,7 @@ def _turned_apart(first: np.ndarray, other: np.ndarray) -> np.ndarray:
 
 
 def divergence(times: np.ndarray, distances: Mapping[str, np.ndarray]) -> Divergence | None:
-    """Where two motions part; None where they stay together.
+    """Return the divergence of two motions, or None.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Solving a prepared job once more with other settings, with as much work as one is willing to wait for."""
+"""Rerun of a prepared job with other settings and limited effort."""
 
 from __future__ import annotations
 
@@ -17,26 +17,26 @@ from ..solve.settings import changed
 from ..solve.trajectory import Grid, Outcome
 
 LOOKS_AHEAD = 0.3
-"""Part of what it is allowed after which a run that will not come to its end is given up."""
+"""Fraction of the allowed effort after which a run that would exceed it is stopped."""
 
 
 class OutOfTime(KeyboardInterrupt):
-    """Ends a solver as the user's own interruption does: with what it has."""
+    """Interruption of a solver that has exceeded its effort."""
 
 
 class Deadline:
-    """A watch that ends a run when its time is over, or when it is far from its end at a third of its time.
+    """Watch that stops a run if it exceeds its effort, or is going to after a third of it.
 
-    The time may be any measure of effort that grows as the run goes on.
+    The effort may be any measure that grows during the run.
 
     Parameters
     ----------
     start, end : float
         Of the run, s.
     allowed : float
-        Time to wait, s, or what `clock` tells.
+        Allowed effort, in units of `clock` (s by default).
     clock : callable
-        The time that has gone by.
+        Return the effort so far.
     """
 
     def __init__(
@@ -57,22 +57,22 @@ class Deadline:
 
 @dataclass(frozen=True)
 class Again:
-    """A run to compare with.
+    """A run for comparison.
 
     Attributes
     ----------
     name : str
-        What was done: ``bdf at rtol 1e-07``.
+        Description: ``bdf at rtol 1e-07``.
     solution : Solution or None
-        None where it gave nothing.
+        None if there is no result.
     obstacle : str
-        Why it did not come to the end; empty where it did.
+        Why it stopped early, or an empty string.
     remark : str
-        What the solver says of its steps; empty for nothing.
+        Remark of the solver on its steps, or an empty string.
     blind : str
-        What its steps go over though the first run has seen it; empty for nothing.
+        Event that its steps missed but the first run found, or an empty string.
     at : ndarray of int
-        Which of its instants are those of the first run.
+        Positions of the first run's times among its own.
     """
 
     name: str
@@ -83,7 +83,7 @@ class Again:
     blind: str = ""
 
     def reported(self, channel: str) -> np.ndarray:
-        """A channel at the instants of the first run, as far as they were reached."""
+        """Return a channel at the times of the first run that were reached."""
         assert self.solution is not None
         return self.solution[channel][self.at]
 
@@ -97,15 +97,15 @@ def solve_again(
     ----------
     job : Job
     name : str
-        For sentences.
+        For messages.
     changes : dict
         Fields of the settings.
     times : ndarray
-        Instants to report, s, the start first.
+        Output times, s, the start first.
     at : ndarray of int
-        Which of them are the first run's.
+        Positions of the first run's times among them.
     allowed : float
-        Evaluations of the job's equations that it may take: a count is the same on a machine that is busy.
+        Allowed evaluations of the job's equations, which do not depend on the load of the machine.
     """
     if allowed <= 0:
         return Again(name, None, "not begun: no effort was left", at[:0])

@@ -1,4 +1,4 @@
-"""What looking along a run, and solving it with shorter steps, gives reason to doubt, in sentences."""
+"""Doubts about a run from sampling along it and from a rerun with shorter steps, in sentences."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ from .solve_again import Again
 from .stepped_over import Along, SteppedOver
 
 CERTAIN = 3.0
-"""Times what the quadrature resolves by which the energy balance must be open."""
+"""Smallest imbalance of energy that is reported, relative to the resolution of the quadrature."""
 
 
 def step_diagnostics(comparison: Comparison, along: Along, shorter: Again | None) -> Iterator[str]:
-    """A sentence on what steps went over, or else on runs with shorter steps that differ, or on an open energy balance.
+    """Yield a sentence on missed events, else on different runs with shorter steps, else on an open energy balance.
 
     Parameters
     ----------
     comparison : Comparison
         Of the run with others.
     along : Along
-        What was found along the run.
+        Result of sampling along the run.
     shorter : Again or None
-        The run with a shorter longest step.
+        Rerun with a shorter longest step.
     """
     if along.stretches:
         yield _stepped_over(comparison, along.stretches[0], shorter)
@@ -49,7 +49,7 @@ def step_diagnostics(comparison: Comparison, along: Along, shorter: Again | None
 
 
 def by_luck(comparison: Comparison, shorter: Again | None) -> bool:
-    """Whether a run agrees with one of shorter steps, but not with others."""
+    """Return True if a run agrees with one of shorter steps, but not with others."""
     if not any(comparison.divergences()) or not _whole(shorter):
         return False
     return not _parts(comparison, comparison.first.channels, shorter)
@@ -60,7 +60,7 @@ def _whole(shorter: Again | None) -> bool:
 
 
 def _parts(comparison: Comparison, channels: Mapping[str, np.ndarray], shorter: Again | None) -> str:
-    """Where motions part from those of shorter steps; empty where they do not."""
+    """Return a clause on the divergence from the motion with shorter steps, or an empty string."""
     assert shorter is not None
     first = comparison.first
     other = {name: shorter.reported(name) for name in first}
@@ -78,7 +78,7 @@ def _stepped_over(comparison: Comparison, found: SteppedOver, shorter: Again | N
 
 
 def _off(comparison: Comparison, shorter: Again | None) -> str:
-    """The channel that is off the most against a run with shorter steps, as a clause; empty where that did not end."""
+    """Return a clause on the channel that differs most from a run with shorter steps; empty if that stopped early."""
     if shorter is None or shorter.solution is None or shorter.obstacle:
         return ""
     parts = {
@@ -94,7 +94,7 @@ def _off(comparison: Comparison, shorter: Again | None) -> str:
 
 
 def _different(comparison: Comparison, shorter: Again | None) -> str:
-    """Where a run with shorter steps parts from one of the same tolerance that the first agrees with; empty where it does not."""
+    """Return a clause on the divergence of shorter steps from a run of their tolerance that agrees with the first."""
     if not _whole(shorter) or not comparison.tighter or any(comparison.divergences()):
         return ""
     tight = {name: comparison.tighter[-1].reported(name) for name in comparison.first}

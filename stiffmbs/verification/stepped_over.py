@@ -1,10 +1,9 @@
-"""Looking along a run for what its steps went over: between two ends of a step an integrator knows nothing but a polynomial.
+"""Search along a run for events that its steps missed, as an integrator has only a polynomial within a step.
 
-The run is made once more and reported at many instants, within its steps too.  There the block system tells the
-accelerations that the forces give along that very way.  Their integral is the change of the velocities (the momentum
-balance) but where something acts that the step has not seen.  Stiff forces magnify every error of the tolerance, so an
-open balance alone proves nothing: such a stretch is solved again by itself, with steps far shorter than it.  Where it
-then ends elsewhere, but not with a tighter tolerance alone, something was stepped over for certain.
+The run is repeated with many output times, within its steps too, where the block system gives the accelerations. Their
+integral is the velocity change (momentum balance), unless a force acts that the step has missed. Stiff forces magnify
+errors within the tolerance, so an open balance is no proof. Such an interval is therefore solved again with much
+shorter steps. If it then ends differently, but not with a tighter tolerance alone, an event was missed.
 """
 
 from __future__ import annotations
@@ -33,44 +32,44 @@ from .settings_again import EXPLICIT
 from .solve_again import Deadline
 
 SAMPLES, COUNTED = 20_000, 20
-"""Instants at the most, and those of which the evaluations for one are counted."""
+"""Largest number of samples, and number of samples from which the cost of one is determined."""
 OF_EFFORT_LEFT = 0.25
-"""Part of the evaluations left that looking may take."""
+"""Fraction of the remaining effort for the sampling."""
 OPEN_BALANCE = 1e-3
-"""Part of the largest velocity, weighted with masses, by which the momentum balance of an interval must be open."""
+"""Imbalance of momentum in an interval that is checked, relative to the largest mass-weighted velocity."""
 ELSEWHERE = 1e-2
-"""The same for the velocities at the end of a stretch that is solved again."""
+"""Difference of velocities at the end of a repeated interval that proves a missed event, relative to the same."""
 SHARE = 1e-3
-"""Part of the largest change of a reaction that a law's own must have for the law to be what was stepped over."""
+"""Smallest change of a force law's reaction, relative to the largest change, for the law to be named."""
 MUCH = 0.05
-"""The same for a difference that no error of a tolerance makes in one step."""
+"""Difference of velocities that no tolerance error causes in one step, relative to the same."""
 SAME_ENERGY = 1e-2
-"""Part of the largest kinetic energy by which two runs may differ that saw the same; impacts magnify every difference."""
+"""Largest difference of kinetic energy of equivalent runs, relative to the largest; impacts magnify differences."""
 STRETCHES = 4
-"""Stretches that are solved again at the most."""
+"""Largest number of intervals that are solved again."""
 SHORTER = 50
-"""Steps in an interval whose balance is open, when its stretch is solved again; a quarter of an interval should do."""
+"""Number of steps in an unbalanced interval when it is solved again."""
 FEWEST_STEPS = 4
 STRETCH_TOLERANCE, TIGHTEST_STRETCH = 1e-2, 1e-13
-"""Of the tolerance with which a stretch is solved without short steps; the tightest that rounding allows."""
+"""Factor on the tolerance of a repeated interval without short steps, and the tightest tolerance."""
 
 
 @dataclass(frozen=True)
 class SteppedOver:
-    """A stretch of a run in which something was stepped over.
+    """Interval of a run with a missed event.
 
     Attributes
     ----------
     begin, end : float
-        Of the stretch, s.
+        Of the interval, s.
     at : float
-        Where the momentum balance is open the most, s.
+        Time of the largest imbalance of momentum, s.
     width : float
-        How long it is open there, s.
+        Length of the unbalanced interval, s.
     element : str
-        What acts there; empty where nothing has a name.
+        Name of the force or joint, or an empty string.
     missed : float
-        Change of the velocities that is missing, relative to the largest, weighted with masses.
+        Missing velocity change, relative to the largest velocity, mass-weighted.
     """
 
     begin: float
@@ -82,26 +81,26 @@ class SteppedOver:
 
     @property
     def max_step(self) -> float:
-        """Steps that see it, s."""
+        """Longest step that resolves it, s."""
         return float(f"{self.width / FEWEST_STEPS:.1g}")
 
 
 @dataclass(frozen=True)
 class Along:
-    """What is found along a run.
+    """Result of the search along a run.
 
     Attributes
     ----------
     balance : Balance or None
-        Of energy and work at all these instants; None where the run did not come to its end again, or took another way.
+        Energy balance at all samples; None if the repeated run stopped early or differs.
     missing : float
-        What may be missing in it before it is told, J.
+        Largest imbalance that is not reported, J.
     stretches : tuple of SteppedOver
-        Of the run.
+        Missed events of the run.
     elsewhere : tuple of SteppedOver
-        Of the same where it took another way when it was reported at more instants.
+        Missed events of the repeated run if it differs.
     obstacle : str
-        Why nothing was looked at; empty where it was.
+        Why no search was made, or an empty string.
     """
 
     balance: Balance | None
@@ -112,7 +111,7 @@ class Along:
 
 
 def looked_along(job: Job, first: Solution, allowed: float) -> Along:
-    """Look along a run at many instants, with limited effort.
+    """Search along a run at many times, with limited effort.
 
     Parameters
     ----------
@@ -142,14 +141,14 @@ def looked_along(job: Job, first: Solution, allowed: float) -> Along:
 
 
 def _same_way(first: Solution, t: np.ndarray, kinetic: np.ndarray) -> bool:
-    """Whether a run at more instants has the kinetic energies of the run itself, as it has unless output decides what steps see."""
+    """Return True if a run with more output times has the same kinetic energies."""
     at = np.minimum(np.searchsorted(t, first.time), len(t) - 1)
     own = first["energy.kinetic"]
     return bool(np.nanmax(np.abs(own - kinetic[at])) <= SAME_ENERGY * np.nanmax(own, initial=0.0))
 
 
 def _instants(job: Job, first: Solution, allowed: float) -> np.ndarray:
-    """Output instants, ends of steps, and as many evenly spread besides as there is effort for."""
+    """Return output times, ends of steps, and as many evenly spaced times as the effort allows."""
     reported_at, steps = first.time, first.step_times
     start, end = float(reported_at[0]), float(reported_at[-1])
     begun = job.evaluations()
@@ -163,7 +162,7 @@ def _instants(job: Job, first: Solution, allowed: float) -> np.ndarray:
 
 
 def _stepped_over(job: Job, rows: OutputRows, steps: np.ndarray, allowed: float) -> Iterator[SteppedOver]:
-    """The stretches that end elsewhere when they are solved again, the worst first."""
+    """Yield the intervals that end differently when they are solved again, the worst first."""
     system = job.dynamics.system
     poses = PosesOnTheWay(system, rows.t, rows.q)
     missing, speed = _momentum(system, rows)
@@ -179,7 +178,7 @@ def _stepped_over(job: Job, rows: OutputRows, steps: np.ndarray, allowed: float)
         looked[first:last] = True
         width, element = float(rows.t[worst + 1] - rows.t[worst]), _acting(system, rows, worst)
         if not element or poses.nearest(float(rows.t[first]), float(rows.t[last])) is not None:
-            continue  # where joints hold less than elsewhere, the way on is left to any difference
+            continue  # near a singular pose, any difference may decide the branch
         off = _parted(job, rows, first, last, width, left / 2, MUCH * speed) / speed
         if off > ELSEWHERE:
             ends = float(rows.t[first]), float(rows.t[last])
@@ -187,9 +186,9 @@ def _stepped_over(job: Job, rows: OutputRows, steps: np.ndarray, allowed: float)
 
 
 def _momentum(system: System, rows: OutputRows) -> tuple[np.ndarray, float]:
-    """By how much the velocities fail to change as the accelerations say, in each interval, and the largest velocity.
+    """Return the imbalance of velocities and accelerations in each interval, and the largest velocity.
 
-    Both as norms in the mass matrix; accelerations are integrated by the trapezoidal rule with end corrections.
+    Both are norms in the mass matrix. Accelerations are integrated by the trapezoidal rule with end corrections.
     """
     t, u, a = rows.t, rows.u, rows.acceleration
     roots = np.sqrt(system.mass)
@@ -203,7 +202,7 @@ def _momentum(system: System, rows: OutputRows) -> tuple[np.ndarray, float]:
 
 
 def _stretch(t: np.ndarray, steps: np.ndarray, k: int) -> tuple[int, int]:
-    """From the last end of a step before an interval to the first after it, as places among the instants."""
+    """Return the positions of the last step end before an interval and of the first after it."""
     before, after = steps[steps < t[k]], steps[steps > t[k + 1]]
     first = int(np.searchsorted(t, before[-1])) if len(before) else 0
     last = int(np.searchsorted(t, after[0])) if len(after) else len(t) - 1
@@ -211,9 +210,9 @@ def _stretch(t: np.ndarray, steps: np.ndarray, k: int) -> tuple[int, int]:
 
 
 def _parted(job: Job, rows: OutputRows, first: int, last: int, width: float, allowed: float, much: float) -> float:
-    """How far from the run's own velocities a stretch ends with short steps, as a norm in the mass matrix.
+    """Return the velocity difference at the end of an interval solved with short steps, as a norm in the mass matrix.
 
-    0 where it does not end, or ends a little elsewhere with a tighter tolerance alone: then that is what it lacks.
+    It is 0 if the solution stops early, or if a tighter tolerance alone causes much of a small difference.
     """
     roots = np.sqrt(job.dynamics.system.mass)
     short = _solved_again(job, rows, first, last, {"max_step": width / SHORTER}, allowed)
@@ -231,7 +230,7 @@ def _parted(job: Job, rows: OutputRows, first: int, last: int, width: float, all
 def _solved_again(
     job: Job, rows: OutputRows, first: int, last: int, how: dict[str, Any], allowed: float
 ) -> np.ndarray | None:
-    """The velocities at the end of a stretch that is solved in another way; None where it does not come to its end."""
+    """Return the velocities at the end of an interval solved with other settings, or None if it stops early."""
     begin, end = float(rows.t[first]), float(rows.t[last])
     how |= EXPLICIT if traits_of(job.settings).switches else {}
     try:
@@ -245,7 +244,7 @@ def _solved_again(
 
 
 def _acting(system: System, rows: OutputRows, k: int) -> str:
-    """The force, or the joint with a law, whose reaction changes most in an interval; empty where others change far more."""
+    """Return the force, or joint with a law, whose reaction changes most in an interval, or an empty string."""
     around = slice(max(k - 1, 0), k + 3)
     changes = {
         name: float(np.ptp(values))

@@ -1,21 +1,19 @@
-"""Trust in one run: the scene is solved again, tighter and in another way, and what differs becomes error bars and diagnostics.
+"""Verification of a run by reruns, whose differences yield error bars and diagnostics.
 
-1. With the same solver at a hundredth of the tolerance (half the step of fixed schemes), reported at the first run's own
-   steps besides its output instants, so that peaks between these are seen.
-2. With the other integrator, at a hundredth of the tolerance: bdf's errors and those of explicit steps have nothing in common.
-3. With the same solver at a tolerance between (a quarter of the step), where the other integrator says nothing, or the
-   first two look suspicious: then the order of convergence tells.
+1. The same solver at a hundredth of the tolerance (half the step of fixed-step schemes), with output at the first run's
+   steps too.
+2. The other integrator at a hundredth of the tolerance, as the errors of bdf and explicit steps are independent.
+3. The same solver at an intermediate tolerance (a quarter of the step), if the other integrator gives no result or the
+   first two differ. It shows the order of convergence.
 
-None of these need see what begins and ends within one step.  So the run is looked along (`stiffmbs.verification.stepped_over`),
-and where the scene has laws or events in the state it is solved once more with another longest step:
+All of these may miss events within one step. The run is therefore searched for them
+(`stiffmbs.verification.stepped_over`). If the scene has force laws or events in the state, it is solved again with
+another longest step:
 
-4. As 1, with steps so short that they are several times as many, or that they see what was found along the run.
+4. As 1, with several times as many steps, or with steps that resolve the events found by the search.
 
-A tenth of the tolerance is not enough for the first: bdf's error then shrinks by 2 to 10 times, and one peak in twenty has
-nearly the same error in both runs.
-
-The reruns take a few times the first run's effort, and looking along it as much again; what was not done is said.  Effort
-is counted in evaluations of the equations, so that what is done does not depend on what else the machine does.
+The first rerun uses a hundredth, as at a tenth of the tolerance bdf's error may decrease only slightly. The effort is
+counted in evaluations of the equations, independent of the load of the machine. Reruns that were not made are reported.
 """
 
 from __future__ import annotations
@@ -43,12 +41,11 @@ from .step_diagnostics import by_luck, step_diagnostics
 from .stepped_over import Along, SteppedOver, looked_along
 
 MOST_EFFORT, EFFORT_ALLOWED = 10.0, 2.5e7
-"""Evaluations for all that is solved again, in those of the first run; evaluations, times the numbers of a state, that nobody minds
-waiting for all the same (about a second)."""
+"""Evaluations of all reruns, in those of the first run; and their minimum, times the number of unknowns."""
 OTHER_OF_FIXED = 1e-10
-"""Relative tolerance of the other solver where the first has fixed steps."""
+"""Relative tolerance of the other solver if the first has fixed steps."""
 CHANNEL_ROUNDING = 1e-13
-"""Part of a channel's scale that rounding takes."""
+"""Rounding of a channel, relative to its scale."""
 
 
 @takes_settings
@@ -59,13 +56,13 @@ def verify(
     start_from: StartFrom | None = None,
     **changes: Unpack[Settings],
 ) -> Solution:
-    """Solve a model, and solve it again to see what its results are worth; parameters and errors as for `run`.
+    """Solve a model, and verify the results by reruns; parameters and errors as for `run`.
 
     Returns
     -------
     Solution
-        The same that `run` returns, with `errors` (the bars of each channel), `verification` (what was compared) and
-        further `notes` where the results are in doubt.
+        As returned by `run`, with `errors` (the bars of each channel), `verification` (the reruns) and further `notes`
+        on doubtful results.
     """
     job = prepare(model, settings, start_from, **changes)
     first = solved(job, watch)
@@ -81,27 +78,27 @@ def verify(
 
 @np.errstate(all="ignore")  # as for `solved`
 def verified(job: Job, first: Solution, allowed: float) -> Solution:
-    """What `verify` returns, for a job that was solved already.
+    """Return the result of `verify` for a job that was solved already.
 
     Parameters
     ----------
     job : Job
     first : Solution
-        Of the job, at two instants at least.
+        Of the job, with at least two output times.
     allowed : float
-        Evaluations of the job's equations for all that is solved again.
+        Evaluations of the job's equations for all reruns.
     """
     return _Verification(job, first, allowed).result()
 
 
 def _patience(job: Job) -> float:
-    """Evaluations of the equations that nobody minds."""
+    """Return the minimum of allowed evaluations."""
     system = job.dynamics.system
     return EFFORT_ALLOWED / (system.n_q + system.n_u + system.n_c)
 
 
 class _Verification:
-    """The runs that one run is compared with."""
+    """Reruns with which one run is compared."""
 
     def __init__(self, job: Job, first: Solution, allowed: float) -> None:
         self._job, self._first = job, first
@@ -118,7 +115,7 @@ class _Verification:
         self._skipped: list[str] = []
 
     def result(self) -> Solution:
-        """The first run with what the others say of it."""
+        """Return the first run with error bars, notes and a list of reruns."""
         try:
             self._solve()
         except KeyboardInterrupt:
@@ -126,7 +123,7 @@ class _Verification:
         comparison = self._comparison()
         of_steps = tuple(step_diagnostics(comparison, self._along, self._shorter))
         steps_decide = self._along.stretches or by_luck(comparison, self._shorter)
-        messages = () if steps_decide else tuple(diagnostics(comparison))  # these know no remedy but the tolerance
+        messages = () if steps_decide else tuple(diagnostics(comparison))  # their only remedy is the tolerance
         return replace(
             self._first, errors=comparison.bars, verification=tuple(self._messages()),
             notes=(*self._first.notes, *messages, *of_steps), balance=self._along.balance or self._first.balance,
@@ -142,7 +139,7 @@ class _Verification:
         self._look_along()
 
     def _look_along(self) -> None:
-        """What the first run's steps went over, and a run with shorter ones where there may be such."""
+        """Search the first run for missed events, and rerun with shorter steps if there may be some."""
         if self._traits.fixed_steps:
             return
         spare = self._allowed / 2
@@ -162,7 +159,7 @@ class _Verification:
             )  # fmt: skip
 
     def _look_along_others(self, allowed: float) -> None:
-        """Leave out runs that part from the first where they have gone over something themselves."""
+        """Search runs that diverge from the first, to exclude those that missed events."""
         for level, run in self._tighter.items():
             self._tighter[level] = self._looked_along(run, self._tighter_settings(level)[1], allowed)
         if self._other is not None and _judges(self._other):
@@ -171,7 +168,7 @@ class _Verification:
             self._dense = None
 
     def _looked_along(self, run: Again, changes: dict[str, Any], allowed: float) -> Again:
-        """A run, with what its steps go over."""
+        """Return a run with a note on an event that its steps missed."""
         if run.solution is None or run.obstacle:
             return run
         reported = {name: run.reported(name) for name in self._first}
@@ -189,7 +186,7 @@ class _Verification:
         )
 
     def _sample_densely(self) -> None:
-        """The first tighter run, also at instants between those of the output; the next one where it does not end."""
+        """Make the first tighter run, with times between those of the output; the next one if it stops early."""
         start, end = float(self._first.time[0]), float(self._first.time[-1])
         times = more_instants(self._first, self._job.dynamics.input_features(start, end))
         at = np.searchsorted(times, self._first.time)
@@ -200,7 +197,7 @@ class _Verification:
                 return
 
     def _tighten(self) -> None:
-        """The next of the tighter runs."""
+        """Make the next tighter run."""
         reported = self._first.time
         for level in self._levels():
             if level not in self._tighter:
@@ -215,7 +212,7 @@ class _Verification:
         return run
 
     def _levels(self) -> tuple[int, ...]:
-        """How much tighter the runs are, in tenths of the tolerance or halves of the step, in the order of their use."""
+        """Return the levels of tighter runs, in powers of ten of the tolerance or two of the step, in order of use."""
         settings = self._job.settings
         if self._exact:
             return (1,)
@@ -265,7 +262,7 @@ class _Verification:
         )
 
     def _messages(self) -> list[str]:
-        """What was compared with, and what could not be."""
+        """Return the list of reruns, and of those that failed."""
         runs = [run for run in (*self._tighter.values(), self._other, self._shorter) if run is not None]
         done = [
             run.name for run in runs if not run.obstacle and not run.blind and (run is not self._other or _judges(run))
@@ -288,5 +285,5 @@ class _Verification:
 
 
 def _judges(other: Again | None) -> bool:
-    """Whether a run of the other solver says something: explicit steps at their limit of stability are noisy."""
+    """Return True if a run of the other solver is usable: explicit steps at their stability limit are noisy."""
     return other is not None and other.solution is not None and not other.remark and not other.blind

@@ -1,1 +1,1 @@
-"""Command files of MSC Adams/Solver: simulations, and the changes before each."""
+"""Adams/Solver command files: simulations, and the dataset changes before each."""

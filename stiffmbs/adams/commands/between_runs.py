@@ -1,4 +1,4 @@
-"""What may be changed between two simulations of a command file: what the state that is carried over does not hang on."""
+"""Dataset changes that are allowed between two simulations of a command file."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ CHANGED = {
     "JOINT": ("I", "J", "PITCH", "PD"),
     "MOTION": ("FUNCTION", "DISPLACEMENT", "VELOCITY"),
 }
-"""Arguments that may be changed of statements which have others too; of statements that are not here, all."""
+"""Arguments that may be changed, by statement; of statements not listed here, all arguments may be changed."""
 
 
 def refuse_between_runs(command: Statement, name: str) -> None:
-    """Refuse a change that means another start, or another frame of what is known of it.
+    """Refuse a change that would need other initial conditions or redefine the state carried over.
 
     Raises
     ------
@@ -39,6 +39,6 @@ def refuse_between_runs(command: Statement, name: str) -> None:
 
 
 def _word(piece: Subsystem) -> str:
-    """The argument that a piece of a command names; nothing for a further value of the one before it."""
+    """Return the argument named by a piece of a command; '' for a further value of the argument before it."""
     head = piece.text.partition("=")[0].strip().upper()
     return head if "=" in piece.text or head.isidentifier() else ""

@@ -1,4 +1,4 @@
-"""Commands of several files: FILE/COMMAND executes the commands of another file where it stands."""
+"""Nested command files: FILE/COMMAND executes the commands of another file in its place."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from ..statements.text import Statement, Subsystem, commands
 ARGUMENTS = ("MODEL", "COMMAND", "OUTPUT_PREFIX", "GRAPHICS", "REQUEST", "RESULTS", "OUTPUT", "FEMDATA")
 """Arguments of FILE."""
 Read = Callable[[str], str]
-"""Returns the text of a command file by its name."""
+"""Function that returns the text of a command file by its name."""
 
 
 def all_commands(text: str, read: Read | None = None, within: tuple[str, ...] = ()) -> Iterator[Statement]:
-    """Yield the commands of a text and of the files that it executes, these with the line of their FILE/COMMAND.
+    """Yield the commands of a text and of the files that it executes; the latter have the line of their FILE/COMMAND.
 
     Parameters
     ----------
@@ -31,7 +31,7 @@ def all_commands(text: str, read: Read | None = None, within: tuple[str, ...] = 
     Raises
     ------
     DatasetFault
-        When a file cannot be read, or executes itself.
+        If a file cannot be read, or executes itself.
     """
     for command in commands(text):
         name = command_file_of(command)
@@ -50,7 +50,7 @@ def all_commands(text: str, read: Read | None = None, within: tuple[str, ...] = 
 
 
 def command_file_of(command: Statement) -> str | None:
-    """Return the name of the file whose commands FILE/COMMAND executes; None for any other command."""
+    """Return the name of the file executed by FILE/COMMAND; None for any other command."""
     if not is_file(command.word):
         return None
     found = Arguments(with_first_argument(command), "FILE", ARGUMENTS)
@@ -63,7 +63,7 @@ def is_file(word: str) -> bool:
 
 
 def with_first_argument(command: Statement) -> Statement:
-    """Return a command whose first argument, written after the slash, is one of its pieces."""
+    """Return a command with its first argument, written after the slash, as one of its pieces."""
     head = (Subsystem(command.ident, command.line),) if command.ident else ()
     return replace(command, ident="", pieces=(*head, *command.pieces))
 

@@ -1,6 +1,6 @@
-"""What a command file (.acf) asks for: simulations, and what it changes before each.  MSC Adams/Solver, commands.
+"""Reader of Adams/Solver command files (.acf): simulations, and the dataset changes before each.
 
-A command that would change results and is not followed is refused, never left out.
+A command that would change results and is not supported is refused, never ignored.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ HARMLESS = (
 )  # fmt: skip
 """Commands that have no effect on the results."""
 SETTINGS = ("EQUILIBRIUM", "KINEMATICS", "IC", "LSOLVER", "ENVIRONMENT")
-"""Commands that say how Adams computes what it computes, which is left to this package."""
+"""Analysis settings of Adams, which do not apply to this package."""
 LINEAR = (
     "EIGENSOL",
     "STATEMAT",
@@ -50,20 +50,20 @@ LINEAR = (
     "TABLE_PRECISION",
 )
 NAMED_FIRST = 2
-"""How many first lines may answer the questions of Adams/Solver for the names of files."""
+"""Number of first lines that may answer the prompts of Adams/Solver for file names."""
 
 
 @dataclass(frozen=True)
 class Segment:
-    """A simulation with what the commands before it have changed of the dataset.
+    """Simulation, with the dataset changes made by the commands before it.
 
     Attributes
     ----------
     simulation : Simulation
     changes : Changes
-        All of them so far.
+        All changes so far.
     settings : mapping of str to float
-        Of the run: ``rtol``, and ``max_step`` in the dataset's units.
+        Run settings: ``rtol``, and ``max_step`` in the dataset's units.
     """
 
     simulation: Simulation
@@ -73,16 +73,16 @@ class Segment:
 
 @dataclass(frozen=True)
 class Commands:
-    """What a command file asks for.
+    """Content of a command file.
 
     Attributes
     ----------
     segments : tuple of Segment
-        One for each simulation, but for those of initial conditions, from which every run starts.
+        One for each simulation except those of initial conditions, from which every run starts.
     changes : Changes
-        Of the dataset, all of them.
+        All changes of the dataset.
     notes : tuple of str
-        What of it is left out, a sentence each.
+        One sentence for each ignored command.
     """
 
     segments: tuple[Segment, ...] = ()
@@ -103,7 +103,7 @@ def read_commands(text: str, known: Collection[Key] = (), read: Read | None = No
     Raises
     ------
     DatasetFault
-        When it cannot be read, or has a command that changes results and is not supported.
+        If the file cannot be read, or contains an unsupported command that changes results.
     """
     segments: list[Segment] = []
     changes, settings = Changes(), dict[str, float]()
@@ -147,7 +147,7 @@ def _linear_note(command: Statement, later: bool) -> str:
 
 
 def full_name(word: str) -> str | None:
-    """The full name of a command, which an abbreviation of three letters or more stands for."""
+    """Return the full name of a command from an abbreviation of three letters or more; None if unknown."""
     names = (*FOLLOWED, *ENDING, *HARMLESS, *SETTINGS)
     if word in names:
         return word
@@ -156,7 +156,7 @@ def full_name(word: str) -> str | None:
 
 
 def _is_name_of_file(command: Statement, name: str | None) -> bool:
-    """Whether a line names the model or the results, before the first command."""
+    """Return True if a line before the first command names the model or the results."""
     return (
         name is None
         and command.line <= NAMED_FIRST
@@ -166,7 +166,7 @@ def _is_name_of_file(command: Statement, name: str | None) -> bool:
 
 
 def _followed(changes: Changes, command: Statement, name: str | None, known: Collection[Key]) -> Changes:
-    """The changes with those of a command."""
+    """Return the changes with those of a command added."""
     if name in ("ACTIVATE", "DEACTIVATE"):
         return changes.switched(command, name == "ACTIVATE", known)
     if alters(name):

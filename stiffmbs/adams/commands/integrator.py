@@ -1,4 +1,4 @@
-"""What INTEGRATOR says that has an effect on results here.  MSC Adams/Solver, INTEGRATOR statement and command."""
+"""Settings of the INTEGRATOR statement and command that affect a run.  MSC Adams/Solver, INTEGRATOR."""
 
 from __future__ import annotations
 
@@ -22,18 +22,18 @@ METHODS = (
 NUMBERS = ("ERROR", "HMAX", "HMIN", "HINIT", "KMAX", "MAXIT", "PATTERN", "ADAPTIVITY", "BETA", "GAMMA", "ALPHA")
 OTHERS = ("CORRECTOR", "INTERPOLATE", "FIXIT", "HRATIO", "SCALE", "THREADS")
 USUAL_ERROR = 1e-6
-"""Relative tolerance of a run that nothing says otherwise of; Adams' own 1e-3 is no reason for a coarser one."""
+"""Default relative tolerance of a run; a looser ERROR, such as Adams' default 1e-3, does not change it."""
 
 
 def integrator_settings(statement: Statement) -> dict[str, float]:
-    """Settings of a run: ``rtol`` where ERROR is tighter than the usual one, ``max_step`` by HMAX in the dataset's units.
+    """Return run settings: ``rtol`` if ERROR is below the default, ``max_step`` from HMAX in the dataset's units.
 
-    The method, the formulation and the rest are left to this package.
+    The integration method and the formulation are ignored.
 
     Raises
     ------
     DatasetFault
-        When it cannot be read.
+        If the statement cannot be read.
     """
     found = Arguments(statement, "INTEGRATOR", (*METHODS, *NUMBERS, *OTHERS))
     error, longest = found.number("ERROR"), found.number("HMAX")

@@ -1,4 +1,4 @@
-"""Simulations that a command file asks for, and the run that they are.  MSC Adams/Solver, SIMULATE command."""
+"""SIMULATE commands of Adams/Solver and the settings of the equivalent runs."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ STATICS = "STATICS"
 OVER_TIME = ("DYNAMICS", "KINEMATICS", "TRANSIENT")
 KINDS = ("DYNAMICS", "KINEMATICS", "TRANSIENT", STATICS, "INITIAL_CONDITIONS")
 SAME_INTERVAL = 1e-9
-"""Part of an interval of output by which two may differ and be one."""
+"""Relative tolerance within which two output intervals are equal."""
 
 
 @dataclass(frozen=True)
 class Simulation:
-    """One SIMULATE command; times in the dataset's units.
+    """SIMULATE command; times are in the dataset's units.
 
     Attributes
     ----------
@@ -32,9 +32,9 @@ class Simulation:
         One of `KINDS`.
     line : int
     end, duration : float or None
-        When it ends, or how long it is.
+        End time, or length.
     steps, interval : float or None
-        How many intervals of output it has, or how long each of them is.
+        Number of output intervals, or length of each.
     """
 
     kind: str
@@ -46,16 +46,16 @@ class Simulation:
 
     @property
     def takes_time(self) -> bool:
-        """Whether it has an end; STATICS with one is a sequence of equilibria."""
+        """True if the simulation has an end or a duration; STATICS with one is a sequence of equilibria."""
         return self.end is not None or self.duration is not None
 
     def length(self, start: float) -> float:
-        """How long it is, in the dataset's units, where it starts at some time.
+        """Return the length of the simulation from a given start, in the dataset's units.
 
         Raises
         ------
         DatasetFault
-            When it ends before.
+            If it ends before it starts.
         """
         length = self.duration if self.end is None else self.end - start
         if length is None or not length > 0:
@@ -63,7 +63,7 @@ class Simulation:
         return length
 
     def settings(self, start: float, units: Units) -> dict[str, Any]:
-        """Duration, output and solver of its run."""
+        """Return duration, output and solver of the run."""
         if not self.takes_time:
             return {}
         length = self.length(start)
@@ -71,7 +71,7 @@ class Simulation:
         return {"duration": length * units.time, **self._output(length, self.between_outputs(length), units), **solver}
 
     def settings_up_to_its_end(self, units: Units) -> dict[str, Any]:
-        """Output and solver of its run, wherever that starts."""
+        """Return output and solver of the run, independent of its start."""
         steps = {"points": round(self.steps) + 1} if self.steps else {}
         output = {"output": self.interval * units.time} if self.interval else steps
         return output | ({"solver": "kinematic"} if self.kind == "KINEMATICS" else {})
@@ -84,21 +84,21 @@ class Simulation:
         return {"points": round(length / interval) + 1}
 
     def fault(self, reason: str) -> DatasetFault:
-        """What to raise where it cannot be followed."""
+        """Return the error for a simulation that is not supported."""
         return DatasetFault(self.line, "SIMULATE", reason)
 
     def between_outputs(self, length: float) -> float | None:
-        """The time from one output to the next; None where nothing is said."""
+        """Return the output interval; None if none is given."""
         return self.interval or (length / self.steps if self.steps else None)
 
 
 def read_simulation(command: Statement) -> Simulation:
-    """What a SIMULATE command says.
+    """Read a SIMULATE command.
 
     Raises
     ------
     DatasetFault
-        When it cannot be read, or has no end.
+        If it cannot be read, or has no end.
     """
     kind = (Subsystem(command.ident, command.line),) if command.ident else ()
     found = Arguments(
@@ -122,12 +122,12 @@ def read_simulation(command: Statement) -> Simulation:
 
 
 def one_run(simulations: Sequence[Simulation], units: Units) -> dict[str, Any] | None:
-    """The settings of the one run over time that simulations make together; None where they make more than one.
+    """Return the settings of one run equivalent to consecutive simulations; None if they need several runs.
 
     Raises
     ------
     DatasetFault
-        When one of them ends before it begins.
+        If a simulation ends before it starts.
     """
     first, time, between = simulations[0], 0.0, []
     for simulation in simulations:
@@ -151,12 +151,12 @@ def _same(one: float | None, other: float | None) -> bool:
 
 
 def refuse_velocities(line: int, dataset: Dataset) -> None:
-    """Refuse a static simulation of parts that are told to move, which a run from equilibrium does not know.
+    """Refuse a static simulation of a dataset with initial velocities: a run from equilibrium starts at rest.
 
     Raises
     ------
     DatasetFault
-        With the first part or joint that states a velocity other than zero.
+        With the first part or joint that has an initial velocity other than zero.
     """
     moving = [p.label for p in dataset.parts if any((*(p.velocity or ()), *(p.omega or ())))]
     moving += [joint.label for joint in dataset.joints.values() if any(velocity for *_, velocity in joint.start)]

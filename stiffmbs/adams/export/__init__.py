@@ -1,1 +1,1 @@
-"""Scenes as datasets of Adams/Solver."""
+"""Export of scenes as Adams/Solver datasets."""

@@ -1,4 +1,4 @@
-"""Axes z of two markers that a joint keeps parallel."""
+"""Test for z axes of two markers that joints keep parallel."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from ...describe.spatial.model import SpatialData
 from ...describe.spatial.orientation import matrix
 
 ABOUT_Z = (Cylindrical, Parallel, Planar, Revolute)
-"""Joints that allow a rotation about their axis z alone."""
+"""Joints that allow rotation about their z axis only."""
 NO_ROTATION = (Fixed, Orientation, Prismatic)
 SAME = 1e-9
-"""Sine of the angle up to which two axes of a body are parallel."""
+"""Sine of the largest angle between two axes of a body that count as parallel."""
 
 
 def kept_parallel(scene: SpatialData, i: MarkerReference, j: MarkerReference) -> bool:
-    """Return True if joints keep the axes z of two markers parallel, also by way of other bodies."""
+    """Return True if joints keep the z axes of two markers parallel, directly or through other bodies."""
     known = {i.body: _axes(scene, i)[:, 2]}
     left = [i.body]
     while left:
@@ -40,5 +40,5 @@ def kept_parallel(scene: SpatialData, i: MarkerReference, j: MarkerReference) ->
 
 
 def _axes(scene: SpatialData, marker: MarkerReference) -> np.ndarray:
-    """Return the axes of a marker in those of its body, shape (3, 3), a column each."""
+    """Return the axes of a marker in the axes of its body as columns, shape (3, 3)."""
     return np.asarray(matrix(scene.place(marker).orientation))

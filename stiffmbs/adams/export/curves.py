@@ -1,7 +1,7 @@
-"""Points on curves and curves that touch as PTCV and CVCV statements.
+"""PTCV and CVCV statements for points on curves and curve-to-curve joints.
 
-Two curves touch by a slight body with two joints `tangent_to_curve` and one `parallel` (`stiffmbs.adams.scene.curves`): that body is
-no part of the dataset.
+Curve-to-curve contact is modelled with an auxiliary light body, two joints `tangent_to_curve` and one `parallel`
+(`stiffmbs.adams.scene.curves`). The auxiliary body is not exported.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from .statements import numbers, statement
 
 
 def touching(model: SpatialData) -> dict[str, tuple[str, str, str]]:
-    """The joints of each body where two curves touch: on the second curve, on the first, and the one that turns the body."""
+    """Return the joints of each auxiliary body of a curve pair: on the second curve, on the first, and `parallel`."""
     found: dict[str, list[str]] = {}
     for name, joint in model.joints.items():
         for _, marker in joint.markers():
@@ -42,7 +42,7 @@ def touching(model: SpatialData) -> dict[str, tuple[str, str, str]]:
 
 
 class Curves:
-    """Writes the curves of one scene.
+    """Exporter of the curves of one scene.
 
     Parameters
     ----------
@@ -57,19 +57,19 @@ class Curves:
         self._parts_of_a_pair = {name for _, names in self._touching.values() for name in names[1:]}
 
     def point(self, joint: Curve[Any]) -> Iterator[str]:
-        """A point that stays on a curve."""
+        """Yield the statements of a point that stays on a curve."""
         number = yield from self._curve(joint)
         i, axes = self._numbering.marker(joint.i), self._numbering.marker(joint.j)
         floating = f"JFLOAT = {self._numbering.floating(joint.j.body)}"
         yield statement("PTCV", self._next(), f"CURVE = {number}", f"I = {i}", floating, f"RM = {axes}")
 
     def pair(self, name: str) -> Iterator[str]:
-        """Two curves that touch, at the first joint of their body; nothing at its others.
+        """Yield the statements of two curves in contact at the first joint of their body; nothing at its other joints.
 
         Raises
         ------
         Refusal
-            Where a joint is none of such a pair.
+            If the joint does not belong to such a pair.
         """
         if name in self._parts_of_a_pair:
             return
@@ -89,7 +89,7 @@ class Curves:
         yield statement("CVCV", self._next(), *sides)
 
     def is_level(self, name: str) -> bool:
-        """Whether a joint is the one that turns the body of a pair."""
+        """Return True if a joint belongs to a curve pair but is not its first."""
         return name in self._parts_of_a_pair
 
     def _next(self) -> int:
@@ -97,7 +97,7 @@ class Curves:
         return self._constraints
 
     def _curve(self, joint: Curve[Any]) -> Generator[str, None, int]:
-        """The statements of a curve; gives its number."""
+        """Yield the statements of a curve; return its number."""
         points = _points(joint)
         self._curves += 1
         values = f"VALUES = {numbers(points.ravel())}"
@@ -107,7 +107,7 @@ class Curves:
         return self._curves
 
     def _seen(self, point: Any, marker: MarkerReference) -> np.ndarray:
-        """A point of the ground in the axes of a marker, at the start."""
+        """Return a point of the ground in the axes of a marker at the start."""
         place = self._model.place(marker)
         origin, axes = np.zeros(3), np.eye(3)
         if marker.body != GROUND:
@@ -119,7 +119,7 @@ class Curves:
 
 
 def _points(joint: Curve[Any]) -> np.ndarray:
-    """The points of a curve in the axes of its marker, m."""
+    """Return the points of a curve in the axes of its marker, m."""
     closed = joint.radius is not None
     value, off = joint.radius if closed else joint.y, getattr(joint, "height" if closed else "z", None)
     ends = "periodic" if closed else "not-a-knot"
@@ -135,7 +135,7 @@ def _points(joint: Curve[Any]) -> np.ndarray:
 
 
 def _columns(law: Any, ends: str) -> np.ndarray:
-    """Arguments and values of a table that is a spline with such ends."""
+    """Return arguments and values of a spline table with the given end conditions."""
     if not isinstance(law, Table) or law.ends != ends:
         raise Refusal(f"found a curve by another law, expected a table with the ends {ends}")
     return np.array(law.table).T

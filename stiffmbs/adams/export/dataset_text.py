@@ -1,4 +1,4 @@
-"""A scene in space as the text of a dataset of Adams/Solver."""
+"""Export of a spatial scene as an Adams/Solver dataset."""
 
 from __future__ import annotations
 
@@ -21,18 +21,18 @@ UNITS = ("FORCE = NEWTON", "MASS = KILOGRAM", "LENGTH = METER", "TIME = SECOND")
 
 
 def dataset_text(scene: SpatialData, source: str = "scene") -> str:
-    """The dataset of a scene in space: parts, markers, joints, forces, states and requests, in SI units.
+    """Return a spatial scene as an Adams/Solver dataset in SI units.
 
     Parameters
     ----------
     scene : SpatialData
     source : str
-        What messages call it.
+        Name of the scene in messages.
 
     Raises
     ------
     InputError
-        Where the scene holds what Adams/Solver has no statement for; names all such elements.
+        If elements of the scene have no equivalent in Adams/Solver; names all of them.
     """
     numbering, names = Numbering(scene, touching(scene)), state_names(scene)
     functions = Functions(numbering, names, reactions(scene))
@@ -59,7 +59,7 @@ def dataset_text(scene: SpatialData, source: str = "scene") -> str:
 
 
 def command_text(scene: Scene) -> str:
-    """The command file that runs the dataset as the scene's section `run` says."""
+    """Return the command file that runs the dataset with the scene's section `run`."""
     run = scene.run
     end = run.start + run.duration
     spacing = run.output or run.duration / 1000
@@ -76,7 +76,7 @@ def command_text(scene: Scene) -> str:
 def _each(
     section: str, entries: Iterable[tuple[str, Any]], write: Callable[[str, Any], Iterable[str]], refused: list[str]
 ) -> Iterator[str]:
-    """The statements of each entry under its name; what Adams does not have is added to `refused`."""
+    """Yield the statements of each entry under its name; add unsupported entries to `refused`."""
     for name, entry in entries:
         try:
             text = list(write(name, entry))

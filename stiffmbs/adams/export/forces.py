@@ -1,4 +1,4 @@
-"""Forces of a scene as statements."""
+"""Export of forces as Adams/Solver statements."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from .statements import number, numbers, statement
 
 
 class Forces:
-    """Writes the forces of one scene.
+    """Exporter of the forces of one scene.
 
     Parameters
     ----------
@@ -39,12 +39,12 @@ class Forces:
         self._used = 0
 
     def statements(self, force: Force) -> Iterator[str]:
-        """What a force becomes.
+        """Yield the statements of a force.
 
         Raises
         ------
         Refusal
-            Where Adams has no such force.
+            If Adams has no such force.
         """
         yield from self._made(force)
 
@@ -61,7 +61,7 @@ class Forces:
 
     @_made.register
     def _applied(self, force: AppliedForce | AppliedTorque) -> Iterator[str]:
-        """Three components along the axes of a marker, and the opposite on the other body at the same point."""
+        """Yield a VFORCE or VTORQUE along the axes of a marker; its floating marker takes the reaction."""
         of_force = isinstance(force, AppliedForce)
         components = force.force if isinstance(force, AppliedForce) else force.torque
         axes = force.i if force.axes == "body" else force.frame or MarkerReference(body=GROUND)
@@ -103,7 +103,7 @@ class Forces:
         yield statement("SPRINGDAMPER", self._next(), "ROTATIONAL", *self._ends(spring), *_given(given))
 
     def _by_laws(self, spring: SpringDamper | TorsionSpring, free: float, sort: str) -> str:
-        """A force, or a torque about j's axis, of the deflection s and its rate v: -(k s + law(s) + c v + law(v) + preload)."""
+        """Return an SFORCE of the deflection s and its rate v: -(k s + law(s) + c v + law(v) + preload)."""
         i, j = self._numbering.marker(spring.i), self._numbering.marker(spring.j)
         s, v = (f"DM({i},{j})", f"VR({i},{j})") if sort == "TRANSLATIONAL" else (f"AZ({i},{j})", f"WZ({i},{j},{j})")
         s = f"{s}-{number(free)}" if free else s
@@ -145,7 +145,7 @@ class Forces:
 
 
 def _filled(values: Any) -> np.ndarray:
-    """An array of numbers, in which nothing given is zero."""
+    """Return an array with missing entries set to zero."""
     found: np.ndarray = np.array(values, dtype=float)
     return np.nan_to_num(found, nan=0.0)
 

@@ -1,4 +1,4 @@
-"""Formulas of a scene as function expressions of Adams/Solver."""
+"""Export of formulas as Adams/Solver function expressions."""
 
 from __future__ import annotations
 
@@ -35,45 +35,45 @@ SAME = (
     "step5",
     "log",
 )
-"""Functions that are called the same, in capitals."""
+"""Functions with the same name in Adams, in capitals."""
 OPERATORS: dict[type[ast.AST], tuple[str, int]] = {
     ast.Add: ("+", 1), ast.Sub: ("-", 1), ast.Mult: ("*", 2), ast.Div: ("/", 2), ast.Pow: ("**", 4),
 }  # fmt: skip
-"""How an operator is written, and how tightly it binds."""
+"""Symbol and precedence of each operator."""
 MEASURED = ("dx", "dy", "dz", "dm", "ax", "ay", "az", "vx", "vy", "vz", "vm", "vr", "wx", "wy", "wz", "wm")
 REQUESTED = ("accx", "accy", "accz", "accm", "wdtx", "wdty", "wdtz", "wdtm", "psi", "theta", "phi")
-"""Measures of requests alone."""
+"""Measures that only requests use."""
 COORDINATES = {"x": "DX", "y": "DY", "z": "DZ", "vx": "VX", "vy": "VY", "vz": "VZ", "wx": "WX", "wy": "WY", "wz": "WZ"}
 
 
 class Functions:
-    """Writes the formulas of one scene.
+    """Exporter of the formulas of one scene.
 
     Parameters
     ----------
     numbering : Numbering
     names : mapping of str to str
-        What states, and outputs of states, are called: ``DIF(3)``, ``VARVAL(1)``.
+        Adams functions of states and their outputs by name: ``DIF(3)``, ``VARVAL(1)``.
     reactions : mapping of str to (str, int)
-        Of joints by name: the function of their reactions, and the number that it takes.
+        Reaction function and number of each joint by name.
     """
 
     def __init__(self, numbering: Numbering, names: dict[str, str], reactions: Mapping[str, tuple[str, int]]) -> None:
         self._numbering, self._names, self._reactions = numbering, names, reactions
 
     def text(self, law: Formula | Table | float, variable: str = "TIME") -> str:
-        """The expression of a formula, a table of a variable, or a number.
+        """Return the expression of a formula, a table of a variable, or a number.
 
         Parameters
         ----------
         law : Formula, Table or float
         variable : str
-            The expression of the law's own variable, such as the deflection of a spring; of time for a table without one.
+            Expression of the law's own variable, such as the deflection of a spring.
 
         Raises
         ------
         Refusal
-            For what Adams' functions do not have.
+            If Adams has no equivalent function.
         """
         if isinstance(law, Table):
             return self._curve("of an element", law, variable)
@@ -82,7 +82,7 @@ class Functions:
         return self._with(dict.fromkeys(law.variables, f"({variable})"))._written(law.tree, law)
 
     def output(self, output: Output) -> str:
-        """The expression of a request, where it asks for nothing but measures, coordinates and states.
+        """Return the expression of a request for measures, coordinates and states.
 
         Raises
         ------
@@ -179,7 +179,7 @@ class Functions:
 
 def _nested(name: str) -> Callable[[list[str]], str]:
     def written(arguments: list[str]) -> str:
-        """Of two arguments each."""
+        """Nest a function of two arguments."""
         first, *rest = arguments
         return f"{name}({first},{written(rest)})" if rest else first
 
@@ -193,4 +193,4 @@ WRITTEN: dict[str, Callable[[list[str]], str]] = {
     "branch": lambda x: f"IF({x[0]}:{','.join(x[1:])})",
     "asinh": lambda x: f"LOG(({x[0]})+SQRT(({x[0]})**2+1))",
 }
-"""Functions that Adams writes otherwise."""
+"""Functions with another name or form in Adams."""

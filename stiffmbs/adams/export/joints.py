@@ -1,4 +1,4 @@
-"""Joints of a scene as statements."""
+"""Export of joints as Adams/Solver statements."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ from .statements import number, statement
 
 PRIMITIVES = ("INLINE", "INPLANE", "ORIENTATION", "PARALLEL_AXES", "PERPENDICULAR")
 TYPES = {kind: name for name, kind in KINDS.items() if name != "ATPOINT"}
-"""Adams' names of the joints that take their two markers as they are."""
+"""Adams names of the joints that use their two markers unchanged."""
 TURNS = {"angle": "ROTATIONAL", "displacement": "TRANSLATIONAL"}
 
 
 def reactions(model: SpatialData) -> dict[str, tuple[str, int]]:
-    """The joints whose reactions functions know: by name the function and the number that it takes."""
+    """Return function (JOINT or JPRIM) and number of the joints whose reactions can be measured, by name."""
     return {
         name: ("JPRIM" if TYPES.get(joint.kind) in PRIMITIVES else "JOINT", k)
         for k, (name, joint) in enumerate(_plain(model).items(), 1)
@@ -39,12 +39,12 @@ def reactions(model: SpatialData) -> dict[str, tuple[str, int]]:
 
 
 def _plain(model: SpatialData) -> dict[str, Joint]:
-    """The joints that become JOINT or JPRIM statements, in the order of their numbers."""
+    """Return the joints exported as JOINT or JPRIM statements in the order of their numbers."""
     return {name: joint for name, joint in model.joints.items() if joint.kind in (*TYPES, Thread.kind)}
 
 
 class Joints:
-    """Writes the joints of one scene.
+    """Exporter of the joints of one scene.
 
     Parameters
     ----------
@@ -60,12 +60,12 @@ class Joints:
         self._curves = Curves(model, numbering)
 
     def statements(self, name: str, joint: Joint) -> Iterator[str]:
-        """What a joint becomes.
+        """Yield the statements of a joint.
 
         Raises
         ------
         Refusal
-            Where Adams has no such joint.
+            If Adams has no such joint.
         """
         yield from self._made(joint, name)
 
@@ -145,7 +145,7 @@ class Joints:
         )
 
     def _measured(self, name: JointName) -> str:
-        """A coordinate of a joint by its markers."""
+        """Return a joint coordinate as a function of its markers."""
         joint = self._model.joints[name.joint]
         i, j = (self._numbering.marker(marker) for marker in (joint.i, joint.j))  # type: ignore[attr-defined]
         return f"AZ({i},{j})" if self._coordinate(name) == "angle" else f"DZ({i},{j},{j})"

@@ -1,4 +1,4 @@
-"""Numbers of the parts, markers and splines of a dataset, and the statements that these become."""
+"""Numbering of the parts, markers and splines of a dataset, and their statements."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ from .statements import number, numbers, statement
 CURVES = {"akima": "AKISPL", "lines": "INTERP", "not-a-knot": "CUBSPL"}
 GROUND_PART = 1
 FEWEST = 4
-"""Points of a spline of Adams."""
+"""Smallest number of points of a spline in Adams."""
 
 
 class Numbering:
-    """Gives numbers to what statements name.
+    """Numbering of parts, markers and splines.
 
     Parameters
     ----------
     model : SpatialData
         The scene.
     left_out : collection of str
-        Bodies that are no parts of the dataset.
+        Bodies that are not exported.
     """
 
     def __init__(self, model: SpatialData, left_out: Collection[str] = ()) -> None:
@@ -41,23 +41,23 @@ class Numbering:
         self._used = 0
 
     def marker(self, reference: MarkerReference) -> int:
-        """The number of a marker, by name or on the spot."""
+        """Return the number of a marker, named or inline."""
         place = self._model.place(reference)
         return self.placed(reference.body, place.point, place.orientation)
 
     def center(self, body: str) -> int:
-        """The number of a body's centre-of-mass marker, along its own axes."""
+        """Return the number of a marker at a body's centre of mass, along the body axes."""
         return self.placed(body, self._model.bodies[body].center_of_mass, IDENTITY)
 
     def placed(self, body: str, point: Sequence[float], orientation: Sequence[float]) -> int:
-        """The number of a marker at a place of a body."""
+        """Return the number of a marker with the given position and orientation on a body."""
         key = body, tuple(float(x) for x in point), tuple(float(x) for x in orientation)
         if key not in self._markers:
             self._markers[key] = self._next()
         return self._markers[key]
 
     def floating(self, body: str) -> int:
-        """The number of a floating marker of a body, on which reactions act."""
+        """Return the number of the floating marker of a body, on which reactions act."""
         if body not in self._floating:
             self._floating[body] = self._next()
         return self._floating[body]
@@ -67,12 +67,12 @@ class Numbering:
         return self._used
 
     def spline(self, name: str, table: Table) -> tuple[str, int]:
-        """The function that evaluates a table, and the number of its spline.
+        """Return the function that evaluates a table, and the number of its spline.
 
         Raises
         ------
         Refusal
-            For a curve that Adams does not draw.
+            If Adams has no such interpolation, or the table has too few points.
         """
         way = table.ends if table.interpolation == "spline" else table.interpolation
         if way is None or way not in CURVES:
@@ -86,7 +86,7 @@ class Numbering:
         return CURVES[way], self._splines[name][0]
 
     def statements(self) -> Iterator[str]:
-        """Parts with their markers, and splines."""
+        """Yield the statements of parts, markers and splines."""
         moving = any(any(body.velocity) or any(body.omega) for body in self._model.bodies.values())
         yield statement("PART", GROUND_PART, "GROUND")
         yield from self._of(GROUND)
@@ -112,9 +112,9 @@ class Numbering:
 
 
 def _part(body: Body, centre: int, moving: bool) -> Iterator[str]:
-    """Mass, inertia, pose and velocities; products of inertia are the tensor's entries with their sign turned.
+    """Yield mass, inertia, pose and velocities; products of inertia are the negated off-diagonal entries of the tensor.
 
-    Where any body moves at the start all velocities are stated, as Adams lets those that are not follow the others.
+    If any body has an initial velocity, all velocities not left open are written: Adams treats missing ones as free.
     """
     yield f"MASS = {number(body.mass)}"
     yield f"CM = {centre}"
@@ -129,7 +129,7 @@ def _part(body: Body, centre: int, moving: bool) -> Iterator[str]:
 
 
 def _enough(table: Table) -> tuple[tuple[float, float], ...]:
-    """The points of a table, of straight lines four at least."""
+    """Return the points of a piecewise linear table, with points inserted to reach `FEWEST`."""
     points = table.table
     if len(points) >= FEWEST:
         return points
@@ -140,7 +140,7 @@ def _enough(table: Table) -> tuple[tuple[float, float], ...]:
 
 
 def euler(orientation: Sequence[float]) -> tuple[float, float, float]:
-    """The body-fixed turns about z, x, z of an orientation, rad."""
+    """Return the body-fixed z-x-z Euler angles of an orientation, rad."""
     A = matrix(orientation)
     tilt = float(np.arctan2(np.hypot(A[0, 2], A[1, 2]), A[2, 2]))
     if np.hypot(A[0, 2], A[1, 2]) < 1e-15:

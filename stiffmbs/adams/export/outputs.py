@@ -1,4 +1,4 @@
-"""States and requests of a scene as statements."""
+"""Export of states and requests as Adams/Solver statements."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ Write = Callable[[Functions], Iterator[str]]
 
 
 def state_names(scene: SpatialData) -> dict[str, str]:
-    """What states and their outputs are called in functions."""
+    """Return the Adams functions of states and their outputs by name."""
     names = {name: f"DIF({k})" for k, name in enumerate(scene.state_values(), 1)}
     return names | {name: f"VARVAL({k})" for k, name in enumerate(scene.state_outputs(), 1)}
 
 
 def states(scene: SpatialData) -> Iterator[tuple[str, Write]]:
-    """States by name, each with what writes it: DIFF, implicit for algebraic ones; outputs are VARIABLEs."""
+    """Yield each state by name with its writer: DIFF, implicit for algebraic states; outputs are VARIABLEs."""
     for k, (name, value) in enumerate(scene.state_values().items(), 1):
         yield name, partial(_state, k, value)
     for k, (name, formula) in enumerate(scene.state_outputs().items(), 1):
@@ -42,7 +42,7 @@ def _output(k: int, formula: Formula, functions: Functions) -> Iterator[str]:
 
 
 def requests(scene: SpatialData, functions: Functions) -> Iterator[str]:
-    """Requests; a comment names those that Adams' functions cannot say."""
+    """Yield the requests; those without an equivalent in Adams become a comment."""
     for k, (name, output) in enumerate(scene.outputs().items(), 1):
         try:
             law = functions.output(output)

@@ -1,7 +1,7 @@
-"""What Adams/Solver has no statement for."""
+"""Exception for elements without an equivalent in Adams/Solver."""
 
 from __future__ import annotations
 
 
 class Refusal(Exception):
-    """An element or field that a dataset cannot hold; the message says which, and what it can."""
+    """Element or field without an equivalent in Adams/Solver; the message states both and the alternatives."""

@@ -1,1 +1,1 @@
-"""Function expressions of Adams/Solver, translated to formulas of a scene."""
+"""Translation of Adams/Solver function expressions to formulas of a scene."""

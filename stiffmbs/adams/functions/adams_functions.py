@@ -1,4 +1,4 @@
-"""Functions of Adams/Solver in terms of those that a scene's formulas have.  MSC Adams/Solver, "Functions"."""
+"""Adams/Solver functions expressed by functions of scene formulas.  MSC Adams/Solver, "Functions"."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ ZERO, ONE = number(0.0), number(1.0)
 
 
 def _shf(x: ast.expr, x0: ast.expr, a: ast.expr, w: ast.expr, *rest: ast.expr) -> ast.expr:
-    """Simple harmonic: a sin(w (x - x0) - phi) + b."""
+    """Simple harmonic function: a sin(w (x - x0) - phi) + b."""
     phi, b = (*rest, ZERO, ZERO)[:2]
     return total([product(a, call("sin", difference(product(w, difference(x, x0)), phi))), b])
 
 
 def _poly(x: ast.expr, x0: ast.expr, *a: ast.expr) -> ast.expr:
-    """a0 + a1 (x - x0) + ..., by Horner's scheme."""
+    """Polynomial a0 + a1 (x - x0) + ... by Horner's scheme."""
     value, *others = reversed(a)
     for coefficient in others:
         value = total([coefficient, product(difference(x, x0), value)])
@@ -26,7 +26,7 @@ def _poly(x: ast.expr, x0: ast.expr, *a: ast.expr) -> ast.expr:
 
 
 def _cheby(x: ast.expr, x0: ast.expr, *a: ast.expr) -> ast.expr:
-    """The sum of a_k T_k(x - x0), the polynomials T_k by their coefficients."""
+    """Chebyshev series: the sum of a_k T_k(x - x0)."""
     terms = [a[0]]
     before, now = [1], [0, 1]  # coefficients of T_0 and T_1, lowest first
     for coefficient in a[1:]:
@@ -39,7 +39,7 @@ def _cheby(x: ast.expr, x0: ast.expr, *a: ast.expr) -> ast.expr:
 
 def _fourier(wave: str) -> Callable[..., ast.expr]:
     def series(x: ast.expr, x0: ast.expr, w: ast.expr, *a: ast.expr) -> ast.expr:
-        """a0 + the sum of a_k wave(k w (x - x0))."""
+        """Fourier series: a0 + the sum of a_k wave(k w (x - x0))."""
         phase = product(w, difference(x, x0))
         return total([a[0], *(product(c, call(wave, times(phase, k))) for k, c in enumerate(a[1:], start=1))])
 
@@ -47,14 +47,14 @@ def _fourier(wave: str) -> Callable[..., ast.expr]:
 
 
 def _havsin(x: ast.expr, x0: ast.expr, h0: ast.expr, x1: ast.expr, h1: ast.expr) -> ast.expr:
-    """From h0 at x0 to h1 at x1 by half a wave: (h0 + h1)/2 - (h1 - h0)/2 cos(pi z), z from 0 to 1."""
+    """Haversine step from h0 at x0 to h1 at x1: (h0 + h1)/2 - (h1 - h0)/2 cos(pi z), z from 0 to 1."""
     z = call("min", call("max", quotient(difference(x, x0), difference(x1, x0)), ZERO), ONE)
     middle, half = quotient(total([h0, h1]), number(2)), quotient(difference(h1, h0), number(2))
     return difference(middle, product(half, call("cos", times(z, math.pi))))
 
 
 def _impact(x: ast.expr, rate: ast.expr, x1: ast.expr, k: ast.expr, e: ast.expr, c: ast.expr, d: ast.expr) -> ast.expr:
-    """A one-sided stop: k (x1 - x)^e - c x' step(x, x1 - d, 1, x1, 0) where x is below x1, never below zero."""
+    """One-sided impact: k (x1 - x)^e - c x' step(x, x1 - d, 1, x1, 0) for x < x1, never negative."""
     depth = call("max", difference(x1, x), ZERO)
     spring = product(k, ast.BinOp(depth, ast.Pow(), e))
     damper = product(product(c, rate), call("step", x, difference(x1, d), ONE, x1, ZERO))
@@ -64,13 +64,13 @@ def _impact(x: ast.expr, rate: ast.expr, x1: ast.expr, k: ast.expr, e: ast.expr,
 def _bistop(
     x: ast.expr, rate: ast.expr, x1: ast.expr, x2: ast.expr, k: ast.expr, e: ast.expr, c: ast.expr, d: ast.expr
 ) -> ast.expr:
-    """Stops on both sides: below x1 as `_impact`, above x2 the same in the other direction."""
+    """Two-sided impact: `_impact` below x1 and its mirror image above x2."""
     minus = ast.UnaryOp(ast.USub(), x), ast.UnaryOp(ast.USub(), rate), ast.UnaryOp(ast.USub(), x2)
     return difference(_impact(x, rate, x1, k, e, c, d), _impact(*minus, k, e, c, d))
 
 
 def _sign(a: ast.expr, b: ast.expr) -> ast.expr:
-    """Fortran's SIGN: the size of a with the sign of b."""
+    """Fortran SIGN: the magnitude of a with the sign of b."""
     return product(call("abs", a), call("sign", b))
 
 

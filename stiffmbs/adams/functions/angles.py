@@ -1,6 +1,6 @@
-"""Angles between markers as formulas of where the ends of their axes are.  MSC Adams/Solver, YAW, PITCH, ROLL, PSI, THETA, PHI, INCANG.
+"""Angles between markers as formulas.  MSC Adams/Solver, YAW, PITCH, ROLL, PSI, THETA, PHI, INCANG.
 
-The tip of an axis is a marker at its end, 1 m from its own: the component of one axis along another is a distance between them.
+The tip of an axis is a marker 1 m along it. A component of one axis along another is then a distance between markers.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ ANGLES_OF_AXES = ("YAW", "PITCH", "ROLL", "PSI", "THETA", "PHI")
 
 
 def angle(name: str, mechanism: Mechanism, i: Place, j: Place) -> ast.expr:
-    """An angle of marker i against marker j: of turns about z, y and x (PITCH with the other sign), or z, x and z."""
+    """Return an angle of marker i relative to marker j: z-y-x (PITCH with opposite sign) or z-x-z angles."""
 
     def along(axis_of_i: str, axis_of_j: str) -> ast.expr:
         return measured(f"d{axis_of_j}", mechanism.tip(i, axis_of_i), i.reference, j.reference)
@@ -32,17 +32,17 @@ def angle(name: str, mechanism: Mechanism, i: Place, j: Place) -> ast.expr:
 
 
 def included_angle(first: str, vertex: str, second: str) -> ast.expr:
-    """The angle at a marker between the ways to two others, 0 to pi."""
+    """Return the angle at a marker between the directions to two others, 0 to pi."""
     ways = [[measured(f"d{axis}", end, vertex, "") for axis in "xyz"] for end in (first, second)]
     lengths = product(measured("dm", first, vertex, ""), measured("dm", second, vertex, ""))
     return call("acos", bounded(quotient(total([product(a, b) for a, b in zip(*ways, strict=True)]), lengths)))
 
 
 def bounded(cosine: ast.expr) -> ast.expr:
-    """A cosine between -1 and 1, which rounding may leave."""
+    """Clip a cosine to [-1, 1] against rounding."""
     return call("min", call("max", cosine, number(-1.0)), number(1.0))
 
 
 def on_ground() -> Place:
-    """Where an angle is measured from that names no second marker."""
+    """Return the origin of ground, the default second marker of an angle."""
     return Place("ground", "", ORIGIN, ORIGIN)

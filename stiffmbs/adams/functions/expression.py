@@ -1,7 +1,7 @@
-"""Function expressions of Adams/Solver as syntax trees.
+"""Parser of Adams/Solver function expressions.
 
-Their grammar is Fortran's arithmetic (``**``, exponents with E or D, names in any case), degrees as ``90D``, and
-``IF(a: b, c, d)``.  Fortran's operators bind as Python's do, so that an expression is spelt anew and read by `ast`.
+The grammar is Fortran arithmetic (``**``, exponents with E or D, names in any case), degrees as ``90D``, and ``IF(a: b,
+c, d)``. Fortran's operators have the precedence of Python's, so the tokens are rewritten and parsed by `ast`.
 """
 
 from __future__ import annotations
@@ -21,26 +21,26 @@ _TOKEN = re.compile(
     re.IGNORECASE,
 )
 OMITTED = "OMITTED_"
-"""What an argument is called that is left out: ``DX(21,,3)``."""
+"""Placeholder name of an omitted argument: ``DX(21,,3)``."""
 IF = "IF_"
-"""What IF is called in a tree, as Python keeps that word to itself."""
+"""Name of IF in a tree; ``if`` is a Python keyword."""
 
 
 LARGEST_WHOLE = 2**53
-"""Whole numbers from there on are written in floating point."""
+"""Integers from this size on are written in floating point."""
 
 
 class ExpressionError(ValueError):
-    """An expression that cannot be read; the message says what was found and what was expected."""
+    """Invalid expression; the message states what was found and what was expected."""
 
 
 def parse(text: str) -> ast.expr:
-    """The tree of an expression: numbers, names in capitals, calls, and the operators ``+ - * / **``.
+    """Parse an expression of numbers, names, calls and the operators ``+ - * / **``; names become upper case.
 
     Raises
     ------
     ExpressionError
-        When the text is no expression.
+        If the text is not an expression.
     """
     spelt = " ".join(_python_tokens(text))
     try:
@@ -54,7 +54,7 @@ def parse(text: str) -> ast.expr:
 
 
 def _python_tokens(text: str) -> Iterator[str]:
-    """The expression's tokens as Python spells them."""
+    """Yield the tokens of an expression in Python's spelling."""
     at, rest, before = 0, text.rstrip(), ""
     while at < len(rest):
         token = _TOKEN.match(rest, at)
@@ -86,13 +86,13 @@ def _number(token: re.Match[str]) -> str:
 
 
 class _WithoutPowersOfNumbers(ast.NodeTransformer):
-    """Powers of numbers by their values in floating point: whole numbers as Python computes them have no bound."""
+    """Replace powers of numbers by their floating-point values; Python's integer powers have unbounded size."""
 
     def __init__(self, text: str) -> None:
         self._text = text
 
     def visit_BinOp(self, node: ast.BinOp) -> ast.expr:
-        """A power of numbers, in floating point."""
+        """Evaluate a power of numbers in floating point."""
         self.generic_visit(node)
         if not isinstance(node.op, ast.Pow):
             return node
@@ -111,7 +111,7 @@ class _WithoutPowersOfNumbers(ast.NodeTransformer):
 
 
 def constant(node: ast.expr) -> float | None:
-    """The value of a number, or of arithmetic of numbers, in floating point; None for anything else, and where it has none."""
+    """Return the floating-point value of a number or arithmetic of numbers; None for anything else or if undefined."""
     match node:
         case ast.Constant(int() | float() as value):
             return float(value)

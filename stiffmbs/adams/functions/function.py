@@ -1,4 +1,4 @@
-"""A function expression with the place where it stands."""
+"""Function expression with its statement and line."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from .expression import ExpressionError, parse
 
 @dataclass(frozen=True)
 class Function:
-    """An expression of a statement, in the dataset's own units.
+    """Expression of a statement in the dataset's units.
 
     Attributes
     ----------
     text : str
         As written, on one line.
     tree : ast.expr
-        What `expression.parse` makes of it.
+        Result of `expression.parse`.
     line : int
     label : str
         The statement, such as ``SFORCE/3``.
@@ -31,17 +31,17 @@ class Function:
     label: str
 
     def fault(self, reason: str) -> DatasetFault:
-        """What to raise where this expression is wrong."""
+        """Return the error for a fault in this expression."""
         return DatasetFault(self.line, self.label, reason)
 
 
 def read_function(found: Arguments, name: str) -> Function | None:
-    """The expression of an argument; None where it is missing.
+    """Return the expression of an argument; None if it is missing.
 
     Raises
     ------
     DatasetFault
-        When it is no expression, or a user's own subroutine.
+        If it is not an expression, or is a user subroutine.
     """
     if name not in found:
         return None
@@ -55,7 +55,7 @@ def read_function(found: Arguments, name: str) -> Function | None:
 
 
 def read_any_function(found: Arguments, name: str) -> Function:
-    """As `read_function`, also of a user's own subroutine, which is a fault only where its value is needed."""
+    """Return the expression of an argument; a user subroutine is an error only where it is evaluated."""
     text = (found.text(name) or "").strip().strip('"')
     try:
         return Function(text, parse(text), found.line(name), found.label)
@@ -64,12 +64,12 @@ def read_any_function(found: Arguments, name: str) -> Function:
 
 
 def is_subroutine(found: Arguments, name: str) -> bool:
-    """Whether an argument is computed by a user's own subroutine."""
+    """Return True if an argument is computed by a user subroutine."""
     return (found.text(name) or "").upper().replace(" ", "").lstrip('"').startswith("USER(")
 
 
 def required_function(found: Arguments, name: str) -> Function:
-    """As `read_function`, of an argument that must not be missing."""
+    """Return the expression of a required argument, as `read_function`."""
     function = read_function(found, name)
     if function is None:
         raise found.fault(f"found no {name}, expected {name} = an expression")

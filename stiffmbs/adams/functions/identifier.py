@@ -1,4 +1,4 @@
-"""Arguments of functions that are numbers of statements."""
+"""Function arguments that are identifiers of statements."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .function import Function
 
 
 def identifier(arguments: Sequence[ast.expr], at: int, function: Function) -> int:
-    """An argument that is the number of a statement."""
+    """Return an argument that is the identifier of a statement; 0 if it is omitted."""
     match arguments[at] if at < len(arguments) else None:
         case ast.Constant(int() as value):
             return value

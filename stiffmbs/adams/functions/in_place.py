@@ -1,4 +1,4 @@
-"""Function expressions as formulas that name no variables: what is to be integrated has all of them in it."""
+"""Function expressions with variables substituted, for symbolic integration."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from .function import Function
 from .translate import Translation
 
 MOST_PARTS = 10_000
-"""Numbers, names and operations in the value of a VARIABLE, with the others that it uses in it."""
+"""Largest number of syntax-tree nodes in the value of a VARIABLE after substitution."""
 
 
 class InPlace(Translation):
-    """Translates the expressions of one dataset, each VARIABLE by its own expression."""
+    """Translator of one dataset's expressions that substitutes each VARIABLE by its expression."""
 
     def variable(self, ident: int, function: Function) -> ast.expr:
-        """The expression of a VARIABLE in place of its name."""
+        """Return the expression of a VARIABLE; its name if it depends on itself."""
         variable = self.mechanism.dataset.variables.get(ident)
         if variable is None or ident in self.implicit_variables:
             return super().variable(ident, function)

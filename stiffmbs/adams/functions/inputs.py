@@ -1,7 +1,7 @@
-"""Inputs and outputs of a model: VARIABLEs that PINPUT and POUTPUT name.
+"""Inputs and outputs of a model: VARIABLEs listed by PINPUT and POUTPUT.
 
-An input whose VARIABLE is a number is one of the scene, with that number as its value until another program gives others.  One that
-is an expression keeps it.
+An input whose VARIABLE is a number becomes an input of the scene with that number as its default value. One whose
+VARIABLE is an expression keeps it.
 """
 
 from __future__ import annotations
@@ -18,16 +18,16 @@ if TYPE_CHECKING:
     from .function import Function
 
 PLANTS = {"PINVAL": "PINPUT", "POUVAL": "POUTPUT"}
-"""Functions of inputs and outputs, and the statements that they name."""
+"""Functions of inputs and outputs, and the statements they refer to."""
 
 
 def input_values(dataset: Dataset) -> dict[str, float]:
-    """The scene's inputs by name, in the dataset's units.
+    """Return the scene's inputs by name, in the dataset's units.
 
     Raises
     ------
     DatasetFault
-        When an input or output is no VARIABLE.
+        If an input or output is not a VARIABLE.
     """
     found = {}
     for plant in _plants(dataset):
@@ -42,7 +42,7 @@ def input_values(dataset: Dataset) -> dict[str, float]:
 
 
 def variable_of_plant(dataset: Dataset, name: str, ident: int, at: int, function: Function) -> int:
-    """The number of the VARIABLE that PINVAL or POUVAL means."""
+    """Return the number of the VARIABLE that PINVAL or POUVAL refers to."""
     plant = dataset.statements.get(PLANTS[name], {}).get(ident)
     if plant is None or not 1 <= at <= len(plant.variables):
         raise function.fault(
@@ -53,7 +53,7 @@ def variable_of_plant(dataset: Dataset, name: str, ident: int, at: int, function
 
 
 def evaluated_name(mechanism: Mechanism, ident: int, function: Function) -> str:
-    """What a sensor has evaluated last, SENVAL: an input that is zero until the sensor sets it; it keeps that while it is inactive."""
+    """Return the name of SENVAL, the last value of a sensor: an input, zero until an active sensor sets it."""
     dataset = mechanism.dataset
     sensor = dataset.statements.get("SENSOR", {}).get(ident)
     if ("SENSOR", ident) not in dataset.inactive and (sensor is None or sensor.evaluated is None):

@@ -1,4 +1,4 @@
-"""What a motion prescribes over time, in SI."""
+"""Motions as functions of time in SI units."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from .trees import number, times, total
 
 ORDERS = ("position", "velocity")
 SAME_START = 1e-9
-"""How far an initial displacement may be from the initial pose's to be the same, m or rad."""
+"""Tolerance on the initial displacement relative to the initial pose, m or rad."""
 
 
 PATIENCE = 10.0
-"""Time, s, after which the search for an integral is given up."""
+"""Time limit of symbolic integration, s."""
 LARGEST_EXPONENT = 32
-"""Of what is integrated: higher powers of sums are multiplied out into as many terms."""
+"""Largest exponent in an integrand: powers of sums are expanded."""
 
 
 def _check_exponents(tree: ast.expr) -> None:
@@ -31,9 +31,9 @@ def _check_exponents(tree: ast.expr) -> None:
 
 
 class _WithoutInstants(ast.NodeTransformer):
-    """IF without its middle value, in place of which it has the one that follows in time.
+    """Replace the middle value of IF by the value that follows in time.
 
-    That value holds for an instant alone.  As a motion it would be one without velocity there, where the motion goes on.
+    The middle value holds at one instant only. As a motion it would have zero velocity at that instant.
     """
 
     def visit_Call(self, node: ast.Call) -> ast.Call:
@@ -45,7 +45,7 @@ class _WithoutInstants(ast.NodeTransformer):
 
 
 def _falls(condition: ast.expr) -> bool:
-    """Whether an expression of time becomes less with it all along: ``0.5 - t``."""
+    """Return True if an expression decreases with time: ``0.5 - t``."""
     import sympy as sp
 
     t = sp.Symbol("t", real=True)
@@ -57,7 +57,7 @@ def _falls(condition: ast.expr) -> bool:
 
 
 class Law:
-    """A motion's function.
+    """Function of a motion.
 
     Parameters
     ----------
@@ -77,10 +77,10 @@ class Law:
         self._velocity = (velocity or 0.0) * self._length / units.time
 
     def over_time(self, initial: float) -> dict[str, str]:
-        """The position or the velocity that a drive prescribes, by its name in the scene.
+        """Return the prescribed position or velocity of a drive by its field name.
 
-        A velocity is prescribed as such where the motion starts at the initial pose; otherwise, and an acceleration,
-        as the position that it integrates to.
+        A velocity is prescribed directly if the motion starts at the initial pose. Otherwise it is integrated to a
+        position, as is an acceleration.
 
         Parameters
         ----------
@@ -105,12 +105,12 @@ class Law:
         return ast.unparse(_WithoutInstants().visit(formula))
 
     def _integrated(self) -> str:
-        """The function integrated from 0 to t, once or twice.
+        """Return the function integrated from 0 to t, once or twice.
 
         Raises
         ------
         DatasetFault
-            When the integral is no formula.
+            If the integral is not a formula.
         """
         import sympy as sp
 

@@ -1,7 +1,7 @@
-"""What joints do to their markers as formulas that forces may use: JOINT(id, jflag, comp, rm), and JPRIM of the same.
+"""Joint reactions as formulas for forces: JOINT(id, jflag, comp, rm), and JPRIM alike.
 
-A scene's formulas know a reaction on marker I in ground axes.  Its component along an axis of another marker is the sum of its
-components times those of the axis, which are distances from that marker to its tip.
+Scene formulas know the reaction on marker I in ground axes. Its component along an axis of another marker is the dot
+product with that axis, whose components are distances from the marker to the axis tip.
 """
 
 from __future__ import annotations
@@ -15,13 +15,13 @@ from .trees import call, difference, measured, number, power, product, total
 
 REACTIONS = ("JOINT", "JPRIM")
 COMPONENTS = ("FM", "FX", "FY", "FZ", "TM", "TX", "TY", "TZ")
-"""As functions of forces number them from 1."""
+"""Components in the order of their numbers, from 1."""
 BY_ITS_PLACE = ("RACKPIN",)
-"""Joints that the scene makes of formulas, whose reactions no other formula can use."""
+"""Joints that become equations in the scene; formulas cannot use their reactions."""
 
 
 def reaction(joint: Joint, component: str, on_j: bool, axes: Place | None, mechanism: Mechanism) -> ast.expr:
-    """A component of what a joint does to its marker I or J, N or N m, along ground's axes or those of a marker."""
+    """Return a component of the reaction on marker I or J of a joint, N or N m, in ground axes or those of a marker."""
     vector = _vector(joint, component[0].lower(), on_j, mechanism)
     if component[1] == "M":
         return call("sqrt", total([power(part, 2) for part in vector]))
@@ -34,7 +34,7 @@ def reaction(joint: Joint, component: str, on_j: bool, axes: Place | None, mecha
 
 
 def _vector(joint: Joint, letter: str, on_j: bool, mechanism: Mechanism) -> list[ast.expr]:
-    """Force (f) on marker I or J, or torque (t) about it, in ground axes."""
+    """Return force ('f') on marker I or J, or torque ('t') about it, in ground axes."""
     on_i = [call(f"{letter}{axis}", ast.Name(joint.name)) for axis in "xyz"]
     if not on_j:
         return on_i
@@ -51,12 +51,12 @@ def _vector(joint: Joint, letter: str, on_j: bool, mechanism: Mechanism) -> list
 
 
 def component_of(name: str, number_of_it: int, function: Function) -> str:
-    """The component that a function of forces asks for by its number.
+    """Return the component with a given number.
 
     Raises
     ------
     DatasetFault
-        When there is none of that number.
+        If there is no such component.
     """
     if not 1 <= number_of_it <= len(COMPONENTS):
         raise function.fault(f"found the component {number_of_it} of {name}, expected 1 to {len(COMPONENTS)}")

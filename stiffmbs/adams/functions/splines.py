@@ -1,4 +1,4 @@
-"""Values of splines as tables of a scene: AKISPL(x, z, id, order), CUBSPL of the same, INTERP(x, z, method, id, order)."""
+"""Spline functions as tables of a scene: AKISPL and CUBSPL(x, z, id, order), INTERP(x, z, method, id, order)."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ CURVES: dict[str, dict[str, Any]] = {
     "CUBSPL": {"ends": "not-a-knot"},
     "LINE": {"lines": True},
 }
-"""Functions of splines, and how the scene's table goes through the points."""
+"""Table options of each spline function."""
 
 
 def spline_value(
@@ -27,12 +27,12 @@ def spline_value(
     translate: Callable[[ast.expr], ast.expr],
     mechanism: Mechanism,
 ) -> ast.expr:
-    """A spline's value; its table is among the mechanism's from here on.
+    """Return the value of a spline and add its table to the mechanism.
 
     Raises
     ------
     DatasetFault
-        When there is no such spline, or more than its value is asked for.
+        If the spline does not exist, or a derivative is requested.
     """
     x, _, *rest = [*arguments, *[ast.Constant(0)] * 5][: max(4, len(arguments))]
     if name == "INTERP":

@@ -1,4 +1,4 @@
-"""States of a dataset as those of a scene: which there are, and what formulas call them."""
+"""States of a dataset as states of a scene, and their names in formulas."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ INPUT, STATE, OUTPUT = "U", "X", "Y"
 
 
 def states(translation: Translation) -> dict[str, Any]:
-    """The states of the scene by name.
+    """Return the states of the scene by name.
 
     Raises
     ------
     DatasetFault
-        When a system names what the dataset does not have, or matrices do not fit.
+        If a system refers to a missing statement, or its matrices have inconsistent sizes.
     """
     found: dict[str, Any] = {}
     for statements in translation.mechanism.dataset.statements.values():
@@ -46,9 +46,9 @@ def states(translation: Translation) -> dict[str, Any]:
 
 
 def _differential(one: Differential, translation: Translation) -> dict[str, Any]:
-    """A state with its rate; that of an implicit equation is an algebraic state of its own.
+    """Return a differential state; the rate of an implicit equation becomes an algebraic state.
 
-    An implicit equation without its rate determines the state itself.
+    An implicit equation without its rate becomes an algebraic state itself.
     """
     per_second = 1 / translation.units.time
     if not one.implicit:
@@ -64,17 +64,17 @@ def _differential(one: Differential, translation: Translation) -> dict[str, Any]
 
 
 def rate_name(one: Differential) -> str:
-    """What the rate of an implicit equation is called."""
+    """Return the name of the rate of an implicit equation."""
     return f"{one.name}_rate"
 
 
 def value_name(one: Variable) -> str:
-    """What the state of a variable that depends on itself is called."""
+    """Return the state name of a variable that depends on itself."""
     return f"{one.name}_value"
 
 
 def depending_on_themselves(variables: Mapping[int, Variable]) -> frozenset[int]:
-    """The variables whose expressions lead back to them, directly or through others."""
+    """Return the variables whose expressions depend on themselves, directly or through others."""
     uses = {
         ident: _variables_in(one.function) for ident, one in variables.items() if isinstance(one.function, Function)
     }
@@ -95,7 +95,7 @@ def _variables_in(function: Function) -> set[int]:
 
 
 def differential(dataset: Dataset, ident: int, function: Function) -> Differential:
-    """The equation that DIF and DIF1 name."""
+    """Return the equation that DIF and DIF1 refer to."""
     found: Differential | None = dataset.statements.get("DIFF", {}).get(ident)
     if found is None:
         raise function.fault(f"found DIF({ident}), expected the number of a DIFF")
@@ -103,7 +103,7 @@ def differential(dataset: Dataset, ident: int, function: Function) -> Differenti
 
 
 def value_of_system(dataset: Dataset, array: int, at: int, function: Function) -> ast.expr | None:
-    """What ARYVAL stands for in an array of states or outputs; None where no system has it."""
+    """Return the scene name of ARYVAL in an array of states or outputs; None if no system uses the array."""
     for statements in dataset.statements.values():
         for one in statements.values():
             match one:
@@ -122,7 +122,7 @@ def value_of_system(dataset: Dataset, array: int, at: int, function: Function) -
 
 
 def _inputs(user: Numbered, ident: int | None, translation: Translation) -> list[str]:
-    """Formulas of the variables of an ARRAY of inputs."""
+    """Return the formulas of an input ARRAY of VARIABLEs."""
     if ident is None:
         return []
     array: Array | None = translation.mechanism.dataset.arrays.get(ident)
@@ -136,7 +136,7 @@ def _varval(ident: int) -> ast.expr:
 
 
 def _transfer(one: TransferFunction, translation: Translation) -> dict[str, Any]:
-    """Coefficients in SI, the highest power first: s counts per unit of time."""
+    """Return a transfer function with SI coefficients, highest power first."""
     unit, inputs = translation.units.time, _inputs(one, one.u, translation)
     if len(inputs) != 1:
         raise one.fault(f"found {len(inputs)} VARIABLES of U = {one.u}, expected one")
@@ -145,7 +145,7 @@ def _transfer(one: TransferFunction, translation: Translation) -> dict[str, Any]
 
 
 def _linear(one: LinearSystem, translation: Translation) -> dict[str, Any]:
-    """A linear system whose outputs are those of the dataset, and its states."""
+    """Return a linear system in SI units; its outputs are those of the dataset and its states."""
     unit, inputs = translation.units.time, _inputs(one, one.u, translation)
     a = _rows(one, "A", one.a, translation)
     n, m = len(a), len(inputs)

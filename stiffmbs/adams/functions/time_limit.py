@@ -1,4 +1,4 @@
-"""A bound on the time of a computation that may have no end."""
+"""Time limit for symbolic computations."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import Any
 
 @contextmanager
 def time_limit(seconds: float) -> Iterator[None]:
-    """Raise `TimeoutError` in what takes longer; without effect outside of the main thread, and where there is no alarm signal."""
+    """Raise `TimeoutError` after a time; no effect outside the main thread or without alarm signals."""
     if not hasattr(signal, "setitimer") or threading.current_thread() is not threading.main_thread():
         yield
         return

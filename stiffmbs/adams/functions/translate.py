@@ -1,7 +1,7 @@
-"""Function expressions as formulas of a scene: SI on the outside, the dataset's units on the inside.
+"""Translation of function expressions to formulas of a scene.
 
-What an expression measures is divided by the dataset's unit, so that its numbers keep their meaning; whoever takes the
-formula multiplies the result with the unit that it needs.
+Measures are divided by the dataset's unit so that constants in the expression keep their meaning. The caller multiplies
+the result by its unit.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from .trees import measured, name_of, number, over, power, product, times, total
 POSITIONS, ANGLES = ("DX", "DY", "DZ", "DM"), ("AX", "AY", "AZ")
 VELOCITIES, ANGULAR_VELOCITIES = ("VX", "VY", "VZ", "VM", "VR"), ("WX", "WY", "WZ", "WM")
 MAGNITUDES = ("DM", "VM", "VR", "WM")
-"""Measures that have no axes."""
+"""Measures without axes."""
 PLAIN = {
     **{name: name.lower() for name in (
         "SIN", "COS", "TAN", "ASIN", "ACOS", "ATAN", "ATAN2", "SINH", "COSH", "TANH", "EXP", "SQRT", "ABS", "MIN", "MAX",
@@ -36,17 +36,17 @@ PLAIN = {
     )},
     IF: "branch",
 }  # fmt: skip
-"""Functions that the scene has too."""
+"""Functions with an equivalent in scene formulas."""
 COUPLED = (
     "MOTION", "GCON", "COUPLER", "GEAR", "PTCV", "CVCV", "CONTACT", "SFORCE", "VFORCE", "VTORQ", "VTORQUE", "GFORCE", "SPDP", "BUSH", "BEAM", "FIELD",
     "FX", "FY", "FZ", "FM", "TX", "TY", "TZ", "TM",
 )  # fmt: skip
-"""Functions of forces that requests alone may use."""
+"""Force functions that only requests may use."""
 NAMES = {"DTOR": math.pi / 180, "RTOD": 180 / math.pi}
 
 
 class Translation:
-    """Translates the expressions of one dataset.
+    """Translator of the expressions of one dataset.
 
     Parameters
     ----------
@@ -59,21 +59,21 @@ class Translation:
 
     @cached_property
     def implicit_variables(self) -> frozenset[int]:
-        """The VARIABLES that depend on themselves: algebraic states of the scene."""
+        """VARIABLEs that depend on themselves: algebraic states of the scene."""
         return depending_on_themselves(self.mechanism.dataset.variables)
 
     def formula(self, function: Function, unit: float = 1.0) -> str:
-        """The formula of an expression, times a unit.
+        """Return an expression as a formula, times a unit.
 
         Raises
         ------
         DatasetFault
-            When it uses what a scene's formulas do not have.
+            If it uses functions that scene formulas lack.
         """
         return ast.unparse(times(self.translated(function), unit))
 
     def translated(self, function: Function) -> ast.expr:
-        """The tree of an expression's formula."""
+        """Return an expression as the syntax tree of a formula."""
 
         def translate(node: ast.expr) -> ast.expr:
             match node:
@@ -92,7 +92,7 @@ class Translation:
         return translate(function.tree)
 
     def name(self, name: str, function: Function) -> ast.expr:
-        """A constant, or time."""
+        """Return a constant, or time."""
         if name == "TIME":
             return over(ast.Name("t"), self.units.time)
         if name == "PI":
@@ -106,7 +106,7 @@ class Translation:
         )
 
     def variable(self, ident: int, function: Function) -> ast.expr:
-        """The name of a VARIABLE, which the scene has from here on."""
+        """Return the name of a VARIABLE and add it to the scene."""
         variable = self.mechanism.dataset.variables.get(ident)
         if variable is None:
             raise function.fault(f"found VARVAL({ident}), expected the number of a VARIABLE")
@@ -119,7 +119,7 @@ class Translation:
     def call(
         self, name: str, arguments: list[ast.expr], function: Function, translate: Callable[[ast.expr], ast.expr]
     ) -> ast.expr:
-        """A measure, or a function of numbers."""
+        """Return a measure, or a function of numbers."""
         if name in (*POSITIONS, *ANGLES, *VELOCITIES, *ANGULAR_VELOCITIES):
             return self.measure(name, arguments, function)
         if name in PLAIN:
@@ -160,10 +160,10 @@ class Translation:
         raise function.fault(f"found the function {name} in '{quoted(function.text)}', expected one that is read here")
 
     def measure(self, name: str, arguments: list[ast.expr], function: Function) -> ast.expr:
-        """A displacement, velocity or angle between markers.
+        """Return a displacement, velocity or angle between markers.
 
-        The velocity of i against j as seen from a third marker's part is the one as seen from ground less w x d, w being
-        that part's angular velocity and d the displacement of i from j.
+        The velocity of i relative to j in the frame of a third marker's part is the velocity in ground minus w x d: w
+        is the angular velocity of that part and d the displacement from j to i.
         """
         i, j, axes, seen_from = self._markers(name, arguments, function)
         if name in (*ANGLES, *ANGULAR_VELOCITIES):
@@ -187,7 +187,7 @@ class Translation:
         return over(ast.BinOp(ast.BinOp(velocity, ast.Sub(), turned[0]), ast.Add(), turned[1]), unit)
 
     def _markers(self, name: str, arguments: list[ast.expr], function: Function) -> tuple[str, str, str, str]:
-        """The references of the markers i, j, of the axes and of the frame to see from; nothing stands for ground."""
+        """Return the references of the markers i, j, axes and reference frame; '' means ground."""
         idents = [identifier(arguments, k, function) for k in range(len(arguments))]
         most = {"DM": 2, "AX": 2, "AY": 2, "AZ": 2, "VM": 3, "VR": 3, "WM": 3, "VX": 4, "VY": 4, "VZ": 4}.get(name, 3)
         if not 1 <= len(idents) <= most or not idents[0]:
@@ -200,7 +200,7 @@ class Translation:
         return i, j, axes, "" if name in ("VR", "WM", *POSITIONS) or seen_from.startswith("ground") else seen_from
 
     def reference(self, ident: int, function: Function) -> str:
-        """A marker as the scene writes it."""
+        """Return the scene reference of a marker."""
         marker = self.mechanism.dataset.markers.get(ident)
         if marker is None:
             raise function.fault(
@@ -220,7 +220,7 @@ class Translation:
         return angle(name, self.mechanism, *places)
 
     def _reaction(self, name: str, arguments: list[ast.expr], function: Function) -> ast.expr:
-        """JOINT(id, jflag, comp, rm) of a joint between two markers."""
+        """Translate JOINT(id, jflag, comp, rm) of a joint between two markers."""
         ident, on_j, component, axes = (identifier(arguments, k, function) for k in range(4))
         if (name, ident) in self.mechanism.dataset.inactive:
             return number(0.0)
@@ -235,7 +235,7 @@ class Translation:
         return over(force, self.units.of(force=1, length=1 if which[0] == "T" else 0))
 
     def array_value(self, arguments: list[ast.expr], function: Function) -> ast.expr:
-        """A number out of an ARRAY."""
+        """Return a number of an ARRAY."""
         ident, at = (identifier(arguments, k, function) for k in range(2))
         of_system = value_of_system(self.mechanism.dataset, ident, at, function)
         if of_system is not None:

@@ -1,4 +1,4 @@
-"""Expressions that are only reported: besides what forces may use, accelerations, angles, and forces of elements."""
+"""Translation of request expressions, which may also contain accelerations, angles and element forces."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ ELEMENTS = {
     )},
     "VTORQ": "VTORQUE", "SPDP": "SPRINGDAMPER", "BUSH": "BUSHING",
 }  # fmt: skip
-"""The statements that functions of forces stand for."""
+"""Statements of the force functions."""
 EULER_PARAMETERS = 27
-"""The first argument of ORIENT that asks for a quaternion, scalar first."""
+"""First argument of ORIENT for a quaternion, scalar first."""
 ROUNDING_FUNCTIONS = {
     "MOD": "mod",
     "INT": "trunc",
@@ -43,12 +43,12 @@ ROUNDING_FUNCTIONS = {
 
 
 class OutputTranslation(Translation):
-    """Translates the expressions of requests and variables."""
+    """Translator of the expressions of requests and variables."""
 
     def call(
         self, name: str, arguments: list[ast.expr], function: Function, translate: Callable[[ast.expr], ast.expr]
     ) -> ast.expr:
-        """The expression that a function of a request stands for."""
+        """Return the expression of a request function."""
         if name in (*ACCELERATIONS, *ANGULAR_ACCELERATIONS, *ANGLES):
             return self._measure(name, arguments, function)
         if name == "ORIENT":
@@ -86,7 +86,7 @@ class OutputTranslation(Translation):
         return measured(f"q{component - 1}", self.reference(i, function), other, "")
 
     def _of_element(self, name: str, arguments: list[ast.expr], function: Function) -> ast.expr:
-        """JOINT(id, jflag, comp, rm) and its like."""
+        """Translate JOINT(id, jflag, comp, rm) and similar functions."""
         ident, on_j, component, axes = (identifier(arguments, k, function) for k in range(4))
         found = self.mechanism.dataset.statements.get(ELEMENTS[name], {}).get(ident)
         if (ELEMENTS[name], ident) in self.mechanism.dataset.inactive:
@@ -108,7 +108,7 @@ class OutputTranslation(Translation):
         return self.units.of(force=1, length=1 if component[0] == "T" else 0)
 
     def between(self, component: str, i: int, j: int, axes: int, function: Function) -> ast.expr:
-        """The force on marker i by everything that acts between it and marker j, in SI."""
+        """Return the total force on marker i of the elements between it and marker j, in SI units."""
         acting = list(self._acting(i, j))
         for found, on_j in acting:
             if on_j and isinstance(found, GeneralConstraint) and rod(found) is None:
@@ -122,7 +122,7 @@ class OutputTranslation(Translation):
         return self._component(component, acting, axes, function)
 
     def _acting(self, i: int, j: int) -> Iterator[tuple[Numbered, bool]]:
-        """What acts between two markers, and whether the first of them is its marker j."""
+        """Yield the elements between two markers, and whether the first marker is the element's marker j."""
         for statements in self.mechanism.dataset.statements.values():
             for found in statements.values():
                 first, others = self._ends(found)
@@ -157,7 +157,7 @@ class OutputTranslation(Translation):
 
     @staticmethod
     def _term(component: str, found: Numbered, element: str, on_j: bool, way: str) -> ast.expr:
-        """What one element does to marker I or J; a floating marker is always where I is."""
+        """Return the force of one element on marker I or J; a floating marker coincides with I."""
         floats = isinstance(found, VectorForce | PointOnCurve | CurveOnCurve) and on_j
         owner = name_of(element + (".j" if on_j and not floats else ""))
         value = call(component.lower(), owner, *([name_of(way)] if way else []))
@@ -165,7 +165,7 @@ class OutputTranslation(Translation):
 
     @staticmethod
     def _elements(found: Numbered, component: str) -> list[str]:
-        """The scene's elements that a statement has become, as far as they have the component."""
+        """Return the scene elements of a statement that have the component."""
         if isinstance(found, VectorForce):
             both = any(found.force) and any(found.torque)
             return (

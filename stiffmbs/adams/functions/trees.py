@@ -1,4 +1,4 @@
-"""Small pieces of formulas as syntax trees."""
+"""Constructors of formula syntax trees."""
 
 from __future__ import annotations
 
@@ -8,19 +8,19 @@ from functools import reduce
 
 
 def name_of(text: str) -> ast.expr:
-    """A name, or ``owner.name``."""
+    """Return a name, or ``owner.name``."""
     owner, _, name = text.partition(".")
     return ast.Attribute(ast.Name(owner), name) if name else ast.Name(owner)
 
 
 def number(value: float) -> ast.expr:
-    """A number; one below zero as Python writes it."""
+    """Return a number; a negative one as a unary minus."""
     value = float(value)
     return ast.UnaryOp(ast.USub(), ast.Constant(-value)) if value < 0 else ast.Constant(value)
 
 
 def call(name: str, *arguments: ast.expr) -> ast.expr:
-    """A function's value."""
+    """Return a function call."""
     return ast.Call(ast.Name(name), list(arguments), [])
 
 
@@ -41,21 +41,21 @@ def power(base: ast.expr, exponent: int) -> ast.expr:
 
 
 def total(terms: Sequence[ast.expr]) -> ast.expr:
-    """The sum of one or more terms."""
+    """Return the sum of one or more terms."""
     return reduce(lambda sum_, term: ast.BinOp(sum_, ast.Add(), term), terms)
 
 
 def times(node: ast.expr, factor: float) -> ast.expr:
-    """A multiple; the thing itself for a factor of 1."""
+    """Return a multiple; the node itself for a factor of 1."""
     return node if factor == 1 else product(number(factor), node)
 
 
 def over(node: ast.expr, divisor: float) -> ast.expr:
-    """A quotient; the thing itself for a divisor of 1."""
+    """Return a quotient; the node itself for a divisor of 1."""
     return node if divisor == 1 else quotient(node, number(divisor))
 
 
 def measured(name: str, i: str, j: str, axes: str) -> ast.expr:
-    """A measure of marker i against j (ground where it is empty) in the axes of a third marker (or ground's)."""
+    """Return a measure of marker i relative to j (default ground) in the axes of a third marker (default ground)."""
     markers = [i, j or "ground", axes] if axes else [i, j] if j else [i]
     return ast.Call(ast.Name(name), [name_of(marker) for marker in markers], [])

@@ -1,1 +1,1 @@
-"""A dataset as the mapping that a scene is read from, section by section."""
+"""Conversion of a dataset to a scene mapping, section by section."""

@@ -1,4 +1,4 @@
-"""Parts as bodies of a scene."""
+"""Conversion of parts to bodies."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ from .initial_conditions import in_ground
 from .mechanism import Mechanism
 
 EXCESS_IN_SILENCE = 1e-10
-"""Part of the sum of two principal moments by which the third may be greater without a word."""
+"""Relative excess of a principal moment over the sum of the other two that is not reported."""
 POINT_INERTIA = 1.0
-"""Moment of inertia over mass that a point mass gets in the scene, m^2; its orientation is held, so it has no effect."""
+"""Moment of inertia over mass of a point mass, m^2; its orientation is held, so the value has no effect."""
 
 
 def bodies(mechanism: Mechanism) -> dict[str, Any]:
-    """The bodies of the scene by name, with their markers."""
+    """Return the bodies of the scene by name, with their markers."""
     return {mechanism.body_name(part): _body(mechanism, part) for part in mechanism.moving}
 
 
 def ground_markers(mechanism: Mechanism) -> dict[str, Any]:
-    """The markers of the scene's ground."""
+    """Return the markers of the scene's ground."""
     return {
         name: placement
         for part in mechanism.parts.values()
@@ -56,14 +56,14 @@ def _body(mechanism: Mechanism, part: Part) -> dict[str, Any]:
 
 
 def _left_open(part: Part) -> dict[str, Any]:
-    """The velocities that a part does not state, which Adams lets follow those that are stated."""
+    """Return the unspecified velocities of a part, which Adams treats as free."""
     rates = {"velocity": part.velocity, "omega": part.omega}
     names = [name for name, rate in rates.items() if rate is None]
     return {"open": names} if names else {}
 
 
 def _pose(point: str, frame: Frame) -> dict[str, Any]:
-    """Where a frame is, and how it is turned if it is."""
+    """Return the position of a frame, and its orientation unless it is the identity."""
     turned = {} if np.array_equal(frame.axes, IDENTITY) else {"orientation": quaternion(frame.axes)}
     return {point: vector(frame.point), **turned}
 
@@ -76,7 +76,7 @@ def _markers(mechanism: Mechanism, part: Part) -> list[tuple[str, dict[str, Any]
 
 
 def _inertia(mechanism: Mechanism, part: Part) -> list[Any]:
-    """Moments about the centre of mass, in the axes of its marker; slight ones where the part has none."""
+    """Return the inertia about the centre of mass in the axes of its marker; small moments if the part has none."""
     if part.point:
         return vector([POINT_INERTIA * part.mass] * 3)
     tensor = _tensor(mechanism, part)
@@ -90,7 +90,7 @@ def _inertia(mechanism: Mechanism, part: Part) -> list[Any]:
 
 
 def notes(mechanism: Mechanism) -> Iterator[str]:
-    """Which parts have been given inertia, or have such as no body has, a sentence each."""
+    """Yield one sentence each for parts with added inertia and with impossible moments of inertia."""
     lacking = [p.label for p in mechanism.moving if not p.point and lacks_inertia(_tensor(mechanism, p))]
     if lacking:
         yield (
@@ -106,11 +106,11 @@ def notes(mechanism: Mechanism) -> Iterator[str]:
 
 
 def _tensor(mechanism: Mechanism, part: Part) -> np.ndarray:
-    """The tensor about the centre of mass, in the axes of its marker.
+    """Return the inertia tensor about the centre of mass, in the axes of its marker.
 
-    The products that a dataset gives are positive integrals of xy, xz and yz, and the moments are about the origin of
-    the inertia marker: the tensor has minus the products, and m (d^2 - d d^T) more than the one about the centre of
-    mass, d being the way from one to the other.
+    A dataset's products of inertia are positive integrals of xy, xz and yz, and the moments are about the origin of the
+    inertia marker. The products are negated, and m (d^2 - d d^T) is subtracted, d from the centre of mass to that
+    origin.
     """
     xx, yy, zz, xy, xz, yz = part.moments
     tensor = np.array([[xx, -xy, -xz], [-xy, yy, -yz], [-xz, -yz, zz]])
@@ -127,12 +127,12 @@ def _tensor(mechanism: Mechanism, part: Part) -> np.ndarray:
 
 
 def _any_moments(mechanism: Mechanism, part: Part) -> dict[str, Any]:
-    """That the moments break the triangle inequality, where they do."""
+    """Return the flag `any_moments` if the moments break the triangle inequality."""
     return {"any_moments": True} if _breaks_triangle(mechanism, part) else {}
 
 
 def _breaks_triangle(mechanism: Mechanism, part: Part) -> bool:
-    """Whether a principal moment is greater than the sum of the other two, beyond what arithmetic rounds."""
+    """Return True if a principal moment exceeds the sum of the other two beyond rounding."""
     tensor = _tensor(mechanism, part)
     if part.point or lacks_inertia(tensor):
         return False

@@ -1,7 +1,7 @@
-"""Contacts of spheres with planes and spheres as forces by formulas.  MSC Adams/Solver, CONTACT: IMPACT, and Coulomb friction.
+"""Contacts between spheres and planes as formula forces.  MSC Adams/Solver, CONTACT: IMPACT, and Coulomb friction.
 
-The force acts at the point of contact.  On the line of the normal it acts at the sphere's centre as well; friction has a moment
-about that, which is a torque of its own, the opposite of it on the other body: both then act at one point of space.
+The force acts at the point of contact. The normal force is applied at the sphere's centre. Friction adds a torque about
+that centre, with the opposite torque on the other body.
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ from .solids import between_solids, is_swapped
 
 TORQUE = "_torque"
 SLOW = 1e-6
-"""Part of the velocity of stiction that keeps the direction of sliding from being undefined at rest."""
+"""Fraction of the stiction velocity that regularises the sliding direction at rest."""
 
 
 def contacts(mechanism: Mechanism, translation: Translation) -> dict[str, Any]:
-    """The forces of all contacts by name."""
+    """Return the forces of all contacts by name."""
     pairs = [pair for contact in mechanism.dataset.contacts.values() for pair in contact.pairs()]
     return of_each(pairs, lambda contact: _made(contact, mechanism, translation))
 
@@ -38,7 +38,7 @@ def _made(contact: Contact, mechanism: Mechanism, translation: Translation) -> d
 
 
 def swapped(contact: Contact, mechanism: Mechanism) -> bool:
-    """Whether the scene's force is on the part of JGEOM."""
+    """Return True if the scene's force acts on the part of JGEOM."""
     if contact.others:
         raise contact.fault(
             "found a function of its force and several geometries on a side, expected one GRAPHICS on each side"
@@ -73,7 +73,7 @@ def _of_spheres(
 def _on_plane(
     contact: Contact, sphere: Shape, plane: Shape, mechanism: Mechanism, translation: Translation
 ) -> dict[str, Any]:
-    """Force along the axes of the plane's marker, whose z points out of the solid."""
+    """Return the force in the axes of the plane's marker, whose z axis is the outward normal."""
     center, other = mechanism.place(sphere.marker, contact, "CM"), mechanism.place(plane.marker, contact, "RM")
     i, j, r = sphere.marker, plane.marker, sphere.sizes[0]
     normal = _impact(contact, f"DZ({i},{j},{j}) - {r!r}", f"VZ({i},{j},{j},{j})")
@@ -93,7 +93,7 @@ def _on_plane(
 
 
 def _drag(friction: Friction, x: str, y: str, normal: str) -> str:
-    """Minus mu N over the speed of sliding."""
+    """Return -mu N divided by the sliding speed."""
     slow, fast = friction.stiction_velocity, friction.friction_velocity
     speed = f"SQRT({x}**2 + {y}**2 + {(SLOW * slow) ** 2!r})"
     mu = (

@@ -1,4 +1,4 @@
-"""Displacements of joints: how the scene names them, and what they are at the initial pose."""
+"""Names of joint coordinates and their initial values."""
 
 from __future__ import annotations
 
@@ -8,18 +8,18 @@ from ..statements.constraints import ROTATIONAL, TRANSLATIONAL, Joint
 from .mechanism import Place
 
 SORTS = {"REVOLUTE": ROTATIONAL, "TRANSLATIONAL": TRANSLATIONAL}
-"""Of the joints with one displacement."""
+"""Type of displacement of the joints with one coordinate."""
 
 
 def coordinate(joint: Joint, sort: str) -> str:
-    """A displacement of a joint as the scene names it."""
+    """Return the scene name of a joint coordinate."""
     if joint.kind in SORTS:
         return joint.name
     return f"{joint.name}.{'angle' if sort == ROTATIONAL else 'displacement'}"
 
 
 def initial_displacement(sort: str, i: Place, j: Place) -> float:
-    """The displacement of a joint at the initial pose, m or rad."""
+    """Return the displacement of a joint at the initial pose, m or rad."""
     a, b = i.initial, j.initial
     if sort != ROTATIONAL:
         return float((a.point - b.point) @ b.axes[:, 2])

@@ -1,6 +1,6 @@
-"""Points on curves, and curves that touch, as joints of a scene.  MSC Adams/Solver, PTCV and CVCV statements.
+"""Point-on-curve and curve-to-curve joints.  MSC Adams/Solver, PTCV and CVCV statements.
 
-Where two curves touch there is a slight body: its point is on both, and its x axis along both tangents.
+At a curve-to-curve contact a light auxiliary body has its point on both curves and its x axis along both tangents.
 """
 
 from __future__ import annotations
@@ -21,26 +21,26 @@ from .laid_curves import LaidCurve, laid_curve
 from .mechanism import Mechanism
 
 TOUCH, OTHER, LEVEL = "_touch", "_other", "_plane"
-"""Behind the name of a CVCV: the body where its curves touch, the joint with the first curve, and the one that turns the body."""
+"""Name suffixes for a CVCV: the auxiliary body, its joint with the first curve, and its `parallel` joint."""
 
 ELSEWHERE = 0.01
-"""Part of a curve's size by which the first point of contact may be stated apart from where the marker is drawn."""
+"""Tolerance on the stated first contact point relative to the drawn marker, as a fraction of the curve's size."""
 
 
 def curves(mechanism: Mechanism) -> dict[str, Any]:
-    """The joints of the scene by name."""
+    """Return the curve joints of the scene by name."""
     return of_each(_points(mechanism), lambda one: {one.name: _on_curve(one, mechanism)}) | of_each(
         _pairs(mechanism), lambda pair: _touching(pair, mechanism)
     )
 
 
 def touching_bodies(mechanism: Mechanism) -> dict[str, Any]:
-    """The bodies of the scene where curves touch, by name."""
+    """Return the auxiliary bodies of curve-to-curve contacts by name."""
     return of_each(_pairs(mechanism), lambda pair: {pair.name + TOUCH: _body(pair, mechanism)})
 
 
 def notes(mechanism: Mechanism) -> Iterator[str]:
-    """How a curve may differ from that of Adams, in one sentence."""
+    """Yield a sentence that lists the curves interpolated by cubic splines."""
     labels = ", ".join(one.label for one in (*_points(mechanism), *_pairs(mechanism)))
     if labels:
         yield f"{labels}: the curve is a cubic spline through the points of its MATRIX, which Adams may lay otherwise between them"
@@ -65,7 +65,7 @@ def _on_curve(one: PointOnCurve, mechanism: Mechanism) -> dict[str, Any]:
 
 
 def _ground_point(start: FirstContact | None, user: Numbered, mechanism: Mechanism) -> np.ndarray | None:
-    """Where contact starts, m, in ground axes."""
+    """Return the initial contact point in ground axes, m."""
     if start is None:
         return None
     axes = mechanism.place(start.axes, user, "ICM").initial
@@ -86,7 +86,7 @@ def _curves(pair: CurveOnCurve, mechanism: Mechanism) -> tuple[LaidCurve, LaidCu
 
 
 def _touching(pair: CurveOnCurve, mechanism: Mechanism) -> dict[str, Any]:
-    """The joints of the body where two curves touch; the first has the force on the part of the first curve."""
+    """Return the joints of an auxiliary body; the first applies its force to the part of the first curve."""
     first, second = _curves(pair, mechanism)
     touch = pair.name + TOUCH
     follows = {"type": "tangent_to_curve", "i": touch}
@@ -98,7 +98,7 @@ def _touching(pair: CurveOnCurve, mechanism: Mechanism) -> dict[str, Any]:
 
 
 def _body(pair: CurveOnCurve, mechanism: Mechanism) -> dict[str, Any]:
-    """A slight body at the point of contact, its x axis along the tangent and its z axis across the plane of the second curve."""
+    """Return the auxiliary body at the contact point: x along the tangent, z normal to the second curve's plane."""
     first, second = _curves(pair, mechanism)
     near, also_near = (_ground_point(start, pair, mechanism) for start in pair.starts)
     start = first_touch(first, second, (near, also_near))

@@ -1,4 +1,4 @@
-"""Where two curves touch, as they are drawn."""
+"""Initial contact point of two curves."""
 
 from __future__ import annotations
 
@@ -9,21 +9,21 @@ import numpy as np
 from .laid_curves import LaidCurve
 
 SAMPLES = 400
-"""Points of a curve among which the search looks for its start."""
+"""Number of points per curve in the coarse search."""
 
 
 @dataclass(frozen=True, eq=False)
 class Touching:
-    """Where two curves come nearest to touching, in ground axes.
+    """Closest contact candidate of two curves, in ground axes.
 
     Attributes
     ----------
     point, tangent : ndarray, shape (3,)
-        In the middle between both, m; the unit tangent of the second one there.
+        Midpoint between the curves, m, and unit tangent of the second curve.
     apart : float
-        Distance of the two, m.
+        Distance between the curves, m.
     size : float
-        Of the smaller curve, m.
+        Size of the smaller curve, m.
     """
 
     point: np.ndarray
@@ -33,10 +33,10 @@ class Touching:
 
 
 def first_touch(first: LaidCurve, second: LaidCurve, near: tuple[np.ndarray | None, np.ndarray | None]) -> Touching:
-    """Where two curves touch, or nearly do.
+    """Return the contact point of two curves, or the point where they nearly touch.
 
-    Points of the two are sought that are near each other and have parallel tangents: drawn curves may be apart, or cross.  Where a
-    point `near` each curve is given, m, the search starts at the curve's nearest to that.
+    Contact needs coincident points and parallel tangents; as drawn, curves may be apart or cross. If a point `near` a
+    curve is given, m, the search starts at the nearest point of that curve.
     """
     from scipy.optimize import least_squares
 
@@ -58,7 +58,7 @@ def first_touch(first: LaidCurve, second: LaidCurve, near: tuple[np.ndarray | No
 
 
 class _Sampled:
-    """Points and unit tangents of a curve over x, or over the angle of a closed one, in ground axes at the start."""
+    """Points and unit tangents of a curve over x, or over the angle of a closed curve, in ground axes at the start."""
 
     def __init__(self, curve: LaidCurve) -> None:
         from scipy.interpolate import CubicSpline
@@ -69,7 +69,7 @@ class _Sampled:
         self.size = float(np.max(np.ptp(self(self.parameters)[0], axis=0)))
 
     def parameters_near(self, point: np.ndarray | None) -> np.ndarray:
-        """All parameters, or the one of the sample that is nearest to a point."""
+        """Return all parameters, or that of the sample nearest to a point."""
         if point is None:
             return self.parameters
         return self.parameters[[int(np.argmin(np.linalg.norm(self(self.parameters)[0] - point, axis=1)))]]

@@ -1,4 +1,4 @@
-"""Forces as forces of a scene."""
+"""Conversion of forces."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from ..statements.forces import SingleForce, VectorForce
 from .mechanism import Mechanism, Place
 
 TORQUE = "_torque"
-"""Behind the name of a GFORCE: its torque, which is an element of its own in the scene."""
+"""Name suffix for the torque of a GFORCE, a separate element of the scene."""
 
 
 class Forces:
-    """Makes the scene's forces.
+    """Builder of the scene's forces.
 
     Parameters
     ----------
@@ -34,7 +34,7 @@ class Forces:
         self._units = mechanism.dataset.units
 
     def all(self) -> dict[str, Any]:
-        """By name, in the order of the statements' kinds."""
+        """Return the forces by name, ordered by kind of statement."""
         return of_each(self._mechanism.dataset.forces, self._made)
 
     def _ends(self, force: SingleForce | SpringDamper | Elastic | Beam) -> tuple[Place, Place]:
@@ -46,7 +46,7 @@ class Forces:
 
     @_made.register
     def _single(self, force: SingleForce) -> dict[str, Any]:
-        """A force along a line that drives the markers apart; a torque about the z axis of J; or one of them on I alone."""
+        """Return a line force that pushes the markers apart, a torque about z of J, or an action-only force on I."""
         i, j = self._ends(force)
         linear = force.sort == TRANSLATIONAL
         unit = self._units.of(force=1, length=0 if linear else 1)
@@ -61,7 +61,7 @@ class Forces:
 
     @_made.register
     def _vector(self, force: VectorForce) -> dict[str, Any]:
-        """Components along the axes of RM, at I, and the opposite on the part of JFLOAT at the same point."""
+        """Return force and torque at I in the axes of RM, with the reaction on the part of JFLOAT."""
         i = self._mechanism.place(force.i, force, "I")
         other = self._mechanism.place(force.floating, force, "JFLOAT")
         frame = {} if force.axes is None else {"frame": self._mechanism.place(force.axes, force, "RM").reference}
@@ -79,7 +79,7 @@ class Forces:
 
     @_made.register
     def _spring(self, spring: SpringDamper) -> dict[str, Any]:
-        """Adams counts a force that drives the markers apart, here a tension or a moment that brings them together."""
+        """Return a spring-damper. Adams' preload pushes the markers apart; here it is a tension."""
         i, j = self._ends(spring)
         linear = spring.sort == TRANSLATIONAL
         free, kind = ("free_length", "spring_damper") if linear else ("free_angle", "torsion_spring")
@@ -110,7 +110,7 @@ class Forces:
         return {force.name: made}
 
     def _without_potential(self, force: Elastic) -> dict[str, Any]:
-        """A field whose matrices are not symmetric: components by formula, at marker I along the axes of J."""
+        """Return a field with unsymmetric matrices as formula components at marker I, in the axes of J."""
         i, j = self._ends(force)
         ends = f"({force.i},{force.j},{force.j})"
         length, time = self._units.length, self._units.time

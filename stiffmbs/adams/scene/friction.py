@@ -1,8 +1,8 @@
-"""Friction of joints as forces and torques by formulas.  MSC Adams/Solver, FRICTION statement.
+"""Joint friction as formula forces and torques.  MSC Adams/Solver, FRICTION statement.
 
-The normal force follows from the reaction of the joint.  The coefficient of friction is a STEP5 function of the sliding speed: from
-zero to the static coefficient at the stiction velocity, then to the dynamic coefficient at a multiple of it.  Joints creep below
-the stiction velocity; Adams' MAX_STICTION_DEFORMATION has no counterpart.
+The normal force follows from the joint reaction. The friction coefficient is a STEP5 function of the sliding speed: it
+rises from zero to the static coefficient at the stiction velocity, then falls to the dynamic coefficient. Joints creep
+below the stiction velocity; Adams' MAX_STICTION_DEFORMATION has no counterpart.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ from .mechanism import Mechanism, Place
 AXES = "XYZ"
 TORQUE = "_torque"
 SLOW = 1e-6
-"""Part of the stiction velocity that keeps the direction of sliding from being undefined at rest."""
+"""Fraction of the stiction velocity that regularises the sliding direction at rest."""
 
 
 def frictions(mechanism: Mechanism, translation: Translation) -> dict[str, Any]:
-    """The forces and torques of all frictions by name; none where commands have deactivated the joint."""
+    """Return the friction forces and torques by name, except those of deactivated joints."""
     return of_each(
         _acting(mechanism),
         lambda friction: _Rubbing(friction, _joint(friction, mechanism), mechanism, translation).made(),
@@ -35,7 +35,7 @@ def frictions(mechanism: Mechanism, translation: Translation) -> dict[str, Any]:
 
 
 def notes(mechanism: Mechanism) -> Iterator[str]:
-    """What Adams' friction has in addition, in one sentence."""
+    """Yield one sentence for each difference from Adams' friction."""
     labels = ", ".join(friction.label for friction in _acting(mechanism))
     if labels:
         yield (
@@ -67,11 +67,11 @@ def _joint(friction: JointFriction, mechanism: Mechanism) -> Joint:
 
 _KINDS = ("REVOLUTE", "TRANSLATIONAL", "CYLINDRICAL", "SPHERICAL", "UNIVERSAL", "HOOKE")
 ARMS = {"UNIVERSAL": "ZZ", "HOOKE": "XY"}
-"""The axes of markers I and J along which the arms of a cross are."""
+"""Axes of markers I and J along the arms of a universal joint's cross."""
 
 
 class _Rubbing:
-    """The law of one joint, in the language of the dataset."""
+    """Friction law of one joint as Adams function expressions."""
 
     def __init__(self, friction: JointFriction, joint: Joint, mechanism: Mechanism, translation: Translation) -> None:
         self._f, self._joint, self._mechanism, self._translation = friction, joint, mechanism, translation
@@ -80,7 +80,7 @@ class _Rubbing:
         self._ends = {"i": i.reference, "j": j.body}
 
     def made(self) -> dict[str, Any]:
-        """The elements of the scene."""
+        """Return the elements of the scene."""
         makers = {
             "REVOLUTE": self._pin,
             "TRANSLATIONAL": self._guide,
@@ -95,7 +95,7 @@ class _Rubbing:
         return self._torque([None, None, self._about("Z", self._joint.j)], self._f.name)
 
     def _cross(self) -> dict[str, Any]:
-        """Each arm is a pin in one of the two parts; what the cross weighs is no matter, so that both torques are between the parts."""
+        """Return the torque of each arm as a pin, between the two parts: the mass of the cross is ignored."""
         found: dict[str, Any] = {}
         ends = zip(("I", "J"), ARMS[self._joint.kind], (self._joint.i, self._joint.j), self._places, strict=True)
         for end, arm, marker, place in ends:
@@ -105,7 +105,7 @@ class _Rubbing:
         return found
 
     def _about(self, axis: str, marker: int) -> str:
-        """The torque that brakes a pin along an axis of a marker."""
+        """Return the friction torque of a pin along an axis of a marker."""
         f = self._f
         load = self._sum(
             (
@@ -155,11 +155,11 @@ class _Rubbing:
         return repr(size if "PRELOAD" in self._f.inputs else 0.0)
 
     def _coefficient(self, speed: str) -> str:
-        """mu over a speed with its sign."""
+        """Return mu as a function of a signed speed."""
         return self._held(speed) + self._fallen(speed, "-") + self._fallen(f"-({speed})", "+")
 
     def _of_magnitude(self, speed: str) -> str:
-        """mu over a speed that is never negative."""
+        """Return mu as a function of a non-negative speed."""
         return self._held(speed) + self._fallen(speed, "-")
 
     def _held(self, speed: str) -> str:
@@ -167,7 +167,7 @@ class _Rubbing:
         return f"STEP5({speed}, {-f.stiction_velocity!r}, {-f.static!r}, {f.stiction_velocity!r}, {f.static!r})"
 
     def _fallen(self, speed: str, sign: str) -> str:
-        """What the coefficient loses as the speed goes on from that of stiction."""
+        """Return the drop from the static to the dynamic coefficient with increasing speed."""
         f = self._f
         less = f.static - f.dynamic
         return f" {sign} STEP5({speed}, {f.stiction_velocity!r}, 0, {f.sliding_velocity!r}, {less!r})" if less else ""
@@ -205,7 +205,7 @@ class _Rubbing:
         return self._root(letter, AXES, self._joint.j)
 
     def _across(self, letter: str, axis: str = "Z", along: int | None = None) -> str:
-        """The load across an axis of a marker, of J where none is named."""
+        """Return the load normal to an axis of a marker (default J)."""
         return self._root(letter, AXES.replace(axis, ""), along or self._joint.j)
 
     def _root(self, letter: str, axes: str, along: int) -> str:

@@ -1,9 +1,8 @@
-"""Gears: two parts on one carrier whose teeth meet at a marker of the carrier and push along its z axis.
+"""Gears: two parts on one carrier with tooth contact at a carrier marker, along its z axis.
 
-The teeth move alike along that axis; what their force does to either part is that of a force at the contact, which the
-bearings feel.  So the equation is the difference of both parts' displacement there, as their carrier sees it, and it
-contains what the joints hold besides what they leave free: that part of it stays zero, but has its share of the
-reaction.  MSC Adams/Solver, GEAR statement.
+The teeth have equal displacement along that axis. Their force acts on both parts at the contact point and loads the
+bearings. The constraint is the difference of both displacements relative to the carrier. It includes coordinates that
+the joints hold, whose contributions remain zero but carry part of the reaction.  MSC Adams/Solver, GEAR statement.
 """
 
 from __future__ import annotations
@@ -20,16 +19,16 @@ from .mechanism import Mechanism, Place
 from .relations import coupled_joint
 
 HELD = 1e-9
-"""How small the motion of the teeth that a joint allows is taken for none: of its arm, or of 1."""
+"""Relative threshold below which a joint's tooth motion is zero: of the arm, or of 1."""
 
 
 def gears(mechanism: Mechanism) -> dict[str, Any]:
-    """The scene's gears by name.
+    """Return the scene's gears by name.
 
     Raises
     ------
     DatasetFault
-        When a joint does not join the carrier, or does not let the teeth move.
+        If a joint is not on the carrier, or does not let the teeth move.
     """
     return {
         gear.name: meshed(gear, gear.joints, mechanism.place(gear.contact, gear, "CV"), mechanism)
@@ -38,7 +37,7 @@ def gears(mechanism: Mechanism) -> dict[str, Any]:
 
 
 def meshed(user: Numbered, joints: tuple[int, int], contact: Place, mechanism: Mechanism) -> dict[str, Any]:
-    """The equation of the teeth of two parts that meet at a marker of the carrier, reported on the part of the first joint.
+    """Return the tooth constraint of two parts that mesh at a carrier marker; reported on the first joint's part.
 
     Raises
     ------
@@ -57,9 +56,9 @@ def meshed(user: Numbered, joints: tuple[int, int], contact: Place, mechanism: M
 
 
 class _Wheel:
-    """A part with teeth, seen from the carrier: `own` is its marker of the joint, `seat` that of the carrier.
+    """Gear relative to its carrier: `own` is the joint marker on the gear, `seat` that on the carrier.
 
-    The teeth at r from `own` move by v + w x r, along the contact's z axis by v z + w (r x z), in the axes of `seat`.
+    A tooth at r from `own` has the velocity v + w x r; along the contact's z axis v z + w (r x z), in axes of `seat`.
     """
 
     def __init__(self, user: Numbered, ident: int, contact: Place, mechanism: Mechanism) -> None:
@@ -87,7 +86,7 @@ class _Wheel:
             )
 
     def displacement(self) -> ast.expr:
-        """The teeth's way along the contact's z axis, to first order in what the joint holds."""
+        """Return the tooth displacement along the contact's z axis, to first order in coordinates held by the joint."""
         own, seat, contact = self.own.reference, self.seat.reference, self._contact.reference
         levers = self._levers()
         terms = [product(levers[2], measured("az", own, seat, ""))] if levers[2] is not None else []
@@ -98,7 +97,7 @@ class _Wheel:
         return total([measured("dz", own, seat, contact), *terms])
 
     def _levers(self) -> tuple[ast.expr | None, ...]:
-        """Components of r x z, None for those that are zero; sliding changes r along the z axis of the joint."""
+        """Return the components of r x z, None for zeros; sliding changes r along the joint's z axis."""
         lever, (a, b, _) = np.cross(self._arm, self._along), self._along
         if not self._slides:
             return tuple(number(part) if abs(part) > self._massless else None for part in lever)
@@ -112,7 +111,7 @@ class _Wheel:
         return (*changed, number(lever[2]) if abs(lever[2]) > self._massless else None)
 
     def initial(self) -> float:
-        """The displacement at the initial pose."""
+        """Return the displacement at the initial pose."""
         slid = self.own.initial.point - self.seat.initial.point
         levers = np.cross(self._arm, self._along)
         angle = initial_displacement(ROTATIONAL, self.own, self.seat)

@@ -1,9 +1,8 @@
-"""Initial conditions that joints state: they set parts in motion, and hold at the start where parts are drawn otherwise.
+"""Initial conditions of joints.  MSC Adams/Solver, JOINT statement, IC, ICROT, ICTRAN.
 
-A joint's initial velocity counts for a part that states none of its own.  A part that nothing tells of is taken to be at
-rest, and follows those that are told of when the mechanism is assembled.  Where displacements or velocities are not those
-of the parts, all that joints state holds at the start alone, and assembly moves the parts.  MSC Adams/Solver, JOINT
-statement, IC, ICROT, ICTRAN.
+A joint's initial velocity applies to a part without one of its own. A part without any information is assumed at rest
+and follows the others at assembly. If displacements or velocities differ from those of the parts, all joint initial
+conditions become constraints at the start only, and assembly moves the parts.
 """
 
 from __future__ import annotations
@@ -23,14 +22,14 @@ from .coordinates import coordinate, initial_displacement
 from .mechanism import Mechanism, Place
 
 CONSISTENT = 1e-6
-"""How far what a joint and its parts state may be apart, in m, rad, and per s."""
+"""Tolerance between the initial conditions of a joint and of its parts, in m, rad, and per s."""
 Key = tuple[bool, int]
 Twist = tuple[np.ndarray, np.ndarray]
 """Velocity of the centre of mass and angular velocity of a part, in ground axes."""
 
 
 def set_in_motion(mechanism: Mechanism) -> Dataset:
-    """The dataset with the velocities that joints state as those of parts, as far as these state none."""
+    """Return the dataset with joint initial velocities assigned to parts without velocities."""
     dataset = mechanism.dataset
     known = {_key(part): _stated(mechanism, part) for part in mechanism.parts.values() if _states(part)}
     told = set(known)
@@ -38,7 +37,7 @@ def set_in_motion(mechanism: Mechanism) -> Dataset:
     while waiting:
         joint = next((joint for joint in waiting if any(key in known for key in _joined(mechanism, joint))), waiting[0])
         waiting.remove(joint)
-        if not any(key in known for key in _joined(mechanism, joint)):  # at rest until it follows
+        if not any(key in known for key in _joined(mechanism, joint)):  # assumed at rest
             at_rest = _joined(mechanism, joint)[1]
             known[at_rest] = np.zeros(3), np.zeros(3)
             told.add(at_rest)
@@ -52,7 +51,7 @@ def set_in_motion(mechanism: Mechanism) -> Dataset:
 
 
 def at_start(mechanism: Mechanism) -> dict[str, Any]:
-    """The drives that hold at the start alone, by name: all initial conditions of joints where one is not that of the parts."""
+    """Return the joint initial conditions as drives at the start only, by name; empty if the parts satisfy them."""
     stating = _stating(mechanism.dataset)
     if not any(_differs(mechanism, joint) for joint in stating):
         return {}
@@ -68,12 +67,12 @@ def at_start(mechanism: Mechanism) -> dict[str, Any]:
 
 
 def _stating(dataset: Dataset) -> list[Joint]:
-    """Joints with initial conditions that no motion overrules."""
+    """Return the joints with initial conditions and without a motion."""
     return [joint for joint in dataset.joints.values() if joint.start and joint.ident not in _driven(dataset)]
 
 
 def _differs(mechanism: Mechanism, joint: Joint) -> bool:
-    """Whether a joint's initial conditions are not those of its parts."""
+    """Return True if a joint's initial conditions differ from those of its parts."""
     i, j = mechanism.place(joint.i, joint, "I"), mechanism.place(joint.j, joint, "J")
     known = {key: _stated(mechanism, mechanism.parts[key]) for key in _joined(mechanism, joint)}
     pairs = []
@@ -84,7 +83,7 @@ def _differs(mechanism: Mechanism, joint: Joint) -> bool:
 
 
 def _relative(mechanism: Mechanism, joint: Joint, sort: str, known: dict[Key, Twist]) -> float:
-    """The velocity of a joint by those of its parts."""
+    """Return the velocity of a joint from the velocities of its parts."""
     i, j = mechanism.place(joint.i, joint, "I"), mechanism.place(joint.j, joint, "J")
     one, other = _joined(mechanism, joint)
     if sort == ROTATIONAL:
@@ -95,7 +94,7 @@ def _relative(mechanism: Mechanism, joint: Joint, sort: str, known: dict[Key, Tw
 
 
 def notes(dataset: Dataset) -> Iterator[str]:
-    """Which initial conditions have no effect, a sentence."""
+    """Yield a sentence that lists the initial conditions without effect."""
     left_out = [joint.label for joint in dataset.joints.values() if joint.start and joint.ident in _driven(dataset)]
     if left_out:
         yield f"initial conditions of {', '.join(left_out)} are left out: a MOTION says where they start"
@@ -114,7 +113,7 @@ def _states(part: Part) -> bool:
 
 
 def _stated(mechanism: Mechanism, part: Part) -> Twist:
-    """What a part states of its motion, zero for what it does not."""
+    """Return the stated velocities of a part, zero if unspecified."""
     initial = mechanism.center(part).within(part.frame)
     return (
         in_ground(mechanism, part, part.velocity, part.velocity_marker, IDENTITY),
@@ -123,14 +122,14 @@ def _stated(mechanism: Mechanism, part: Part) -> Twist:
 
 
 def _joined(mechanism: Mechanism, joint: Joint) -> tuple[Key, Key]:
-    """The parts of markers I and J."""
+    """Return the parts of markers I and J."""
     mechanism.place(joint.i, joint, "I"), mechanism.place(joint.j, joint, "J")
     i, j = (mechanism.part_of(mechanism.dataset.markers[ident]) for ident in (joint.i, joint.j))
     return _key(i), _key(j)
 
 
 def _move(mechanism: Mechanism, joint: Joint, known: dict[Key, Twist]) -> None:
-    """Add the motion of one part of a joint to those that are known, if it is not among them."""
+    """Add the motion of the second part of a joint if only one is known."""
     i, j = mechanism.place(joint.i, joint, "I"), mechanism.place(joint.j, joint, "J")
     one, other = _joined(mechanism, joint)
     axis = j.initial.axes[:, 2]
@@ -154,18 +153,18 @@ def _center(mechanism: Mechanism, key: Key) -> np.ndarray:
 
 
 def _at(mechanism: Mechanism, key: Key, twist: Twist, place: Place) -> np.ndarray:
-    """Velocity of a part where a marker is, m/s."""
+    """Return the velocity of a part at a marker, m/s."""
     velocity, omega = twist
     return np.asarray(velocity + np.cross(omega, place.initial.point - _center(mechanism, key)))
 
 
 def _of_center(mechanism: Mechanism, key: Key, velocity: np.ndarray, omega: np.ndarray, place: Place) -> Twist:
-    """The motion of a part by the velocity of its marker."""
+    """Return the motion of a part from the velocity of its marker."""
     return velocity + np.cross(omega, _center(mechanism, key) - place.initial.point), omega
 
 
 def _moving(mechanism: Mechanism, part: Part, twist: Twist) -> Part:
-    """The part with a velocity in ground axes, and an angular velocity in those of its centre of mass."""
+    """Return the part with a velocity in ground axes and an angular velocity in centre-of-mass marker axes."""
     velocity, omega = twist[0], mechanism.center(part).within(part.frame).axes.T @ twist[1]
     stated: list[Vector] = [(float(v[0]), float(v[1]), float(v[2])) for v in (velocity, omega)]
     return replace(part, velocity=stated[0], omega=stated[1], velocity_marker=None, omega_marker=None)
@@ -174,7 +173,7 @@ def _moving(mechanism: Mechanism, part: Part, twist: Twist) -> Part:
 def in_ground(
     mechanism: Mechanism, part: Part, rates: Vector | None, marker: int | None, axes: np.ndarray
 ) -> np.ndarray:
-    """Velocities that are given in a marker's axes (or in `axes`, without one) in ground axes; zero without any."""
+    """Return rates given in marker axes (without a marker, in `axes`) in ground axes; zero if not given."""
     if rates is None:
         return np.zeros(3)
     return (axes if marker is None else mechanism.place(marker, part, "VM or WM").initial.axes) @ np.array(rates)

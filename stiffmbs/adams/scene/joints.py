@@ -1,4 +1,4 @@
-"""Joints, primitives and general constraints as joints of a scene."""
+"""Conversion of joints, primitives and general constraints."""
 
 from __future__ import annotations
 
@@ -33,14 +33,14 @@ KINDS = {
     "PARALLEL_AXES": "parallel",
     "PERPENDICULAR": "perpendicular",
 }
-"""Joints that take their two markers as they are."""
+"""Joints that use their two markers unchanged."""
 Z_ALONG_X = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
-"""Axes whose z is the x axis of those that they are given in."""
+"""Axes with z along the x axis of the axes they are given in."""
 Z_ALONG_Y = Z_ALONG_X.T
 
 
 def joints(mechanism: Mechanism, translation: Translation) -> dict[str, Any]:
-    """The joints of the scene by name, without those that motions and relations make."""
+    """Return the joints of the scene by name, without motions and relations."""
     dataset = mechanism.dataset
     pairs = (*dataset.joints.values(), *dataset.primitives.values())
     return of_each(pairs, lambda joint: {joint.name: _joint(joint, mechanism)}) | of_each(
@@ -49,7 +49,7 @@ def joints(mechanism: Mechanism, translation: Translation) -> dict[str, Any]:
 
 
 def held(mechanism: Mechanism) -> dict[str, Any]:
-    """Joints that keep point masses from turning."""
+    """Return orientation joints that hold point masses."""
     return {
         f"{mechanism.body_name(part)}_axes": {
             "type": "orientation", "i": mechanism.body_name(part), "j": _on_ground(mechanism.center(part).within(part.frame)),
@@ -78,7 +78,7 @@ def _joint(joint: Joint, mechanism: Mechanism) -> dict[str, Any]:
 
 
 def turned(place: Place, axes: np.ndarray) -> dict[str, Any]:
-    """A marker with other axes, which are given in its own."""
+    """Return a marker with other axes, given in its own."""
     return {
         "body": place.body, "point": vector(place.on_body.point), "orientation": quaternion(place.on_body.axes @ axes),
     }  # fmt: skip
@@ -102,7 +102,7 @@ def _callee(node: ast.AST) -> Iterator[ast.Name]:
 
 
 def rod(constraint: GeneralConstraint) -> tuple[int, int, float] | None:
-    """The markers of a distance that stays as long as a number says, and that number; None for anything else."""
+    """Return the two markers and the length of a constant-distance constraint; None for other constraints."""
     match constraint.function.tree:
         case ast.BinOp(
             ast.Call(ast.Name("DM"), [ast.Constant(int() as a), ast.Constant(int() as b)]),
@@ -114,7 +114,7 @@ def rod(constraint: GeneralConstraint) -> tuple[int, int, float] | None:
 
 
 def markers_of(constraint: GeneralConstraint, mechanism: Mechanism) -> tuple[int, ...]:
-    """The markers that a general constraint's function names: the one that its reaction is asked for on first."""
+    """Return the markers in a general constraint's function; the marker of its reaction comes first."""
     named = [
         argument.value
         for node in ast.walk(constraint.function.tree)

@@ -1,7 +1,7 @@
-"""Curves of a dataset as a scene knows them: y and z over x, or radius and height over the angle of a closed one.
+"""Curves of a dataset as fitted splines: y and z over x, or radius and height over the angle of a closed curve.
 
-The curve goes through the points of its MATRIX as a cubic spline.  Adams' goes through the same points by its own parameter, so that
-the two differ between them.
+The spline is cubic in this argument and passes through the points of the MATRIX. Adams uses another parameter, so the
+two curves differ between the points.
 """
 
 from __future__ import annotations
@@ -17,25 +17,25 @@ from ..statements.geometry import IDENTITY, Frame
 from .mechanism import Mechanism, Place
 
 FLAT = 1e-6
-"""Part of a curve's size by which its points may leave a plane."""
+"""Largest deviation from a plane of a flat curve, as a fraction of its size."""
 FEWEST = 4
 
 
 @dataclass(frozen=True, eq=False)
 class LaidCurve:
-    """A curve on a body.
+    """Curve on a body.
 
     Attributes
     ----------
     owner : Place
         The marker RM in whose axes the points are given.
     frame : Frame
-        Axes in those of RM, x and y in the curve's plane.
+        Axes of the curve in those of RM, x and y in the curve's plane.
     closed : bool
     arguments, values : ndarray
         x and y, or angle and radius, of the points.
     off : ndarray or None
-        Their distances from the plane, with a sign; None for a flat curve.
+        Signed distances of the points from the plane; None for a flat curve.
     """
 
     owner: Place
@@ -47,28 +47,28 @@ class LaidCurve:
 
     @property
     def marker(self) -> dict[str, Any]:
-        """The marker of the scene in whose axes the curve is given."""
+        """Scene marker whose axes define the curve."""
         on_body = self.frame.within(self.owner.on_body)
         return {"body": self.owner.body, "point": vector(on_body.point), "orientation": quaternion(on_body.axes)}
 
     @property
     def initial(self) -> Frame:
-        """The axes of the curve in ground axes, at the start."""
+        """Axes of the curve in ground axes at the start."""
         return self.frame.within(self.owner.initial)
 
     @property
     def size(self) -> float:
-        """From the first point to the last, or the largest diameter of a closed one, m."""
+        """Distance from the first point to the last, or the largest diameter of a closed curve, m."""
         return float(2 * np.max(self.values) if self.closed else np.ptp(self.arguments))
 
     @property
     def ends(self) -> str:
-        """The end condition of the spline."""
+        """End condition of the spline."""
         return "periodic" if self.closed else "not-a-knot"
 
     @property
     def law(self) -> dict[str, Any]:
-        """The fields of the joint that say the curve."""
+        """Joint fields that define the curve."""
         value, off = ("radius", "height") if self.closed else ("y", "z")
         found = {value: self._table(self.values)}
         return found if self.off is None else found | {off: self._table(self.off)}
@@ -79,12 +79,12 @@ class LaidCurve:
 
 
 def laid_curve(user: Numbered, number: int, owner: Place, mechanism: Mechanism) -> LaidCurve:
-    """The curve that a constraint names, in the axes of a marker.
+    """Return the curve of a constraint in the axes of a marker.
 
     Raises
     ------
     DatasetFault
-        When there is none of that number, or a scene cannot say it.
+        If the curve does not exist, or cannot be represented as a spline over x or the angle.
     """
     points, closed = _points(user, number, mechanism)
     frame = _plane(points, closed)
@@ -95,7 +95,7 @@ def laid_curve(user: Numbered, number: int, owner: Place, mechanism: Mechanism) 
 
 
 def _points(user: Numbered, number: int, mechanism: Mechanism) -> tuple[np.ndarray, bool]:
-    """The points of a curve in the axes of marker RM, m; the last of a closed one is the first again."""
+    """Return the points of a curve in the axes of marker RM, m; a closed curve repeats its first point at the end."""
     statements = mechanism.dataset.statements
     curve = statements.get("CURVE", {}).get(number)
     if curve is None:
@@ -118,7 +118,7 @@ def _points(user: Numbered, number: int, mechanism: Mechanism) -> tuple[np.ndarr
 
 
 def _plane(points: np.ndarray, closed: bool) -> Frame:
-    """Axes whose x and y are in the curve's plane: about its middle for a closed one, else from its first point to its last."""
+    """Return axes with x and y in the curve's plane, at the centre of a closed curve or at the first point."""
     own = points[:-1] if closed else points
     middle = own.mean(axis=0)
     _, sizes, ways = np.linalg.svd(own - middle)
@@ -134,14 +134,14 @@ def _plane(points: np.ndarray, closed: bool) -> Frame:
 
 
 def _across(x: np.ndarray) -> np.ndarray:
-    """A direction across another one."""
+    """Return a unit vector normal to a direction."""
     across = np.cross(x, IDENTITY[int(np.argmin(np.abs(x)))])
     found: np.ndarray = across / np.linalg.norm(across)
     return found
 
 
 def _across_its_way(user: Numbered, seen: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """x, y and z."""
+    """Return x, y and z of the points."""
     if np.any(np.diff(seen[:, 0]) <= 0):
         raise user.fault(
             "found an open curve that turns back on the way from its first point to its last, expected none"
@@ -150,7 +150,7 @@ def _across_its_way(user: Numbered, seen: np.ndarray) -> tuple[np.ndarray, np.nd
 
 
 def _round(user: Numbered, seen: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The angle, anticlockwise, over one turn, the distance from the axis through the middle, and z."""
+    """Return the angle over one anticlockwise turn, the radius and z."""
     angles = np.unwrap(np.arctan2(seen[:, 1], seen[:, 0]))
     radii, off = np.hypot(seen[:, 0], seen[:, 1]), seen[:, 2].copy()
     if angles[-1] < angles[0]:

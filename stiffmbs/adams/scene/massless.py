@@ -1,4 +1,4 @@
-"""Parts without mass, which Adams takes where joints leave them nothing to do with it."""
+"""Parts without mass, which Adams allows if joints make their mass irrelevant."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from ..statements.bodies import Part
 
 
 def lightest(parts: Iterable[Part]) -> float:
-    """The least mass of any part that has one; zero where none has."""
+    """Return the smallest non-zero mass of the parts; zero if none has mass."""
     return min((part.mass for part in parts if part.mass > 0), default=0.0)
 
 
 def weighed(part: Part, least: float) -> Part:
-    """The part as it is, or with a slight mass if it has none."""
+    """Return the part, with a small mass if it has none."""
     return part if part.ground or part.mass != 0 else replace(part, mass=MASSLESS * least)

@@ -1,7 +1,7 @@
-"""Parts and markers as bodies and markers of a scene: names, own axes, where everything is at the start.
+"""Parts and markers as bodies and markers of a scene: names, axes and initial poses.
 
-A body's origin and axes are those of its centre-of-mass marker, which Adams' requests, moments of inertia and initial
-angular velocities refer to; the part's own axes do not occur in the scene.
+A body's origin and axes are those of its centre-of-mass marker, to which Adams' requests, moments of inertia and
+initial angular velocities refer. The part's own axes do not occur in the scene.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from .massless import lightest, weighed
 
 
 class Named(Protocol):
-    """What is named where it is wrong."""
+    """Statement named in error messages."""
 
     @property
     def line(self) -> int: ...
@@ -38,14 +38,14 @@ ORIGIN = Frame(np.zeros(3), IDENTITY)
 
 @dataclass(frozen=True)
 class Place:
-    """A marker of the scene.
+    """Marker of the scene.
 
     Attributes
     ----------
     body : str
         The body that carries it, or ground.
     name : str
-        Its own name on that body.
+        Its name on that body.
     on_body : Frame
         In the body's axes.
     initial : Frame
@@ -59,12 +59,12 @@ class Place:
 
     @property
     def reference(self) -> str:
-        """As the scene writes it."""
+        """Reference in the scene."""
         return f"{self.body}.{self.name}" if self.name else self.body
 
 
 class Mechanism:
-    """A dataset's parts and markers, looked up by number.
+    """Parts and markers of a dataset by number.
 
     Parameters
     ----------
@@ -73,20 +73,20 @@ class Mechanism:
     Attributes
     ----------
     least : float
-        Mass of the lightest part that has any, kg.
+        Smallest non-zero mass of the parts, kg.
     further : mapping of str to Place
-        Markers that the dataset does not have, by their references; see `tip`.
+        Auxiliary markers by reference; see `tip`.
     tables : mapping of str to table
-        Of the scene, by name: splines that functions have called so far, in the dataset's units.
+        Splines used by functions so far, in the dataset's units.
     variables : mapping of str to str
-        Of the scene, by name: variables that functions have used so far, in the dataset's units.
+        Variables used by functions so far, in the dataset's units.
     inputs : mapping of str to float
-        Of the scene, by name: what another program may give, or a sensor sets, in the dataset's units.
+        Inputs set by another program or a sensor, in the dataset's units.
 
     Raises
     ------
     DatasetFault
-        When there is no ground part or no other, a marker is on a part that is not there, or a mass is below zero.
+        If there are several ground parts, a marker is on a missing part, or a mass or CM marker is invalid.
     """
 
     def __init__(self, dataset: Dataset) -> None:
@@ -121,14 +121,14 @@ class Mechanism:
                 raise DatasetFault(part.line, part.label, f"found {name} = {ident}, expected a marker of this part")
 
     def tip(self, place: Place, axis: str = "z") -> str:
-        """A marker at the end of an axis of another one, 1 m from it, as the scene writes it.
+        """Return the reference of a marker 1 m along an axis of another one.
 
-        With it formulas measure that axis: ``dx(tip, marker, other)`` is its component along the x axis of the other.
+        Formulas use it to measure that axis: ``dx(tip, marker, other)`` is its component along the x axis of the other.
         """
         return self.moved(place, f"{place.name}_{axis}", place.initial.axes[:, "xyz".index(axis)]).reference
 
     def moved(self, place: Place, name: str, way: np.ndarray) -> Place:
-        """A further marker of the scene: another one, moved on its body by a way in ground axes (m) at the start."""
+        """Add a marker: another one translated on its body by a vector in ground axes (m) at the start."""
         seen = place.initial.axes.T @ way
         found = Place(
             place.body, name, *(Frame(seen, IDENTITY).within(frame) for frame in (place.on_body, place.initial))
@@ -138,33 +138,33 @@ class Mechanism:
 
     @cached_property
     def moving(self) -> tuple[Part, ...]:
-        """All parts but ground."""
+        """All parts except ground."""
         return tuple(part for part in self.parts.values() if not part.ground)
 
     @cached_property
     def moves_at_start(self) -> bool:
-        """Whether any part states a velocity."""
+        """True if any part states a velocity."""
         return any(part.velocity is not None or part.omega is not None for part in self.moving)
 
     def part_of(self, marker: Marker) -> Part:
-        """The part that carries a marker."""
+        """Return the part that carries a marker."""
         return self.parts[marker.on_point_mass, marker.owner]
 
     @staticmethod
     def body_name(part: Part) -> str:
-        """A part's name in the scene."""
+        """Return a part's name in the scene."""
         if part.ground:
             return GROUND
         return f"{'POINT_MASS' if part.point else 'PART'}_{part.ident}"
 
     def center(self, part: Part) -> Frame:
-        """A part's centre-of-mass marker in the part's own axes; of ground, its origin in ground axes."""
+        """Return a part's centre-of-mass marker in the part's axes; the origin if it has none."""
         if part.center is None:
             return ORIGIN
         return self.dataset.markers[part.center].frame
 
     def notes(self) -> Iterator[str]:
-        """What the parts say that has no place in a scene, a sentence each."""
+        """Yield one sentence for each ignored or replaced property of parts."""
         weightless = [part.label for part in self.moving if part.mass < self.least]
         if weightless:
             yield (
@@ -176,12 +176,12 @@ class Mechanism:
             yield f"EXACT of {', '.join(exact)} is left out: assembly may move every part"
 
     def place(self, ident: int, user: Named, name: str = "I") -> Place:
-        """The marker that a statement names.
+        """Return a marker that a statement refers to.
 
         Raises
         ------
         DatasetFault
-            When there is none of that number.
+            If there is no such marker.
         """
         marker = self.dataset.markers.get(ident)
         if marker is None:
@@ -189,7 +189,7 @@ class Mechanism:
         return self.placed(marker)
 
     def placed(self, marker: Marker) -> Place:
-        """A marker on its body and in ground axes.  A floating one has no place of its own: it stands for its body."""
+        """Return a marker on its body and in ground axes; a floating marker is placed at the body's origin."""
         part = self.part_of(marker)
         center = self.center(part)
         if part.ground:

@@ -1,4 +1,4 @@
-"""Motions as drives of a scene."""
+"""Conversion of motions to drives."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ LENGTHS = ("X", "Y", "Z")
 
 
 def motions(mechanism: Mechanism, translation: Translation) -> dict[str, Any]:
-    """The scene's drives by name."""
+    """Return the scene's drives by name."""
 
     def made(motion: Motion) -> dict[str, Any]:
         of_pair = _between_markers if motion.joint is None else _of_joint
@@ -54,7 +54,7 @@ def _sort(motion: Motion, joint: Joint) -> str:
 
 
 def _between_markers(motion: Motion, mechanism: Mechanism, translation: Translation) -> dict[str, Any]:
-    """A component between two markers, along the axes of J or by the angles of three turns about x, y and z."""
+    """Return a drive between two markers: a component in the axes of J, or a body-fixed x-y-z angle."""
     assert motion.i is not None and motion.j is not None and motion.component is not None
     i, j = mechanism.place(motion.i, motion, "I"), mechanism.place(motion.j, motion, "J")
     relative = i.initial.seen_from(j.initial)

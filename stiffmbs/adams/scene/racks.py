@@ -1,8 +1,8 @@
-"""Racks and pinions: one motion where the pitch line of the rack touches the pinion.
+"""Rack and pinion: equal velocity where the pitch line of the rack touches the pinion.
 
-Marker I is on the pinion, its z is the pinion's axis; marker J is on the rack, whose teeth run along z.  The pitch line is
-half the pitch diameter from the axis, on the side of it where the rack is drawn.  A rack that is drawn across the axis does
-not tell its side: it is then at -y of marker I, whose x is along the rack (MSC Adams, constraint modify joint rackpin).
+Marker I is on the pinion with z along its axis; marker J is on the rack with z along the teeth. The pitch line is half
+the pitch diameter from the axis, on the side where the rack is drawn. If the rack is drawn through the axis, it is at
+-y of marker I, whose x is along the rack (MSC Adams, constraint modify joint rackpin).
 """
 
 from __future__ import annotations
@@ -17,26 +17,26 @@ from .gears import meshed
 from .mechanism import Mechanism, Place
 
 ACROSS = 1e-3
-"""Of half the pitch diameter: how near a rack's line is to cross the pinion's axis."""
+"""Distance from the pinion's axis below which a rack's line passes through it, relative to the pitch radius."""
 ON_PITCH_LINE = 1e-9
-"""Of the pitch diameter: how near to the pitch line a rack's own line is taken for it."""
+"""Distance from the pitch line below which a rack's own line is used for it, relative to the pitch diameter."""
 SKEWED = 0.1
-"""Cosine of the angle between the pinion's axis and the rack from which on marker I is not turned as the pinion is."""
+"""Cosine of the angle between z of marker I and the rack above which z is not the pinion's axis."""
 PARALLEL = 1e-6
-"""Sine of the angle between axes that are taken to be parallel."""
+"""Sine of the largest angle between axes that count as parallel."""
 VISIBLE = 1e-3
-"""Of half the pitch diameter: how far a rack that is drawn elsewhere than there is told."""
+"""Distance between drawn and actual pitch line that is reported, relative to the pitch radius."""
 
 
 def rolling(joint: Joint, mechanism: Mechanism) -> dict[str, Any]:
-    """The equation that the teeth add, with the force of the pitch line on the pinion.
+    """Return the tooth constraint, whose force acts on the pinion at the pitch line.
 
-    Where one carrier has the pinion on a hinge and the rack on a guide, it is that of a gear: one of displacements.
+    If one carrier has the pinion on a hinge and the rack on a guide, it is the position-level constraint of a gear.
 
     Raises
     ------
     DatasetFault
-        When neither the rack's place nor marker I tells on which side of the pinion the rack is.
+        If neither the rack's position nor marker I defines the side of the pinion.
     """
     i, j = mechanism.place(joint.i, joint, "I"), mechanism.place(joint.j, joint, "J")
     outward = _outward(joint, i, j)
@@ -59,7 +59,7 @@ def rolling(joint: Joint, mechanism: Mechanism) -> dict[str, Any]:
 
 
 def _carried(joint: Joint, i: Place, j: Place, mechanism: Mechanism) -> tuple[Joint, Joint, Place] | None:
-    """The hinge of the pinion and the guide of the rack on one carrier, and the guide's marker there; None without."""
+    """Return the pinion's hinge and the rack's guide on one carrier, and the guide's carrier marker, or None."""
     hinges = {
         seat.body: other
         for other, own, seat in _joints_of(i.body, "REVOLUTE", mechanism)
@@ -72,12 +72,12 @@ def _carried(joint: Joint, i: Place, j: Place, mechanism: Mechanism) -> tuple[Jo
 
 
 def _alike(one: np.ndarray, other: np.ndarray) -> bool:
-    """Whether two axes are parallel, in either sense."""
+    """Return True if two axes are parallel or antiparallel."""
     return bool(np.linalg.norm(np.cross(one, other)) < PARALLEL)
 
 
 def _joints_of(body: str, kind: str, mechanism: Mechanism) -> Iterator[tuple[Joint, Place, Place]]:
-    """Joints of a kind on a body, with their markers there and on the other body."""
+    """Yield the joints of a kind on a body, with their markers on it and on the other body."""
     for joint in mechanism.dataset.joints.values():
         if joint.kind == kind:
             ends = mechanism.place(joint.i, joint, "I"), mechanism.place(joint.j, joint, "J")
@@ -87,7 +87,7 @@ def _joints_of(body: str, kind: str, mechanism: Mechanism) -> Iterator[tuple[Joi
 
 
 def _axis(i: Place, j: Place) -> np.ndarray | None:
-    """The pinion's axis across the rack; None where marker I is not turned as the pinion is."""
+    """Return the pinion's axis normal to the rack; None if z of marker I is not the pinion's axis."""
     along, axis = j.initial.axes[:, 2], i.initial.axes[:, 2]
     if abs(along @ axis) > SKEWED:
         return None
@@ -96,7 +96,7 @@ def _axis(i: Place, j: Place) -> np.ndarray | None:
 
 
 def _beside(i: Place, j: Place) -> np.ndarray:
-    """The way from the pinion's axis to the rack's line across both, m; from marker I where it is not on the axis."""
+    """Return the common normal from the pinion's axis to the rack's line, m; from marker I if the axis is unknown."""
     along, axis, gap = j.initial.axes[:, 2], _axis(i, j), j.initial.point - i.initial.point
     gap = gap - (gap @ along) * along
     return np.asarray(gap if axis is None else gap - (gap @ axis) * axis)
@@ -107,7 +107,7 @@ def _crosses(joint: Joint, gap: np.ndarray) -> bool:
 
 
 def _outward(joint: Joint, i: Place, j: Place) -> np.ndarray:
-    """The direction from the pinion's axis to the rack."""
+    """Return the unit vector from the pinion's axis to the rack."""
     gap = _beside(i, j)
     if not _crosses(joint, gap):
         return np.asarray(gap / np.linalg.norm(gap))
@@ -121,7 +121,7 @@ def _outward(joint: Joint, i: Place, j: Place) -> np.ndarray:
 
 
 def notes(mechanism: Mechanism) -> Iterator[str]:
-    """What is taken for granted of racks, a sentence each."""
+    """Yield one sentence for each assumption about a rack."""
     for joint in mechanism.dataset.joints.values():
         if joint.kind != "RACKPIN":
             continue

@@ -1,4 +1,4 @@
-"""Couplers: linear equations between the displacements of joints."""
+"""Couplers: linear equations between joint displacements."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from .mechanism import Mechanism
 
 
 def relations(mechanism: Mechanism) -> dict[str, Any]:
-    """The scene's couplers by name."""
+    """Return the scene's couplers by name."""
     return {coupler.name: _coupled(coupler, mechanism) for coupler in mechanism.dataset.couplers.values()}
 
 
 def _coupled(coupler: Coupler, mechanism: Mechanism) -> dict[str, Any]:
-    """Scales times displacements add up to nothing."""
+    """Return a coupler: the sum of scales times displacements is zero."""
     tied = [coupled_joint(coupler, ident, mechanism) for ident in coupler.joints]
     sorts = [_sort(coupler, joint, sort) for joint, sort in zip(tied, coupler.sorts, strict=True)]
     units = [1.0 if sort == ROTATIONAL else mechanism.dataset.units.length for sort in sorts]
@@ -25,7 +25,7 @@ def _coupled(coupler: Coupler, mechanism: Mechanism) -> dict[str, Any]:
 
 
 def _tied(tied: list[Joint], sorts: list[str], scales: list[float], mechanism: Mechanism) -> dict[str, Any]:
-    """A coupler of two joints; for more an equation between their displacements, which holds at the initial pose."""
+    """Return a coupler of two joints; for more joints an equation that holds at the initial pose."""
     if len(tied) == 2:
         first, second = (coordinate(joint, sort) for joint, sort in zip(tied, sorts, strict=True))
         return {"type": "coupler", "joint_1": first, "joint_2": second, "scale": plain(-scales[1])}
@@ -44,12 +44,12 @@ def _tied(tied: list[Joint], sorts: list[str], scales: list[float], mechanism: M
 
 
 def coupled_joint(user: Numbered, ident: int, mechanism: Mechanism) -> Joint:
-    """A joint that a coupler or a gear names.
+    """Return a joint of a coupler or a gear.
 
     Raises
     ------
     DatasetFault
-        When there is none of that number, or it has no displacement to tie.
+        If the joint does not exist, or has no displacement to couple.
     """
     joint = mechanism.dataset.joints.get(ident)
     if joint is None:
@@ -60,7 +60,7 @@ def coupled_joint(user: Numbered, ident: int, mechanism: Mechanism) -> Joint:
 
 
 def _sort(user: Numbered, joint: Joint, sort: str | None) -> str:
-    """Which displacement of a joint is meant."""
+    """Return the coupled displacement of a joint."""
     own = SORTS.get(joint.kind, sort)
     if own is None or (sort is not None and sort != own):
         raise user.fault(f"found {sort or 'no TYPE'} of {joint.label}, {joint.kind}, expected {own or 'T or R'}")

@@ -1,4 +1,4 @@
-"""Requests and variables as requests of a scene."""
+"""Conversion of requests and variables to requests of a scene."""
 
 from __future__ import annotations
 
@@ -20,18 +20,18 @@ MARKED = {
     "VELOCITY": ("VX", "VY", "VZ", "WX", "WY", "WZ"),
     "ACCELERATION": ("ACCX", "ACCY", "ACCZ", "WDTX", "WDTY", "WDTZ"),
 }
-"""What a request reports between two markers."""
+"""Components of a request between two markers."""
 CALLED = {"DX": "x", "DY": "y", "DZ": "z"}
-"""Components that Adams calls otherwise than the function that measures them."""
+"""Component names that differ from the measuring function."""
 
 
 class Requests:
-    """Makes the scene's requests.
+    """Builder of the scene's requests.
 
     Attributes
     ----------
     notes : list of str
-        What cannot be reported, a sentence each.
+        One sentence for each component that cannot be reported.
     """
 
     def __init__(self, mechanism: Mechanism) -> None:
@@ -39,7 +39,7 @@ class Requests:
         self.notes: list[str] = []
 
     def all(self) -> dict[str, Any]:
-        """By name: a request's components by theirs, a variable by its name where formulas use it, else by its formula; what a sensor watches by its own."""
+        """Return the requests by name: components of requests, variables, and functions of sensors."""
         found: dict[str, Any] = {}
         for request in self._mechanism.dataset.requests.values():
             components = self._between_markers(request) if request.sort else self._functions(request)
@@ -59,7 +59,7 @@ class Requests:
         return {name: name if name in named else formula for name, formula in found.items()}
 
     def _between_markers(self, request: Request) -> dict[str, str]:
-        """Displacement, velocity, acceleration or force of marker I against J, along the axes of RM; in SI."""
+        """Return displacement, velocity, acceleration or force of marker I relative to J in the axes of RM, in SI."""
         assert request.sort is not None and request.i is not None
         if request.sort == "FORCE":
             return self._force(request)
@@ -91,7 +91,7 @@ class Requests:
         return found
 
     def _functions(self, request: Request) -> dict[str, str]:
-        """The functions of a request, in the dataset's own units."""
+        """Return the functions of a request, in the dataset's units."""
         if request.computed:
             self.notes.append(
                 f"line {request.line}, {request.label}: {', '.join(request.computed)} of a user's own subroutine is left out "
@@ -106,7 +106,7 @@ class Requests:
 
     @staticmethod
     def _name(request: Request, column: str, k: int) -> str:
-        """What a column is called: as the request says, if that can be a channel's name."""
+        """Return the name of a column: the one in the request if it is a valid channel name."""
         given = request.names[k] if k < len(request.names) else ""
         return given if re.fullmatch(r"[A-Za-z_]\w*", given) else column.lower()
 

@@ -1,4 +1,4 @@
-"""A dataset as the mapping that a scene is read from."""
+"""Conversion of a dataset to a scene mapping."""
 
 from __future__ import annotations
 
@@ -34,16 +34,16 @@ from .sensors import conditions
 from .sensors import notes as sensor_notes
 
 RUN = {"duration": 5, "output": 0.01}
-"""How a dataset is run, which says nothing about it itself."""
+"""Default run settings, which a dataset lacks."""
 
 
 def scene(dataset: Dataset) -> dict[str, Any]:
-    """The scene of a dataset, as `stiffmbs.describe.reading.read_scene` takes it.
+    """Return the scene of a dataset for `stiffmbs.describe.reading.read_scene`.
 
     Raises
     ------
     DatasetFault
-        When statements contradict each other, or hold what a scene cannot.
+        If statements contradict each other, or have no equivalent in a scene.
     """
     mechanism = Mechanism(set_in_motion(Mechanism(dataset)))
     mechanism.inputs |= input_values(dataset)
@@ -90,7 +90,7 @@ def scene(dataset: Dataset) -> dict[str, Any]:
         ],
     }
     found["bodies"] = bodies(mechanism) | touching_bodies(mechanism)
-    found["markers"] = ground_markers(mechanism)  # with the markers that formulas need
+    found["markers"] = ground_markers(mechanism)  # includes markers added for formulas
     found["tables"] = mechanism.tables
     found["stages"] = [{"until": conditions(dataset, mechanism.inputs)}] if dataset.sensors else []
     return {key: value for key, value in found.items() if value or key == "bodies"}

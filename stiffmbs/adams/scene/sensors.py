@@ -1,4 +1,4 @@
-"""Sensors as conditions that end a stage of a scene."""
+"""Conversion of sensors to stage end conditions."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from ..statements.sensor import Sensor
 from ..statements.units import Units
 
 EVALUATED = "_evaluate"
-"""Behind the name of a sensor: the request of what it evaluates."""
+"""Name suffix for the request of a sensor's EVALUATE expression."""
 
 
 def conditions(dataset: Dataset, inputs: Mapping[str, float]) -> dict[str, Any]:
-    """What ends or changes a simulation, by name; each watches a request of its own name, and sets inputs that the scene has."""
+    """Return the end conditions by name; each watches the request of its name and may set inputs of the scene."""
     return {sensor.name: _condition(sensor, inputs, dataset.units) for sensor in dataset.sensors}
 
 
@@ -32,7 +32,7 @@ def _condition(sensor: Sensor, inputs: Mapping[str, float], units: Units) -> dic
 
 
 def notes(dataset: Dataset) -> Iterator[str]:
-    """What sensors say that has no effect, a sentence each."""
+    """Yield one sentence for each sensor or argument without effect."""
     for sensor in dataset.statements.get("SENSOR", {}).values():
         listed = ", ".join(sensor.left_out)
         if sensor.then and listed:

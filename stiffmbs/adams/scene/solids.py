@@ -1,4 +1,4 @@
-"""Contacts of cylinders, boxes and ellipsoids as elements of a scene.  MSC Adams/Solver, CONTACT and GRAPHICS statements."""
+"""Contacts of cylinders, boxes and ellipsoids.  MSC Adams/Solver, CONTACT and GRAPHICS statements."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ PAIRS = {
     (ELLIPSOID, PLANE): "ellipsoid_plane_impact",
 }
 SHAPES = {SPHERE: "ellipsoid", ELLIPSOID: "ellipsoid", CYLINDER: "cylinder", BOX: "box"}
-"""Of solids, any two of which may be in contact, by the scene's names."""
+"""Scene names of the solids, any two of which may be in contact."""
 
 
 def between_solids(contact: Contact, first: Shape, second: Shape, mechanism: Mechanism) -> dict[str, Any]:
-    """The element of a contact.
+    """Return the element of a contact.
 
     Raises
     ------
     DatasetFault
-        When no element is between such shapes.
+        If no element supports this pair of shapes.
     """
     one, other = (second, first) if is_swapped(first, second) else (first, second)
     kind = PAIRS.get((one.sort, other.sort))
@@ -53,13 +53,13 @@ def between_solids(contact: Contact, first: Shape, second: Shape, mechanism: Mec
 
 
 def is_swapped(first: Shape, second: Shape) -> bool:
-    """Whether the scene's element has the second shape at its marker i."""
+    """Return True if the scene's element has the second shape at its marker i."""
     pairs = ((SPHERE, PLANE), *PAIRS)
     return (first.sort, second.sort) not in pairs and (second.sort, first.sort) in pairs
 
 
 def _solid(end: str, shape: Shape, units: Units) -> dict[str, Any]:
-    """Shape and whole sizes at one end of a contact of two solids."""
+    """Return shape and full dimensions at one end of a contact between two solids."""
     if shape.sort == CYLINDER:
         radius, length = shape.sizes
         whole: tuple[float, ...] = (2 * radius, 2 * radius, abs(length))
@@ -82,7 +82,7 @@ def _sizes(shape: Shape, with_sphere: bool) -> dict[str, float]:
 
 
 def _middle(shape: Shape, contact: Contact, mechanism: Mechanism) -> str:
-    """The marker at a solid's middle."""
+    """Return the marker at a solid's centre."""
     place = mechanism.place(shape.marker, contact, "the marker of GRAPHICS")
     half = {BOX: shape.sizes, CYLINDER: (0.0, 0.0, *shape.sizes[1:])}.get(shape.sort)
     if half is None:
@@ -92,7 +92,7 @@ def _middle(shape: Shape, contact: Contact, mechanism: Mechanism) -> str:
 
 
 def _law(contact: Contact, units: Units) -> dict[str, float]:
-    """The numbers of IMPACT and friction in SI."""
+    """Return the parameters of IMPACT and friction in SI units."""
     speed, friction = units.of(length=1, time=-1), contact.friction
     law = {
         "stiffness": contact.stiffness * units.force / units.length**contact.exponent,

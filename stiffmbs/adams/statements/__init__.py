@@ -1,1 +1,1 @@
-"""The statements of a dataset of Adams/Solver: read, and checked one by one."""
+"""Parsing and validation of single Adams/Solver statements."""

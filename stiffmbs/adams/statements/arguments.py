@@ -1,4 +1,4 @@
-"""The arguments of a statement by name: abbreviations resolved, values read as numbers, identifiers or functions."""
+"""Named arguments of a statement: abbreviations, numbers, identifiers and functions."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[ED][+-]?\d+)?)(D?)", re.IGNO
 
 @dataclass(frozen=True)
 class Argument:
-    """A named argument: what stands after its ``=``, cut at the outermost commas (nothing for a word alone)."""
+    """Named argument: its value split at top-level commas (empty for a keyword alone)."""
 
     name: str
     values: tuple[str, ...]
@@ -27,7 +27,7 @@ class Argument:
 
 
 class Arguments:
-    """What a statement says, by the full names of its arguments.
+    """Arguments of a statement by full name.
 
     Parameters
     ----------
@@ -35,14 +35,14 @@ class Arguments:
     keyword : str
         Its full name.
     names : sequence of str
-        The arguments that it may have.  An abbreviation stands for the first that it begins.
+        Valid arguments. An abbreviation matches the first that it begins.
     functions : sequence of str
-        Those whose value is a function expression, in which an outermost comma is none of its own.
+        Arguments whose value is a function expression, in which commas do not separate values.
 
     Raises
     ------
     DatasetFault
-        For an argument that the statement does not have, or that stands twice.
+        If an argument is unknown or repeated.
     """
 
     def __init__(self, statement: Statement, keyword: str, names: Sequence[str], functions: Sequence[str] = ()) -> None:
@@ -58,7 +58,7 @@ class Arguments:
         statement.requests.append(self._found)
 
     def _read(self, pieces: Sequence[Subsystem]) -> dict[str, Argument]:
-        """The arguments of some pieces by their full names."""
+        """Return the arguments in the given pieces by full name."""
         found: dict[str, Argument] = {}
         name, line = "", self.statement.line
         texts: list[str] = []
@@ -74,7 +74,7 @@ class Arguments:
         return found
 
     def _continues(self, name: str, texts: list[str], piece: Subsystem) -> bool:
-        """Whether a piece goes on with the argument before it."""
+        """Return True if a piece continues the argument before it."""
         if _ASSIGNED.fullmatch(piece.text) or not texts:
             return False
         if name in self._functions:
@@ -82,7 +82,7 @@ class Arguments:
         return not (_WORD.fullmatch(piece.text) and self._full(piece.text))
 
     def _opened(self, piece: Subsystem) -> tuple[str, list[str]]:
-        """The full name that a piece starts with, and its first value."""
+        """Return the full name at the start of a piece, and its first value."""
         assigned = _ASSIGNED.fullmatch(piece.text)
         word = assigned[1] if assigned else piece.text
         name = self._full(word) if _WORD.fullmatch(word) else ""
@@ -91,7 +91,7 @@ class Arguments:
         return name, [assigned[2].strip()] if assigned else []
 
     def _full(self, word: str) -> str:
-        """The argument that a word or its abbreviation stands for; nothing where there is none."""
+        """Return the argument that a word or abbreviation matches; '' if none."""
         word = word.upper()
         if word in self._names:
             return word
@@ -110,37 +110,37 @@ class Arguments:
         self._found.request(*names)
 
     def fault(self, reason: str, line: int | None = None) -> DatasetFault:
-        """What to raise where this statement is wrong."""
+        """Return the error for a fault in this statement."""
         return DatasetFault(line or self.statement.line, self.label, reason)
 
     def __contains__(self, name: str) -> bool:
         return name in self._found
 
     def line(self, name: str) -> int:
-        """Where an argument stands; the statement's own line where it is missing."""
+        """Return the line of an argument; that of the statement if it is missing."""
         return self._found[name].line if self._found.has(name) else self.statement.line
 
     def ident(self) -> int:
-        """The statement's number."""
+        """Return the statement's number."""
         return _integer(self, self.statement.ident, "after the slash", self.statement.line)
 
     def one_of(self, *words: str) -> str | None:
-        """Which of some words stands in the statement; None without any."""
+        """Return the one of the given words that occurs in the statement; None if none does."""
         found = [word for word in words if word in self]
         if len(found) > 1:
             raise self.fault(f"found {' and '.join(found)}, expected one of them", self.line(found[1]))
         return found[0] if found else None
 
     def text(self, name: str) -> str | None:
-        """An argument's value as written."""
+        """Return an argument's value as written."""
         return ", ".join(self._found[name].values) if name in self else None
 
     def texts(self, name: str) -> tuple[str, ...]:
-        """An argument's values as written; none where it is missing."""
+        """Return an argument's values as written; empty if it is missing."""
         return self._found[name].values if name in self else ()
 
     def numbers(self, name: str, *counts: int) -> tuple[float, ...] | None:
-        """An argument's numbers, as many as one of `counts`; None where it is missing.  Degrees become radians."""
+        """Return an argument's numbers, as many as one of `counts`; None if it is missing. Degrees become radians."""
         if name not in self:
             return None
         values = tuple(number(text) for text in self._found[name].values)
@@ -152,12 +152,12 @@ class Arguments:
         return tuple(value for value in values if value is not None)
 
     def number(self, name: str) -> float | None:
-        """An argument's only number; None where it is missing."""
+        """Return an argument's only number; None if it is missing."""
         values = self.numbers(name, 1)
         return None if values is None else values[0]
 
     def idents(self, name: str, *counts: int) -> tuple[int, ...]:
-        """The numbers of statements that an argument names; none where it is missing."""
+        """Return the statement identifiers in an argument; empty if it is missing."""
         if name not in self:
             return ()
         found = tuple(_integer(self, text, name, self.line(name)) for text in self._found[name].values)
@@ -169,12 +169,12 @@ class Arguments:
         return found
 
     def reference(self, name: str) -> int | None:
-        """The number of the one statement that an argument names; None where it is missing."""
+        """Return the single statement identifier in an argument; None if it is missing."""
         found = self.idents(name, 1)
         return found[0] if found else None
 
     def required(self, name: str) -> int:
-        """As `reference`, of an argument that must not be missing."""
+        """Return the statement identifier in a required argument."""
         found = self.reference(name)
         if found is None:
             raise self.fault(f"found no {name}, expected {name} = the number of a statement")
@@ -182,12 +182,12 @@ class Arguments:
 
 
 def number(text: str) -> float | None:
-    """The number that a text is, in radians where a D for degrees follows it; None for any other text, and beyond all bounds."""
+    """Return the number in a text, in radians if followed by D for degrees; None if not a finite number."""
     found = _NUMBER.fullmatch(text.replace(" ", ""))
     if found is None:
         return None
     value = float(found[1].upper().replace("D", "E"))
-    if math.isinf(value):  # too many digits or too large an exponent
+    if math.isinf(value):  # overflow
         return None
     return math.radians(value) if found[2] else value
 

@@ -14,29 +14,29 @@ Vector = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Part:
-    """A rigid body, or ground; all in SI.
+    """Rigid body, point mass or ground, in SI units.
 
     Attributes
     ----------
     ident, line, alias
-        Its number, where it stands, and its name in Adams/View.
+        Number, line, and name in Adams/View.
     frame : Frame
-        Of its own axes at the start, in ground axes.
+        The part's axes at the start, in ground axes.
     ground, point : bool
-        Whether it is the ground part, or a point mass.
+        True for the ground part, or a point mass.
     mass : float
     center : int or None
-        Its centre-of-mass marker.
+        Centre-of-mass marker.
     inertia_marker : int or None
     moments : tuple of float
         Ixx, Iyy, Izz and the products Ixy, Ixz, Iyz (positive integrals) in the axes of the inertia marker, about its
         origin.
     velocity : tuple of float or None
-        Of the centre of mass, in the axes of `velocity_marker` or ground; None where nothing is given.
+        Velocity of the centre of mass, in the axes of `velocity_marker` or ground; None if not given.
     omega : tuple of float or None
-        In the axes of `omega_marker`, or of the centre-of-mass marker.
+        Angular velocity in the axes of `omega_marker`, or of the centre-of-mass marker.
     exact : bool
-        Whether some of its coordinates are not to be moved by assembly.
+        True if assembly must not move some of its coordinates.
     """
 
     ident: int
@@ -62,7 +62,7 @@ class Part:
 
 @dataclass(frozen=True)
 class Marker:
-    """A point and axes on a part; in SI, in the part's own axes."""
+    """Point and axes on a part; in SI units, in the part's axes."""
 
     ident: int
     line: int
@@ -84,7 +84,7 @@ _PART = (
 
 
 def read_part(statement: Statement, units: Units) -> Part:
-    """A part; its masses are checked when all markers are known.
+    """Read a part; its mass is checked once all markers are known.
 
     Raises
     ------
@@ -107,7 +107,7 @@ def read_part(statement: Statement, units: Units) -> Part:
 
 
 def read_point_mass(statement: Statement, units: Units) -> Part:
-    """A point mass: a part that does not turn."""
+    """Read a point mass: a part that does not rotate."""
     found = Arguments(statement, "POINT_MASS", ("MASS", "CM", *_FRAME, "VX", "VY", "VZ", "EXACT"))
     return Part(
         found.ident(), statement.line, statement.alias, read_frame(found, "QG", "XG", "ZG", units.length), point=True,
@@ -124,7 +124,7 @@ def _rates(found: Arguments, names: tuple[str, str, str], unit: float) -> Vector
 
 
 def read_marker(statement: Statement, units: Units, before: Part | None = None) -> Marker:
-    """A marker, fixed or floating, on a part or a point mass: on that which stands before it, unless it names one."""
+    """Read a marker, fixed or floating, on a part or a point mass; by default on the part `before`."""
     names = ("PART", "POINT_MASS", "QP", "REULER", "XP", "ZP", "USEXP", "FLOATING")
     found = Arguments(statement, "MARKER", names)
     owner = found.one_of("PART", "POINT_MASS")

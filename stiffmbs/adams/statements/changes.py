@@ -1,4 +1,4 @@
-"""What commands change of a dataset before it is run: arguments of statements, and which of them are active."""
+"""Dataset changes by commands: arguments, activation and deactivation of statements."""
 
 from __future__ import annotations
 
@@ -22,31 +22,31 @@ Key = tuple[str, int]
 
 @dataclass(frozen=True)
 class Changes:
-    """What commands change of a dataset.
+    """Changes of a dataset by commands.
 
     Attributes
     ----------
     altered : mapping of (str, int) to tuple of Statement
-        The commands that give arguments of a statement anew, by its name and number.
+        Commands that change arguments of a statement, by its name and number.
     inactive : mapping of (str, int) to int
-        Statements that are to have no effect, and the line of the command that says so.
+        Deactivated statements, and the line of the command.
     """
 
     altered: Mapping[Key, tuple[Statement, ...]] = field(default_factory=dict)
     inactive: Mapping[Key, int] = field(default_factory=dict)
 
     def with_arguments(self, command: Statement) -> Changes:
-        """With the arguments that a command gives a statement."""
+        """Return the changes with new arguments of a statement."""
         key = key_of(command)
         return replace(self, altered={**self.altered, key: (*self.altered.get(key, ()), command)})
 
     def switched(self, command: Statement, active: bool, known: Collection[Key] = ()) -> Changes:
-        """Return the states after an ACTIVATE or DEACTIVATE command, by ID or by a RANGE of the `known` statements.
+        """Return the changes after an ACTIVATE or DEACTIVATE command, by ID or by a RANGE of the `known` statements.
 
         Raises
         ------
         DatasetFault
-            When the command names no statement, or one that cannot be switched.
+            If the command names no statement, or one that cannot be deactivated.
         """
         found = Arguments(command, "ACTIVATE" if active else "DEACTIVATE", ("ID", "RANGE"))
         name = keyword(command.ident.upper())
@@ -69,12 +69,12 @@ class Changes:
         return replace(self, inactive=inactive)
 
     def applied(self, named: Sequence[tuple[str | None, Statement]]) -> list[tuple[str | None, Statement]]:
-        """The statements of a dataset as changed, without those that are inactive.
+        """Return the statements of a dataset after the changes, without inactive ones.
 
         Raises
         ------
         DatasetFault
-            When the dataset does not have a statement that is changed.
+            If a changed statement does not exist.
         """
         known = {key_of(statement) for _, statement in named}
         for key, line in (*((key, c[0].line) for key, c in self.altered.items()), *self.inactive.items()):
@@ -94,7 +94,7 @@ class Changes:
         return replace(statement, changes=tuple((c.line, c.pieces) for c in commands)) if commands else statement
 
     def since(self, before: Changes) -> Changes:
-        """What commands change beyond earlier ones: arguments given anew, and statements that are switched."""
+        """Return the arguments changed and statements deactivated after earlier changes."""
         altered = {
             key: commands[len(before.altered.get(key, ())) :]
             for key, commands in self.altered.items()
@@ -104,13 +104,13 @@ class Changes:
         return Changes(altered, off)
 
     def told_since(self, before: Changes, source: str) -> list[str]:
-        """What commands change beyond earlier ones, a sentence each."""
+        """Return one sentence for each change after earlier ones."""
         on = [f"{name}/{ident}" for name, ident in before.inactive if (name, ident) not in self.inactive]
         told = [f"{', '.join(on)} {'are' if len(on) > 1 else 'is'} active again by {source}"] if on else []
         return [*self.since(before).notes(source), *told]
 
     def notes(self, source: str) -> list[str]:
-        """What the commands have changed, a sentence each."""
+        """Return one sentence for each kind of change."""
         told = []
         if self.inactive:
             labels = ", ".join(f"{name}/{ident}" for name, ident in self.inactive)
@@ -128,11 +128,11 @@ def _ends(found: Arguments) -> tuple[int, int]:
 
 
 def key_of(statement: Statement) -> Key:
-    """A statement's full name and its number, 0 without one."""
+    """Return a statement's full name and number, 0 without one."""
     ident = statement.ident.strip()
     return keyword(statement.word) or statement.word, int(ident) if ident.isdecimal() and len(ident) < 19 else 0
 
 
 def alters(name: str | None) -> bool:
-    """Whether a command of that name gives a statement's arguments anew."""
+    """Return True if a command changes the arguments of a statement."""
     return name in READERS or name == "ACCGRAV"

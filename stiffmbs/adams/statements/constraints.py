@@ -21,16 +21,16 @@ WITHOUT_FRICTION = (
     *COEFFICIENTS, "FRICTION", "DELTA_V", "MAXIMUM_DEFORMATION", "MAXDEFORMATION", "MAX_FRIC_ROT", "INNER_RADIUS",
     "OUTER_RADIUS", "HEIGHT", "WIDTH", "PRELOAD_RADIAL", "PRELOAD_AXIAL", "PRELOAD_X", "PRELOAD_Y",
 )  # fmt: skip
-"""Arguments of a JOINT for friction in old versions of Adams, which do nothing where it is off or its coefficients are zero."""
+"""JOINT arguments for friction in old Adams versions, ignored if friction is off or its coefficients are zero."""
 COMPONENTS = ("X", "Y", "Z", "B1", "B2", "B3")
 ROTATIONAL, TRANSLATIONAL = "ROTATIONAL", "TRANSLATIONAL"
 Start = tuple[str, float | None, float | None]
-"""An initial condition of a joint."""
+"""Initial condition of a joint: sort, displacement, velocity."""
 
 
 @dataclass(frozen=True)
 class Numbered:
-    """What a statement with a number is known by."""
+    """Statement with a number."""
 
     ident: int
     line: int
@@ -43,17 +43,17 @@ class Numbered:
 
     @property
     def name(self) -> str:
-        """Of what is made of it in the scene."""
+        """Name of its element in the scene."""
         return f"{self.keyword}_{self.ident}"
 
     def fault(self, reason: str) -> DatasetFault:
-        """What to raise where the statement makes no sense in its dataset."""
+        """Return the error for a fault of the statement in its dataset."""
         return DatasetFault(self.line, self.label, reason)
 
 
 @dataclass(frozen=True)
 class Joint(Numbered):
-    """A joint or a primitive between two markers.
+    """Joint or primitive between two markers.
 
     Attributes
     ----------
@@ -62,11 +62,11 @@ class Joint(Numbered):
     i, j : int
         Markers.
     pitch : float
-        Of a screw, m per turn.
+        Pitch of a screw, m per turn.
     diameter : float
         Pitch diameter of a pinion, m.
     start : tuple of (str, float or None, float or None)
-        Initial conditions: rotational or translational, displacement and velocity, rad or m, per s; None for what is not given.
+        Initial conditions: rotational or translational, displacement and velocity, rad or m, per s; None if not given.
     """
 
     kind: str
@@ -79,7 +79,7 @@ class Joint(Numbered):
 
 @dataclass(frozen=True)
 class GeneralConstraint(Numbered):
-    """An expression that stays zero; the reaction is asked for on a marker."""
+    """Expression that stays zero; the reaction is reported on marker `i`."""
 
     function: Function
     i: int | None
@@ -87,20 +87,20 @@ class GeneralConstraint(Numbered):
 
 @dataclass(frozen=True)
 class Motion(Numbered):
-    """A prescribed motion of a joint, or of one component between two markers.
+    """Prescribed motion of a joint, or of one component between two markers.
 
     Attributes
     ----------
     joint : int or None
     sort : str or None
-        Rotational or translational, where it is said.
+        Rotational or translational, if given.
     i, j : int or None
     component : str or None
         One of `COMPONENTS`.
     order : int
-        Which derivative the function prescribes: 0, 1 or 2.
+        Order of the prescribed derivative: 0, 1 or 2.
     start : tuple of float
-        Initial displacement and velocity, in the dataset's units; None where they are not given.
+        Initial displacement and velocity, in the dataset's units; None if not given.
     """
 
     function: Function
@@ -115,7 +115,7 @@ class Motion(Numbered):
 
 @dataclass(frozen=True)
 class Coupler(Numbered):
-    """Joint displacements times scales add up to zero; the scales are in SI."""
+    """Linear equation: the sum of scales times joint displacements is zero; the scales are those of the dataset."""
 
     joints: tuple[int, ...]
     sorts: tuple[str | None, ...]
@@ -124,14 +124,14 @@ class Coupler(Numbered):
 
 @dataclass(frozen=True)
 class Gear(Numbered):
-    """Two joints on one carrier whose parts have a common velocity at a marker, along its z axis."""
+    """Two joints on one carrier whose parts have equal velocity at a marker, along its z axis."""
 
     joints: tuple[int, int]
     contact: int
 
 
 def read_joint(statement: Statement, units: Units) -> Joint:
-    """A joint between two markers."""
+    """Read a joint between two markers."""
     names = (*JOINT_KINDS, "I", "J", "PITCH", "PD", "IC", "ICROT", "ICTRAN", *WITHOUT_FRICTION)
     found = Arguments(statement, "JOINT", names)
     _refuse_friction(found)
@@ -151,7 +151,7 @@ def read_joint(statement: Statement, units: Units) -> Joint:
 
 
 def _refuse_friction(found: Arguments) -> None:
-    """Refuse friction of old versions, whose law is not published."""
+    """Refuse friction of old Adams versions, whose law is not published."""
     if (found.text("FRICTION") or "").strip().upper() == "OFF":
         found.without_effect(*WITHOUT_FRICTION)
         return
@@ -170,7 +170,7 @@ _STARTS = {
     "TRANSLATIONAL": {"IC": TRANSLATIONAL, "ICTRAN": TRANSLATIONAL},
     "CYLINDRICAL": {"ICROT": ROTATIONAL, "ICTRAN": TRANSLATIONAL},
 }
-"""Initial conditions that kinds of joints may have."""
+"""Initial conditions allowed by kind of joint."""
 
 
 def _starts(found: Arguments, kind: str, units: Units) -> Iterator[Start]:
@@ -192,7 +192,7 @@ def _starts(found: Arguments, kind: str, units: Units) -> Iterator[Start]:
 
 
 def _displacement_and_velocity(found: Arguments, name: str) -> tuple[float | None, float | None]:
-    """The numbers of an initial condition: ``IC = 0.1``, ``IC = 0.1, 2`` or ``IC = , 2``."""
+    """Return displacement and velocity of an initial condition: ``IC = 0.1``, ``IC = 0.1, 2`` or ``IC = , 2``."""
     texts = found.texts(name)
     if len(texts) == 2 and not texts[0] and (velocity := number(texts[1])) is not None:
         return None, velocity
@@ -201,7 +201,7 @@ def _displacement_and_velocity(found: Arguments, name: str) -> tuple[float | Non
 
 
 def read_primitive(statement: Statement, units: Units) -> Joint:
-    """A joint primitive between two markers."""
+    """Read a joint primitive between two markers."""
     found = Arguments(statement, "JPRIM", (*PRIMITIVES, "I", "J"))
     kind = found.one_of(*PRIMITIVES)
     if kind is None:
@@ -212,7 +212,7 @@ def read_primitive(statement: Statement, units: Units) -> Joint:
 
 
 def read_general_constraint(statement: Statement, units: Units) -> GeneralConstraint:
-    """An expression that stays zero."""
+    """Read an expression that stays zero."""
     found = Arguments(statement, "GCON", ("I", "FUNCTION", "ROUTINE"), ("FUNCTION",))
     function = required_function(found, "FUNCTION")
     return GeneralConstraint(found.ident(), statement.line, statement.alias, "GCON", function, found.reference("I"))
@@ -225,7 +225,7 @@ _MOTION = (
 
 
 def read_motion(statement: Statement, units: Units) -> Motion:
-    """A prescribed motion."""
+    """Read a prescribed motion."""
     found = Arguments(statement, "MOTION", _MOTION, ("FUNCTION",))
     component = found.one_of(*COMPONENTS)
     order = found.one_of("DISPLACEMENT", "VELOCITY", "ACCELERATION") or "DISPLACEMENT"
@@ -240,7 +240,7 @@ def read_motion(statement: Statement, units: Units) -> Motion:
 
 
 def read_coupler(statement: Statement, units: Units) -> Coupler:
-    """Two or three joints tied by a linear equation; without a first scale it is 1."""
+    """Read a linear equation of two or three joint displacements; a missing first scale is 1."""
     found = Arguments(statement, "COUPLER", ("JOINTS", "TYPE", "SCALES", "FUNCTION", "ROUTINE"))
     if "FUNCTION" in found:
         raise found.fault("found FUNCTION, which is computed by a subroutine, expected SCALES", found.line("FUNCTION"))
@@ -265,7 +265,7 @@ def _sort(found: Arguments, letter: str) -> str:
 
 
 def read_gear(statement: Statement, units: Units) -> Gear:
-    """A pair of gears, of any mix of revolute, translational and cylindrical joints."""
+    """Read a pair of gears of revolute, translational or cylindrical joints."""
     found = Arguments(statement, "GEAR", ("JOINTS", "J1", "J2", "CV"))
     joints = found.idents("JOINTS", 2) or (*found.idents("J1", 1), *found.idents("J2", 1))
     if len(joints) != 2:

@@ -1,4 +1,4 @@
-"""Contacts between primitives, and the graphics that they name.  MSC Adams/Solver, CONTACT and GRAPHICS statements."""
+"""Contacts between primitives, and their graphics.  MSC Adams/Solver, CONTACT and GRAPHICS statements."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from .units import Units
 SPHERE, PLANE, ELLIPSOID, CYLINDER, BOX = "SPHERE", "PLANE", "ELLIPSOID", "CYLINDER", "BOX"
 SOLIDS = "SOLID_TO_SOLID"
 ROUND = 1e-9
-"""Part of an ellipsoid's axis by which another may differ and it is a sphere."""
+"""Relative difference of an ellipsoid's axes below which it is a sphere."""
 _SHAPES = ("ELLIPSOID", "PLANE", "CYLINDER", "BOX", "FRUSTUM", "TORUS", "CIRCLE", "ARC", "EXTERNAL", "OUTLINE", "FORCE", "SPRINGDAMPER", "CURVE")  # fmt: skip
 
 
 @dataclass(frozen=True)
 class Friction:
-    """Coulomb's law by Adams' smooth curve; velocities in the dataset's units."""
+    """Coulomb friction with Adams' smooth transition; velocities in the dataset's units."""
 
     static: float
     dynamic: float
@@ -30,7 +30,7 @@ class Friction:
 
 @dataclass(frozen=True)
 class Contact(Numbered):
-    """A contact by Adams' IMPACT, in the dataset's units.
+    """Contact force by Adams' IMPACT function, in the dataset's units.
 
     Attributes
     ----------
@@ -61,7 +61,7 @@ class Contact(Numbered):
 
     @property
     def graphics(self) -> set[int]:
-        """Numbers of all GRAPHICS that it names."""
+        """Numbers of all its GRAPHICS."""
         return {number for pair in (self.shapes, *self.others) for number in pair}
 
     def pairs(self) -> list[Contact]:
@@ -72,15 +72,15 @@ class Contact(Numbered):
 
 @dataclass(frozen=True)
 class Shape:
-    """A solid at a marker, or the plane of x and y of one, in the dataset's units.
+    """Solid at a marker, or the xy plane of a marker, in the dataset's units.
 
     Attributes
     ----------
     sort : str
     marker : int
-        At the middle of a sphere or an ellipsoid, at the middle of one end of a cylinder about z, at a corner of a box.
+        Centre of a sphere or an ellipsoid, centre of one end of a cylinder about z, or a corner of a box.
     sizes : tuple of float
-        Radius of a sphere; semi-axes of an ellipsoid; radius, and length along z, of a cylinder; sides of a box along the axes.
+        Sphere: radius; ellipsoid: semi-axes; cylinder: radius and length along z; box: edge lengths.
     """
 
     sort: str
@@ -101,7 +101,7 @@ _NOT_READ = (
 
 
 def read_contact(statement: Statement, units: Units) -> Contact:
-    """A contact between two primitives by stiffness and damping."""
+    """Read a contact between two primitives with stiffness and damping."""
     found = Arguments(statement, "CONTACT", _CONTACT)
     for name in _NOT_READ:
         if name in found:
@@ -141,12 +141,12 @@ def _friction(found: Arguments) -> Friction | None:
 
 
 def read_shape(statement: Statement) -> Shape:
-    """The solid or the plane of a GRAPHICS statement.
+    """Return the solid or the plane of a GRAPHICS statement.
 
     Raises
     ------
     DatasetFault
-        When it is of another kind.
+        If it is of another kind.
     """
     words = [piece.text.strip().upper() for piece in statement.pieces]
     sort = next((full for word in words for full in _SHAPES if len(word) > 2 and full.startswith(word)), "no kind")
@@ -173,4 +173,4 @@ _SIZES: dict[str, tuple[str, tuple[str, ...], tuple[str, ...]]] = {
     CYLINDER: ("CM", ("RADIUS", "LENGTH"), ("SIDES", "SEG")),
     BOX: ("CORNER", ("X", "Y", "Z"), ()),
 }
-"""Of each shape: the argument with its marker, those with its sizes, and those that only tell how it is drawn."""
+"""Marker argument, size arguments and display-only arguments of each shape."""

@@ -1,4 +1,4 @@
-"""Curves by points, points that stay on them, and curves that touch.  MSC Adams/Solver, CURVE, PTCV and CVCV statements."""
+"""Curves, point-on-curve and curve-to-curve constraints.  MSC Adams/Solver, CURVE, PTCV and CVCV statements."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .text import Statement
 from .units import Units
 
 CUBIC = 4
-"""The usual ORDER of a curve: one more than the degree of its pieces."""
+"""Default ORDER of a curve: polynomial degree plus one."""
 WITHOUT_EFFECT = ("NODISPLACEMENT", "NOVELOCITY")
 _STARTS = ("DISPLACEMENT", "ICM")
 _PAIR_STARTS = tuple(side + name for side in "IJ" for name in _STARTS)
@@ -21,7 +21,7 @@ _PAIR_VELOCITIES = tuple(side + name for side in "IJ" for name in _VELOCITIES)
 
 @dataclass(frozen=True)
 class SpaceCurve(Numbered):
-    """A curve; `matrix` has its points by rows, and `unread` says why it can only be drawn (empty where it can be followed)."""
+    """Curve through the rows of `matrix`; `unread` is the reason why constraints cannot use it (else empty)."""
 
     matrix: int
     closed: bool
@@ -30,7 +30,7 @@ class SpaceCurve(Numbered):
 
 @dataclass(frozen=True)
 class FirstContact:
-    """A point near which a constraint starts on its curve, m, in the axes of a marker."""
+    """Initial contact point on a curve, m, in the axes of a marker."""
 
     point: tuple[float, ...]
     axes: int
@@ -38,7 +38,7 @@ class FirstContact:
 
 @dataclass(frozen=True)
 class PointOnCurve(Numbered):
-    """Marker I stays on a curve in the axes of marker `axes`; the reaction is on a floating marker of the curve's part."""
+    """Constraint of marker I to a curve in the axes of marker `axes`; the reaction acts on the floating marker."""
 
     curve: int
     i: int
@@ -49,7 +49,7 @@ class PointOnCurve(Numbered):
 
 @dataclass(frozen=True)
 class CurveOnCurve(Numbered):
-    """Two curves in the axes of a marker each touch; `i` and `floating` are the floating markers where they do."""
+    """Contact of two curves, each in the axes of a marker; `i` and `floating` are floating markers at the contact."""
 
     curves: tuple[int, int]
     axes: tuple[int, int]
@@ -59,7 +59,7 @@ class CurveOnCurve(Numbered):
 
 
 def read_curve(statement: Statement, units: Units) -> SpaceCurve:
-    """A curve; what cannot be followed is a fault only where a constraint names it."""
+    """Read a curve; unsupported properties are an error only if a constraint uses it."""
     try:
         found = Arguments(statement, "CURVE", _CURVE, ("FUNCTION",))
         matrix = found.reference("MATRIX") or 0
@@ -76,7 +76,7 @@ _CURVE = (
 
 
 def _unread(found: Arguments) -> str:
-    """Why a curve cannot be followed; empty where it can."""
+    """Return the reason why constraints cannot use a curve; '' if they can."""
     if "FUNCTION" in found:
         return "found FUNCTION, which is computed by a subroutine"
     if "CONTROL_POINTS" in found:
@@ -87,7 +87,7 @@ def _unread(found: Arguments) -> str:
 
 
 def read_point_on_curve(statement: Statement, units: Units) -> PointOnCurve:
-    """A point that stays on a curve."""
+    """Read a point-on-curve constraint."""
     found = Arguments(statement, "PTCV", ("CURVE", "I", "JFLOAT", "RM", *WITHOUT_EFFECT, *_STARTS, *_VELOCITIES))
     _refuse(found, _VELOCITIES)
     return PointOnCurve(
@@ -97,7 +97,7 @@ def read_point_on_curve(statement: Statement, units: Units) -> PointOnCurve:
 
 
 def read_curve_on_curve(statement: Statement, units: Units) -> CurveOnCurve:
-    """Two curves that touch."""
+    """Read a curve-to-curve constraint."""
     names = tuple(side + name for name in ("CURVE", "FLOAT", "RM") for side in "IJ")
     found = Arguments(statement, "CVCV", (*names, *_PAIR_STARTS, *_PAIR_VELOCITIES))
     _refuse(found, _PAIR_VELOCITIES)
@@ -109,7 +109,7 @@ def read_curve_on_curve(statement: Statement, units: Units) -> CurveOnCurve:
 
 
 def _first_contact(found: Arguments, side: str, axes: int, units: Units) -> FirstContact | None:
-    """Where DISPLACEMENT says that contact starts, in the axes of ICM or of the curve."""
+    """Return the initial contact point of DISPLACEMENT, in the axes of ICM or of the curve."""
     point = found.numbers(f"{side}DISPLACEMENT", 3)
     if point is None:
         return None

@@ -1,4 +1,4 @@
-"""A dataset: everything that its statements say, by number."""
+"""Dataset: the data of all statements by number."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ Force = SingleForce | VectorForce | SpringDamper | Elastic | Beam
 
 @dataclass(frozen=True)
 class Dataset:
-    """What a dataset holds.
+    """Content of a dataset.
 
     Attributes
     ----------
@@ -42,13 +42,13 @@ class Dataset:
     gravity : tuple of float
         m/s^2.
     statements : mapping of str to (mapping of int to data)
-        The data of all statements by full name and number.
+        Data of all statements by full name and number.
     notes : tuple of str
-        What was left out, a sentence each.
+        One sentence for each omission.
     inactive : frozenset of (str, int)
-        Names and numbers of statements that commands have deactivated, which are not among the others.
+        Names and numbers of deactivated statements, which `statements` omits.
     graphics : mapping of int to Statement
-        Of which contacts need some.
+        GRAPHICS, which contacts may use.
     """
 
     title: str
@@ -73,7 +73,7 @@ class Dataset:
 
     @property
     def joints(self) -> Mapping[int, Joint]:
-        """Joints without the primitives, which have numbers of their own."""
+        """Joints without primitives, which are numbered separately."""
         return self.statements.get("JOINT", {})
 
     @property
@@ -98,7 +98,7 @@ class Dataset:
 
     @property
     def forces(self) -> tuple[Force, ...]:
-        """All forces but gravity, in the order of the statements' kinds."""
+        """All forces except gravity, ordered by kind of statement."""
         return self._all(Force)  # type: ignore[arg-type]
 
     @property
@@ -115,7 +115,7 @@ class Dataset:
 
     @property
     def sensors(self) -> tuple[Sensor, ...]:
-        """Those that end a simulation, or change how it goes on."""
+        """Sensors that end or change a simulation."""
         return tuple(sensor for sensor in self._all(Sensor) if sensor.then)
 
     @property
@@ -132,12 +132,12 @@ class Dataset:
 
 
 def read_dataset(text: str, changes: Changes = NO_CHANGES) -> Dataset:
-    """Read the text of a dataset, as commands change it.
+    """Read the text of a dataset and apply the changes of commands.
 
     Raises
     ------
     InputError
-        When a statement cannot be read, or holds mass, force or constraint of a kind that is not.
+        If a statement cannot be read, or defines an unsupported mass, force or constraint.
     """
     title, found, ended = all_statements(text)
     named = changes.applied([(keyword(statement.word), statement) for statement in found])
@@ -158,13 +158,13 @@ def read_dataset(text: str, changes: Changes = NO_CHANGES) -> Dataset:
 
 
 def all_statements(text: str) -> tuple[str | None, tuple[Statement, ...], bool]:
-    """The title, None where the first line reads as a statement; the statements, and whether END was found."""
+    """Return the title (None if the first line is a statement), the statements, and whether END was found."""
     title, found, ended = statements(text)
     return (None, *untitled(text)) if _is_statement(title) else (title, found, ended)
 
 
 def faults_of(text: str) -> list[DatasetFault]:
-    """What is wrong with single statements of a dataset, those aside that are not read."""
+    """Return the faults of single statements of a dataset, except unsupported ones."""
     named = [(keyword(statement.word), statement) for statement in all_statements(text)[1]]
     try:
         units, _ = _single(named)
@@ -174,7 +174,7 @@ def faults_of(text: str) -> list[DatasetFault]:
 
 
 def _single(named: list[tuple[str | None, Statement]]) -> tuple[Units, tuple[float, float, float]]:
-    """Units and gravity."""
+    """Return units and gravity."""
     units = Units()
     for statement in _once("UNITS", named):
         units = read_units(statement)
@@ -187,7 +187,7 @@ def _single(named: list[tuple[str | None, Statement]]) -> tuple[Units, tuple[flo
 def _data(
     named: list[tuple[str | None, Statement]], units: Units
 ) -> tuple[dict[str, dict[int, Any]], list[DatasetFault]]:
-    """The data of all statements by full name and number, and what is wrong with any of them."""
+    """Return the data of all statements by full name and number, and their faults."""
     data: dict[str, dict[int, Any]] = {}
     part: Part | None = None
     faults = []
@@ -207,7 +207,7 @@ def _data(
 
 
 def read_statement(name: str, statement: Statement, units: Units, before: Part | None = None) -> Any:
-    """The data of a statement by its full name; `before` is the part that stands before it, which carries a marker.
+    """Read a statement by its full name; `before` is the preceding part, which carries a marker.
 
     Raises
     ------
@@ -237,7 +237,7 @@ def _once(wanted: str, named: list[tuple[str | None, Statement]]) -> list[Statem
 
 
 def _unread(named: list[tuple[str | None, Statement]]) -> str:
-    """What would be missing from the mechanism, all of it in one sentence; nothing where all is read."""
+    """Return one sentence that lists unsupported statements; '' if there are none."""
     every = [statement for _, statement in named]
     unread = [
         (f"{name or statement.word}/{statement.ident}".rstrip("/"), statement.line)
@@ -255,7 +255,7 @@ def _unread(named: list[tuple[str | None, Statement]]) -> str:
 
 
 def _unused_arguments(named: list[tuple[str | None, Statement]]) -> list[str]:
-    """Yield notes on unused arguments of statements, except texts."""
+    """Return notes on unused arguments of statements, except texts."""
     for name, statement in named:
         for fields in statement.requests:
             fields.request(
@@ -265,7 +265,7 @@ def _unused_arguments(named: list[tuple[str | None, Statement]]) -> list[str]:
 
 
 def _is_statement(title: str) -> bool:
-    """Whether the first line, which Adams takes for a title whatever it says, can only be a statement."""
+    """Return True if the first line, a title for Adams in any case, can only be a statement."""
     found = re.match(r"(\w+)\s*/\s*(\d+\s*(?:,|$)|$|\w+\s*=)", title)
     return found is not None and found[1].upper() in (*SINGLE, *READERS)
 

@@ -17,7 +17,7 @@ Matrix = tuple[Six, ...]
 
 @dataclass(frozen=True)
 class SpringDamper(Numbered):
-    """Linear spring and damper between two markers, in SI."""
+    """Linear spring and damper between two markers, in SI units."""
 
     i: int
     j: int
@@ -30,7 +30,7 @@ class SpringDamper(Numbered):
 
 @dataclass(frozen=True)
 class Elastic(Numbered):
-    """Six components of force between two markers, in the axes of the second: bushing, field and beam; in SI.
+    """Bushing or field: six force components between two markers, in the axes of the second; in SI units.
 
     force = preload - stiffness (displacement - length) - damping velocity; the matrices have six rows.
     """
@@ -44,21 +44,21 @@ class Elastic(Numbered):
 
     @property
     def has_potential(self) -> bool:
-        """Whether both matrices are symmetric, but for what rounding leaves."""
+        """True if both matrices are symmetric up to rounding."""
         pairs = [(m[i][j], m[j][i]) for m in (self.stiffness, self.damping) for i, j in combinations(range(6), 2)]
         return all(abs(a - b) <= 1e-12 * max(abs(a), abs(b)) for a, b in pairs)
 
 
 @dataclass(frozen=True)
 class Beam(Numbered):
-    """A massless beam along the x axis of marker j, from j to i; in SI.
+    """Massless beam along the x axis of marker j, from j to i; in SI units.
 
     Attributes
     ----------
     area, torsion, iyy, izz : float
         Cross section: area, m^2; torsion constant and second moments, m^4.
     shear : tuple of float
-        Shear area ratios ASY and ASZ; 0 leaves shear out.
+        Shear area ratios ASY and ASZ; 0 neglects shear.
     damping : float or Matrix
         Ratio to the stiffness, s; or a matrix of six rows.
     """
@@ -77,7 +77,7 @@ class Beam(Numbered):
 
 
 def read_spring_damper(statement: Statement, units: Units) -> SpringDamper:
-    """A linear spring and damper."""
+    """Read a linear spring and damper."""
     linear, turning = ("K", "C", "LENGTH", "FORCE"), ("KT", "CT", "ANGLE", "TORQUE")
     found = Arguments(statement, "SPRINGDAMPER", (TRANSLATIONAL, ROTATIONAL, "I", "J", *linear, *turning))
     sort = found.one_of(TRANSLATIONAL, ROTATIONAL)
@@ -101,7 +101,7 @@ def read_spring_damper(statement: Statement, units: Units) -> SpringDamper:
 
 
 def read_bushing(statement: Statement, units: Units) -> Elastic:
-    """A bushing: a field without coupling between its components."""
+    """Read a bushing: a field with diagonal matrices."""
     found = Arguments(statement, "BUSHING", ("I", "J", "K", "KT", "C", "CT", "FORCE", "TORQUE"))
     stiffness, damping, preload = (
         [value for name in pair for value in found.numbers(name, 3) or (0.0,) * 3]
@@ -116,10 +116,10 @@ def read_bushing(statement: Statement, units: Units) -> Elastic:
 
 
 def read_field(statement: Statement, units: Units) -> Elastic:
-    """A linear field: full matrices, written column by column."""
+    """Read a linear field: full matrices, stored by columns."""
     names = ("I", "J", "KMATRIX", "CMATRIX", "CRATIO", "LENGTH", "FORCE", "FUNCTION", "ROUTINE")
     found = Arguments(statement, "FIELD", names, ("FUNCTION",))
-    read_function(found, "FUNCTION")  # refuses a user's subroutine
+    read_function(found, "FUNCTION")  # refuses a user subroutine
     stiffness = _columns(found.numbers("KMATRIX", 36) or (0.0,) * 36)
     ratio = found.number("CRATIO")
     damping = [[part * ratio for part in row] for row in stiffness] if ratio else None
@@ -136,7 +136,7 @@ _SECTION = (("LENGTH", 1), ("AREA", 2), ("IXX", 4), ("IYY", 4), ("IZZ", 4))
 
 
 def read_beam(statement: Statement, units: Units) -> Beam:
-    """A beam with a uniform cross section."""
+    """Read a beam with uniform cross section."""
     names = ("I", "J", *(name for name, _ in _SECTION), "ASY", "ASZ", "EMODULUS", "GMODULUS", "CMATRIX", "CRATIO")
     found = Arguments(statement, "BEAM", (*names, "FORMULATION"))
     if (found.text("FORMULATION") or "LINEAR").upper() != "LINEAR":
@@ -159,7 +159,7 @@ def read_beam(statement: Statement, units: Units) -> Beam:
 
 
 def _six(units: Units) -> Six:
-    """The units of three forces and three torques."""
+    """Return the units of three forces and three torques."""
     return (*(units.force,) * 3, *(units.of(force=1, length=1),) * 3)
 
 
@@ -177,7 +177,7 @@ def _columns(values: tuple[float, ...]) -> list[list[float]]:
 
 
 def _from_half(values: tuple[float, ...]) -> list[list[float]]:
-    """A symmetric matrix of which the lower triangle is written column by column."""
+    """Return a symmetric matrix from its lower triangle stored by columns."""
     matrix = [[0.0] * 6 for _ in range(6)]
     places = [(row, column) for column in range(6) for row in range(column, 6)]
     for (row, column), value in zip(places, values, strict=True):
@@ -186,7 +186,7 @@ def _from_half(values: tuple[float, ...]) -> list[list[float]]:
 
 
 def _in_si(matrix: list[list[float]], units: Units, time: int) -> Matrix:
-    """A matrix of stiffness (or damping, with one power of time) in SI."""
+    """Return a stiffness matrix (or damping, with one power of time) in SI units."""
     lengths = (*(units.length,) * 3, 1.0, 1.0, 1.0)
     rows = _six(units)
     return tuple(

@@ -1,4 +1,4 @@
-"""Where in a dataset something is wrong."""
+"""Errors in statements of a dataset or command file."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ Thing = TypeVar("Thing")
 
 
 class DatasetFault(InputError):
-    """What is wrong with a statement, and its line; the file's name is put before it by the reader of the file."""
+    """Error in a statement, with its line; the reader of the file prepends the file name."""
 
     def __init__(self, line: int, label: str, reason: str) -> None:
         super().__init__(f"line {line}, {label}: {reason}")
@@ -20,11 +20,11 @@ class DatasetFault(InputError):
 
 
 class CommandFault(DatasetFault):
-    """The same of a command, with its line in the command file."""
+    """Error in a command, with its line in the command file."""
 
 
 def of_each(things: Iterable[Thing], make: Callable[[Thing], dict[str, Any]]) -> dict[str, Any]:
-    """What is made of each thing, all in one; the faults of all of them are raised as one."""
+    """Merge the results of a function for each item; the faults of all items are raised as one."""
     found: dict[str, Any] = {}
     faults = []
     for thing in things:
@@ -37,7 +37,7 @@ def of_each(things: Iterable[Thing], make: Callable[[Thing], dict[str, Any]]) ->
 
 
 def raise_all(faults: Sequence[DatasetFault]) -> None:
-    """Raise what is wrong with several statements as one fault, at the line of the first; nothing without any."""
+    """Raise several faults as one, at the line of the first; do nothing if there are none."""
     if not faults:
         return
     first, *others = faults

@@ -1,4 +1,4 @@
-"""Gravity and forces by formula.  MSC Adams/Solver, ACCGRAV, SFORCE, VFORCE, VTORQUE and GFORCE statements."""
+"""Gravity and formula forces.  MSC Adams/Solver, ACCGRAV, SFORCE, VFORCE, VTORQUE and GFORCE statements."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from .units import Units
 
 @dataclass(frozen=True)
 class SingleForce(Numbered):
-    """A force along the line between two markers, or a torque about the z axis of the second.
+    """Force along the line between two markers, or torque about the z axis of the second.
 
     Attributes
     ----------
     sort : str
         Rotational or translational.
     action_only : bool
-        Whether nothing acts on the second marker's part; a force is then along that marker's z axis.
+        True if there is no reaction on the second marker's part; a force then acts along that marker's z axis.
     """
 
     i: int
@@ -32,9 +32,9 @@ class SingleForce(Numbered):
 
 @dataclass(frozen=True)
 class VectorForce(Numbered):
-    """Force and torque at marker i in the axes of `axes`, and as much the other way on the part of `floating`.
+    """Force and torque at marker i in the axes of `axes`, with the reaction on the part of `floating`.
 
-    `force` and `torque` hold three functions each, None where nothing is given.
+    `force` and `torque` hold three functions each, None if not given.
     """
 
     i: int
@@ -45,14 +45,14 @@ class VectorForce(Numbered):
 
 
 def read_gravity(statement: Statement, units: Units) -> tuple[float, float, float]:
-    """Gravity in ground axes, m/s^2."""
+    """Return gravity in ground axes, m/s^2."""
     found = Arguments(statement, "ACCGRAV", ("IGRAV", "JGRAV", "KGRAV"))
     x, y, z = ((found.number(name) or 0.0) * units.of(length=1, time=-2) for name in ("IGRAV", "JGRAV", "KGRAV"))
     return x, y, z
 
 
 def read_single_force(statement: Statement, units: Units) -> SingleForce:
-    """A force or torque of one component."""
+    """Read a force or torque of one component."""
     names = ("I", "J", TRANSLATIONAL, ROTATIONAL, "ACTIONONLY", "REACTION", "FUNCTION", "ROUTINE")
     found = Arguments(statement, "SFORCE", names, ("FUNCTION",))
     sort = found.one_of(TRANSLATIONAL, ROTATIONAL)
@@ -69,10 +69,10 @@ _COMPONENTS = {"VFORCE": _FORCE, "VTORQUE": _TORQUE, "GFORCE": (*_FORCE, *_TORQU
 
 
 def read_vector_force(statement: Statement, units: Units, keyword: str) -> VectorForce:
-    """A force of three components, a torque of three, or both."""
+    """Read a force of three components, a torque of three, or both."""
     names = _COMPONENTS[keyword]
     found = Arguments(statement, keyword, ("I", "JFLOAT", "RM", *names, "FUNCTION", "ROUTINE"), (*names, "FUNCTION"))
-    read_function(found, "FUNCTION")  # refuses a user's subroutine
+    read_function(found, "FUNCTION")  # refuses a user subroutine
     missing = [name for name in names if name not in found]
     if "FUNCTION" in found or (missing and keyword != "GFORCE"):
         raise found.fault(f"found no {', no '.join(missing)}, expected an expression for each of {', '.join(names)}")

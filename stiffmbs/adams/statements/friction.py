@@ -1,4 +1,4 @@
-"""Friction of joints.  MSC Adams/Solver, FRICTION statement."""
+"""Joint friction.  MSC Adams/Solver, FRICTION statement."""
 
 from __future__ import annotations
 
@@ -24,17 +24,17 @@ class JointFriction(Numbered):
     static, dynamic : float
         Coefficients.
     stiction_velocity, sliding_velocity : float
-        Speeds of the surface up to which the coefficient is the static one, and from which on it is the dynamic one.
+        Sliding speeds at which the static coefficient is reached, and the dynamic one.
     inputs : frozenset of str
-        Which of `INPUTS` press.
+        Those of `INPUTS` that contribute to the normal force.
     pin, ball, collar, bending_arm, torsion_arm, overlap : float
         PIN_RADIUS, BALL_RADIUS, FRICTION_ARM, BENDING_REACTION_ARM, REACTION_ARM, INITIAL_OVERLAP.
     growth : int
-        How the overlap changes with the displacement: 0 for constant, 1 for as much, -1 for minus as much.
+        Derivative of the overlap with respect to the displacement: 0, 1 or -1.
     force, torque : float
-        Friction without any load.
+        Friction without load.
     yokes : str
-        Parts in which the arms of a cross rub: ``I``, ``J`` or ``IJ``.
+        Parts with friction in the arms of a universal joint's cross: ``I``, ``J`` or ``IJ``.
     """
 
     joint: int
@@ -59,7 +59,7 @@ _ABOVE_ZERO = {
     "STICTION_TRANSITION_VELOCITY": 0.1, "TRANSITION_VELOCITY_COEFFICIENT": 1.5, "PIN_RADIUS": 1.0, "BALL_RADIUS": 1.0,
     "FRICTION_ARM": 1.0, "BENDING_REACTION_ARM": 1.0, "REACTION_ARM": 1.0, "INITIAL_OVERLAP": 1000.0,
 }  # fmt: skip
-"""Numbers above zero, and what Adams takes where they are missing."""
+"""Positive numbers with Adams' defaults."""
 FROM_ZERO = ("MU_STATIC", "MU_DYNAMIC", "FRICTION_FORCE_PRELOAD", "FRICTION_TORQUE_PRELOAD")
 LEFT_OUT = ("MAX_STICTION_DEFORMATION", "INACTIVE", "INACTIVE_DURING")
 _NOT_READ = (
@@ -84,7 +84,7 @@ ARGUMENTS = (
 
 
 def read_friction(statement: Statement, units: Units) -> JointFriction:
-    """Friction of a joint, by the formulation with stiction that Adams calls the original one."""
+    """Read joint friction of Adams' ORIGINAL formulation, with stiction."""
     found = Arguments(statement, "FRICTION", ARGUMENTS)
     for name in _NOT_READ:
         if name in found:
@@ -125,7 +125,7 @@ def _from_zero(found: Arguments, name: str) -> float:
 
 
 def _one_word(found: Arguments, name: str, words: tuple[str, ...]) -> str:
-    """One of some words, or its beginning; the first where the argument is missing."""
+    """Return the one of the given words that the argument abbreviates; the first word if it is missing."""
     text = (found.text(name) or words[0]).strip(" ()").upper()
     for word in words:
         if text and word.startswith(text):
@@ -134,7 +134,7 @@ def _one_word(found: Arguments, name: str, words: tuple[str, ...]) -> str:
 
 
 def _effect(found: Arguments) -> str:
-    """``ALL``, also where both effects are named, or ``SLIDING``."""
+    """Return ``ALL``, also if both effects are named, or ``SLIDING``."""
     words = {word.strip() for word in (found.text("EFFECT") or "ALL").strip(" ()").upper().replace(",", ":").split(":")}
     if (
         len(words) == 2

@@ -1,4 +1,4 @@
-"""Points and axes of parts and markers."""
+"""Frames of parts and markers."""
 
 from __future__ import annotations
 
@@ -14,43 +14,43 @@ IDENTITY = np.eye(3)
 
 @dataclass(frozen=True, eq=False)
 class Frame:
-    """A place and a direction in axes that its owner says.
+    """Point and axes relative to an outer frame.
 
     Attributes
     ----------
     point : ndarray, shape (3,)
         m.
     axes : ndarray, shape (3, 3)
-        Its x, y and z axis in the columns.
+        x, y and z axis as columns.
     """
 
     point: np.ndarray
     axes: np.ndarray
 
     def within(self, outer: Frame) -> Frame:
-        """This frame, which is given in the axes of `outer`, in the axes that `outer` is given in."""
+        """Return this frame, given relative to `outer`, in the axes to which `outer` refers."""
         return Frame(outer.point + outer.axes @ self.point, outer.axes @ self.axes)
 
     def seen_from(self, other: Frame) -> Frame:
-        """This frame in the axes of another one, both being given in the same axes."""
+        """Return this frame relative to another one; both refer to the same axes."""
         return Frame(other.axes.T @ (self.point - other.point), other.axes.T @ self.axes)
 
 
 def read_frame(found: Arguments, origin: str, x_point: str, z_point: str, length: float) -> Frame:
-    """The frame that a statement places by a point with Euler angles, or by points on its axes.
+    """Return the frame of a statement, given by a point and Euler angles, or by points on its axes.
 
     Parameters
     ----------
     found : Arguments
     origin, x_point, z_point : str
-        The names of the three points: QP, XP, ZP of a marker, QG, XG, ZG of a part.
+        Names of the three points: QP, XP, ZP of a marker, QG, XG, ZG of a part.
     length : float
         The dataset's unit of length, m.
 
     Raises
     ------
     DatasetFault
-        When angles and points contradict each other, or points lie at the origin or on one line with it.
+        If both angles and points are given, or points coincide with the origin or are collinear with it.
     """
     point = np.array(found.numbers(origin, 3) or (0.0, 0.0, 0.0)) * length
     angles = found.numbers("REULER", 3)
@@ -73,7 +73,7 @@ def read_frame(found: Arguments, origin: str, x_point: str, z_point: str, length
 
 
 def euler_313(psi: float, theta: float, phi: float) -> np.ndarray:
-    """Axes after turns about z, the new x and the new z."""
+    """Return the axes after rotations about z, the new x and the new z."""
     return _about_z(psi) @ _about_x(theta) @ _about_z(phi)
 
 
@@ -88,7 +88,7 @@ def _about_x(angle: float) -> np.ndarray:
 
 
 def _cos_and_sin(angle: float) -> tuple[float, float]:
-    """Exact for whole right angles, which datasets are full of."""
+    """Return cosine and sine, exact for multiples of 90 degrees."""
     quarters = angle / (math.pi / 2)
     if abs(quarters - round(quarters)) < 1e-15 * max(1.0, abs(quarters)):
         return ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))[round(quarters) % 4]
@@ -96,7 +96,7 @@ def _cos_and_sin(angle: float) -> tuple[float, float]:
 
 
 def _from_z(z: np.ndarray | None, x: np.ndarray | None) -> np.ndarray | None:
-    """Axes with z exact, and x in the half-plane of a second point; what is not given is the owner's axis."""
+    """Return axes with exact z and with x in the half-plane of a second point; defaults are the outer axes."""
     if z is None:
         z = IDENTITY[2]
     if x is None:
@@ -110,7 +110,7 @@ def _from_z(z: np.ndarray | None, x: np.ndarray | None) -> np.ndarray | None:
 
 
 def _from_x(x: np.ndarray, z: np.ndarray | None) -> np.ndarray | None:
-    """Axes with x exact, and z in the half-plane of a second point."""
+    """Return axes with exact x and with z in the half-plane of a second point."""
     if z is None:
         z = IDENTITY[2]
     x = x / np.linalg.norm(x)

@@ -1,4 +1,4 @@
-"""The statements of Adams/Solver: which are read, which may be left out, and which may not."""
+"""Statements of Adams/Solver: supported, ignored and refused."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ READERS: dict[str, Reader] = {
     "TFSISO": systems.read_transfer_function,
     "MATRIX": systems.read_matrix,
 }
-"""What makes data of a statement, by its name.  UNITS and ACCGRAV have no number and are read apart."""
+"""Reader of each numbered statement; UNITS and ACCGRAV have no number and are read separately."""
 
 SINGLE = ("UNITS", "ACCGRAV")
 LEFT_OUT = {
@@ -68,7 +68,7 @@ LEFT_OUT = {
     "SURFACE": "data that nothing here uses",
     "TITLE": "text",
 }
-"""Statements without mass, force or constraint, and what they hold."""
+"""Ignored statements (no mass, force or constraint), with their content."""
 FLEXIBLE, ROUTINE, CURVED = (
     "flexible bodies are not solved for",
     "it needs a user's own subroutine",
@@ -95,13 +95,13 @@ REFUSED = {
     "DEACTIVATE": "it is a command, which belongs into a command file",
     "ACTIVATE": "it is a command, which belongs into a command file",
 }
-"""Statements with mass, force, constraint or states of their own that are not read, and why."""
+"""Unsupported statements with mass, force, constraint or states, with the reason."""
 
 _ALL = (*SINGLE, *READERS, *LEFT_OUT, *REFUSED)
 
 
 def keyword(word: str) -> str | None:
-    """The full name of a statement that a word or its abbreviation of three letters or more stands for."""
+    """Return the full name of a statement from an abbreviation of three letters or more; None if unknown."""
     if word in _ALL:
         return word
     if len(word) < 3:

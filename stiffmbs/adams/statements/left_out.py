@@ -1,4 +1,4 @@
-"""Arguments that are known but have no effect, with reasons, by statement; and systems that are not read."""
+"""Ignored arguments by statement, with reasons, and ignored systems."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ LEFT_OUT_ARGUMENTS: Mapping[str, Mapping[str, str]] = {
     "TFSISO": {"STATIC_HOLD": _NO_STATICS},
     "MATRIX": {"NAME": TEXT, "UNITS": TEXT},
 }  # fmt: skip
-"""Statements that are not here have none."""
+"""Ignored arguments of each statement, with the reason."""
 UNREAD_SYSTEM = "its equations are in a subroutine, and no function reads its states or outputs"
 _ARRAY = re.compile(r"\s*(?:X|XD|Y)\s*=\s*(\d+)\s*", re.IGNORECASE)
 

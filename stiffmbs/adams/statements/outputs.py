@@ -24,13 +24,13 @@ class Request(Numbered):
     Attributes
     ----------
     sort : str or None
-        One of `SORTS`, between markers `i` and `j` (ground where it is None), in the axes of marker `axes` (or ground).
+        One of `SORTS`, between markers `i` and `j` (None is ground), in the axes of marker `axes` (None is ground).
     functions : tuple of (str, Function)
-        By column (or FUNCTION), in place of those.
+        Functions by column (or FUNCTION), instead of a sort.
     computed : tuple of str
-        The columns that a user's own subroutine computes, which are left out.
+        Columns computed by a user subroutine, which are ignored.
     names : tuple of str
-        Of the columns, where the statement gives any.
+        Column names, if given.
     comment : str
     """
 
@@ -46,7 +46,7 @@ class Request(Numbered):
 
 @dataclass(frozen=True)
 class Variable(Numbered):
-    """A named expression, and where its value is sought from if it depends on itself."""
+    """Named expression, with an initial guess if it depends on itself."""
 
     function: Function
     start: float = 0.0
@@ -54,7 +54,7 @@ class Variable(Numbered):
 
 @dataclass(frozen=True)
 class Spline(Numbered):
-    """Points of a curve, in the dataset's units, the arguments increasing."""
+    """Points of a curve with increasing arguments, in the dataset's units."""
 
     x: tuple[float, ...]
     y: tuple[float, ...]
@@ -63,7 +63,7 @@ class Spline(Numbered):
 
 @dataclass(frozen=True)
 class Array(Numbered):
-    """A list of numbers, or of variables that are the inputs of a system."""
+    """List of numbers, or of VARIABLEs that are the inputs of a system."""
 
     numbers: tuple[float, ...]
     variables: tuple[int, ...] = ()
@@ -76,7 +76,7 @@ _REQUEST = (
 
 
 def read_request(statement: Statement, units: Units) -> Request:
-    """Quantities to report: displacements, velocities, accelerations or forces between markers, or functions."""
+    """Read a request of displacements, velocities, accelerations or forces between markers, or of functions."""
     found = Arguments(statement, "REQUEST", _REQUEST, FUNCTIONS)
     sort = found.one_of(*SORTS)
     i, j, axes = (found.reference(name) or None for name in ("I", "J", "RM"))
@@ -95,13 +95,13 @@ def read_request(statement: Statement, units: Units) -> Request:
 
 
 def _of_variable(found: Arguments, ident: int) -> tuple[str, Function]:
-    """A column that reports a variable."""
+    """Return a column that reports a variable."""
     text = f"VARVAL({ident})"
     return f"VARIABLE_{ident}", Function(text, parse(text), found.line("VARIABLES"), found.label)
 
 
 def read_variable(statement: Statement, units: Units) -> Variable:
-    """A named expression."""
+    """Read a named expression."""
     found = Arguments(statement, "VARIABLE", ("IC", "FUNCTION", "ROUTINE"), ("FUNCTION",))
     if is_subroutine(found, "FUNCTION"):
         function = read_any_function(found, "FUNCTION")
@@ -112,7 +112,7 @@ def read_variable(statement: Statement, units: Units) -> Variable:
 
 
 def read_spline(statement: Statement, units: Units) -> Spline:
-    """A curve by points."""
+    """Read a curve by points."""
     found = Arguments(statement, "SPLINE", ("X", "Y", "LINEAR_EXTRAPOLATE", "FILE", "BLOCK", "CHANNEL"))
     if "FILE" in found:
         raise found.fault("found FILE, expected the points in X and Y", found.line("FILE"))
@@ -125,7 +125,7 @@ def read_spline(statement: Statement, units: Units) -> Spline:
 
 
 def read_array(statement: Statement, units: Units) -> Array:
-    """A list of numbers, or the states, inputs or outputs of a system."""
+    """Read a list of numbers, or the states, inputs or outputs of a system."""
     found = Arguments(statement, "ARRAY", ("IC", "SIZE", "NUMBERS", "X", "Y", "U", "VARIABLES"))
     return Array(
         found.ident(),

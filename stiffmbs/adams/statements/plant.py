@@ -1,4 +1,4 @@
-"""Inputs and outputs of a model as another program sees it.  MSC Adams/Solver, PINPUT and POUTPUT statements."""
+"""Inputs and outputs of a model.  MSC Adams/Solver, PINPUT and POUTPUT statements."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from .units import Units
 
 @dataclass(frozen=True)
 class Plant(Numbered):
-    """The VARIABLEs that are inputs (PINPUT) or outputs (POUTPUT), in their order."""
+    """VARIABLEs that are inputs (PINPUT) or outputs (POUTPUT), in order."""
 
     variables: tuple[int, ...]
 
 
 def read_plant(statement: Statement, units: Units, keyword: str) -> Plant:
-    """Inputs or outputs of a model."""
+    """Read the inputs or outputs of a model."""
     found = Arguments(statement, keyword, ("VARIABLES",))
     variables = found.idents("VARIABLES")
     if not variables:

@@ -1,4 +1,4 @@
-"""Sensors, which end simulations or change how they go on.  MSC Adams/Solver, SENSOR statement."""
+"""Sensors, which end or change simulations.  MSC Adams/Solver, SENSOR statement."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from .units import Units
 RELATIONS = {"EQ": "equals", "GE": "at_least", "LE": "at_most"}
 ENDS = {"RETURN": "next", "HALT": "stop"}
 RECORDS = ("PRINT", "DT", "EVALUATE")
-"""What it does where the simulation goes on."""
+"""Actions of a sensor that does not end the simulation."""
 WITHOUT_EFFECT = ("CODGEN", "RESTART", "STEPSIZE", "YYDUMP", "BISECTION")
-"""What a sensor may say of the integration, which starts anew there in any case."""
+"""Integrator settings, which do not apply: integration restarts at a sensor in any case."""
 USUAL_ERROR = 1e-3
 
 
 @dataclass(frozen=True)
 class Sensor(Numbered):
-    """A function that is watched, in the dataset's units.
+    """Monitored function, in the dataset's units.
 
     Attributes
     ----------
@@ -29,16 +29,16 @@ class Sensor(Numbered):
     relation : str
         ``equals``, ``at_least`` or ``at_most``.
     value, error : float
-        What it is compared with, and how near to it counts as equal.
+        Value to compare with, and tolerance.
     then : str
-        ``next`` where the next command follows, ``stop`` where none does, ``on`` where the simulation goes on with a row of results
-        there; empty where nothing comes of it.
+        ``next``: the next command follows; ``stop``: the simulation ends; ``on``: it continues with an
+        output row there; empty: no effect.
     interval : float or None
-        Between output points from there on.
+        Output interval from then on.
     evaluated : Function or None
-        What SENVAL has from there on.
+        Value of SENVAL from then on.
     left_out : tuple of str
-        Its arguments that have no effect here.
+        Arguments without effect.
     """
 
     function: Function
@@ -52,7 +52,7 @@ class Sensor(Numbered):
 
 
 def read_sensor(statement: Statement, units: Units) -> Sensor:
-    """A function that is watched."""
+    """Read a sensor."""
     names = (
         "FUNCTION",
         "VALUE",

@@ -1,4 +1,4 @@
-"""States of their own: DIFF, LSE, TFSISO, and the MATRIX statements that they name.  MSC Adams/Solver."""
+"""Systems with states: DIFF, LSE, TFSISO, and their MATRIX statements.  MSC Adams/Solver."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from .units import Units
 
 @dataclass(frozen=True)
 class Differential(Numbered):
-    """A state whose rate, per unit of time of the dataset, is a function, or makes a function zero; its value at the start.
+    """State with an explicit or implicit differential equation.
 
     Attributes
     ----------
     function : Function
+        Rate per unit of time of the dataset; for an implicit equation a residual with the rate as DIF1.
     start : float
     implicit : bool
-        Whether the function is zero, and the rate stands in it as DIF1.
     start_of_rate : float
-        Where the rate of an implicit one is sought from.
+        Initial guess of the rate of an implicit equation.
     """
 
     function: Function
@@ -33,14 +33,14 @@ class Differential(Numbered):
 
 @dataclass(frozen=True)
 class Matrix(Numbered):
-    """Numbers by rows."""
+    """Matrix by rows."""
 
     rows: tuple[tuple[float, ...], ...]
 
 
 @dataclass(frozen=True)
 class LinearSystem(Numbered):
-    """x' = A x + B u, y = C x + D u: numbers of MATRIX and ARRAY statements, None for what is not there."""
+    """x' = A x + B u, y = C x + D u: numbers of MATRIX and ARRAY statements, None if missing."""
 
     x: int
     u: int | None
@@ -54,7 +54,7 @@ class LinearSystem(Numbered):
 
 @dataclass(frozen=True)
 class TransferFunction(Numbered):
-    """y = numerator(s)/denominator(s) u; coefficients from that of s^0 on, in the dataset's units."""
+    """y = numerator(s)/denominator(s) u; coefficients in ascending powers of s, in the dataset's units."""
 
     x: int
     u: int
@@ -64,7 +64,7 @@ class TransferFunction(Numbered):
 
 
 def read_differential(statement: Statement, units: Units) -> Differential:
-    """A first-order differential equation that says the rate, or is zero with it."""
+    """Read a first-order differential equation, explicit or implicit."""
     found = Arguments(statement, "DIFF", ("IC", "FUNCTION", "ROUTINE", "IMPLICIT", "STATIC_HOLD"), ("FUNCTION",))
     start = (*(found.numbers("IC", 1, 2) or (0.0,)), 0.0)
     return Differential(
@@ -74,7 +74,7 @@ def read_differential(statement: Statement, units: Units) -> Differential:
 
 
 def read_matrix(statement: Statement, units: Units) -> Matrix:
-    """A matrix by its numbers, or by those that are not zero."""
+    """Read a full or sparse matrix."""
     names = ("FULL", "SPARSE", "M", "N", "VALUES", "I", "J", "FILE", "NAME", "UNITS")
     found = Arguments(statement, "MATRIX", names)
     if "FILE" in found:
@@ -101,7 +101,7 @@ def _from_entries(found: Arguments, values: tuple[float, ...]) -> tuple[tuple[fl
 
 
 def read_linear_system(statement: Statement, units: Units) -> LinearSystem:
-    """A linear system by its matrices."""
+    """Read a linear system."""
     found = Arguments(statement, "LSE", ("X", "U", "Y", "IC", "A", "B", "C", "D", "STATIC_HOLD"))
     x, a = found.required("X"), found.required("A")
     u, y, b, c, d, start = (found.reference(name) for name in ("U", "Y", "B", "C", "D", "IC"))
@@ -111,7 +111,7 @@ def read_linear_system(statement: Statement, units: Units) -> LinearSystem:
 
 
 def read_transfer_function(statement: Statement, units: Units) -> TransferFunction:
-    """A transfer function by its coefficients."""
+    """Read a transfer function."""
     found = Arguments(statement, "TFSISO", ("X", "U", "Y", "NUMERATOR", "DENOMINATOR", "STATIC_HOLD"))
     numerator, denominator = found.numbers("NUMERATOR"), found.numbers("DENOMINATOR")
     if not numerator or not denominator or len(numerator) > len(denominator) or not denominator[-1]:

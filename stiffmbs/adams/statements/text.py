@@ -1,8 +1,8 @@
-"""The text of a dataset as statements: title, comments, continuation lines, END.
+"""Lexer of datasets: title, statements, comments, continuation lines, END.
 
-The first line is the title.  ``!`` starts a comment, ``,`` at the start of a line (or ``&`` at the end of the line
-before) continues a statement, ``;`` ends one, and nothing counts after END.  The commas of the outermost level cut a
-statement into pieces; ``\\`` ends a function.  MSC Adams/Solver, "Using statements to define your model".
+The first line is the title. ``!`` starts a comment; ``,`` at the start of a line (or ``&`` at the end of the line
+before) continues a statement; ``;`` ends one. Text after END is ignored. Top-level commas split a statement into
+pieces; ``\\`` ends a function.  MSC Adams/Solver, "Using statements to define your model".
 """
 
 from __future__ import annotations
@@ -16,28 +16,28 @@ from ...describe.files.requested import Fields
 from ...describe.files.text_file import lines
 
 _HEAD = re.compile(r"\s*([A-Za-z_]\w*)\s*(?:/\s*((?:\w+(?=\s*(?:[,\x00]|\Z)))?))?\s*(.*)", re.DOTALL)
-"""The name, the number after the slash where there is one, and the rest."""
+"""Name, optional number after the slash, and rest of a statement."""
 _ALIAS = re.compile(r"!\s*adams_view_name\s*=\s*'([^']*)'", re.IGNORECASE)
 _TWO_VALUES = re.compile(r"[\w.)]\s*\x00\s*[\w.]|[\d.)]\s*\x00\s*\(")
 ZERO_BYTE = "\ufffd"
 """Placeholder of a zero byte, which ignored statements may contain."""
 _LINE_COMMA = "\x00"
-"""Stands for a comma that starts a continuation line: it parts arguments, but not the terms of a function."""
+"""Placeholder of a comma that starts a continuation line: it separates arguments, but not terms of a function."""
 
 
 @dataclass(frozen=True)
 class Subsystem:
-    """A part of a statement between two of its outermost commas.
+    """Part of a statement between two top-level commas.
 
     Attributes
     ----------
     text : str
     line : int
-        Where it starts in the file.
+        First line in the file.
     on_new_line : bool
-        Whether its comma is the first sign of a continuation line.
+        True if its comma starts a continuation line.
     ended : bool
-        Whether a backslash ended it.
+        True if it ends with a backslash.
     """
 
     text: str
@@ -61,7 +61,7 @@ class Statement:
     alias : str
         Name in Adams/View, from a comment before the statement.
     changes : tuple of (int, tuple of Subsystem)
-        Arguments that commands change, with the line of each.
+        Arguments changed by commands, with the line of each.
     requests : list of Fields
         Arguments, with a record of those that are requested; filled when the statement is read.
     """
@@ -75,28 +75,28 @@ class Statement:
     requests: list[Fields[Any]] = field(default_factory=list, compare=False)
 
     def read_as(self, arguments: Mapping[str, tuple[int, tuple[str, ...]]]) -> None:
-        """Told the full names of its arguments, each with its line and values, when they are read; for those who list them."""
+        """Receive the arguments by full name, with lines and values, when they are read; a hook for listings."""
 
 
 def statements(text: str) -> tuple[str, tuple[Statement, ...], bool]:
-    """The title, the statements in their order, and whether END was found."""
+    """Return the title, the statements in order, and whether END was found."""
     title, *rest = lines(text) or [""]
     found, ended = _statements(rest, 2)
     return title.strip(), found, ended
 
 
 def untitled(text: str) -> tuple[tuple[Statement, ...], bool]:
-    """The statements of a dataset whose title is missing, and whether END was found."""
+    """Return the statements of a dataset without a title, and whether END was found."""
     return _statements(lines(text), 1)
 
 
 def commands(text: str) -> tuple[Statement, ...]:
-    """The commands of a command file, which has no title."""
+    """Return the commands of a command file, which has no title."""
     return _statements(lines(text), 1)[0]
 
 
 def _statements(texts: list[str], first: int) -> tuple[tuple[Statement, ...], bool]:
-    """The statements of lines that count from a first number, and whether END was found."""
+    """Return the statements of lines numbered from `first`, and whether END was found."""
     found: list[Statement] = []
     open_lines: list[tuple[int, str]] = []
     alias = next_alias = ""
@@ -122,7 +122,7 @@ def _statements(texts: list[str], first: int) -> tuple[tuple[Statement, ...], bo
 
 
 def _uncommented(line: str) -> str:
-    """A line without its comment; an exclamation mark between double quotes is none."""
+    """Return a line without its comment; an exclamation mark in double quotes starts none."""
     quoted = False
     for k, sign in enumerate(line):
         if sign == '"' and (quoted or '"' in line[k + 1 :]):
@@ -149,7 +149,7 @@ def _made(parts: list[tuple[int, str]], alias: str) -> Iterator[Statement]:
 
 
 def _pieces(text: str, numbers: list[int]) -> Iterator[Subsystem]:
-    """The parts of a statement between the commas of its outermost level."""
+    """Yield the parts of a statement between top-level commas."""
     depth, start, on_new_line, quoted = 0, 0, False, False
     for k, sign in enumerate(text + ","):
         if sign == '"':
@@ -164,7 +164,7 @@ def _pieces(text: str, numbers: list[int]) -> Iterator[Subsystem]:
 
 
 def _piece(text: str, numbers: list[int], on_new_line: bool, ended: bool) -> Iterator[Subsystem]:
-    """One part, unless it is empty: its line, and its text with continuation lines joined."""
+    """Yield one part with joined continuation lines and its line, unless it is empty."""
     before = len(text) - len(text.lstrip())
     joined = re.sub(r"\s+", " ", _without_line_commas(text)).strip()
     if joined or ended:
@@ -172,5 +172,5 @@ def _piece(text: str, numbers: list[int], on_new_line: bool, ended: bool) -> Ite
 
 
 def _without_line_commas(text: str) -> str:
-    """A function's arguments that stand on several lines: the comma of a new line counts where two values meet."""
+    """Join the lines of a function; the comma of a continuation line is kept between two values."""
     return _TWO_VALUES.sub(lambda found: found[0].replace(_LINE_COMMA, ","), text).replace(_LINE_COMMA, " ")

@@ -33,7 +33,7 @@ _KINDS = {"FORCE": _FORCES, "MASS": _MASSES, "LENGTH": _LENGTHS, "TIME": _TIMES}
 
 @dataclass(frozen=True)
 class Units:
-    """How large a dataset's units are in SI."""
+    """Factors from a dataset's units to SI."""
 
     force: float = 1.0
     mass: float = 1.0
@@ -41,7 +41,7 @@ class Units:
     time: float = 1.0
 
     def of(self, force: float = 0, mass: float = 0, length: float = 0, time: float = 0) -> float:
-        """The unit with the given powers in SI; 1 exactly for a dataset in SI."""
+        """Return the SI factor of a product of powers; exactly 1 for a dataset in SI."""
         return self.force**force * self.mass**mass * self.length**length * self.time**time
 
 
@@ -55,12 +55,12 @@ _SYSTEMS = {
 
 
 def read_units(statement: Statement) -> Units:
-    """The units that a UNITS statement sets.
+    """Read a UNITS statement.
 
     Raises
     ------
     DatasetFault
-        For an unknown unit, or when some of the four are missing.
+        If a unit is unknown, or some of the four are missing.
     """
     found = Arguments(statement, "UNITS", (*_KINDS, "SYSTEM", "UCF"))
     if found.one_of("SYSTEM", "UCF") == "SYSTEM":
@@ -78,7 +78,7 @@ def read_units(statement: Statement) -> Units:
 
 
 def _named(found: Arguments, kind: str, known: dict[str, Any]) -> Any:
-    """The unit that an argument names, perhaps in short."""
+    """Return the value of a possibly abbreviated name."""
     word = (found.text(kind) or "").upper()
     for name, unit in known.items():
         if word and name.startswith(word):

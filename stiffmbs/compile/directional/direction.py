@@ -1,4 +1,4 @@
-"""Directions: how the state, time and the numbers of a system change together, and how its terms change with them."""
+"""Directions of change of state, time and parameters, and the directional derivatives of terms."""
 
 from __future__ import annotations
 
@@ -26,15 +26,15 @@ EVERYTHING = (NUMBER, *STATE)
 
 @dataclass(frozen=True)
 class Numbers:
-    """How the numbers of a system change with a parameter.
+    """Derivatives of a system's numbers with respect to a parameter.
 
     Attributes
     ----------
     of_groups : tuple of ndarray
-        For each group of elements the derivatives of its numbers; the points of tables keep their values in them
+        For each group of elements the derivatives of its numbers; table arguments keep their values
         (`stiffmbs.compile.directional.rules`).
     moved : frozenset of int
-        The groups with numbers that change.
+        Groups with numbers that change.
     mass : ndarray, shape (n_u,)
     """
 
@@ -50,12 +50,12 @@ def unchanged(system: System) -> Numbers:
 
 @cache
 def directional_kernel(kind: Kind, term_set: str, along: tuple[str, ...]) -> Compiled | None:
-    """The kernel with which a kind contributes to the derivative of a set, if it does.
+    """Return the kernel of a kind's directional derivatives in a set of terms; None if it has none.
 
     Raises
     ------
     InputError
-        When an equation cannot be differentiated; names the kind.
+        If an equation cannot be differentiated; names the kind.
     """
     source = source_of(kind, term_set)
     if source is None:
@@ -72,28 +72,28 @@ def directional_kernel(kind: Kind, term_set: str, along: tuple[str, ...]) -> Com
 
 @dataclass
 class Direction:
-    """A direction for one set of terms.
+    """Direction for one set of terms.
 
     Parameters
     ----------
     state : State
-        At which the derivatives are taken.
+        State at which the derivatives are taken.
     term_set : str
     numbers : Numbers
-        How the system's numbers change.
+        Changes of the system's numbers.
     along : collection of str
-        What changes: numbers alone, or the state and time too.
+        Quantities that change: numbers alone, or the state and time too.
 
     Attributes
     ----------
     q, u, a, lam, mu : ndarrays
-        How the state changes.
+        Changes of the state.
     values : ndarray
-        The derivatives of the terms' values; behind them those of the system's constants.
+        Derivatives of the terms' values, followed by those of the system's constants.
     table : ndarray of int
-        For compiled code (`stiffmbs.compile.machine.native.tables.DIRECTION`).
+        Pointer table for compiled code (`stiffmbs.compile.machine.native.tables.DIRECTION`).
     writes : set of int
-        The groups whose values change.
+        Groups whose values change.
     """
 
     state: State
@@ -126,7 +126,7 @@ class Direction:
 
     @property
     def _whole(self) -> bool:
-        """Whether more than numbers changes."""
+        """True if more than numbers change."""
         return set(self.along) != {NUMBER}
 
     def _made_calls(self, system: System) -> np.ndarray:
@@ -145,19 +145,19 @@ class Direction:
         return np.array(calls, dtype=np.int64).reshape(-1, 6)
 
     def evaluate(self, t: float, t_d: float = 0.0) -> None:
-        """Compute the derivatives at the present state, with the terms themselves."""
+        """Compute the terms and their derivatives at the current state."""
         self.state.evaluate(self.term_set, t)
         ALONG.call(t, t_d, self.state.table.ctypes.data, self.table.ctypes.data)
 
     def vector(self, name: str) -> np.ndarray:
-        """The derivative of a vector term, assembled."""
+        """Return the assembled derivative of a vector term."""
         term = self.state.system.term(self.term_set, name)
         result = np.zeros(self.state.system.extent(TERM_AXES[name]))
         np.add.at(result, term.row, self.values[term.source])
         return result
 
     def product(self, name: str, x: np.ndarray, transposed: bool = False) -> np.ndarray:
-        """The derivative of a matrix term times a vector."""
+        """Return the derivative of a matrix term times a vector."""
         system = self.state.system
         term = system.term(self.term_set, name)
         row, column = (term.column, term.row) if transposed else (term.row, term.column)

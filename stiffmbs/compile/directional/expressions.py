@@ -1,4 +1,4 @@
-"""Parts of Python expressions, put together without what is zero; None stands for zero."""
+"""Constructors of Python expressions with zeros dropped; None stands for zero."""
 
 from __future__ import annotations
 
@@ -8,28 +8,28 @@ Part = ast.expr | None
 
 
 def number(value: float) -> ast.expr:
-    """A literal."""
+    """Return a literal."""
     return ast.Constant(value)
 
 
 def literal(node: ast.expr) -> int:
-    """The integer that a part is, with or without a sign.
+    """Return the value of an integer literal with or without a sign.
 
     Raises
     ------
     ValueError
-        When it is none.
+        If the expression is not a literal.
     """
     return int(ast.literal_eval(node))
 
 
 def whole(part: Part) -> ast.expr:
-    """The part, or a literal zero."""
+    """Return the expression, or a literal zero."""
     return number(0.0) if part is None else part
 
 
 def added(*parts: Part) -> Part:
-    """A sum."""
+    """Return a sum."""
     total: Part = None
     for part in parts:
         if part is not None:
@@ -38,32 +38,32 @@ def added(*parts: Part) -> Part:
 
 
 def negated(part: Part) -> Part:
-    """The opposite."""
+    """Return the negative."""
     return None if part is None else ast.UnaryOp(ast.USub(), part)
 
 
 def difference(a: Part, b: Part) -> Part:
-    """a - b."""
+    """Return a - b."""
     if a is None or b is None:
         return negated(b) if a is None else a
     return ast.BinOp(a, ast.Sub(), b)
 
 
 def multiplied(a: Part, b: Part) -> Part:
-    """a b."""
+    """Return a b."""
     return None if a is None or b is None else ast.BinOp(a, ast.Mult(), b)
 
 
 def divided(a: Part, b: Part) -> Part:
-    """a / b; b is not zero as an expression."""
+    """Return a / b; b must not be the zero expression."""
     return None if a is None else ast.BinOp(a, ast.Div(), whole(b))
 
 
 def squared(a: ast.expr) -> ast.expr:
-    """a a."""
+    """Return a a."""
     return ast.BinOp(a, ast.Mult(), a)
 
 
 def called(name: str, *arguments: Part) -> ast.expr:
-    """A call of a function."""
+    """Return a function call."""
     return ast.Call(ast.Name(name), [whole(argument) for argument in arguments], [])

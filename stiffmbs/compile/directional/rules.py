@@ -1,6 +1,6 @@
-"""Derivatives of the functions that kernels call, by their arguments.
+"""Differentiation rules of the functions that kernels call.
 
-Each rule gets a call's arguments and their derivatives (None where there is none) and gives the call's derivative.
+Each rule takes a call's arguments and their derivatives (None for zero) and returns the call's derivative.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from .expressions import (
 
 Rule = Callable[[Sequence[ast.expr], Sequence[Part]], Part]
 HIGHEST_OF_SPLINE = 3
-"""Derivatives that a table's cubics have."""
+"""Highest non-zero derivative of a cubic table."""
 
 
 def _smooth(slope: Callable[[ast.expr], ast.expr]) -> Rule:
@@ -69,7 +69,7 @@ def _inside(arguments: Sequence[ast.expr], moved: Sequence[Part]) -> Part:
 
 def _step(name: str) -> Rule:
     def rule(arguments: Sequence[ast.expr], moved: Sequence[Part]) -> Part:
-        """As `stiffmbs.compile.symbolic.nonsmooth.Step.by_parts`."""
+        """Differentiate a step function as `stiffmbs.compile.symbolic.nonsmooth.Step.by_parts`."""
         x, x0, h0, x1, h1, order = arguments
         k = literal(order)
         width = difference(x1, x0)
@@ -92,7 +92,7 @@ def _step(name: str) -> Rule:
 
 
 def _spline(arguments: Sequence[ast.expr], moved: Sequence[Part]) -> Part:
-    """By the argument, and by the table's own numbers, which stand in ``number_d`` beside its unchanged points."""
+    """Differentiate by the argument and by the table values, which ``number_d`` holds next to unchanged arguments."""
     number_of_table, table, x, order = arguments
     by_numbers = None if moved[0] is None else called("spline", moved[0], table, x, order)
     if moved[2] is None or literal(order) >= HIGHEST_OF_SPLINE:
@@ -162,4 +162,4 @@ RULES: dict[str, Rule] = {
     "spline": _spline, "rotation_vector": _rotation_vector, "python_call": _python_call,
     "common_normal": _common_normal, "common_normal_slope": _common_normal_slope,
 }  # fmt: skip
-"""By the names of the functions in kernels."""
+"""Rules by name of the kernel function."""

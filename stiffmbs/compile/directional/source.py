@@ -1,4 +1,4 @@
-"""The source of a kernel that computes the derivative of another kernel's values in a direction."""
+"""Source of kernels for directional derivatives of other kernels."""
 
 from __future__ import annotations
 
@@ -14,25 +14,25 @@ STATE = ("t", "q", "turn", "u", "a", "lam", "mu")
 NUMBER, TIME = "number", "t"
 DIRECTION = f"{NUMBER}_d, " + ", ".join(f"{name}_d" for name in STATE)
 SIGNATURE = KERNEL_SIGNATURE.removesuffix(")") + ", float64*, float64, " + ", ".join(["float64*"] * 6) + ")"
-"""Behind the arguments of a kernel, the derivatives of what it reads; its value is the derivative of the other's."""
+"""Signature of a kernel with the derivatives of its inputs appended; its values are derivatives."""
 
 
 def directional_source(source: str, name: str, along: Collection[str]) -> str:
-    """Source of the directional derivative of a kernel.
+    """Return the source of the directional derivative of a kernel.
 
     Parameters
     ----------
     source : str
-        Of the kernel, as `stiffmbs.compile.symbolic.generate` writes it.
+        Source of the kernel, as written by `stiffmbs.compile.symbolic.generate`.
     name : str
-        Of the new function.
+        Name of the new function.
     along : collection of str
-        What the direction changes: ``number``, and names of `STATE`.
+        Quantities that change: ``number``, and names of `STATE`.
 
     Raises
     ------
     InputError
-        When a function in it has no rule.
+        If a function in it has no differentiation rule.
     """
     module = ast.parse(source)
     imports = [part for part in module.body if isinstance(part, ast.ImportFrom)]
@@ -50,19 +50,19 @@ def directional_source(source: str, name: str, along: Collection[str]) -> str:
 
 
 class _Forward:
-    """Differentiates the statements of one loop; what a variable changes by has the variable's name and ``_d`` behind it."""
+    """Forward-mode differentiation of the statements of one loop; derivatives have the suffix ``_d``."""
 
     def __init__(self, along: Collection[str]) -> None:
         self._along = along
         self._moving: set[str] = {TIME, NUMBER} & set(along)
 
     def statements(self, body: list[ast.stmt]) -> Iterator[str]:
-        """Each statement, and the one for its derivative."""
+        """Yield each statement and the statement for its derivative."""
         for statement in body:
             assert isinstance(statement, ast.Assign)
             (target,) = statement.targets
             moved = self._derivative(statement.value)
-            if isinstance(target, ast.Subscript):  # a value: its derivative takes its place
+            if isinstance(target, ast.Subscript):  # an output value: replaced by its derivative
                 yield f"{ast.unparse(target)} = {ast.unparse(moved or number(0.0))}"
                 continue
             assert isinstance(target, ast.Name)
@@ -122,7 +122,7 @@ class _Forward:
 
 
 def _one_less(exponent: ast.expr) -> ast.expr:
-    """A literal where the exponent is one: whole powers are products."""
+    """Return the exponent minus one, as a literal if possible: integer powers become products."""
     try:
         return number(ast.literal_eval(exponent) - 1)
     except ValueError:

@@ -1,1 +1,1 @@
-"""Inputs over time: where they have features, where they end."""
+"""Inputs as functions of time: features, breakpoints and ends."""

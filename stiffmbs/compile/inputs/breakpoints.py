@@ -1,7 +1,7 @@
-"""Instants at which an input begins, ends or bends: integrators stop there and start anew.
+"""Breakpoints of inputs: times where integrators stop and restart.
 
-At rest a BDF code takes ever longer steps and would jump over a short pulse without seeing it; a step across a breakpoint
-loses its order.
+At rest a BDF integrator takes ever longer steps and would miss a short pulse; a step across a breakpoint loses its
+order.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ from .of_time import Input
 from .zeros import FIRST_STRETCHES, ZERO, TooMany, zeros
 
 LEAST_DISTANCE = 1e-12
-"""Part of the times themselves by which two breakpoints differ at the least."""
+"""Smallest distance of two breakpoints relative to their times."""
 
 
 def breakpoint_times(inputs: Sequence[Input], start: float, end: float) -> np.ndarray:
-    """The breakpoints in time of some inputs, strictly between start and end, in order.
+    """Return the breakpoints in time of some inputs, strictly between start and end, in ascending order.
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ def _passages(given: Input, start: float, end: float) -> Iterator[np.ndarray]:
 
 
 def _conditions(given: Input, node: ast.expr, start: float, end: float) -> Iterator[tuple[ast.expr, np.ndarray]]:
-    """What passes a level at the breakpoints of a function or table."""
+    """Yield expressions and the levels that they cross at the breakpoints of a function or table."""
     match node:
         case ast.Call(ast.Name(name), [argument]) if name in given.tables:
             yield argument, given.tables[name].breakpoints_between(*_range(given, argument, start, end))
@@ -70,7 +70,7 @@ def _conditions(given: Input, node: ast.expr, start: float, end: float) -> Itera
 
 
 def _breakpoints(call: ast.Call, breakpoints: Breakpoints) -> Iterator[ast.expr]:
-    """What is zero at the breakpoints of a function."""
+    """Yield the expressions whose zeros are the breakpoints of a function."""
     first, *others = call.args
     if breakpoints == EACH:
         for k, other in enumerate(others):
@@ -82,7 +82,7 @@ def _breakpoints(call: ast.Call, breakpoints: Breakpoints) -> Iterator[ast.expr]
 
 
 def _range(given: Input, part: ast.expr, start: float, end: float) -> tuple[float, float]:
-    """Bounds of a part of an input."""
+    """Return bounds of a part of an input."""
     edges = np.linspace(start, end, FIRST_STRETCHES + 1)
     with np.errstate(all="ignore"):
         low, high = given.within(edges[:-1], edges[1:], part=part).value

@@ -1,4 +1,4 @@
-"""Enclosures of the functions that formulas may call."""
+"""Enclosures of the functions of formulas."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ FACTORIALS = (1.0, 1.0, 2.0, 6.0)
 
 
 def _turned(phase: float) -> Callable[[Enclosure], Enclosure]:
-    """The cosine wave with a top at `phase`; each derivative is the wave a quarter of a turn before."""
+    """Return the cosine wave with its maximum at `phase`; each derivative shifts it by a quarter period."""
     return lambda x: x.composed(lambda k: wave(x.value, phase - k * np.pi / 2) / FACTORIALS[k])
 
 
@@ -35,13 +35,13 @@ sin, cos = _turned(np.pi / 2), _turned(0.0)
 
 
 def _hyperbolic(even: bool) -> Callable[[Enclosure], Enclosure]:
-    """cosh or sinh; their derivatives are each other."""
+    """Return cosh or sinh, which are each other's derivatives."""
 
     def of(x: Enclosure) -> Enclosure:
-        """The enclosure of the function at an enclosed argument."""
+        """Return the enclosure of the function at an enclosed argument."""
 
         def outer(k: int) -> Range:
-            """The range of the k-th Taylor coefficient."""
+            """Return the range of the k-th Taylor coefficient."""
             return (between_turns(np.cosh, x.value, (0.0,)) if even == (k % 2 == 0) else np.sinh(x.value)) / FACTORIALS[
                 k
             ]
@@ -52,12 +52,12 @@ def _hyperbolic(even: bool) -> Callable[[Enclosure], Enclosure]:
 
 
 def tanh(x: Enclosure) -> Enclosure:
-    """T' = 1 - T^2, T''/2 = -T T', T'''/6 = -T' (1 - 3 T^2)/3."""
+    """Return tanh: T' = 1 - T^2, T''/2 = -T T', T'''/6 = -T' (1 - 3 T^2)/3."""
     T = np.tanh(x.value)
     rate = between_turns(lambda z: 1 / np.cosh(z) ** 2, x.value, (0.0,))
 
     def outer(k: int) -> Range:
-        """The range of the k-th Taylor coefficient."""
+        """Return the range of the k-th Taylor coefficient."""
         third = scaled(1 / 3, 3 * power_range(T, 2) - 1)
         return (T, rate, -product(T, rate)[::-1], product(rate, third))[k]
 
@@ -65,13 +65,13 @@ def tanh(x: Enclosure) -> Enclosure:
 
 
 def atan(x: Enclosure) -> Enclosure:
-    """With D = 1/(1 + x^2): D, -x D^2, (4 x^2 D - 1) D^2 / 3 ... of a circle's angle."""
+    """Return the arctangent; with D = 1/(1 + x^2) its coefficients are D, -x D^2, (4 x^2 D - 1) D^2 / 3."""
 
     def outer(k: int) -> Range:
-        """The range of the k-th Taylor coefficient."""
+        """Return the range of the k-th Taylor coefficient."""
         if k == 0:
             return np.arctan(x.value)
-        # x = tan(a): the derivatives are cos^2 a, -sin a cos^3 a, -(1 - 4 sin^2 a) cos^4 a / 3, which turn at fixed angles
+        # x = tan(a): derivatives cos^2 a, -sin a cos^3 a, -(1 - 4 sin^2 a) cos^4 a / 3 have extrema at fixed angles
         angle = np.arctan(x.value)
         return (
             lambda: between_turns(lambda a: np.cos(a) ** 2, angle, (0.0,)),
@@ -85,13 +85,13 @@ def atan(x: Enclosure) -> Enclosure:
 
 
 def asin(x: Enclosure) -> Enclosure:
-    """With P = 1 - x^2: P^(-1/2), x P^(-3/2)/2, (1 + 2 x^2) P^(-5/2)/6."""
+    """Return the arcsine; with P = 1 - x^2 its coefficients are P^(-1/2), x P^(-3/2)/2, (1 + 2 x^2) P^(-5/2)/6."""
     inside = np.clip(x.value, -1.0, 1.0)
     squared = power_range(inside, 2)
     P = 1.0 - squared[::-1]
 
     def outer(k: int) -> Range:
-        """The range of the k-th Taylor coefficient."""
+        """Return the range of the k-th Taylor coefficient."""
         if k == 0:
             return np.where((x.value[1] < -1) | (x.value[0] > 1), np.nan, np.arcsin(inside))
         if k == 1:
@@ -109,18 +109,18 @@ def _step(x: Any, x0: Any, h0: Any, x1: Any, h1: Any, value: Callable[..., Any],
 
 
 def _within(z: Range) -> tuple[Range, np.ndarray, np.ndarray]:
-    """The part of a range between 0 and 1, whether it holds one of these, and whether it is beyond them."""
+    """Return the part of a range in [0, 1], and masks of ranges that contain 0 or 1 and of ranges outside."""
     inside = np.clip(z, 0.0, 1.0)
     beyond = (z[1] <= 0) | (z[0] >= 1)
     return inside, ((z[0] < 0) | (z[1] > 1)) & ~beyond, beyond
 
 
 def _cubic_ramp(z: Enclosure) -> Enclosure:
-    """z^2 (3 - 2 z) between 0 and 1; its second derivative jumps at both."""
+    """Return z^2 (3 - 2 z) clipped to [0, 1]; its second derivative jumps at both ends."""
     inside, crosses, beyond = _within(z.value)
 
     def outer(k: int) -> Range:
-        """The range of the k-th Taylor coefficient."""
+        """Return the range of the k-th Taylor coefficient."""
         if k == 0:
             return inside**2 * (3 - 2 * inside)
         if k == 1:
@@ -132,12 +132,12 @@ def _cubic_ramp(z: Enclosure) -> Enclosure:
 
 
 def _quintic_ramp(z: Enclosure) -> Enclosure:
-    """z^3 (10 - 15 z + 6 z^2) between 0 and 1; its third derivative jumps at both."""
+    """Return z^3 (10 - 15 z + 6 z^2) clipped to [0, 1]; its third derivative jumps at both ends."""
     inside, crosses, beyond = _within(z.value)
     turn = np.sqrt(3) / 6
 
     def outer(k: int) -> Range:
-        """The range of the k-th Taylor coefficient."""
+        """Return the range of the k-th Taylor coefficient."""
         if k == 0:
             return inside**3 * (10 - 15 * inside + 6 * inside**2)
         if k == 1:
@@ -151,7 +151,7 @@ def _quintic_ramp(z: Enclosure) -> Enclosure:
 
 
 def step(x: Any, x0: Any, h0: Any, x1: Any, h1: Any) -> Any:
-    """Adams' STEP: from h0 at x0 to h1 at x1 by a cubic with flat ends.
+    """Return Adams' STEP: a cubic from h0 at x0 to h1 at x1 with zero end slopes.
 
     Parameters
     ----------
@@ -160,13 +160,13 @@ def step(x: Any, x0: Any, h0: Any, x1: Any, h1: Any) -> Any:
     Returns
     -------
     Enclosure or float
-        A number where x, x0 and x1, h0 and h1 are numbers.
+        A number if all arguments are numbers.
     """
     return _step(x, x0, h0, x1, h1, step_value, _cubic_ramp)
 
 
 def step5(x: Any, x0: Any, h0: Any, x1: Any, h1: Any) -> Any:
-    """Adams' STEP5: as `step`, by a quintic without curvature at its ends."""
+    """Return Adams' STEP5: a quintic with zero end slopes and curvatures, otherwise as `step`."""
     return _step(x, x0, h0, x1, h1, step5_value, _quintic_ramp)
 
 
@@ -186,13 +186,13 @@ sinh, cosh = _hyperbolic(False), _hyperbolic(True)
 
 
 def _by_derivative(function: FormulaFunction) -> Callable[[Enclosure], Enclosure]:
-    """The interval form of a function of x from that of its derivative."""
+    """Return the enclosure of a function from the enclosure of its derivative."""
     tree = parse(function.derivative)
 
     def of(x: Enclosure) -> Enclosure:
-        """The enclosure of the function at an enclosed argument."""
+        """Return the enclosure of the function at an enclosed argument."""
         low, high = x.value
-        own = Enclosure.of_time(low, high, max(x.order - 1, 0))  # x as its own variable
+        own = Enclosure.of_time(low, high, max(x.order - 1, 0))  # x as an independent variable
         names = {"x": own, "pi": np.pi}
         slope = evaluate(tree, names.__getitem__, FUNCTIONS, np.float64)
 
@@ -205,7 +205,7 @@ def _by_derivative(function: FormulaFunction) -> Callable[[Enclosure], Enclosure
 
 
 def _mean_value(function: Callable[..., np.ndarray], x: Range, slope: Range) -> Range:
-    """The range of a function by that of its slope: its values at both ends where it is monotonic (mean value form)."""
+    """Return the range of a function from that of its slope: end values if monotonic, else the mean value form."""
     low, high = x
     middle, reach = function((low + high) / 2), (high - low) / 2 * np.abs(slope).max(axis=0)
     ends = np.sort([function(low), function(high)], axis=0)
@@ -217,4 +217,4 @@ FUNCTIONS: dict[str, Callable[..., Any]] = {
     name: globals()[function.enclosure] if function.enclosure else _by_derivative(function)
     for name, function in IN_FORMULAS.items()
 }
-"""The functions of formulas."""
+"""Enclosures of the functions of formulas."""

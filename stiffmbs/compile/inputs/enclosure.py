@@ -1,7 +1,7 @@
-"""Ranges of a formula and of its Taylor coefficients over many stretches of time at once, so that nothing in it is missed.
+"""Rigorous ranges of a formula and of its Taylor coefficients over many time intervals at once.
 
 Interval arithmetic with forward differentiation: Moore, Kearfott, Cloud, Introduction to Interval Analysis (2009),
-chapters 2, 6 and 9.  Ends are not rounded outwards; a range that overlooks zero by rounding overlooks it by as much.
+chapters 2, 6 and 9. Bounds are not rounded outwards; the error is of the order of rounding.
 """
 
 from __future__ import annotations
@@ -25,49 +25,49 @@ from .ranges import (  # fmt: skip
 )
 
 ROUNDING_AT_MIDDLE = 1e-15
-"""Of a value at the middle of a stretch."""
+"""Relative rounding error of a value at the middle of an interval."""
 Outer = Callable[[int], Range]
-"""The range of the k-th Taylor coefficient of a function of one variable, over the range of that."""
+"""Function that returns the range of the k-th Taylor coefficient of a function over the range of its argument."""
 
 
 @dataclass(frozen=True)
 class Enclosure:
-    """Where a formula's values and its derivatives in time lie, stretch by stretch; infinite where there is no bound.
+    """Ranges of a formula and its time derivatives, interval by interval; infinite if unbounded.
 
     Attributes
     ----------
     coefficients : tuple of ndarray, shape (2, n)
-        Ranges of f, f', f''/2, f'''/6, ... ; those that are left out are zero.
+        Ranges of f, f', f''/2, f'''/6, ... ; omitted ones are zero.
     order : int
-        The highest that is computed.
+        Highest computed order.
     """
 
     coefficients: tuple[Range, ...]
     order: int = 1
 
-    __array_ufunc__ = None  # numpy's numbers leave arithmetic with an enclosure to it
+    __array_ufunc__ = None  # NumPy scalars leave arithmetic to the enclosure
 
     @classmethod
     def of_time(cls, low: np.ndarray, high: np.ndarray, order: int = 1) -> Enclosure:
-        """Time itself."""
+        """Return the enclosure of time itself."""
         return cls((np.array([low, high]), np.ones((2, len(low)))), order)
 
     @property
     def value(self) -> Range:
-        """Where the values lie."""
+        """Range of the values."""
         return self.coefficients[0]
 
     @property
     def slope(self) -> Range:
-        """Where the slopes lie."""
+        """Range of the slopes."""
         return self[1]
 
     def __getitem__(self, k: int) -> Range:
-        """The range of the k-th coefficient, also of one that is left out."""
+        """Return the range of the k-th coefficient, zero if omitted."""
         return self.coefficients[k] if k < len(self.coefficients) else np.zeros_like(self.value)
 
     def constant(self, value: Any) -> Enclosure:
-        """A number as an enclosure like this one; an enclosure as it is."""
+        """Return a number as an enclosure like this one; an enclosure unchanged."""
         if isinstance(value, Enclosure):
             return value
         return Enclosure((np.full_like(self.value, float(value)),), self.order)
@@ -128,7 +128,7 @@ class Enclosure:
         return exp(self * np.log(other)) if other > 0 else self.constant(other) ** self
 
     def composed(self, outer: Outer) -> Enclosure:
-        """A function of this one, by the ranges of its Taylor coefficients (Faa di Bruno's formula up to the third)."""
+        """Return a function of this one from the ranges of its Taylor coefficients (Faa di Bruno, to third order)."""
         if len(self.coefficients) == 1:
             return Enclosure((outer(0),), self.order)
         found = [outer(0)]
@@ -144,12 +144,12 @@ class Enclosure:
         return Enclosure(tuple(found), self.order)
 
     def where(self, here: np.ndarray, other: Enclosure) -> Enclosure:
-        """This one on some stretches, another one on the others."""
+        """Return this one on the selected intervals, another one on the others."""
         highest = max(len(self.coefficients), len(other.coefficients))
         return Enclosure(tuple(np.where(here, self[k], other[k]) for k in range(highest)), self.order)
 
     def narrowed(self, middle: np.ndarray, half: np.ndarray) -> Enclosure:
-        """The same with the values at the middles of the stretches known, and half of their lengths (mean value form)."""
+        """Narrow the values by the mean value form, from the values at interval midpoints and the half lengths."""
         low, high = self.value
         reach = half * np.abs(self.slope).max(axis=0)
         rounding = ROUNDING_AT_MIDDLE * np.abs(middle)
@@ -157,41 +157,41 @@ class Enclosure:
         return Enclosure((narrower, *self.coefficients[1:]), self.order)
 
     def derivative(self) -> Enclosure:
-        """Of f; one order less is known of it."""
+        """Return the enclosure of f', of one order less."""
         shifted = tuple(k * c for k, c in enumerate(self.coefficients))[1:] or (np.zeros_like(self.value),)
         return Enclosure(shifted, self.order - 1)
 
 
 def scaled(factor: float, x: Range) -> Range:
-    """A range times a number; zero times infinity is zero."""
+    """Return a range times a number; zero times infinity is zero."""
     if factor == 0.0:
         return np.zeros_like(x)
     return factor * (x if factor > 0 else x[::-1])
 
 
 def unbounded(value: Range, order: int, slope: Range = EVERYWHERE) -> Enclosure:
-    """Values in a range; nothing is known of their derivatives but perhaps of the first."""
+    """Return an enclosure with unbounded derivatives, except perhaps the first."""
     everywhere = np.broadcast_to(EVERYWHERE, value.shape)
     return Enclosure((value, np.broadcast_to(slope, value.shape), *[everywhere] * (order - 1)), order)
 
 
 def either(parts: list[Enclosure], jumps: bool) -> Enclosure:
-    """One of several, whichever; where they may follow each other by a jump, slopes are unbounded."""
+    """Return the hull of several alternatives; if they may jump, slopes are unbounded."""
     value = hull(*(part.value for part in parts))
     return unbounded(value, parts[0].order, EVERYWHERE if jumps else hull(*(part.slope for part in parts)))
 
 
 def exp(x: Enclosure) -> Enclosure:
-    """The exponential; all its Taylor coefficients are it over a factorial."""
+    """Return the exponential; its Taylor coefficients are exp(x)/k!."""
     values = np.exp(x.value)
     return x.composed(lambda k: values / (1.0, 1.0, 2.0, 6.0)[k])
 
 
 def log(x: Enclosure) -> Enclosure:
-    """The natural logarithm; NaN where the whole range is below zero."""
+    """Return the natural logarithm; NaN where the whole range is negative."""
 
     def outer(k: int) -> Range:
-        """The range of the k-th Taylor coefficient."""
+        """Return the range of the k-th Taylor coefficient."""
         if k == 0:
             return np.log(np.where(x.value[1] < 0, np.nan, np.maximum(x.value, 0.0)))
         return scaled((-1.0) ** (k + 1) / k, real_power_range(x.value, -k))
@@ -200,7 +200,7 @@ def log(x: Enclosure) -> Enclosure:
 
 
 def absolute(x: Enclosure) -> Enclosure:
-    """The absolute value; where the range of x holds zero inside, its slope has the range of both signs."""
+    """Return the absolute value; where x changes sign, the slope has the range of both signs."""
     straddles = (x.value[0] < 0) & (x.value[1] > 0)
     one_sided = x.where(x.value[0] >= 0, -x)
     both = unbounded(power_range(x.value, 2) ** 0.5, x.order, hull(x.slope, -x.slope[::-1]))
@@ -208,15 +208,15 @@ def absolute(x: Enclosure) -> Enclosure:
 
 
 def sign(x: Enclosure) -> Enclosure:
-    """-1, 0 or 1; without bounds of its derivatives where x may be zero."""
+    """Return -1, 0 or 1; derivatives are unbounded where x may be zero."""
     return unbounded(np.sign(x.value), x.order).where(around_zero(x.value), Enclosure((np.sign(x.value),), x.order))
 
 
 def _choice(greatest: bool) -> Callable[..., Enclosure]:
-    """min or max: one of them where its range is beyond the other's, else whichever."""
+    """Return min or max: one argument where ranges are disjoint, else with the hull of both slopes."""
 
     def pair(a: Enclosure, b: Enclosure) -> Enclosure:
-        """The choice between two."""
+        """Return the extremum of two enclosures."""
         low, high = (a, b) if greatest else (b, a)
         value = np.maximum(a.value, b.value) if greatest else np.minimum(a.value, b.value)
         open_one = unbounded(value, a.order, hull(a.slope, b.slope))
@@ -224,7 +224,7 @@ def _choice(greatest: bool) -> Callable[..., Enclosure]:
         return settled.where((a.value[1] <= b.value[0]) | (b.value[1] <= a.value[0]), open_one)
 
     def of(*parts: Any) -> Enclosure:
-        """The choice between any number of enclosures and numbers, one enclosure at the least."""
+        """Return the extremum of enclosures and numbers, at least one of them an enclosure."""
         known = next(part for part in parts if isinstance(part, Enclosure))
         chosen, *others = (known.constant(part) for part in parts)
         for other in others:
@@ -238,7 +238,7 @@ minimum, maximum = _choice(False), _choice(True)
 
 
 def branch(x: Any, below: Any, at: Any, above: Any) -> Enclosure:
-    """One of three by the sign of the first; it jumps where that may be zero."""
+    """Return one of three values by the sign of the first; it jumps where that may be zero."""
     known = next(part for part in (x, below, at, above) if isinstance(part, Enclosure))
     sign_of, *values = (known.constant(part) for part in (x, below, at, above))
     settled = values[0].where(sign_of.value[1] < 0, values[2])
@@ -246,7 +246,7 @@ def branch(x: Any, below: Any, at: Any, above: Any) -> Enclosure:
 
 
 def atan2(y: Any, x: Any) -> Enclosure:
-    """By the corners of the box of x and y; it jumps where that meets the negative x axis."""
+    """Return atan2 from the corners of the box of x and y; it jumps where the box meets the negative x axis."""
     known = y if isinstance(y, Enclosure) else x
     y, x = known.constant(y), known.constant(x)
     jumps = (x.value[0] <= 0) & (y.value[0] <= 0) & (y.value[1] >= 0)

@@ -1,8 +1,8 @@
-"""Instants at which a formula of time has a pole, or from which on it has no value: no motion follows it any further.
+"""Times at which an input has a pole or ends; no motion exists beyond them.
 
-The ranges of a formula over stretches of time are bounded by interval arithmetic (`stiffmbs.compile.inputs.enclosure`).  A stretch
-without a bound is divided until it is as short as time can be told apart; values close to it then tell a pole from a gap that
-closes, as that of sin(t)/t at zero.
+Interval arithmetic (`stiffmbs.compile.inputs.enclosure`) bounds formulas over time intervals. Intervals without a bound
+are subdivided down to the resolution of time. Nearby values then distinguish a pole from a removable singularity, as
+that of sin(t)/t at zero.
 """
 
 from __future__ import annotations
@@ -24,36 +24,36 @@ from .enclosure import Enclosure
 from .of_time import Input
 
 PARTS_OF_A_STRETCH, MOST_DIVISIONS = 32, 500
-"""Parts into which a stretch is divided at once, and divisions after which the search is given up: solvers then find the end."""
+"""Parts of a subdivided interval, and limit of subdivisions, after which solvers have to find the end."""
 SHORTEST_DIVIDED = 1e-13
-"""Length of a stretch, relative to the times themselves, that is not divided any further."""
+"""Length, relative to the times, of an interval that is not subdivided further."""
 FARTHER_SIDE, NEARER_SIDE = 1e-6, 1e-10
-"""Distances, relative to the times themselves, at which values on both sides are compared."""
+"""Distances, relative to the times, at which values on both sides are compared."""
 GROWS = 3.0
-"""Factor by which values must grow from the one distance to the other: that of a pole of order 1/8."""
+"""Factor by which values must grow between these distances: that of a pole of order 1/8."""
 LARGEST, DISTANCES = 1e8, np.geomspace(0.1, FARTHER_SIDE, 16)
-"""Growth towards a pole that solvers can follow, and distances at which it is looked for, relative to the times themselves."""
+"""Growth towards a pole that solvers can follow, and distances at which it is checked, relative to the times."""
 DOMAINS = {name: function.domain for name, function in IN_FORMULAS.items() if function.domain != EVERYWHERE}
-"""Arguments for which a function has a value."""
+"""Domains of functions."""
 RISKY = (*DOMAINS, *(name for name, function in IN_FORMULAS.items() if function.poles))
-"""Functions that some arguments leave without a finite value."""
+"""Functions without a finite value for some arguments."""
 
 Values = Callable[[float], float | None]
 
 
 class InputEnd(NamedTuple):
-    """Where a formula of time ends.
+    """End of a formula of time.
 
     Attributes
     ----------
     t : float
         s.
     near : float
-        Distance, s, from which on its values lose digits.
+        Distance before the end, s, within which its values are inaccurate.
     element, text : str
-        The element, and the part of its formula.
+        Element, and part of its formula.
     pole : bool
-        Whether it grows without bound there; else it has no value beyond.
+        True if it grows without bound; False if it has no value beyond.
     """
 
     t: float
@@ -63,7 +63,7 @@ class InputEnd(NamedTuple):
     pole: bool
 
     def sentence(self) -> str:
-        """That a run ends there."""
+        """Return the message that a run ends there."""
         found = "grows without bound" if self.pole else "has no value beyond"
         return (
             f"stopped at t = {self.t:.9g} s: '{self.element}' has no finite value there, as '{self.text}' {found}; "
@@ -72,7 +72,7 @@ class InputEnd(NamedTuple):
 
 
 def first_input_end(system: System, start: float, end: float) -> InputEnd | None:
-    """The first instant of a run at which a formula of time ends; None where all have values.
+    """Return the first time of a run at which a formula of time ends; None if all have values.
 
     Parameters
     ----------
@@ -96,14 +96,14 @@ def _of_element(name: str, element: Element, start: float, end: float) -> Iterat
 
 
 def _parts_of_time(formula: Formula) -> list[ast.expr]:
-    """The largest parts that depend on time alone; not the arguments of tables, which go on in straight lines."""
+    """Return the largest parts that depend on time only, except table arguments: tables extrapolate linearly."""
     if not formula.uses_time:
         return []
     return [part for part in _divided(formula.tree, formula)[1] if isinstance(part, ast.expr)]
 
 
 def _divided(node: ast.AST, formula: Formula) -> tuple[bool, list[ast.AST]]:
-    """Whether a part depends on time alone, and its largest parts that do."""
+    """Return whether a part depends on time only, and its largest parts that do."""
     of_time, found = not _is_of_state(node, formula), list[ast.AST]()
     for child in ast.iter_child_nodes(node):
         child_of_time, parts = _divided(child, formula)
@@ -115,7 +115,7 @@ def _divided(node: ast.AST, formula: Formula) -> tuple[bool, list[ast.AST]]:
 
 
 def _is_of_state(node: ast.AST, formula: Formula) -> bool:
-    """Whether a node is a coordinate, state, measure, reaction, table or variable of its field."""
+    """Return True if a node is a coordinate, state, measure, reaction, table or variable of its field."""
     match node:
         case ast.Attribute():
             return f"{UNIT}.{node.attr}" not in formula.values
@@ -129,7 +129,7 @@ def _is_table(node: ast.Call, formula: Formula) -> bool:
 
 
 def _is_risky(node: ast.expr) -> bool:
-    """Whether a node may have no finite value where its parts have one, and depends on time."""
+    """Return True if a node depends on time and may have no finite value although its parts have one."""
     match node:
         case ast.BinOp(_, ast.Div(), part) | ast.BinOp(part, ast.Pow(), ast.UnaryOp() | ast.BinOp()):
             pass
@@ -147,7 +147,7 @@ def _is_risky(node: ast.expr) -> bool:
 def _of_node(
     name: str, formula: Formula, part: ast.expr, node: ast.expr, start: float, end: float
 ) -> Iterator[InputEnd]:
-    """The first end of a part of a formula that comes from one node of it."""
+    """Yield the first end of a part of a formula caused by one of its nodes."""
 
     evaluated = Input(part, formula.text, formula.values, {})
 
@@ -166,7 +166,7 @@ def _of_node(
 
 
 def _without_bound(formula: Formula, node: ast.expr, start: float, end: float) -> Iterator[tuple[float, float]]:
-    """The shortest stretches over which a node has no bounded range, one after the other, at some distance from each other."""
+    """Yield the shortest intervals over which a node is unbounded, in ascending order and separated."""
     waiting, divisions, passed = [(start, end)], 0, start
     while waiting and divisions < MOST_DIVISIONS:
         first, last = waiting.pop()
@@ -185,7 +185,7 @@ def _without_bound(formula: Formula, node: ast.expr, start: float, end: float) -
 
 
 def _is_bounded(formula: Formula, node: ast.expr, low: np.ndarray, high: np.ndarray) -> np.ndarray:
-    """Whether a node's range over each stretch is bounded, and its argument nowhere outside the node's domain."""
+    """Return True for intervals with a bounded range and with arguments inside the node's domain."""
     bounded = np.isfinite(_range(formula, node, low, high)).all(axis=0)
     match node:
         case ast.Call(ast.Name(name), [argument]) if name in DOMAINS:
@@ -199,7 +199,7 @@ def _is_bounded(formula: Formula, node: ast.expr, low: np.ndarray, high: np.ndar
 
 
 def _range(formula: Formula, node: ast.expr, low: np.ndarray, high: np.ndarray) -> np.ndarray:
-    """Least and greatest values of a node over stretches of time, shape (2, n)."""
+    """Return the ranges of a node over time intervals, shape (2, n)."""
     t = Enclosure.of_time(low, high)
 
     def constant(number: float) -> Enclosure:
@@ -212,7 +212,7 @@ def _range(formula: Formula, node: ast.expr, low: np.ndarray, high: np.ndarray) 
 
 
 def _is_pole(value: Values, low: float, high: float, size: float) -> bool:
-    """Whether values grow on one side or the other, the nearer the instant."""
+    """Return True if values grow towards the time on either side."""
     for at, way in ((low, -1.0), (high, 1.0)):
         far, near = value(at + way * FARTHER_SIDE * size), value(at + way * NEARER_SIDE * size)
         if far is not None and near is not None and abs(near) > GROWS * abs(far) > 0.0:
@@ -225,7 +225,7 @@ def _has_no_value_beyond(value: Values, high: float, size: float) -> bool:
 
 
 def _pole_distance(value: Values, t: float, size: float) -> float:
-    """How far before a pole solvers are to stop: nearer, too few digits are left of the time, or the values are too large."""
+    """Return the distance before a pole at which solvers stop: nearer, time loses digits or values are too large."""
     largest = None
     for distance in DISTANCES * size:
         found = value(t - distance)

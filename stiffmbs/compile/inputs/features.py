@@ -1,8 +1,8 @@
-"""Where in time the inputs of a scene have features: breakpoints to stop at, and the longest step that still sees the rest.
+"""Features of inputs in time: breakpoints, and step limits that resolve the other features.
 
-Step control trusts what it has seen: after a rest its steps jump over a pulse.  Before a run, each input is cut into
-pieces until a cubic represents it, by ranges of its Taylor coefficients (Moore, Kearfott, Cloud, 2009, chapter 9), so
-that no feature hides between samples.  A step may not be longer than a few of the pieces that it touches.
+Step control extrapolates: after a rest, steps would miss a pulse. Before a run, each input is therefore divided into
+pieces that a cubic represents, by ranges of its Taylor coefficients (Moore, Kearfott, Cloud, 2009, chapter 9). No
+feature hides between samples. A step is limited to a few lengths of the pieces that it touches.
 """
 
 from __future__ import annotations
@@ -19,24 +19,23 @@ from .of_time import Input, inputs_of
 from .pieces import Bounds, InputPieces
 
 PIECES_OF_A_STEP = 7.0
-"""Lengths of a piece that a step may have: half a turn of a sine."""
+"""Longest step in piece lengths: half a period of a sine."""
 ALIKE = 2.0
-"""Factor within which bounds of neighbouring pieces are taken for the same, the smaller one."""
+"""Ratio within which bounds of neighbouring pieces are merged to the smaller one."""
 
 
 @dataclass(frozen=True)
 class InputFeatures:
-    """The features of all inputs between two times.
+    """Features of all inputs between two times.
 
     Attributes
     ----------
     breakpoints : ndarray
-        Instants to stop and start anew at, s.
+        Times to stop and restart at, s.
     starts, longest : ndarrays
-        From each of these times on, up to the next: the longest step that may touch it, s; empty where nothing bounds
-        a step.
+        Start of each interval and longest step that may touch it, s; empty if nothing limits steps.
     note : str
-        What the user should know of them; empty for nothing.
+        Note for the user, or ''.
     """
 
     breakpoints: np.ndarray = field(default_factory=lambda: np.empty(0))
@@ -46,11 +45,11 @@ class InputFeatures:
 
     @cached_property
     def ends(self) -> np.ndarray:
-        """The end of each stretch."""
+        """End of each interval."""
         return np.append(self.starts[1:], np.inf)
 
     def longest_step(self, t: float) -> float:
-        """The longest step from a time on, s (as `stiffmbs.solve.native.longest_step`)."""
+        """Return the longest step from a given time, s (as `stiffmbs.solve.native.longest_step`)."""
         if not len(self.starts):
             return np.inf
         k = max(int(np.searchsorted(self.starts, t, side="right")) - 1, 0)
@@ -62,11 +61,11 @@ class InputFeatures:
 
     @cached_property
     def _last_within(self) -> dict[tuple[float, float], InputFeatures]:
-        """Those that were asked for last, as runs of one job ask for the same."""
+        """Cache of the last request; the runs of one job request the same."""
         return {}
 
     def within(self, start: float, end: float) -> InputFeatures:
-        """Those between two times."""
+        """Return the features between two times."""
         if not len(self.starts) and not len(self.breakpoints):
             return self
         found = self._last_within.get((start, end))
@@ -82,7 +81,7 @@ class InputFeatures:
         return InputFeatures(breakpoints, self.starts[inside], self.longest[inside], self.note)
 
     def narrowest(self) -> tuple[float, float]:
-        """The length of the narrowest feature, s, and when it begins; infinite where there is none."""
+        """Return length and start of the narrowest feature, s; infinite length if there is none."""
         found = [(np.inf, 0.0)]
         if len(self.breakpoints) > 1:
             gaps = np.diff(self.breakpoints)
@@ -93,7 +92,7 @@ class InputFeatures:
         return min(found)
 
     def instants(self, start: float, end: float, spacing: float, most: int) -> np.ndarray:
-        """Instants that show the features narrower than a spacing: a few within each, at most so many."""
+        """Return at most `most` times that resolve features narrower than a spacing, a few within each."""
         narrow = np.isfinite(self.longest) & (self.longest < spacing)
         begin, until = np.maximum(self.starts[narrow], start), np.minimum(self.ends[narrow], end)
         count = np.ceil((until - begin) / self.longest[narrow] * INSTANTS).astype(np.int64)
@@ -107,20 +106,20 @@ class InputFeatures:
 
 
 INSTANTS = 8
-"""Instants that show a narrow feature."""
+"""Times that resolve a narrow feature."""
 REMEMBERED = 16
-"""Scenes whose features are kept."""
+"""Number of scenes whose features are cached."""
 NO_FEATURES = InputFeatures()
-"""Of a system without formulas and tables of time."""
+"""Features of a system without formulas and tables of time."""
 
 
 def input_features(system: System, start: float, end: float) -> InputFeatures:
-    """The features of a system's inputs between two times.
+    """Return the features of a system's inputs between two times.
 
     Raises
     ------
     InputError
-        When an input has too many breakpoints.
+        If an input has too many breakpoints.
     """
     inputs = tuple(inputs_of(system))
     return _features(_Inputs(tuple((given.text, given.says) for given in inputs), inputs), start, end)
@@ -128,7 +127,7 @@ def input_features(system: System, start: float, end: float) -> InputFeatures:
 
 @dataclass(frozen=True)
 class _Inputs:
-    """Inputs, which are equal where they say the same."""
+    """Inputs, compared by content."""
 
     say: tuple[Hashable, ...]
     each: tuple[Input, ...] = field(compare=False)
@@ -136,7 +135,7 @@ class _Inputs:
 
 @lru_cache(maxsize=REMEMBERED)
 def _features(given: _Inputs, start: float, end: float) -> InputFeatures:
-    """Runs with other numbers elsewhere, and reruns, have the same inputs."""
+    """Return the features of inputs, cached for runs with the same inputs."""
     inputs = given.each
     breakpoints = breakpoint_times(inputs, start, end)
     pieces = [InputPieces(each, np.concatenate([[start], breakpoints, [end]])) for each in inputs]
@@ -151,7 +150,7 @@ def _features(given: _Inputs, start: float, end: float) -> InputFeatures:
 def _together(
     bounds: Sequence[Bounds], breakpoints: np.ndarray, start: float, end: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """The least of all bounds on steps; nothing where none is shorter than the time between breakpoints."""
+    """Return the smallest of all step limits; empty if none is shorter than the time between breakpoints."""
     starts = np.unique(np.concatenate([[start], breakpoints, *(each.starts for each in bounds)]))
     longest = np.full(len(starts), np.inf)
     for each in bounds:
@@ -166,7 +165,7 @@ def _together(
 
 
 def _merged(starts: np.ndarray, longest: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Neighbours with bounds that are alike as one stretch with the smaller bound."""
+    """Merge neighbours with similar bounds to one interval with the smaller bound."""
     kept_starts, kept = [float(starts[0])], [float(longest[0])]
     least = most = kept[0]
     for t, bound in zip(starts[1:].tolist(), longest[1:].tolist(), strict=True):

@@ -1,4 +1,4 @@
-"""What a scene prescribes over time: tables of time, and the largest parts of formulas that know nothing but time."""
+"""Inputs of a scene: tables of time, and the largest parts of formulas that depend on time only."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ from .enclosure import Enclosure
 from .table_ranges import TableRanges
 
 WRITTEN = "written"
-"""The attribute of a node that keeps what it says."""
+"""Node attribute that caches its dump."""
 TABLE = "table"
-"""The name under which a field's own table of time is called."""
+"""Function name of a field's own table of time."""
 
 
 @dataclass(frozen=True, eq=False)
 class Input:
-    """An expression of time alone.
+    """Expression of time only.
 
     Attributes
     ----------
@@ -50,17 +50,17 @@ class Input:
 
     @cached_property
     def says(self) -> tuple[Hashable, ...]:
-        """What it says: inputs that say the same are the same.  A table is told by its object, which lives as long as the input."""
+        """Content for comparison; tables are compared by identity, valid while the input exists."""
         tables = tuple((name, id(ranges.table)) for name, ranges in sorted(self.tables.items()))
         return _written(self.tree), tuple(sorted(self.values.items())), tables
 
     def at(self, t: np.ndarray, part: ast.expr | None = None) -> np.ndarray:
-        """The values of the expression, or of a part of it, at many instants, shape (n,)."""
+        """Return the values of the expression, or of a part of it, at given times, shape (n,)."""
         values = _Evaluation(t, self.values, self._of_arrays()).value(part or self.tree)
         return np.broadcast_to(np.asarray(values, dtype=float), t.shape)
 
     def within(self, low: np.ndarray, high: np.ndarray, order: int = 1, part: ast.expr | None = None) -> Enclosure:
-        """Ranges of its values and Taylor coefficients over many stretches of time."""
+        """Return ranges of the values and Taylor coefficients over time intervals."""
         t = Enclosure.of_time(low, high, order)
         middle = _Evaluation((low + high) / 2, self.values, self._of_arrays())
         tables = {name: _by_argument(table.values, table.enclosed) for name, table in self.tables.items()}
@@ -72,14 +72,14 @@ class Input:
 
 
 class _Evaluation:
-    """The values of parts of a formula in one algebra; a part that is repeated is evaluated once."""
+    """Evaluation of parts of a formula in one algebra; repeated parts are evaluated once."""
 
     def __init__(self, t: Any, values: Mapping[str, float], functions: Mapping[str, Callable[..., Any]]) -> None:
         self._t, self._values, self._functions = t, values, functions
         self._known: dict[str, Any] = {}
 
     def value(self, node: ast.expr) -> Any:
-        """The value of a node."""
+        """Return the value of a node."""
         match node:
             case ast.Constant(int() | float() as number):
                 return float(number)
@@ -104,7 +104,7 @@ class _Evaluation:
 
 
 class _Ranges(_Evaluation):
-    """Enclosures of parts of a formula, made narrower by the values at the middle of each stretch (mean value form)."""
+    """Enclosures of parts of a formula, narrowed by the values at interval midpoints (mean value form)."""
 
     def __init__(
         self, t: Enclosure, values: Mapping[str, float], functions: Mapping[str, Callable[..., Any]], middle: _Evaluation,
@@ -119,7 +119,7 @@ class _Ranges(_Evaluation):
 
 
 def _written(node: ast.expr) -> str:
-    """What a node says, the same for the same text; found once for each node."""
+    """Return the dump of a node, cached in the node."""
     known: str | None = getattr(node, WRITTEN, None)
     if known is None:
         known = ast.dump(node)
@@ -128,12 +128,12 @@ def _written(node: ast.expr) -> str:
 
 
 def _number(value: Any) -> Any:
-    """Plain numbers as numpy's, which divide by zero without an exception."""
+    """Return numbers as NumPy scalars, which divide by zero without an exception."""
     return np.float64(value) if isinstance(value, float) else value
 
 
 def inputs_of(system: System) -> list[Input]:
-    """The inputs over time of all elements, each expression once."""
+    """Return the distinct time inputs of all elements."""
     found: dict[Hashable, Input] = {}
     known: dict[int, TableRanges] = {}
 
@@ -150,7 +150,7 @@ def inputs_of(system: System) -> list[Input]:
 
 
 def _without_roots(tree: ast.expr) -> ast.expr:
-    """The expression with roots of squares as absolute values; itself where it has no roots."""
+    """Return the expression with roots of squares as absolute values; itself if it has no roots."""
     has_roots = any(
         (isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "sqrt")
         or isinstance(node, ast.Pow)
@@ -160,7 +160,7 @@ def _without_roots(tree: ast.expr) -> ast.expr:
 
 
 class _WithoutRoots(ast.NodeTransformer):
-    """Writes sqrt(x^2), sqrt(x*x) and (x^2)^0.5 as abs(x): they have its breakpoint, which no range of a root shows."""
+    """Replace sqrt(x^2), sqrt(x*x) and (x^2)^0.5 by abs(x), whose breakpoint the range of a root does not show."""
 
     def visit_Call(self, node: ast.Call) -> ast.expr:
         self.generic_visit(node)
@@ -178,7 +178,7 @@ class _WithoutRoots(ast.NodeTransformer):
 
 
 def _squared(node: ast.expr) -> ast.expr | None:
-    """What a node is the square of."""
+    """Return the base of a square; None for other nodes."""
     match node:
         case ast.BinOp(x, ast.Pow(), ast.Constant(2)):
             return x
@@ -200,7 +200,7 @@ def _expressions(element: Element) -> Iterator[tuple[ast.expr, str, Mapping[str,
 
 
 def _is_of_time(element: Element, name: str) -> bool:
-    """Whether a field's formula or table is one of time: it then has no variables of its own."""
+    """Return True if a field's formula or table is a function of time, without variables of its own."""
     field = type(element).model_fields[name]
     marks = [mark for mark in _marks(field.metadata, field.annotation) if isinstance(mark, FormulaOf)]
     return any(not mark.variables for mark in marks)
@@ -214,12 +214,12 @@ def _marks(metadata: list[object], annotation: object) -> Iterator[object]:
 
 
 def _of_time_alone(formula: Formula) -> list[ast.expr]:
-    """The largest parts of a formula that use time and nothing of the state."""
+    """Return the largest parts of a formula that use time and no state."""
     return _largest_parts(formula.tree, {*formula.variables, *formula.states})[2] if formula.uses_time else []
 
 
 def _largest_parts(node: ast.expr, of_state: Set[str]) -> tuple[bool, bool, list[ast.expr]]:
-    """Whether a part uses time, whether anything of the state or of the field's variables, and its largest parts of time alone."""
+    """Return whether a part uses time, whether it uses state or field variables, and its largest parts of time only."""
     match node:
         case ast.Name(name):
             time, state = name == TIME, name in of_state
@@ -236,7 +236,7 @@ def _largest_parts(node: ast.expr, of_state: Set[str]) -> tuple[bool, bool, list
 
 
 def _by_argument(of_numbers: Callable[..., Any], of_enclosures: Callable[..., Any]) -> Callable[..., Any]:
-    """A function of formulas, also of the constants in them."""
+    """Return a function that also accepts constants of formulas."""
     return lambda *x: (of_enclosures if any(isinstance(part, Enclosure) for part in x) else of_numbers)(*x)
 
 

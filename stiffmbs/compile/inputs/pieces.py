@@ -1,4 +1,4 @@
-"""One input over time, cut into pieces until a cubic represents each of them, by ranges of its Taylor coefficients."""
+"""Subdivision of an input over time into pieces that a cubic represents, by ranges of its Taylor coefficients."""
 
 from __future__ import annotations
 
@@ -9,35 +9,34 @@ import numpy as np
 from .of_time import Input
 
 OF_CHANGE = 3e-3
-"""Error of the cubic, relative to the input's change around the piece."""
+"""Allowed error of the cubic, relative to the input's change around the piece."""
 LEAST_PART = 1e-4
-"""That change counts at least as so much of the input's change in the whole run."""
+"""Lower bound of that change, relative to the input's change in the whole run."""
 ALWAYS_ALLOWED = 1e-10
-"""Error of the cubic, relative to the input's values, that is always allowed."""
+"""Error of the cubic that is always allowed, relative to the input's values."""
 SHORTEST_PIECE = 1e-11
-"""Length of a piece, relative to the times themselves, that is cut no further."""
+"""Length, relative to the times, of a piece that is not subdivided further."""
 MOST_PIECES, MANY_PIECES = 2**13, 512
-"""Pieces of one input that are cut further: from there on only those that need it most are; and so many that it is
-worth to see whether they need be so many."""
+"""Number of open pieces above which only urgent ones are subdivided, and of pieces that need a second pass."""
 ROUNDING_OF_PARTS, ROUNDING_OF_SAMPLES = 1e-15, 100.0
-"""Rounding of what the first ranges of an input hold, relative to it; by so many times more samples may differ."""
+"""Rounding relative to the first ranges of an input, and factor by which samples may differ more."""
 SAMPLE, QUANTILE = 64, 0.1
-"""Pieces whose bounds stand for those of all others where they are too many, and which of theirs does."""
+"""Size of the sample of pieces used for all others if they are too many, and quantile of its bounds."""
 URGENT = 64
-"""So many times longer than its bound a piece is to be cut beyond that number."""
+"""Ratio of length to bound above which a piece is subdivided beyond that number."""
 WINDOW = np.array([-0.25, 0.0, 0.25, 0.5, 0.75, 1.0, 1.25])
-"""Where the change around a piece is looked at, in lengths from its start."""
+"""Sampling points for the change around a piece, in lengths from its start."""
 
 
 class Bounds(NamedTuple):
-    """Lengths of pieces: from each time to the next, the longest piece there that a cubic represents."""
+    """Bounds on lengths: from each time to the next, the longest piece that a cubic represents."""
 
     starts: np.ndarray
     lengths: np.ndarray
 
 
 class _Pieces(NamedTuple):
-    """Pieces that are looked at together, and how much the input changes around each."""
+    """Pieces processed together, and the change of the input around each."""
 
     low: np.ndarray
     high: np.ndarray
@@ -45,15 +44,15 @@ class _Pieces(NamedTuple):
 
     @property
     def length(self) -> np.ndarray:
-        """The length of each, s."""
+        """Length of each piece, s."""
         return self.high - self.low
 
     def where(self, which: np.ndarray) -> _Pieces:
-        """Those that are chosen."""
+        """Return the selected pieces."""
         return _Pieces(self.low[which], self.high[which], self.change[which])
 
     def halved(self) -> _Pieces:
-        """Twice as many of half the length: the first halves, then the second ones."""
+        """Return the first halves of the pieces, then the second halves."""
         middle = (self.low + self.high) / 2
         return _Pieces(
             np.concatenate([self.low, middle]), np.concatenate([middle, self.high]), np.tile(self.change / 2, 2)
@@ -61,14 +60,14 @@ class _Pieces(NamedTuple):
 
 
 class InputPieces:
-    """One input, cut until a cubic represents each piece.
+    """Subdivision of one input into pieces that a cubic represents.
 
     Attributes
     ----------
     change, size : float
-        Of the input in the whole run, as far as it was seen: how much it changes, and its largest value.
+        Range and largest absolute value of the input in the run, as sampled.
     estimated : bool
-        Whether pieces were too many, and the bounds of some are those of others.
+        True if there were too many pieces, and bounds of some were used for others.
     """
 
     def __init__(self, given: Input, edges: np.ndarray) -> None:
@@ -79,7 +78,7 @@ class InputPieces:
         self.change, self.size, self.estimated = 0.0, 0.0, False
 
     def bounds(self) -> Bounds:
-        """The pieces; cut again where the first of them were cut for a change that was seen too small."""
+        """Return the pieces; many pieces are computed again with the input's change in the whole run."""
         whole = _Pieces(self._edges[:-1], self._edges[1:], np.zeros(len(self._edges) - 1))
         with np.errstate(all="ignore"):
             found = self._cut(whole, first=True)
@@ -95,7 +94,7 @@ class InputPieces:
             h, lengths = pieces.length, self._longest(pieces)
             settled = (lengths >= h) | (h <= self._shortest)
             if not first:
-                lengths = np.minimum(lengths, 2 * h)  # as the piece twice as long was too long
+                lengths = np.minimum(lengths, 2 * h)  # the parent piece was too long
             first = False
             if np.count_nonzero(~settled) > MOST_PIECES:
                 settled |= h < URGENT * lengths
@@ -108,7 +107,7 @@ class InputPieces:
         return Bounds(starts, lengths)
 
     def _looked_at(self, pieces: _Pieces) -> _Pieces:
-        """The pieces with the change that samples in and around them show."""
+        """Return the pieces with the change seen by samples in and around them."""
         segment = np.searchsorted(self._edges, (pieces.low + pieces.high) / 2) - 1
         t = np.clip(pieces.low + WINDOW[:, None] * pieces.length, self._edges[segment], self._edges[segment + 1])
         seen = self._given.at(t.ravel()).reshape(t.shape)
@@ -121,10 +120,10 @@ class InputPieces:
         return _Pieces(pieces.low, pieces.high, np.fmax(greatest - least, pieces.change))
 
     def _longest(self, pieces: _Pieces) -> np.ndarray:
-        """The longest part of each piece that a polynomial up to the third degree represents.
+        """Return the longest part of each piece that a polynomial of degree three or less represents.
 
-        About the middle of a part of length h its error is at most (h/2)^k / 2 times the width of the range of the k-th
-        Taylor coefficient.  Ends are left out by a rounding, so that a breakpoint there does not count.
+        About the middle of a part of length h the error is at most (h/2)^k / 2 times the width of the range of the k-th
+        Taylor coefficient. Piece ends are excluded by a rounding, so that breakpoints there do not count.
         """
         inner = np.minimum(self._shortest / 4, pieces.length / 4)
         found = self._given.within(pieces.low + inner, pieces.high - inner, order=3)
@@ -141,7 +140,7 @@ class InputPieces:
         return np.where(np.isnan(found.value).any(axis=0), np.inf, lengths)
 
     def _estimated(self, pieces: _Pieces, lengths: np.ndarray, open_ones: np.ndarray) -> np.ndarray:
-        """Bounds where pieces are too many to be cut further: those of a few of them; none where samples show nothing."""
+        """Return bounds from a sample of pieces, too many to subdivide; infinite where the input is constant."""
         still = pieces.change <= ROUNDING_OF_SAMPLES * self._rounding
         chosen = np.flatnonzero(open_ones & ~still)
         lengths = np.where(open_ones & still, np.inf, lengths)

@@ -1,4 +1,4 @@
-"""Arithmetic with ranges of numbers: arrays of least and greatest values, shape (2, n)."""
+"""Interval arithmetic on arrays of lower and upper bounds, shape (2, n)."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from functools import reduce
 import numpy as np
 
 Range = np.ndarray
-"""Least and greatest values, shape (2, n); NaN where there are none, infinite where there is no bound."""
+"""Lower and upper bounds, shape (2, n); NaN if undefined, infinite if unbounded."""
 EVERYWHERE = np.array([[-np.inf], [np.inf]])
 
 
 def total(*ranges: Range) -> Range:
-    """The sum; the sum of infinite bounds of opposite signs is no bound."""
+    """Return the sum; infinite bounds of opposite signs give an unbounded range."""
     found = reduce(np.add, ranges)
     lost = np.isnan(found)
     if lost.any():
@@ -23,7 +23,7 @@ def total(*ranges: Range) -> Range:
 
 
 def product(a: Range, b: Range) -> Range:
-    """The product; zero times infinity is zero."""
+    """Return the product; zero times infinity is zero."""
     parts = np.array([a[0] * b[0], a[0] * b[1], a[1] * b[0], a[1] * b[1]])
     lost = np.isnan(parts)
     if lost.any():
@@ -32,25 +32,25 @@ def product(a: Range, b: Range) -> Range:
 
 
 def hull(*ranges: Range) -> Range:
-    """The least range that holds all of them."""
+    """Return the smallest range that contains all."""
     return np.array(
         [reduce(np.minimum, [each[0] for each in ranges]), reduce(np.maximum, [each[1] for each in ranges])]
     )
 
 
 def around_zero(x: Range) -> np.ndarray:
-    """Which ranges hold zero."""
+    """Return a mask of the ranges that contain zero."""
     return (x[0] <= 0) & (x[1] >= 0)
 
 
 def between_turns(function: Callable[[np.ndarray], np.ndarray], x: Range, turns: tuple[float, ...]) -> Range:
-    """The range of a function that rises or falls between the arguments where it turns; NaN is no such argument."""
+    """Return the range of a function that is monotonic between its extrema `turns`; NaN entries are ignored."""
     values = [function(argument) for argument in (*x, *(np.clip(p, *x) for p in turns))]
     return np.array([reduce(np.fmin, values), reduce(np.fmax, values)])
 
 
 def power_range(x: Range, power: float) -> Range:
-    """The range of an integer power."""
+    """Return the range of an integer power."""
     if power == 0:
         return np.ones_like(x)
     if power > 0:
@@ -60,18 +60,18 @@ def power_range(x: Range, power: float) -> Range:
 
 
 def real_power_range(x: Range, power: float) -> Range:
-    """The range of a power of what is not negative; there are no values elsewhere."""
+    """Return the range of a power of a non-negative number; NaN for negative ranges."""
     ends = np.where(x[1] < 0, np.nan, np.maximum(x, 0.0)) ** power
     return np.array([ends.min(axis=0), ends.max(axis=0)])
 
 
 def real_binomial(n: float, k: int) -> float:
-    """n over k."""
+    """Return the binomial coefficient n over k."""
     return float(np.prod([(n - i) / (i + 1) for i in range(k)]))
 
 
 def wave(x: Range, top: float) -> Range:
-    """The range of the cosine wave whose tops are at `top` and a whole number of turns from there."""
+    """Return the range of the cosine wave with a maximum at `top`."""
     ends = np.cos(x - top)
     first_top, first_foot = ((x[0] - top - shift) / (2 * np.pi) for shift in (0.0, np.pi))
     turns = (x[1] - x[0]) / (2 * np.pi)

@@ -1,4 +1,4 @@
-"""Ranges of tables: of their values and Taylor coefficients over stretches of their argument."""
+"""Ranges of table values and Taylor coefficients over intervals of the argument."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .zeros import MOST_STRETCHES, TooMany
 
 
 class TableRanges:
-    """A table as a function of arrays and of enclosures.
+    """Table as a function of arrays and of enclosures.
 
     Parameters
     ----------
@@ -24,9 +24,9 @@ class TableRanges:
     ----------
     table : Table
     breakpoints : ndarray
-        Arguments at which it has breakpoints, those of one period if it is periodic.
+        Arguments of its breakpoints, within one period for a periodic table.
     period : float
-        Zero where it is not periodic.
+        Zero if it is not periodic.
     """
 
     def __init__(self, table: Table) -> None:
@@ -42,11 +42,11 @@ class TableRanges:
             self._most = [_Most(self._of_pieces(np.arange(len(h)), whole, k)) for k in range(4)]
 
     def values(self, arguments: np.ndarray) -> np.ndarray:
-        """Values, as kernels compute them."""
+        """Return the values as computed by kernels."""
         return self._values(arguments)
 
     def breakpoints_between(self, low: float, high: float) -> np.ndarray:
-        """Arguments within a range at which it has breakpoints."""
+        """Return the breakpoints between two arguments."""
         if not self.period:
             return self.breakpoints[(self.breakpoints >= low) & (self.breakpoints <= high)]
         first, last = np.floor((low - self._x[0]) / self.period), np.ceil((high - self._x[0]) / self.period)
@@ -59,7 +59,7 @@ class TableRanges:
         return found[(found >= low) & (found <= high)]
 
     def enclosed(self, argument: Enclosure) -> Enclosure:
-        """Ranges of the table of an argument."""
+        """Return the enclosure of the table for an argument."""
         low, high = argument.value
         bounded = np.isfinite(low) & np.isfinite(high)
         a, b = np.where(bounded, low, self._x[0]), np.where(bounded, high, self._x[-1])
@@ -67,7 +67,7 @@ class TableRanges:
         return argument.composed(lambda k: np.where(bounded, outer(k), EVERYWHERE))
 
     def _around(self, a: np.ndarray, b: np.ndarray) -> Callable[[int], Range]:
-        """Ranges of Taylor coefficients of a periodic table: up to the end of a period, and on from its start."""
+        """Return the ranges of Taylor coefficients of a periodic table; intervals are split at the end of a period."""
         first, last, period = self._x[0], self._x[-1], self.period
         length = np.minimum(b - a, period)
         begin = first + np.mod(a - first, period)
@@ -80,7 +80,7 @@ class TableRanges:
         return hull(before, behind) if k <= self._smooth else np.broadcast_to(EVERYWHERE, before.shape)
 
     def _over(self, a: np.ndarray, b: np.ndarray) -> Callable[[int], Range]:
-        """Ranges of Taylor coefficients over stretches; beyond its ends a table goes on straight."""
+        """Return the ranges of Taylor coefficients over intervals; a table extrapolates linearly."""
         x = self._x
         inside = np.clip([a, b], x[0], x[-1])
         first, last = np.clip(np.searchsorted(x, inside, side="right") - 1, 0, len(x) - 2)
@@ -92,7 +92,7 @@ class TableRanges:
         beyond = (b <= x[0]) | (a >= x[-1])
 
         def outer(k: int) -> Range:
-            """The range of the k-th Taylor coefficient."""
+            """Return the range of the k-th Taylor coefficient."""
             found = hull(self._of_pieces(first, z_first, k), self._of_pieces(last, z_last, k))
             between = last > first + 1
             found = np.where(
@@ -111,10 +111,10 @@ class TableRanges:
         return outer
 
     def _of_pieces(self, piece: np.ndarray, z: Range, k: int) -> Range:
-        """The range of the k-th Taylor coefficient within pieces, over stretches from their starts."""
+        """Return the range of the k-th Taylor coefficient within pieces, over intervals relative to their starts."""
         a, b, c, d = self._pieces[piece].T
         if k == 3:
-            return np.array([np.minimum(a, 0.0), np.maximum(a, 0.0)])  # with 0, so that no cubic passes for smooth
+            return np.array([np.minimum(a, 0.0), np.maximum(a, 0.0)])  # contains 0, so that no cubic counts as smooth
         if k == 2:
             return np.sort(3 * a * z + b, axis=0)
         if k == 1:
@@ -125,7 +125,7 @@ class TableRanges:
 
 
 def _breakpoints(table: Table, x: np.ndarray) -> np.ndarray:
-    """Ends of a table; all its points if it is of straight lines, else those where it leaves or reaches a flat part."""
+    """Return the breakpoints of a table: its ends, kinks of straight lines, and the ends of flat parts."""
     y = np.array([value for _, value in table.table])
     if table.lines:
         slopes = np.diff(y) / np.diff(x)
@@ -139,11 +139,11 @@ def _breakpoints(table: Table, x: np.ndarray) -> np.ndarray:
 
 
 FLAT = 1e-12
-"""Change between two points of a table, relative to its largest value, up to which it is flat there."""
+"""Change between two points of a table, relative to its largest value, below which it is flat."""
 
 
 class _Most:
-    """The hull of any successive ranges, by hulls of 1, 2, 4, ... of them (a sparse table)."""
+    """Hulls of successive ranges from hulls of 1, 2, 4, ... ranges (sparse table)."""
 
     def __init__(self, ranges: Range) -> None:
         self._levels = [ranges]
@@ -152,7 +152,7 @@ class _Most:
             self._levels.append(hull(before[:, :-reach], before[:, reach:]))
 
     def over(self, first: np.ndarray, end: np.ndarray) -> Range:
-        """The hulls from each first one to before each end; ends that are too far are cut."""
+        """Return the hulls from each first index to before each end; ends beyond the last range are clipped."""
         count = self._levels[0].shape[1]
         end = np.clip(end, 1, count)
         first = np.clip(first, 0, end - 1)

@@ -1,4 +1,4 @@
-"""All instants at which a formula of time passes one of some levels, however close to each other."""
+"""All times at which a formula of time crosses given levels."""
 
 from __future__ import annotations
 
@@ -9,15 +9,15 @@ import numpy as np
 from .enclosure import Enclosure
 
 FIRST_STRETCHES = 64
-"""Stretches that the search begins with."""
+"""Initial number of intervals of the search."""
 SHORTEST_STRETCH = 1e-12
-"""Length of a stretch, relative to the times themselves, in which no more than one passage is looked for."""
+"""Length, relative to the times, of an interval with at most one crossing."""
 MOST_STRETCHES = 1_000_000
-"""Stretches at which the search is given up."""
+"""Number of intervals at which the search is given up."""
 MANY_STRETCHES = 256
-"""Stretches from which on those are dropped in which the formula stands at a level but for rounding."""
+"""Number of intervals above which those are dropped where the formula equals a level up to rounding."""
 SAMPLE_ROUNDING, RANGE_ROUNDING = 1e-14, 3e-16
-"""Of a formula where samples tell it, and where its ranges do, relative to its values."""
+"""Rounding of samples and of ranges of a formula, relative to its values."""
 
 Values = Callable[[np.ndarray], np.ndarray]
 Ranges = Callable[[np.ndarray, np.ndarray], Enclosure]
@@ -25,21 +25,21 @@ ZERO = np.zeros(1)
 
 
 class TooMany(Exception):
-    """A formula passes its levels too often."""
+    """A formula crosses its levels too often."""
 
 
 def zeros(values: Values, ranges: Ranges, start: float, end: float, levels: np.ndarray = ZERO) -> np.ndarray:
-    """Instants between two times at which a formula changes its sign or passes another level, in no order.
+    """Return the times between two limits at which a formula crosses zero or other levels, unsorted.
 
-    A stretch is halved until the formula's range leaves all levels out, or its slope keeps one sign there, so that the
-    values at the ends tell all.  Straight lines need no search.  Where the formula stays at a level it passes none.
+    An interval is halved until the formula's range excludes all levels, or its slope has one sign so that end values
+    suffice. Straight lines need no search. A formula that stays at a level does not cross it.
 
     Parameters
     ----------
     values : callable
-        Of instants.
+        Function of times.
     ranges : callable
-        Of the beginnings and ends of stretches.
+        Function of starts and ends of intervals.
     start, end : float
         s.
     levels : ndarray
@@ -61,7 +61,7 @@ def zeros(values: Values, ranges: Ranges, start: float, end: float, levels: np.n
 
 
 def _stretches(values: Values, ranges: Ranges, start: float, end: float, levels: np.ndarray) -> Iterator[np.ndarray]:
-    """Beginnings and ends of stretches of one slope, or as short as time can be told apart, that may hold a passage."""
+    """Yield starts and ends of intervals that may hold a crossing, monotonic or at the resolution of time."""
     shortest = SHORTEST_STRETCH * max(abs(start), abs(end))
     edges = np.linspace(start, end, FIRST_STRETCHES + 1)
     low, high = edges[:-1], edges[1:]
@@ -93,9 +93,9 @@ def _size(value: np.ndarray) -> float:
 def _around(
     levels: np.ndarray, found: Enclosure, at_middle: np.ndarray, middle: np.ndarray, low: np.ndarray, high: np.ndarray
 ) -> np.ndarray:
-    """Which stretches may hold a passage, by their ranges and by the slope from their middle.
+    """Return a mask of the intervals that may hold a crossing, by their ranges and by the slope from their middle.
 
-    Where the formula stands still it passes nothing, whatever its value.
+    A constant formula crosses nothing.
     """
     half = np.maximum(high - middle, middle - low) * np.abs(found.slope).max(axis=0)
     moving = np.any(found.slope != 0, axis=0)
@@ -105,13 +105,13 @@ def _around(
 
 
 def _stays(value: np.ndarray, levels: np.ndarray, size: float) -> np.ndarray:
-    """Stretches in which the formula is nowhere away from one level, but for rounding."""
+    """Return a mask of the intervals whose range equals one level up to rounding."""
     k = np.clip(np.searchsorted(levels, value[0] - RANGE_ROUNDING * size), 0, len(levels) - 1)
     return (np.abs(value - levels[k]) <= RANGE_ROUNDING * size).all(axis=0)
 
 
 def _stands(values: Values, low: np.ndarray, high: np.ndarray, levels: np.ndarray, size: float) -> np.ndarray:
-    """Stretches in which the formula is at a level, but for rounding, wherever it is looked at."""
+    """Return a mask of the intervals whose samples equal a level up to rounding."""
     standing = np.ones(len(low), dtype=bool)
     for part in (0.0, 0.17, 0.5, 0.83, 1.0):
         at = values(low + part * (high - low))
@@ -122,7 +122,7 @@ def _stands(values: Values, low: np.ndarray, high: np.ndarray, levels: np.ndarra
 
 
 def _passages(values: Values, low: np.ndarray, high: np.ndarray, levels: np.ndarray) -> np.ndarray:
-    """Where each stretch passes the levels between its ends; a value at an end that is a level counts."""
+    """Return the crossings in monotonic intervals by bisection; end values equal to a level count."""
     first, last = values(low), values(high)
     at_ends = np.concatenate([low[np.isin(first, levels)], high[np.isin(last, levels)]])
     least, most = np.minimum(first, last), np.maximum(first, last)

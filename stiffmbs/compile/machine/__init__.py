@@ -1,1 +1,1 @@
-"""Machine code: native functions translated, compiled by LLVM, kept in a cache, called with tables of addresses."""
+"""Machine code: translation of native functions, LLVM compilation, cache, and pointer tables."""

@@ -1,6 +1,6 @@
-"""What was derived and compiled, kept on disk: written once per source and machine, read back without a compiler.
+"""Disk cache of derived and compiled code, written once per source and machine.
 
-Entries of one version of the package on one kind of machine share a folder of their own.
+Entries of one package version on one kind of machine share a folder.
 """
 
 from __future__ import annotations
@@ -11,20 +11,20 @@ from pathlib import Path
 from ...cache.entries import Folder, digest, tag_of
 
 FORMAT = "6"
-"""Changed whenever the meaning of an entry's content changes."""
+"""Version of the format of entries."""
 RECORD, KERNEL, ROUTINE = "record", "kernel", "routine"
-"""Kinds of entries: what was derived of a kind of element, its machine code, and that of solvers."""
+"""Kinds of entries: derivation record of a kind of element, its machine code, and that of solvers."""
 FOLDER = "entries"
 
 
 def own_directory() -> Path:
-    """The entries of this version of the package on this machine."""
+    """Return the folder of entries of this package version on this machine."""
     return _own().path
 
 
 @cache
 def _own() -> Folder:
-    """The folder of all that depends on the package, processor and LLVM besides its source."""
+    """Return the folder for this package, processor and LLVM version."""
     import llvmlite
     import llvmlite.binding as llvm
 
@@ -42,15 +42,15 @@ def _own() -> Folder:
 
 
 def name_of(kind: str, *parts: str) -> str:
-    """The name of the entry for a source."""
+    """Return the entry name of a source."""
     return f"{kind}-{digest(*parts)}"
 
 
 def read(name: str) -> bytes | None:
-    """The content of an entry; see `Folder.read`."""
+    """Return the content of an entry; see `Folder.read`."""
     return _own().read(name)
 
 
 def write(name: str, content: bytes) -> None:
-    """Keep an entry; see `Folder.write`."""
+    """Store an entry; see `Folder.write`."""
     _own().write(name, content)

@@ -1,4 +1,4 @@
-"""What the cache holds, by kind, and its removal."""
+"""Cache contents by kind, and their removal."""
 
 from __future__ import annotations
 
@@ -16,20 +16,20 @@ from .cache import FOLDER, KERNEL, RECORD, ROUTINE, own_directory
 KINDS = (RECORD, KERNEL, ROUTINE, FILE, SCENE)
 OTHERS = "other"
 _ENTRY = re.compile(rf"({'|'.join(KINDS)})-[0-9a-f]{{40}}|{re.escape(PART)}.*|[0-9a-f]{{40}}")
-"""Names of entries, of files that a process left half written, and of the entries of earlier versions."""
+"""Names of entries, of partially written files, and of entries of earlier versions."""
 _DIRECTORY = re.compile(rf"({FOLDER}|{folder_of_files().kind})-[0-9a-f]{{12}}")
 
 
 @dataclass(frozen=True)
 class Stored:
-    """A number of entries, and their size in bytes."""
+    """Number of entries, and their size in bytes."""
 
     entries: int
     size: int
 
 
 def stored() -> dict[str, Stored]:
-    """What is kept, by kind; under `OTHERS` what this version on this machine does not use."""
+    """Return the cache contents by kind; `OTHERS` are entries unused by this version on this machine."""
     folders = (own_directory(), folder_of_files().path)
     sizes: dict[str, list[int]] = {kind: [] for kind in (*KINDS, OTHERS)}
     for path in _files():
@@ -40,12 +40,12 @@ def stored() -> dict[str, Stored]:
 
 
 def clear() -> Stored:
-    """Remove all entries and the secret that they are bound by, and nothing else; returns what entries were removed.
+    """Remove all entries and their authentication secret; return the removed entries.
 
     Raises
     ------
     OSError
-        When an entry cannot be removed.
+        If an entry cannot be removed.
     """
     sizes = []
     for path in list(_files()):

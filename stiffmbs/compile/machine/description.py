@@ -1,4 +1,4 @@
-"""What is logged of a compilation, which has no part in what is compiled."""
+"""Log description of a compilation."""
 
 from __future__ import annotations
 
@@ -7,6 +7,6 @@ from dataclasses import dataclass, field
 
 @dataclass(frozen=True)
 class Description:
-    """Words that equal all others, so that functions that keep their results by their arguments don't mind them."""
+    """Text that compares equal to any other, so that cached functions ignore it."""
 
     words: str = field(default="", compare=False)

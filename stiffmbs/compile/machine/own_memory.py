@@ -1,4 +1,4 @@
-"""Tables with memory that compiled code asks for, which is given back with the table."""
+"""Tables with memory allocated by compiled code and freed with the table."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ import numpy as np
 from .layout import OWN, Layout, packed
 
 RELEASE = ctypes.pythonapi.PyMem_RawFree
-"""Frees what `stiffmbs.compile.machine.native.memory` has asked for."""
+"""Frees the memory of `stiffmbs.compile.machine.native.memory`."""
 
 
 def packed_with_memory(layout: Layout, values: Mapping[str, Any]) -> np.ndarray:
-    """As `stiffmbs.compile.machine.layout.packed`; the arrays of compiled code's own are freed when nothing refers to the table.
+    """Return a table as `stiffmbs.compile.machine.layout.packed`; compiled code's own arrays are freed with it.
 
-    Whoever uses the address of the table must keep the array that is returned.
+    Users of the table's address must keep the returned array.
     """
     words = packed(layout, values)
     own = [column for column, kind in enumerate(layout.values()) if kind in OWN]

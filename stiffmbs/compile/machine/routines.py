@@ -1,4 +1,4 @@
-"""The compiled routines of the native modules, by name and signature."""
+"""Compiled routines of the native modules, by name and signature."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ Signatures = tuple[tuple[str, str], ...]
 
 @dataclass(frozen=True)
 class Routine:
-    """A function of a ``native`` module: compiled, or loaded from the cache, when first asked for.
+    """Function of a ``native`` module, compiled or loaded from the cache on first use.
 
     Attributes
     ----------
     module, name, signature : str
     others : tuple of (name, signature)
-        Functions of the module that are compiled with it, as what they share is the most of each of them.
+        Functions of the module compiled with it, because they share most of their code.
     unrolled : bool
-        Whether its loops are unrolled, which is worth its time in solutions with dense blocks.
+        True if its loops are unrolled, which pays for solutions with dense blocks.
     """
 
     module: str
@@ -33,17 +33,17 @@ class Routine:
 
     @cached_property
     def call(self) -> Callable[..., Any]:
-        """The function, for calls from Python; pointers are passed as addresses."""
+        """Function for calls from Python; pointers are passed as addresses."""
         return self._compiled().call
 
     @cached_property
     def short_call(self) -> Callable[..., Any]:
-        """The same, for calls that last some microseconds: the interpreter's lock is kept."""
+        """Function for calls of a few microseconds, which keep the interpreter lock."""
         return self._compiled().short_call
 
     @cached_property
     def address(self) -> int:
-        """The function's address, for calls from compiled code."""
+        """Address for calls from compiled code."""
         return self._compiled().address
 
     def _compiled(self) -> Compiled:
@@ -52,7 +52,7 @@ class Routine:
 
 
 def together(module: str, **signatures: str) -> tuple[Routine, ...]:
-    """Functions of one native module that are compiled together."""
+    """Return functions of one native module that are compiled together."""
     return tuple(
         Routine(module, name, signature, tuple(other for other in signatures.items() if other[0] != name))
         for name, signature in signatures.items()

@@ -1,4 +1,4 @@
-"""The common normal of two convex solids in equations (`stiffmbs.compile.machine.geometry.common_normal`)."""
+"""Common normal of two convex solids in equations (`stiffmbs.compile.machine.geometry.common_normal`)."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from ...errors import InputError
 
 
 class CommonNormal(sp.Function):  # type: ignore[misc]
-    """A component of the unit normal, in the axes of the second solid: CommonNormal(component, pose...)."""
+    """Component of the unit normal in the axes of the second solid: CommonNormal(component, pose...)."""
 
     is_real = True
 
@@ -21,7 +21,7 @@ class CommonNormal(sp.Function):  # type: ignore[misc]
 
 
 class CommonNormalSlope(sp.Function):  # type: ignore[misc]
-    """Its derivative by an entry of the pose: CommonNormalSlope(component, entry, normal..., pose...)."""
+    """Derivative of the normal by an entry of the pose: CommonNormalSlope(component, entry, normal..., pose...)."""
 
     is_real = True
 
@@ -37,16 +37,16 @@ def common_normal(
     first: Sequence[Sequence[sp.Expr]],
     second: Sequence[Sequence[sp.Expr]],
 ) -> sp.Matrix:
-    """The unit normal from the second solid to the first, in the second one's axes.
+    """Return the unit normal from the second solid to the first, in the second one's axes.
 
     Parameters
     ----------
     way : 3 expressions
-        From the middle of the second solid to that of the first, m.
+        Vector from the centre of the second solid to that of the first, m.
     axes : 9 expressions
-        The rotation matrix that takes components along the first solid's axes into those along the second's, row by row.
+        Rotation matrix from the axes of the first solid to those of the second, by rows.
     first, second : up to 3 sequences of 3 expressions each
-        Squares of the semi-axes of the ellipsoids whose Minkowski sum a solid is, m^2.
+        Squared semi-axes of the ellipsoids whose Minkowski sum is the solid, m^2.
     """
     pose = [*way, *axes, *_all_three(first), *_all_three(second)]
     return sp.Matrix([CommonNormal(sp.Integer(k), *pose) for k in range(3)])

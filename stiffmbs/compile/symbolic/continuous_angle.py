@@ -1,8 +1,7 @@
-"""Angles between markers in space, counted over whole turns.
+"""Continuous (unwrapped) angles between spatial markers.
 
-The sine and cosine of an angle tell it up to whole turns.  Which turn it is in, a counter remembers: a coordinate of the
-system's own with the angle's rate, which is integrated with all others.  It decides about the turn alone, so that its
-own error, far below half a turn, has no part in the angle.
+Sine and cosine define an angle up to whole turns. A turn counter selects the turn: a coordinate of the system with the
+angle's rate, which is integrated with the others. Its own integration error does not enter the angle.
 """
 
 from __future__ import annotations
@@ -15,12 +14,12 @@ import sympy as sp
 from .nonsmooth import Inside, Less
 
 POLE = sp.Float(1e-4)
-"""Sine squared plus cosine squared below which an angle has no direction to speak of (an axis within 0.6 deg of the one that
-it turns about): no step is to be spent on the half turn that the angle makes there at any speed."""
+"""Sine squared plus cosine squared below which an angle has no direction (an axis within 0.6 deg of the rotation axis);
+the half turn made there must cost no steps."""
 
 
 class ContinuousAngle(sp.Function):  # type: ignore[misc]
-    """The angle with a sine and a cosine (or multiples of both) that is nearest to a counter."""
+    """Angle with a given sine and cosine (or multiples of both) that is nearest to a counter."""
 
     nargs = 3
     is_real = True
@@ -32,16 +31,15 @@ class ContinuousAngle(sp.Function):  # type: ignore[misc]
 
 
 def counter(k: int) -> sp.Symbol:
-    """The symbol of an element's k-th counter."""
+    """Return the symbol of an element's k-th counter."""
     return sp.Symbol(f"counted{k}", real=True)
 
 
 def away_from_pole(angle: ContinuousAngle, e: Any) -> Callable[[sp.Expr], sp.Expr]:
-    """What makes the rate of a counter, and its derivatives, of those of its angle: they are bounded where s and c both vanish.
+    """Return a function that bounds the rate of an angle, and its derivatives, for use as a counter's rate.
 
-    Outside of the pole the rate stays as it is: half a turn too much or too little, gathered over any number of turns, would
-    put the angle in a wrong one.  Derivatives are those of the angle's rate, times the same: within the pole they tell less,
-    where nothing but the turn follows from a counter.
+    The rate is unchanged except near the pole, where sine and cosine both vanish. There the derivatives are
+    approximate, which is acceptable because only the number of turns depends on the counter.
 
     Parameters
     ----------

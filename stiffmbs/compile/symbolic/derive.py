@@ -1,9 +1,8 @@
-"""From an element's equations to every derivative that a solver needs (SymPy).
+"""Derivation of all terms of an element from its equations with SymPy.
 
-For C(q, t): V = C', J = dV/du, gamma = -V' at constant u so that J u' = gamma, and d(J^T w)/dq for given
-multipliers w.  For efforts Q_k on rates v_k: f = sum (dv_k/du)^T Q_k, f_q and f_u.  For a body that turns in space:
-p' = Z w.
-The reaction is the generalised force on the first body, turned into force and torque about the element's point.
+For C(q, t): V = C', J = dV/du, gamma = -V' at constant u so that J u' = gamma, and d(J^T w)/dq for given multipliers w.
+For efforts Q_k on rates v_k: f = sum (dv_k/du)^T Q_k, f_q and f_u. For spatial bodies: p' = Z w. The reaction is the
+generalised force on the first body as force and torque about the element's point.
 """
 
 from __future__ import annotations
@@ -29,9 +28,9 @@ from .variation import Summand, Variation
 
 @dataclass(frozen=True)
 class Entry:
-    """One structurally non-zero entry of a term: its expression and its place in the element's own block.
+    """Structurally non-zero entry of a term: its expression and its position in the element's own block.
 
-    `row` and `column` count the element's equations, or its velocities or coordinates, from zero.
+    `row` and `column` index the element's equations, velocities or coordinates.
     """
 
     expression: sp.Expr
@@ -41,10 +40,7 @@ class Entry:
 
 @dataclass(frozen=True)
 class LateEntry:
-    """An entry whose expression is derived when it is first asked for, as is that of a term which hardly any run needs.
-
-    It may turn out to be zero.
-    """
+    """Entry whose expression is derived on first use, for rarely used terms. It may be zero."""
 
     derived: Callable[[], sp.Expr]
     row: int
@@ -52,31 +48,31 @@ class LateEntry:
 
     @property
     def expression(self) -> sp.Expr:
-        """The entry's expression."""
+        """Expression of the entry."""
         return self.derived()
 
 
 @dataclass(frozen=True)
 class Derived:
-    """All terms of a kind, each a list of its non-zero entries in row order.
+    """Terms of a kind, each a list of its non-zero entries in row order.
 
     Attributes
     ----------
     n_equations, n_holonomic : int
-        Constraint equations of one element, and how many of them, the first, have a position form.
+        Number of constraint equations of one element, and of those with a position form, which come first.
     symbols : Symbols
-        What the expressions are written in.
+        Symbols of the expressions.
     terms : dict
         By the names of `stiffmbs.compile.terms.TERM_AXES`.
     losses : list of int or None
-        Numbers of an element that must be zero for it to keep energy (`stiffmbs.compile.symbolic.losses`); None where nothing
-        makes that certain.
+        Numbers of an element that must be zero for it to conserve energy (`stiffmbs.compile.symbolic.losses`); None if
+        unknown.
     variation : list of list of Summand
-        For each entry of C_q what it depends on.
+        Dependencies of each entry of C_q.
     removable : list of bool
-        For each equation with a position form whether it may be left out where these are constant.
+        True for position equations that may be eliminated where their derivatives are constant.
     timed : list of bool
-        For each equation whether time is in it.
+        True for equations that depend on time or states.
     """
 
     n_equations: int
@@ -95,7 +91,7 @@ def derive(kind: Kind) -> Derived:
     Raises
     ------
     InputError
-        When an equation does not depend on any coordinate.
+        If an equation depends on no coordinate of a body, is nonlinear in velocities, or contains a reaction.
     """
     symbols = symbols_of(kind)
     if issubclass(kind.element, Joint):
@@ -156,7 +152,7 @@ def _derived_joint(kind: Kind, symbols: Symbols) -> Derived:
         for r, row in enumerate(e.by_accelerations(equation) + rest for equation, rest in zip(V, second, strict=True))
         for column in e.columns_of(row)
     ]
-    for name in ("C", "V"):  # kept whole, zeros too: solvers find them by row
+    for name in ("C", "V"):  # complete, including zeros: solvers find them by row
         entries[name] = [Entry(terms[name][row], row) for row in range(V.rows)]
     variation = Variation(symbols)
     return Derived(
@@ -168,7 +164,7 @@ def _derived_joint(kind: Kind, symbols: Symbols) -> Derived:
 
 
 def _refuse_rates_by_velocities(e: SymbolicElement, C: sp.Matrix) -> None:
-    """Refuse constraints of positions with states whose rates follow velocities: J u' would not be what the reactions act on."""
+    """Refuse position constraints with states whose rates depend on velocities: J would differ from dC/dq."""
     for state, rate in zip(e.states, e.state_rates, strict=False):
         if any(e.depends(equation, [state]) for equation in C) and e.depends(rate, e.velocities):
             raise InputError(
@@ -201,7 +197,7 @@ def _derived_force(kind: Kind, symbols: Symbols) -> Derived:
 def _rates(
     e: SymbolicElement, rates: sp.Matrix, states: Sequence[sp.Symbol], joint_lam: Sequence[sp.Symbol]
 ) -> dict[str, Sequence[Entry | LateEntry]]:
-    """The rates of states and their derivatives, in the rows of the states."""
+    """Return the rates of states and their derivatives, in the rows of the states."""
     rows = [e.n_coordinates - len(e.states) + e.states.index(state) for state in states]
     terms = {"rate": rates, "rate_q": e.by_coordinates(rates), "rate_u": e.by_velocities(rates)}
     terms["rate_lam"] = e.by(rates, joint_lam) if joint_lam else sp.zeros(0, 0)
@@ -209,7 +205,7 @@ def _rates(
 
 
 def _derived_state(kind: Kind, symbols: Symbols) -> Derived:
-    """The rate of a state, in the row of that state, and what is reported of it."""
+    """Return the rate of a state, in the row of that state, and its reported value."""
     e, element = symbols.element, kind.element
     formula = sp.sympify(element.rate(e) if issubclass(element, StateEquation) else e.formula)
     value = sp.Matrix([formula])
@@ -224,18 +220,18 @@ def _derived_state(kind: Kind, symbols: Symbols) -> Derived:
 
 
 def _of_algebraic(kind: Kind, e: SymbolicElement, entries: Sequence[Entry | LateEntry]) -> list[Entry | LateEntry]:
-    """Those entries of a matrix that stand in the columns of algebraic states."""
+    """Return the entries of a matrix in the columns of algebraic states."""
     first = e.n_coordinates - len(e.states)
     return [entry for entry in entries if entry.column - first in kind.algebraic]
 
 
 def _arguments(symbols: Symbols) -> sp.Matrix:
-    """What laws are called with; each depends on the state, so that none is left out as zero."""
+    """Return the arguments of laws; each depends on the state, so none is dropped as zero."""
     return sp.Matrix([law.argument for law in symbols.laws])
 
 
 def _turning(e: SymbolicElement) -> dict[str, sp.Matrix]:
-    """Z of p' = Z w, in the rows and columns of a body's coordinates and velocities, and d(Z w)/dq."""
+    """Return Z of p' = Z w in the rows and columns of a body's coordinates and velocities, and d(Z w)/dq."""
     (body,) = e.frames
     Z, rates = sp.zeros(len(body.q), len(body.u)), sp.zeros(len(body.q), 1)
     Z[3:, 3:] = body.quaternion_rates(sp.Matrix(body.q[3:])) * sp.Matrix(body.followed).jacobian(body.u[3:])
@@ -244,7 +240,7 @@ def _turning(e: SymbolicElement) -> dict[str, sp.Matrix]:
 
 
 def _counting(e: SymbolicElement) -> dict[str, list[Entry]]:
-    """The angles that count turns, and their rates, which are those of the counters: rows behind the bodies' coordinates."""
+    """Return the counted angles and their rates, in rows after the bodies' coordinates."""
     first = e.n_coordinates
     rates, bounded = sp.Matrix([e.rate(angle) for angle in e.angles]), [away_from_pole(angle, e) for angle in e.angles]
     of_rates = {"angle_rate": rates, "Z": e.by_velocities(rates), "Z_q": e.by_coordinates(rates)}
@@ -257,18 +253,18 @@ def _counting(e: SymbolicElement) -> dict[str, list[Entry]]:
 
 
 def multipliers(name: str, count: int) -> sp.Matrix:
-    """A column of symbols for the multipliers of one element's equations."""
+    """Return a column of symbols for the multipliers of one element's equations."""
     return sp.Matrix([sp.Symbol(f"{name}{k}", real=True) for k in range(count)])
 
 
 def _reaction(stated: Stated, e: SymbolicElement, force: sp.Matrix) -> sp.Matrix:
-    """Force and torque about the element's point, of the generalised force on its first body."""
+    """Return force and torque about the element's point from the generalised force on its first body."""
     first = e.frames[0]
     return first.wrench(force[: len(first.u), :], sp.Matrix(stated.point))
 
 
 def _symmetric(second: sp.Matrix) -> sp.Matrix:
-    """Second derivatives of one function: each off the diagonal written in one way, so that it is computed once."""
+    """Return second derivatives in symmetric form, so that off-diagonal entries are computed once."""
     return sp.Matrix(*second.shape, lambda r, c: second[min(r, c), max(r, c)])
 
 

@@ -1,7 +1,7 @@
-"""Partial derivatives by the chain rule, each subexpression once.
+"""Partial derivatives by the chain rule with shared subexpressions.
 
-SymPy's own `diff` walks through every subexpression of every subexpression to prepare each derivative; for the third
-derivatives of a long equation (a cam) that is most of the time of its first run, five times what this takes.
+SymPy's `diff` traverses every subexpression for each derivative, which is slow for third derivatives of long equations
+(a cam).
 """
 
 from __future__ import annotations
@@ -13,16 +13,16 @@ import sympy as sp
 from .nonsmooth import NonsmoothBase
 
 Way = tuple[sp.Symbol, sp.Expr]
-"""A symbol that changes with a coordinate or velocity, and its derivative by that."""
+"""Symbol that depends on a coordinate or velocity, and its derivative by that."""
 
 
 class Derivatives:
-    """Derivatives of the expressions of one element; what has been differentiated is remembered.
+    """Cached derivatives of the expressions of one element.
 
     Attributes
     ----------
     meanings : dict
-        What each name stands for; names in it have been given before.
+        Expression of each named symbol, in order of definition.
     """
 
     def __init__(self) -> None:
@@ -35,20 +35,20 @@ class Derivatives:
         self.meanings: dict[sp.Symbol, sp.Expr] = {}
 
     def define(self, symbol: sp.Symbol, by: Mapping[sp.Symbol, sp.Expr], meaning: sp.Expr | None = None) -> None:
-        """Make a symbol a function of others by its derivatives; what it stands for is said unless kernels know it."""
+        """Define a symbol by its derivatives, and by its expression unless kernels know it."""
         self._chain[symbol] = by
         if meaning is not None:
             self.meanings[symbol] = meaning
 
     def defined(self) -> frozenset[sp.Symbol]:
-        """The symbols that stand for something, and those that they change with."""
+        """Return the defined symbols, and those that they depend on."""
         changing = (symbol for by in self._chain.values() for symbol in by)
         return frozenset((*self._chain, *self.meanings, *changing))
 
     def named(self, x: sp.Expr) -> sp.Expr:
-        """A symbol that stands for an expression, and is differentiated as that; numbers and symbols stay as they are.
+        """Return a symbol for an expression, with its derivatives; numbers and symbols are unchanged.
 
-        What is named is written once wherever it occurs, in derivatives too; an expression and its opposite have one name.
+        A named expression is computed once, also in derivatives; an expression and its negative share one name.
         """
         if not x.args:
             return x
@@ -59,7 +59,7 @@ class Derivatives:
         return self._names[x]
 
     def variable(self, x: sp.Expr, state: Iterable[sp.Symbol]) -> sp.Symbol:
-        """A symbol that stands for an expression and changes with the state alone: not with other variables in its meaning."""
+        """Return a symbol for an expression that depends on the state but not on other variables."""
         if isinstance(x, sp.Symbol) and x not in self.meanings:
             return x
         if x not in self._functions:
@@ -68,7 +68,7 @@ class Derivatives:
         return self._functions[x]
 
     def at_extremum(self, x: sp.Expr, at: Mapping[sp.Symbol, sp.Expr], state: Iterable[sp.Symbol]) -> sp.Expr:
-        """A symbol for an expression at those values of some symbols where it is largest or least: it does not change with them."""
+        """Return a symbol for an expression at its extremum over some symbols; their derivatives vanish there."""
         symbol = self._new("extreme", x.xreplace(at))
         self._chain[symbol] = {
             v: self.named(self.partial(x, v).xreplace(at)) for v in state if v in self._variables[symbol]
@@ -76,7 +76,7 @@ class Derivatives:
         return symbol
 
     def composed(self, x: sp.Expr, variables: Sequence[sp.Symbol], state: Iterable[sp.Symbol]) -> sp.Expr:
-        """A symbol for an expression of a few variables: its derivatives by the state go through those by the variables."""
+        """Return a symbol for an expression of few variables, differentiated through these variables."""
         if x not in self._functions:
             slopes = [(self.named(self.partial(x, variable)), variable) for variable in variables]
             symbol = self._functions[x] = self._new("composed", x)
@@ -94,12 +94,12 @@ class Derivatives:
         return symbol
 
     def jacobian(self, column: Iterable[sp.Expr], variables: Iterable[sp.Symbol]) -> sp.Matrix:
-        """The matrix d(column)/d(variables)."""
+        """Return the matrix d(column)/d(variables)."""
         rows, symbols = list(column), list(variables)
         return sp.Matrix(len(rows), len(symbols), lambda r, c: self.partial(rows[r], symbols[c]))
 
     def partial(self, x: sp.Expr, v: sp.Symbol) -> sp.Expr:
-        """The derivative of x with respect to v."""
+        """Return the derivative of x with respect to v."""
         if not x.args:
             return sp.Integer(1) if x == v else self._of_symbol(x, v)
         if (x, v) not in self._known:
@@ -116,7 +116,7 @@ class Derivatives:
         return self._known[x, v]
 
     def along(self, x: sp.Expr, rates: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr:
-        """The rate of x where some symbols have rates: each symbol's own by a name, so that the rate of a rate has few products."""
+        """Return the rate of x for given symbol rates; rates of symbols are named to keep second rates short."""
         match x:
             case sp.Symbol():
                 return rates[x] if x in rates else self._rate_of_symbol(x, rates)
@@ -138,11 +138,11 @@ class Derivatives:
         return sp.Add(*(rate * self.partial(x, symbol) for symbol, rate in rates.items()))
 
     def _depends(self, x: sp.Expr, v: sp.Symbol) -> bool:
-        """Whether v, or a symbol that stands for a function of v, occurs in x."""
+        """Return True if x depends on v."""
         return any(v in self._of_one(symbol) for symbol in self.symbols_in(x))
 
     def variables(self, x: sp.Expr) -> frozenset[sp.Symbol]:
-        """The symbols of x, and those that they are functions of."""
+        """Return the symbols of x, and those that they depend on."""
         return frozenset().union(*(self._of_one(symbol) for symbol in self.symbols_in(x)))
 
     def _of_one(self, symbol: sp.Symbol) -> frozenset[sp.Symbol]:
@@ -151,7 +151,7 @@ class Derivatives:
         return self._variables[symbol]
 
     def symbols_in(self, x: sp.Basic) -> frozenset[sp.Symbol]:
-        """The symbols in an expression; SymPy itself would walk through all of it each time."""
+        """Return the symbols in an expression, cached."""
         if x not in self._symbols:
             within = frozenset((x,)) if isinstance(x, sp.Symbol) else frozenset()
             self._symbols[x] = within.union(*map(self.symbols_in, x.args))
@@ -164,7 +164,7 @@ class Derivatives:
             case sp.Mul():
                 return sp.Add(*(self._with_one_factor_changed(x, k, v) for k in range(len(x.args))))
             case sp.Pow() if isinstance(x.base, sp.cosh) and x.exp.is_negative:
-                (argument,) = x.base.args  # sinh(a)/cosh(a)^2 is no number where both have left the range of numbers
+                (argument,) = x.base.args  # sinh(a)/cosh(a)^2 would overflow to NaN
                 return x.exp * x * sp.tanh(argument) * self.partial(argument, v)
             case sp.Pow() if not self._depends(x.exp, v):
                 return x.exp * x.base ** (x.exp - 1) * self.partial(x.base, v)

@@ -1,4 +1,4 @@
-"""The symbolic element: what the equations of joints and forces are written in."""
+"""Symbolic element: the interface in which joints and forces state their equations."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ if TYPE_CHECKING:
     from .referred import ReferredJoint
 
 COINCIDENT = sp.Float("1e-200")
-"""Added under the root of a distance, so that a spring of no free length is defined where its points coincide."""
+"""Added under the root of a distance, so that a spring without free length is defined at coincident points."""
 
 
 Work = tuple[sp.Expr, sp.Expr]
-"""An effort, and what it does work on: a function of the pose, or its rate."""
+"""Effort, and the quantity it does work on: a function of the pose, or its rate."""
 
 
 class SymbolicElement:
-    """An element with frames for its markers and symbols for its numbers.
+    """Element with frames for its markers and symbols for its numbers.
 
     Attributes
     ----------
@@ -40,15 +40,15 @@ class SymbolicElement:
     states : list of Symbol
         States that it reads or determines, by slot.
     own : list of Symbol
-        Those of the element's own, the first of them.
+        The element's own states, which come first.
     state_rates : tuple of Expr
-        Their rates, in the equations of joints.
+        Rates of the states, in the equations of joints.
     angles : list of expressions
-        Those that count whole turns, in the order of their counters.
+        Continuous angles, in the order of their counters.
     breakpoints : list of expressions
-        What changes its sign at breakpoints of the equations (``Abs``, ``Max``, ``Piecewise``), as they are read.
+        Event functions of the equations (``Abs``, ``Max``, ``Piecewise``), as they are read.
     derivatives : Derivatives
-        Of expressions in its symbols.
+        Derivatives of expressions in its symbols.
     """
 
     t = sp.Symbol("t", real=True)
@@ -88,11 +88,11 @@ class SymbolicElement:
 
     @property
     def velocities(self) -> list[sp.Symbol]:
-        """By what functions of the velocities are differentiated."""
+        """Symbols by which functions of the velocities are differentiated."""
         return [symbol for frame in self.frames for symbol in frame.velocities]
 
     def read(self, x: Any) -> sp.Expr:
-        """An expression of an element's equations as kernels can have it; its breakpoints are noted."""
+        """Return an expression of an element's equations in the form for kernels; record its breakpoints."""
         return read(x, self._note)
 
     def _note(self, breakpoint: sp.Expr) -> None:
@@ -100,7 +100,7 @@ class SymbolicElement:
             self.breakpoints.append(breakpoint)
 
     def rate(self, x: Any) -> Any:
-        """Total time derivative of an expression, or of each in a matrix, at constant velocities."""
+        """Return the total time derivative of an expression, or of each in a matrix, at constant velocities."""
         if isinstance(x, sp.MatrixBase):
             return x.applyfunc(self.rate)
         x = self.read(x)
@@ -116,18 +116,18 @@ class SymbolicElement:
         return sp.Add(*moving, *own) + partial(x, self.t)
 
     def second_rate(self, x: sp.Expr) -> sp.Expr:
-        """The second total time derivative at constant velocities, of what has been read."""
+        """Return the second total time derivative of a read expression at constant velocities."""
         rates = {symbol: rate for frame in self.frames for symbol, rate in frame.motion}
         rates |= dict(zip(self.states, self.state_rates, strict=False)) | {self.t: sp.Integer(1)}
         return self.derivatives.along(self.derivatives.along(x, rates), rates)
 
     def by_accelerations(self, x: sp.Expr) -> sp.Expr:
-        """What accelerations add to the rate of a function of velocities: J a, with fewer products than by the entries of J."""
+        """Return the acceleration part J a of the rate of a function of velocities, in fewer products than from J."""
         return self.derivatives.along(x, self._accelerations)
 
     @cached_property
     def _accelerations(self) -> dict[sp.Symbol, sp.Expr]:
-        """The rates that accelerations give what `velocities` names."""
+        """Rates of the symbols in `velocities` due to accelerations."""
         rates: dict[sp.Symbol, sp.Expr] = {}
         for a, way in zip(self.a, self._by_velocity, strict=True):
             for symbol, much in way:
@@ -135,21 +135,21 @@ class SymbolicElement:
         return {symbol: self.named(rate) for symbol, rate in rates.items()}
 
     def named(self, x: Any) -> Any:
-        """An expression, or each of a matrix or list, by a name that stands for it: long ones are derived much sooner so."""
+        """Name an expression, or each in a matrix or list; named expressions are derived much faster."""
         if isinstance(x, sp.MatrixBase):
             return x.applyfunc(self.named)
         return [self.named(part) for part in x] if isinstance(x, list) else self.derivatives.named(self.read(x))
 
     def variable(self, x: Any) -> sp.Symbol:
-        """A symbol for an expression, by which what follows from it can be differentiated (`slope`, `composed`)."""
+        """Return a symbol for an expression by which others can be differentiated (`slope`, `composed`)."""
         return self.derivatives.variable(self.read(x), self._state)
 
     def slope(self, x: Any, variable: sp.Symbol) -> sp.Expr:
-        """The derivative of an expression by a symbol that `variable` gave, other variables kept."""
+        """Return the derivative of an expression by a symbol from `variable`, other variables held constant."""
         return self.derivatives.partial(self.read(x), variable)
 
     def composed(self, outputs: Iterable[Any], variables: Sequence[sp.Symbol]) -> list[sp.Expr]:
-        """Long expressions that depend on the state through a few variables alone: they are differentiated by these first."""
+        """Name long expressions that depend on the state through few variables, to be differentiated through these."""
         return [self.derivatives.composed(self.read(x), variables, self._state) for x in outputs]
 
     @property
@@ -157,13 +157,13 @@ class SymbolicElement:
         return [*(symbol for frame in self.frames for symbol in frame.pose), *self.velocities, *self.states, self.t]
 
     def relative_rotation(self, i: Any, j: Any) -> RelativeRotation:
-        """How a marker is turned against another one, of another body in space."""
+        """Return the rotation of a spatial marker relative to one of another body."""
         if (i, j) not in self._rotations:
             self._rotations[i, j] = self._new_rotation(i, j)
         return self._rotations[i, j]
 
     def _new_rotation(self, i: Any, j: Any) -> RelativeRotation:
-        """Names for the parts of a turn, with the derivatives that `RelativeRotation` states instead of those of what they stand for."""
+        """Define symbols for a relative rotation, with the derivatives stated by `RelativeRotation`."""
         back = sp.diag(1, -1, -1, -1) * self.named(j.quaternion)
         inverse_length = sp.sqrt(i.body.inverse_square * j.body.inverse_square) / 2
         meaning = product(back, self.named(i.quaternion)) * self.named(inverse_length)
@@ -177,37 +177,37 @@ class SymbolicElement:
         return turn
 
     def shortest_rotation(self, i: Any, j: Any, axis: int) -> ShortestRotation:
-        """How an axis (0, 1, 2 for x, y, z) of a marker is tilted against that of another one in space."""
+        """Return the tilt of an axis (0, 1, 2 for x, y, z) of a spatial marker relative to another one."""
         own = self.named([i.x, i.y, i.z][axis])
         return ShortestRotation(axis, sp.Matrix(self.named([own.dot(self.named(other)) for other in (j.x, j.y, j.z)])))
 
     @property
     def meanings(self) -> dict[sp.Symbol, sp.Expr]:
-        """What the names stand for, those before others that use them."""
+        """Expressions of the named symbols, each after those it uses."""
         return self.derivatives.meanings
 
     def by_coordinates(self, column: Iterable[sp.Expr]) -> sp.Matrix:
-        """The matrix d(column)/dq."""
+        """Return the matrix d(column)/dq."""
         return self._matrix(([(sp.Integer(1), x)] for x in column), self._by_coordinate)
 
     def by_velocities(self, column: Iterable[sp.Expr]) -> sp.Matrix:
-        """The matrix d(column)/du."""
+        """Return the matrix d(column)/du."""
         return self._matrix(([(sp.Integer(1), x)] for x in column), self._by_velocity)
 
     def work_by_coordinates(self, pairs: Iterable[Work]) -> sp.Matrix:
-        """The column of the sums of efforts times derivatives by q of what they do work on."""
+        """Return the column of sums of efforts times derivatives by q of their quantities."""
         return self._matrix([list(pairs)], self._by_coordinate).T
 
     def work_by_velocities(self, pairs: Iterable[Work]) -> sp.Matrix:
-        """The generalised force: the column of the sums of efforts times derivatives by u of the rates of their work."""
+        """Return the generalised force: the column of sums of efforts times derivatives by u of the rates."""
         return self._matrix([list(pairs)], self._by_velocity).T
 
     def by_coordinate(self, x: sp.Expr, column: int) -> sp.Expr:
-        """The derivative by one coordinate."""
+        """Return the derivative by one coordinate."""
         return self._change([(sp.Integer(1), x)], self._by_coordinate[column])
 
     def columns_of(self, x: sp.Expr) -> list[int]:
-        """The coordinates that an expression depends on."""
+        """Return the coordinates that an expression depends on."""
         ways = enumerate(self._by_coordinate)
         return [column for column, way in ways if self.depends(x, (symbol for symbol, _ in way))]
 
@@ -218,7 +218,7 @@ class SymbolicElement:
 
     @property
     def n_coordinates(self) -> int:
-        """Of the bodies and the states; counters of turns stand behind them."""
+        """Number of coordinates of the bodies and states; turn counters follow them."""
         return len(self._by_coordinate)
 
     @cached_property
@@ -230,7 +230,7 @@ class SymbolicElement:
         return sp.Matrix(len(entries), len(ways), [entry for row in entries for entry in row])
 
     def _change(self, row: list[Work], way: list[Way]) -> sp.Expr:
-        """The sum of efforts times derivatives in one way; what goes into several ways has a name."""
+        """Return the sum of efforts times derivatives by one coordinate or velocity; shared parts are named."""
         partial, changes = self.derivatives.partial, []
         for symbol, much in way:
             whole = sp.Add(*(effort * partial(x, symbol) for effort, x in row))
@@ -238,7 +238,7 @@ class SymbolicElement:
         return sp.Add(*changes)
 
     def reaction(self, joint: ReferredJoint, on: Any) -> dict[str, sp.Expr]:
-        """What a joint does to one of its bodies, about the joint's point, by component: -J^T lam."""
+        """Return the reaction of a joint on one of its bodies about the joint's point, by component: -J^T lam."""
         force = -self.work_by_velocities(zip(joint.lam, joint.velocity_level, strict=True))
         first = sum(len(frame.u) for frame in self.frames[: self.frames.index(on)])
         wrench = on.wrench(force[first : first + len(on.u), :], sp.Matrix(joint.point))
@@ -246,15 +246,15 @@ class SymbolicElement:
         return dict(zip(names, wrench, strict=True))
 
     def by(self, column: Iterable[sp.Expr], symbols: Iterable[sp.Symbol]) -> sp.Matrix:
-        """The matrix of derivatives by any symbols."""
+        """Return the matrix of derivatives by any symbols."""
         return self.derivatives.jacobian(column, symbols)
 
     def is_constant(self, expression: sp.Expr) -> bool:
-        """Whether an expression depends on neither time nor the state."""
+        """Return True if an expression depends on neither time nor the state."""
         return not self.depends(expression, [self.t]) and not self.in_state(expression)
 
     def angle(self, sine: sp.Expr, cosine: sp.Expr) -> sp.Expr:
-        """The angle with a sine and a cosine, or multiples of both, counted over whole turns."""
+        """Return the continuous angle with a given sine and cosine, or multiples of both."""
         for angle in self.angles:
             if angle.args[:2] == (sine, cosine):
                 return angle
@@ -262,30 +262,30 @@ class SymbolicElement:
         return self.angles[-1]
 
     def in_state(self, expression: sp.Expr) -> bool:
-        """Whether an expression depends on coordinates, velocities or states."""
+        """Return True if an expression depends on coordinates, velocities or states."""
         of_bodies = (symbol for frame in self.frames for symbol in frame.pose)
         return self.depends(expression, [*of_bodies, *self.velocities, *self.states])
 
     def depends(self, expression: sp.Expr, symbols: Iterable[sp.Symbol]) -> bool:
-        """Whether any of some symbols occurs in an expression, or in what its symbols stand for."""
+        """Return True if an expression depends on any of the given symbols, also through named symbols."""
         return not self.derivatives.variables(sp.sympify(expression)).isdisjoint(symbols)
 
     def distance(self, a: sp.Matrix, b: sp.Matrix) -> sp.Expr:
-        """Distance of two points, with a derivative of zero where they coincide."""
+        """Return the distance of two points, with zero derivative where they coincide."""
         d = self.named(a - b)
         return self.named(sp.sqrt(d.dot(d) + COINCIDENT))
 
     @staticmethod
     def integral(law: Callable[[sp.Expr], sp.Expr], x: sp.Expr) -> sp.Expr | None:
-        """The integral of a law from 0 to x, for a potential; None where there is no simple one."""
+        """Return the integral of a law from 0 to x, for a potential; None if there is no simple one."""
         return integral(law, x)
 
     def common_normal(self, way: Any, axes: Any, first: Any, second: Any) -> sp.Matrix:
-        """The unit normal between two solids, each a sum of ellipsoids (`stiffmbs.compile.symbolic.common_normal`)."""
+        """Return the unit normal between two solids, each a sum of ellipsoids."""
         return self.named(common_normal(way, axes, first, second))
 
     def at_extremum(self, function: Callable[[list[sp.Symbol]], Any], at: Any) -> sp.Expr:
-        """A function of variables at those values of them where it is largest or least."""
+        """Return a function of variables at its extremum over them."""
         variables = [sp.Symbol(f"extremal{k}", real=True) for k in range(len(at))]
         values = dict(zip(variables, at, strict=True))
         return self.derivatives.at_extremum(self.read(function(variables)), values, self._state)

@@ -1,4 +1,4 @@
-"""From a kind's derived terms to the source of its kernels: common subexpressions, then one loop over elements."""
+"""Generation of kernel sources from derived terms: common subexpressions, then one loop over elements."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from .spline import Spline
 
 
 def _natives(base: type[NonsmoothBase]) -> set[str]:
-    """The native functions of the nonsmooth functions."""
+    """Return the names of the native nonsmooth functions."""
     return {each.native for each in base.__subclasses__() if each.native}.union(*map(_natives, base.__subclasses__()))
 
 
@@ -40,19 +40,18 @@ HEADER = (
     + _imported("math", ["copysign", *(name for name, function in FUNCTIONS.items() if function.in_c)])
     + "\n\n"
 )
-"""What kernels may call."""
+"""Imports of every kernel."""
 PYTHON = "from stiffmbs.compile.machine.native.python_call import python_call\n"
-"""Before the header of kernels that call Python functions."""
+"""Import of kernels that call Python functions."""
 GEOMETRY = f"from {compiler.GEOMETRY}.common_normal import common_normal, common_normal_slope\n"
-"""Before the header of kernels of solids in contact."""
+"""Import of kernels for contacts between solids."""
 
 
 class _Printer(PythonCodePrinter):
-    """Plain function names; small and half powers as products and roots (a general power costs fifty products)."""
+    """Python printer with plain function names; small integer and half-integer powers are products and roots."""
 
     def _as_ordered_terms(self, expr: sp.Add, order: str | None = None) -> list[sp.Expr]:
-        """By monomials, which are SymPy's own order; it takes the complex value of each coefficient for it, which decides nothing
-        between monomials that differ."""
+        """Return the terms of a sum in SymPy's order, without its slow comparison of coefficients where possible."""
         return ordered_terms(expr) or super()._as_ordered_terms(expr, order)
 
     def _print_Pow(self, expr: sp.Pow, rational: bool = False) -> str:
@@ -66,7 +65,7 @@ class _Printer(PythonCodePrinter):
         return f"({product})" if power > 0 else f"(1.0/({product}))"
 
     def _print_NumberSymbol(self, expr: sp.NumberSymbol) -> str:
-        """The value of a constant such as pi."""
+        """Return the value of a constant such as pi."""
         return repr(float(expr))
 
     _print_Pi = _print_Exp1 = _print_EulerGamma = _print_GoldenRatio = _print_Catalan = _print_NumberSymbol
@@ -107,7 +106,7 @@ class _Printer(PythonCodePrinter):
 def _shared(
     outputs: list[sp.Expr], derivatives: Derivatives, turned: Mapping[sp.Expr, sp.Symbol]
 ) -> tuple[list[tuple[sp.Symbol, sp.Expr]], list[sp.Expr]]:
-    """What outputs have in common, each part after those that it uses, and the outputs in terms of these."""
+    """Return common subexpressions in order of dependence, and the outputs in terms of them."""
     names: dict[sp.Symbol, sp.Expr] = {}
     meanings, symbols_in = derivatives.meanings, derivatives.symbols_in
     following = [symbol for output in outputs for symbol in _by_name(symbols_in(output))]
@@ -125,12 +124,12 @@ def _shared(
 
 
 def _by_name(symbols: Iterable[sp.Symbol]) -> list[sp.Symbol]:
-    """Symbols in an order that does not change from run to run, so that neither do sums."""
+    """Return symbols in a reproducible order, so that sums are reproducible."""
     return sorted(symbols, key=lambda symbol: symbol.name)
 
 
 def _append(symbol: sp.Symbol, parts: Mapping[sp.Symbol, sp.Expr], ordered: dict[sp.Symbol, sp.Expr]) -> None:
-    """Put a part behind all that it uses."""
+    """Append a part after all parts that it uses."""
     pending = [symbol]
     while pending:
         last = pending[-1]
@@ -143,10 +142,10 @@ def _append(symbol: sp.Symbol, parts: Mapping[sp.Symbol, sp.Expr], ordered: dict
 
 
 def kernel_source(term_set: str, derived: Derived, name: str) -> str:
-    """Source of one kernel, in the language of `stiffmbs.compile.machine.translate`.
+    """Return the source of one kernel, in the language of `stiffmbs.compile.machine.translate`.
 
-    What belongs to the bodies' orientations is not computed anew for each element but read.
-    Every entry of term k of element e goes to ``value[place[1 + k] + entries_k*e + entry]``.
+    Shared orientation values of the bodies are read, not computed per element. Entry `entry` of term k of element e is
+    stored in ``value[place[1 + k] + entries_k*e + entry]``.
     """
     e, terms, equations = derived.symbols.element, derived.terms, derived.n_equations
     turned = {function: symbol for frame in e.frames for function, symbol in frame.turned.items()}

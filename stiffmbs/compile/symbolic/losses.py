@@ -1,9 +1,9 @@
-"""The power of an element that the potentials do not count, and when it is zero for certain.
+"""Power of an element beyond the rate of its potential, and the conditions under which it is zero.
 
-A force has the power sum Q_k v_k of its efforts on the rates of their coordinates, and its potential V changes at the
-rate V'; what their sum brings into a mechanism changes kinetic + potential energy.  A joint has the power -lam^T J u,
-which is lam^T C_t where J u + C_t = 0 (Lanczos, The Variational Principles of Mechanics, 1970, ch. V.1): none unless its
-equations depend on time.
+A force has the power sum Q_k v_k of its efforts on the rates of their coordinates, and its potential changes at the
+rate V'. The sum of both changes kinetic + potential energy. A joint has the power -lam^T J u, which is lam^T C_t where
+J u + C_t = 0 (Lanczos, The Variational Principles of Mechanics, 1970, ch. V.1): zero unless its equations depend on
+time.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ NO_VALUE = (sp.nan, sp.zoo, sp.oo, -sp.oo)
 
 
 def without(e: SymbolicElement, x: sp.Basic, symbols: frozenset[sp.Symbol]) -> sp.Basic:
-    """An expression with some symbols set to zero, also in what its own symbols stand for."""
+    """Return an expression with some symbols set to zero, also in named subexpressions."""
     if isinstance(x, sp.Symbol):
         if x in symbols:
             return sp.Integer(0)
@@ -30,13 +30,13 @@ def without(e: SymbolicElement, x: sp.Basic, symbols: frozenset[sp.Symbol]) -> s
 
 
 def power_of_joint(e: SymbolicElement, V: sp.Matrix, lam: sp.Matrix) -> sp.Expr:
-    """lam^T C_t, C_t being the velocity level V = J u + C_t at rest."""
+    """Return lam^T C_t, with C_t from the velocity level V = J u + C_t at rest."""
     at_rest = frozenset(e.velocities)
     return sp.Add(*(factor * without(e, row, at_rest) for factor, row in zip(lam, V, strict=True)))
 
 
 def power_of_force(stated: Stated, symbols: Symbols, may_keep: bool = True) -> tuple[sp.Expr, list[int] | None]:
-    """A force's power beyond the rate of its potential, and which of its numbers must be zero for it to be zero.
+    """Return a force's power beyond the rate of its potential, and the numbers that must be zero for it to vanish.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ def power_of_force(stated: Stated, symbols: Symbols, may_keep: bool = True) -> t
     power : Expr
         W.
     losses : list of int or None
-        Numbers of the element, in the order of `ElementData.numbers`; None where nothing makes it zero for certain.
+        Numbers of the element, in the order of `ElementData.numbers`; None if unknown.
     """
     e, powers, potential = symbols.element, stated.powers, stated.potential
     work = sp.Add(*(Q * v for Q, v in powers))
@@ -61,14 +61,14 @@ def power_of_force(stated: Stated, symbols: Symbols, may_keep: bool = True) -> t
 
 
 def _vanishes(work: sp.Expr) -> bool:
-    """Whether products cancel, as those of a gyroscopic torque do; other functions take far longer to expand."""
+    """Return True if products cancel, as in a gyroscopic torque; other functions are too slow to expand."""
     return not work.has(sp.Function) and sp.expand(work) == 0
 
 
 def _losses(symbols: Symbols, efforts: list[sp.Expr]) -> list[int] | None:
-    """The numbers that efforts lose at rest, where efforts without these depend on the pose alone.
+    """Return the numbers that vanish from efforts at rest, if efforts without them depend on the pose only.
 
-    A force that states a potential states that of its efforts at rest.
+    A force with a potential states the potential of its efforts at rest.
     """
     e = symbols.element
     velocities = frozenset(e.velocities)

@@ -10,10 +10,10 @@ from .element import SymbolicElement
 
 
 def measure(name: str, e: SymbolicElement, markers: list[Any]) -> sp.Expr:
-    """A measure of marker a against marker b, perhaps along the axes of a third.
+    """Return a measure of marker a relative to marker b, optionally in the axes of a third marker.
 
-    Of points dx dy dz dm and their rates vx vy vz vr, and the speed vm; of orientations the angles ax ay az about b's
-    axes, whole turns counted, and angular velocities wx wy wz wm; in the plane those of them that it has.
+    Displacements dx dy dz dm, their rates vx vy vz vr and the speed vm; continuous angles ax ay az about b's axes;
+    angular velocities wx wy wz wm. Planar models have a subset.
     """
     a, b, *along = markers
     d = a.point - b.point
@@ -38,7 +38,7 @@ def measure(name: str, e: SymbolicElement, markers: list[Any]) -> sp.Expr:
 
 
 def own_coordinate(name: str, marker: Any) -> sp.Expr:
-    """A component of a body's quaternion or angular velocity in the body's own axes, which `marker` has."""
+    """Return a component of a body's quaternion or angular velocity in the body's own axes, those of `marker`."""
     if name[0] == "w":
         return marker.own_omega["xyz".index(name[1])]
     return marker.quaternion[int(name[1])]

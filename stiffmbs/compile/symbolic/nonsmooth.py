@@ -1,7 +1,7 @@
-"""Nonsmooth functions in equations: their derivatives, and which native function each of them is in kernels.
+"""Nonsmooth functions in equations: derivatives, and native functions in kernels.
 
-Each argument stands once in each of them.  As SymPy's Piecewise, which writes an argument once for each of its conditions
-and values, fourteen steps within each other were 5^14 expressions.
+Each argument occurs once. SymPy's Piecewise repeats arguments in every condition and value, so nested steps grow
+exponentially.
 """
 
 from __future__ import annotations
@@ -12,23 +12,23 @@ from typing import Any, ClassVar
 import sympy as sp
 
 Partial = Callable[[sp.Expr], sp.Expr]
-"""The derivative of an expression by some symbol."""
+"""Function that returns the derivative of an expression by some symbol."""
 
 
 class NonsmoothBase(sp.Function):  # type: ignore[misc]
-    """Base of these functions; SymPy's printers look for a method of a base whose name ends so.
+    """Base of nonsmooth functions. SymPy's printers find its method by this name.
 
     Attributes
     ----------
     native : str
-        Of `stiffmbs.compile.machine.native.nonsmooth`.
+        Function in `stiffmbs.compile.machine.native.nonsmooth`.
     """
 
     native: ClassVar[str] = ""
     is_real = True
 
     def by_parts(self, partial: Partial) -> sp.Expr:
-        """The derivative of the function by those of its arguments, which only count where they are chosen."""
+        """Return the derivative from those of the arguments, of which only the selected one counts."""
         raise NotImplementedError
 
     def _eval_derivative(self, symbol: sp.Symbol) -> sp.Expr:
@@ -53,7 +53,7 @@ class Chosen(NonsmoothBase):
 
 
 class Sign(NonsmoothBase):
-    """-1 or 1, with derivative zero."""
+    """Sign of x, -1 or 1, with zero derivative."""
 
     native = "sign"
     nargs = 1
@@ -67,7 +67,7 @@ class Sign(NonsmoothBase):
 
 
 class Magnitude(NonsmoothBase):
-    """The absolute value."""
+    """Absolute value."""
 
     native = "magnitude"
     nargs = 1
@@ -82,14 +82,14 @@ class Magnitude(NonsmoothBase):
 
 
 class Extreme(NonsmoothBase):
-    """One of two, the first where they are equal, with the derivative of that one.
+    """Extremum of two expressions, the first if equal, with its derivative.
 
     Attributes
     ----------
     of_numbers : callable
-        SymPy's function of the same name.
+        SymPy's equivalent.
     direction : int
-        1 where the greater is chosen, -1 where the less.
+        1 for the greater, -1 for the smaller.
     """
 
     nargs = 2
@@ -106,7 +106,7 @@ class Extreme(NonsmoothBase):
 
 
 class Greater(Extreme):
-    """The greater of two."""
+    """Greater of two expressions."""
 
     native = "greater"
     of_numbers = sp.Max
@@ -114,7 +114,7 @@ class Greater(Extreme):
 
 
 class Less(Extreme):
-    """The less of two."""
+    """Smaller of two expressions."""
 
     native = "less"
     of_numbers = sp.Min
@@ -122,7 +122,7 @@ class Less(Extreme):
 
 
 class Inside(NonsmoothBase):
-    """A value between two bounds of x, zero at them and beyond: Inside(x, x0, x1, value)."""
+    """Value for x between two bounds, zero elsewhere: Inside(x, x0, x1, value)."""
 
     native = "inside"
     nargs = 4
@@ -137,13 +137,13 @@ class Inside(NonsmoothBase):
 
 
 class Step(NonsmoothBase):
-    """Adams' STEP, or a derivative of it by x: Step(x, x0, h0, x1, h1, order), a cubic with flat ends."""
+    """Adams' STEP, or a derivative of it by x: Step(x, x0, h0, x1, h1, order), a cubic with zero end slopes."""
 
     native = "step"
     nargs = 6
 
     def by_parts(self, partial: Partial) -> sp.Expr:
-        """With z = (x - x0)/(x1 - x0) the k-th derivative is (h1 - h0) p^(k)(z)/(x1 - x0)^k, which is linear in h0 and h1."""
+        """Differentiate (h1 - h0) p^(k)(z)/(x1 - x0)^k with z = (x - x0)/(x1 - x0), linear in h0 and h1."""
         x, x0, h0, x1, h1, order = self.args
         low, high, shift, shift0, shift1 = map(partial, (h0, h1, x, x0, x1))
         width = x1 - x0
@@ -154,30 +154,30 @@ class Step(NonsmoothBase):
 
 
 class Step5(Step):
-    """Adams' STEP5: the same by a quintic without curvature at its ends."""
+    """Adams' STEP5: a quintic with zero end slopes and curvatures."""
 
     native = "step5"
 
 
 def step(x: Any, x0: Any, h0: Any, x1: Any, h1: Any) -> sp.Expr:
-    """Adams' STEP: from h0 at x0 to h1 at x1 by a cubic with flat ends."""
+    """Return Adams' STEP: a cubic from h0 at x0 to h1 at x1 with zero end slopes."""
     return Step(x, x0, h0, x1, h1, 0)
 
 
 def step5(x: Any, x0: Any, h0: Any, x1: Any, h1: Any) -> sp.Expr:
-    """Adams' STEP5: from h0 at x0 to h1 at x1 by a quintic without curvature at its ends."""
+    """Return Adams' STEP5: a quintic from h0 at x0 to h1 at x1 with zero end slopes and curvatures."""
     return Step5(x, x0, h0, x1, h1, 0)
 
 
 def greater(first: sp.Expr, *others: sp.Expr) -> sp.Expr:
-    """The greatest of its arguments, with the derivative of that one."""
+    """Return the greatest argument, with its derivative."""
     for other in others:
         first = Greater(first, other)
     return first
 
 
 def less(first: sp.Expr, *others: sp.Expr) -> sp.Expr:
-    """The least of its arguments, with the derivative of that one."""
+    """Return the smallest argument, with its derivative."""
     for other in others:
         first = Less(first, other)
     return first

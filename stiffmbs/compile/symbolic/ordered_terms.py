@@ -1,7 +1,7 @@
-"""Terms of a sum in the order in which SymPy prints them, found with less work.
+"""Fast ordering of the terms of a sum, as printed by SymPy.
 
-SymPy compares monomials, then coefficients, which it evaluates as complex numbers: most of the time of printing a kernel.
-Coefficients decide nothing where monomials differ, as they do in all sums that SymPy has put together itself.
+SymPy compares monomials, then coefficients as complex numbers, which is slow. Coefficients do not matter where
+monomials differ, as in all sums simplified by SymPy.
 """
 
 from __future__ import annotations
@@ -11,12 +11,12 @@ from sympy.core.exprtools import decompose_power
 from sympy.core.sorting import default_sort_key
 
 Monomial = dict[sp.Expr, sp.Integer | int]
-"""Powers of what a term is a product of, but for numbers."""
+"""Powers of the non-numeric factors of a term."""
 
 
 def ordered_terms(x: sp.Add) -> list[sp.Expr] | None:
-    """The terms of a sum by monomials, the highest first; None where these do not tell all terms apart, and for a number and
-    one other, which SymPy may print first."""
+    """Return the terms of a sum by monomials, highest first; None if these do not distinguish all terms, or for a
+    number plus one other term."""
     if len(x.args) == 2 and any(term.is_number for term in x.args):
         return None
     monomials = [(term, _monomial(term)) for term in x.args]

@@ -10,13 +10,13 @@ import sympy as sp
 from ...errors import InputError
 
 VALUE = -1
-"""In place of the argument to differentiate by."""
+"""Index of the argument to differentiate by, for the value itself."""
 
 
 class PythonCall(sp.Function):  # type: ignore[misc]
-    """A value of a Python function, or a derivative of it: PythonCall(address, count, output, by, arguments...).
+    """Value of a Python function, or a derivative of it: PythonCall(address, count, output, by, arguments...).
 
-    `stiffmbs.compile.callbacks.Callback` gives its value; `by` is the argument to differentiate by, `VALUE` for none.
+    `stiffmbs.compile.callbacks.Callback` computes it; `by` is the argument to differentiate by, `VALUE` for none.
     """
 
     is_real = True
@@ -29,10 +29,10 @@ class PythonCall(sp.Function):  # type: ignore[misc]
 
 
 def python_law(address: sp.Symbol, read: Callable[[Any], sp.Expr]) -> Callable[..., Any]:
-    """The function that equations call: ``e.law(x, y)`` for one value, ``e.law(x, y, count=3)`` for a list of them."""
+    """Return the function called by equations: ``e.law(x, y)`` for one value, ``e.law(x, y, count=3)`` for a list."""
 
     def law(*arguments: Any, count: int | None = None) -> Any:
-        """The values of the function, as symbols of its call."""
+        """Return the values of the function as symbolic calls."""
         if not arguments:
             raise InputError("found a Python function without arguments, expected one at least")
         given = [read(argument) for argument in arguments]

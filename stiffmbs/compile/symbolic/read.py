@@ -1,7 +1,7 @@
-"""SymPy's functions in elements' equations as those of kernels.
+"""Conversion of SymPy functions in elements' equations to kernel functions.
 
-`Abs`, `sign`, `Max`, `Min` and `Heaviside` become the functions of `stiffmbs.compile.symbolic.nonsmooth`; what has no form in
-kernels is refused.
+`Abs`, `sign`, `Max`, `Min` and `Heaviside` become functions of `stiffmbs.compile.symbolic.nonsmooth`; functions without
+a kernel form are refused.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ KNOWN: tuple[type[sp.Basic], ...] = (
     ),  # which is a power
     sp.Piecewise,
 )
-"""Functions that kernels have as they are: those that formulas have, and conditions."""
+"""Functions supported by kernels: those of formulas, and conditions."""
 BY_OTHERS = (sp.cos, sp.cosh, sp.tanh, sp.log)
-"""Functions by which SymPy may write one that kernels do not have, tried in this order."""
+"""Functions by which SymPy may rewrite unsupported functions, in this order."""
 
 
 def _differences(x: tuple[sp.Expr, ...]) -> tuple[sp.Expr, ...]:
@@ -41,24 +41,24 @@ NONSMOOTH: dict[type[sp.Basic], Callable[..., tuple[sp.Expr, tuple[sp.Expr, ...]
     sp.Min: lambda *x: (less(*x), _differences(x)),
     sp.Heaviside: lambda x, at: (Chosen(x, sp.Integer(0), at, sp.Integer(1)), (x,)),
 }
-"""nonsmooth functions: what each becomes, and what is zero at its breakpoints."""
+"""Nonsmooth functions: their kernel form, and the expressions that are zero at breakpoints."""
 NO_NUMBER = frozenset((sp.nan, sp.zoo, sp.oo, -sp.oo, sp.I))
 UNDONE = (sp.Derivative, sp.Integral, sp.Sum, sp.Product, sp.Subs)
 
 
 def read(x: Any, note: Callable[[sp.Expr], None]) -> sp.Expr:
-    """An expression as kernels can have it.
+    """Return an expression in the form for kernels.
 
     Parameters
     ----------
     x : Expr or number
     note : callable
-        Called with what is zero at each breakpoint.
+        Called with the expression that is zero at each breakpoint.
 
     Raises
     ------
     InputError
-        For what is no real expression, or holds a function that kernels do not have.
+        If it is not a real expression, or contains an unsupported function.
     """
     expression = sp.sympify(x)
     if not isinstance(expression, sp.Expr):
@@ -75,27 +75,27 @@ def read(x: Any, note: Callable[[sp.Expr], None]) -> sp.Expr:
 
 @lru_cache(maxsize=2**16)
 def _is_ready(x: sp.Basic) -> bool:
-    """Whether kernels can have an expression as it is; long ones share most of their parts, each of which is looked at once."""
+    """Return True if kernels support an expression unchanged; cached for shared subexpressions."""
     here = _is_plain(x) or _is_own(x)
     return here and x not in NO_NUMBER and not isinstance(x, UNDONE) and all(map(_is_ready, x.args))
 
 
 def _is_plain(part: sp.Basic) -> bool:
-    """Whether a part of an expression is in kernels what it is in SymPy."""
+    """Return True if a part of an expression means the same in kernels and SymPy."""
     return not isinstance(part, sp.Function | sp.Max | sp.Min) or (
         isinstance(part, KNOWN) and not isinstance(part, sp.Piecewise)
     )
 
 
 def _functions(x: sp.Basic) -> Iterator[sp.Basic]:
-    """The functions in an expression that are SymPy's, from the outside in."""
+    """Yield SymPy's functions in an expression, outermost first."""
     for part in sp.preorder_traversal(x):
         if isinstance(part, sp.Function | sp.Max | sp.Min) and not _is_own(part):
             yield part
 
 
 def _is_own(part: sp.Basic) -> bool:
-    """Whether a function is one of this package."""
+    """Return True if a function belongs to this package."""
     return isinstance(part, NonsmoothBase) or type(part).__module__.startswith("stiffmbs.")
 
 
@@ -120,7 +120,7 @@ def _read(x: sp.Basic, note: Callable[[sp.Expr], None]) -> Any:
 
 
 def _by_others(x: sp.Function, note: Callable[[sp.Expr], None]) -> sp.Expr:
-    """A function written by others that kernels have."""
+    """Rewrite a function by others that kernels support."""
     for way in () if isinstance(x, AppliedUndef) else BY_OTHERS:
         written = x.rewrite(way)
         if not written.has(sp.I) and all(isinstance(part, (*KNOWN, *NONSMOOTH)) for part in _functions(written)):

@@ -1,4 +1,4 @@
-"""What an element refers to in its equations: components, such as roads, and joints."""
+"""Components, such as roads, and joints to which an element's equations refer."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .element import SymbolicElement
 
 
 class SymbolicComponent:
-    """A component with symbols for its numbers; its equations are called as its methods."""
+    """Component with symbols for its numbers; its equations are methods."""
 
     def __init__(self, component: Any, fields: dict[str, object]) -> None:
         self._component = component
@@ -23,7 +23,7 @@ class SymbolicComponent:
 
 
 class ReferredJoint(SymbolicElement):
-    """A joint that an element refers to: its fields, its multipliers, and the coordinate that is meant.
+    """Joint to which an element refers: its fields, its multipliers, and the referenced coordinate.
 
     Attributes
     ----------
@@ -43,26 +43,26 @@ class ReferredJoint(SymbolicElement):
 
     @cached_property
     def velocity_level(self) -> list[sp.Expr]:
-        """Its constraints on velocities, in the order of the multipliers."""
+        """Velocity constraints in the order of the multipliers."""
         position = [self.rate(self.read(equation)) for equation in self._joint.position(self)]
         return [*position, *map(self.read, self._joint.velocity(self))]
 
     @property
     def point(self) -> Any:
-        """About which its torque is reported."""
+        """Reference point of its torque."""
         return self._joint.point(self)
 
     @property
     def coordinates(self) -> tuple[str, ...]:
-        """The names of its coordinates."""
+        """Names of its coordinates."""
         return tuple(self._joint.coordinates)
 
     @cached_property
     def loads(self) -> Any:
-        """What presses its surfaces."""
+        """Normal loads on its surfaces."""
         return self._joint.loads(self)
 
     @cached_property
     def coordinate(self) -> Any:
-        """None where none is named and there is a choice; only one that is used is counted, if it is an angle."""
+        """Referenced coordinate, or None; an angle gets a turn counter only if it is used."""
         return None if self._coordinate is None else getattr(self._joint, self._coordinate)(self)

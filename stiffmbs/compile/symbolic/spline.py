@@ -8,7 +8,7 @@ import sympy as sp
 
 
 class Spline(sp.Function):  # type: ignore[misc]
-    """The value, or a derivative, of the table at an offset: Spline(x, offset, order); order -1 is its integral."""
+    """Value, or a derivative, of the table at an offset: Spline(x, offset, order); order -1 is its integral."""
 
     nargs = 3
     is_real = True
@@ -19,7 +19,7 @@ class Spline(sp.Function):  # type: ignore[misc]
 
 
 def integral(law: Callable[[sp.Expr], sp.Expr], x: sp.Expr) -> sp.Expr | None:
-    """The integral of a law from 0 to x: exact for tables and polynomials, None for other formulas."""
+    """Return the integral of a law from 0 to x: exact for tables and polynomials, None for other formulas."""
     s = sp.Dummy("s", real=True)
     value = law(s)
     if isinstance(value, Spline):

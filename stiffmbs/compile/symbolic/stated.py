@@ -1,4 +1,4 @@
-"""What a class of joints or forces states: its equations as expressions, read and checked."""
+"""Equations stated by a joint or force class, as checked expressions."""
 
 from __future__ import annotations
 
@@ -16,23 +16,23 @@ from .symbols import Symbols, symbols_of
 
 @dataclass(frozen=True)
 class Stated:
-    """The expressions that everything else is derived from.
+    """Expressions from which everything else is derived.
 
     Attributes
     ----------
     point : tuple of Expr
-        About which the reaction's torque is reported.
+        Reference point of the reaction's torque.
     event_functions : tuple of Expr
-        What changes its sign at breakpoints in the state.
+        Event functions of breakpoints in the state.
     position, velocity : tuples of Expr
-        Of a joint.
+        Equations of a joint.
     powers : tuple of (Expr, Expr)
-        Of a force: efforts and rates.
+        Efforts and rates of a force.
     potential : Expr
     limits : tuple of Expr
     measured : tuple of Expr
     rates : tuple of Expr
-        Of a force's own states.
+        Rates of a force's own states.
     """
 
     point: tuple[sp.Expr, ...]
@@ -47,12 +47,12 @@ class Stated:
 
 
 def stated_by_joint(kind: Kind, symbols: Symbols) -> Stated:
-    """The equations of a joint.
+    """Return the equations of a joint.
 
     Raises
     ------
     InputError
-        When they cannot be used; names the class.
+        If they are invalid; names the class.
     """
     asked = _Asked(kind.element, symbols)
     position, velocity = asked.column("position"), asked.column("velocity")
@@ -66,12 +66,12 @@ def stated_by_joint(kind: Kind, symbols: Symbols) -> Stated:
 
 
 def stated_by_force(kind: Kind, symbols: Symbols) -> Stated:
-    """The law of a force.
+    """Return the law of a force.
 
     Raises
     ------
     InputError
-        When it cannot be used; names the class.
+        If it is invalid; names the class.
     """
     asked = _Asked(kind.element, symbols)
     powers = asked.pairs()
@@ -93,7 +93,7 @@ def stated_by_force(kind: Kind, symbols: Symbols) -> Stated:
 
 
 def text_of(kind: Kind) -> str:
-    """All that is derived of a kind follows from this: its equations, and what the symbols in them stand for."""
+    """Return a text that determines all derived terms of a kind: its equations and the expressions of their symbols."""
     symbols = symbols_of(kind)
     stated = (stated_by_joint if issubclass(kind.element, Joint) else stated_by_force)(kind, symbols)
     meanings = [f"{symbol} = {sp.srepr(meaning)}" for symbol, meaning in symbols.element.meanings.items()]
@@ -119,20 +119,20 @@ def text_of(kind: Kind) -> str:
 
 
 class _Asked:
-    """A class that is asked for its equations; whatever goes wrong is told in one sentence that names it."""
+    """Caller of a class's equations; errors are reported in one sentence that names the class."""
 
     def __init__(self, element: type[Any], symbols: Symbols) -> None:
         self.element, self.symbols, self.e = element, symbols, symbols.element
 
     def column(self, name: str) -> tuple[sp.Expr, ...]:
-        """A list of expressions, or one alone."""
+        """Return a list of expressions, or a single one as a list."""
         found = self._called(name)
         return tuple(
             self._read(name, part) for part in (found if isinstance(found, Iterable | sp.MatrixBase) else (found,))
         )
 
     def pairs(self) -> tuple[tuple[sp.Expr, sp.Expr], ...]:
-        """Pairs of an effort and a rate, from `powers`, or else from `efforts` on coordinates."""
+        """Return pairs of an effort and a rate from `powers`, or from `efforts` on coordinates."""
         name = "powers" if "powers" in _own_names(self.element) else "efforts"
         try:
             pairs = [(effort, works_on) for effort, works_on in self._called(name)]
@@ -144,13 +144,13 @@ class _Asked:
         return tuple((effort, x if name == "powers" else self.e.rate(x)) for effort, x in found)
 
     def event_functions(self) -> tuple[sp.Expr, ...]:
-        """The breakpoints of formulas, and those that the class names, or else those of its equations."""
+        """Return the breakpoints of formulas, and those stated by the class, or else those of its equations."""
         named = issubclass(self.element, Force) and self.element.event_functions is not Force.event_functions
         own = self.column("event_functions") if named else [x for x in self.e.breakpoints if self.e.in_state(x)]
         return (*self.symbols.event_functions, *(x for x in own if named or x not in self.symbols.event_functions))
 
     def known(self, stated: Stated) -> Stated:
-        """The equations, if all symbols in them mean something."""
+        """Return the equations after a check that all symbols are defined."""
         columns = (
             stated.point,
             stated.event_functions,

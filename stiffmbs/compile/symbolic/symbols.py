@@ -1,4 +1,4 @@
-"""From a kind's shapes to the symbolic element that its equations are written in."""
+"""Construction of the symbolic element of a kind from the shapes of its fields."""
 
 from __future__ import annotations
 
@@ -29,31 +29,30 @@ from .spline import Spline
 NARROW: dict[type[sp.Basic], str] = {
     getattr(sp, name): function.zones for name, function in FUNCTIONS.items() if function.zones
 }
-"""Functions whose features are narrow where their argument is steep, and the zones that they have."""
+"""Functions with narrow features where their argument is steep, and the names of their intervals."""
 
 
 STEEP, LEAST_SQUARE = 10, 1e-200
-"""Whole powers from this one on, and those by a formula, are taken for exp(n log |x|): a high power of a sine is narrow.  The
-square of the least |x|."""
+"""Integer power from which on it is treated as exp(n log |x|), as is a variable power; square of the least |x|."""
 
 
 INTERNAL = re.compile(
     "|".join((*SPACE.positions, *SPACE.velocities, *SPACE.accelerations))
     + r"|a\d\d|e\d|phi\d|n|size|turn\d+|carried\d+_\d+|s"
 )
-"""Stems of the symbols of bodies, rotations and common subexpressions, which end with ``_`` and a number as well."""
+"""Stems of the symbols of bodies, rotations and common subexpressions, followed by ``_`` and a number."""
 
 
 @dataclass(frozen=True)
 class Law:
-    """Table or function with zones (`stiffmbs.compile.law_zones`) that a formula calls with an argument that depends on the state.
+    """Table or function with breakpoints (`stiffmbs.compile.law_zones`) whose argument depends on the state.
 
     Attributes
     ----------
     argument : expression
     of : (str, int)
-        Name of the zones (``turn`` for the argument of a sine) and, for ``table``, the index of its offset in the element's numbers,
-        else 0.
+        Name of its intervals (``turn`` for the argument of a sine) and, for ``table``, the index of its offset in the
+        element's numbers, else 0.
     """
 
     argument: sp.Expr
@@ -62,7 +61,7 @@ class Law:
 
 @dataclass
 class Symbols:
-    """The symbols of one kind.
+    """Symbols of one kind.
 
     Attributes
     ----------
@@ -71,9 +70,9 @@ class Symbols:
     numbers : list of Symbol
         In the order of `ElementData.numbers`; integer ones are offsets of tables.
     joint_lam : list of list of Symbol
-        Multipliers of each joint that is referred to.
+        Multipliers of each joint referred to.
     event_functions : list of expressions
-        What changes its sign at the breakpoints in the state of the formulas (``abs``, ``step``, ...).
+        Event functions of formulas (``abs``, ``step``, ...) that depend on the state.
     laws : list of Law
     """
 
@@ -84,7 +83,7 @@ class Symbols:
     laws: list[Law] = field(default_factory=list)
 
     def known(self) -> frozenset[sp.Symbol]:
-        """All symbols that mean something."""
+        """Return all defined symbols."""
         e = self.element
         of_bodies = (s for f in e.frames for s in (*f.q, *f.u, *f.a, *f.turn, *f.pose, *f.velocities))
         of_joints = (symbol for lam in self.joint_lam for symbol in lam)
@@ -92,18 +91,18 @@ class Symbols:
         return frozenset((e.t, *self.numbers, *of_bodies, *e.states, *of_joints, *counters)) | e.derivatives.defined()
 
     def note_event_function(self, breakpoint: sp.Expr) -> None:
-        """Note what changes its sign at a breakpoint, if that is in the state."""
+        """Record an event function if it depends on the state."""
         if self.element.in_state(breakpoint) and breakpoint not in self.event_functions:
             self.event_functions.append(breakpoint)
 
     def note_law(self, argument: sp.Expr, name: str, table: sp.Symbol | None = None) -> None:
-        """Note the argument of a table or function with narrow features, if that is in the state."""
+        """Record the argument of a table or function with narrow features if it depends on the state."""
         law = Law(argument, (name, 0 if table is None else self.numbers.index(table)))
         if self.element.in_state(argument) and law not in self.laws:
             self.laws.append(law)
 
     def note_functions(self, expression: sp.Expr) -> None:
-        """Note the functions with narrow features that an expression holds."""
+        """Record the functions with narrow features in an expression."""
         for part in sp.preorder_traversal(expression):
             if type(part) in NARROW:
                 self.note_law(part.args[0], NARROW[type(part)])
@@ -116,7 +115,7 @@ class Symbols:
 
 
 def symbols_of(kind: Kind) -> Symbols:
-    """Make a kind's symbols and its element."""
+    """Return a kind's symbols and its element."""
     derivatives, slots = Derivatives(), range(kind.n_bodies)
     frames = (
         [planar_frames.BodyFrame(slot) for slot in slots]
@@ -137,14 +136,14 @@ class _Builder:
         self.dimensions, self.frames, self.symbols = dimensions, symbols.element.frames, symbols
 
     def fresh(self, name: str, **assumptions: bool) -> sp.Symbol:
-        """A new symbol for the next number."""
+        """Return a new symbol for the next number."""
         stem = f"{name}_field" if INTERNAL.fullmatch(name) else name
         symbol = sp.Symbol(f"{stem}_{len(self.symbols.numbers)}", **(assumptions or {"real": True}))
         self.symbols.numbers.append(symbol)
         return symbol
 
     def made(self, name: str, shape: Shape) -> Any:
-        """What stands for a field in the equations."""
+        """Return the symbolic form of a field."""
         match shape:
             case ("number",):
                 return self.fresh(name)
@@ -170,7 +169,7 @@ class _Builder:
         raise TypeError(f"no such shape: {shape}")
 
     def marker(self, name: str, slot: int) -> Any:
-        """A frame with new symbols for its numbers."""
+        """Return a frame with new symbols for its numbers."""
         if self.dimensions == 2:
             numbers = tuple(self.fresh(f"{name}_{part}") for part in planar_frames.MARKER_NUMBERS)
             return planar_frames.Frame(self.frames[slot], numbers)
@@ -180,7 +179,7 @@ class _Builder:
     def joint(
         self, name: str, element: Any, fields: tuple[tuple[str, Shape], ...], slot: int, coordinate: str | None
     ) -> ReferredJoint:
-        """A joint that is referred to."""
+        """Return a joint that is referred to."""
         own = {field_name: self.made(f"{name}_{field_name}", shape) for field_name, shape in fields}
         joint = ReferredJoint(self.symbols.element, element, own, coordinate, slot)
         self.symbols.joint_lam.append(joint.lam)
@@ -194,7 +193,7 @@ class _Builder:
         measures: tuple[Any, ...],
         reactions: tuple[Any, ...] = (),
     ) -> Any:
-        """A formula's expression, or a function of its variables where it has such; of so many variables, numbers, tables."""
+        """Return a formula's expression, or a function of its variables; `counts`: variables, numbers, tables."""
         n_variables, n_numbers, n_tables = counts
         numbers = [self.fresh(f"{name}_p") for _ in range(n_numbers)]
         measured = [
@@ -207,10 +206,10 @@ class _Builder:
         pressed = self.reactions(name, reactions)
 
         def names(variables: tuple[sp.Expr, ...]) -> Callable[[str], sp.Expr]:
-            """Return the function that gives the symbols of names."""
+            """Return the function from names to symbols."""
 
             def value(word: str) -> sp.Expr:
-                """The symbol or expression that a name stands for."""
+                """Return the symbol or expression of a name."""
                 owner, _, coordinate = word.partition(".")
                 if coordinate:
                     return self.frames[int(owner[1:])].coordinate(coordinate)
@@ -229,10 +228,10 @@ class _Builder:
         tree = ast.parse(text, mode="eval").body
 
         def function(*variables: sp.Expr) -> sp.Expr:
-            """The formula at an expression."""
+            """Return the formula for given variables."""
             functions = self.functions() | tables
             expression = sp.sympify(evaluate(tree, names(variables), functions, sp.sympify))
-            if expression.has(sp.Abs):  # which SymPy makes of sqrt(x^2)
+            if expression.has(sp.Abs):  # SymPy turns sqrt(x^2) into Abs
                 expression = expression.replace(sp.Abs, functions["abs"])
             self.symbols.note_functions(expression)
             return expression
@@ -240,7 +239,7 @@ class _Builder:
         return function if n_variables else function()
 
     def reactions(self, name: str, wanted: tuple[tuple[str, Shape], ...]) -> list[sp.Expr]:
-        """Components of the reactions of joints."""
+        """Return components of the reactions of joints."""
         known: dict[Shape, dict[str, sp.Expr]] = {}
         for k, shape in enumerate(dict.fromkeys(shape for _, shape in wanted)):
             joint = self.made(f"{name}_j{k}", shape)
@@ -250,10 +249,10 @@ class _Builder:
         return [known[shape][component] for component, shape in wanted]
 
     def functions(self) -> dict[str, Callable[..., sp.Expr]]:
-        """The functions of formulas; those with breakpoints note where they are, if it is in the state."""
+        """Return the functions of formulas; those with breakpoints record them if they depend on the state."""
 
         def noting(name: str, function: FormulaFunction) -> Any:
-            """Return a function that notes its breakpoints or its law."""
+            """Return a function that records its breakpoints or its law."""
 
             def turning(argument: sp.Expr) -> sp.Expr:
                 self.symbols.note_law(argument, "turn")
@@ -269,19 +268,19 @@ class _Builder:
         return {name: noting(name, function) for name, function in IN_FORMULAS.items()}
 
     def measure(self, name: str, markers: list[Any]) -> sp.Expr:
-        """A measure between markers, or a coordinate of a spatial body in its own axes."""
+        """Return a measure between markers, or a coordinate of a spatial body in its own axes."""
         if name.startswith(OWN):
             return own_coordinate(name.removeprefix(OWN), markers[0])
         return measure(name, self.symbols.element, markers)
 
     def spline(self, table: sp.Symbol, x: sp.Expr) -> sp.Expr:
-        """The value of the table at an offset."""
+        """Return the value of the table at an offset."""
         self.symbols.note_law(sp.sympify(x), "table", table)
         return Spline(x, table, sp.Integer(0))
 
 
 def _breakpoints(function: FormulaFunction, arguments: tuple[sp.Expr, ...]) -> Iterator[sp.Expr]:
-    """What is zero at a function's breakpoints."""
+    """Yield the expressions that are zero at a function's breakpoints."""
     each: Breakpoints = tuple((0, k) for k in range(1, len(arguments)))
     for i, k in each if function.breakpoints == EACH else function.breakpoints:
         yield arguments[i] if k is None else arguments[i] - arguments[k]

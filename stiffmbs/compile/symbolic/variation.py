@@ -1,8 +1,8 @@
-"""What the derivatives of constraint equations depend on, told by their symbols (SymPy).
+"""Dependence of constraint derivatives on numbers and coordinates, from their symbols.
 
-A derivative is taken apart into summands, each a product of an element's numbers with a function of the pose.  A summand
-whose numbers are zero is zero at every pose, such as the arm of a pin in the centre of mass; a function of the pose
-never counts as zero for its values, as tanh and exp are exactly constant in floating point where they are saturated.
+A derivative is split into summands, each a product of an element's numbers with a function of the pose. A summand with
+zero numbers is zero at every pose, such as the arm of a pin in the centre of mass. A function of the pose is never
+assumed zero from its values: tanh and exp are exactly constant in floating point where they are saturated.
 """
 
 from __future__ import annotations
@@ -15,25 +15,25 @@ import sympy as sp
 from .symbols import Symbols
 
 MOST_SUMMANDS = 100
-"""Summands to which a derivative is taken apart; a longer one stays whole."""
+"""Limit of the number of summands; a longer derivative is not split."""
 ORDER_ONE = 8
-"""Magnitude of a function of the pose, up to which it counts as of order one."""
+"""Magnitude of a number up to which it counts as of order one."""
 
 Factors = tuple[tuple[int, ...], ...]
 
 
 @dataclass(frozen=True)
 class Summand:
-    """A part of a derivative.
+    """Part of a derivative.
 
     Attributes
     ----------
     factors : tuple of tuple of int
-        Its factors that are numbers of the element: each a number, or the numbers of a vector, which may appear in any mixture.
+        Factors that are numbers of the element: each a number, or the numbers of a vector in any combination.
     columns : tuple of int
-        The coordinates, among those of the element, that the rest depends on.
+        Coordinates of the element on which the rest depends.
     bounded : bool
-        Whether the rest is of order one at every pose, as sines and cosines are.
+        True if the rest is of order one at every pose, as sines and cosines are.
     """
 
     factors: Factors
@@ -46,12 +46,12 @@ _Sum = dict[Factors, tuple[frozenset[int], bool]]
 
 
 class Variation:
-    """Takes derivatives of one kind apart.
+    """Splitting of derivatives of one kind.
 
     Parameters
     ----------
     symbols : Symbols
-        That they are written in.
+        Symbols of the derivatives.
     """
 
     def __init__(self, symbols: Symbols) -> None:
@@ -63,15 +63,15 @@ class Variation:
         self._known: dict[sp.Expr, _Sum] = {}
 
     def summands(self, x: sp.Expr) -> list[Summand]:
-        """The summands of an expression; none where it is zero."""
+        """Return the summands of an expression; empty if it is zero."""
         return [
             Summand(factors, tuple(sorted(columns)), bounded) for factors, (columns, bounded) in self._sum(x).items()
         ]
 
     def removable(self, C: sp.Expr, differentiated: Iterable[int]) -> bool:
-        """Whether an equation follows from its derivatives at every pose: it has no time in it, and no breakpoints or jumps.
+        """Return True if an equation follows from its derivatives at every pose: no time, breakpoints or jumps.
 
-        It then depends on no coordinates but those that it has derivatives by.
+        It then depends only on coordinates by which it has derivatives.
         """
         timeless = not self._e.depends(C, [self._e.t])
         return timeless and not self._nonsmooth and set(self._e.columns_of(C)) <= set(differentiated)

@@ -1,1 +1,1 @@
-"""What was found about the structure of a mechanism, in sentences."""
+"""Messages on the structure of a mechanism."""

@@ -1,4 +1,4 @@
-"""Reactions without a unique value, in words."""
+"""Messages on reactions without a unique value."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from ..uniqueness import Indeterminate
 
 
 def channel_words(parts: Sequence[Indeterminate]) -> str:
-    """Their components, those of elements with the same ones together: ``fz and tx of lower and upper``."""
+    """List the components, with elements that have the same ones together: ``fz and tx of lower and upper``."""
     alike: dict[tuple[str, ...], list[str]] = {}
     for part in parts:
         components = tuple(name.rpartition(".")[2] for name in part.channels)
@@ -20,7 +20,7 @@ def channel_words(parts: Sequence[Indeterminate]) -> str:
 
 
 def directed_words(parts: Sequence[Indeterminate]) -> Iterator[str]:
-    """The directions in which forces and torques are undetermined; nothing where they have none that stays."""
+    """Yield the constant directions of indeterminate forces and torques."""
     in_plane = [
         f"of {part.element} at {_degrees(direction.vector):.4g} deg of {direction.axes}"
         for part in parts
@@ -40,7 +40,7 @@ def directed_words(parts: Sequence[Indeterminate]) -> Iterator[str]:
 
 
 def _degrees(vector: Sequence[float]) -> float:
-    """The angle of a direction in the plane, from 0 up to 180 deg."""
+    """Return the angle of a direction in the plane, in [0, 180) deg."""
     angle = round(math.degrees(math.atan2(vector[1], vector[0])), 4)
     return angle % 180
 
@@ -52,6 +52,6 @@ def _axis(vector: Sequence[float]) -> str:
 
 
 def _told_by_channels(part: Indeterminate, direction: Direction) -> bool:
-    """Whether the components without a unique value are as few as the directions."""
+    """Return True if the components without a unique value are as few as the directions."""
     components = [name for name in part.channels if name.rpartition(".")[2].startswith(direction.quantity[0])]
     return len(components) <= (2 if direction.across else 1)

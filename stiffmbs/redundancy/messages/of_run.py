@@ -1,4 +1,4 @@
-"""What a run says of its mechanism's structure."""
+"""Messages of a run on its mechanism's structure."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from .unconnected import unconnected_sentence
 
 
 class StructureNotes(NamedTuple):
-    """Sentences on a structure.
+    """Messages on a structure.
 
     Attributes
     ----------
     of_joints : tuple of str
-        On redundant equations, and on bodies that nothing connects.
+        On redundant equations and unconnected bodies.
     of_presolve : tuple of str
-        On what is not solved for.
+        On bodies, coordinates and equations that the presolve removes.
     not_unique : tuple of str
         Channels of the reactions without a unique value.
     """
@@ -31,7 +31,7 @@ class StructureNotes(NamedTuple):
 
 
 def structure_notes(redundancy: Redundancy, subsystems: Sequence[Subsystem], dynamics: Dynamics) -> StructureNotes:
-    """What there is to say of the structure of a system that was examined and presolved; found once for all runs of it."""
+    """Return the messages on the structure of an examined and presolved system, cached for all its runs."""
     return dynamics.kept("structure notes", None, lambda: _found(redundancy, subsystems, dynamics))
 
 
@@ -45,6 +45,6 @@ def _found(redundancy: Redundancy, subsystems: Sequence[Subsystem], dynamics: Dy
 
 def _redundant(redundancy: Redundancy) -> Iterator[str]:
     if redundancy.rank_results:
-        from .redundancy import note_sentences  # trees do not pay for it
+        from .redundancy import note_sentences  # not imported for trees
 
         yield from note_sentences(redundancy)

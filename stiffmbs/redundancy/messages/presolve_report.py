@@ -1,4 +1,4 @@
-"""What the presolve left out, in sentences, and the number of unknowns before and after."""
+"""Messages on the presolve, and the number of unknowns before and after."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from ..overconstraint import listed
 
 
 def unknowns(whole: System, subsystems: Sequence[Subsystem], dynamics: Dynamics) -> tuple[int, int]:
-    """Unknowns of the formulation SI2 (q, u, mu, lam): of all bodies and equations, and of what is solved for."""
+    """Return the number of unknowns of the formulation SI2 (q, u, mu, lam) without and with presolve."""
     everything = whole.n_q + whole.n_u + int(whole.holonomic.sum()) + whole.n_c
     solved = [subsystem.dynamics for subsystem in subsystems] or [dynamics]
     return everything, sum(map(_solved_for, solved))
@@ -29,7 +29,7 @@ def _solved_for(dynamics: Dynamics) -> int:
 
 
 def presolve_sentences(whole: System, subsystems: Sequence[Subsystem], dynamics: Dynamics) -> Iterator[str]:
-    """A sentence for each thing that is left out; nothing where all is solved for."""
+    """Yield a sentence for each kind of removal."""
     redundant = np.flatnonzero(~dynamics.system.active).tolist()
     if redundant:
         yield f"redundant equations left out: {listed([_equation(whole, row) for row in redundant])}"
@@ -71,7 +71,7 @@ def _left_out(dynamics: Dynamics) -> Iterator[str]:
 
 
 def _coordinate(system: System, k: int) -> str:
-    """Its name; those of a quaternion are one orientation."""
+    """Return its name; components of a quaternion are one orientation."""
     body, place = divmod(k, system.of_body.n_q)
     if system.of_body.n_q > system.of_body.n_u and place >= system.of_body.linear:
         return f"{system.bodies[body]}.orientation"

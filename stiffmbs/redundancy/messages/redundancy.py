@@ -1,4 +1,4 @@
-"""What an examination for redundancy found, in sentences."""
+"""Messages on redundancy."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ STOPS_WHERE = "stops where formulas or tables no longer hold the same"
 
 
 def known_near_start(case: Overconstraint, redundancy: Redundancy) -> bool:
-    """Whether equations are known to be redundant near the start alone."""
+    """Return True if equations are known to be redundant near the start only."""
     rows = {redundancy.system.equations[row] for row in unproven(redundancy)}
     return not rows.isdisjoint(case.redundant)
 
 
 def refuse_inconsistencies(redundancy: Redundancy) -> None:
-    """Stop before a run that has no solution.
+    """Refuse a run without a solution.
 
     Raises
     ------
@@ -36,13 +36,13 @@ def refuse_inconsistencies(redundancy: Redundancy) -> None:
 
 
 def overconstraint_sentences(case: Overconstraint, near_start: bool = False) -> Iterator[str]:
-    """An overconstraint in sentences: reason, what is dropped, what is not unique, remedy.
+    """Yield sentences on an overconstraint: reason, dropped equations, indeterminate reactions, remedy.
 
     Parameters
     ----------
     case : Overconstraint
     near_start : bool
-        Whether it is known near the start alone, as formulas or tables take part.
+        Whether it is known near the start only, as formulas or tables are involved.
     """
     what_then = f"and {STOPS_WHERE}" if near_start else "which does not change the motion"
     yield f"{case.reason}; a run leaves out {_given_way(case)}, {what_then}"
@@ -56,7 +56,7 @@ def overconstraint_sentences(case: Overconstraint, near_start: bool = False) -> 
 
 
 def _given_way(case: Overconstraint) -> str:
-    """The equations that a run leaves out, joint by joint."""
+    """List the dropped equations by joint."""
     of_joint: dict[str, list[str]] = {}
     for joint, equation in case.redundant:
         of_joint.setdefault(joint, []).append(equation)
@@ -64,7 +64,7 @@ def _given_way(case: Overconstraint) -> str:
 
 
 def inconsistency_sentences(redundancy: Redundancy) -> Iterator[str]:
-    """Equations that cannot hold together, a sentence for each loop that has such."""
+    """Yield a sentence on contradicting equations for each loop that has some."""
     for rank_result in redundancy.rank_results:
         for inconsistency in rank_result.inconsistencies[:1]:
             yield _inconsistency_sentence(redundancy.system, rank_result, inconsistency)
@@ -79,7 +79,7 @@ def _inconsistency_sentence(system: System, rank_result: LoopRankResult, inconsi
 
 
 def singular_sentence(redundancy: Redundancy) -> Iterator[str]:
-    """That the start is a singular pose, where it is one."""
+    """Yield a sentence if the start is a singular pose."""
     assembled = [rank_result for rank_result in redundancy.rank_results if rank_result.rank.start.gap <= AGREES]
     bodies = [
         redundancy.system.bodies[body]
@@ -87,7 +87,7 @@ def singular_sentence(redundancy: Redundancy) -> Iterator[str]:
         for body in rank_result.rank.equations.loop.bodies
         if rank_result.extra_freedoms
     ]
-    if not bodies:  # a pose whose joints do not close is no pose: the search for initial values names the gap
+    if not bodies:  # initial value assembly names the gap of joints that do not close
         return
     count = redundancy.extra_freedoms
     more = "is one degree" if count == 1 else f"are {count} degrees"
@@ -99,7 +99,7 @@ def singular_sentence(redundancy: Redundancy) -> Iterator[str]:
 
 
 def pose_sentences(redundancy: Redundancy) -> Iterator[str]:
-    """What else makes the motion doubtful: equations that nearly repeat each other, friction without a unique load."""
+    """Yield sentences on nearly dependent equations and on friction with indeterminate loads."""
     for rank_result in redundancy.rank_results:
         joints = [joint.name for joint in rank_result.rank.equations.loop.joints]
         if rank_result.nearly_dependent and not rank_result.inconsistencies:
@@ -117,7 +117,7 @@ def pose_sentences(redundancy: Redundancy) -> Iterator[str]:
 
 
 def note_sentences(redundancy: Redundancy) -> Iterator[str]:
-    """What a run tells: the equations that it leaves out, and the channels without a unique value."""
+    """Yield the sentences of a run: dropped equations, and channels without a unique value."""
     for case in overconstraints(redundancy):
         where = f"; the run {STOPS_WHERE}" if known_near_start(case, redundancy) else ""
         yield f"{case.reason}; left out: {_given_way(case)}{where}"

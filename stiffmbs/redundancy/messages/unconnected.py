@@ -1,4 +1,4 @@
-"""Bodies that nothing connects with anything, in a sentence."""
+"""Message on unconnected bodies."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from ...compile.system import System
 
 
 def unconnected_sentence(system: System) -> Iterator[str]:
-    """That bodies are connected to nothing, where some are and others are not."""
+    """Yield a sentence on unconnected bodies, if others are connected."""
     alone = _unconnected(system)
     if alone:
         names = f"{', '.join(alone[:-1])} and {alone[-1]} are" if len(alone) > 1 else f"{alone[0]} is"
@@ -18,10 +18,9 @@ def unconnected_sentence(system: System) -> Iterator[str]:
 
 
 def _unconnected(system: System) -> tuple[str, ...]:
-    """The bodies on which neither a joint nor a force acts, and that no formula of one reads, beside others that have such.
+    """Return the bodies without joint or force, which no formula of one reads, if other bodies have some.
 
-    Weight connects nothing, nor does a request.  Of a scene in which no joint and no force acts at all, as a body thrown or
-    spun, there are none: its bodies are meant to be free.
+    Weight and requests do not connect. If no joint or force acts at all, as for a thrown body, no body is returned.
     """
     touched = np.zeros(len(system.bodies) + 1, dtype=bool)
     for group in system.groups:

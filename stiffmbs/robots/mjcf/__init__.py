@@ -1,1 +1,1 @@
-"""Robots from MuJoCo's format MJCF, as MuJoCo's own compiler understands it."""
+"""Robots from MJCF files, as compiled by MuJoCo."""

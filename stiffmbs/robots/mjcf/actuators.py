@@ -15,7 +15,7 @@ MOST_GROUPS = 31
 
 
 def transmissions(m: Any, disabled: Disabled) -> Iterator[Transmission]:
-    """What acts along the joints: actuators with their inputs, and the springs and dampers of tendons."""
+    """Yield the transmissions of joints: actuators with inputs, and springs and dampers of tendons."""
     for k in () if disabled("ACTUATION") else range(m.nactuator if hasattr(m, "nactuator") else m.nu):
         if not _in_disabled_group(m, k):
             yield _actuator(m, k, disabled)
@@ -96,12 +96,12 @@ def _tendon_of(m: Any, k: int) -> dict[str, Any]:
 
 
 def bounds(limited: Any, ends: Any) -> tuple[float, float] | None:
-    """The ends of a range that holds, or None."""
+    """Return the bounds of a limited range, else None."""
     return (float(ends[0]), float(ends[1])) if limited else None
 
 
 def _gears(m: Any, k: int, name: str) -> dict[str, float]:
-    """How the length of an actuator follows from the coordinates of joints."""
+    """Return the gears of an actuator by joint: its length is the sum of gears times coordinates."""
     import mujoco
 
     kind, target = mujoco.mjtTrn(m.actuator_trntype[k]), int(m.actuator_trnid[k, 0])
@@ -116,7 +116,7 @@ def _gears(m: Any, k: int, name: str) -> dict[str, float]:
 
 
 def _tendon(m: Any, k: int, disabled: Disabled) -> Iterator[Transmission]:
-    """The spring and damper of a tendon, which act outside of the range of lengths where the spring rests."""
+    """Yield the linear spring and damper of a tendon; a nonlinear one or a dead band raises `RobotFault`."""
     name = m.tendon(k).name or f"tendon_{k}"
     stiffness = 0.0 if disabled("SPRING") else float(m.tendon_stiffness[k])
     damping = 0.0 if disabled("DAMPER") else float(m.tendon_damping[k])
@@ -133,7 +133,7 @@ def _tendon(m: Any, k: int, disabled: Disabled) -> Iterator[Transmission]:
 
 
 def _fixed(m: Any, tendon: int, where: str) -> dict[str, float]:
-    """The joints of a fixed tendon with their factors."""
+    """Return the joints of a fixed tendon with their coefficients."""
     import mujoco
 
     found: dict[str, float] = {}

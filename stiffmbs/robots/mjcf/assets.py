@@ -1,4 +1,4 @@
-"""Files that an MJCF file names.  MuJoCo opens them itself, and would block on a pipe."""
+"""Files referred to by an MJCF file. MuJoCo opens them itself, and would block on a pipe."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ MOST_INCLUDED = 100
 
 
 def check_assets(path: Path) -> None:
-    """Refuse an MJCF file if it, or a file that it includes, names something other than a regular file.
+    """Refuse an MJCF file that refers, directly or through included files, to anything but regular files.
 
     Raises
     ------
     RobotFault
     InputError
-        For an included file that cannot be read as text.
+        If an included file cannot be read as text.
     """
     waiting, seen = [path], set[Path]()
     while waiting and len(seen) < MOST_INCLUDED:
@@ -45,7 +45,7 @@ def check_assets(path: Path) -> None:
 
 
 def _named(file: Path, folder: Path) -> Iterator[tuple[Path, bool]]:
-    """Yield the paths at which MuJoCo may look for named files, and True for included files."""
+    """Yield the paths where MuJoCo may search for named files, and True for included files."""
     with suppress(ElementTree.ParseError):  # MuJoCo reports the error
         root = ElementTree.fromstring(file_text(file))
         folders = {folder} | {folder / value for part in root.iter() for at in FOLDERS if (value := part.get(at))}

@@ -1,4 +1,4 @@
-"""Equality constraints of a compiled MJCF model: loops that are closed, and joints that are tied."""
+"""Equality constraints of a compiled MJCF model: closed loops and coupled joints."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ WORLD = 0
 
 
 def relations(m: Any) -> Iterator[Relation]:
-    """Joints tied to others, or held."""
+    """Yield the couplings of joints, and joints held by a constraint."""
     import mujoco
 
     for k in _active(m):
@@ -27,7 +27,7 @@ def relations(m: Any) -> Iterator[Relation]:
 
 
 def connections(m: Any) -> Iterator[Connection]:
-    """Loops closed by a point or rigidly."""
+    """Yield the loops closed by a point or rigidly."""
     import mujoco
 
     for k in _active(m):
@@ -56,7 +56,7 @@ def _is_weld(m: Any, k: int) -> bool:
 
 
 def _of_bodies(m: Any, k: int) -> Connection:
-    """A weld keeps body 2 at a pose given in body 1, a connection a point of each together."""
+    """Return a connection: a weld fixes body 2 at a pose in body 1, otherwise two points coincide."""
     first, second = int(m.eq_obj1id[k]), int(m.eq_obj2id[k])
     data = [tuple(map(float, m.eq_data[k, a:b])) for a, b in ((0, 3), (3, 6), (6, 10))]
     if _is_weld(m, k):
@@ -65,7 +65,7 @@ def _of_bodies(m: Any, k: int) -> Connection:
 
 
 def _of_sites(m: Any, k: int) -> Connection:
-    """The frames of two sites are kept together, or their points."""
+    """Return a connection of the frames of two sites, or of their points."""
     a, b = int(m.eq_obj1id[k]), int(m.eq_obj2id[k])
     point, other_point = (tuple(map(float, m.site_pos[site])) for site in (a, b))
     link, other = (_body(m, int(m.site_bodyid[site])) for site in (a, b))

@@ -1,4 +1,4 @@
-"""Remove the parts of an MJCF model that its flags disable."""
+"""Disable and enable flags of an MJCF model."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Fields of MJCF elements that differ from MuJoCo's defaults, with a record of those that the reader requests."""
+"""Non-default fields of MJCF elements, with a record of the requested ones."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ LISTS = {
     "equality": "equalities", "sensor": "sensors", "key": "keys", "exclude": "excludes", "camera": "cameras",
     "light": "lights", "plugin": "plugins",
 }  # fmt: skip
-"""Kinds of elements, and the names of their lists in MuJoCo's specification."""
+"""Names of the lists of each kind of element in MuJoCo's specification."""
 NAMELESS = (
     "alt",
     "ialt",
@@ -29,7 +29,7 @@ NAMELESS = (
     "signature",
     "userdata",
 )
-"""Attributes of an element of the specification that have no effect of their own."""
+"""Attributes of an element of the specification without an effect of their own."""
 COMPILED: Mapping[str, tuple[str, ...]] = {
     "body": ("pos", "quat", "ipos", "iquat", "inertia", "fullinertia", "mass", "explicitinertial", "childclass", "simple"),
     "joint": ("springdamper", "align"),
@@ -43,7 +43,7 @@ COMPILED: Mapping[str, tuple[str, ...]] = {
     "equality": ("name1", "name2", "data", "objtype", "type", "active"),
     "option": ("disableflags", "enableflags"),
 }  # fmt: skip
-"""Fields that MuJoCo's compiler converts to poses, masses, springs and lengths of the model, which are read."""
+"""Fields that MuJoCo's compiler converts to poses, masses, springs and lengths, which are read."""
 ARRAYS: Mapping[str, tuple[str, ...]] = {"joint": ("jnt", "dof"), "equality": ("eq",)}
 """Prefixes of the arrays of a kind in the model, if different from its name."""
 RENAMED = {
@@ -98,7 +98,7 @@ class RequestedModel:
 
     @property
     def plain(self) -> Any:
-        """Return MuJoCo's own object."""
+        """MuJoCo's own object."""
         return self._model
 
 

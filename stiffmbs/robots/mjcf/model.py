@@ -18,19 +18,19 @@ from .disabled import Disabled
 from .fields import REASONS, RequestedModel, model_fields
 
 KINDS: tuple[JointKind, ...] = ("free", "ball", "slide", "hinge")
-"""In the order of MuJoCo's numbers."""
+"""Joint kinds in the order of MuJoCo's numbers."""
 WORLD = 0
 
 
 def read_mjcf(path: str | Path) -> Robot:
-    """Read a robot from an MJCF file, compiled by MuJoCo: defaults, included files and inertias of shapes are its work.
+    """Read a robot from an MJCF file, compiled by MuJoCo with its defaults, included files and inertias of shapes.
 
     Raises
     ------
     RobotFault
-        Where MuJoCo refuses the file, or it holds what a scene cannot.
+        If MuJoCo refuses the file, or it contains features without an equivalent in a scene.
     InputError
-        Where the file cannot be read.
+        If the file cannot be read.
     """
     spec, compiled = _compiled(path)
     m = RequestedModel(compiled)
@@ -86,7 +86,7 @@ def _link(m: Any, body: int, disabled: Disabled) -> Link:
 
 
 def joint_name(m: Any, joint: int) -> str:
-    """What a joint is called, or would be."""
+    """Return the name of a joint, or a generated one."""
     return m.joint(joint).name or f"joint_{joint}"
 
 
@@ -120,7 +120,7 @@ def _joint(m: Any, joint: int, disabled: Disabled) -> LinkJoint:
 
 
 def _loose(m: Any, joint: int, kind: JointKind, disabled: Disabled) -> LinkJoint:
-    """A ball joint, or that of a free body."""
+    """Return a ball joint, or that of a free body."""
     name, dof = joint_name(m, joint), m.jnt_dofadr[joint]
     count = 6 if kind == "free" else 3
     start, spring = m.jnt_qposadr[joint], 0.0 if disabled("SPRING") else float(m.jnt_stiffness[joint])
@@ -139,7 +139,7 @@ def _loose(m: Any, joint: int, kind: JointKind, disabled: Disabled) -> LinkJoint
 
 
 def _notes(m: Any, disabled: Disabled) -> Iterator[str]:
-    """What is no part of the rigid mechanism, and is left out."""
+    """Yield one sentence for each ignored feature."""
     if not disabled("CONTACT", "CONSTRAINT") and (
         np.any(m.geom_contype[: m.ngeom] | m.geom_conaffinity[: m.ngeom]) or m.npair
     ):

@@ -1,1 +1,1 @@
-"""Robots as the mappings that scenes are read from."""
+"""Conversion of robots to scene mappings."""

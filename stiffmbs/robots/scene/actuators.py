@@ -1,4 +1,4 @@
-"""Actuators and tendons of a robot as inputs and forces of its scene."""
+"""Conversion of actuators and tendons to inputs and forces."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .mechanism import Hold, Mechanism
 
 @dataclass(frozen=True)
 class Actuators:
-    """The sections of the scene that actuators fill: inputs, states behind filters, named formulas, and forces."""
+    """Scene sections of actuators: inputs, filter states, named formulas, and forces."""
 
     inputs: dict[str, Any] = field(default_factory=dict)
     states: dict[str, Any] = field(default_factory=dict)
@@ -22,7 +22,7 @@ class Actuators:
 
 
 def actuators(robot: Robot, mechanism: Mechanism) -> Actuators:
-    """What all transmissions of a robot put into its scene."""
+    """Return the scene sections of all transmissions of a robot."""
     found = Actuators()
     limited: dict[str, list[str]] = {}
     acting = [
@@ -51,7 +51,7 @@ def actuators(robot: Robot, mechanism: Mechanism) -> Actuators:
 
 
 def _force(found: Actuators, mechanism: Mechanism, transmission: Transmission, holds: list[tuple[Hold, float]]) -> str:
-    """Add the formula of a transmission's force, before its bounds where that of its tendon is bounded first, and return its name."""
+    """Add the formula of a transmission's force and return its name; a bounded total of its tendon is applied later."""
     name = mechanism.names.take(f"{transmission.name}_force")
     length = " + ".join(f"{plain(gear)}*{hold.coordinate}" for hold, gear in holds)
     rate = " + ".join(f"{plain(gear)}*{hold.rate}" for hold, gear in holds)
@@ -70,7 +70,7 @@ def _of_total(transmission: Transmission, name: str, along: list[str]) -> str:
     Raises
     ------
     RobotFault
-        When the bounds of the total force of several actuators do not enclose zero.
+        If the bounds of the total force of several actuators do not enclose zero.
     """
     if transmission.total is None:
         return name
@@ -87,7 +87,7 @@ def _of_total(transmission: Transmission, name: str, along: list[str]) -> str:
 
 
 def _activation(found: Actuators, mechanism: Mechanism, transmission: Transmission) -> str:
-    """The input of an actuator, or the state of the filter or integrator behind it."""
+    """Return the input of an actuator, or the state of its filter or integrator."""
     name = mechanism.names.take(f"{transmission.name}_input")
     found.inputs[name] = 0
     u = _within(name, transmission.control)

@@ -1,4 +1,4 @@
-"""The bodies of a robot's scene."""
+"""Conversion of links to bodies."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from ..robot import Link, Robot, RobotFault
 from .mechanism import Mechanism
 
 TRIANGLE = 1e-9
-"""Part of the sum of two principal moments by which rounding may let the third be greater."""
+"""Relative excess of a principal moment over the sum of the other two allowed for rounding."""
 
 
 class Masses:
-    """What stands for no mass and no inertia in a robot: slight parts of its lightest mass, at its size."""
+    """Small mass and inertia for massless links: fractions of the robot's lightest mass, at its size."""
 
     def __init__(self, robot: Robot, mechanism: Mechanism) -> None:
         least = min((link.mass for link in robot.links if link.mass > 0), default=0.0)
@@ -30,7 +30,7 @@ class Masses:
 
 
 def bodies(mechanism: Mechanism, masses: Masses) -> dict[str, Any]:
-    """The bodies by name, with their markers."""
+    """Return the bodies by name, with their markers."""
     found = {}
     for name, (link, frame) in mechanism.bodies.items():
         between = name in mechanism.between
@@ -42,7 +42,7 @@ def bodies(mechanism: Mechanism, masses: Masses) -> dict[str, Any]:
 
 
 def notes(mechanism: Mechanism) -> list[str]:
-    """Which inertias no distribution of mass has."""
+    """Return a note on inertias that no distribution of mass has."""
     own = {name: link for name, (link, _) in mechanism.bodies.items() if name not in mechanism.between}
     odd = [name for name, link in own.items() if _breaks_triangle(link.inertia)]
     return (
@@ -51,7 +51,7 @@ def notes(mechanism: Mechanism) -> list[str]:
 
 
 def _between(link: Link, masses: Masses) -> dict[str, Any]:
-    """A body without mass before a joint of a link: slight parts of the link's own mass and inertia, where it has them."""
+    """Return a massless body between joints of a link: small fractions of the link's mass and inertia, if any."""
     c = np.array(link.center_of_mass)
     moment = float(np.linalg.eigvalsh(link.inertia)[-1] + link.mass * (c @ c)) * MASSLESS
     return {"mass": link.mass * MASSLESS or masses.mass, "inertia": [moment or masses.moment] * 3}
@@ -67,7 +67,7 @@ def _heavy(link: Link, masses: Masses) -> dict[str, Any]:
             f"link {link.name}: found the principal moments of inertia {', '.join(f'{x:g}' for x in moments)} kg m^2, expected none below 0"
         )
     body: dict[str, Any] = {"mass": plain(link.mass or masses.mass)}
-    if moments[0] < 0:  # by rounding
+    if moments[0] < 0:  # rounding error
         axes = np.linalg.eigh(tensor)[1]
         tensor = (axes * np.maximum(moments, 0.0)) @ axes.T
     if moments[-1] <= TRIANGLE * masses.moment:
@@ -89,7 +89,7 @@ def _breaks_triangle(tensor: np.ndarray) -> bool:
 
 
 def _motion(frame: Placed, center_of_mass: tuple[float, ...]) -> dict[str, Any]:
-    """Pose at the start, and velocities where it moves."""
+    """Return the initial pose, and non-zero velocities."""
     found: dict[str, Any] = {"position": vector(frame.position)}
     if frame.orientation != (1.0, 0.0, 0.0, 0.0):
         found["orientation"] = vector(frame.orientation)

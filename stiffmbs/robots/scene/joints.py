@@ -1,4 +1,4 @@
-"""The joints of a robot's scene, and what acts in them."""
+"""Conversion of joints, with their springs, dampers and friction."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from .mechanism import Hold, Mechanism
 
 KINDS = {"hinge": "revolute", "slide": "prismatic", "ball": "spherical"}
 CREEP = {"hinge": 1e-3, "slide": 1e-4}
-"""Rate within which dry friction changes its sign, rad/s or m/s."""
+"""Transition rate of smoothed dry friction, rad/s or m/s."""
 
 
 def joints(robot: Robot, mechanism: Mechanism) -> dict[str, Any]:
-    """The scene's joints by name."""
+    """Return the scene's joints by name."""
     found = {hold.name: {"type": KINDS[hold.joint.kind], "i": hold.i, "j": hold.j} for hold in mechanism.holds.values()}
     found |= {name: {"type": "fixed", "i": i, "j": j} for name, (i, j) in mechanism.fixed.items()}
     found |= {name: entry for relation in robot.relations for name, entry in _relation(mechanism, relation)}
@@ -31,7 +31,7 @@ def passive(robot: Robot, mechanism: Mechanism) -> dict[str, Any]:
 
 
 def _damped(mechanism: Mechanism, link: Link, joint: LinkJoint) -> Iterator[tuple[str, dict[str, Any]]]:
-    """Return a damping force on the origin of a free link, and a damping torque."""
+    """Yield a damping force at the origin of a free link, and a damping torque."""
     names = [mechanism.names.take(f"{joint.name}_{what}") for what in ("damper", "rotary_damper")]
     marker = mechanism.mark(link.name, names[0], ORIGIN)
     for name, kind, rate in zip(names, ("force", "torque"), "vw", strict=True):
@@ -59,7 +59,7 @@ def _passive(mechanism: Mechanism, hold: Hold) -> Iterator[tuple[str, dict[str, 
 
 
 def along_axis(hold: Hold, formula: str) -> dict[str, Any]:
-    """A torque about the axis of a hinge, or a force along that of a slide, on its far side and opposite on the near one."""
+    """Return a torque about a hinge axis, or a force along a slide axis, on marker i with its reaction on j."""
     kind = "torque" if hold.joint.kind == "hinge" else "force"
     return {"type": kind, "i": hold.i, "j": hold.j, "frame": hold.j, kind: [0, 0, formula]}
 
@@ -68,7 +68,7 @@ def _relation(mechanism: Mechanism, relation: Relation) -> Iterator[tuple[str, d
     hold = mechanism.holds.get(relation.joint)
     other = None if relation.other is None else mechanism.holds.get(relation.other)
     if hold is None or (relation.other is not None and other is None):
-        return  # of a joint that moves no mass
+        return  # a joint that moves no mass
     name = mechanism.names.take(relation.name)
     first, *rest = relation.coefficients
     if other is not None and rest and rest[0] and not any(rest[1:]):

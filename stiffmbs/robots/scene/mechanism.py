@@ -1,4 +1,4 @@
-"""The bodies that carry a robot's links, and the markers by which its joints hold them."""
+"""Bodies and joint markers of a robot's links."""
 
 from __future__ import annotations
 
@@ -17,29 +17,29 @@ from .names import GROUND, Names
 
 @dataclass(frozen=True)
 class Seat:
-    """A frame that is fixed on a body of the scene: position (m) and orientation in the body's own axes."""
+    """Frame fixed on a body of the scene: position (m) and orientation in the body's axes."""
 
     body: str
     position: tuple[float, ...] = (0.0, 0.0, 0.0)
     orientation: tuple[float, ...] = SAME_AXES
 
     def on(self, position: tuple[float, ...], orientation: tuple[float, ...]) -> Seat:
-        """A frame given in this one."""
+        """Return a frame given relative to this one."""
         place = np.array(self.position) + rotated(self.orientation, position)
         return Seat(self.body, tuple(map(float, place)), product(self.orientation, orientation))
 
 
 @dataclass(frozen=True)
 class Hold:
-    """A joint of the robot in the scene.
+    """Joint of the robot in the scene.
 
     Attributes
     ----------
     joint : LinkJoint
     name : str
-        Of the scene's joint.
+        Name of the scene's joint.
     i, j : str
-        Markers on the far and on the near side; their axes z are the joint's, and they coincide at the joint's zero.
+        Markers on the child and the parent side; their z axes are the joint's, and they coincide at the joint's zero.
     """
 
     joint: LinkJoint
@@ -49,21 +49,21 @@ class Hold:
 
     @property
     def coordinate(self) -> str:
-        """A formula of the joint's coordinate, rad or m."""
+        """Formula of the joint's coordinate, rad or m."""
         measure = f"az({self.i}, {self.j})" if self.joint.kind == "hinge" else f"dz({self.i}, {self.j}, {self.j})"
         return f"({measure} + {self.joint.zero!r})" if self.joint.zero else measure
 
     @property
     def rate(self) -> str:
-        """A formula of its rate, rad/s or m/s."""
+        """Formula of its rate, rad/s or m/s."""
         return f"{'wz' if self.joint.kind == 'hinge' else 'vz'}({self.i}, {self.j}, {self.j})"
 
 
 class Mechanism:
-    """Bodies of the links, their initial positions and their markers.
+    """Bodies of the links, their initial poses and their markers.
 
-    A link that moves, or has mass or inertia, is a body.  A fixed link without either is a marker on its parent body.  A
-    link with several joints has a massless body between each two of them.  Joints that move no mass are left out.
+    A link that moves, or has mass or inertia, is a body. A fixed link without either is a marker on its parent body. A
+    link with several joints has a massless body between each two of them. Joints that move no mass are omitted.
 
     Attributes
     ----------
@@ -80,7 +80,7 @@ class Mechanism:
     fixed : dict of str to (str, str)
         Fixed joints by name, with their markers i and j.
     unmoved : tuple of str
-        Joints that move no mass and are left out.
+        Omitted joints, which move no mass.
     """
 
     def __init__(self, robot: Robot, coordinates: Mapping[str, float], rates: Mapping[str, float]) -> None:
@@ -120,7 +120,7 @@ class Mechanism:
         self.seats[link.name] = self._hold(last, name, before)
 
     def _hold(self, joint: LinkJoint, body: str, before: Seat) -> Seat:
-        """Add a joint between a body and the frame before it; the body's own frame."""
+        """Add a joint between a body and the frame before it; return the body's own frame."""
         after = Seat(body)
         if joint.kind != "free":
             name, axes = self.names.take(joint.name, "joint"), along_z(joint.axis)
@@ -135,7 +135,7 @@ class Mechanism:
         self.fixed[joint] = (self._mark(Seat(name), joint), self._mark(carrier, joint))
 
     def _mark(self, seat: Seat, name: str) -> str:
-        """Add a marker, and say what the scene calls it."""
+        """Add a marker; return its reference in the scene."""
         placement: dict[str, Any] = {}
         if any(seat.position):
             placement["point"] = vector(seat.position)
@@ -147,12 +147,12 @@ class Mechanism:
     def mark(
         self, link: str | None, name: str, point: tuple[float, ...], orientation: tuple[float, ...] = SAME_AXES
     ) -> str:
-        """Add a marker in the frame of a link (None: the world), and say what the scene calls it."""
+        """Add a marker in the frame of a link (None: the world); return its reference in the scene."""
         return self._mark(self.seats[link].on(point, orientation), name)
 
 
 def along_z(axis: tuple[float, ...]) -> tuple[float, ...]:
-    """An orientation whose z is a direction."""
+    """Return an orientation whose z axis is a given direction."""
     z = np.array(axis)
     if z[2] == 1:
         return SAME_AXES

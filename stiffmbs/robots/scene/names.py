@@ -1,4 +1,4 @@
-"""Names of a scene for what a robot's file calls by any text."""
+"""Valid scene names for arbitrary names of a robot file."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ GROUND = "ground"
 
 
 class Names:
-    """Names that have been given out: letters, digits and _, each once in a scene."""
+    """Registry of unique scene names of letters, digits and _."""
 
     def __init__(self) -> None:
         self._taken = {GROUND, "t", "pi", *UNITS, *FUNCTIONS}
 
     def take(self, wanted: str, what: str = "") -> str:
-        """The name itself where it may stand in a scene and is free, or one like it: with what it names, or a number."""
+        """Return the name if valid and free, else a similar one with a suffix: `what`, or a number."""
         name = re.sub(r"[^0-9A-Za-z_]", "_", wanted) or "_"
         name = f"_{name}" if name[0].isdigit() else name
         name = f"{name}_{what}" if what and name in self._taken else name

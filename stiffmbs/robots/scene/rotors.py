@@ -1,7 +1,7 @@
-"""Rotors whose inertia joints feel (MJCF: armature; Featherstone, Rigid Body Dynamics Algorithms, sec. 9.6).
+"""Rotor inertias of joints (MJCF: armature; Featherstone, Rigid Body Dynamics Algorithms, sec. 9.6).
 
-The kinetic energy of a joint with the armature I is I q'^2/2 more.  A rotor on ground that turns, or slides across
-gravity, by the joint's coordinate has just that energy and no other effect.
+A joint with the armature I has the additional kinetic energy I q'^2/2. A rotor on ground that rotates, or slides
+perpendicular to gravity, by the joint's coordinate has exactly that energy and no other effect.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ def _rate(joint: LinkJoint, rate: float, robot: Robot) -> dict[str, Any]:
 
 
 def _across(gravity: tuple[float, ...]) -> tuple[float, ...]:
-    """A direction at right angles to gravity."""
+    """Return a unit vector perpendicular to gravity."""
     g = np.array(gravity)
     direction = np.eye(3)[np.argmin(np.abs(g))]
     if np.any(g):

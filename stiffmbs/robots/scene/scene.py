@@ -1,4 +1,4 @@
-"""A robot as the mapping that a scene is read from."""
+"""Conversion of a robot to a scene mapping."""
 
 from __future__ import annotations
 
@@ -18,22 +18,22 @@ from .names import GROUND
 from .rotors import add_rotors
 
 RUN = {"duration": 1, "output": 0.01}
-"""How a robot is run; its file says nothing about it."""
+"""Default run settings, which robot files lack."""
 
 
 def scene(robot: Robot, coordinates: Mapping[str, float], rates: Mapping[str, float]) -> dict[str, Any]:
-    """The scene of a robot, as `stiffmbs.describe.reading.read_scene` takes it.
+    """Return the scene of a robot for `stiffmbs.describe.reading.read_scene`.
 
     Parameters
     ----------
     robot : Robot
     coordinates, rates : mappings of str to float
-        Of hinges and slides at the start, rad or m, and their rates; others are as drawn, and at rest.
+        Initial coordinates of hinges and slides, rad or m, and their rates; others are as drawn, and at rest.
 
     Raises
     ------
     RobotFault
-        When the robot holds what a scene cannot.
+        If the robot has features without an equivalent in a scene.
     """
     _check_joints(robot, {**coordinates, **rates})
     mechanism = Mechanism(robot, coordinates, rates)
@@ -52,7 +52,7 @@ def scene(robot: Robot, coordinates: Mapping[str, float], rates: Mapping[str, fl
         "forces": passive(robot, mechanism) | acting.forces | _lifted(robot, mechanism),
         "run": dict(RUN),
     }
-    found["bodies"] = bodies(mechanism, masses)  # with the markers of all the others
+    found["bodies"] = bodies(mechanism, masses)  # includes markers added by the other sections
     found["markers"] = mechanism.markers.get(GROUND, {})
     add_rotors(found, robot, mechanism, masses, rates)
     found["notes"] = [*robot.notes, *body_notes(mechanism), *_notes(mechanism)]
@@ -69,7 +69,7 @@ def _check_joints(robot: Robot, given: Mapping[str, float]) -> None:
 
 
 def _lifted(robot: Robot, mechanism: Mechanism) -> dict[str, Any]:
-    """The forces that balance weight, at the centre of mass of each link that has such a force."""
+    """Return the forces that balance the weight of links, at their centres of mass."""
     found = {}
     for link in robot.links:
         if link.lifted and link.mass:

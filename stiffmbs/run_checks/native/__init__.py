@@ -1,1 +1,1 @@
-"""Compiled loops of the diagnostics."""
+"""Compiled loops of the run checks."""

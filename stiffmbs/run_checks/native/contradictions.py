@@ -1,4 +1,4 @@
-"""Output instants between which velocities change otherwise than accelerations say."""
+"""Output rows between which velocity changes contradict the accelerations."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from stiffmbs.compile.machine.native.access import compiled, shifted
 
 @compiled
 def _weighted(n_u, acceleration, mass):
-    """The square of an acceleration, weighted with masses."""
+    """Return the square of an acceleration, weighted with masses."""
     total = 0.0
     for k in range(n_u):
         total += mass[k] * acceleration[k] * acceleration[k]
@@ -16,13 +16,13 @@ def _weighted(n_u, acceleration, mass):
 
 @compiled
 def _larger(first, second):
-    """The larger of two numbers; the other one where one is not a number."""
+    """Return the larger of two numbers, ignoring a NaN."""
     return first if first >= second or second != second else second
 
 
 @compiled
 def _within_step(begin, end, n_steps, steps):
-    """Whether an interval lies inside one of the steps with these ends, its own ends strictly."""
+    """Return True if an interval lies strictly inside one of the steps with the given ends."""
     low, high = 0, n_steps
     while low < high:
         middle = (low + high) // 2
@@ -34,9 +34,9 @@ def _within_step(begin, end, n_steps, steps):
 
 
 def contradicting_rows(count, n_u, t, u, acceleration, mass, part, n_steps, steps, found):
-    """Which rows contradict the next, within one step, by more than a part of the larger acceleration; how many.
+    """Store the rows that contradict the next one within a step in `found`, and return their number.
 
-    The change of the velocities in between, in a second, differs from the mean of the accelerations.
+    The mean rate of the velocities differs from the mean acceleration by more than `part` of the larger one.
     """
     contradicting = 0
     before = _weighted(n_u, acceleration, mass) if count > 0 else 0.0

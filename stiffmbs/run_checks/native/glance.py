@@ -1,4 +1,4 @@
-"""What all rows of a run show at a glance, in one pass over them."""
+"""Scan of the output rows in one pass."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from stiffmbs.run_checks.native.contradictions import contradicting_rows
 
 @compiled
 def _all_finite(count, values):
-    """Whether all numbers are finite, by sums in four parts; where one overflows they are looked at one by one."""
+    """Return True if all numbers are finite, by four partial sums, or one by one if these overflow."""
     a, b, c, d = 0.0, 0.0, 0.0, 0.0
     whole = count - count % 4
     for k in range(0, whole, 4):
@@ -31,8 +31,8 @@ def _all_finite(count, values):
 
 @compiled
 def _width(count, values):
-    """How far numbers lie apart, zero among them."""
-    low, high, other_low, other_high = 0.0, 0.0, 0.0, 0.0  # in two parts, which do not wait for each other
+    """Return the range of some numbers and zero."""
+    low, high, other_low, other_high = 0.0, 0.0, 0.0, 0.0  # in two independent parts
     whole = count - count % 4
     for k in range(0, whole, 4):
         a, b, c, d = values[k], values[k + 1], values[k + 2], values[k + 3]
@@ -45,7 +45,7 @@ def _width(count, values):
 
 @compiled
 def _energies(count, t, kinetic, potential, power, keeps_energy, done, within, found):
-    """Into `found`: the energy that is exchanged, and the most that is missing in the balance, since the start or in one interval."""
+    """Write the exchanged energy and the largest error of its balance (total, or in one interval) to `found`."""
     if not keeps_energy:
         work(count, t, power, done, within)
     most_kinetic = 0.0
@@ -68,8 +68,7 @@ def glance(
     count, n_q, n_u, n_values, t, q, u, acceleration, values, mass, kinetic, potential, power, keeps_energy, part, n_steps, steps,
     done, within, contradicting, found,
 ):  # fmt: skip
-    """Whether `count` rows are finite and their times increase; if so, into `found`: the energy that is exchanged, the most that
-    is missing in its balance, the widths of coordinates and velocities, and how many rows contradict the next."""
+    """Write the energy, error of its balance, widths and contradicting rows to `found`; return 0 for unusable rows."""
     for k in range(count):
         if not isfinite(kinetic[k] + potential[k] + power[k]) or (k > 0 and not t[k] > t[k - 1]):
             return 0

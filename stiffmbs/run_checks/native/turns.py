@@ -1,4 +1,4 @@
-"""How far angles over whole turns are from the counters of their turns."""
+"""Distance of unwrapped angles from the counters of their turns."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from stiffmbs.compile.machine.native.evaluate import POSITION, evaluate
 
 
 def apart_from_counters(count, n_q, t, q, n_counters, source, row, apart, state):
-    """Into `apart`, for `count` rows of coordinates: the distance of each angle, a value of the positions, from its counter."""
+    """Write the distances of angles (position terms) from their counters to `apart`, for `count` coordinate rows."""
     s = state_view(state)
     for k in range(count):
         pose = shifted(q, k * n_q)

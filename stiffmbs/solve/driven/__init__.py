@@ -1,1 +1,1 @@
-"""Motions that drives prescribe: what kinematic analysis integrates."""
+"""Integration along prescribed motions, for kinematic analysis."""

@@ -1,4 +1,4 @@
-"""States along a prescribed motion: their differential equations, integrated between two of its instants."""
+"""Differential equations of user-defined states along a prescribed motion."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from ..algebraic_states import rates_by_states
 from ..dynamics import Dynamics
 
 STATE_TOLERANCE = 1e-10
-"""Relative tolerance, and absolute one in scales of the states."""
+"""Relative tolerance, and absolute tolerance in scales of the states."""
 MOST_MOVES = 12
 LOOK, TOO_MANY = 5_000, 3e6
-"""Evaluations from one look at the pace to the next, and those still to come at which states are given up: ten minutes or more."""
+"""Evaluations between two progress checks, and estimated remaining evaluations that stop the integration."""
 
 
 @dataclass(frozen=True)
 class Instant:
-    """A state of a prescribed motion, and how fast its counters of turns run."""
+    """State of a prescribed motion, with the rates of its rotation counters."""
 
     t: float
     q: np.ndarray
@@ -29,20 +29,22 @@ class Instant:
 
 
 def states_after(dynamics: Dynamics, before: Instant, t: float) -> np.ndarray:
-    """The states at a later instant, shape (states,), the algebraic ones as they were; the state at hand is left as it is.
+    """Integrate the states to a later time; return them, shape (states,), with algebraic ones unchanged.
+
+    SciPy's Radau is used (Hairer and Wanner II, sec. IV.8). The current state is restored.
 
     Parameters
     ----------
     dynamics : Dynamics
     before : Instant
-        From which predictions of the pose lead to every instant up to t.
+        State from which the poses up to t are predicted.
     t : float
         s.
 
     Raises
     ------
     SolverError
-        Where the states cannot be integrated, or come to no end; SciPy's Radau (Hairer and Wanner II, ch. IV.8) does that.
+        When the states cannot be integrated, or would require too many evaluations.
     """
     system = dynamics.system
     states, changing = before.q[system.first_state :].copy(), ~system.algebraic
@@ -63,7 +65,7 @@ def states_after(dynamics: Dynamics, before: Instant, t: float) -> np.ndarray:
 
 
 class _Along:
-    """Rates of the states at instants of the motion."""
+    """Rates of the states along the motion."""
 
     def __init__(self, dynamics: Dynamics, before: Instant, end: float) -> None:
         self._dynamics, self._before, self._end = dynamics, before, end
@@ -71,12 +73,12 @@ class _Along:
         self._places = dynamics.system.first_state + np.flatnonzero(~dynamics.system.algebraic)
 
     def rates(self, t: float, values: np.ndarray) -> np.ndarray:
-        """x' at an instant.
+        """Return x' at a time, NaN where the motion has no solution.
 
         Raises
         ------
         SolverError
-            Where so many evaluations would follow that they come to no end.
+            When too many evaluations would remain.
         """
         self._evaluations += 1
         if self._evaluations % LOOK == 0:
@@ -95,13 +97,13 @@ class _Along:
             )
 
     def jacobian(self, t: float, values: np.ndarray) -> np.ndarray:
-        """dx'/dx at an instant."""
+        """Return dx'/dx at a time."""
         self._go_to(t, values)
         self._dynamics.state.evaluate("tangent", t)
         return rates_by_states(self._dynamics)
 
     def _go_to(self, t: float, values: np.ndarray) -> bool:
-        """Make the state at hand that of the motion at an instant; whether it was found."""
+        """Set the current state to that of the motion at a time; return True if it exists."""
         dynamics, before, system = self._dynamics, self._before, self._dynamics.system
         state, h = dynamics.state, t - before.t
         state.q[:] = system.of_body.moved(before.q, h * before.u + h * h / 2 * before.acceleration)

@@ -1,4 +1,4 @@
-"""Kinematic analysis with drives that prescribe velocities: they are integrated over time."""
+"""Kinematic analysis with drives that prescribe velocities, which are integrated over time."""
 
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ MOST_MOVES = 12
 
 
 class IntegratedMotion:
-    """The motion that position and velocity equations fix together; see `kinematic.Motion`, whose methods it has.
+    """Motion determined by position and velocity equations together; it has the methods of `kinematic._Motion`.
 
-    All velocities follow from the equations J u + C_t = 0.  SciPy's DOP853 (Hairer, Noersett, Wanner, sec. II.10) integrates
-    q' = Z u from output to output, and each output is brought back to C = 0.
+    All velocities follow from J u + C_t = 0. SciPy's DOP853 (Hairer, Noersett, Wanner, sec. II.10) integrates q' = Z u
+    between output times, where positions are projected onto C = 0.
 
     Parameters
     ----------
     dynamics : Dynamics
     start : InitialValues
     t, shortest : float
-        s; nothing is computed within `shortest` of a breakpoint.
+        s; no state is computed within `shortest` of a breakpoint.
     longest : float
-        Of a step, s, so that it sees all that drives do.
+        Longest step, s, which resolves the drives.
     """
 
     def __init__(self, dynamics: Dynamics, start: InitialValues, t: float, shortest: float, longest: float) -> None:
@@ -41,12 +41,12 @@ class IntegratedMotion:
         self._take(t)
 
     def go_to(self, end: float) -> None:
-        """Follow the motion to a later time.
+        """Integrate the motion to a later time.
 
         Raises
         ------
         SolverError
-            Where the drives ask for velocities that the mechanism cannot have.
+            When the drives demand velocities that the mechanism cannot have.
         """
         if end <= self.t:
             return
@@ -63,13 +63,13 @@ class IntegratedMotion:
         self._take(end)
 
     def go_past(self, breakpoint: float) -> None:
-        """Follow the motion to just before a breakpoint, and take velocities anew just behind it."""
+        """Integrate to a breakpoint, then recompute velocities on its far side."""
         self.go_to(breakpoint - self._shortest)
         self._dynamics.state.q[:] = self.q + 2 * self._shortest * self._rates(self.t, self.q)
         self._take(breakpoint + self._shortest)
 
     def _rates(self, t: float, q: np.ndarray) -> np.ndarray:
-        """q' where the mechanism is moved by its drives alone; not a number where that has no solution."""
+        """Return q' of the prescribed motion, NaN where it has no solution."""
         state, dynamics = self._dynamics.state, self._dynamics
         state.q[:] = q
         if dynamics.correct_velocities(t) < 0 or dynamics.accelerate(t)[0] != 0:
@@ -77,13 +77,13 @@ class IntegratedMotion:
         return dynamics.position_rates(state.q, state.u)
 
     def _take(self, t: float) -> None:
-        """Make the state at hand, brought back to the equations, the one that is reached."""
+        """Project the current state onto the constraints and accept it."""
         dynamics = self._dynamics
         moves = dynamics.assemble(t, most=MOST_MOVES)
         status = min(moves, 0) or dynamics.correct_velocities(t)
         if status < 0:
             raise SolverError(self._stuck(status))
-        dynamics.assemble(t, tolerance=0.0, most=2)  # to rounding, whether they get there or not
+        dynamics.assemble(t, tolerance=0.0, most=2)  # to rounding, whether or not it is reached
         dynamics.correct_velocities(t)
         self.t, self.moves = t, self.moves + moves
         self.q, self.u = dynamics.state.q.copy(), dynamics.state.u.copy()

@@ -1,1 +1,1 @@
-"""Poses at rest and steady motions in which forces balance."""
+"""Static equilibria and steady motions."""

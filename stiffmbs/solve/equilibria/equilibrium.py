@@ -1,15 +1,14 @@
-"""Static equilibrium: Newton's method on the balance of forces, with the constraints, from poses far away too.
+"""Static equilibrium by pseudo-transient continuation, which converges from distant poses.
 
-A motion in a thick fluid is followed by implicit steps (pseudo-transient continuation: Kelley and Keyes, SIAM J. Numer.
-Anal. 35, 1998), which lead to stable equilibria alone: from the pose q_n each step seeks, at rest,
+Implicit steps follow a motion in a viscous fluid (Kelley and Keyes, SIAM J. Numer. Anal. 35, 1998), which leads to
+stable equilibria only. From the pose q_n each step solves, at rest,
 
-    s M (q - q_n) + J^T lam = f(q),    C(q) = 0,
+  s M (q - q_n) + J^T lam = f(q),    C(q) = 0,
 
-by Newton's method on (s M - f_q + d(J^T lam)/dq) d = what is left.  s falls where Newton's moves become smaller quickly, as
-where forces change along the step as their derivatives predict, and rises where they do not, as where a wheel meets the
-road.  With s = 0 this is Newton's method for the equilibrium itself.  States x of the user's own are unknowns too: a step
-seeks sqrt(s) (x - x_n) = x'(q, v, x) with v = sqrt(s) (q - q_n), as the implicit Euler step of its length: the deflection of a
-standing tyre follows the wheel.  The equations of algebraic states are those at rest.
+by Newton's method with the matrix s M - f_q + d(J^T lam)/dq. s decreases if Newton's moves converge fast, and increases
+if they do not, as where a wheel meets the road. s = 0 is Newton's method for the equilibrium itself. User-defined
+states x are unknowns too: a step solves sqrt(s) (x - x_n) = x'(q, v, x) with v = sqrt(s) (q - q_n), an implicit Euler
+step of length 1/sqrt(s). The equations of algebraic states are those at rest.
 """
 
 from __future__ import annotations
@@ -29,29 +28,28 @@ MOST_MOVES = 2000
 TRANSLATION, ROTATION = 0.25, 0.5
 """Longest move of a body, relative to the mechanism's size, and rad (Adams: EQUILIBRIUM/TLIMIT, ALIMIT)."""
 LEAST_SHIFT, LARGEST_SHIFT = 1e-3, 1e15
-"""Bounds of the root of s, rad/s: the least holds free directions where they are."""
+"""Bounds of sqrt(s), rad/s. The lower one keeps free directions in place."""
 SHIFT_FALLS, SHIFT_RISES = 0.1, 4.0
 WANTED_RATIO, LAST_MOVE, DIVERGING_MOVE = 0.1, 0.05, 0.6
-"""Newton's moves in a step: each relative to the one before, which s is chosen for; relative to the whole step, which ends
-the step, and from which on it is taken back."""
+"""Ratio of Newton's moves for which s is chosen; moves that end, and that reject, a step, relative to its length."""
 MOST_CORRECTIONS = 8
 WORTH_ANOTHER_MOVE = 0.5
-"""Part that has to be left after one of the last moves for another one."""
+"""Largest residual ratio of a polishing move that counts as convergence."""
 MOST_MISSES = 2
-"""Last moves in succession that leave more: Newton's convergence is quadratic behind one, and rounding governs behind two."""
+"""Successive polishing moves without convergence that are allowed; after more, rounding governs."""
 
 
 @dataclass(frozen=True)
 class Equilibrium:
-    """A pose at rest, or in a steady motion, in which forces balance.
+    """Pose at rest, or in a steady motion, in which forces balance.
 
     Attributes
     ----------
     q, u, acceleration, lam : ndarrays
     moves : int
-        That led there.
+        Number of Newton moves.
     imbalance : float
-        Largest generalised force that is left, relative to the largest that acts.
+        Largest residual of a generalised force, relative to the largest force.
     motion : SteadyMotion
         With the speeds that were found.
     """
@@ -66,21 +64,21 @@ class Equilibrium:
 
 
 def find_equilibrium(dynamics: Dynamics, t: float, motion: SteadyMotion | None = None) -> Equilibrium:
-    """The equilibrium that a system comes to from its pose if it moves slowly; the state is there afterwards.
+    """Find the stable equilibrium that a system reaches from its pose in overdamped motion; the state is set to it.
 
     Parameters
     ----------
     dynamics : Dynamics
         At an assembled pose.
     t : float
-        At which forces and drives are taken, s.
+        Time at which forces and drives are evaluated, s.
     motion : SteadyMotion, optional
-        In which it is sought; at rest without one.
+        Steady motion of the equilibrium; at rest by default.
 
     Raises
     ------
     SolverError
-        Where none is found; names the body with the largest imbalance.
+        When none is found; names the body with the largest imbalance.
     """
     state = dynamics.state
     shift, moves = 1.0, 0
@@ -103,7 +101,7 @@ def find_equilibrium(dynamics: Dynamics, t: float, motion: SteadyMotion | None =
 
 @dataclass(frozen=True)
 class _Step:
-    """What came of an implicit step: the balance there, or None where it was none; what the root of s is multiplied by."""
+    """Result of an implicit step: its balance, or None if it failed, and the factor on sqrt(s)."""
 
     known: Balance | None
     factor: float
@@ -111,7 +109,7 @@ class _Step:
 
 
 def _step(dynamics: Dynamics, t: float, shift: float, known: Balance) -> _Step:
-    """An implicit step from the present pose and motion; the pose is wherever it led."""
+    """Take an implicit step from the current pose and motion; the pose is left where the step ended."""
     system, state = dynamics.system, dynamics.state
     of_states = np.maximum(system.state_scales, np.abs(state.q[system.first_state :]))
     of_speeds = np.zeros(0) if known.speeds is None else TRANSLATION * known.speeds.sizes
@@ -144,7 +142,7 @@ def _step(dynamics: Dynamics, t: float, shift: float, known: Balance) -> _Step:
 
 
 def moved_on(dynamics: Dynamics, t: float, known: Balance, q: np.ndarray, move: np.ndarray) -> Balance | None:
-    """The balance after a move of a pose and of the speeds that are found; None where it has no assembly."""
+    """Return the balance after a move of pose and unknown speeds, or None if the pose cannot be assembled."""
     n = len(known.left)
     dynamics.state.q[:] = moved(dynamics.system, q, move[:n])
     if dynamics.assemble(t) < 0:
@@ -153,7 +151,7 @@ def moved_on(dynamics: Dynamics, t: float, known: Balance, q: np.ndarray, move: 
 
 
 def newton_move(dynamics: Dynamics, shift: float, known: Balance, whole: np.ndarray) -> np.ndarray:
-    """Newton's move in a step that has come so far as a whole; `shift` is the root of s.  Changes of speeds come last."""
+    """Return Newton's move in a step with the displacement `whole` so far; `shift` is sqrt(s), speeds come last."""
     system, jacobian, n = dynamics.system, known.jacobian, len(known.left)
     inertia = diags_array(np.append(shift**2 * system.mass, np.where(system.algebraic, 0.0, shift)))
     if system.states:
@@ -170,15 +168,15 @@ def newton_move(dynamics: Dynamics, shift: float, known: Balance, whole: np.ndar
     right = np.concatenate([known.left - inertia @ whole, np.zeros(held.shape[0])])
     try:
         found: np.ndarray = splu(matrix).solve(right)[: held.shape[1]]
-    except RuntimeError:  # exactly singular: a larger shift ends it
+    except RuntimeError:  # exactly singular: a larger shift is needed
         return np.full(held.shape[1], np.inf)
     return found
 
 
 def _polished(dynamics: Dynamics, t: float, known: Balance) -> tuple[Balance, int]:
-    """Newton's moves from a balanced pose as long as less and less is left, and their number.
+    """Apply Newton's moves to a balanced pose while the residual decreases; return the balance and their number.
 
-    The first moves may leave more, as where a stiff body is rotated about a soft direction.
+    The first moves may increase the residual, as where a stiff body rotates about a soft direction.
     """
     state = dynamics.state
     best, there, misses, moves = known, state.q.copy(), 0, 0
@@ -197,12 +195,12 @@ def _polished(dynamics: Dynamics, t: float, known: Balance) -> tuple[Balance, in
 
 
 def at_start(known: Balance) -> np.ndarray:
-    """No move, and no changes of speeds."""
+    """Return a zero move with zero speed changes."""
     return np.zeros(len(known.left) + known.motion.n_found)
 
 
 def as_equilibrium(dynamics: Dynamics, t: float, known: Balance, moves: int) -> Equilibrium:
-    """The present pose, which is balanced, with the motion's velocities."""
+    """Return the current pose, which is balanced, with the velocities of the motion."""
     motion = known.motion
     motion.put(dynamics, t)
     q, u = dynamics.state.q.copy(), dynamics.state.u.copy()
@@ -210,7 +208,7 @@ def as_equilibrium(dynamics: Dynamics, t: float, known: Balance, moves: int) -> 
 
 
 def unbalanced(dynamics: Dynamics, known: Balance) -> str:
-    """Why no equilibrium was found, with the body that has the largest imbalance."""
+    """Return a message on the missing equilibrium, with the body that has the largest imbalance."""
     system = dynamics.system
     forces, rates = np.split(known.left, [system.n_u])
     if system.states and np.all(np.abs(forces) <= known.allowed[: system.n_u]):

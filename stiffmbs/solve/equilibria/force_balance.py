@@ -1,4 +1,4 @@
-"""What is left of the forces on bodies at rest, or in a steady motion, and how that changes with their pose."""
+"""Residual of the force balance at rest or in a steady motion, and its derivative by the pose."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ from .found_speeds import FoundSpeeds, found_speeds
 from .steady_motion import SteadyMotion
 
 BALANCED, ROUNDING = 1e-10, 8
-"""Imbalance of forces that counts as none, relative to the largest force; roundings of the coordinates that may be left in them."""
+"""Imbalance that counts as zero, relative to the largest force; roundings of the coordinates allowed in the forces."""
 SLOWEST = 1e-5
-"""Rate, rad/s: a force is negligible if it moves its body by less than the mechanism's size, or 1 rad, in a day (1/SLOWEST)."""
+"""Rate, rad/s. A force is negligible if it moves its body by less than the mechanism's size, or 1 rad, in 1/SLOWEST."""
 SLOW_STATE = 1e-3
-"""Rate of a state beside itself, 1/s, of which the same part counts as none as of forces."""
+"""Rate of a state relative to itself, 1/s, that scales the allowed residual of its equation."""
 PASSED_ON = 1e-8
-"""Imbalance, relative to the largest force, up to which rounding counts that joints have passed on from other bodies."""
+"""Largest allowed rounding transmitted by joints from other bodies, relative to the largest force."""
 CONSTRAINED_PART = 1e-9
-"""Part of the accelerations that constraints may ask for beside those of the motion, and count as none."""
+"""Accelerations imposed by constraints, relative to all, that count as zero."""
 
 
 @dataclass(frozen=True)
@@ -75,17 +75,17 @@ class Balance:
 
     @property
     def balanced(self) -> bool:
-        """Whether no more is left than rounding and a little of the largest force."""
+        """True if the residual is within rounding and the tolerance."""
         return bool(np.all(np.abs(self.left) <= self.allowed))
 
 
 def balance_at(dynamics: Dynamics, t: float, motion: SteadyMotion) -> Balance:
-    """Multipliers that balance the forces of the present pose best (in the metric of the masses), and what they leave.
+    """Return the balance of the current pose, with multipliers that minimize the residual in the mass metric.
 
     Raises
     ------
     SolverError
-        Where the pose has no accelerations.
+        When the pose has no accelerations.
     """
     state, system = dynamics.state, dynamics.system
     motion.put(dynamics, t)
@@ -104,7 +104,7 @@ def balance_at(dynamics: Dynamics, t: float, motion: SteadyMotion) -> Balance:
     stiffness, jacobian = _derivatives(dynamics, t, motion, lam)
     farthest = np.max(np.abs(state.q[system.straight[0]]), initial=system.size)
     rounding = ROUNDING * np.finfo(float).eps * (abs(stiffness) @ system.per_velocity(float(farthest), 1.0))
-    roots = np.sqrt(system.mass)  # the balance is a projection in this metric, which passes on no more than there is
+    roots = np.sqrt(system.mass)  # the balance is a projection in this metric, which does not increase rounding
     passed_on = np.minimum(roots * np.max(rounding / roots, initial=0.0), PASSED_ON * largest)
     negligible = system.mass * system.per_velocity(system.size, 1.0) * SLOWEST**2
     left = system.mass * _beside_the_constraints(acceleration - steady, system.mass, jacobian)
@@ -128,7 +128,7 @@ def balance_at(dynamics: Dynamics, t: float, motion: SteadyMotion) -> Balance:
 
 
 def _beside_the_constraints(acceleration: np.ndarray, mass: np.ndarray, jacobian: csc_array) -> np.ndarray:
-    """Accelerations without those that constraints ask for, as a drive does that accelerates at the start."""
+    """Remove accelerations that constraints impose, such as those of a drive that accelerates at the start."""
     asked = jacobian @ acceleration
     if np.all(np.abs(asked) <= CONSTRAINED_PART * (abs(jacobian) @ np.abs(acceleration))):
         return acceleration
@@ -138,7 +138,7 @@ def _beside_the_constraints(acceleration: np.ndarray, mass: np.ndarray, jacobian
 
 
 def with_states(dynamics: Dynamics, known: Balance, rates: np.ndarray, motion: SteadyMotion, t: float) -> Balance:
-    """A balance with rows and columns of the user's own states; terms are those of its derivatives."""
+    """Add the rows and columns of user-defined states to a balance."""
     system, q = dynamics.system, dynamics.state.q
     own, active = slice(system.first_state, None), np.flatnonzero(system.active)
     by_velocity = _position_rates(dynamics)
@@ -165,32 +165,32 @@ def with_states(dynamics: Dynamics, known: Balance, rates: np.ndarray, motion: S
 
 
 def forces_by_velocity(dynamics: Dynamics) -> csc_array:
-    """Derivatives of forces and of rates of states by velocities, shape (n_u + states, n_u), from the set ``tangent``."""
+    """Return derivatives of forces and rates of states (set ``tangent``) by velocities, shape (n_u + states, n_u)."""
     of_rates = sparse_term(dynamics, "rate_u")[slice(dynamics.system.first_state, None)]
     return csc_array(vstack([sparse_term(dynamics, "f_u"), of_rates]))
 
 
 def _position_rates(dynamics: Dynamics) -> csc_array:
-    """Z of q' = Z u, of all coordinates."""
+    """Return Z of q' = Z u for all coordinates."""
     system = dynamics.system
     q, u = system.straight
     return sparse_term(dynamics, "Z") + csc_array((np.ones(len(q)), (q, u)), shape=(system.n_q, system.n_u))
 
 
 def way(system: System, start: np.ndarray, there: np.ndarray) -> np.ndarray:
-    """What leads from a pose and states to others."""
+    """Return the displacement between two poses, followed by the changes of states."""
     return np.append(system.move(start, there), (there - start)[system.first_state :])
 
 
 def moved(system: System, q: np.ndarray, move: np.ndarray) -> np.ndarray:
-    """The pose and states after a move."""
+    """Return the pose and states after a displacement."""
     there = system.of_body.moved(q, move[: system.n_u])
     there[system.first_state :] += move[system.n_u :]
     return there
 
 
 def _derivatives(dynamics: Dynamics, t: float, motion: SteadyMotion, lam: np.ndarray) -> tuple[csc_array, csc_array]:
-    """-f_q + d(J^T lam)/dq, with what velocities and inertia add, and J of the equations that are not redundant."""
+    """Return the stiffness -f_q + d(J^T lam)/dq with velocity and inertia terms, and J of the independent equations."""
     system, state = dynamics.system, dynamics.state
     state.lam[: system.n_c] = lam
     state.evaluate("tangent", t)
@@ -203,7 +203,7 @@ def _derivatives(dynamics: Dynamics, t: float, motion: SteadyMotion, lam: np.nda
 
 
 def sparse_term(dynamics: Dynamics, name: str) -> csc_array:
-    """A matrix term of the set ``tangent`` from its last evaluation."""
+    """Return a matrix term of the set ``tangent`` from its last evaluation."""
     system = dynamics.system
     term = system.term("tangent", name)
     axes = TERM_AXES[name]

@@ -1,6 +1,6 @@
-"""Speeds of a steady motion that forces tell: of a car whose driver works against the air, of a wheel on its tyre.
+"""Speeds of a steady motion that forces determine, such as that of a car against drag or of a wheel.
 
-Each takes the place of a move that changes no force: of all bodies along the motion, or of the wheel about its axis.
+Each replaces a displacement that changes no force: of all bodies along the motion, or of the wheel about its axis.
 """
 
 from __future__ import annotations
@@ -14,23 +14,23 @@ from ..dynamics import Dynamics
 from .steady_motion import SteadyMotion
 
 NO_EFFECT = 1e-12
-"""Part of the largest effect of a velocity, on forces or on rates of states, that counts as none."""
+"""Effect of a velocity on forces or rates of states that counts as zero, relative to the largest."""
 
 
 @dataclass(frozen=True)
 class FoundSpeeds:
-    """How a balance of forces and rates of states depends on the speeds that are found.
+    """Derivatives of the balance of forces and rates of states by the unknown speeds.
 
     Attributes
     ----------
     effect : ndarray, shape (n_u + states, speeds)
-        How what is left falls with each.
+        Negative derivative of the residual by each speed.
     momentum : ndarray, shape (n_u + states, speeds)
-        Momenta by each.
+        Momenta by each speed.
     held : ndarray, shape (speeds, n_u + states)
-        The moves that are zero in their places.
+        Displacements fixed in place of the speeds.
     sizes : ndarray, shape (speeds,)
-        Of the speeds, m/s and rad/s.
+        Magnitudes of the speeds, m/s and rad/s.
     """
 
     effect: np.ndarray
@@ -40,14 +40,14 @@ class FoundSpeeds:
 
 
 def with_found_spins(dynamics: Dynamics, motion: SteadyMotion, by_velocity: csc_array) -> SteadyMotion:
-    """A motion whose spins are found where forces or rates of states depend on them, and no rolling constraint tells them.
+    """Return a motion whose spins are unknown if forces or states, but no rolling constraints, depend on them.
 
     Parameters
     ----------
     dynamics : Dynamics
     motion : SteadyMotion
     by_velocity : sparse array, shape (n_u + states, n_u)
-        Derivatives of the forces, and of the rates of states.
+        Derivatives of the forces and of the rates of states.
     """
     if motion.is_rest or not len(motion.spinning):
         return motion
@@ -57,7 +57,7 @@ def with_found_spins(dynamics: Dynamics, motion: SteadyMotion, by_velocity: csc_
 
 
 def found_speeds(dynamics: Dynamics, motion: SteadyMotion, by_velocity: csc_array) -> FoundSpeeds:
-    """How the balance depends on the speeds of a motion that are found; parameters as for `with_found_spins`."""
+    """Return the derivatives of the balance by the unknown speeds; parameters as for `with_found_spins`."""
     mass, by = dynamics.system.mass[:, None], motion.by_speeds(dynamics)
     others = np.zeros((by_velocity.shape[0] - len(by), by.shape[1]))
     inertia = np.concatenate([mass * (motion.by_move(dynamics) @ by), others])

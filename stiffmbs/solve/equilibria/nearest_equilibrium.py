@@ -1,6 +1,6 @@
-"""The equilibrium nearest to a pose, whether forces return the bodies there or not: Newton's method with a line search.
+"""Nearest equilibrium, stable or not, by Newton's method with a line search.
 
-Spinning tops and rolling discs stay in equilibria that no motion in a thick fluid comes to.
+Spinning tops and rolling discs have equilibria that overdamped motion does not reach.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ MOST_MOVES, MOST_HALVINGS = 100, 12
 
 
 def nearest_equilibrium(dynamics: Dynamics, t: float, motion: SteadyMotion) -> Equilibrium:
-    """The equilibrium in steady motion nearest to the pose of a system; parameters and errors as for `find_equilibrium`."""
+    """Find the equilibrium in steady motion nearest to the pose; parameters and errors as for `find_equilibrium`."""
     system = dynamics.system
     limits = system.per_velocity(TRANSLATION * system.size, ROTATION)
     known = balance_at(dynamics, t, motion)
@@ -45,7 +45,7 @@ def nearest_equilibrium(dynamics: Dynamics, t: float, motion: SteadyMotion) -> E
 
 
 def _along(dynamics: Dynamics, t: float, known: Balance, move: np.ndarray) -> Balance | None:
-    """What is known after the longest part of a move that leaves less; None where none does."""
+    """Return the balance after the longest fraction of a move that reduces the residual, or None."""
     system, before = dynamics.system, dynamics.state.q.copy()
     for halving in range(MOST_HALVINGS):
         found = moved_on(dynamics, t, known, before, 0.5**halving * move)
@@ -55,7 +55,7 @@ def _along(dynamics: Dynamics, t: float, known: Balance, move: np.ndarray) -> Ba
 
 
 def _left(system: System, before: Balance, found: Balance) -> float:
-    """What is left of the forces, in the metric of the masses, and of the rates of states, beside what there was."""
+    """Return the residual of forces in the mass metric and of rates of states, relative to that before."""
     forces, rates = np.split(found.left, [system.n_u])
     total = float(np.sum(forces**2 / system.mass))
     if not system.states:

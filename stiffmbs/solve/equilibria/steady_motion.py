@@ -1,10 +1,10 @@
-"""Bodies that all move as one rigid body, some of them spinning about their axis of symmetry besides.
+"""Steady motion of all bodies as one rigid body, some of which also spin about their axes of symmetry.
 
-With the velocity V, the angular velocity W and a point c of its axis a centre of mass at r has
+With the velocity V, the angular velocity W and a point c of its axis, a centre of mass at r has
 
-    v = V + W x (r - c),    v' = W x v,
+  v = V + W x (r - c),    v' = W x v,
 
-and a body the angular velocity W + s e, whose rate in its own axes is (W + s e)' = W x s e.
+and a spinning body has the angular velocity W + s e, with the rate (W + s e)' = W x s e in its own axes.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ from ...compile.system import System
 from ..dynamics import Dynamics
 
 NO_EFFECT = 1e-9
-"""Part of a spin's effect on rolling constraints, relative to the largest, that counts as none."""
+"""Effect of a spin on rolling constraints that counts as zero; also the rank tolerance of their solution."""
 
 
 @dataclass(frozen=True)
 class SteadyMotion:
-    """A steady motion of a system.
+    """Steady motion of a system.
 
     Attributes
     ----------
@@ -33,13 +33,13 @@ class SteadyMotion:
     rotation : ndarray, shape (1,) or (3,)
         W, rad/s.
     spinning : ndarray of int
-        The angular velocities, by number, that differ from those of W.
+        Numbers of the angular velocities that differ from W.
     spins : ndarray
-        By how much, where no rolling constraint tells it, rad/s.
+        Their differences, unless rolling constraints determine them, rad/s.
     speed_is_found : bool
-        Whether forces tell how fast it goes along V.
+        Whether forces determine the speed along V.
     found : ndarray of int
-        The spins, by their place in `spinning`, that forces tell.
+        Positions in `spinning` of the spins that forces determine.
     """
 
     velocity: np.ndarray
@@ -52,16 +52,16 @@ class SteadyMotion:
 
     @property
     def is_rest(self) -> bool:
-        """Whether nothing moves."""
+        """True if all velocities are zero."""
         return not (np.any(self.velocity) or np.any(self.rotation) or np.any(self.spins))
 
     @property
     def n_found(self) -> int:
-        """How many speeds are found: that along V, and those of `found`."""
+        """Number of unknown speeds: that along V, and those of `found`."""
         return int(self.speed_is_found) + len(self.found)
 
     def faster(self, changes: np.ndarray) -> SteadyMotion:
-        """The motion with speeds that are found changed, that along V first."""
+        """Return the motion with changed unknown speeds, that along V first."""
         along, spins = np.split(changes, [int(self.speed_is_found)])
         velocity = self.velocity + along.sum() * self._ahead()
         changed = self.spins.copy()
@@ -69,13 +69,13 @@ class SteadyMotion:
         return replace(self, velocity=velocity, spins=changed)
 
     def speed_sizes(self, size: float) -> np.ndarray:
-        """How large the speeds are that are found, in a mechanism of a size, m."""
+        """Return the magnitudes of the unknown speeds, in a mechanism of a size, m."""
         speed = float(np.linalg.norm(self.velocity))
         spins = np.maximum(np.abs(self.spins[self.found]), speed / size)
         return np.append(np.full(int(self.speed_is_found), speed), spins)
 
     def by_speeds(self, dynamics: Dynamics) -> np.ndarray:
-        """Derivatives of the velocities by the speeds that are found, shape (n_u, speeds)."""
+        """Return derivatives of the velocities by the unknown speeds, shape (n_u, speeds)."""
         of_body, n_u = dynamics.system.of_body, dynamics.system.n_u
         by = np.zeros((n_u, self.n_found))
         if self.speed_is_found:
@@ -86,7 +86,7 @@ class SteadyMotion:
         return by
 
     def _spins_with(self, dynamics: Dynamics, by_speed: np.ndarray) -> np.ndarray:
-        """How the spins that rolling asks for change with velocities."""
+        """Return derivatives of the spins that rolling determines by the speed."""
         rolling = np.flatnonzero(~dynamics.system.holonomic)
         if not len(rolling) or not len(self.spinning):
             return np.zeros(len(self.spinning))
@@ -95,25 +95,25 @@ class SteadyMotion:
         return found
 
     def _ahead(self) -> np.ndarray:
-        """The direction of V."""
+        """Return the direction of V."""
         direction: np.ndarray = self.velocity / np.linalg.norm(self.velocity)
         return direction
 
     def told_by_rolling(self, dynamics: Dynamics) -> np.ndarray:
-        """Which spins a rolling constraint tells."""
+        """Return a mask of the spins that a rolling constraint determines."""
         state = dynamics.state
         rolling = np.flatnonzero(~dynamics.system.holonomic)
         across = state.matrix("motion", "J")[np.ix_(rolling, self.spinning)]
         return np.asarray(np.linalg.norm(across, axis=0) > NO_EFFECT)
 
     def carried(self, dynamics: Dynamics) -> np.ndarray:
-        """The velocities of all bodies as parts of one rigid body, at the present pose."""
+        """Return the velocities of all bodies as parts of one rigid body, at the current pose."""
         places = self._places(dynamics)
         straight = self.velocity + _cross(self.rotation, places - self.about)
         return np.concatenate([straight, self._own(dynamics)], axis=1).ravel()
 
     def put(self, dynamics: Dynamics, t: float) -> None:
-        """Set the velocities of the present pose."""
+        """Set the velocities of the current pose."""
         state = dynamics.state
         state.u[:] = 0.0 if self.is_rest else self.carried(dynamics)
         if len(self.spinning):
@@ -126,13 +126,13 @@ class SteadyMotion:
             state.u[self.spinning] += spins
 
     def turning(self, system: System) -> csc_array:
-        """W x for displacements and rotations of all bodies in ground axes, shape (n_u, n_u)."""
+        """Return W x for displacements and rotations of all bodies in ground axes, shape (n_u, n_u)."""
         turn = _matrix(self.rotation)
         of_body = [turn, np.zeros((1, 1))] if system.of_body.linear == 2 else [turn, turn]
         return csc_array(block_diag(of_body * len(system.bodies)))
 
     def acceleration(self, dynamics: Dynamics) -> np.ndarray:
-        """u' of the present pose and velocities."""
+        """Return u' of the current pose and velocities."""
         system, u = dynamics.system, dynamics.state.u
         found = np.zeros((len(system.bodies), system.of_body.n_u))
         if self.is_rest:
@@ -146,12 +146,12 @@ class SteadyMotion:
         return found.ravel()
 
     def derivatives(self, dynamics: Dynamics, t: float, rates: csc_array) -> tuple[csc_array, csc_array]:
-        """Derivatives of the velocities and of the accelerations by moves of the pose, shape (n_u, n_u).
+        """Return derivatives of velocities and accelerations by displacements, shapes (n_u, n_u).
 
         Parameters
         ----------
         rates : sparse array, shape (n_q, n_u)
-            q' of velocities.
+            Z of q' = Z u.
         """
         system, u = dynamics.system, dynamics.state.u
         turning, by_move = _matrix(self.rotation), self.by_move(dynamics)
@@ -173,8 +173,10 @@ class SteadyMotion:
         return csc_array(by_move + into @ spins), csc_array(accelerated + gyroscopic @ into @ spins)
 
     def by_move(self, dynamics: Dynamics) -> csc_array:
-        """W x for displacements in ground axes and rotations in each body's own: derivatives of the velocities by moves without
-        those of spins, and of the accelerations by velocities; shape (n_u, n_u)."""
+        """Return W x for displacements in ground axes and rotations in body axes, shape (n_u, n_u).
+
+        It is the derivative of velocities by displacements without those of spins, and of accelerations by velocities.
+        """
         if not np.any(self.rotation):
             return csc_array((dynamics.system.n_u,) * 2)
         turning, own = _matrix(self.rotation), self._own(dynamics)
@@ -183,7 +185,7 @@ class SteadyMotion:
         return csc_array(block_diag([part for w in own for part in (turning, _matrix(w))]))
 
     def _spins_by_move(self, dynamics: Dynamics, t: float, rates: csc_array, by_move: csc_array) -> csc_array:
-        """How the spins that rolling asks for change with the pose."""
+        """Return derivatives of the spins that rolling determines by displacements."""
         state = dynamics.state
         state.evaluate("tangent", t)
         rolling = np.flatnonzero(~dynamics.system.holonomic)
@@ -193,7 +195,7 @@ class SteadyMotion:
         return csc_array(-np.linalg.lstsq(across, missing, rcond=NO_EFFECT)[0]) if len(rolling) else csc_array((len(self.spinning), missing.shape[1]))  # fmt: skip
 
     def _rolling(self, dynamics: Dynamics, t: float) -> tuple[np.ndarray, np.ndarray]:
-        """What the spins do to the constraints of velocity alone, and what these miss without them."""
+        """Return the Jacobian of the nonholonomic constraints by the spins, and their violation without them."""
         state = dynamics.state
         state.evaluate("motion", t)
         rolling = np.flatnonzero(~dynamics.system.holonomic)
@@ -204,7 +206,7 @@ class SteadyMotion:
         return dynamics.state.q[: of_body.n_q * count].reshape(count, -1)[:, : of_body.linear]
 
     def _own(self, dynamics: Dynamics) -> np.ndarray:
-        """W in the axes of each body."""
+        """Return W in the axes of each body."""
         of_body, count = dynamics.system.of_body, len(dynamics.system.bodies)
         if of_body.linear == 2:
             return np.full((count, 1), self.rotation[0])
@@ -213,13 +215,13 @@ class SteadyMotion:
 
 
 def at_rest(dimensions: int) -> SteadyMotion:
-    """No motion."""
+    """Return the state of rest as a steady motion."""
     nothing = np.zeros(dimensions)
     return SteadyMotion(nothing, np.zeros(1 if dimensions == 2 else 3), nothing)
 
 
 def _matrix(rotation: np.ndarray) -> np.ndarray:
-    """W x as a matrix."""
+    """Return W x as a matrix."""
     if len(rotation) == 1:
         return np.array([[0.0, -rotation[0]], [rotation[0], 0.0]])
     x, y, z = rotation

@@ -1,1 +1,1 @@
-"""Tolerances, error tests, and Newton's test of convergence."""
+"""Tolerances, error tests and the convergence test of Newton's iteration."""

@@ -1,4 +1,4 @@
-"""When errors that the steps of a run add up to are reported."""
+"""Report of the estimated errors that accumulate over a run."""
 
 from __future__ import annotations
 
@@ -13,35 +13,34 @@ from .tolerances import absolute_tolerances
 
 @dataclass(frozen=True)
 class AccumulatedErrors:
-    """When estimated errors of positions are reported.
+    """Threshold above which accumulated errors of positions are reported.
 
     Attributes
     ----------
     tolerances : float
-        Error of a position, in tolerances of it, from which on it is reported.  A run keeps each step within the tolerance, and nobody
-        expects less than a hundred of them by its end.
+        Estimated error of a position, in units of its tolerance, above which it is reported.
     usual_rtol : float
-        Relative tolerance below which none is counted: that of a run without settings.  A tighter one asks for what can be had.
+        Smallest relative tolerance that errors are compared with: that of a run without settings.
     """
 
     tolerances: float = 100.0
     usual_rtol: float = 1e-6
 
     def counted(self, system: System, settings: RunSettings) -> tuple[np.ndarray, float]:
-        """Return the absolute tolerance of each displacement along a velocity, shape (n_u,), m and rad, and the relative tolerance."""
+        """Return absolute, shape (n_u,), m and rad, and relative tolerance of the displacement along each velocity."""
         usual = settings.model_copy(update={"rtol": self.usual_rtol, "atol": None})
         of_both = (absolute_tolerances(system, each)[system.n_q :] for each in (settings, usual))
         return np.fmax(*of_both), max(settings.rtol, self.usual_rtol)
 
     def in_tolerances(self, system: System, settings: RunSettings, displaced: np.ndarray, q: np.ndarray) -> np.ndarray:
-        """Return estimated errors in tolerances of the positions, shape (n_u,).
+        """Return the estimated errors of positions in units of their tolerances, shape (n_u,).
 
         Parameters
         ----------
         displaced : ndarray, shape (n_u,)
-            m and rad.
+            Estimated errors, m and rad.
         q : ndarray, shape (n, n_q)
-            Of the run: the tolerance of a displacement grows with it, that of an angle does not.
+            Positions during the run; they scale the tolerances of displacements, not those of angles.
         """
         absolute, relative = self.counted(system, settings)
         bodies, of_body = len(system.bodies), system.of_body
@@ -53,4 +52,4 @@ class AccumulatedErrors:
 
 
 ACCUMULATED = AccumulatedErrors()
-"""That of every run."""
+"""Threshold of every run."""

@@ -1,4 +1,4 @@
-"""What IDA tests: which unknowns count in the error test and in Newton's, and how far each is taken."""
+"""Settings of IDA's error test and of its Newton iteration."""
 
 from __future__ import annotations
 
@@ -12,28 +12,28 @@ from .tolerances import independent_tolerances
 
 
 class ErrorControl(NamedTuple):
-    """How a tolerance asked for becomes what IDA is given; the defaults are those of `bdf`, by `docs/error_control.md`.
+    """Settings of IDA for a requested tolerance; the defaults are those of `bdf` (`docs/error_control.md`).
 
     Attributes
     ----------
     margin : float
-        Part of the tolerance asked for that IDA is given, as the errors of many steps add up.
+        Part of the requested tolerance that IDA is given, because the errors of the steps accumulate.
     multipliers : float
-        Absolute tolerance of multipliers.  A huge one takes them out of the error test, where index-2 problems would
-        fail, and out of Newton's test.
+        Absolute tolerance of multipliers.  A huge one excludes them from the error test, which fails for index-2
+        problems, and from Newton's convergence test.
     suppressed : bool
-        Whether multipliers are left out of the error test by IDASetSuppressAlg, which leaves them in Newton's.
+        If True, IDASetSuppressAlg excludes multipliers from the error test but not from Newton's convergence test.
     newton : float or None
-        Part of the tolerance that Newton's iteration may leave (IDASetNonlinConvCoef); None for one that follows from
-        the stiffness of the scene (`stiffmbs.solve.error_control.newton`).
+        Coefficient of Newton's convergence test (IDASetNonlinConvCoef); None to choose it by the stiffness of the
+        scene (`stiffmbs.solve.error_control.newton`).
     renewal : float
-        Change of cj at which the iteration matrix is made anew (IDASetDeltaCjLSetup) where that costs no more than a few residuals.
+        Relative change of cj that causes a linear solver setup (IDASetDeltaCjLSetup), if that is inexpensive.
     growth : float
-        Factor by which the error test must let a step grow before it is changed (IDASetEtaFixedStepBounds).  IDA's own, 2, leaves
-        steps of even motions where the start has put them, anywhere between half of what the tolerance allows and all of it.
+        Least factor by which a step is enlarged (IDASetEtaFixedStepBounds).  With IDA's default 2, the steps of an
+        even motion keep the size that the start has given them.
     predicted_residual : bool
-        Whether the convergence rate of Newton's iteration is taken to worsen with the age of the iteration matrix, and short steps
-        bear more (`stiffmbs.solve.native.iteration`); IDA's own test takes a rate that was measured where the matrix was new.
+        If True, use the convergence test of `stiffmbs.solve.native.iteration`: the convergence rate worsens with
+        the age of the iteration matrix, and short steps may leave a larger residual.
     """
 
     margin: float = 0.3
@@ -45,7 +45,7 @@ class ErrorControl(NamedTuple):
     predicted_residual: bool = True
 
     def tolerances(self, equations: Equations, settings: RunSettings) -> tuple[float, np.ndarray]:
-        """IDA's tolerances: its norm divides by all unknowns, the tolerance asked for counts those in the error test."""
+        """Return IDA's relative and absolute tolerances, corrected for its norm, which divides by all unknowns."""
         tested, of_independent = self._tested(equations), independent_tolerances(equations, settings)
         atol = np.full(equations.n, self.multipliers)
         atol[equations.independent[tested]] = of_independent[tested]
@@ -53,7 +53,7 @@ class ErrorControl(NamedTuple):
         return settings.rtol * correction, atol * correction
 
     def untested(self, equations: Equations) -> np.ndarray | None:
-        """The unknowns that IDASetSuppressAlg is to leave out; None where it is not used."""
+        """Return a mask of the unknowns that IDASetSuppressAlg excludes; None if it is not used."""
         if not self.suppressed:
             return None
         kept = np.zeros(equations.n, dtype=bool)
@@ -62,8 +62,7 @@ class ErrorControl(NamedTuple):
 
     @staticmethod
     def _tested(equations: Equations) -> np.ndarray:
-        """Which of the independent coordinates and velocities the error test counts; algebraic states that follow multipliers
-        are left out as these are."""
+        """Return a mask of the independent unknowns in the error test; not those that follow multipliers."""
         independent, tested = equations.coordinates, equations.formulation.tested
         counted = np.repeat(
             ["q" in tested, "u" in tested], [independent.independent.sum(), independent.independent_u.sum()]
@@ -74,6 +73,5 @@ class ErrorControl(NamedTuple):
 
 
 CHOSEN = {2: ErrorControl(), 3: ErrorControl(margin=0.12, growth=1.6)}
-"""That of every run, by the scene's dimensions.  In space the steps saved by the own convergence test pay for a smaller margin.
-There motions are often so even that a step never changes: with IDA's growth the error then depends on the start more than on the
-tolerance."""
+"""Error control of every run, by the dimensions of the scene.  Steps of even spatial motions may never change: with
+IDA's growth factor, their errors would depend on the start more than on the tolerance."""

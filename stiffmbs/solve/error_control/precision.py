@@ -1,4 +1,4 @@
-"""Tolerances that ask for more digits than a coordinate's own rounding leaves."""
+"""Detection of tolerances finer than the rounding of a coordinate."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from ...describe.settings import RunSettings
 from ..dynamics import Dynamics
 
 NOISE = 1e-3, 0.05
-"""Rounding of a coordinate, relative to the absolute tolerance, from which on differences of the order 5 hold nothing but
-rounding: of an angle, and of a position, whose own tolerance grows with it."""
+"""Rounding of an angle and of a position, relative to the absolute tolerance, above which differences of order 5 are
+rounding only.  The tolerance of a position grows with it."""
 SLOW, FAILED = 20_000, 0.2
-"""Steps after which a run is looked at, and the part of them that fails the error test where rounding governs it."""
+"""Steps after which a run is checked, and the fraction of failed error tests that indicates rounding."""
 
 
 def too_fine(dynamics: Dynamics, settings: RunSettings, t: float, q: np.ndarray) -> str:
-    """Why the tolerance cannot be met at a state, as a sentence; empty where it can.
+    """Return a sentence that explains why the tolerance cannot be met at a state; empty if it can.
 
     Parameters
     ----------
@@ -34,8 +34,7 @@ def too_fine(dynamics: Dynamics, settings: RunSettings, t: float, q: np.ndarray)
 
 
 def _held_too_little(dynamics: Dynamics, settings: RunSettings, t: float, q: np.ndarray) -> str:
-    """A sentence on the constraint that changes so little with coordinates that its own rounding moves them by more than the
-    tolerance; empty where there is none."""
+    """Return a sentence on a constraint whose rounding moves coordinates beyond the tolerance; empty if none does."""
     system, state = dynamics.system, dynamics.state
     if not system.n_c:
         return ""
@@ -59,22 +58,22 @@ def _held_too_little(dynamics: Dynamics, settings: RunSettings, t: float, q: np.
 
 
 def _tolerance(settings: RunSettings) -> tuple[str, float]:
-    """The setting that governs coordinates near zero, and its value."""
+    """Return the name and value of the setting that governs coordinates near zero."""
     return ("rtol", settings.rtol) if settings.atol is None else ("atol", settings.atol)
 
 
 def _known_too_little(system: System, settings: RunSettings, q: np.ndarray) -> str:
-    """A sentence on the coordinate whose own rounding is more than the tolerance; empty where there is none.
+    """Return a sentence on a coordinate whose rounding exceeds the tolerance; empty if there is none.
 
-    Joints carry the rounding of an angle, times an arm, and of a position to all coordinates they hold, so that it is
-    compared with the tolerance of a coordinate near zero.  BDF estimates its errors by differences of order k + 1, which
+    Joints transmit the rounding of positions and angles to all coordinates of their bodies, so it is compared with the
+    tolerance of a coordinate near zero.  BDF estimates errors by differences of order k + 1, which
     multiply rounding by up to 2^(k+1).
     """
     of_body = system.of_body
     own = q[: of_body.n_q * len(system.bodies)].reshape(-1, of_body.n_q)
     straight, turning = own[:, : of_body.linear], own[:, of_body.linear : of_body.n_u]
     if of_body.dimensions == 3:
-        turning = turning[:, :0]  # quaternions stay of length 1
+        turning = turning[:, :0]  # quaternions have unit length
     name, tolerance = _tolerance(settings)
     of_positions = np.spacing(np.abs(straight)) / 2 / (NOISE[1] * tolerance * min(1.0, system.size))
     of_angles = np.spacing(np.abs(turning)) / 2 / (NOISE[0] * tolerance)
@@ -91,6 +90,6 @@ def _known_too_little(system: System, settings: RunSettings, q: np.ndarray) -> s
 
 
 def governed_by_rounding(statistics: Mapping[str, Any]) -> bool:
-    """Whether so many of so many steps fail the error test as where rounding is taken for an error."""
+    """Return True if a long run fails the error test so often that rounding governs it."""
     steps, rejected = int(statistics["steps"]), int(statistics.get("rejected", 0))
     return steps > SLOW and rejected > FAILED * steps

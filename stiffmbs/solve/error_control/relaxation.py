@@ -1,4 +1,4 @@
-"""How far the relaxed formulation, J u + C_t = E_lam lam, lets constraints creep: what is set for a run, and what a run shows."""
+"""Constraint drift of the relaxed formulation, J u + C_t = E_lam lam: relaxations of a run, and its measured drift."""
 
 from __future__ import annotations
 
@@ -15,28 +15,26 @@ from ..trajectory import Trajectory
 from .tolerances import absolute_tolerances
 
 POSITION_CREEP, VELOCITY_CREEP = 1e-9, 1e-12
-"""Seconds; measured on mechanisms of 1 kg and 1 m, where lam is 10 to 100 N: no effect on steps and errors."""
+"""Relaxation times of position and velocity constraints at rtol 1e-8, s."""
 SHORT = 100
-"""Bodies beyond which joints creep less, by the square of their number: in a long chain each holds more, and their creep adds up.
-(A chain of 1000 rods at rtol 1e-6: off by 4e-4 m without this, by the tolerance's own 1e-5 with it.)"""
+"""Number of bodies beyond which relaxations decrease with the square of that number: drift accumulates along chains."""
 TIGHTEST, LOOSEST = 1e-3, 1e3
-"""Bounds of the factor by which a tolerance other than 1e-8 changes the creep."""
+"""Bounds of the factor by which a tolerance other than 1e-8 scales the relaxations."""
 
 
 class Creep(NamedTuple):
-    """What the projection takes off the velocities of a run, in tolerances of each.
+    """Constraint drift of the velocities of a run, in units of their tolerances.
 
     Attributes
     ----------
     mean : float
-        Over the reported instants, of the largest at each: what reaches the motion grows with it.  A singular pose that is
-        passed raises it for an instant alone.
+        Mean over the output times of the largest drift at each; a singular pose raises it only briefly.
     at_end : float
-        What the multipliers of the last instant let creep, by their size: a run may stop before its steps have followed.
+        Drift expected from the multipliers at the last output time, before the steps have followed them.
     velocity : str
-        The velocity that creeps most.
+        Velocity with the largest drift.
     joint : str
-        The joint with the largest multiplier there.
+        Joint with the largest multiplier at that time.
     """
 
     mean: float
@@ -45,7 +43,7 @@ class Creep(NamedTuple):
     joint: str
 
     def sentence(self) -> str:
-        """A clause on it."""
+        """Return a clause that describes the drift."""
         seen = self.mean >= self.at_end
         return (
             f"under the forces in '{self.joint}' relaxed constraints (formulation SI2) let "
@@ -54,12 +52,11 @@ class Creep(NamedTuple):
 
 
 def relax(dynamics: Dynamics, settings: RunSettings, t: float) -> None:
-    """Set the relaxations of all rows for the state at hand.
+    """Set the relaxations of all rows at the current state.
 
-    E_mu = eps C_q C_q^T and E_lam = eps J M^-1 J^T, by their diagonals, so that lengths, angles, masses and forces of
-    any size creep alike; in proportion to the tolerance.  M is that of the heaviest body, at an arm as long as
-    the mechanism: what it weighs may hang on light bodies and small moments of inertia, which by their own measure
-    would let their joints creep far beyond the tolerance.
+    They are the diagonals of E_mu = eps C_q C_q^T and E_lam = eps J M^-1 J^T, with eps in proportion to the tolerance.
+    So lengths, angles, masses and forces of any size drift alike.  M is the inertia of the heaviest body at an arm as
+    long as the mechanism: light bodies and small moments of inertia may carry its weight.
     """
     state, system = dynamics.state, dynamics.system
     if not system.n_c:
@@ -74,17 +71,17 @@ def relax(dynamics: Dynamics, settings: RunSettings, t: float) -> None:
 
 
 def creep_of_positions(settings: RunSettings) -> float:
-    """E_mu for an entry 1 in a row of C_q."""
+    """Return E_mu of a row of C_q with a single entry 1."""
     return POSITION_CREEP * _factor(settings)
 
 
 def creep_of_velocities(settings: RunSettings, system: System) -> float:
-    """E_lam for an entry 1 in a row of J, of a velocity of lightness 1."""
+    """Return E_lam of a row of J with a single entry 1, for an inverse mass of 1."""
     return VELOCITY_CREEP * _factor(settings) * min(1.0, (SHORT / len(system.bodies)) ** 2)
 
 
 def lightness(dynamics: Dynamics) -> np.ndarray:
-    """One over the mass and moment of inertia that velocities are taken for, shape (n_u,)."""
+    """Return the inverse masses and moments of inertia that relaxations use, shape (n_u,)."""
     return dynamics.kept("relaxation", None, lambda: 1 / _heaviest(dynamics.system))
 
 
@@ -93,7 +90,7 @@ def _factor(settings: RunSettings) -> float:
 
 
 def _heaviest(system: System) -> np.ndarray:
-    """For every body the largest mass, and the largest moment of inertia, as seen from across the mechanism."""
+    """Return the largest mass, or largest moment of inertia about a point across the mechanism, for each velocity."""
     of_body = system.of_body
     largest = system.mass.reshape(-1, of_body.n_u).max(axis=0)
     mass, inertia = largest[0], largest[of_body.linear :].max()
@@ -101,7 +98,7 @@ def _heaviest(system: System) -> np.ndarray:
 
 
 def creeps(system: System, rows: OutputRows, trajectory: Trajectory, settings: RunSettings, limit: float) -> bool:
-    """Whether anything of a run may creep by more tolerances than a limit: a bound at a tenth of the cost of `creep_of`."""
+    """Return True if the drift of a run may exceed `limit` tolerances; an inexpensive bound of `creep_of`."""
     least = float(absolute_tolerances(system, settings)[system.n_q :].min())
     off = max(float(np.abs(trajectory.u[: len(rows.t)][block] - rows.u[block]).max()) for block in blocks(len(rows.t)))
     return not max(off, _slip(system, rows, settings)) <= limit * least
@@ -110,17 +107,17 @@ def creeps(system: System, rows: OutputRows, trajectory: Trajectory, settings: R
 def creep_of(
     system: System, rows: OutputRows, trajectory: Trajectory, settings: RunSettings, breakpoints: np.ndarray
 ) -> Creep:
-    """The creep of a run whose reported states were brought back to the constraints.
+    """Return the constraint drift of a run whose output states were projected onto the constraints.
 
     Parameters
     ----------
     system : System
     rows : OutputRows
     trajectory : Trajectory
-        As integrated, at the instants of the rows and maybe later.
+        As integrated, at the times of the rows and possibly later.
     settings : RunSettings
     breakpoints : ndarray
-        Instants at which prescribed velocities may jump, s: the rows there show that and no creep.
+        Times at which prescribed velocities may jump, s; rows at these times are ignored.
     """
     count = len(rows.t)
     jump = _at_one_of(rows.t, breakpoints)
@@ -140,12 +137,12 @@ def creep_of(
 
 
 def _slip(system: System, rows: OutputRows, settings: RunSettings) -> float:
-    """What the multipliers of the last instant let velocities creep by, by their size."""
+    """Return the velocity drift expected from the multipliers of the last output time."""
     return creep_of_velocities(settings, system) * float(np.abs(rows.lam[-1]).max()) / float(system.mass.max())
 
 
 def creep_at(dynamics: Dynamics, t: float, u: np.ndarray, settings: RunSettings) -> float:
-    """What the projection takes off velocities u, in tolerances, at a state of the dynamics that it leaves on the constraints."""
+    """Project velocities u onto the constraints at the current positions; return the largest change, in tolerances."""
     state, system = dynamics.state, dynamics.system
     state.u[:] = u
     if dynamics.correct_velocities(t) < 0:
@@ -155,7 +152,7 @@ def creep_at(dynamics: Dynamics, t: float, u: np.ndarray, settings: RunSettings)
 
 
 def _at_one_of(t: np.ndarray, instants: np.ndarray) -> np.ndarray:
-    """Whether each time is one of some increasing instants, but for rounding."""
+    """Return a mask of the times that equal one of some increasing instants up to rounding."""
     if not len(instants):
         return np.zeros(len(t), dtype=bool)
     following = np.searchsorted(instants, t)

@@ -1,13 +1,12 @@
-"""Whether BDF of order 3 to 5 creeps along a vibration too small to matter.
+"""Detection of BDF steps of order 3 to 5 that are limited by stability at a negligible vibration.
 
 These formulas are not stable near the imaginary axis (Hairer, Wanner, Solving Ordinary Differential Equations II, ch.
-V.1): longer steps let a stiff, little damped vibration grow to the tolerance, the error test shortens them again, and so
-they never come out of its periods.  Order 2 damps it.  CVODE looks for such growth at constant steps (STALD); IDA has
-nothing of the kind, and what shows here is simpler: many steps in a row follow a cubic but for some tolerances.
+V.1).  Longer steps let a stiff, lightly damped vibration grow to the tolerance, and the error test shortens them again.
+Order 2 damps the vibration.  CVODE detects such growth at constant steps (STALD); IDA has no such test.  Here, the sign
+is that many successive steps follow a cubic within some tolerances.
 
-Order 2 has larger errors in the slow motion.  So the order is held only where its steps become much longer: the third derivative of
-that cubic tells how long a step of order 2 may be.  A vibration of a few tolerances is damped within a hundred steps; the
-order is free again then, before the errors of order 2 count.
+Order 2 has larger errors in the slow motion.  So the order is limited only if steps become much longer, as the third
+derivative of the cubic predicts.  A vibration of a few tolerances is damped within a hundred steps of order 2.
 """
 
 from __future__ import annotations
@@ -29,43 +28,38 @@ CUBIC = Routine(
     "void(int64, int64, float64*, float64, float64*, int64, int64*, float64, float64*, float64*)",
 )
 STATES_LOOKED_AT, STEPS_APART = 16, 4
-"""States that are looked at, and steps from one to the next: motion that steps of order 3 to 5 do resolve is some thousands of
-tolerances away from a cubic."""
+"""States in a check, and steps between them.  Motions resolved by order 3 to 5 are much further from a cubic."""
 FAR_APART = np.array([0, 4, 8, 12, 15], dtype=np.int64)
-"""States that mostly show by themselves that all are far from it."""
+"""States compared first; they usually suffice to show that the motion is far from a cubic."""
 NEGLIGIBLE = 150.0
-"""Distance from it, in units of the tolerance, up to which a vibration is not worth following: the orders that follow it
-damp it too (from 64 to 44 in 1000 steps of order 5).  A smaller tolerance keeps it."""
+"""Distance from the cubic, in tolerances, up to which a vibration is negligible; higher orders damp it too."""
 STUCK, STEADY = 0.5, 3.0
-"""Steps whose states are nearer to it are short for another reason, and so are those much shorter than since the last look."""
+"""Distance from the cubic below which, and ratio of the mean to the current step above which, steps have another
+limit."""
 FAINT, DAMPED_AWAY = 4.0, 100
-"""Distance from it up to which so many steps of order 2 damp the vibration away.  The half car at 1e-7 takes 3445 steps with
-100 of them and errors of 3.4e-7, 3569 and 8.2e-7 with 300, 5079 and 1.2e-7 with none."""
+"""Distance up to which a vibration is faint, and steps of order 2 that damp a faint vibration."""
 WITHIN_PERIODS = 12.0
-"""Longest step, times a bound on the fastest vibration's rate, that is still within the reach of its instability; a fresh
-start with longer ones would stir up vibrations that have long been damped."""
+"""Longest step, times a bound of the fastest rate, that stability may limit; a restart with longer ones would excite
+vibrations that are already damped."""
 FIRST_LOOK, LATER = 2000, 1.5
-"""Steps before the first look, and how many times as many before each later one."""
+"""Steps before the first check, and growth factor of that number for later ones."""
 RELAPSE, STRETCH, LONGER = 2000, 2000, 4
-"""Steps between looks at a held order, in which the vibration dies away (250 are too few to see what is gained); steps with
-the order held at first, and how many times as many after each relapse."""
+"""Steps between checks while the order is limited; steps of the first limitation, and growth factor for later ones."""
 GAIN = 3.0
-"""How much longer steps must become with the order held: predicted from the slow motion before it is, and seen after that.  The errors of order 2
-are larger at the same tolerance.  On a car on bushings of 1e7 N/m 1.4 to 1.9 is predicted; steps were then as long as before, and errors ten
-times as large.  On a bar on one bushing, where the order is held, steps become 3 to 40 times as long."""
+"""Factor by which the limited order must lengthen steps: predicted beforehand, measured afterwards.  It pays for the
+larger errors of order 2."""
 NO_LOSS = 1.5
-"""The same, predicted, where a faint vibration is damped away: longer steps come after that."""
+"""Predicted factor required for a faint vibration: steps become longer after it is damped."""
 MARGIN, ERROR_CONSTANT = 0.1, 2 / 9
-"""Error of a step that an integrator aims at, relative to the tolerance; that of order 2, over the third derivative times the cube of the step."""
+"""Error of a step that the integrator aims at, relative to the tolerance, and error constant of BDF of order 2."""
 TIGHTEST_HELD = 1e-7
-"""Relative tolerance below which the order is not held for long: who asks for less wants to see the vibration, and order 2 would
-cost more digits than it saves steps (measured: at 1e-9 a position off by 6.5e-5 m where free orders are right to 4e-7)."""
+"""Relative tolerance below which the order is limited only briefly, because order 2 would be too inaccurate."""
 HELD, HIGHEST = 2, 5
-"""Orders: the highest that is stable for every vibration, and the highest of all."""
+"""Highest A-stable order, and highest order of BDF."""
 
 
 def cubic_fit(samples: np.ndarray, rtol: float, atol: np.ndarray) -> tuple[float, float, float]:
-    """How far states are from the cubics that fit best, in units of the tolerance.
+    """Return the distances of states from the best-fitting cubics, in units of the tolerance.
 
     Parameters
     ----------
@@ -77,11 +71,11 @@ def cubic_fit(samples: np.ndarray, rtol: float, atol: np.ndarray) -> tuple[float
     Returns
     -------
     least : float
-        The distance that five of them show.
+        Distance shown by the states `FAR_APART`.
     distance : float
-        The largest of one state, as a root mean square; not computed where `least` is beyond `NEGLIGIBLE`, as what follows.
+        Largest RMS distance of one state; not computed if `least` exceeds `NEGLIGIBLE`.
     highest : float
-        Root mean square of the coefficients of the third power, times being -1 to 1.
+        RMS of the cubic coefficients, with times scaled to -1 to 1; not computed either in that case.
     """
     count, n = len(samples), samples.shape[1] - 1
     samples, work, found = np.ascontiguousarray(samples), np.empty(n + 6 * count + 8), np.zeros(3)
@@ -92,7 +86,7 @@ def cubic_fit(samples: np.ndarray, rtol: float, atol: np.ndarray) -> tuple[float
 
 
 class StabilityLimitDetection:
-    """When to hold the order down, and when to leave it free again.
+    """Decision when to limit the order of BDF and when to free it again.
 
     Parameters
     ----------
@@ -102,7 +96,7 @@ class StabilityLimitDetection:
     Attributes
     ----------
     order : int
-        The highest order to be used.
+        Highest order allowed.
     """
 
     def __init__(self, equations: Equations, settings: RunSettings) -> None:
@@ -125,30 +119,30 @@ class StabilityLimitDetection:
 
     @property
     def held(self) -> bool:
-        """Whether the order is held down."""
+        """Return True if the order is limited."""
         return self.order < self._highest
 
     def begin(self, t: float, steps: int, fastest: float) -> None:
-        """The integrator starts, or starts anew, where vibrations have rates up to `fastest`, 1/s."""
+        """Note a start or restart of the integrator, with vibrations of rates up to `fastest`, 1/s."""
         self._mark, self._fastest = (t, steps), fastest
 
     def due(self, steps: int) -> bool:
-        """Whether it is time for a look, after so many steps of the run."""
+        """Return True if a check is due after `steps` steps of the run."""
         return steps >= self._next and self._watches
 
     def wait(self, steps: int) -> int:
-        """How many steps from now on the next look is due."""
+        """Return the number of steps until the next check is due."""
         return self._next - steps if self._watches and self._next > steps else FIRST_LOOK
 
     def changed(self, samples: np.ndarray, steps: int) -> bool:
-        """Look at the last steps; whether the highest order is to change.
+        """Check the last steps; return True if the highest order changes.
 
         Parameters
         ----------
         samples : ndarray, shape (n, 1 + 2 * independent)
             Time, independent coordinates and velocities after some of the last steps.
         steps : int
-            Of the whole run.
+            Number of steps of the run.
         """
         if len(samples) < STATES_LOOKED_AT:
             return False
@@ -171,7 +165,7 @@ class StabilityLimitDetection:
         return True
 
     def _frees(self, pace: float, t: float, steps: int) -> bool:
-        """Whether the order held has not paid, or has been held for long enough."""
+        """Return True if the order is to be freed: the limit has not paid, or has lasted long enough."""
         pays = not self._briefly and pace > GAIN * self._pace
         if pays and steps < self._held[-1][1] + self._stretch:
             self._next = steps + RELAPSE
@@ -183,9 +177,9 @@ class StabilityLimitDetection:
         return True
 
     def _fit(self, samples: np.ndarray) -> tuple[float, float]:
-        """Distance from the polynomial that fits best, in units of the tolerance, and how much longer a step of the held order may be.
+        """Return the distance from the best-fitting cubic, in tolerances, and the predicted factor in step size.
 
-        Five samples mostly show that they are far from it: then the second figure is 0.
+        The second is 0 if a few samples show that the motion is far from a cubic.
         """
         least, distance, highest = cubic_fit(samples, self._rtol, self._atol)
         if least > NEGLIGIBLE:
@@ -196,7 +190,7 @@ class StabilityLimitDetection:
         return distance, longer
 
     def note(self, steps: int) -> str:
-        """What was done, for the user, after so many steps of the run; empty for nothing."""
+        """Return a sentence on the limited order for the user, after `steps` steps; empty if it was never limited."""
         if not self._held:
             return ""
         held = self._held_steps + (steps - self._held[-1][1] if self.held and not self._briefly else 0)

@@ -1,4 +1,4 @@
-"""The absolute tolerances of all error-controlled integrators."""
+"""Absolute tolerances of all error-controlled integrators."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from ...compile.system import System
 from ...describe.settings import RunSettings
 
 WHICH_TURN = 1e-3
-"""Absolute tolerance of the counters of turns, rad: far below the half turn that they must tell apart."""
+"""Absolute tolerance of the revolution counters, rad: far below the half turn that they must resolve."""
 
 
 def absolute_tolerances(system: System, settings: RunSettings) -> np.ndarray:
-    """The absolute tolerance of each coordinate, then of each velocity.
+    """Return the absolute tolerance of each coordinate, then of each velocity.
 
-    As given, or rtol for angles and for mechanisms of 1 m and more, and shrinking with smaller ones.  That of a state is that
-    of an angle times the state's scale.
+    It is `atol` if given; otherwise rtol, times the size of the mechanism for lengths if that is below 1 m.  A state
+    has the tolerance of an angle times the state's scale.
 
     Returns
     -------
@@ -33,7 +33,7 @@ def absolute_tolerances(system: System, settings: RunSettings) -> np.ndarray:
 
 
 def independent_tolerances(equations: Equations, settings: RunSettings) -> np.ndarray:
-    """The absolute tolerances of the independent coordinates, then of the independent velocities."""
+    """Return the absolute tolerances of the independent coordinates, then of the independent velocities."""
     n_q = equations.system.n_q
     tolerances = absolute_tolerances(equations.system, settings)
     return equations.coordinates.state(tolerances[:n_q], tolerances[n_q:])

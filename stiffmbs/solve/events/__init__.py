@@ -1,1 +1,1 @@
-"""Events: breakpoints of inputs, event functions of forces, and where a run ends."""
+"""Events: breakpoints of inputs, event functions of forces, and ends of runs."""

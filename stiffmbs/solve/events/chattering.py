@@ -1,5 +1,4 @@
-"""Motions that come to no end: forces that jump back and forth where the motion stays, laws that change ever faster, and steps
-too short to arrive; told in the same words by every solver."""
+"""Detection of runs that would not end: chattering forces, accumulating events and vanishing steps."""
 
 from __future__ import annotations
 
@@ -14,27 +13,26 @@ from ..dynamics import Dynamics
 from .discontinuity import LARGER_MOVE, jumping, sliding
 
 WINDOW, TRUSTED_EVENTS = 250, 1000
-"""Events over which their rate is measured, and events from which on its growth is trusted."""
+"""Events over which their rate is measured, and number of events above which its growth is trusted."""
 TOO_MANY, AT_LEAST = 1e6, 1e4
-"""Events still to come at which a run is given up: ten minutes or more, and events without growth at which growth is reckoned with."""
+"""Expected further events at which a run is stopped, and their least number at which growth is considered."""
 LEAST_POWER, LARGEST_POWER = 0.8, 2.0
-"""Powers of the number of events with which their rate grows in a motion that is driven exponentially; the bounces of a ball that
-comes to rest have larger ones, and end by themselves."""
+"""Bounds of the power of the number of events with which their rate grows in an exponentially driven motion.  Bounces
+of a ball that comes to rest have larger powers, and end."""
 STEPS_SEEN, STEPS_AHEAD = 500_000, 2e8
-"""Steps over which a run's pace is measured, and steps still to come at which it is given up."""
+"""Steps over which the rate of a run is measured, and expected further steps at which it is stopped."""
 STAYS_WITHIN, STAYS_WITHIN_AT_MOST = 1e3, 1e-2
-"""Distance from a jump, relative to the relative tolerance and at the most, at which a state is taken to stay there: steps that
-have seen both of its sides hover about it."""
+"""Distance from a jump at which a state is taken to stay there: relative to rtol, and its upper bound."""
 
 
 class Chattering:
-    """Watches one run of an integrator.
+    """Monitor of one run of an integrator.
 
     Parameters
     ----------
     dynamics : Dynamics
     end : float
-        Of the run, s.
+        End of the run, s.
     rtol : float
         Relative tolerance of the integrator.
     """
@@ -48,7 +46,7 @@ class Chattering:
         self._mark: tuple[float, int] | None = None
 
     def begin(self, t: float, q: np.ndarray, u: np.ndarray) -> None:
-        """Check the state from which the integrator is to start.
+        """Check the state from which the integrator starts.
 
         Raises
         ------
@@ -59,7 +57,7 @@ class Chattering:
             self.refuse(t, sliding(self._dynamics, t, q, u))
 
     def look(self, t: float, q: np.ndarray, u: np.ndarray, steps: int) -> None:
-        """Check a state after a number of steps of the run.
+        """Check a state after `steps` steps of the run.
 
         Raises
         ------
@@ -110,9 +108,9 @@ class Chattering:
             )
 
     def _to_come(self, before: float, last: float) -> float:
-        """Events up to the end, by the times that the last two windows took.
+        """Return the expected number of events up to the end, from the durations of the last two windows.
 
-        With a rate f ~ N of events N their number grows as exp(f t/N).
+        With a rate f ~ N of events N, their number grows as exp(f t/N).
         """
         steady = (self._end - self._events[-1]) / max(last, 1e-300) * WINDOW
         if steady < AT_LEAST or self._count < TRUSTED_EVENTS or last <= 0.0:
@@ -122,13 +120,13 @@ class Chattering:
         return self._count * math.exp(min(steady / self._count, 100.0)) if growing else steady
 
     def refuse(self, t: float, event_functions: np.ndarray) -> None:
-        """Stop the run at the first of some event functions."""
+        """Raise a ChatteringError that names the first of some event functions, if there are any."""
         if len(event_functions):
             raise ChatteringError(f"stopped at t = {t:.9g} s: {jump_sentence(self._dynamics, int(event_functions[0]))}")
 
 
 def jump_sentence(dynamics: Dynamics, event_function: int) -> str:
-    """That a force jumps back and forth."""
+    """Return a sentence on a chattering force."""
     return (
         f"'{writer(dynamics.system, 'event_function', event_function)}' jumps back and forth, as a force does that changes its "
         "sign where the motion comes to rest: no motion follows it from there on; expected a force that is steep "

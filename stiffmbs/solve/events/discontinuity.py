@@ -1,4 +1,4 @@
-"""Forces on both sides of an event function that is about zero: whether they jump, and whether they drive the motion back to it."""
+"""Forces on both sides of the zero of an event function: discontinuities and sliding modes."""
 
 from __future__ import annotations
 
@@ -19,18 +19,17 @@ SWITCHES, CROSSED, BY_VELOCITIES, SIDE = together(
 )
 
 LARGER_MOVE, SMALLER_MOVE = 1e-6, 1e-9
-"""Sizes of moves, relative to the state and at least of 1 m, rad, m/s, rad/s, that take the state to both sides."""
+"""Sizes of moves to both sides of a state, relative to the state and to at least 1 m, rad, m/s or rad/s."""
 JUMPS, LEAST_JUMP = 0.1, 1e-9
-"""A force jumps where the smaller move leaves that part of the larger one's change of accelerations, and that many
-m/s^2 or rad/s^2."""
+"""Least jump of accelerations over the smaller move, relative to that over the larger one, and in m/s^2, rad/s^2."""
 BISECTIONS = 30
-"""Halvings of a move in search of the zero of an event function: from 0.1 to the rounding of the smaller move."""
+"""Bisections of a move in search of the zero of an event function."""
 RATE_INTERVAL = 1e-4
-"""Time, s, over which the rate of an event function is taken."""
+"""Time, s, over which the rate of an event function is computed."""
 
 
 class _Side(NamedTuple):
-    """A state near the one looked at: values of the event functions, accelerations, and rates that these give the event functions."""
+    """Event functions, accelerations, and the resulting rates of the event functions at a nearby state."""
 
     values: np.ndarray
     acceleration: np.ndarray
@@ -38,12 +37,12 @@ class _Side(NamedTuple):
 
 
 class _Beside:
-    """States beside the one that is looked at.
+    """States near a given state.
 
     Parameters
     ----------
     dynamics : Dynamics
-        Its state becomes the one that was looked at last.
+        Its state becomes that of the last evaluation.
     t : float
         s.
     q, u : ndarrays, shapes (n_q,), (n_u,)
@@ -60,39 +59,39 @@ class _Beside:
         self._table = dynamics.table.ctypes.data
 
     def values(self, size: float) -> np.ndarray:
-        """The event functions after a move of a size."""
+        """Return the event functions after a move of a size."""
         found = np.empty(self._count)
         SWITCHES.short_call(self.t, size, *self._at, self._count, address(found), self._table)
         return found
 
     def side(self, size: float) -> _Side:
-        """All that is to be seen after a move of a size."""
+        """Return the event functions, accelerations and rates after a move of a size."""
         values, rates, acceleration = np.empty(self._count), np.full(self._count, np.nan), np.full(len(self.u), np.nan)
         SIDE.short_call(
             self.t, size, RATE_INTERVAL, *self._at, address(self._there), self._count,
             *addresses(values, acceleration, rates), self._table,
         )  # fmt: skip
-        return _Side(values, acceleration, rates)  # without accelerations no number: compares as no jump
+        return _Side(values, acceleration, rates)  # NaN if accelerations are undetermined: not a jump
 
     def sides(self, size: float) -> tuple[_Side, _Side]:
-        """Those of a move and of the opposite one."""
+        """Return both sides of a move."""
         return self.side(size), self.side(-size)
 
     def crossed(self, reach: float = SMALLER_MOVE) -> np.ndarray:
-        """The event functions that differ in sign between the two sides of a move."""
+        """Return the event functions that differ in sign between the two sides of a move."""
         found = np.empty(self._count, dtype=np.int64)
         count = CROSSED.short_call(self.t, reach, *self._at, self._count, address(found), self._table)
         return found.nonzero()[0] if count else found[:0]
 
     def follow_velocities(self, reach: float) -> np.ndarray:
-        """Which event functions change at all with velocities."""
+        """Return a mask of the event functions that depend on velocities."""
         found = np.empty(self._count)
         at_q, at_u, _, along_u = self._at
         BY_VELOCITIES.short_call(self.t, reach, at_q, at_u, along_u, self._count, address(found), self._table)
         return found != 0.0
 
     def at_zero(self, reach: float, event_function: int) -> _Beside:
-        """From where an event function changes its sign, by a move between -reach and reach."""
+        """Return the states near the zero of an event function, by bisection between moves of -reach and reach."""
         low, high = -reach, reach
         above = self.values(high)[event_function] > 0.0
         for _ in range(BISECTIONS):
@@ -110,7 +109,7 @@ class _Beside:
 
 
 def jumping(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> np.ndarray:
-    """The event functions about zero across which accelerations jump.
+    """Return the event functions near zero across which accelerations jump.
 
     Parameters
     ----------
@@ -135,20 +134,20 @@ def jumping(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> np.nd
 
 
 def sliding(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, reach: float = LARGER_MOVE) -> np.ndarray:
-    """The event functions that the motion is driven to from both sides, by a force that jumps there.
+    """Return the event functions whose zero the motion is driven to from both sides by a discontinuous force.
 
-    There is then no solution in the ordinary sense but a sliding mode (Filippov, Differential Equations with
-    Discontinuous Righthand Sides, 1988, ch. 2): sign(v) at rest is one.
+    There is no classical solution then, but a sliding mode, as with sign(v) at rest (Filippov, Differential Equations
+    with Discontinuous Righthand Sides, 1988, ch. 2).
 
     Parameters
     ----------
     reach : float
-        Size of the move, as `LARGER_MOVE`, within which a jump is looked for.
+        Size of the move, as `LARGER_MOVE`, within which a jump is searched for.
     """
     with dynamics.state.unchanged():
         beside = _Beside(dynamics, t, q, u)
         back = beside.crossed(reach)
-        if len(back):  # the rate of others is the same on both sides, however forces jump
+        if len(back):  # the rates of others do not depend on forces
             back = back[beside.follow_velocities(reach)[back]]
         for way in _ahead_first(beside, reach, back) if len(back) else ():
             back = back[_returns(beside.side(way * reach), back)]
@@ -158,27 +157,27 @@ def sliding(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, reach: f
 
 
 def _ahead_first(beside: _Beside, reach: float, crossed: np.ndarray) -> tuple[float, float]:
-    """Both ways of a move, first to the side that the state is on: a motion that goes through the zero leaves it there."""
+    """Return both signs of a move, first that to the side of the state: a motion through the zero leaves it there."""
     here, there = (beside.values(way * reach)[crossed[0]] for way in (0.0, 1.0))
     return (1.0, -1.0) if here * there > 0.0 else (-1.0, 1.0)
 
 
 def _returns(side: _Side, event_functions: np.ndarray) -> np.ndarray:
-    """Whether the motion returns from a side to the zero of each event function."""
+    """Return a mask of the event functions whose zero the motion returns to from one side."""
     returns: np.ndarray = side.rates[event_functions] * side.values[event_functions] < 0.0
     return returns
 
 
 def _driven_back(sides: tuple[_Side, _Side], event_functions: np.ndarray) -> np.ndarray:
-    """Whether the motion returns from both sides to the zero of each event function."""
+    """Return a mask of the event functions whose zero the motion returns to from both sides."""
     return np.logical_and(*(_returns(side, event_functions) for side in sides))
 
 
 def _slides(beside: _Beside, reach: float, event_function: int) -> bool:
     """Return True if the motion returns to the zero of an event function from both sides, with discontinuous rates.
 
-    The zero is a sliding surface only if the event function is continuous.  A function that is discontinuous there, such as the
-    load of a damper at a kink of its road, changes its sign at a surface that another event function describes.
+    The zero is a sliding surface only if the event function is continuous.  A discontinuous one, such as the load of a
+    damper at a kink of its road, changes its sign at a surface of another event function.
     """
     at_zero = beside.at_zero(reach, event_function)
     values, rates = [], []
@@ -193,7 +192,7 @@ def _slides(beside: _Beside, reach: float, event_function: int) -> bool:
 
 
 def direction_of(dynamics: Dynamics) -> tuple[np.ndarray, np.ndarray]:
-    """The direction of moves to both sides of a state: every coordinate and velocity takes part in it."""
+    """Return a direction of moves from a state that changes every coordinate and velocity."""
     system = dynamics.system
     return dynamics.kept("direction beside a state", None, lambda: _direction(system.n_q, system.n_u))
 

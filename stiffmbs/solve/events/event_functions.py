@@ -1,4 +1,4 @@
-"""The memory of the search for events within a step, laid out for compiled code."""
+"""Memory of the search for events within a step, laid out for compiled code."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from ...compile.written_values import writer
 from ..native.tables.steps import EVENT_SEARCH
 
 MOST_STEPS = 1_000_000
-"""Steps of a run that laws periodic in the state may ask for; one that turns faster is reported."""
+"""Steps that periodic laws may require of a run; more are reported."""
 NODES = 8
-"""States that describe a step: the interpolant of DOP853 is of degree 7, that of BDF of at most 5."""
+"""Interpolation nodes of a step: the interpolant of DOP853 has degree 7, that of BDF at most 5."""
 
 
 class EventSearch:
-    """Event functions of a system, and what the search for their events within a step works on.
+    """Event functions of a system, and the memory of the search for their events within a step.
 
     Parameters
     ----------
@@ -30,11 +30,11 @@ class EventSearch:
     table : ndarray of int
         Addresses for compiled code (`stiffmbs.solve.native.tables.steps.EVENT_SEARCH`).
     n : int
-        Number of event functions, with those of laws.
+        Number of event functions, including those of laws.
     n_event_functions : int
         Number of event functions without those of laws.
     masked : ndarray of int, shape (n_event_functions,)
-        An event function that waits (above zero) is not looked at.
+        Event functions with a value above zero are ignored.
     found : ndarray of int, shape (n,)
         1 for the functions of the last event, 0 for others.
     """
@@ -52,7 +52,7 @@ class EventSearch:
         self.table = np.zeros(len(EVENT_SEARCH), dtype=np.int64)
         self._cells = self.table.view(EVENT_SEARCH.cells)[0]
         if not n:
-            return  # nothing to search for: none of its arrays is read
+            return  # no search: its arrays are not read
         zones = zones_of(system)
         self._overlap = zones.overlap.copy()
         place = np.arange(NODES) * np.pi / (NODES - 1)
@@ -70,19 +70,19 @@ class EventSearch:
         fill(self.table, EVENT_SEARCH, self._arrays)
 
     def end_steps_at_kinks(self) -> None:
-        """From now on, end steps where the argument of a table passes a kink."""
+        """End steps at the kinks of tables from now on."""
         if self.n:
             zones = zones_of(self._system)
             self._lands[:] = zones.kinks
             self._overlap[np.repeat(zones.kinks, np.diff(zones.first)) > 0] = 0.0
 
     def begin(self) -> None:
-        """Forget the last step: the integrator starts anew."""
+        """Forget the last step before a restart of the integrator."""
         self._cells["ready"] = 0
         self.found[:] = 0
 
     def resolve(self, duration: float) -> None:
-        """Forget the last run, and bound the steps of one with this duration, s, by its arguments of sines."""
+        """Forget the last run; the periods of laws limit the steps of a run of this duration, s."""
         for cell, value in (
             ("least", duration / MOST_STEPS),
             ("duration", duration),
@@ -96,7 +96,7 @@ class EventSearch:
             self._cells[cell] = value
 
     def note(self) -> str:
-        """Return a sentence on a periodic law that repeats more often than steps are taken; empty for none."""
+        """Return a sentence on a periodic law with more periods than steps; empty if there is none."""
         cells = self._cells
         if not cells["unresolved"]:
             return ""
@@ -108,7 +108,7 @@ class EventSearch:
 
 
 def _calls(system: System) -> dict[str, np.ndarray | int]:
-    """Which call of a kernel computes each function, and room for which calls matter: all, until a step shows less."""
+    """Return the kernel call that computes each function, and flags of the calls to evaluate: all, at first."""
     places, terms = system.places["event_function"], TERM_SETS["event_function"]
     call = np.zeros(system.n_values("event_function"), dtype=np.int64)
     writing = [g for g, group in enumerate(system.groups) if system.kernel("event_function", group) is not None]

@@ -1,4 +1,4 @@
-"""Runs whose inputs end on the way: integrated up to there by every solver, and told in one sentence."""
+"""Runs beyond the end of an input: integrated up to it, with one message for all solvers."""
 
 from __future__ import annotations
 
@@ -10,20 +10,20 @@ from ..dynamics import Dynamics
 from ..trajectory import Grid, Outcome, Trajectory
 
 NEAR_INPUT_END = 1e-3
-"""Part of the run before the end of an input within which a solver that stops by itself stops for that input."""
+"""Fraction of the run before the end of an input in which a solver that stops is assumed to stop at that end."""
 
 
 def solve_up_to_the_inputs_end(dynamics: Dynamics, grid: Grid, solve: Callable[[Grid], Trajectory]) -> Trajectory:
-    """Solve over a grid, or over as much of it as all inputs have values for.
+    """Solve over a grid, or up to the first end of an input.
 
     Parameters
     ----------
     dynamics : Dynamics
-        Of the whole.
+        Dynamics of the whole system.
     grid : Grid
-        Of the whole run.
+        Grid of the whole run.
     solve : callable
-        Gives the trajectory over a grid.
+        Returns the trajectory over a grid.
     """
     end = dynamics.input_end(grid.start, grid.end)
     if end is None:
@@ -36,7 +36,7 @@ def solve_up_to_the_inputs_end(dynamics: Dynamics, grid: Grid, solve: Callable[[
 
 
 def _up_to(grid: Grid, end: InputEnd) -> Grid:
-    """The grid up to where the input's values still have their digits."""
+    """Return the grid up to the time at which values of the input still have their precision."""
     last = max(end.t - end.near, 0.5 * (grid.start + end.t))
     return replace(grid, end=last, times=None if grid.times is None else grid.times[grid.times <= last])
 

@@ -1,4 +1,4 @@
-"""Steps far longer than those before them, with what the integrator's polynomial says within each."""
+"""Log of steps much longer than their predecessors, with the integrator's polynomial within each."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ from ..dynamics import Dynamics
 from ..native.tables.steps import LONG_STEPS
 
 FROM_MIDDLE = 1e-4
-"""Part of a step on both sides of its middle at which states are kept: their mean and difference are the state there and its rate."""
+"""Distance from the middle of a step, relative to the step, of two stored states; they give the state and its rate."""
 MIDDLE = np.array([0.5 - FROM_MIDDLE, 0.5 + FROM_MIDDLE])
 WHOLE = 0.5 - 0.5 * np.cos(np.arange(8) * np.pi / 7)
-"""Places that describe a whole step: the interpolant of DOP853 is of degree 7, that of BDF of at most 5."""
+"""Nodes that represent a whole step: the interpolant of DOP853 has degree 7, that of BDF at most 5."""
 LONG, LONG_FOR_FUNCTIONS = (4.0, 8.0), (2.0, 64.0)
-"""Times the usual step from which on a step is long, and of about how many steps that is the mean.  Nothing but steps so kept tells what
-a Python function does within them; other laws are searched for events as well."""
+"""Ratio of a long step to the usual one, and number of steps over which the usual one is averaged.  Python functions
+are checked in these steps only; other laws are searched for events as well."""
 MOST_STEPS, MOST_VALUES = 1000, 1_000_000
-"""Steps, and numbers of their states, that are kept of one run."""
+"""Largest numbers of steps and of values stored of one run."""
 
 
 class Motion(NamedTuple):
@@ -31,7 +31,7 @@ class Motion(NamedTuple):
     Attributes
     ----------
     t, q, u, rate : ndarrays, shapes (m,), (m, n_q), (m, n_u), (m, n_u)
-        Times, states, and rates of u, of the integrator's polynomial.
+        Times, states, and rates of u by the integrator's polynomial.
     """
 
     t: np.ndarray
@@ -46,7 +46,7 @@ class LongSteps(NamedTuple):
     Attributes
     ----------
     dynamics : Dynamics
-        Of the system that was integrated.
+        Dynamics of the integrated system.
     begin, end : ndarrays, shape (n,)
         s.
     q, u : ndarrays, shapes (n, places, n_q), (n, places, n_u)
@@ -63,24 +63,24 @@ class LongSteps(NamedTuple):
     def of(
         cls, dynamics: Dynamics, equations: Equations, begin: np.ndarray, end: np.ndarray, rows: np.ndarray
     ) -> LongSteps:
-        """From what an integrator of some equations reports at those places, shape (n, places, numbers reported)."""
+        """Create the steps from the reported unknowns at the stored places, shape (n, places, n_reported)."""
         q, u = equations.states(rows.reshape(-1, rows.shape[-1]))
         shape = rows.shape[:2]
         return cls(dynamics, begin, end, q.reshape(*shape, -1), u.reshape(*shape, -1))
 
     @property
     def whole(self) -> bool:
-        """Whether the polynomial is known all along the steps."""
+        """Return True if the polynomial is known over whole steps."""
         return self.q.shape[1] == len(WHOLE)
 
     def middles(self, steps: np.ndarray) -> Motion:
-        """The middles of some steps; where they are not known as a whole."""
+        """Return the middles of some steps; for steps that are stored at `MIDDLE`."""
         begin, end, q, u = self.begin[steps], self.end[steps], self.q[steps], self.u[steps]
         rate = (u[:, 1] - u[:, 0]) / (2.0 * FROM_MIDDLE * (end - begin))[:, None]
         return Motion(0.5 * (begin + end), q.mean(axis=1), u.mean(axis=1), rate)
 
     def at(self, step: np.ndarray, part: np.ndarray) -> Motion:
-        """Parts (0 to 1) of steps, both of shape (m,); where steps are known as a whole."""
+        """Return the states at parts (0 to 1) of steps, both of shape (m,); for steps that are stored at `WHOLE`."""
         length = (self.end - self.begin)[step]
         to_series = np.linalg.inv(chebvander(2.0 * WHOLE - 1.0, len(WHOLE) - 1))
         q, u = (np.einsum("kl,nlj->nkj", to_series, states) for states in (self.q, self.u))
@@ -98,7 +98,7 @@ class LongStepLog:
     ----------
     system : System
     width : int
-        Numbers of a state that are kept.
+        Number of values stored of a state.
 
     Attributes
     ----------
@@ -120,6 +120,6 @@ class LongStepLog:
         self._cells["count"], self._cells["usual"] = 0, 0.0
 
     def kept(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Begin and end of each step kept, and its states, shape (n, places, width)."""
+        """Return the begin and end of each stored step, and its states, shape (n, places, width)."""
         rows = self._rows[: int(self._cells["count"])].copy()
         return rows[:, 0], rows[:, 1], rows[:, 2:].reshape(len(rows), *self._shape)

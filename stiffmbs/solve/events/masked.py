@@ -1,7 +1,7 @@
-"""Switches that stay about zero: left alone for a while where the force has a breakpoint there, told where it jumps.
+"""Masking of event functions that stay near zero, if the force is continuous there; a jump is reported.
 
-A contact whose gap is zero at the start, or max(0, x) at rest, changes its sign by rounding alone.  A force without a
-jump loses nothing when the integrator goes on across its breakpoint.
+A contact with zero gap at the start, or max(0, x) at rest, changes its sign by rounding alone.  Without a jump of the
+force, the integrator may ignore the breakpoint.
 """
 
 from __future__ import annotations
@@ -15,28 +15,27 @@ from .chattering import Chattering, jump_sentence
 from .discontinuity import jumping
 
 FEW_STEPS, TIMES_THE_WAIT = 4, 4
-"""An event within so many steps of a start, and of the wait before, counts as one by rounding."""
+"""Steps after a start, and multiple of the preceding wait, within which an event is attributed to rounding."""
 FIRST_WAIT, LONGER, MOST_IN_SUCCESSION = 8, 4, 5
-"""Steps for which an event function is masked after its second event of a kind, factor for each further event, and upper bound: the
-first steps after a start double in size.  A single repetition may be an event detected twice, because the start is projected onto
-the constraints."""
+"""Steps for which an event function is masked after its second such event, factor for each further event, and largest
+count.  A single repetition may be an event that is detected twice, because the start is projected onto constraints."""
 TELLING = 3
-"""Such events in succession from which on a force that jumps is told; the first may be those of a start at zero."""
+"""Successive events from which a force is checked for a jump; the first may be those of a start at zero."""
 
 
 class MaskedEvents:
-    """The event functions of one run, and how long each is to be left alone.
+    """Event functions of one run, and the steps for which each is masked.
 
     Parameters
     ----------
     dynamics : Dynamics
     chattering : Chattering
-        Of the same run.
+        Monitor of the same run.
 
     Attributes
     ----------
     steps : ndarray of int
-        Steps from the next start on for which each event_function is not to be looked at.
+        Steps from the next start for which each event function is masked.
     """
 
     def __init__(self, dynamics: Dynamics, chattering: Chattering) -> None:
@@ -47,19 +46,19 @@ class MaskedEvents:
 
     @property
     def any(self) -> bool:
-        """Whether the system has event functions."""
+        """Return True if the system has event functions."""
         return bool(len(self.steps))
 
     def note(self, t: float, q: np.ndarray, u: np.ndarray, steps: int, fired: Sequence[int]) -> None:
-        """Take note of the end of a segment, after so many steps of the run, by the event functions that have fired.
+        """Record the events that ended a segment, after `steps` steps of the run.
 
         Raises
         ------
         SolverError
-            Where a force keeps jumping back and forth; names the element.
+            If a force keeps chattering; names the element.
         """
         since, self._steps = steps - self._steps, steps
-        if self._quiet and since > FEW_STEPS:  # none is left alone, and none comes soon
+        if self._quiet and since > FEW_STEPS:  # none is masked, and the event is not soon after the last
             return
         left_behind = since > TIMES_THE_WAIT * self.steps + FEW_STEPS
         self._in_succession[left_behind] = 0
@@ -74,6 +73,6 @@ class MaskedEvents:
         self._quiet = not self._in_succession.any()
 
     def failed(self, t: float, q: np.ndarray, u: np.ndarray) -> str:
-        """Why the integrator could not go on, where a force that jumps is the reason; empty for other reasons."""
+        """Return a sentence on a discontinuous force that made the integrator fail; empty for other causes."""
         found = jumping(self._dynamics, t, q, u) if self.any else self.steps
         return jump_sentence(self._dynamics, int(found[0])) if len(found) else ""

@@ -1,4 +1,4 @@
-"""What is said of inputs whose features are narrower than fixed steps, or than the time between output points."""
+"""Warnings on inputs with features shorter than fixed steps or than the output spacing."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ from ...compile.inputs.features import InputFeatures
 from ...compile.inputs.of_time import Input
 
 HIDDEN = 0.05
-"""Part of an input's change by which a peak must exceed what output points show before it is told."""
+"""Height of a peak between output times, relative to the input's change, above which it is reported."""
 LOOKS, MOST_LOOKS = 8, 5000
-"""Instants between two output points at which an input is looked at, and within all of its narrow features."""
+"""Samples of an input between two output times, and in all of its narrow features."""
 STANDS = 1e-9
 """Change of an input, relative to its values, that may be rounding."""
 
 
 def narrower_than_output(features: InputFeatures, spacing: float) -> str:
-    """A sentence where peaks may lie between output points; empty for nothing."""
+    """Return a sentence on features shorter than the output spacing; empty if there are none."""
     length, t = features.narrowest()
     if length >= spacing:
         return ""
@@ -29,7 +29,7 @@ def narrower_than_output(features: InputFeatures, spacing: float) -> str:
 
 
 def hidden_peak(inputs: Sequence[Input], features: InputFeatures, times: np.ndarray) -> str:
-    """A sentence on an input that goes beyond what output points show of it; empty for nothing."""
+    """Return a sentence on an input with a peak between output times; empty if there is none."""
     parts = times[:-1, None] + np.diff(times)[:, None] * np.arange(LOOKS) / LOOKS
     narrow = features.instants(times[0], times[-1], float(np.max(np.diff(times), initial=0.0)), MOST_LOOKS)
     between = np.concatenate([parts.ravel(), narrow, features.breakpoints])
@@ -51,7 +51,7 @@ def hidden_peak(inputs: Sequence[Input], features: InputFeatures, times: np.ndar
 
 
 def narrower_than_steps(features: InputFeatures, step: float, scheme: str) -> str:
-    """A sentence where steps of one length may jump over features; empty for nothing."""
+    """Return a sentence on features shorter than the fixed steps; empty if there are none."""
     length, t = features.narrowest()
     if length >= step:
         return ""

@@ -1,4 +1,4 @@
-"""Where a run is stopped: its motion has left what mechanics describes, or a force the limits within which its law holds."""
+"""Refusal of diverged motions and of forces beyond the limits of their laws."""
 
 from __future__ import annotations
 
@@ -14,34 +14,34 @@ from ..trajectory import Rows
 SPEED_OF_LIGHT = 299_792_458.0
 """Speed of light, m/s."""
 UNBOUNDED_MOTION = 1e4
-"""Sizes of the mechanism, or rad, that a motion may come to where it grows faster than under any force over time."""
+"""Largest displacement of a motion that grows exponentially, in sizes of the mechanism or rad."""
 DECADES, FASTER = (1e-4, 1e-2, 1.0), 2.5
-"""Parts of the largest motion; the time from the second to the third may be so many times that from the first to the
-second: 10 under a constant force, 3.2 where a force grows as time squared, 1 for exponential growth."""
+"""Fractions of the largest displacement, and the largest ratio of the times between them that indicates exponential
+growth.  The ratio is 10 for a constant force, 3.2 for a force that grows as time squared, and 1 for an exponential."""
 FOLLOWED_STEPS = 100_000
-"""Steps for which a motion is followed wherever it goes."""
+"""Steps before a motion is checked for divergence."""
 INSTANTS = 2000
-"""Of those stored, at which growth is looked at."""
+"""Largest number of stored states from which growth is estimated."""
 
 
 def refuse_beyond_sense(dynamics: Dynamics, rows: Rows, t: float, q: np.ndarray, u: np.ndarray) -> None:
-    """Stop a run that has diverged; to be asked after `FOLLOWED_STEPS` alone.
+    """Stop a run that has diverged; to be called only after `FOLLOWED_STEPS`.
 
     Parameters
     ----------
     dynamics : Dynamics
     rows : Rows
-        What the run has stored so far.
+        Stored states of the run.
     t : float
-        Where it is, s.
+        Current time, s.
     q, u : ndarrays, shapes (n_q,), (n_u,)
-        There.
+        Current state.
 
     Raises
     ------
     SolverError
-        Where a body is faster than light, or the motion grows like an exponential beyond `UNBOUNDED_MOTION`; names the body and the
-        element that pulls hardest.
+        If a body is faster than light, or the motion grows exponentially beyond `UNBOUNDED_MOTION`; names the body
+        and the element with the largest force.
     """
     system = dynamics.system
     speed, body = fastest(system, u)
@@ -64,7 +64,7 @@ def _sentence(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, what: 
 
 
 def reaches(system: System) -> np.ndarray:
-    """What turns coordinates into lengths, m: 1 for places, the mechanism's size for angles, 0 for quaternions and states."""
+    """Return factors from coordinates to lengths, m: 1 for positions, the mechanism's size for angles, 0 for others."""
     lengths = system.per_coordinate(1.0, system.size)
     lengths[system.quaternions] = 0.0
     lengths[system.first_state :] = 0.0
@@ -72,7 +72,7 @@ def reaches(system: System) -> np.ndarray:
 
 
 def fastest(system: System, u: np.ndarray) -> tuple[float, str]:
-    """The largest speed, of centres of mass and of turning times the mechanism's size, m/s, and whose it is."""
+    """Return the largest speed, m/s, with angular velocities times the mechanism's size, and its body."""
     if not system.bodies:
         return 0.0, ""
     speeds = np.abs(u) * system.per_velocity(1.0, system.size)
@@ -81,14 +81,14 @@ def fastest(system: System, u: np.ndarray) -> tuple[float, str]:
 
 
 def exponential(t: np.ndarray, reached: np.ndarray) -> bool:
-    """Whether what was reached grew faster than any power of time that forces make, for certain.
+    """Return True if a displacement grew faster than any power of time that forces produce.
 
     Parameters
     ----------
     t : ndarray, shape (n,)
-        Instants, s.
+        Times, s.
     reached : ndarray, shape (n,)
-        The largest up to each of them.
+        Largest displacement up to each time.
     """
     first, second, last = (int(np.argmax(reached >= part * reached[-1])) for part in DECADES)
     if not first < second - 1 < last:
@@ -97,12 +97,12 @@ def exponential(t: np.ndarray, reached: np.ndarray) -> bool:
 
 
 def refuse_beyond_limits(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> None:
-    """Stop a run whose state has passed the limits of a force, as the turns beyond which a spring cannot tell its angle.
+    """Stop a run whose state has passed the limits of a force, such as the resolvable revolutions of a torsion spring.
 
     Raises
     ------
     SolverError
-        Names the element.
+        If a limit is passed; names the element.
     """
     system, state = dynamics.system, dynamics.state
     first, end = system.first_limit, system.n_event_functions

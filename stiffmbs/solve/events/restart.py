@@ -1,4 +1,4 @@
-"""Starting anew in the middle of a run, at a breakpoint or an event."""
+"""Restart within a run, at a breakpoint or an event."""
 
 from __future__ import annotations
 
@@ -18,34 +18,32 @@ GONE_PAST = Routine(
     "float64(float64, float64, int64, float64*, float64*, int64*)",
 )
 INDISTINCT = 4 * float(np.finfo(float).eps)
-"""Part of a time within which another one is taken for the same, by IDA and for breakpoints, which rounding moves by as much."""
+"""Relative difference up to which two times are the same, for IDA and for breakpoints, whose rounding is as large."""
 
 
 HIDDEN = 1e-11
-"""Interval, relative to the time, in which rounding may hide a change of an event function: 10^5 roundings, as near the maximum of a
-sine."""
+"""Interval, relative to the time, in which rounding may hide a sign change of an event function, as at an extremum."""
 PASSED, LARGEST_RTOL = 1e-2, 1e-4
-"""How far the motion goes straight on behind an event: part of the last step, times the relative tolerance or this at most.  What a
-law changes in that time is so much below the tolerance."""
+"""Extrapolation after an event: fraction of the last step, times rtol, and an upper bound of that rtol."""
 
 
 def just_before(t: float) -> float:
-    """The first instant that counts as t."""
+    """Return the first instant that counts as t."""
     return t - INDISTINCT * abs(t)
 
 
 def just_after(t: float) -> float:
-    """The last instant that counts as t: IDA refuses to start towards one that is nearer than two roundings."""
+    """Return the last instant that counts as t: IDA refuses to start towards one nearer than two roundings."""
     return t + INDISTINCT * abs(t)
 
 
 def straight_on(t: float, step: float, rtol: float) -> float:
-    """Return the time, s, for which the motion after an event at t is extrapolated, at least the interval that rounding may hide."""
+    """Return the time, s, of extrapolation after an event at t; at least the interval that rounding may hide."""
     return max(PASSED * min(rtol, LARGEST_RTOL) * step, HIDDEN * abs(t))
 
 
 def restarted(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, project: bool = True) -> InitialValues:
-    """Consistent values near given ones: projected onto the constraints, with new accelerations and multipliers.
+    """Return consistent values near given ones, with new accelerations and multipliers.
 
     Parameters
     ----------
@@ -53,12 +51,12 @@ def restarted(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, projec
         s.
     q, u : ndarrays, shapes (n_q,), (n_u,)
     project : bool
-        Whether q and u are first brought back to the constraints.
+        If True, q and u are first projected onto the constraints.
 
     Raises
     ------
     SolverError
-        When the constraints cannot be satisfied or are dependent there, or accelerations are not determined.
+        If the constraints cannot be satisfied or are dependent, or if accelerations are not determined.
     """
     _take(dynamics, t, q, u, project)
     return _at_hand(dynamics, t)
@@ -67,10 +65,10 @@ def restarted(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, projec
 def restarted_past(
     dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, ahead: float
 ) -> tuple[InitialValues, float]:
-    """Consistent values behind an event, at its time or a little ahead, and the time that they belong to.
+    """Return consistent values after an event, at its time or slightly later, and their time.
 
-    On the constraints the state may be before the event again, and another event function may change at the same instant: each
-    would be one more event.  Where an event function changes on the straight way ahead, the motion starts anew behind it.
+    The projection may move the state back before the event, and another event function may change at the same time.
+    Where one changes within the extrapolated motion, the motion restarts after that change.
 
     Parameters
     ----------
@@ -78,7 +76,7 @@ def restarted_past(
         s.
     q, u : ndarrays, shapes (n_q,), (n_u,)
     ahead : float
-        Length of the straight way, s (`straight_on`); 0 for none.
+        Time of extrapolation, s (`straight_on`); 0 for none.
     """
     _take(dynamics, t, q, u)
     if ahead:
@@ -87,15 +85,15 @@ def restarted_past(
 
 
 def _gone_past(dynamics: Dynamics, t: float, ahead: float) -> float:
-    """Move the state at hand on at its velocities where event functions change on that way; for how long."""
+    """Extrapolate the current state past changes of event functions; return the time by which it has moved, s."""
     count = dynamics.system.n_event_functions
     dynamics.state.load("event_function")
-    memory = np.empty(len(dynamics.state.q)), np.empty(count)  # held as long as compiled code works on it
+    memory = np.empty(len(dynamics.state.q)), np.empty(count)  # alive while compiled code uses it
     return float(GONE_PAST.short_call(t, ahead, count, *addresses(*memory, dynamics.table)))
 
 
 def _take(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, project: bool = True) -> None:
-    """The state given, brought back to the constraints."""
+    """Set the state to given values, projected onto the constraints."""
     state = dynamics.state
     state.q[:], state.u[:] = q, u
     if project and dynamics.system.n_c:
@@ -105,7 +103,7 @@ def _take(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, project: b
 
 
 def _at_hand(dynamics: Dynamics, t: float) -> InitialValues:
-    """The state at hand with its accelerations and multipliers."""
+    """Return the current state with its accelerations and multipliers."""
     state = dynamics.state
     state.count_anew(t)
     status, acceleration = dynamics.accelerate(t)
@@ -121,7 +119,7 @@ def _go_on(dynamics: Dynamics, status: int, t: float, clause: str = "") -> None:
 
 
 def _no_longer_redundant(dynamics: Dynamics, t: float, q: np.ndarray) -> str:
-    """A clause on the equation left out as redundant that is furthest from holding; empty where all hold."""
+    """Return a clause on the omitted redundant equation with the largest violation; empty if all hold."""
     system, state = dynamics.system, dynamics.state
     state.q[:] = q
     state.evaluate("position", t)

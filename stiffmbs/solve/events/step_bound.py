@@ -1,4 +1,4 @@
-"""The longest steps that see what the inputs do, for compiled code."""
+"""Bound of the step size by the features of inputs, for compiled code."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from ..native.tables.steps import STEP_BOUND
 
 
 class StepBound:
-    """A table for compiled code (`stiffmbs.solve.native.step_bound`) whose content may change.
+    """Table of step bounds for compiled code (`stiffmbs.solve.native.step_bound`), which may be updated.
 
     Attributes
     ----------
     table : ndarray of int
-        It stays where it is.
+        Its address does not change.
     """
 
     def __init__(self) -> None:
-        self.table = np.zeros(len(STEP_BOUND), dtype=np.int64)  # no features: none of its arrays is read
+        self.table = np.zeros(len(STEP_BOUND), dtype=np.int64)  # no features: its arrays are not read
         self._cells = self.table.view(STEP_BOUND.cells)[0]
         self._followed = NO_FEATURES
 

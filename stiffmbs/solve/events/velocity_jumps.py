@@ -1,4 +1,4 @@
-"""Jumps of velocities that drives ask for at breakpoints: no equation holds their impulses, so that they are told."""
+"""Report of velocity jumps prescribed by drives at breakpoints; their impulses appear in no reaction."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ import numpy as np
 from ..dynamics import Dynamics
 
 MOST_MESSAGES = 3
-"""Jumps that are told one by one."""
+"""Largest number of jumps reported one by one."""
 WORTH_TELLING = 1e-2
-"""Change of a velocity at a breakpoint, relative to the largest, that no error of an integrator explains."""
+"""Velocity change at a breakpoint, relative to the largest velocity, above which it is a jump."""
 
 
 class VelocityJumps:
-    """The jumps of one run.
+    """Velocity jumps of one run.
 
     Parameters
     ----------
@@ -25,7 +25,7 @@ class VelocityJumps:
         self._messages: list[str] = []
 
     def note(self, t: float, change: np.ndarray) -> None:
-        """Note a change of velocities at a breakpoint; the dynamics' state is the one behind it."""
+        """Note a change of velocities at a breakpoint; the state of the dynamics is that after it."""
         if not (np.abs(change) > WORTH_TELLING).any():
             return
         k = int(np.argmax(np.abs(change)))
@@ -37,10 +37,10 @@ class VelocityJumps:
             )
 
     def clear(self) -> None:
-        """Forget them, for another run."""
+        """Forget the jumps before another run."""
         self._messages.clear()
 
     def sentence(self) -> str:
-        """What the user should know; empty for nothing."""
+        """Return a sentence on the jumps for the user; empty if there are none."""
         more = len(self._messages) - MOST_MESSAGES
         return "; ".join([*self._messages[:MOST_MESSAGES], *([f"and {more} more such jumps"] if more > 0 else [])])

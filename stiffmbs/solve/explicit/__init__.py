@@ -1,4 +1,4 @@
-"""Explicit Runge-Kutta schemes, one table of coefficients per file, and the loops that drive them."""
+"""Explicit Runge-Kutta schemes, one table of coefficients per file, and their integration loops."""
 
 from .dop853 import DOP853
 from .dopri5 import DOPRI5

@@ -1,4 +1,4 @@
-"""Explicit Runge-Kutta steps that are chosen by the error."""
+"""Explicit Runge-Kutta steps with error control."""
 
 from __future__ import annotations
 
@@ -28,33 +28,33 @@ from .sentences import REASONS, stiff_sentence
 from .stable_step import StableStep
 
 WORTH_TELLING = 0.1
-"""Part of the steps that stability must have held back for the summary to name bdf."""
+"""Fraction of steps limited by stability from which on the summary recommends bdf."""
 MOST_LOOKS_APART = 16
 SOON_AGAIN, NOW_AND_THEN = 4, 8
-"""Steps of a segment up to which its end is looked at for a force that jumps back and forth, and events of which one is in any case."""
+"""Steps of a segment up to which its end is checked for chattering, and events of which one is always checked."""
 SOON = 8
-"""A look comes sooner where stability holds back one in so many of the steps until then."""
+"""An early check is due when stability has limited one in this number of the steps up to it."""
 
 
 class Leaving(NamedTuple):
-    """When a run is to be left to another solver: asked after so many steps of a segment, then after a few times as many."""
+    """Condition for leaving a run to another solver: the first check, in steps of a segment, and the criterion."""
 
     first: int
     pays: Callable[[Integration], bool]
 
 
 class AdaptiveRun:
-    """One integration with a scheme that estimates its error, from breakpoint to breakpoint and from event to event.
+    """Integration with an embedded scheme, from breakpoint to breakpoint and from event to event.
 
-    Steps are not cut by output times: states there come from the scheme's interpolant.  They are cut by breakpoints in
-    time, and by other features of the inputs, which long steps of a motion at rest would jump over, and where a force
-    changes its law (a contact closes).
+    Output times do not bound the steps; the states there come from the scheme's interpolant. Steps end at breakpoints
+    in time and at events of force laws (a contact closes). Other features of the inputs, which long steps of a motion
+    at rest would miss, bound them too.
 
     Attributes
     ----------
     work : Integration
     left : bool
-        Whether the run was left to another solver on its way, or could not go on.
+        Whether the run was left to another solver or failed.
     """
 
     def __init__(
@@ -75,10 +75,10 @@ class AdaptiveRun:
         self._jumps = VelocityJumps(dynamics)
         self._chattering, self._events = Chattering(dynamics, grid.end, settings.rtol), 0
         self._rounding = Rounding(dynamics, settings.rtol, grid.start, grid.end)
-        self._begun = 0  # steps before the present segment
+        self._begun = 0  # steps before the current segment
 
     def integrate(self, leaving: Leaving | None = None) -> Trajectory:
-        """Integrate to the end, or to where the run is left; the contract is in `stiffmbs.solve.trajectory`."""
+        """Integrate to the end, or until the run is left; the contract is in `stiffmbs.solve.trajectory`."""
         work, status = self.work, AT_END
         with Ending() as ending:
             for breakpoint in (*self._breakpoints.tolist(), self._grid.end):
@@ -110,13 +110,13 @@ class AdaptiveRun:
         )
 
     def _reason(self, status: int) -> str:
-        """Why the run cannot go on."""
+        """Return the reason why the run cannot go on."""
         state = self.work.t, self.work.q.copy(), self.work.u.copy()
         missing = no_value_ahead(self._dynamics, *state) if status == NO_STATE else ""
         return missing or REASONS[status] + suspect(self._dynamics, *state)
 
     def _segment(self, stop: float, leaving: Leaving | None) -> int:
-        """Go on from consistent values to `stop`, to an event, or to where the run is left; the last status."""
+        """Integrate from consistent values to `stop`, to an event, or until the run is left; return the last status."""
         work, advance, status = self.work, ADVANCE.call, PAUSED
         most = min(leaving.first, work.capacity) if leaving else work.capacity
         if work.count("steps") - self._begun <= SOON_AGAIN or self._events % NOW_AND_THEN == 0:
@@ -162,23 +162,23 @@ class AdaptiveRun:
         return status
 
     def _leave_to_rounding(self) -> None:
-        """Stop where steps follow rounding alone; another solver may go on."""
+        """Stop if rounding governs the steps; another solver may go on."""
         reason = self._rounding.look(self.work)
         if reason:
             self.left = True
             raise SolverError(f"stopped at t = {self.work.t:.9g} s: {reason}")
 
     def _looks(self, most: int, leaving: Leaving | None) -> tuple[int, int]:
-        """Counts of steps, and of those that stability held back, at which the next look is due."""
+        """Return the step count, and the count of steps limited by stability, at which the next check is due."""
         return self.work.count("steps") + most, self.work.count("stiff_steps") + self._held(most, leaving)
 
     @staticmethod
     def _held(most: int, leaving: Leaving | None) -> int:
-        """Steps that stability must hold back for a look before so many are taken."""
+        """Return the number of steps limited by stability that makes an early check due."""
         return max(1, most // SOON) if leaving else most
 
     def _go_past(self, breakpoint: float) -> None:
-        """Start anew behind a breakpoint, where min(2*t, 1) has its new slope; what is asked for at it is the state before."""
+        """Restart after a breakpoint, where min(2*t, 1) has its new slope; output at it is the state before."""
         self.work.t = breakpoint
         self._store_rows()
         self.work.t = min(just_after(breakpoint), self._grid.end)
@@ -187,14 +187,14 @@ class AdaptiveRun:
         self._jumps.note(breakpoint, self._start.u - before)
 
     def _start_anew(self) -> int:
-        """Go on from consistent values at the time reached; the first event_function of the event met there, or -1."""
+        """Restart from consistent values at the current time; return the event function of an event there, or -1."""
         work = self.work
         self._start = restarted(self._dynamics, work.t, work.q, work.u, self._settings.projection)
         refuse_beyond_limits(self._dynamics, work.t, self._start.q, self._start.u)
         return work.begin(self._start)
 
     def _store_rows(self) -> None:
-        """Store what is asked for up to the time reached."""
+        """Store the output rows up to the current time."""
         work, status = self.work, PAUSED
         while status == PAUSED:
             status = ADVANCE.call(work.t, 1, 1, self._grid.times is None, work.at)

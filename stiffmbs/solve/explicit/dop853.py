@@ -1,4 +1,4 @@
-"""The scheme of order 8 of Dormand and Prince, error estimate of orders 5 and 3, interpolant of order 7: DOP853; and one of order 6."""
+"""Dormand-Prince scheme of order 8 (DOP853): error estimate of orders 5 and 3, interpolants of orders 7 and 6."""
 
 from .scheme import Scheme
 
@@ -114,12 +114,10 @@ DOP853 = Scheme(
     memory=0.04,
     stability=6.1,
 )  # fmt: skip
-"""Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I (2nd ed. 1993), ch. II.5 and II.6, and the code DOP853.
+"""Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I (2nd ed. 1993), sec. II.5 and II.6, code DOP853.
 
-Its step control has a memory here (DOP853's default has none): a fifth of the steps were rejected without, a tenth
-with it, for fewer evaluations at a smaller error (measured on a chain of 10 and the cart-pendulum).
-
-The interpolant of order 6 needs no further stages: the 13 of a step meet all 37 conditions, with one number left for each polynomial.
-The rows are those without the stage 7.  `free_error` is the sum of stages that vanishes in all these conditions, as large as what the
-interpolant leaves of those of order 7 (2.2e-5, the root of the sum of squares over the trees' symmetries).
+The step control has a memory, which DOP853 does not have by default. The interpolant of order 6 needs no further
+stages: the 13 of a step satisfy all 37 conditions, with one free parameter for each polynomial. The rows are those with
+a zero coefficient of stage 7. `free_error` is the sum of stages that vanishes in all these conditions, scaled to the
+residual of the interpolant in those of order 7.
 """

@@ -1,4 +1,4 @@
-"""The scheme of order 5 of Dormand and Prince, error estimate of order 4, interpolant of order 4."""
+"""Dormand-Prince scheme of order 5: error estimate of order 4, interpolant of order 4."""
 
 from .scheme import Scheme
 
@@ -27,5 +27,4 @@ DOPRI5 = Scheme(
     memory=0.04,
     stability=3.25,
 )  # fmt: skip
-"""Dormand and Prince, J. Comput. Appl. Math. 6 (1980) 19; interpolant, step control and limit of stability as in
-Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I (2nd ed. 1993), ch. II.4 to II.6 and the code DOPRI5."""
+"""Dormand and Prince, J. Comput. Appl. Math. 6 (1980) 19; Hairer, Norsett, Wanner (see DOP853), sec. II.4 to II.6."""

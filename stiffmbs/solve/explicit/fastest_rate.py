@@ -1,4 +1,4 @@
-"""The fastest rate of a motion: what an explicit integrator's stability has to reckon with."""
+"""Fastest rate of a motion, for the stability limit of explicit integrators."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from .routines import FASTEST_RATE
 
 
 def fastest_rate(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> float:
-    """The largest |lambda|, 1/s, of the motion about a state on the constraints, from below.
+    """Return a lower bound of the largest |lambda|, 1/s, of the motion about a state on the constraints.
 
-    Its cost is that of a step of order 8.
+    It costs about as much as a step of order 8.
     """
     state, eliminated = dynamics.state, dynamics.eliminated
     state.q[:], state.u[:] = q, u
@@ -24,7 +24,7 @@ def fastest_rate(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> 
 
 
 def _of_states(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> float:
-    """The largest |lambda| of the states by themselves, 1/s."""
+    """Return the largest |lambda| of the user-defined states at a fixed motion, 1/s."""
     system, state = dynamics.system, dynamics.state
     if not system.states:
         return 0.0

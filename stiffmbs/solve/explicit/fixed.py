@@ -1,4 +1,4 @@
-"""Explicit steps of fixed length: Euler-Cromer and Runge-Kutta schemes."""
+"""Explicit steps of fixed length: semi-implicit Euler (Euler-Cromer) and Runge-Kutta schemes."""
 
 from __future__ import annotations
 
@@ -28,21 +28,21 @@ EULER_CROMER = Routine(
 )
 FIXED_STEPS = Routine("stiffmbs.solve.native.runge_kutta", "fixed_steps", "int64(float64, float64, int64, int64*)")
 LOOKS, LARGEST_CHATTER = 50, 0.1
-"""How often a run looks whether a force jumps back and forth, and the largest change of a velocity in a step that is taken for that."""
+"""Checks of a run for chattering forces, and the largest velocity change in a step that counts as chattering."""
 STEP_ROUNDING = 1e-9
-"""Part of a step by which an output time may miss a whole number of steps."""
+"""Largest deviation of an output time from a whole number of steps, in steps."""
 CUT = 1e-6
-"""Part of a step from which on it is told that steps are shorter."""
+"""Relative reduction of the step from which on it is reported."""
 
 
 class Stepper(NamedTuple):
-    """Something that takes steps of one length from the state that it holds.
+    """Integrator that takes steps of fixed length from its state.
 
     Attributes
     ----------
     scheme : str
     q, u : ndarrays
-        The state reached.
+        Current state.
     take : callable
         ``take(t, h, steps)`` takes steps from time t and returns 0 or a negative status.
     accelerations : int
@@ -57,7 +57,7 @@ class Stepper(NamedTuple):
 
 
 def euler_cromer(dynamics: Dynamics, start: InitialValues, settings: RunSettings) -> Stepper:
-    """Semi-implicit Euler: u_{n+1} = u_n + h u'(q_n, u_n), q_{n+1} = q_n + h u_{n+1}, then both projections."""
+    """Return a semi-implicit Euler stepper: u_{n+1} = u_n + h u'(q_n, u_n), q_{n+1} = q_n + h u_{n+1}, projected."""
     state, table, steps_of = dynamics.state, dynamics.table.ctypes.data, EULER_CROMER.call
     state.q[:], state.u[:] = start.q, start.u
 
@@ -68,7 +68,7 @@ def euler_cromer(dynamics: Dynamics, start: InitialValues, settings: RunSettings
 
 
 def runge_kutta(scheme: Scheme, dynamics: Dynamics, start: InitialValues, grid: Grid, settings: RunSettings) -> Stepper:
-    """A Runge-Kutta scheme, then both projections."""
+    """Return a stepper of a Runge-Kutta scheme, with projection after each step."""
     work, steps_of = Integration(scheme, dynamics, start, grid, settings), FIXED_STEPS.call
 
     def take(t: float, h: float, steps: int) -> int:
@@ -80,10 +80,9 @@ def runge_kutta(scheme: Scheme, dynamics: Dynamics, start: InitialValues, grid: 
 def solve_with_fixed_steps(
     dynamics: Dynamics, stepper: Stepper, grid: Grid, settings: RunSettings, watch: ProgressCallback
 ) -> Trajectory:
-    """Integrate with steps of one length; the contract is in `stiffmbs.solve.trajectory`.
+    """Integrate with fixed steps; the contract is in `stiffmbs.solve.trajectory`.
 
-    Between two output times the step is the largest that is no longer than the one asked for and divides the time
-    between them.
+    Between two output times the step is the largest that divides their distance and does not exceed the given one.
     """
     times = grid.times if grid.times is not None else _own_steps(grid, settings.step)
     rows = Rows(len(stepper.q), len(stepper.u), len(times))
@@ -112,7 +111,7 @@ def solve_with_fixed_steps(
 
 
 def _jumps(dynamics: Dynamics, stepper: Stepper, t: float, step: float) -> str:
-    """That steps cross the jump of a force back and forth about a state; empty where they do not."""
+    """Return a sentence on a force that chatters about a state, or an empty string."""
     if not dynamics.system.n_event_functions:
         return ""
     q, u = stepper.q.copy(), stepper.u.copy()
@@ -124,7 +123,7 @@ def _jumps(dynamics: Dynamics, stepper: Stepper, t: float, step: float) -> str:
 
 
 def _cut(longest: float, settings: RunSettings) -> str:
-    """That no step was as long as the one that was given; empty where some were."""
+    """Return a sentence if every step is shorter than the given one, else an empty string."""
     if "step" not in settings.model_fields_set or longest >= settings.step * (1 - CUT):
         return ""
     return f"step = {settings.step:.6g} s was cut to {longest:.6g} s, the longest that divides the time between output points"

@@ -1,4 +1,4 @@
-"""One Runge-Kutta integration: what compiled code is told, and what it has come to."""
+"""State and memory of one Runge-Kutta integration, shared with compiled code."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from .memory import StepMemory
 from .scheme import Scheme
 
 SHORTEST_PART = 1e-12
-"""Shorter steps than this part of the run would never come to its end."""
+"""Shortest step, as a fraction of the run."""
 
 
 class Integration:
@@ -26,18 +26,18 @@ class Integration:
     Attributes
     ----------
     capacity : int
-        Most steps, and most rows, of one call.
+        Largest number of steps, and of rows, of one call.
     step_times : list of ndarray
         Ends of the steps of each call.
     step_bound : StepBound
     q, u : ndarrays
-        Positions and velocities reached.
+        Current positions and velocities.
     at : int
-        The address of the table for compiled code.
+        Address of the table for compiled code.
     atol : ndarray, shape (n_q + n_u,)
         Absolute tolerances.
     displaced : ndarray, shape (n_u,)
-        Estimated errors of positions, as displacements along velocities.
+        Estimated position errors, as displacements along velocities.
     """
 
     def __init__(
@@ -49,7 +49,7 @@ class Integration:
         )
         self.capacity, self._n_q, self._dynamics = memory.capacity, n_q, dynamics
         self.step_times: list[np.ndarray] = []
-        self._collected = 0  # steps whose ends have been taken over
+        self._collected = 0  # steps whose ends have been collected
         self.step_bound, self._watch = StepBound(), EventSearch(dynamics.state)
         self._long_steps = dynamics.kept(
             "long_steps", len(memory.y), lambda: LongStepLog(dynamics.system, len(memory.y))
@@ -74,7 +74,7 @@ class Integration:
 
     @property
     def t(self) -> float:
-        """The time reached."""
+        """Current time, s."""
         return float(self._cells["t"])
 
     @t.setter
@@ -83,7 +83,7 @@ class Integration:
 
     @property
     def h(self) -> float:
-        """The length of the next step, s."""
+        """Length of the next step, s."""
         return float(self._cells["h"])
 
     @h.setter
@@ -92,7 +92,7 @@ class Integration:
 
     @property
     def stable(self) -> float:
-        """The longest step that stability allows, s; 0 where it has not been asked for."""
+        """Longest step that stability allows, s; 0 if not computed."""
         return float(self._cells["stable"])
 
     @stable.setter
@@ -101,7 +101,7 @@ class Integration:
 
     @property
     def eliminates(self) -> bool:
-        """Whether accelerations come by elimination, where pivots keep digits, and not always from the whole system."""
+        """True if accelerations are computed by elimination where its pivots are accurate, False if by LU always."""
         return bool(self._cells["eliminates"])
 
     @eliminates.setter
@@ -109,7 +109,7 @@ class Integration:
         self._cells["eliminates"] = value
 
     def begin(self, start: InitialValues) -> int:
-        """Go on from consistent values at the time reached; the first event_function of the event that was met there, or -1."""
+        """Restart from consistent values at the current time; return the event function of an event there, or -1."""
         memory, cells = self._memory, self._cells
         self.q[:], self.u[:] = start.q, start.u
         memory.end_rates[self._n_q :] = start.acceleration
@@ -120,20 +120,20 @@ class Integration:
         return met.index(1) if 1 in met else -1
 
     def count(self, name: str) -> int:
-        """A counter: ``steps``, ``rejected``, ``accelerations``, ``stiff_steps`` (those that stability held back)."""
+        """Return a counter: ``steps``, ``rejected``, ``accelerations`` or ``stiff_steps`` (limited by stability)."""
         return int(self._cells[name])
 
     def unresolved(self) -> str:
-        """Return a sentence on laws that repeat more often than steps are taken; empty for none."""
+        """Return a sentence on force laws that repeat within a step, or an empty string."""
         return self._watch.note()
 
     def long_steps(self) -> tuple[LongSteps, ...]:
-        """Steps far longer than those before them."""
+        """Return the recorded steps that are much longer than their predecessors."""
         begin, end, y = self._long_steps.kept()
         return (LongSteps(self._dynamics, begin, end, y[..., : self._n_q], y[..., self._n_q :]),)
 
     def collect(self, rows: Rows) -> None:
-        """Take over the rows and ends of steps that the last call stored, and leave their memory to the next."""
+        """Append the rows and step ends of the last call, and release their memory for the next."""
         count, before = self.count("rows"), self._collected
         memory = self._memory
         y = memory.row_y[:count]

@@ -1,4 +1,4 @@
-"""The memory of explicit integrations, laid out for compiled code: one run of a job after the other works on it."""
+"""Memory of explicit integrations for compiled code, reused by the runs of a job."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from .routines import END_AT_EVENT
 from .scheme import Scheme
 
 MOST_STEPS, MOST_VALUES = 1024, 300_000
-"""Of one call of compiled code: steps, and numbers in the rows that it stores, so that it returns soon."""
+"""Limits of one call of compiled code: steps, and numbers in the stored rows."""
 WATCH, STEP_BOUND, LONG_STEPS = (list(EXPLICIT).index(name) for name in ("watch", "step_bound", "long_steps"))
-"""Columns of the table for what each run sets up by itself."""
+"""Columns of the table that each run sets."""
 
 
 class StepMemory:
-    """Arrays of explicit steps by one scheme with so many output times, and their table.
+    """Arrays of explicit steps for a scheme and a number of output times, and their table.
 
     Parameters
     ----------
@@ -29,17 +29,17 @@ class StepMemory:
     Attributes
     ----------
     capacity : int
-        Most steps, and most rows, of one call.
+        Largest number of steps, and of rows, of one call.
     y, end_rates, lam : ndarrays, shapes (n_q + n_u,), (n_q + n_u,), (n_c,)
-        The state reached, its rates, and multipliers at a start.
+        Current state, its rates, and multipliers at a start.
     atol, times : ndarrays, shapes (n_q + n_u,), (n_times,)
     displaced : ndarray, shape (n_u,)
-        Estimated errors of positions (`stiffmbs.solve.native.accumulated_errors`).
+        Estimated position errors (`stiffmbs.solve.native.accumulated_errors`).
     row_t, row_y, ends : ndarrays, shapes (capacity,), (capacity, n_q + n_u), (capacity,)
     table : ndarray of int
         Addresses and cells (`stiffmbs.solve.native.tables.steps.EXPLICIT`).
     cells : record
-        The table's cells by name.
+        Cells of the table by name.
     """
 
     def __init__(self, scheme: Scheme, dynamics: Dynamics, n_times: int) -> None:
@@ -77,7 +77,7 @@ class StepMemory:
         self.cells, self._new = self.table.view(EXPLICIT.cells)[0], self.table.copy()
 
     def renew(self, watch: int, step_bound: int, long_steps: int) -> None:
-        """Begin a run: cells as they are when new, and the addresses of tables that the run has set up."""
+        """Reset all cells for a new run, and set the addresses of its tables."""
         self.table[:] = self._new
         self._errors[:] = self._new_errors
         self._sums[:] = 0.0

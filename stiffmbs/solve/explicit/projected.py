@@ -1,4 +1,4 @@
-"""The explicit integrator with projection: each step is brought back to the constraints."""
+"""Explicit integrator with projection onto the constraints after each step."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ TRAITS = {
     EULER_CROMER: _fixed(EULER_CROMER),
     **{name: _adaptive(name) if scheme.adaptive else _fixed(name) for name, scheme in SCHEMES.items()},
 }
-"""Of each scheme."""
+"""Traits by scheme."""
 
 
 def traits(settings: RunSettings) -> Traits:
-    """Those of the scheme in the settings; without one `dop853`, and `euler_cromer` where a step is given."""
+    """Return the traits of the scheme in the settings; by default `dop853`, or `euler_cromer` if a step is given."""
     return TRAITS[settings.scheme or (EULER_CROMER if "step" in settings.model_fields_set else "dop853")]
 
 
@@ -41,9 +41,9 @@ def solve(
 ) -> Trajectory:
     """Integrate q' = u, u' = u'(q, u, t) explicitly; the contract is in `stiffmbs.solve.trajectory`.
 
-    After each step positions return by Newton's smallest moves to |C| < 1e-12 and velocities by the smallest
-    correction in the mass matrix (Hairer, Wanner, Solving Ordinary Differential Equations II, 1996, ch. VII.2,
-    "projection methods").
+    After each step, minimum-norm Newton moves correct positions to |C| < 1e-12, and the smallest correction in the mass
+    norm corrects velocities: Hairer, Wanner, Solving Ordinary Differential Equations II, 1996, sec. VII.2, "projection
+    methods".
     """
     dynamics.forget_pivots()
     chosen = traits(settings).name

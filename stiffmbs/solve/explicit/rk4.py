@@ -1,4 +1,4 @@
-"""The classical Runge-Kutta scheme of order 4, with fixed steps."""
+"""Classical Runge-Kutta scheme of order 4, with fixed steps."""
 
 from .scheme import Scheme
 

@@ -1,4 +1,4 @@
-"""The compiled routines of adaptive explicit steps: nearly all of each of them is the evaluation of accelerations."""
+"""Compiled routines of adaptive explicit steps."""
 
 from __future__ import annotations
 

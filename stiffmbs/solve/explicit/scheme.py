@@ -1,4 +1,4 @@
-"""What an explicit Runge-Kutta scheme is: a table of coefficients."""
+"""Explicit Runge-Kutta schemes as tables of coefficients."""
 
 from __future__ import annotations
 
@@ -13,39 +13,39 @@ from ...compile.machine.layout import packed
 from ..native.tables.steps import SCHEME
 
 Row = Mapping[int, float]
-"""The coefficients of a sum over stages that are not zero, by stage."""
+"""Nonzero coefficients of a sum over stages, by stage."""
 
 
 @dataclass(frozen=True)
 class Scheme:
-    """Butcher's table of an explicit Runge-Kutta scheme.
+    """Butcher tableau of an explicit Runge-Kutta scheme.
 
-    Stage i is k_i = f(t + c_i h, y + h sum_j a_ij k_j).  The stage with the number `stages` is taken at the step's
-    end: its row holds the weights, and it is the first of the next step.  Those behind it serve the interpolant alone.
+    Stage i is k_i = f(t + c_i h, y + h sum_j a_ij k_j). Stage `stages` is evaluated at the end of the step: its row
+    holds the weights, and it is the first stage of the next step. Later stages serve the interpolant only.
 
     Attributes
     ----------
     name : str
     order : int
     stages : int
-        Evaluations that one step needs, the one at its end not counted.
+        Evaluations per step, without the one at its end.
     c : tuple of float
         Nodes of all stages.
     a : tuple of Row
         Coefficients of all stages.
     errors : tuple of Row
-        Differences to embedded schemes, none for a scheme of fixed step.  With two, the estimate is
+        Differences to embedded schemes; empty for a fixed-step scheme. With two, the estimate is
         h |e_1|^2 / sqrt(|e_1|^2 + 0.01 |e_2|^2) (Hairer's for orders 5 and 3).
     dense : tuple of Row
-        The coefficients behind the third of the interpolant (`stiffmbs.solve.native.explicit.interpolant`).
+        Coefficients of the interpolant after the third (`stiffmbs.solve.native.explicit.interpolant`).
     free : tuple of Row
-        The same of an interpolant that needs no stages of its own; none where `dense` is one.
+        The same of an interpolant without additional stages; empty if `dense` needs none.
     free_error : Row
-        How far that interpolant may be off: a sum of stages that vanishes to its order, times the step.
+        Error bound of that interpolant: a sum of stages that vanishes to its order, times the step.
     exponent, memory : float
         Of the step control: the next step is 0.9 h error^(-exponent + 0.75 memory) last_error^memory.
     stability : float
-        |h lambda| above which stability, and no longer accuracy, holds the step back.
+        |h lambda| above which stability, not accuracy, limits the step.
     """
 
     name: str
@@ -63,22 +63,22 @@ class Scheme:
 
     @property
     def extended(self) -> int:
-        """All stages: those of a step, the one at its end, and those of the interpolant."""
+        """Number of all stages: those of a step, the one at its end, and those of the interpolant."""
         return len(self.c)
 
     @property
     def adaptive(self) -> bool:
-        """Whether the scheme estimates its error and so chooses its step."""
+        """True if the scheme has an error estimate."""
         return bool(self.errors)
 
     @property
     def error_needs_end(self) -> bool:
-        """Whether the estimate asks for the stage at the step's end."""
+        """True if the error estimate uses the stage at the end of the step."""
         return any(self.stages in row for row in self.errors)
 
     @cached_property
     def _arrays(self) -> dict[str, Any]:
-        """What the table points to."""
+        """Contents of the table."""
         return {
             "order": self.order, "stages": self.stages, "extended": self.extended, "n_errors": len(self.errors),
             "n_dense": len(self.dense), "n_free": len(self.free), "error_needs_end": self.error_needs_end,
@@ -94,7 +94,7 @@ class Scheme:
         return packed(SCHEME, self._arrays)
 
     def matrix(self, rows: tuple[Row, ...]) -> np.ndarray:
-        """Rows of coefficients as a full matrix, one column for each stage."""
+        """Return rows of coefficients as a full matrix, one column per stage."""
         full = np.zeros((len(rows), self.extended))
         for k, row in enumerate(rows):
             for stage, value in row.items():

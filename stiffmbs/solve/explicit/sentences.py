@@ -1,4 +1,4 @@
-"""Why an explicit integration stopped, or was slow, in words."""
+"""Messages on stopped or slow explicit integrations."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ REASONS = {
     + _USE_BDF,
     STIFF: f"steps as short as stability asks for would take more than ten minutes to the end; {_USE_BDF}",
 }
-"""By status."""
+"""Reasons by status."""
 
 
 def stiff_sentence(work: Integration) -> str:
-    """That the steps were short for stability's sake."""
+    """Return a sentence on steps limited by stability."""
     held = work.count("stiff_steps")
     return f"stability, not accuracy, held back {held} of {work.count('steps')} steps: {_USE_BDF}"

@@ -1,9 +1,9 @@
-"""The longest step that stability allows, known before the error estimate sees what longer ones do.
+"""Stability bound on explicit steps, computed before the error estimate detects instability.
 
-Near rest steps grow tenfold each.  One far beyond the scheme's stability multiplies rounding by as much as 1e13, to errors just below
-the tolerance, which then stay: the estimate shows them too late.  Steps that the estimate holds back go to and fro about the limit:
-some ten in a hundred are rejected, and rounding grows in others.  The fastest rate of the motion tells of that limit at the cost of one
-step.  It is asked for where two stages at a step's end show that stability has been passed by far, or has held back several steps.
+Near rest, steps grow tenfold each. A step far beyond the stability limit amplifies rounding to errors just below the
+tolerance, which persist and which the estimate detects too late. Steps limited by the estimate oscillate about the
+stability limit. The fastest rate of the motion gives the limit at the cost of one step. It is computed when two stages
+at a step's end indicate that the limit is far exceeded, or that it has limited several steps.
 """
 
 from __future__ import annotations
@@ -14,20 +14,20 @@ from .integration import Integration
 from .scheme import Scheme
 
 SOON, LONGER, MOST_APART = 8, 8, 512
-"""Steps between the first two looks at a bound, which may belong to a pose that is soon left; times how many from one to the next, up to that."""
+"""Steps between the first two checks of a bound, the factor on the next intervals, and their limit."""
 WORTH = 128
-"""Steps that must be left for one more, which the rate costs, to be hardly felt."""
+"""Smallest number of remaining steps that justifies the cost of the rate."""
 HELD_BACK = 16
-"""Steps that stability has held back when the bound is asked for, in all since the last time."""
+"""Steps limited by stability since the last computation, at which the bound is computed."""
 CONTRADICTED = 0.4
-"""Part of a step that stability held back, below which a bound contradicts that step: rates are no bounds where forces are far from symmetric."""
+"""Bound, relative to a step limited by stability, that contradicts it: asymmetric force derivatives give no bound."""
 STEEP = 8
-"""Order from which on a step ten times too long multiplies rounding so much; of order 5 by a millionth of that."""
+"""Lowest order at which too long a step amplifies rounding considerably."""
 NOT_ASKED, UNBOUNDED = 0.0, float("inf")
 
 
 class StableStep:
-    """The bound that stability puts on the steps of a run up to its first event.
+    """Stability bound on the steps of a run up to its first event.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ class StableStep:
         self._next, self._apart, self._held_before = 0, SOON, 0
 
     def begin(self, work: Integration, events: int) -> bool:
-        """Whether the bound is asked for from this start on: up to the first event, as later starts are too many."""
+        """Restart; return True if the bound is used, up to the first event, as later restarts are too many."""
         serves = self._serves and events == 0
         self._forget(work)
         if not serves:
@@ -52,18 +52,18 @@ class StableStep:
         work.stable, self._held_before = NOT_ASKED, work.count("stiff_steps")
 
     def wait(self, work: Integration) -> int:
-        """Steps up to the next look, at the most."""
+        """Return the largest number of steps up to the next check."""
         return work.capacity if work.stable == NOT_ASKED else max(1, self._next - work.count("steps"))
 
     def held(self, work: Integration) -> int:
-        """Steps that stability may hold back up to the next look, at the most."""
+        """Return the largest number of steps limited by stability up to the next check."""
         return self._left(work) if work.stable == NOT_ASKED else work.capacity
 
     def _left(self, work: Integration) -> int:
         return HELD_BACK - (work.count("stiff_steps") - self._held_before)
 
     def look(self, work: Integration, end: float) -> None:
-        """Ask where that is due: where steps were held back; some steps after the last time, where they have grown to the bound."""
+        """Update the bound if due: after limited steps, or if steps have grown to the last bound."""
         if work.stable == NOT_ASKED:
             if self._left(work) <= 0:
                 self._ask_as_held(work, end)
@@ -77,15 +77,15 @@ class StableStep:
             self._wait(work)
 
     def _ask_as_held(self, work: Integration, end: float) -> None:
-        """Ask where steps were held back: these are near the limit, which the bound must not contradict."""
+        """Compute the bound after limited steps, which are near the limit and must not contradict it."""
         self.ask(work, end)
         if work.stable < CONTRADICTED * work.h:
             work.stable, self._next = UNBOUNDED, work.count("steps") + MOST_APART
 
     def ask(self, work: Integration, end: float) -> None:
-        """Ask for the rate at the state reached; not for a few last steps.
+        """Compute the bound at the current state, unless few steps remain.
 
-        Beside a pose where branches of the motion meet, the rate tells of the pose alone: such steps go on without a bound.
+        Near a pose where branches of the motion meet, the rate is that of the pose only: no bound is used there.
         """
         bound, work.stable = work.stable or UNBOUNDED, UNBOUNDED
         self._next = work.count("steps") + WORTH
@@ -97,6 +97,6 @@ class StableStep:
             self._wait(work)
 
     def _wait(self, work: Integration) -> None:
-        """Longer each time."""
+        """Set the next check, at an interval that grows each time."""
         self._next = work.count("steps") + self._apart
         self._apart = min(LONGER * self._apart, MOST_APART)

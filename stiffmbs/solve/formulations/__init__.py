@@ -1,4 +1,4 @@
-"""Formulations of the residual that the BDF integrator solves, one per file, named as in Adams."""
+"""Formulations of the residual that the BDF integrator solves, one per file, with the names of Adams."""
 
 from __future__ import annotations
 
@@ -18,6 +18,6 @@ FORMULATIONS: dict[str, Callable[[RunSettings], Formulation]] = {
     "I3": lambda settings: I3,
     "index1": lambda settings: index1(settings.stabilisation),
 }
-"""By the name in the settings."""
+"""Formulations by their name in the settings."""
 READ_BY_FORMULATIONS = {"index1": ("stabilisation",)}
-"""Settings that a formulation follows."""
+"""Settings that a formulation reads."""

@@ -23,8 +23,8 @@ I3 = Formulation(
     ),
     tested=("q",),
 )  # fmt: skip
-"""q' - Z u = 0, M u' - f + J^T lam = 0, C = 0: position constraints alone, fast and blind to errors in velocities.
+"""q' - Z u = 0, M u' - f + J^T lam = 0, C = 0: position constraints only; velocity errors are not controlled.
 
-Orlandea, Chace, Calahan, A sparsity-oriented approach to the dynamic analysis and design of mechanical systems, J.
-Eng. Ind. 99 (1977) 773-784.
+Orlandea, Chace, Calahan, A sparsity-oriented approach to the dynamic analysis and design of mechanical systems, J. Eng.
+Ind. 99 (1977) 773-784.
 """

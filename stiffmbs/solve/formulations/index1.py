@@ -1,4 +1,4 @@
-"""Index 1: constraints on the level of accelerations."""
+"""Index 1: constraints at acceleration level."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from ...compile.formulation import Block, Formulation, Product
 
 
 def index1(stabilisation: float) -> Formulation:
-    """q' - Z u = 0, M u' - f + J^T lam = 0, J u' - gamma + 2 b V + b^2 C = 0.
+    """Return the formulation q' - Z u = 0; M u' - f + J^T lam = 0; J u' - gamma + 2 b V + b^2 C = 0.
 
     Baumgarte, Stabilization of constraints and integrals of motion in dynamical systems, Comput. Methods Appl. Mech.
     Eng. 1 (1972) 1-16.
@@ -14,7 +14,7 @@ def index1(stabilisation: float) -> Formulation:
     Parameters
     ----------
     stabilisation : float
-        b, the rate at which violations decay, 1/s; with 0 errors in the constraints grow unchecked.
+        b, the decay rate of violations, 1/s; with 0 they are not stabilised.
     """
     b = stabilisation
     return Formulation(

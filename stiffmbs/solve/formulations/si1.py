@@ -27,7 +27,7 @@ SI1 = Formulation(
     ),
     integrated=True,
 )  # fmt: skip
-"""SI2 with the multipliers as derivatives of new unknowns, which lowers the index to 1.
+"""SI2 with the multipliers as derivatives of new unknowns, which reduces the index to 1.
 
 Gear, Differential-algebraic equation index transformations, SIAM J. Sci. Stat. Comput. 9 (1988) 39-47.
 """

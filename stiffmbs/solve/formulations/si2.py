@@ -1,7 +1,7 @@
 """Stabilised index 2 (SI2), relaxed and exact.
 
 Gear, Gupta, Leimkuhler, Automatic integration of Euler-Lagrange equations with constraints, J. Comput. Appl. Math.
-12-13 (1985) 77-90: both levels of every constraint hold, mu brings positions back.
+12-13 (1985) 77-90. Position and velocity constraints hold; the multipliers mu correct positions.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ _MATRIX = (
 )  # fmt: skip
 
 SI2_EXACT = Formulation("SI2_exact", ("q", "u", "mu", "lam"), "motion", "tangent", _RESIDUAL, _MATRIX)
-"""q' - Z u + C_q^T mu = 0, M u' - f + J^T lam = 0, C = 0, V = J u + C_t = 0."""
+"""q' - Z u + C_q^T mu = 0; M u' - f + J^T lam = 0; C = 0; V = J u + C_t = 0."""
 
 SI2 = Formulation(
     "SI2",
@@ -34,9 +34,8 @@ SI2 = Formulation(
     (*_RESIDUAL, Product("mu", -1, "E_mu", "mu"), Product("lam", -1, "E_lam", "lam")),
     (*_MATRIX, Block("mu", "mu", "E_mu", -1), Block("lam", "lam", "E_lam", -1)),
 )
-"""SI2 with C - E_mu mu = 0 and V - E_lam lam = 0: a viscous creep far below the tolerance in place of the exact rows.
+"""SI2 with C - E_mu mu = 0 and V - E_lam lam = 0: constraint drift far below the tolerance in place of exact rows.
 
-The iteration matrix is then never singular: poses in which constraints become dependent are passed, and redundant
-equations need no removal.  mu is zero on the exact solution, so C stays at rounding; V is off by E_lam lam, which
-dissipates and never rings.
+The iteration matrix is then never singular: the integrator passes singular poses, and redundant equations need no
+removal. mu is zero for the exact solution, so C stays at rounding. V deviates by E_lam lam, which is dissipative.
 """

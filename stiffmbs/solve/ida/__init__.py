@@ -1,1 +1,1 @@
-"""IDA through the SUNDIALS libraries that scikit-sundae carries, with compiled residual and Jacobian."""
+"""IDA through the SUNDIALS libraries of scikit-sundae, with compiled residual and Jacobian."""

@@ -1,4 +1,4 @@
-"""The iteration matrix factored by dense blocks of bodies and joints without pivots, in place of a solver of SUNDIALS' own."""
+"""Linear solver of IDA: block LU of bodies and joints without pivoting."""
 
 from __future__ import annotations
 
@@ -26,19 +26,19 @@ SOLVE = Routine(_MODULE, "solve", "int32(int64*, int64, int64, int64, float64)",
 MULTIPLIER, COORDINATE, VELOCITY = range(3)
 """Kinds of unknowns, as in `stiffmbs.solve.linear.native.block_lu`."""
 SEED = 14
-"""Of the state that factors are tried on: numbers between 0.5 and 1, as whole ones hide what rounding does."""
+"""Seed of the state for the trial of the factors; its entries between 0.5 and 1 expose rounding errors."""
 
 
 @dataclass(frozen=True)
 class BlockLU(FixedOrder):
-    """Block LU along a fixed order, tried by its residual; columns in pairs with pivots where that is too large.
+    """Block LU in a fixed order, checked by its residual; `PairedColumns` with pivoting if the residual is too large.
 
     Attributes
     ----------
     nodes : list of ndarray of int
-        The unknowns that are eliminated together, in order.
+        Unknowns of each supernode, in the order of elimination.
     kinds : ndarray of int, shape (n,)
-        What each unknown is.
+        Kind of each unknown.
     """
 
     setup: ClassVar[Routine] = SETUP
@@ -50,7 +50,7 @@ class BlockLU(FixedOrder):
 
     @classmethod
     def of(cls, equations: Equations, order: EliminationOrder) -> BlockLU:
-        """That of a formulation along an order of its bodies and joints."""
+        """Create the solver of a formulation for an elimination order of its bodies and joints."""
         kinds = np.full(equations.n, MULTIPLIER)
         for name, kind in (("q", COORDINATE), ("u", VELOCITY)):
             at = equations.at.get(name, np.empty(0, dtype=np.int64))
@@ -58,17 +58,17 @@ class BlockLU(FixedOrder):
         return cls(equations.n, *equations.pattern, order, nodes_in_order(equations, order), kinds)
 
     def sentence(self) -> str:
-        """What the summary says of it."""
+        """Return a description for the summary."""
         return f"blocks in a fixed order, {self.n} unknowns, {len(self.rows)} entries"
 
     @cached_property
     def blocks(self) -> Blocks:
-        """The blocks that are filled."""
+        """Return the nonzero blocks of the factors."""
         return filled(self.nodes, self.rows, self.columns)
 
     @cached_property
     def _plan(self) -> dict[str, Any]:
-        """What stays as it is, and serves all memories of the solver."""
+        """Return the constant arrays shared by all memories of the solver."""
         blocks = self.blocks
         diagonal = np.flatnonzero((self.rows == self.columns) & (self.kinds[self.rows] == COORDINATE))
         lists = {
@@ -86,7 +86,7 @@ class BlockLU(FixedOrder):
         }  # fmt: skip
 
     def memory(self, array_of: int) -> Memory:
-        """What the compiled routines work on, given the address of N_VGetArrayPointer."""
+        """Return the memory of the compiled routines, given the address of N_VGetArrayPointer."""
         with_pivots = PairedColumns(self.n, self.rows, self.columns, self.order).memory(array_of)
         blocks = self.blocks
         beside = [right + own for right, own in zip(blocks.right_width, blocks.widths, strict=True)]

@@ -1,4 +1,4 @@
-"""How IDA is driven, and which linear solver a pattern gets: the one with the least estimated cost."""
+"""Choice of the driver of IDA, and of the linear solver with the least estimated cost."""
 
 from __future__ import annotations
 
@@ -22,56 +22,54 @@ from .paired_columns import PairedColumns
 from .sundae import SundaeEngine
 
 SOLUTIONS = 8
-"""Solutions with one factorisation (measured: 7 to 20)."""
+"""Solutions for one factorisation."""
 DENSE = (0.045, 1.0, 0.24, 10.0)
-"""ns for a multiplication of the dense LU, for an entry that is cleared and filled, for an entry and an unknown in a solution."""
+"""ns for a multiplication of the dense LU, an entry cleared and filled, an entry and an unknown of a solution."""
 BANDED = (0.15, 0.5, 0.45)
-"""The same of the banded LU, within the band; unknowns cost little beside it."""
+"""ns for a multiplication of the banded LU, an entry cleared and filled, an entry of a solution."""
 FIXED = (1.2, 1.5, 0.5, 1.0)
-"""ns for an update along a fixed order, for an entry of the factors that is cleared and scaled, for one in a solution, and for
-an unknown in a solution.  All figures are measured on the examples, 10 to 1000 unknowns."""
+"""ns for an update in a fixed order, for an entry of the factors that is cleared and scaled; for an entry and an
+unknown of a solution.  All costs were fitted on the examples with 10 to 1000 unknowns."""
 PAIRED = (0.25, 3.0, 0.75, 1.0)
-"""The same where columns are taken in pairs: their loops cost as much as some ten updates."""
+"""ns as in `FIXED`, for two-column supernodes."""
 BLOCKS = (0.05, 50.0, 0.04, 5.0, 11.0)
-"""ns for an update in blocks of bodies and joints, for a node; in a solution for an entry of full blocks, an unknown, and a node."""
+"""ns for an update in blocks, for a node; for an entry of full blocks, an unknown and a node of a solution."""
 NEAR, FAR = 3000, 450.0
-"""Nodes whose blocks and lists a processor's own cache holds, and ns more for each beyond them: measured on chains of 3000 and 10 000 rods,
-which take 30 and 45 % longer with blocks."""
+"""Number of nodes whose blocks fit into a processor's own cache, and additional ns for each further node."""
 WORTH_COMPILING = 200.0
-"""ns that blocks have to save in one factorisation and its solutions, or a machine's first run is not compiled for them, 0.5 s.
-Where they are estimated to save 200 to 3000, runs of the examples take 0 to 21 % less with them; where less, up to 10 % more."""
+"""ns that blocks must save per factorisation and its solutions to be worth compiling on a machine's first run."""
 WITH_ZEROS = 8
-"""Numbers that the blocks hold at the most, relative to the entries of a triangle of full ones."""
+"""Upper bound of the numbers stored in the blocks, relative to the entries of a triangle of full blocks."""
 SUPERLU = (0.5, 0.75, 600.0, 8.0)
-"""The same of SuperLU_MT, which works in dense blocks where there are any, and starts anew with every factorisation."""
+"""ns of SuperLU_MT for an update, for an entry of a solution; for an unknown in a factorisation and in a solution."""
 WORTH_A_BAND = 50
-"""Unknowns below which finding a band costs more than it can save."""
+"""Number of unknowns below which a search for a band is not worth its cost."""
 FILLED, UPDATED = 1.1, 0.3
-"""Parts of the entries and updates of full blocks that are there in fact: J leaves much of them empty."""
+"""Ratios of the actual entries and updates to those of full blocks."""
 
 
 def dense_cost(n: int) -> float:
-    """Estimated ns for one factorisation of a dense matrix and the solutions with it."""
+    """Return the estimated ns of a factorisation of a dense matrix and its solutions."""
     update, entry, solution, unknown = DENSE
     return update * n**3 / 3 + (entry + SOLUTIONS * solution) * n**2 + SOLUTIONS * unknown * n
 
 
 def banded_cost(n: int, lower: int, upper: int) -> float:
-    """The same for a banded matrix."""
+    """Return the estimated ns of a factorisation of a banded matrix and its solutions."""
     update, entry, solution = BANDED
     height = 2 * lower + upper + 1
     return n * (update * lower * (lower + upper) + (entry + SOLUTIONS * solution) * height)
 
 
 def fixed_cost(n: int, order: EliminationOrder, costs: tuple[float, float, float, float]) -> float:
-    """The same for elimination along a fixed order, entry by entry or by pairs of columns."""
+    """Return the estimated ns of an elimination in a fixed order, by entries or by two-column supernodes."""
     update, entry, solution, unknown = costs
     entries, updates = FILLED * order.fill, UPDATED * order.updates
     return update * updates + (entry + SOLUTIONS * solution) * entries + SOLUTIONS * unknown * n
 
 
 def block_cost(n: int, order: EliminationOrder, n_nodes: int) -> float:
-    """The same by dense blocks of so many nodes; they are numbered by 32 bits."""
+    """Return the estimated ns of an elimination by blocks; infinite if they are too many for 32-bit indices."""
     if WITH_ZEROS * order.fill > np.iinfo(np.int32).max:
         return np.inf
     update, node, entry, unknown, of_node = BLOCKS
@@ -80,7 +78,7 @@ def block_cost(n: int, order: EliminationOrder, n_nodes: int) -> float:
 
 
 def superlu_cost(n: int, order: EliminationOrder) -> float:
-    """The same for SuperLU_MT."""
+    """Return the estimated ns of SuperLU_MT."""
     update, solution, start, unknown = SUPERLU
     return (
         update * UPDATED * order.updates
@@ -90,14 +88,14 @@ def superlu_cost(n: int, order: EliminationOrder) -> float:
 
 
 def chosen(equations: Equations) -> tuple[Equations, Matrix, float]:
-    """The equations with their unknowns in the order of the linear solver of the least estimated cost, that solver, and the cost.
+    """Return the equations ordered for the linear solver of the least estimated cost, that solver, and its cost, ns.
 
-    The band is looked for where the dense and the fixed order cost more than one that is as narrow as a row is long.
+    A banded order is searched for only if a band as wide as the longest row would be the least expensive.
 
     Parameters
     ----------
     equations : Equations
-        In the natural order.
+        Equations in their natural order.
     """
     n, pattern = equations.n, equations.pattern
     order = elimination_order(equations)
@@ -118,7 +116,7 @@ def chosen(equations: Equations) -> tuple[Equations, Matrix, float]:
 
 
 def _served(matrix: Matrix) -> bool:
-    """Whether the libraries have the linear solver: scikit-sundae may be built without SuperLU_MT."""
+    """Return True if the libraries have the linear solver: scikit-sundae may be built without SuperLU_MT."""
     try:
         matrix.libraries()
     except Unavailable:
@@ -129,18 +127,18 @@ def _served(matrix: Matrix) -> bool:
 def driven_natively(
     dynamics: Dynamics, settings: RunSettings, control: ErrorControl
 ) -> tuple[Equations, Engine, float]:
-    """The equations and their driver, where SUNDIALS' libraries are as it needs them, and the cost of its linear solver, ns."""
+    """Return the equations, their native driver and the cost of its linear solver, ns."""
     equations, matrix, cost = chosen(_natural(dynamics, settings))
     return equations, NativeEngine(equations, dynamics, matrix, settings, control), cost
 
 
 def driven_by_callbacks(dynamics: Dynamics, settings: RunSettings) -> tuple[Equations, Engine]:
-    """The equations and their driver by scikit-sundae's callbacks."""
+    """Return the equations and their driver by scikit-sundae's callbacks."""
     equations = _natural(dynamics, settings)
-    tolerances = ErrorControl(margin=1.0).tolerances(equations, settings)  # Newton's iteration stays as IDA has it
+    tolerances = ErrorControl(margin=1.0).tolerances(equations, settings)  # with IDA's own Newton tolerance
     return equations, SundaeEngine(equations, dynamics.state, *tolerances, settings.max_step, settings.max_order or 5)
 
 
 def _natural(dynamics: Dynamics, settings: RunSettings) -> Equations:
-    """The equations with their unknowns in the natural order."""
+    """Return the equations with their unknowns in the natural order."""
     return Equations(FORMULATIONS[settings.formulation](settings), dynamics.system, dynamics.coordinates)

@@ -1,4 +1,4 @@
-"""IDA with everything that it is given once: vectors, matrix, callbacks, and the table that these work on."""
+"""IDA memory with its vectors, matrix, callbacks and the table of their data."""
 
 from __future__ import annotations
 
@@ -40,11 +40,11 @@ FUNCTIONS = {
     "order_of": "IDAGetLastOrder", "step_of": "IDAGetLastStep", "stop_at": "IDASetStopTime", "next_step_of": "IDAGetCurrentStep",
     "errors_of": "IDAGetEstLocalErrors", "weights": "IDAGetErrWeights",
 }  # fmt: skip
-"""What compiled code calls of SUNDIALS, by its names in the table."""
+"""SUNDIALS functions called by compiled code, by their names in the table."""
 
 
 class Connection:
-    """An integrator in SUNDIALS and its memory here, connected.
+    """IDA memory in SUNDIALS, with its data in the package.
 
     Parameters
     ----------
@@ -53,29 +53,29 @@ class Connection:
     matrix : Matrix
     reported : ndarray of int
     session : Session
-        Owns what is made in SUNDIALS.
+        Owner of the SUNDIALS objects.
 
     Attributes
     ----------
     y, yp, output : ndarrays, shape (n,)
-        Memory of the vectors of the solution, its derivative, and of what is interpolated or asked for.
+        Memory of the vectors of the solution, of its derivative, and of interpolated or queried values.
     cells : numpy.void
-        What the loop leaves behind (`stiffmbs.solve.native.tables.steps.NATIVE_IDA`).
+        Results of the loop (`stiffmbs.solve.native.tables.steps.NATIVE_IDA`).
     output_correction : OutputCorrection
     iteration : Iteration
     error_norm : ErrorNorm
     step_bound : StepBound
     n_event_functions : int
-    signs, masked : ndarrays, shape (n_switches,)
-        As in `stiffmbs.solve.native.event_search.event_signs`.
+    signs, masked : ndarrays, shape (n_event_functions,)
+        See `stiffmbs.solve.native.event_search.event_signs`.
     watch : EventSearch
     history : StepLog
     long_steps : LongStepLog or None
         None for scenes without laws.
     furthest : ndarray
-        How far errors displace what moves at each independent velocity.
+        Accumulated displacement error along each independent velocity.
     samples : ndarray, shape (SAMPLES, 1 + number of reported unknowns)
-        Times and states of the last steps but for three of each four, in no order; NaN where none is yet.
+        Ring buffer of time and state after every fourth step; NaN in unused rows.
     table : int
         Address of the table for compiled code.
     """
@@ -143,39 +143,39 @@ class Connection:
         self.ask("IDASetUserData", self.table)
         self.ask("IDASetLinearSolver", self._assembled.solver, self._assembled.matrix)
         self.ask("IDASetJacFn", JACOBIAN.address)
-        self.ask("IDASetMaxNumSteps", -1)  # a call of IDASolve is of one step
+        self.ask("IDASetMaxNumSteps", -1)  # IDASolve is called for one step at a time
         if self.n_event_functions:
             self.ask("IDARootInit", self.n_event_functions, SWITCHES.address)
             self.ask("IDASetNoInactiveRootWarn")
 
     def address(self, function: str) -> int:
-        """That of one of SUNDIALS' functions, for compiled code."""
+        """Return the address of a SUNDIALS function, for compiled code."""
         return self._session.libraries.address(function)
 
     @property
     def on_one_thread(self) -> bool:
-        """Whether the linear solver never starts threads of its own."""
+        """Return True if the linear solver never starts threads of its own."""
         return not self._session.libraries.may_start_threads
 
     def ask(self, function: str, *arguments: Any) -> None:
-        """Call one of IDA's functions.
+        """Call a function of IDA.
 
         Raises
         ------
         ValueError
-            When it refuses.
+            If IDA reports an error.
         """
         flag = getattr(self._session.libraries, function)(self.memory, *arguments)
         if flag < 0:
             raise ValueError(failure_sentence(flag))
 
     def answer(self, function: str, *arguments: Any) -> np.ndarray:
-        """Call a function of IDA's that fills a vector."""
+        """Call a function of IDA that fills a vector, and return a copy of it."""
         self.ask(function, *arguments, self.output_vector)
         return self.output.copy()
 
     def forget(self) -> None:
-        """Drop the history, and the pivots that the linear solver has found."""
+        """Clear the history, and the pivots of the linear solver."""
         self.history.forget()
         if self.long_steps:
             self.long_steps.forget()
@@ -186,14 +186,14 @@ class Connection:
             self._assembled.pivots["ready"] = 0
 
     def set_tolerances(self, rtol: float, atol: np.ndarray) -> None:
-        """Tolerances, one absolute one for each unknown."""
+        """Set the relative tolerance, and the absolute tolerance of each unknown."""
         if np.shape(atol) != self.y.shape:
             raise ValueError(f"atol: found shape {np.shape(atol)}, expected {self.y.shape}")
         self._atol = np.array(atol, dtype=float)
         self.ask("IDASVtolerances", rtol, self._session.vector(self._atol))
 
     def begin(self, t: float) -> None:
-        """Forget the last step, as the integrator starts at `t`, or starts anew."""
+        """Forget the last step before a start or restart of the integrator at `t`."""
         for cell, value in (("returned", t), ("internal", t), ("size", 0.0), ("tiny", 0), ("since_sample", 0)):
             self.cells[cell] = value
         self.samples[:] = np.nan
@@ -204,25 +204,25 @@ class Connection:
         self.history.begin(t)
 
     def correct_outputs(self, dynamics: Dynamics, long_step: float, part: float, balanced: float) -> None:
-        """Have states within long steps brought back to the equations, as `OutputCorrection.limit` has it."""
+        """Correct states within steps longer than `long_step` (see `OutputCorrection.limit`)."""
         if long_step < np.inf and not self.output_correction.ready:
             self.output_correction.make_ready(self._session, self._matrix, self.memory, self.y_vector, dynamics)
         self.output_correction.limit(long_step, part, balanced)
 
     def suppress(self, suppressed: np.ndarray) -> None:
-        """Leave unknowns out of the error test."""
+        """Exclude unknowns from the error test."""
         self._id = np.where(suppressed, 0.0, 1.0)
         self.ask("IDASetId", self._session.vector(self._id))
         self.ask("IDASetSuppressAlg", 1)
 
     def take_own_convergence_test(self) -> None:
-        """Have Newton's iteration judged by a convergence rate that worsens with the age of the iteration matrix."""
+        """Use the convergence test of Newton's iteration that worsens the rate with the age of the iteration matrix."""
         solver = self.iteration.solver(self._session, self.memory, self.y_vector)
         self.ask("IDASetNonlinearSolver", solver)
         self.iteration.take_over(self._session, solver)
 
     def run(self, loop: Routine, *arguments: Any) -> int:
-        """Call a compiled loop and keep the history of the call; returns IDA's last flag."""
+        """Call a compiled loop and add its steps to the history; return IDA's last flag."""
         flag: int = self._session.call(loop.call, *arguments, self.table)
         self.history.add(int(self.cells["recorded"]))
         return flag

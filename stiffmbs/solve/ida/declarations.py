@@ -1,4 +1,4 @@
-"""The functions of SUNDIALS that are used, as its headers declare them (version 7)."""
+"""Declarations of the SUNDIALS functions in use (version 7)."""
 
 from __future__ import annotations
 
@@ -89,12 +89,12 @@ _NUMBERS: dict[str, Any] = {"int": ctypes.c_int, "long": ctypes.c_long, "double"
 
 
 def declared(index: type[Any]) -> dict[str, tuple[Any, list[Any]]]:
-    """Result and argument types of each function; all that is not a number is passed as an address.
+    """Return the result and argument types of each function; pointers are passed as addresses.
 
     Parameters
     ----------
     index : ctypes type
-        What `sunindextype` is: ``c_int32`` or ``c_int64``.
+        Type of `sunindextype`: ``c_int32`` or ``c_int64``.
     """
     numbers = _NUMBERS | {"sunindextype": index}
     return {

@@ -1,4 +1,4 @@
-"""What `bdf` asks of a driver of IDA, be it native or through scikit-sundae's callbacks."""
+"""Interface between `bdf` and the drivers of IDA: native, or by scikit-sundae's callbacks."""
 
 from __future__ import annotations
 
@@ -17,22 +17,22 @@ if TYPE_CHECKING:
 
 
 class Reached(NamedTuple):
-    """Where an integrator has come since it was last heard of.
+    """Progress of an integrator since its last report.
 
     Attributes
     ----------
     times, rows : ndarrays, shapes (k,), (k, 2 * independent)
-        Instants asked for on the way (or ends of steps), and the independent coordinates and velocities there
-        (`stiffmbs.compile.equations.Equations.states` makes all of them).
+        Output times (or ends of steps), and the independent coordinates and velocities there
+        (`stiffmbs.compile.equations.Equations.states` computes all of them).
     t : float
     y : ndarray, shape (n,)
-        Where it is now, with all unknowns.
+        Current time and unknowns.
     fired : tuple of int
-        The event functions that stopped it by changing their sign; empty where none did.
+        Event functions whose sign changes stopped the integrator; empty if none did.
     failure : str
-        Why it cannot go on; empty where it can.
+        Reason of a failure; empty if there is none.
     passed : int
-        Breakpoints at which it started anew on the way.
+        Number of breakpoints at which the integrator restarted.
     """
 
     times: np.ndarray
@@ -51,54 +51,53 @@ class Engine(Protocol):
         """Forget counters, history and pivots of an earlier run."""
 
     def see_inputs(self, features: InputFeatures, duration: float) -> None:
-        """Take no step that might miss what the inputs do, from the next start on."""
+        """Resolve the features of inputs by sufficiently short steps from the next start."""
 
     def leave_out(self, masked: np.ndarray) -> None:
-        """Do not look at each event function for so many steps from the next start on."""
+        """Ignore each event function for a number of steps from the next start."""
 
     def begin(self, t: float, y: np.ndarray, yp: np.ndarray, newton: float, stiffness: Stiffness) -> None:
-        """Start, or start anew, at consistent values.
+        """Start or restart at consistent values.
 
-        Newton's iteration may leave a part of the tolerance; states within its long steps are
-        brought back to the equations.
+        `newton` is the part of the tolerance that Newton's iteration may leave.  States within steps that are long for
+        the `stiffness` are corrected.
         """
 
     def begin_at(self, start: InitialValues, t: float) -> bool:
-        """The same by one call that finds all of that; False, with nothing started, where it does not serve."""
+        """Start by one compiled call that finds these values; return False, without a start, if it does not apply."""
 
     def begin_anew(self, q: np.ndarray, u: np.ndarray, t: float, ahead: float) -> Begun | None:
-        """Start anew at consistent values behind a state in the middle of a run, and where a straight way `ahead` (s) meets other events,
-        behind these; None, with nothing started, where that does not serve."""
+        """Restart at consistent values after a state and events within `ahead` (s); None if not applicable."""
 
     def to_times(self, times: np.ndarray, stops: Sequence[float]) -> Iterator[Reached]:
-        """Integrate to the first stop or to a later one, and report at times up to there; ends early at an event or a failure.
+        """Integrate to the first stop or a later one, and report at output times; end early at an event or a failure.
 
-        Stops that it passes are told by `passed`: it has started anew there.
+        `Reached.passed` counts the stops at which it has restarted.
         """
 
     def by_steps(self, stop: float) -> Iterator[Reached]:
         """Integrate to `stop` and report each step; ends early at an event or a failure."""
 
     def pause_after(self, steps: int) -> None:
-        """Report at the latest after about so many steps."""
+        """Return from integration after about so many steps at the latest."""
 
     def note(self) -> str:
-        """What the user should know of the way it went; empty for nothing."""
+        """Return a sentence on the integration for the user; empty if there is none."""
 
     def steps(self) -> int:
-        """Taken since the first start."""
+        """Return the number of steps since the first start."""
 
     def statistics(self) -> dict[str, int | float | str]:
-        """The linear solver, and counters since the first start."""
+        """Return the name of the linear solver, and counters since the first start."""
 
     def last_step(self) -> tuple[float, int] | None:
-        """Size, s, and order of the last step, where they are known."""
+        """Return the size, s, and order of the last step, if known."""
 
     def long_steps(self) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
-        """Begins and ends of steps far longer than those before them, and what is reported at nodes within them; None where it keeps none."""
+        """Return begins, ends and interior values of steps much longer than their predecessors; None if not stored."""
 
     def displaced(self) -> np.ndarray | None:
-        """Estimated errors of all positions, as displacements along velocities, shape (n_u,); None where they are not known."""
+        """Return estimated errors of positions as displacements along velocities, shape (n_u,); None if unknown."""
 
     def history(self) -> History:
-        """Ends of the steps, and their orders where they are known."""
+        """Return the ends of the steps, and their orders if known."""

@@ -16,7 +16,7 @@ NORM = Routine("stiffmbs.solve.native.error_norm", "error_norm", "float64(int64*
 
 
 class ErrorNorm:
-    """A norm of error estimates that leaves out what strong damping takes away within the step.
+    """Norm of error estimates without the components that strong damping removes within the step.
 
     Parameters
     ----------
@@ -26,7 +26,7 @@ class ErrorNorm:
     Attributes
     ----------
     table : ndarray of int
-        For compiled code (`stiffmbs.solve.native.tables.steps.ERROR_NORM`).
+        Table for compiled code (`stiffmbs.solve.native.tables.steps.ERROR_NORM`).
     """
 
     def __init__(self, n: int) -> None:
@@ -38,22 +38,22 @@ class ErrorNorm:
     def take_place(
         self, session: Session, memory: int, y_vector: int, tables: tuple[np.ndarray, np.ndarray], assembled: Assembled, iteration: np.ndarray
     ) -> None:  # fmt: skip
-        """Have IDA, which copies its vectors from this one, measure its error estimates by this norm.
+        """Replace the norm of IDA's vectors, which are cloned from this one.
 
-        Nothing is changed where the SUNDIALS libraries lay out vectors in another way: then steps are only more.
+        If the SUNDIALS libraries lay out vectors differently, the norm stays, and IDA takes more steps.
 
         Parameters
         ----------
         session : Session
         memory : int
-            IDA's.
+            IDA memory.
         y_vector : int
         tables : tuple of ndarray
-            Those of the state and of the equations, for compiled code.
+            Tables of the state and of the equations, for compiled code.
         assembled : Assembled
-            IDA's iteration matrix and its solver.
+            Iteration matrix of IDA and its solver.
         iteration : ndarray
-            The table of Newton's iteration (`stiffmbs.solve.native.iteration`).
+            Table of Newton's iteration (`stiffmbs.solve.native.iteration`).
         """
         libraries, (state, equations) = session.libraries, tables
         functions = {
@@ -78,11 +78,11 @@ class ErrorNorm:
             return
 
     def filter_always(self, asked: bool) -> None:
-        """Have all estimates filtered, or those alone that follow many failures."""
+        """Filter all error estimates, or only those after many failed error tests."""
         self._cells["always"] = asked
 
     def begin(self, growth: float) -> None:
-        """Let steps grow from the start on where the error test allows this factor."""
+        """Allow a step to grow if the error test permits this factor, from the start on."""
         self._cells["growth"], self._cells["equal_until"] = growth, 0
 
     def forget(self) -> None:

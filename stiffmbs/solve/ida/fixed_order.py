@@ -1,4 +1,4 @@
-"""The iteration matrix factored along a fixed order of pivots, in place of a linear solver of SUNDIALS' own."""
+"""Linear solver of IDA: sparse LU with a fixed order of pivots."""
 
 from __future__ import annotations
 
@@ -26,16 +26,16 @@ SOLVE = Routine(_MODULE, "solve", "int32(int64*, int64, int64, int64, float64)")
 
 
 class Memory(NamedTuple):
-    """What a linear solver works on.
+    """Memory of a linear solver.
 
     Attributes
     ----------
     content : ndarray of int
-        The table that takes the place of the content of a solver of SUNDIALS.
+        Table that replaces the content of a SUNDIALS linear solver.
     arrays, factors : dict
-        What the tables of the solver and of its factors refer to.
+        Arrays of the tables of the solver and of its factors.
     needed : WhenNeeded or None
-        Routines that the solver may ask for.
+        Routines compiled at their first use.
     """
 
     content: np.ndarray
@@ -46,12 +46,12 @@ class Memory(NamedTuple):
 
 @dataclass(frozen=True)
 class FixedOrder:
-    """The entries of the pattern, by columns; sparse LU whose pivots are sought once (`stiffmbs.solve.native.fixed_order`).
+    """Sparse LU by columns, with pivots searched only once (`stiffmbs.solve.native.fixed_order`).
 
     Attributes
     ----------
     order : EliminationOrder
-        Of the columns, and how much is filled.
+        Elimination order of the columns, and their fill-in.
     """
 
     setup: ClassVar[Routine] = SETUP
@@ -64,15 +64,15 @@ class FixedOrder:
     order: EliminationOrder
 
     def libraries(self) -> Libraries:
-        """Those of IDA alone."""
+        """Return the libraries of IDA alone."""
         return ida_libraries()
 
     def sentence(self) -> str:
-        """What the summary says of it."""
+        """Return a description for the summary."""
         return f"fixed order, {self.n} unknowns, {len(self.rows)} entries"
 
     def assembled(self, session: Session, y: int) -> Assembled:
-        """Takes the place of SUNLinSol_Band on a diagonal matrix, which stays unused."""
+        """Replace the routines of a SUNLinSol_Band on an unused diagonal matrix."""
         s = session.libraries
         matrix = session.keep(s.SUNBandMatrix(self.n, 0, 0, session.context), s.SUNMatDestroy, "a matrix")
         solver = session.keep(s.SUNLinSol_Band(y, matrix, session.context), s.SUNLinSolFree, "a linear solver")
@@ -86,7 +86,7 @@ class FixedOrder:
         )  # fmt: skip
 
     def memory(self, array_of: int) -> Memory:
-        """What the compiled routines work on, given the address of N_VGetArrayPointer."""
+        """Return the memory of the compiled routines, given the address of N_VGetArrayPointer."""
         factors, lists = factors_of(self.n, self.rows, self.columns, self.order), self._lists()
         table = packed_with_memory(FACTORS, factors)
         arrays = {
@@ -98,5 +98,5 @@ class FixedOrder:
         return Memory(packed_with_memory(self.layout, arrays), arrays, factors)
 
     def _lists(self) -> dict[str, np.ndarray]:
-        """What the layout has beside that."""
+        """Return additional arrays of the layout."""
         return {}

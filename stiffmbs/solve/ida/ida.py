@@ -1,4 +1,4 @@
-"""IDA driven through its C interface: compiled residual and Jacobian, compiled loop over the steps."""
+"""Native driver of IDA: compiled residual and Jacobian, compiled loop over the steps."""
 
 from __future__ import annotations
 
@@ -38,62 +38,62 @@ ADVANCE_PAST = Routine(
 STEPS = Routine(MODULE, "steps", "int32(int64, float64, float64*, float64*, int64*)")
 
 LONGEST_CALL, STEP_TIME = 0.1, 1e-7
-"""Time, s, after which a call returns, for progress and interruption; of a step for each unknown, by a rough measure (a clock
-would make results hang on the machine's mood, as Newton's iteration is eased between calls)."""
+"""Time, s, of a call, for progress and interruption; estimated time, s, of a step per unknown.  A clock would make
+results depend on the load of the machine, because calls affect Newton's iteration."""
 
 
 class NativeIda:
-    """IDA set up for one formulation of one system; begun as often as wanted.
+    """IDA memory of one formulation of one system, for any number of starts.
 
-    One thread at a time may use an instance; several threads may each use their own, with its own state: the
+    Only one thread at a time may use an instance.  Several threads may use their own instances and states: the
     interpreter's lock is released while IDA works.
 
     Parameters
     ----------
     equations : Equations
     state : State
-        The working memory of residual and Jacobian.
+        Working memory of residual and Jacobian.
     matrix : Matrix
-        How the iteration matrix is stored and factored (`stiffmbs.solve.ida.choice`).
+        Storage and factorisation of the iteration matrix (`stiffmbs.solve.ida.choice`).
     rtol : float
         Relative tolerance.
     atol : ndarray, shape (n,)
-        Absolute tolerance of each unknown, greater than zero; a huge one takes it out of the error test and of
+        Absolute tolerance of each unknown, greater than zero; a huge one excludes it from the error test and from
         Newton's convergence test.
     max_step : float
         Largest step, s; 0 for none.
     max_order : int
-        Of the BDF formula, 1 to 5.
+        Highest order of BDF, 1 to 5.
     suppressed : ndarray of bool, shape (n,), optional
-        Unknowns that are left out of the error test but not of Newton's convergence test (IDASetSuppressAlg).
+        Unknowns excluded from the error test but not from Newton's convergence test (IDASetSuppressAlg).
     newton : float, optional
         Part of the error tolerance that Newton's iteration may leave (IDASetNonlinConvCoef); 0.33 by default.
     renewal : float, optional
-        Relative change of cj from which the iteration matrix is made anew (IDASetDeltaCjLSetup); 0.25 by default.
+        Relative change of cj that causes a linear solver setup (IDASetDeltaCjLSetup); 0.25 by default.
     growth : float
-        Factor by which a step must be allowed to grow before it is changed (IDASetEtaFixedStepBounds); IDA's own by default.
+        Least factor by which a step is enlarged (IDASetEtaFixedStepBounds); IDA's own by default.
     predicted_residual : bool
-        Whether the convergence rate of Newton's iteration is taken to worsen with the age of the iteration matrix
-        (`stiffmbs.solve.native.iteration`); IDA's own test trusts it until cj changes.
+        If True, the convergence rate of Newton's iteration worsens with the age of the iteration matrix
+        (`stiffmbs.solve.native.iteration`).  IDA's own test keeps it until cj changes.
     reported : ndarray of int, optional
-        The unknowns that are given at output times; all by default.
+        Unknowns returned at output times; all by default.
 
     Attributes
     ----------
     y, yp : ndarrays, shape (n,)
-        The solution at `t`, overwritten by every call.
+        Solution at `t`, overwritten by every call.
     n_event_functions : int
-        Switches of the system; `advance` returns where one of them changes its sign.
+        Number of event functions of the system; `advance` returns at their sign changes.
     matrix : Matrix
     connection : Connection
-        To IDA, for compiled code.
+        Connection to IDA, for compiled code.
 
     Raises
     ------
     Unavailable
-        When SUNDIALS' libraries cannot be used (`stiffmbs.solve.ida.libraries`).
+        If the SUNDIALS libraries cannot be used (`stiffmbs.solve.ida.libraries`).
     ValueError
-        When IDA refuses a setting.
+        If IDA rejects a setting.
 
     References
     ----------
@@ -146,73 +146,73 @@ class NativeIda:
 
     @property
     def begun(self) -> bool:
-        """Whether it was started since it was made or told to forget."""
+        """Return True if IDA was started since it was created or reset."""
         return self._begun
 
     @property
     def t(self) -> float:
-        """Time of the solution in `y`, s."""
+        """Return the time of the solution in `y`, s."""
         return float(self._ida.cells["returned"])
 
     @property
     def history(self) -> StepLog:
-        """Time, order and size of each step."""
+        """Return the log of time, order and size of each step."""
         return self._ida.history
 
     @property
     def long_steps(self) -> LongStepLog | None:
-        """Steps far longer than those before them; None for scenes without laws."""
+        """Return the log of steps much longer than their predecessors; None for scenes without laws."""
         return self._ida.long_steps
 
     @property
     def furthest(self) -> np.ndarray:
-        """How far errors of the steps displace what moves at each independent velocity, by estimates."""
+        """Return the estimated accumulated displacement error along each independent velocity."""
         return self._ida.furthest
 
     @property
     def samples(self) -> np.ndarray:
-        """Every fourth of the last 64 steps since the beginning: time and reported unknowns, the earliest first."""
+        """Return time and reported unknowns after every fourth of the last 64 steps, in order of time."""
         newest = int(self._ida.cells["next_sample"])
         rows = np.concatenate([self._ida.samples[newest:], self._ida.samples[:newest]])
         return rows[~np.isnan(rows[:, 0])]
 
     def pause_after(self, steps: int) -> None:
-        """Have `advance` and `steps` return after so many steps at the latest."""
+        """Make `advance` and `steps` return after this number of steps at the latest."""
         self._pace = min(self._usual_pace, steps)
 
     def keep_steps(self, kept: bool) -> None:
-        """Whether `advance` and `steps` keep time, order, y and y' of each step for `kept_steps`."""
+        """Enable or disable storage of time, order, y and y' of each step for `kept_steps`."""
         width = 2 + 2 * len(self.y)
         self._trace = np.empty((MOST_STEPS if kept else 0, width))
         self._ida.cells["trace"] = self._trace.ctypes.data if kept else 0
         self._ida.cells["traced"] = 0
 
     def kept_steps(self) -> np.ndarray:
-        """Time, order, y and y' of the steps of the last call, one a row; each is given once."""
+        """Return time, order, y and y' of the stored steps, one in each row, and clear them."""
         rows: np.ndarray = self._trace[: int(self._ida.cells["traced"])].copy()
         self._ida.cells["traced"] = 0
         return rows
 
     @property
     def may_pass(self) -> bool:
-        """Whether `advance_past` serves: steps are not kept, and memory to correct states within long steps is there."""
+        """Return True if `advance_past` applies: no steps are stored, and states within long steps can be corrected."""
         return self._ida.output_correction.ready and not len(self._trace)
 
     def look_after(self, steps: int) -> None:
-        """Have the next call of `advance` or `steps` return after so many steps at the latest."""
+        """Make the next call of `advance` or `steps` return after this number of steps at the latest."""
         self._look = max(steps, 1)
 
     def leave_out(self, masked: np.ndarray) -> None:
-        """Do not look at each event function for so many steps from the next beginning on."""
+        """Ignore each event function for a number of steps from the next start."""
         self._ida.masked[:] = masked
 
     def see_inputs(self, features: InputFeatures, duration: float) -> None:
-        """Take no step that might miss what the inputs do."""
+        """Resolve the features of inputs by sufficiently short steps."""
         self._ida.step_bound.follow(features)
         self._ida.watch.resolve(duration)
 
     def unresolved(self) -> str:
-        """Return a sentence on laws that repeat more often than steps are taken; empty for none."""
+        """Return a sentence on periodic laws that steps do not resolve; empty if there are none."""
         return self._ida.watch.note()
 
     def leave_to_newton(self, part: float) -> None:
@@ -220,28 +220,28 @@ class NativeIda:
         self._ida.ask("IDASetNonlinConvCoef", part)
 
     def correct_outputs(self, dynamics: Dynamics, long_step: float, part: float, balanced: float) -> None:
-        """Have states within steps longer than this, s, brought back to the equations, up to a part of the error tolerance.
+        """Correct states within steps longer than `long_step`, s, up to a part of the error tolerance.
 
-        They are left alone where the forces on no body are out of balance by more than the part `balanced` of the largest, nor
-        would be if joints were closed by the `dynamics` of the same state.
+        States stay unchanged if the forces on each body balance up to the part `balanced` of the largest.  The same
+        must hold after the `dynamics` of the same state has closed the joints.
         """
         self._ida.correct_outputs(dynamics, long_step, part, balanced)
 
     def filter_always(self, asked: bool) -> None:
-        """Have all error estimates filtered (`stiffmbs.solve.native.error_norm`), or those alone that follow many failures."""
+        """Filter all error estimates (`stiffmbs.solve.native.error_norm`), or only those after many failures."""
         self._ida.error_norm.filter_always(asked)
 
     def forget(self) -> None:
-        """Forget counters, history and pivots, as if it had never begun."""
+        """Reset counters, history and pivots, as before the first start."""
         self._begun, self._look = False, self._usual_pace
-        self._ida.ask("IDAReInit", 0.0, self._ida.y_vector, self._ida.yp_vector)  # its own counters become zero
+        self._ida.ask("IDAReInit", 0.0, self._ida.y_vector, self._ida.yp_vector)  # resets IDA's counters
         self._statistics.forget()
         self._ida.forget()
 
     def begin(
         self, t: float, y: np.ndarray, yp: np.ndarray, first_step: float = 0.0, highest_order: int | None = None
     ) -> None:
-        """Start, or start again, from consistent values.
+        """Start or restart at consistent values.
 
         Parameters
         ----------
@@ -250,7 +250,7 @@ class NativeIda:
         first_step : float
             Size of the first step, s; 0 lets IDA choose it.
         highest_order : int, optional
-            Of the formulas from here on; IDA cannot lower it on its way.
+            Highest order from here on; IDA cannot lower it within a run.
         """
         if self._begun:
             self._statistics.keep()
@@ -265,14 +265,14 @@ class NativeIda:
         self._begun, self._flag = True, 0
 
     def begun_at(self, t: float) -> None:
-        """Take note that a compiled start has started it, or started it again."""
+        """Note a start or restart by compiled code."""
         self.history.begin(t)
         self._begun, self._flag = True, 0
 
     def starts(
         self, dynamics: Dynamics, equations: Equations, settings: RunSettings, control: ErrorControl
     ) -> Starts | None:
-        """Compiled starts; None where they do not serve."""
+        """Return compiled starts; None if they do not apply."""
         from .starting.starts import Starts
 
         if not Starts.serve(dynamics):
@@ -282,18 +282,18 @@ class NativeIda:
     def advance(
         self, times: np.ndarray, stop: float, y_out: np.ndarray, yp_out: np.ndarray | None = None
     ) -> tuple[int, Status]:
-        """Go on towards `stop`, and report at the output times on the way.
+        """Integrate towards `stop`, and report at output times.
 
-        Returns early, with `Status.GOING`, after some 0.1 s of work: call again with the times that are left.
+        Returns early with `Status.GOING` after about 0.1 s of work: call it again with the remaining times.
 
         Parameters
         ----------
         times : ndarray
-            Increasing, none behind `t` nor beyond `stop`.
+            Increasing output times, s, from `t` to `stop`.
         stop : float
             Time beyond which no residual is evaluated, s.
         y_out, yp_out : ndarrays, shape (len(times), number of reported unknowns)
-            Receive the solution, and its derivative.
+            Output of the solution, and of its derivative.
 
         Returns
         -------
@@ -312,7 +312,7 @@ class NativeIda:
     def advance_past(
         self, anew: StartsAnew, times: np.ndarray, stops: np.ndarray, highest_order: int, y_out: np.ndarray
     ) -> tuple[int, Status]:
-        """Go on as `advance` does towards the first of some stops, and past it to the others, where `anew` may pass them."""
+        """Integrate as `advance` towards the first of some stops, and to later ones if `anew` can restart there."""
         times = np.ascontiguousarray(times, dtype=float)
         self._check_rows(y_out, len(times))
         most = min(self._pace, self._look)
@@ -321,7 +321,7 @@ class NativeIda:
         return int(self._ida.cells["served"]), self._status()
 
     def steps(self, stop: float, t_out: np.ndarray, y_out: np.ndarray) -> tuple[int, Status]:
-        """Go on towards `stop` and report each of IDA's own steps; returns as `advance` does, or when `t_out` is full.
+        """Integrate towards `stop` and report each step of IDA; return as `advance` does, or if `t_out` is full.
 
         Parameters
         ----------
@@ -348,13 +348,13 @@ class NativeIda:
         return {STOP_RETURN: Status.STOP, ROOT_RETURN: Status.ROOT}.get(self._flag, Status.GOING)
 
     def failure(self) -> str:
-        """Why the last call failed: one sentence."""
+        """Return a sentence on the reason of the last failure."""
         return failure_sentence(self._flag)
 
     def roots(self) -> np.ndarray:
-        """After `Status.ROOT`: for each event function other than 0 where it went through zero.
+        """Return, after `Status.ROOT`, nonzero values for the event functions that have changed their signs.
 
-        None is where the step has passed a zone of a law (`stiffmbs.solve.native.event_search.within_step`).
+        All are zero if the step has passed an interval of a law (`stiffmbs.solve.native.event_search.within_step`).
         """
         if self._ida.cells["within"]:
             return self._ida.watch.found[: self.n_event_functions].astype(np.intc)
@@ -363,30 +363,30 @@ class NativeIda:
         return found * self._ida.signs.astype(np.intc)
 
     def interpolate(self, t: float, derivative: int = 0) -> np.ndarray:
-        """The solution, or one of its derivatives up to the last order, at a time within the last step.
+        """Return the solution, or a derivative of it up to the last order, at a time within the last step.
 
         Raises
         ------
         ValueError
-            When the time or the order of the derivative is beyond the last step's.
+            If the time is outside the last step, or the derivative above its order.
         """
         return self._ida.answer("IDAGetDky", t, derivative)
 
     def counted(self) -> dict[str, int]:
-        """The counters since the first beginning (`stiffmbs.solve.ida.statistics.COUNTERS`)."""
+        """Return the counters since the first start (`stiffmbs.solve.ida.statistics.COUNTERS`)."""
         return self._statistics.total()
 
     def statistics(self) -> dict[str, int]:
-        """Counters since the first beginning, and the order of the last step."""
+        """Return the counters since the first start, and the order of the last step."""
         return self._statistics.counted()
 
     def worst(self) -> tuple[int, float]:
-        """The unknown with the largest estimated error in the last step, and that error in units of its tolerance."""
+        """Return the unknown with the largest estimated error in the last step, and that error in tolerances."""
         errors, weights = (self._ida.answer(name) for name in ("IDAGetEstLocalErrors", "IDAGetErrWeights"))
         weighted = np.abs(errors) * weights * self._tested
         k = int(np.argmax(weighted))
         return k, float(weighted[k])
 
     def close(self) -> None:
-        """Free what SUNDIALS holds; the instance cannot be used afterwards. Done by itself with the last reference."""
+        """Free the SUNDIALS objects; automatic at the end of the instance, which cannot be used afterwards."""
         self._finalizer()

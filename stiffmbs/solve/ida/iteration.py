@@ -15,19 +15,19 @@ CONVERGED = Routine(
 
 
 class Iteration:
-    """A nonlinear solver like IDA's own, with a convergence test that knows how old the iteration matrix is.
+    """Newton solver of IDA with a convergence test that considers the age of the iteration matrix.
 
     Parameters
     ----------
     n : int
         Number of unknowns.
     by_reactions : bool
-        Whether forces follow reactions, by laws that may bend where a reaction vanishes.
+        If True, forces depend on reactions, by laws that may have a kink where a reaction vanishes.
 
     Attributes
     ----------
     table : ndarray of int
-        For compiled code (`stiffmbs.solve.native.tables.steps.ITERATION`).
+        Table for compiled code (`stiffmbs.solve.native.tables.steps.ITERATION`).
     """
 
     def __init__(self, n: int, by_reactions: bool) -> None:
@@ -37,7 +37,7 @@ class Iteration:
         self._cells["cj"] = np.inf
 
     def solver(self, session: Session, memory: int, y_vector: int) -> int:
-        """The solver; IDA, whose memory is given, gives it its own test when it is attached: `take_over` comes after that."""
+        """Create the solver; IDA sets its own test when the solver is attached, so `take_over` must follow."""
         libraries = session.libraries
         made = libraries.SUNNonlinSol_Newton(y_vector, session.context)
         fill(
@@ -52,9 +52,9 @@ class Iteration:
         return session.keep(made, libraries.SUNNonlinSolFree, "a nonlinear solver")
 
     def begin(self) -> None:
-        """Forget the rates that were measured, and the last step, as the integrator starts, or starts anew."""
+        """Forget measured rates and the last step before a start or restart of the integrator."""
         self._cells["cj"], self._cells["growth"] = np.inf, -1.0
 
     def take_over(self, session: Session, solver: int) -> None:
-        """Put the test in place."""
+        """Install the convergence test."""
         session.libraries.SUNNonlinSolSetConvTestFn(solver, CONVERGED.address, self.table.ctypes.data)

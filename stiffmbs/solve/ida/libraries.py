@@ -1,4 +1,4 @@
-"""The SUNDIALS libraries that scikit-sundae was built with: found, loaded, and tried before they are used."""
+"""SUNDIALS libraries of scikit-sundae: search, loading and validation."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ import numpy as np
 from .declarations import declared
 
 VERSION = 7
-"""The major version of SUNDIALS that the declarations and the loop are written for."""
+"""Major version of SUNDIALS that the declarations and the loop are written for."""
 IDA_LIBRARIES = ("core", "ida")
 SPARSE_LIBRARIES = ("core", "sunmatrixsparse", "sunlinsolsuperlumt")
 COMPRESSED_COLUMNS = 0
@@ -27,17 +27,17 @@ COMPRESSED_COLUMNS = 0
 
 
 class Unavailable(Exception):
-    """The libraries are not there or not those that this package knows; the text says which, in one sentence."""
+    """Error if libraries are missing or unknown; the text is a sentence with the reason."""
 
 
 @dataclass(frozen=True)
 class Libraries:
-    """Functions of SUNDIALS, as attributes by their names in C.
+    """SUNDIALS functions, as attributes by their C names.
 
     Attributes
     ----------
     index : ctypes type
-        What `sunindextype` is.
+        Type of `sunindextype`.
     """
 
     loaded: tuple[ctypes.PyDLL, ...]
@@ -51,7 +51,7 @@ class Libraries:
 
     @cached_property
     def _declared(self) -> dict[str, tuple[Any, list[Any]]]:
-        """What the headers say of all functions."""
+        """Return the declarations of all functions."""
         return declared(self.index)
 
     def _found(self, name: str) -> Any:
@@ -63,7 +63,7 @@ class Libraries:
         raise Unavailable(f"the SUNDIALS libraries have no function {name}")
 
     def address(self, name: str) -> int:
-        """A function's address, for compiled code."""
+        """Return the address of a function, for compiled code."""
         if name not in self._addresses:
             address = ctypes.cast(self._found(name), ctypes.c_void_p).value
             assert address is not None
@@ -72,31 +72,28 @@ class Libraries:
 
     @cached_property
     def _addresses(self) -> dict[str, int]:
-        """Those asked for so far."""
+        """Return the cache of addresses."""
         return {}
 
     @cached_property
     def _with_threads(self) -> ctypes.PyDLL | None:
-        """The library that works with OpenMP."""
+        """Return the library that uses OpenMP, if any."""
         return next((lib for lib in self.loaded if hasattr(lib, "omp_set_num_threads")), None)
 
     @property
     def may_start_threads(self) -> bool:
-        """Whether one of the libraries works with OpenMP."""
+        """Return True if a library uses OpenMP."""
         return self._with_threads is not None
 
     @contextmanager
     def on_one_thread(self) -> Iterator[None]:
-        """Keep OpenMP, which SuperLU_MT uses, from starting threads of its own that only wait for one another.
-
-        Measured: on a machine with other work to do they make one small factorization last 15 ms instead of 0.03.
-        """
+        """Restrict OpenMP, which SuperLU_MT uses, to one thread; on a busy machine, further ones only delay it."""
         chosen = self._with_threads
         if chosen is None:
             yield
             return
         before = chosen.omp_get_max_threads()
-        chosen.omp_set_num_threads(1)  # of the calling thread alone
+        chosen.omp_set_num_threads(1)  # affects the calling thread only
         try:
             yield
         finally:
@@ -104,12 +101,12 @@ class Libraries:
 
     @property
     def index_dtype(self) -> np.dtype[Any]:
-        """`sunindextype` in numpy's words."""
+        """Return `sunindextype` as a NumPy dtype."""
         return np.dtype(self.index)
 
 
 def available() -> tuple[bool, str]:
-    """Whether IDA can be driven through the libraries, and if not, why: one sentence."""
+    """Return True if IDA's libraries can be used, or False and a sentence with the reason."""
     try:
         ida_libraries()
     except Unavailable as reason:
@@ -119,24 +116,24 @@ def available() -> tuple[bool, str]:
 
 @cache
 def ida_libraries() -> Libraries:
-    """IDA with vectors, dense and banded matrices.
+    """Load IDA with vectors, dense and banded matrices.
 
     Raises
     ------
     Unavailable
-        When they are not found, cannot be loaded, or are of another version or other types of numbers.
+        If they are not found, cannot be loaded, or have another version or other number types.
     """
     return _tried(_loaded(IDA_LIBRARIES))
 
 
 @cache
 def sparse_libraries() -> Libraries:
-    """IDA together with sparse matrices and SuperLU_MT (and the large libraries that it needs in its turn).
+    """Load IDA, sparse matrices and SuperLU_MT with the libraries that it depends on.
 
     Raises
     ------
     Unavailable
-        When scikit-sundae was built without SuperLU_MT.
+        If scikit-sundae was built without SuperLU_MT.
     """
     return _tried((*_loaded(IDA_LIBRARIES), *_loaded(SPARSE_LIBRARIES)))
 
@@ -144,15 +141,15 @@ def sparse_libraries() -> Libraries:
 def _loaded(names: tuple[str, ...]) -> tuple[ctypes.PyDLL, ...]:
     folder = _folder()
     if hasattr(os, "add_dll_directory"):
-        os.add_dll_directory(str(folder))  # Windows looks for what a library needs in declared folders alone
+        os.add_dll_directory(str(folder))  # Windows searches dependencies in declared folders only
     try:
-        return tuple(ctypes.PyDLL(str(_file(folder, name))) for name in names)  # Python makes short calls alone
+        return tuple(ctypes.PyDLL(str(_file(folder, name))) for name in names)  # keeps the GIL in short calls
     except OSError as error:
         raise Unavailable(f"the SUNDIALS libraries in {folder} cannot be loaded: {error}") from None
 
 
 def _folder() -> Path:
-    """Where the libraries of the installed scikit-sundae are; it is not imported for that (0.25 s)."""
+    """Return the folder of the libraries of scikit-sundae, without the cost of its import."""
     found = importlib.util.find_spec("sksundae")
     if found is None or not found.submodule_search_locations:
         raise Unavailable("scikit-sundae is not installed")
@@ -177,15 +174,15 @@ def _file(folder: Path, name: str) -> Path:
 
 
 def _matching(folder: Path, name: str) -> list[Path]:
-    """Files such as libsundials_ida-16d992eb.so.7.9.0, libsundials_ida.7.dylib, sundials_ida-7.dll."""
+    """Return files such as libsundials_ida-16d992eb.so.7.9.0, libsundials_ida.7.dylib, sundials_ida-7.dll."""
     pattern = re.compile(rf"^(lib)?sundials_{name}(-[\w.-]+)?\.(so|dylib|dll|[\d.]+\.dylib)(\.[\d.]+)?$")
     return sorted(path for path in folder.glob(f"*sundials_{name}*") if pattern.match(path.name))
 
 
 def _tried(loaded: tuple[ctypes.PyDLL, ...]) -> Libraries:
-    """The libraries, after a trial of their version and of the types of their numbers."""
+    """Validate the version and the number types of libraries."""
     try:
-        trial = Libraries(loaded, ctypes.c_int64)  # small positive numbers pass alike, whatever the type is
+        trial = Libraries(loaded, ctypes.c_int64)  # small positive numbers are the same in both types
         _check_version(trial)
         return Libraries(loaded, _index_type(trial))
     except AttributeError as error:
@@ -202,7 +199,7 @@ def _check_version(libraries: Libraries) -> None:
 
 
 def _index_type(libraries: Libraries) -> type[Any]:
-    """What `sunindextype` is, seen from the column starts 0 2 4 of a full matrix made sparse."""
+    """Return the type of `sunindextype`, found by the column starts 0 2 4 of a full matrix made sparse."""
     context = ctypes.c_void_p()
     libraries.SUNContext_Create(0, ctypes.byref(context))
     ones = np.ones(4)

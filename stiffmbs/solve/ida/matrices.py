@@ -1,4 +1,4 @@
-"""Iteration matrices and the linear solvers that go with them: dense, banded, sparse."""
+"""Iteration matrices with their linear solvers: dense, banded, sparse."""
 
 from __future__ import annotations
 
@@ -11,23 +11,23 @@ from .session import Session
 
 
 class Assembled(NamedTuple):
-    """A matrix in SUNDIALS and how to fill it.
+    """SUNDIALS matrix and the data to fill it.
 
     Attributes
     ----------
     matrix, solver : int
         The SUNMatrix and its SUNLinearSolver.
     values : int
-        Address of the matrix' values.
+        Address of the values of the matrix.
     slots : ndarray of int or None
-        Where each entry of the pattern stands in them; None for the pattern's own order.
+        Position of each entry of the pattern among the values; None for the order of the pattern.
     pattern : ndarray of int
-        Address in the matrix, address of what is to be written there, and bytes, for each of the two index arrays:
-        IDA clears them together with the values before each new matrix.
+        Address in the matrix, address of the data to be written there, and bytes, for both index arrays: IDA clears
+        them with the values before each new matrix.
     kept : tuple
-        What must live as long.
+        Objects that must stay alive.
     pivots : numpy.void or None
-        Cells of a linear solver that keeps its pivots: "ready" is zero where it has to find them anew; None where it always does.
+        Cells of a linear solver that stores its pivots, with "ready" zero to search them again; None for others.
     """
 
     matrix: int
@@ -40,23 +40,23 @@ class Assembled(NamedTuple):
 
 
 class Matrix(Protocol):
-    """A way to store and factor the iteration matrix."""
+    """Storage and factorisation of the iteration matrix."""
 
     def libraries(self) -> Libraries:
-        """The libraries that it needs."""
+        """Return the required libraries."""
         ...
 
     def assembled(self, session: Session, y: int) -> Assembled:
-        """The matrix and its linear solver for vectors like `y`."""
+        """Create the matrix and its linear solver for vectors like `y`."""
         ...
 
     def sentence(self) -> str:
-        """What it is, for a summary."""
+        """Return a description for the summary."""
         ...
 
 
 class Dense(NamedTuple):
-    """All entries, column after column; Gaussian elimination with partial pivoting."""
+    """Dense matrix by columns; Gaussian elimination with partial pivoting."""
 
     n: int
     rows: np.ndarray
@@ -69,7 +69,7 @@ class Dense(NamedTuple):
         return f"dense, {self.n} unknowns"
 
     def assembled(self, session: Session, y: int) -> Assembled:
-        """A SUNDenseMatrix with SUNLinSol_Dense."""
+        """Create a SUNDenseMatrix with SUNLinSol_Dense."""
         s = session.libraries
         matrix = session.keep(s.SUNDenseMatrix(self.n, self.n, session.context), s.SUNMatDestroy, "a matrix")
         solver = session.keep(s.SUNLinSol_Dense(y, matrix, session.context), s.SUNLinSolFree, "a linear solver")
@@ -79,7 +79,7 @@ class Dense(NamedTuple):
 
 
 class Banded(NamedTuple):
-    """The diagonals near the main one; Gaussian elimination with partial pivoting within them."""
+    """Banded matrix; Gaussian elimination with partial pivoting within the band."""
 
     n: int
     rows: np.ndarray
@@ -87,12 +87,12 @@ class Banded(NamedTuple):
 
     @property
     def upper(self) -> int:
-        """Diagonals above the main one."""
+        """Return the number of diagonals above the main one."""
         return max(0, int((self.columns - self.rows).max()))
 
     @property
     def lower(self) -> int:
-        """Diagonals below the main one."""
+        """Return the number of diagonals below the main one."""
         return max(0, int((self.rows - self.columns).max()))
 
     def libraries(self) -> Libraries:
@@ -102,7 +102,7 @@ class Banded(NamedTuple):
         return f"banded, {self.n} unknowns wide {self.lower + self.upper + 1}"
 
     def assembled(self, session: Session, y: int) -> Assembled:
-        """A SUNBandMatrix with SUNLinSol_Band."""
+        """Create a SUNBandMatrix with SUNLinSol_Band."""
         s = session.libraries
         made = s.SUNBandMatrix(self.n, self.upper, self.lower, session.context)
         matrix = session.keep(made, s.SUNMatDestroy, "a matrix")
@@ -113,7 +113,7 @@ class Banded(NamedTuple):
 
 
 class Sparse(NamedTuple):
-    """The entries of the pattern, by columns; SuperLU_MT with one thread."""
+    """Sparse matrix by columns; SuperLU_MT with one thread."""
 
     n: int
     rows: np.ndarray
@@ -126,7 +126,7 @@ class Sparse(NamedTuple):
         return f"SuperLU_MT, {self.n} unknowns, {len(self.rows)} entries"
 
     def assembled(self, session: Session, y: int) -> Assembled:
-        """A SUNSparseMatrix with SUNLinSol_SuperLUMT; its pattern is written anew with every matrix."""
+        """Create a SUNSparseMatrix with SUNLinSol_SuperLUMT; its pattern is rewritten for every matrix."""
         s = session.libraries
         entries = len(self.rows)
         made = s.SUNSparseMatrix(self.n, self.n, entries, COMPRESSED_COLUMNS, session.context)

@@ -1,4 +1,4 @@
-"""The engine of `bdf` that drives IDA natively: no Python inside the step loop."""
+"""Native driver of IDA for `bdf`, without Python in the step loop."""
 
 from __future__ import annotations
 
@@ -30,21 +30,20 @@ if TYPE_CHECKING:
     from .starting.starts import Starts
 
 ROWS_OF_STEPS = 1000
-"""Room for rows in one call that reports every step."""
+"""Number of rows for one call that reports every step."""
 MANY_FAILURES, EASED, EASIEST = 0.2, 100.0, 0.33
-"""Part of the steps in which Newton's iteration may fail before less is asked of it, by that factor, up to that part."""
+"""Fraction of steps with a failed Newton iteration above which its tolerance is relaxed, factor, and upper bound."""
 RENEWED_UP_TO = 2000
-"""Unknowns up to which SuperLU_MT makes the iteration matrix anew as often as the error control asks (a third fewer residuals
-than with IDA's own 0.25).  Bands and fixed orders, which chains and trees have, do at any size: there it costs a few residuals."""
+"""Number of unknowns up to which SuperLU_MT follows `ErrorControl.renewal`; other linear solvers always do."""
 
 
 class NativeEngine:
-    """IDA through its C interface (`NativeIda`); the contract is in `stiffmbs.solve.ida.engine.Engine`.
+    """IDA through its C interface (`NativeIda`); implements `stiffmbs.solve.ida.engine.Engine`.
 
     Parameters
     ----------
     equations : Equations
-        In the order of the matrix.
+        Equations in the order of the matrix.
     dynamics : Dynamics
         Its state is the working memory of residual and Jacobian.
     matrix : Matrix
@@ -82,15 +81,15 @@ class NativeEngine:
         self._counted = {"steps": 0, "convergence_failures": 0}
 
     def see_inputs(self, features: InputFeatures, duration: float) -> None:
-        """Take no step that might miss what the inputs do."""
+        """Resolve the features of inputs by sufficiently short steps."""
         self._ida.see_inputs(features, duration)
 
     def leave_out(self, masked: np.ndarray) -> None:
-        """Do not look at each event function for so many steps."""
+        """Ignore each event function for a number of steps."""
         self._ida.leave_out(masked)
 
     def begin(self, t: float, y: np.ndarray, yp: np.ndarray, newton: float, stiffness: Stiffness) -> None:
-        """Start, or start anew, at consistent values."""
+        """Start or restart at consistent values."""
         self._newton, self._stiffness = newton, stiffness
         self._ida.leave_to_newton(newton)
         self._ida.filter_always(self._order.held)
@@ -98,8 +97,8 @@ class NativeEngine:
         self._ida.begin(t, y, yp, highest_order=self._order.order)
 
     def begin_at(self, start: InitialValues, t: float) -> bool:
-        """Start, or start anew, at consistent values, by one compiled call."""
-        if not self._started or self._starts is None:  # one start alone does not pay for making these ready
+        """Start or restart at consistent values by one compiled call."""
+        if not self._started or self._starts is None:  # not worth their preparation for one start
             self._started = True
             return False
         self._ida.filter_always(self._order.held)
@@ -109,7 +108,7 @@ class NativeEngine:
         return True
 
     def begin_anew(self, q: np.ndarray, u: np.ndarray, t: float, ahead: float) -> Begun | None:
-        """Start anew at consistent values behind a state, by one compiled call."""
+        """Restart at consistent values after a state by one compiled call."""
         if self._starts is None or self._starts_anew is None:
             return None
         self._ida.filter_always(self._order.held)
@@ -119,13 +118,13 @@ class NativeEngine:
         return found
 
     def _take_up(self, starts: Starts, t: float) -> None:
-        """Go on from a compiled start."""
+        """Continue after a compiled start."""
         self._ida.begun_at(t)
         self._stiffness, self._newton = starts.found()
         self._follow_stiffness(t)
 
     def _follow_stiffness(self, t: float) -> None:
-        """Correct states within long steps, and look at vibrations, by the stiffness at a start."""
+        """Set the correction of states within long steps, and the monitor of vibrations, by the stiffness."""
         stiffness = self._stiffness
         self._ida.correct_outputs(
             self._dynamics,
@@ -136,7 +135,7 @@ class NativeEngine:
         self._order.begin(t, self._ida.history.count, float(np.sqrt(stiffness.of_positions)))
 
     def _adapt(self, stop: float) -> None:
-        """Between two calls: what is asked of Newton's iteration, and the highest order, follow what was seen."""
+        """Adapt Newton's tolerance and the highest order between two calls."""
         self._ease_newton()
         ida = self._ida
         due = just_after(ida.t) < stop and self._order.due(ida.history.count)  # IDA does not start where it is to stop
@@ -145,7 +144,7 @@ class NativeEngine:
         ida.look_after(self._order.wait(ida.history.count))
 
     def _ease_newton(self) -> None:
-        """Ask less of Newton's iteration when it failed in many steps of a call: rounding may keep it from settling."""
+        """Relax Newton's tolerance after many failures in a call: rounding may prevent its convergence."""
         counted = self._ida.counted()
         steps = counted["steps"] - self._counted["steps"]
         failures = counted["convergence_failures"] - self._counted["convergence_failures"]
@@ -154,10 +153,10 @@ class NativeEngine:
             eased = min(EASIEST, EASED * self._newton)
             self.begin(
                 self._ida.t, self._ida.y.copy(), self._ida.yp.copy(), eased, self._stiffness
-            )  # IDA reads it at a start alone
+            )  # IDA reads it only at a start
 
     def to_times(self, times: np.ndarray, stops: Sequence[float]) -> Iterator[Reached]:
-        """Integrate to the first stop or to a later one, and report at times up to there; ends early at an event or a failure."""
+        """Integrate to the first stop or a later one, and report at output times; end early at an event or failure."""
         status, served, passed = Status.GOING, 0, 0
         anew = self._starts_anew if len(stops) > 1 else None
         if anew is None or not (anew.may_pass and self._ida.may_pass):
@@ -178,7 +177,7 @@ class NativeEngine:
     def _advance(
         self, anew: StartsAnew | None, times: np.ndarray, stops: Sequence[float], rows: np.ndarray
     ) -> tuple[int, Status, int]:
-        """Go on to the first stop, or past it by `anew`; the output times served, how it ended, and the stops that were passed."""
+        """Integrate to the first stop, or beyond by `anew`; return output times served, status, stops passed."""
         if anew is None:
             return *self._ida.advance(times, stops[0], rows), 0
         before = self._ida.history.count
@@ -190,7 +189,7 @@ class NativeEngine:
         return served, status, passed
 
     def by_steps(self, stop: float) -> Iterator[Reached]:
-        """Integrate to `stop` and report each step; ends early at an event or a failure."""
+        """Integrate to `stop` and report each step; end early at an event or a failure."""
         status = Status.GOING
         while status is Status.GOING:
             times, rows = np.empty(ROWS_OF_STEPS), np.empty((ROWS_OF_STEPS, self._width))
@@ -205,7 +204,7 @@ class NativeEngine:
         return Reached(times, rows, self._ida.t, self._ida.y, fired, failure, passed)
 
     def _worst(self) -> str:
-        """Where the last step's error, or the last correction of Newton's iteration, was largest; nothing where that is not known."""
+        """Return a clause on the unknown with the largest error or Newton correction in the last step, if known."""
         unknown, size = self._ida.worst()
         if not 0.0 < size < np.inf:
             return ""
@@ -216,7 +215,7 @@ class NativeEngine:
         return ""
 
     def restarts(self, dynamics: Dynamics, q: np.ndarray, u: np.ndarray) -> Restarts | None:
-        """Compiled starts of this integrator from the state in q and u; None where they do not serve."""
+        """Return compiled restarts of this integrator from the state q and u; None if they do not apply."""
         from .starting.restarts import Restarts
 
         if self._starts is None or not Restarts.serve(dynamics.system, self._ida.connection):
@@ -225,68 +224,68 @@ class NativeEngine:
 
     @cached_property
     def _starts(self) -> Starts | None:
-        """Compiled starts; None where they do not serve."""
+        """Return compiled starts; None if they do not apply."""
         return self._make_starts()
 
     @cached_property
     def _starts_anew(self) -> StartsAnew | None:
-        """Compiled starts in the middle of a run; None where they do not serve."""
+        """Return compiled restarts within a run; None if they do not apply."""
         from .starting.anew import StartsAnew
 
         least = NUMBERS_END / self._rtol
         return StartsAnew(self._starts, self._dynamics, least) if self._starts else None
 
     def at(self, t: float) -> np.ndarray:
-        """All unknowns at a time within the last step."""
+        """Return all unknowns at a time within the last step."""
         return self._ida.interpolate(t)
 
     def pause_after(self, steps: int) -> None:
-        """Report at the latest after so many steps."""
+        """Report after this number of steps at the latest."""
         self._ida.pause_after(steps)
 
     def keep_steps(self, kept: bool) -> None:
-        """Whether the steps are kept for `kept_steps`."""
+        """Enable or disable storage of the steps for `kept_steps`."""
         self._ida.keep_steps(kept)
 
     def kept_steps(self) -> np.ndarray:
-        """Time, order, y and y' of the steps since this was last asked for, one a row."""
+        """Return time, order, y and y' of the steps since the last call, one in each row."""
         return self._ida.kept_steps()
 
     def present(self) -> np.ndarray:
-        """A row of the same form for where it is."""
+        """Return a row of the same form for the current state."""
         return np.concatenate([[self._ida.t, 1.0], self._ida.y, self._ida.yp])
 
     def note(self) -> str:
-        """What the user should know of the way it went."""
+        """Return a sentence on the integration for the user; empty if there is none."""
         return "; ".join(filter(None, (self._order.note(self._ida.history.count), self._ida.unresolved())))
 
     def steps(self) -> int:
-        """Taken since the first start."""
+        """Return the number of steps since the first start."""
         return self._ida.history.count
 
     def statistics(self) -> dict[str, int | float | str]:
-        """The linear solver, and counters since the first start."""
+        """Return the name of the linear solver, and counters since the first start."""
         return {"linear_solver": self.matrix.sentence(), **self._ida.statistics()}
 
     def last_step(self) -> tuple[float, int] | None:
-        """Size, s, and order of the last step, where they are known."""
+        """Return the size, s, and order of the last step, if known."""
         return self._ida.history.last
 
     def end_steps_at_kinks(self) -> None:
-        """From now on, end steps where the argument of a table passes a kink, which restarts IDA."""
+        """End steps at the kinks of tables from now on, and restart IDA there."""
         self._ida.connection.watch.end_steps_at_kinks()
 
     def long_steps(self) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
-        """Begins and ends of steps far longer than those before them, and what is reported at nodes within them; None for scenes without laws."""
+        """Return begins, ends and interior values of steps much longer than their predecessors; None without laws."""
         log = self._ida.long_steps
         return log.kept() if log else None
 
     def displaced(self) -> np.ndarray:
-        """Estimated errors of all positions, as displacements along velocities, shape (n_u,)."""
+        """Return estimated errors of positions as displacements along velocities, shape (n_u,)."""
         along = self._equations.along_motion
         found: np.ndarray = np.abs(along.ratio) * self._ida.furthest[along.follows]
         return found
 
     def history(self) -> History:
-        """Ends of the steps and their orders."""
+        """Return the ends of the steps and their orders."""
         return History(*self._ida.history.ends())

@@ -1,4 +1,4 @@
-"""Own functions in place of those of a linear solver of SUNDIALS."""
+"""Replacement of operations in SUNDIALS objects by the package's own functions."""
 
 from __future__ import annotations
 
@@ -14,30 +14,31 @@ from .libraries import Libraries, Unavailable
 from .session import Session
 
 MOST_WORDS = 16
-"""Words of a solver, or of its table of operations, that are looked through."""
+"""Number of words searched in a solver or in its table of operations."""
 
 
 def take_place(session: Session, solver: int, size: int, functions: Mapping[str, int], content: np.ndarray) -> None:
-    """Put functions, and the content that they work on, in place of a solver's own; undone before it is freed.
+    """Replace functions and content of a linear solver; the content is restored before the solver is freed.
 
-    A solver holds its content, its operations and, last, its context.  The table of operations is found by the addresses that it holds, as the layout of SUNDIALS' structures moves between versions.
+    A solver holds its content, its operations and, last, its context.  The table of operations is found by its
+    addresses, because the layout of SUNDIALS structures depends on the version.
 
     Parameters
     ----------
     session : Session
     solver : int
-        The SUNLinearSolver.
+        SUNLinearSolver.
     size : int
-        Its number of unknowns, by which its content is known.
+        Number of unknowns, which identifies the content.
     functions : dict of str to int
-        The name of a function to replace, and the address of the one that takes its place.
+        Names of the functions to replace, and addresses of their replacements.
     content : ndarray of int
-        What takes the place of the content; the first three words are as in that.
+        Replacement of the content; its first three words are as in the original.
 
     Raises
     ------
     Unavailable
-        When the solver does not look as expected.
+        If the layout of the solver is unknown.
     """
     replaced = {session.libraries.address(name): address for name, address in functions.items()}
     own = list(takewhile(lambda word: word != session.context.value, _words(solver, MOST_WORDS)))
@@ -52,24 +53,24 @@ def take_place(session: Session, solver: int, size: int, functions: Mapping[str,
 
 
 def take_norm(session: Session, vector: int, norm: int, table: np.ndarray) -> None:
-    """Put a norm in place of N_VWrmsNorm in a vector's operations, and so in those of its later copies.
+    """Replace N_VWrmsNorm in the operations of a vector, and thereby in those of its later clones.
 
-    The operation has no argument for a table of its own: its address takes the place of N_VBufPack, which IDA does not use.
+    The operation has no argument for a table: the table's address replaces N_VBufPack, which IDA does not use.
 
     Parameters
     ----------
     session : Session
     vector : int
-        The N_Vector.
+        N_Vector.
     norm : int
-        The address of the function.
+        Address of the function.
     table : ndarray of int
-        What the function works on.
+        Table of the function's data.
 
     Raises
     ------
     Unavailable
-        When the vector does not look as expected.
+        If the layout of the vector is unknown.
     """
     operations = list(_words(vector, OPERATIONS + 1))[OPERATIONS]
     words = list(_words(operations, NORM_TABLE + 1))
@@ -82,7 +83,7 @@ def take_norm(session: Session, vector: int, norm: int, table: np.ndarray) -> No
 
 @cache
 def replaceable(libraries: Libraries) -> bool:
-    """Whether `take_place` works with these libraries: tried on a solver of two unknowns."""
+    """Return True if `take_place` works with these libraries; tested on a solver of two unknowns."""
     session = Session(libraries)
     values = np.zeros(2)
     try:

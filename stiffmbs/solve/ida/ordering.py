@@ -1,4 +1,4 @@
-"""Unknowns in an order that gathers the iteration matrix about its diagonal."""
+"""Ordering of the unknowns for a banded iteration matrix."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from ...compile.equations import Equations
 
 
 def narrowed(equations: Equations) -> Equations:
-    """The same equations in the order of reverse Cuthill and McKee.
+    """Return the equations in reverse Cuthill-McKee order.
 
-    In a chain the unknowns of a body come to stand beside those of its neighbours and of the joints between them.
+    In a chain, the unknowns of a body are then next to those of its neighbours and of the joints between them.
 
     Parameters
     ----------
     equations : Equations
-        In the natural order.
+        Equations in their natural order.
 
     References
     ----------

@@ -15,7 +15,7 @@ VECTORS = "y", "yp", "defect", "correction", "weight", "size"
 
 
 class OutputCorrection:
-    """A matrix with its factors, and vectors, beside IDA's own; made when a scene is first found to be stiff.
+    """Matrix, factors and vectors for the correction of interpolated states; created for the first stiff scene.
 
     Parameters
     ----------
@@ -24,7 +24,7 @@ class OutputCorrection:
     Attributes
     ----------
     table : ndarray of int
-        For compiled code (`stiffmbs.solve.native.tables.steps.OUTPUT_CORRECTION`); without addresses until `make_ready`.
+        Table for compiled code (`stiffmbs.solve.native.tables.steps.OUTPUT_CORRECTION`), filled by `make_ready`.
     """
 
     def __init__(self, equations: Equations) -> None:
@@ -37,23 +37,23 @@ class OutputCorrection:
 
     @property
     def ready(self) -> bool:
-        """Whether the memory is there."""
+        """Return True if the memory exists."""
         return self._assembled is not None
 
     def make_ready(self, session: Session, matrix: Matrix, memory: int, y_vector: int, dynamics: Dynamics) -> None:
-        """Make the matrix, its solver and the vectors.
+        """Create the matrix, its solver and the vectors.
 
         Parameters
         ----------
         session : Session
-            Owns them.
+            Owner of these objects.
         matrix : Matrix
         memory : int
-            IDA's.
+            IDA memory.
         y_vector : int
-            A vector like those of the iteration.
+            Vector like those of the iteration.
         dynamics : Dynamics
-            Of the same state.
+            Dynamics of the same state.
         """
         libraries, assembled = session.libraries, matrix.assembled(session, y_vector)
         libraries.SUNLinSolInitialize(assembled.solver)
@@ -87,26 +87,26 @@ class OutputCorrection:
         }
 
     def limit(self, long_step: float, part: float, balanced: float) -> None:
-        """Set the step, s, beyond which states within it are corrected, and the part of the error tolerance that is left.
+        """Set the step, s, above which states within it are corrected, and the part of the tolerance that may remain.
 
-        States are left alone where the forces on no body are out of balance by more than the part `balanced` of the largest, nor
-        would be if their joints were closed.
+        They stay unchanged if forces on each body balance up to the part `balanced` of the largest, also with closed
+        joints.
         """
         self._cells["long"], self._cells["enough"], self._cells["balanced"] = long_step, part, balanced
 
     def begin(self) -> None:
-        """Look at the first state behind a start."""
+        """Check the first state after a start."""
         self._cells["unseen"] = self._cells["next_look"] = self._cells["judged"] = 0
 
     def forget(self) -> None:
-        """Have the matrix factored anew, with pivots that are sought anew."""
+        """Discard the factors and their pivots."""
         self._cells["factored"] = 0.0
         if self._assembled is not None and self._assembled.pivots is not None:
             self._assembled.pivots["ready"] = 0
 
 
 def _rows_of_motion(equations: Equations) -> tuple[np.ndarray, np.ndarray]:
-    """The rows of the equations of motion, those of forces and then those of moments, and where either end."""
+    """Return the rows of the equations of motion, forces before moments, and the end of either part."""
     rows = equations.at["u"]
     straight = equations.system.per_velocity(1.0, 0.0) == 1.0
     kinds = [rows[of_kind & (rows != ABSENT)] for of_kind in (straight, ~straight)]
@@ -114,7 +114,7 @@ def _rows_of_motion(equations: Equations) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _rows_of_joints(equations: Equations) -> np.ndarray:
-    """The rows that hold a position constraint by itself; none where constraints are those of accelerations."""
+    """Return the rows of single position constraints; none if constraints are those of accelerations."""
     kinds = [line.rows for line in equations.formulation.residual if line.block == "C" and line.factor == 1]
     rows = [equations.at[kind] for kind in kinds]
     found = np.concatenate([np.empty(0), *rows])

@@ -1,4 +1,4 @@
-"""The iteration matrix factored along a fixed order of pivots, its columns taken in pairs."""
+"""Linear solver of IDA: sparse LU in a fixed order with two-column supernodes."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ SOLVE = Routine(_MODULE, "solve", "int32(int64*, int64, int64, int64, float64)")
 
 @dataclass(frozen=True)
 class PairedColumns(FixedOrder):
-    """Sparse LU whose pivots are sought once, for long columns (`stiffmbs.solve.native.paired_columns`)."""
+    """Sparse LU for long columns, with pivots searched only once (`stiffmbs.solve.native.paired_columns`)."""
 
     setup: ClassVar[Routine] = SETUP
     solve: ClassVar[Routine] = SOLVE
     layout: ClassVar[Layout] = PAIRED_COLUMNS
 
     def sentence(self) -> str:
-        """What the summary says of it."""
+        """Return a description for the summary."""
         return f"fixed order, columns in pairs, {self.n} unknowns, {len(self.rows)} entries"
 
     def _lists(self) -> dict[str, np.ndarray]:

@@ -1,4 +1,4 @@
-"""What SUNDIALS makes and has to be told to free: kept together, freed once, in the reverse order."""
+"""Ownership of SUNDIALS objects, freed once in reverse order of creation."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .when_needed import WhenNeeded
 
 
 class Session:
-    """A SUNContext and all objects made in it.
+    """SUNContext with all objects created in it.
 
     Parameters
     ----------
@@ -28,15 +28,15 @@ class Session:
         self.context = ctypes.c_void_p()
         libraries.SUNContext_Create(0, ctypes.byref(self.context))
         self._frees.callback(libraries.SUNContext_Free, ctypes.byref(self.context))
-        libraries.SUNContext_ClearErrHandlers(self.context)  # they print; failures are told by their flags
+        libraries.SUNContext_ClearErrHandlers(self.context)  # they print; flags report failures
 
     def keep(self, handle: int | None, free: Callable[[Any], Any], what: str) -> int:
-        """Take charge of a new object.
+        """Take ownership of a new object.
 
         Raises
         ------
         MemoryError
-            When SUNDIALS could not make it.
+            If SUNDIALS could not create it.
         """
         if not handle:
             raise MemoryError(f"SUNDIALS could not make {what}")
@@ -44,15 +44,15 @@ class Session:
         return handle
 
     def before_freed(self, undo: Callable[[], Any]) -> None:
-        """Have something undone before the objects made so far are freed."""
+        """Undo a change before the objects created so far are freed."""
         self._frees.callback(undo)
 
     def may_need(self, routines: WhenNeeded) -> None:
-        """Note routines that a linear solver may ask for."""
+        """Note routines that a linear solver may request."""
         self._needed.append(routines)
 
     def call(self, function: Callable[..., Any], *arguments: Any) -> Any:
-        """Call compiled code, libraries on one thread; raises afterwards what kept a routine from being compiled."""
+        """Call compiled code with libraries on one thread; afterwards raise errors from the compilation of routines."""
         if self.libraries.may_start_threads:
             with self.libraries.on_one_thread():
                 found = function(*arguments)
@@ -63,12 +63,12 @@ class Session:
         return found
 
     def vector(self, values: np.ndarray) -> int:
-        """An N_Vector whose values are those of an array, which must live as long."""
+        """Create an N_Vector with the values of an array, which must outlive it."""
         handle = self.libraries.N_VMake_Serial(len(values), values.ctypes.data, self.context)
         return self.keep(handle, self.libraries.N_VDestroy, "a vector")
 
     def ida(self) -> int:
-        """A new integrator."""
+        """Create IDA memory."""
         libraries = self.libraries
 
         def free(memory: int) -> None:
@@ -77,5 +77,5 @@ class Session:
         return self.keep(libraries.IDACreate(self.context), free, "an integrator")
 
     def close(self) -> None:
-        """Free everything; a second call does nothing."""
+        """Free all objects; a second call has no effect."""
         self._frees.close()

@@ -1,4 +1,4 @@
-"""IDA's counters, added up over its restarts."""
+"""Counters of IDA, accumulated over restarts."""
 
 from __future__ import annotations
 
@@ -22,23 +22,23 @@ COUNTERS = {
     "newton_iterations": "IDAGetNumNonlinSolvIters",
     "newton_failures": "IDAGetNumNonlinSolvConvFails",
 }
-"""Each counter and the function that reads it."""
+"""Names of the counters and of the functions that return them."""
 
 
 class Statistics:
-    """The counters of one integrator.
+    """Counters of one integrator.
 
     Parameters
     ----------
     libraries : Libraries
     memory : int
-        The integrator.
+        IDA memory.
 
     Attributes
     ----------
     arrays : dict
-        For compiled code (`stiffmbs.solve.native.tables.steps.START`): functions that read the counters, room for one number, and what
-        was counted before the last start.
+        Arrays for compiled code (`stiffmbs.solve.native.tables.steps.START`): counter functions, space for one
+        number, and the counts before the last start.
     """
 
     def __init__(self, libraries: Libraries, memory: int) -> None:
@@ -56,21 +56,21 @@ class Statistics:
         _COUNT.short_call(len(sums), functions, self._memory, value, address(sums))
 
     def total(self) -> dict[str, int]:
-        """Each of the counters."""
+        """Return all counters."""
         sums = self._before.copy()
         self._add_to(sums)
         return dict(zip(COUNTERS, sums.tolist(), strict=True))
 
     def keep(self) -> None:
-        """Add what has been counted to the sum, before a restart sets IDA's counters to zero."""
+        """Add IDA's counters to the sums before a restart resets them."""
         self._add_to(self._before)
 
     def forget(self) -> None:
-        """Begin with nothing counted, before IDA starts anew."""
+        """Reset the sums before IDA is reset."""
         self._before[:] = 0
 
     def counted(self) -> dict[str, int]:
-        """All counters; `rejected` counts the steps tried in vain, `order` is the last step's."""
+        """Return all counters, with `rejected` steps and the `order` of the last step."""
         total = self.total()
         self._libraries.IDAGetLastOrder(self._memory, ctypes.byref(self._order))
         rejected = total["error_test_failures"] + total["convergence_failures"]

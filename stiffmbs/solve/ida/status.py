@@ -1,4 +1,4 @@
-"""How a call of the native IDA ended, and IDA's failures as sentences."""
+"""Outcomes of calls of the native IDA, and messages for IDA's failures."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from enum import Enum
 
 
 class Status(Enum):
-    """What `NativeIda.advance` and `NativeIda.steps` came back for."""
+    """Reason for the return of `NativeIda.advance` and `NativeIda.steps`."""
 
     GOING = "more work is left; call again"
     STOP = "the stop time is reached"
@@ -50,10 +50,9 @@ FAILURES = {
     -101: "the steps have shrunk to the precision of time: no solution was found beyond this instant, as where the "
     f"motion has a pole or a mechanism locks, or {_UNDEFINED}; look at the last rows, or end the run before",
 }
-"""IDA's flags below zero (ida.h) in words, with the likely cause and the remedy, and that of the loop
-(`stiffmbs.solve.native.ida_loop.STALLED`)."""
+"""Messages for IDA's negative flags (ida.h) and for `stiffmbs.solve.native.ida_loop.STALLED`, with cause and remedy."""
 
 
 def failure_sentence(flag: int) -> str:
-    """Why IDA failed."""
+    """Return the reason of a failure of IDA."""
     return FAILURES.get(flag, f"IDA failed with flag {flag}: {_INSIDE}")

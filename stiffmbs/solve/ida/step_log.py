@@ -1,4 +1,4 @@
-"""Time, order and size of each step of an integrator."""
+"""Log of time, order and size of each step of an integrator."""
 
 from __future__ import annotations
 
@@ -6,16 +6,16 @@ import numpy as np
 
 WIDTH = 3
 MOST_KEPT = 1_000_000
-"""Steps kept; later ones are only counted."""
+"""Largest number of stored steps; later ones are only counted."""
 
 
 class StepLog:
-    """Filled by compiled code call by call, read as arrays.
+    """Log of steps, filled by compiled code in each call and read as arrays.
 
     Attributes
     ----------
     count : int
-        Steps taken.
+        Number of steps.
     """
 
     def __init__(self) -> None:
@@ -24,7 +24,7 @@ class StepLog:
         self.count = self._kept = 0
 
     def rows(self, steps: int) -> np.ndarray:
-        """Memory for the steps of one call, one row each: time of the end, order, size."""
+        """Return memory for the steps of one call; each row is end time, order and size."""
         self._rows = np.empty((steps, WIDTH))
         return self._rows
 
@@ -34,7 +34,7 @@ class StepLog:
         self.count = self._kept = 0
 
     def begin(self, t: float) -> None:
-        """The integrator starts at `t`: a step that went beyond it, to where an event function was met, ends there."""
+        """Note a start at `t`; a last step beyond it, within which an event was found, is shortened."""
         if self._chunks and len(self._chunks[-1]):
             last = self._chunks[-1][-1]
             if last[0] > t:
@@ -42,7 +42,7 @@ class StepLog:
                 last[0] = t
 
     def add(self, steps: int) -> None:
-        """Keep the first rows."""
+        """Store the first rows."""
         self.count += steps
         kept = min(steps, MOST_KEPT - self._kept)
         if kept > 0:
@@ -51,14 +51,14 @@ class StepLog:
 
     @property
     def last(self) -> tuple[float, int] | None:
-        """Size, s, and order of the last step that is kept."""
+        """Return the size, s, and order of the last stored step."""
         if not self._chunks or not len(self._chunks[-1]):
             return None
         _, order, size = self._chunks[-1][-1]
         return float(size), int(order)
 
     def ends(self) -> tuple[np.ndarray, np.ndarray]:
-        """Ends of the steps, s, and the order of each step's formula."""
+        """Return the ends of the steps, s, and their orders."""
         rows = self._all()
         return rows[:, 0].copy(), rows[:, 1].astype(int)
 
@@ -67,15 +67,15 @@ class StepLog:
 
     @property
     def t(self) -> np.ndarray:
-        """Ends of the steps, s."""
+        """Return the ends of the steps, s."""
         return self._all()[:, 0].copy()
 
     @property
     def order(self) -> np.ndarray:
-        """Order of each step's formula."""
+        """Return the order of each step."""
         return self._all()[:, 1].astype(int)
 
     @property
     def step(self) -> np.ndarray:
-        """Size of each step, s."""
+        """Return the size of each step, s."""
         return self._all()[:, 2].copy()

@@ -1,4 +1,4 @@
-"""IDA through scikit-sundae, with compiled residual, Jacobian and root functions called from Python."""
+"""Driver of IDA by scikit-sundae, with compiled residual, Jacobian and event functions called from Python."""
 
 from __future__ import annotations
 
@@ -27,33 +27,33 @@ JACOBIAN = Routine(_MODULE, "jacobian", "void(float64, int64, int64, float64, in
 SWITCHES = Routine(_MODULE, "event_functions", "void(float64, int64, int64, int64, int64*)")
 
 MOST_ENDS = 200_000
-"""Ends of steps kept."""
+"""Largest number of stored step ends."""
 DENSE_UP_TO = 90
-"""Unknowns up to which the dense linear solver is as fast as the sparse one."""
+"""Number of unknowns up to which the dense linear solver is used."""
 STEPS_AT_ONCE = 20_000
-"""Steps after which it hands over where it is."""
+"""Steps after which a call returns."""
 TOO_MUCH_WORK = -1
-"""IDA's status where a call has come to its most steps: it goes on when it is called again."""
+"""Status of IDA after the largest number of steps in a call; the next call continues."""
 TOGETHER = 20
-"""Output times that are handed over together, as a handing over costs more than a step."""
+"""Number of output times reported together, because a report costs more than a step."""
 ROOT_FOUND = 2
-"""IDA's status for a step that ended at a root."""
+"""Status of IDA after a step that ended at a root."""
 
 
 class Callbacks:
-    """Residual and Jacobian of one formulation as IDA calls them, and the history of IDA's steps.
+    """Residual and Jacobian callbacks of one formulation, and the history of IDA's steps.
 
     Parameters
     ----------
     equations : Equations
     state : State
     dense : bool
-        Whether the Jacobian is a full matrix, or the values of the pattern's entries by columns.
+        If True, the Jacobian is a full matrix, otherwise the entries of the pattern by columns.
 
     Attributes
     ----------
     masked : ndarray of int
-        For how many steps each event function is still left out (`stiffmbs.solve.native.event_search.event_signs`).
+        Remaining steps for which each event function is masked (`stiffmbs.solve.native.event_search.event_signs`).
     """
 
     def __init__(self, equations: Equations, state: State, dense: bool = True) -> None:
@@ -84,7 +84,7 @@ class Callbacks:
         call = RESIDUAL.call
 
         def residual(t: float, y: np.ndarray, yp: np.ndarray, r: np.ndarray) -> None:
-            call(t, id(y), id(yp), id(r), table)  # asking an array for .ctypes.data costs more than the residual
+            call(t, id(y), id(yp), id(r), table)  # .ctypes.data costs more than the residual
 
         return residual
 
@@ -107,41 +107,41 @@ class Callbacks:
         return event_functions
 
     def begin(self, t: float) -> None:
-        """Go on with the history from an instant at which IDA starts anew, and look at the event functions' signs again."""
+        """Continue the history at a restart of IDA, and determine the signs of the event functions again."""
         self._cells["last_time"] = t
         self._signs[:] = 0.0
 
     @property
     def steps(self) -> int:
-        """Accepted steps so far."""
+        """Return the number of accepted steps."""
         return int(self._cells["steps"])
 
     @property
     def rejected(self) -> int:
-        """Steps tried in vain so far."""
+        """Return the number of rejected steps."""
         return int(self._cells["rejected"])
 
     @property
     def step_times(self) -> np.ndarray:
-        """Ends of the accepted steps, the first `MOST_ENDS` of them."""
+        """Return the ends of the accepted steps, up to the first `MOST_ENDS`."""
         return self._ends[: self.steps].copy()
 
 
 class SundaeEngine:
-    """IDA through scikit-sundae; the contract is in `stiffmbs.solve.ida.engine.Engine`.
+    """IDA through scikit-sundae; implements `stiffmbs.solve.ida.engine.Engine`.
 
     Parameters
     ----------
     equations : Equations
     state : State
-        The working memory of residual and Jacobian.
+        Working memory of residual and Jacobian.
     rtol : float
     atol : ndarray, shape (n,)
-        Of each unknown; huge for those that are left out of the error test.
+        Tolerance of each unknown; huge for those excluded from the error test.
     max_step : float
-        s; 0 for none.
+        Largest step, s; 0 for none.
     max_order : int
-        Of the BDF formula, 1 to 5.
+        Highest order of BDF, 1 to 5.
     """
 
     def __init__(
@@ -159,7 +159,7 @@ class SundaeEngine:
         if n_event_functions:
             options |= {"eventsfn": self.callbacks.event_functions, "num_events": n_event_functions}
         with warnings.catch_warnings():
-            warnings.filterwarnings("ignore", message="Custom sparse Jacobian")  # said whenever sparsity and jacfn meet
+            warnings.filterwarnings("ignore", message="Custom sparse Jacobian")  # issued for any jacfn with sparsity
             self._ida = SundialsIda(
                 self.callbacks.residual, jacfn=self.callbacks.jacobian, rtol=rtol, atol=atol,
                 max_num_steps=STEPS_AT_ONCE, max_step=max_step, max_order=max_order, **options,
@@ -177,32 +177,32 @@ class SundaeEngine:
         return {"linsolver": "sparse", "sparsity": pattern}
 
     def forget(self) -> None:
-        """Each run has a driver of its own."""
+        """Do nothing: each run has its own driver."""
 
     def see_inputs(self, features: InputFeatures, duration: float) -> None:
-        """Stop where a longer step might miss what the inputs do; IDA goes on from there with its history."""
+        """Limit steps to resolve the features of inputs; IDA continues at such stops with its history."""
         self._features = features
 
     def leave_out(self, masked: np.ndarray) -> None:
-        """Do not look at each event function for so many steps."""
+        """Ignore each event function for a number of steps."""
         self.callbacks.masked[:] = masked
 
     def begin(self, t: float, y: np.ndarray, yp: np.ndarray, newton: float, stiffness: Stiffness) -> None:
-        """Start, or start anew, at consistent values; scikit-sundae keeps IDA's own tolerance of Newton's iteration."""
+        """Start or restart at consistent values; scikit-sundae keeps IDA's own Newton tolerance."""
         for name, count in self._since.items():
             self._before[name] += count
         self.callbacks.begin(t)
         self._last, self._near = self._ida.init_step(t, y, yp), t
 
     def begin_at(self, start: InitialValues, t: float) -> bool:
-        """There is no such call of scikit-sundae."""
+        """Return False: scikit-sundae has no such call."""
         return False
 
     def begin_anew(self, q: np.ndarray, u: np.ndarray, t: float, ahead: float) -> None:
-        """Nor one for that."""
+        """Return None: scikit-sundae has no such call."""
 
     def to_times(self, times: np.ndarray, stops: Sequence[float]) -> Iterator[Reached]:
-        """Integrate to the first stop and report at times up to there; ends early at an event or a failure."""
+        """Integrate to the first stop and report at output times; end early at an event or a failure."""
         stop = stops[0]
         times = times[times <= stop]
         ends_there, served = len(times) > 0 and times[-1] == stop, 0
@@ -220,7 +220,7 @@ class SundaeEngine:
             ends_there = bool(reached.fired or reached.failure or reached.t >= stop)
 
     def _several(self, times: np.ndarray, stop: float) -> Reached:
-        """Integrate to the last of a few output times; to what ends it before."""
+        """Integrate to the last of a few output times, or to an event, a failure or an interruption."""
         rows, served = np.empty((len(times), len(self._reported))), 0
         last = self._last
         try:
@@ -230,12 +230,12 @@ class SundaeEngine:
                     break
                 rows[served] = last.y[self._reported]
                 served += 1
-        except KeyboardInterrupt:  # what was computed is handed over first
+        except KeyboardInterrupt:  # computed rows are reported first
             self._interrupted = True
         return self._reached(last, False)._replace(times=times[:served], rows=rows[:served])
 
     def _to(self, time: float, stop: float) -> Any:
-        """Integrate to a time, over the stops that inputs ask for on the way to `stop`."""
+        """Integrate to a time, with the stops that inputs require on the way to `stop`."""
         while self._near < time:
             if self._last.t < self._near:
                 self._last = self._ida.step(self._near, method="normal", tstop=self._near)
@@ -246,11 +246,11 @@ class SundaeEngine:
         return self._last
 
     def _next_stop(self, stop: float) -> float:
-        """Where a step from the last such stop on must end at the latest."""
+        """Return the latest end of a step from the last such stop."""
         return min(stop, self._near + self._features.longest_step(self._near))
 
     def by_steps(self, stop: float) -> Iterator[Reached]:
-        """Integrate to `stop` and report each step; ends early at an event or a failure."""
+        """Integrate to `stop` and report each step; end early at an event or a failure."""
         while True:
             if self._last.t >= self._near:
                 self._near = self._next_stop(stop)
@@ -270,18 +270,18 @@ class SundaeEngine:
         return Reached(times, y[None, self._reported][:rows], result.t, y, fired, failure)
 
     def pause_after(self, steps: int) -> None:
-        """It reports after each few output times as it is."""
+        """Do nothing: every few output times are reported anyway."""
 
     def note(self) -> str:
-        """Nothing: its orders are IDA's own affair."""
+        """Return an empty sentence: IDA alone selects the orders."""
         return ""
 
     def steps(self) -> int:
-        """Taken since the first start."""
+        """Return the number of steps since the first start."""
         return self.callbacks.steps
 
     def statistics(self) -> dict[str, int | float | str]:
-        """The linear solver, and counters since the first start."""
+        """Return the name of the linear solver, and counters since the first start."""
         calls = {name: self._before[name] + self._since[name] for name in self._before}
         return {
             "linear_solver": self._linear_solver,
@@ -291,15 +291,15 @@ class SundaeEngine:
         }
 
     def last_step(self) -> tuple[float, int] | None:
-        """Size, s, and order of the last step: scikit-sundae gives none of them."""
+        """Return None: scikit-sundae provides neither size nor order of the last step."""
         return None
 
     def long_steps(self) -> None:
-        """None are kept."""
+        """Return None: long steps are not stored."""
 
     def displaced(self) -> None:
-        """Not known: scikit-sundae does not give IDA's error estimates."""
+        """Return None: scikit-sundae does not provide IDA's error estimates."""
 
     def history(self) -> History:
-        """Ends of the steps; their orders are not known here."""
+        """Return the ends of the steps, with unknown orders."""
         return History(self.callbacks.step_times, np.empty(0, dtype=int))

@@ -1,4 +1,4 @@
-"""Routines that few runs need, compiled when compiled code first asks for them."""
+"""Lazy compilation of rarely used routines, at the request of compiled code."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ _PROTOTYPE = ctypes.CFUNCTYPE(ctypes.c_int32)
 
 
 class WhenNeeded:
-    """A C function that puts the addresses of routines into a table.
+    """C function that stores the addresses of routines in a table.
 
     Parameters
     ----------
     cells : numpy.void
-        The table's; "last_flag" is NOT_COMPILED where compiled code has asked in vain.
+        Cells of the table; "last_flag" is NOT_COMPILED after a failed request.
     routines : dict of str to Routine
-        By the cells that receive their addresses, which are zero before.
+        Routines by the cells for their addresses, which are zero before.
 
     Attributes
     ----------
     address : int
-        Of the C function, which has no arguments.
+        Address of the C function, which has no arguments.
     """
 
     def __init__(self, cells: np.void, routines: Mapping[str, Routine]) -> None:
@@ -36,12 +36,12 @@ class WhenNeeded:
         self.address = ctypes.cast(self._c_function, ctypes.c_void_p).value or 0
 
     def raise_fault(self) -> None:
-        """Raise what kept the routines from being compiled, such as Ctrl-C; to be called when compiled code has returned."""
+        """Raise the error from a failed compilation, such as Ctrl-C; to be called after compiled code has returned."""
         if self._cells["last_flag"] == NOT_COMPILED:
             self._cells["last_flag"] = OK
             raise (
                 self._faults.pop() if self._faults else KeyboardInterrupt
-            )  # which may come before the function's first line
+            )  # which may precede the function's first line
 
 
 def _filling(cells: np.void, routines: Mapping[str, Routine], faults: list[BaseException]) -> Callable[[], int]:

@@ -1,1 +1,1 @@
-"""Linear systems of mechanics: block systems, orders of elimination, factors."""
+"""Linear systems of multibody dynamics: block systems, elimination orders, factors."""

@@ -1,4 +1,4 @@
-"""What the elimination of each node takes out of later blocks, as lists of small products of one shape."""
+"""Updates by the elimination of each supernode, as lists of small products of the same shape."""
 
 from __future__ import annotations
 
@@ -12,29 +12,29 @@ import numpy as np
 from .blocks import QUAD, Blocks
 
 ROWS, QUADS = (4, 3, 2, 1), (2, 1)
-"""Rows and quads of columns of the products: what fits into a processor's registers."""
+"""Numbers of rows and of column quads of the products, limited by the processor's registers."""
 DOWN, RIGHT = 0, 1
-"""Kinds of targets: lines of first panels, of second ones."""
+"""Kinds of targets: lines of first panels and of second panels."""
 SHAPES = tuple(product((DOWN, RIGHT), ROWS, QUADS))
 """Shapes of products, in order."""
 
 
 class Target(NamedTuple):
-    """Lines of one node's panel that the elimination of an earlier one changes.
+    """Lines of a supernode's panel that the elimination of an earlier supernode updates.
 
     Attributes
     ----------
     k : int
-        The node that is eliminated.
+        Eliminated supernode.
     kind : int
     start, stride : int
-        Of the panel's lines.
+        Start and stride of the panel's lines.
     factors : int
-        Where the numbers begin that the lines are multiplied by, one for each line.
+        Start of the multipliers of the lines, one for each.
     size : int
         Number of lines.
     runs : list of tuple of int
-        Neighbouring quads: where they stand in the lines that are taken, in the target's lines, and how many there are.
+        Contiguous quads: offset in the source lines, offset in the target lines, and number.
     """
 
     k: int
@@ -47,9 +47,9 @@ class Target(NamedTuple):
 
 
 def updates(blocks: Blocks) -> dict[str, np.ndarray]:
-    """All products, node by node and shape by shape, and where those of each node and shape end.
+    """Return all products, sorted by supernode and shape, and the end of each group.
 
-    A product is told by its target, the stride there, the factors, and the lines that are taken.
+    A product consists of its target, the stride there, the multipliers, and the source lines.
     """
     targets = [target for k in range(len(blocks.nodes)) for target in _targets(blocks, k)]
     line_target, line, rows = _spread([_lines(target.size) for target in targets], 2)
@@ -80,7 +80,7 @@ def updates(blocks: Blocks) -> dict[str, np.ndarray]:
 
 @cache
 def split(rows: int) -> list[int]:
-    """So many rows in parts of at most four, none alone where that can be."""
+    """Return parts of at most four rows, without single rows if possible."""
     if rows <= max(ROWS):
         return [rows] if rows else []
     first = 3 if rows in (5, 6, 9) else 4
@@ -89,20 +89,20 @@ def split(rows: int) -> list[int]:
 
 @cache
 def _lines(size: int) -> list[tuple[int, int]]:
-    """First line and number of lines of each part of a block."""
+    """Return the first line and the number of lines of each part of a block."""
     parts = split(size)
     return list(zip(np.cumsum([0, *parts]).tolist(), parts, strict=False))
 
 
 @cache
 def pieces_of(quads: int) -> list[tuple[int, int]]:
-    """Shift and number of quads of each part of a run."""
+    """Return the offset and the number of quads of each part of a run."""
     most = max(QUADS)
     return [(QUAD * first, min(most, quads - first)) for first in range(0, quads, most)]
 
 
 def _targets(blocks: Blocks, k: int) -> Iterator[Target]:
-    """Columns of the nodes right of k, from their own diagonals down; rows of the nodes below k, right of their own diagonals."""
+    """Yield the targets of supernode k: later columns from the diagonal down, later rows right of the diagonal."""
     down, right = (int(start) for start in blocks.starts[2 * k : 2 * k + 2])
     down_at, right_at = blocks.down_at[k], blocks.right_at[k]
     below, beside = blocks.below[k], blocks.right[k]
@@ -121,7 +121,7 @@ def _targets(blocks: Blocks, k: int) -> Iterator[Target]:
 def _runs(
     blocks: Blocks, nodes: list[int], own: dict[int, int], into: dict[int, int], start: int
 ) -> list[tuple[int, int, int]]:
-    """The quads of some nodes' blocks, those that are neighbours in both panels together."""
+    """Return the quads of some supernodes' blocks, joined where they are contiguous in both panels."""
     runs: list[tuple[int, int, int]] = []
     for a in nodes:
         here, there, quads = start + own[a], into[a], blocks.widths[a] // QUAD
@@ -135,13 +135,13 @@ def _runs(
 
 
 def _spread(lists: Sequence[Sequence[tuple[int, ...]]], width: int) -> tuple[np.ndarray, ...]:
-    """All members of some lists, one after the other: the list that each is of, and its numbers, `width` of them."""
+    """Return the concatenated members of some lists: the list of each, and its `width` numbers."""
     of, _ = _numbered(np.array([len(part) for part in lists], dtype=np.int64))
     members = np.array([number for part in lists for member in part for number in member], dtype=np.int64)
     return of, *members.reshape(-1, width).T
 
 
 def _numbered(counts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """For so many members of each list, the list's number and the member's number in it."""
+    """Return the list number and the index in its list of each member, for lists of these lengths."""
     of = np.repeat(np.arange(len(counts)), counts)
     return of, np.arange(len(of)) - np.repeat(np.cumsum(counts) - counts, counts)

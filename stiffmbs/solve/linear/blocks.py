@@ -1,8 +1,8 @@
-"""Which blocks of a matrix are filled when whole nodes are eliminated one after the other, and where they are stored.
+"""Block structure of the factors for elimination by supernodes, and its storage.
 
-A node is a set of unknowns that are eliminated together.  Node k has two panels: one with its columns from the diagonal
-down, transposed, one with its rows right of the diagonal, and behind these room for a block of its own size.  Blocks in them begin at whole quads, filled up with zeros.
-"""
+A supernode is a set of unknowns eliminated together.  It has two panels: its columns from the diagonal down,
+transposed, and its rows right of the diagonal with space for a block of its own size.  Blocks begin at four-lane (SIMD)
+quads, padded with zeros."""
 
 from __future__ import annotations
 
@@ -14,20 +14,20 @@ from itertools import accumulate
 import numpy as np
 
 QUAD = 4
-"""Floats that are computed with at once (`stiffmbs.compile.machine.native.quads`)."""
+"""Number of SIMD lanes (`stiffmbs.compile.machine.native.quads`)."""
 CACHE_LINE = 64
-"""Bytes that a processor loads at a time."""
+"""Size of a processor's cache line, bytes."""
 
 
 def at_a_line(count: int) -> np.ndarray:
-    """Zeros that begin with a cache line: quads that lie in two of them are written and read again far more slowly."""
+    """Return zeros aligned to a cache line: access to quads across two lines is far slower."""
     longer = np.zeros(count + CACHE_LINE // 8)
     first = -longer.ctypes.data % CACHE_LINE // 8
     return longer[first : first + count]
 
 
 def padded(size: int) -> int:
-    """The size, rounded up to whole quads."""
+    """Return the size rounded up to whole quads."""
     return -(-size // QUAD) * QUAD
 
 
@@ -38,9 +38,9 @@ class Blocks:
     Attributes
     ----------
     nodes : sequence of ndarray of int
-        The unknowns of each node, in the order of elimination.
+        Unknowns of each supernode, in the order of elimination.
     below, right : lists of list of int
-        For each node the later nodes whose rows its columns have, and whose columns its rows have.
+        Later supernodes with blocks in the columns and in the rows of each supernode.
     """
 
     nodes: Sequence[np.ndarray]
@@ -49,37 +49,37 @@ class Blocks:
 
     @cached_property
     def sizes(self) -> list[int]:
-        """Unknowns of each node."""
+        """Return the number of unknowns of each supernode."""
         return [len(node) for node in self.nodes]
 
     @cached_property
     def widths(self) -> list[int]:
-        """The same, filled up to whole quads."""
+        """Return the sizes rounded up to whole quads."""
         return [padded(size) for size in self.sizes]
 
     @cached_property
     def down_at(self) -> list[dict[int, int]]:
-        """For each node, where in a line of its first panel each block begins, its own at 0."""
+        """Return the offsets of the blocks in a line of each first panel; its own is at 0."""
         return [self._offsets([k, *below]) for k, below in enumerate(self.below)]
 
     @cached_property
     def right_at(self) -> list[dict[int, int]]:
-        """The same of its second panel."""
+        """Return the offsets of the blocks in a line of each second panel."""
         return [self._offsets(right) for right in self.right]
 
     @cached_property
     def down_width(self) -> list[int]:
-        """Length of a line of each first panel."""
+        """Return the length of a line of each first panel."""
         return [self.widths[k] + sum(self.widths[a] for a in below) for k, below in enumerate(self.below)]
 
     @cached_property
     def right_width(self) -> list[int]:
-        """Length of a line of each second panel."""
+        """Return the length of a line of each second panel."""
         return [sum(self.widths[b] for b in right) for right in self.right]
 
     @cached_property
     def starts(self) -> np.ndarray:
-        """Where each node's panels begin, first and second in turn, and where the last ends with the room behind it."""
+        """Return the starts of the panels, first and second in turn, and the end of the last."""
         second = [width + right for width, right in zip(self.widths, self.right_width, strict=True)]
         lengths = [
             size * width for size, *both in zip(self.sizes, self.down_width, second, strict=True) for width in both
@@ -88,7 +88,7 @@ class Blocks:
 
     @cached_property
     def places(self) -> np.ndarray:
-        """Where each unknown stands in a vector whose nodes begin at whole quads."""
+        """Return the position of each unknown in a vector whose supernodes begin at whole quads."""
         place = np.empty(sum(self.sizes), dtype=np.int64)
         for start, node in zip(self.node_starts, self.nodes, strict=False):
             place[node] = start + np.arange(len(node))
@@ -96,11 +96,11 @@ class Blocks:
 
     @cached_property
     def node_starts(self) -> list[int]:
-        """Where each node begins in such a vector, and where the last ends."""
+        """Return the start of each supernode in such a vector, and the end of the last."""
         return np.concatenate([[0], np.cumsum(self.widths, dtype=np.int64)]).tolist()
 
     def quads(self, name: str, nodes: list[list[int]]) -> dict[str, np.ndarray]:
-        """For each node where the quads of other nodes stand in a vector, and where each node's list begins."""
+        """Return the positions of the quads of each supernode's neighbours in a vector, and the start of each list."""
         listed = [
             [self.node_starts[a] + shift for a in others for shift in range(0, self.widths[a], QUAD)]
             for others in nodes
@@ -109,7 +109,7 @@ class Blocks:
         return {f"{name}_x": np.array([at for part in listed for at in part], dtype=np.int64), f"{name}_at": ends}
 
     def slots(self, rows: np.ndarray, columns: np.ndarray) -> np.ndarray:
-        """Where the entries of the matrix stand in the panels."""
+        """Return the positions of the matrix entries in the panels."""
         n = len(self.nodes)
         node, within = np.empty(sum(self.sizes), dtype=np.int64), np.empty(sum(self.sizes), dtype=np.int64)
         for k, own in enumerate(self.nodes):
@@ -120,7 +120,7 @@ class Blocks:
         return slots.astype(np.int32)
 
     def _block(self, row: int, column: int) -> tuple[int, int, int]:
-        """Where the block of two nodes begins, and the strides of its rows and columns."""
+        """Return the start of the block of two supernodes, and the strides of its rows and columns."""
         if row >= column:
             return int(self.starts[2 * column]) + self.down_at[column][row], 1, self.down_width[column]
         return int(self.starts[2 * row + 1]) + self.right_at[row][column], self.right_width[row], 1
@@ -130,19 +130,19 @@ class Blocks:
 
 
 def filled(nodes: Sequence[np.ndarray], rows: np.ndarray, columns: np.ndarray) -> Blocks:
-    """The blocks that are filled when the nodes are eliminated in their order.
+    """Return the nonzero blocks of the factors, with the supernodes in postorder.
 
     Parameters
     ----------
     nodes : sequence of ndarray of int
-        Each unknown is in one of them.
+        Unknowns of each supernode; each unknown is in one of them.
     rows, columns : ndarrays of int
-        The entries of the matrix.
+        Entries of the matrix.
 
     References
     ----------
     Duff and Reid, The multifrontal solution of unsymmetric sets of linear equations, SIAM J. Sci. Stat. Comput. 5
-    (1984) 633-641: dense blocks along an order that is fixed beforehand.  Here the blocks are updated in place.
+    (1984) 633-641: dense blocks in a fixed order.  Here, the blocks are updated in place.
     """
     below, right = _touching(nodes, rows, columns)
     order = _postorder([one | other for one, other in zip(below, right, strict=True)])
@@ -161,7 +161,7 @@ def filled(nodes: Sequence[np.ndarray], rows: np.ndarray, columns: np.ndarray) -
 
 
 def _touching(nodes: Sequence[np.ndarray], rows: np.ndarray, columns: np.ndarray) -> tuple[list[int], list[int]]:
-    """For each node the later ones whose rows and whose columns share entries with it, as bits of whole numbers."""
+    """Return the later supernodes with entries in each supernode's columns and rows, as bit sets."""
     node = np.empty(sum(map(len, nodes)), dtype=np.int64)
     for k, own in enumerate(nodes):
         node[own] = k
@@ -176,7 +176,7 @@ def _touching(nodes: Sequence[np.ndarray], rows: np.ndarray, columns: np.ndarray
 
 
 def _postorder(around: list[int]) -> list[int]:
-    """The nodes, each right after those that are eliminated into it, which then are near in memory; nothing more is filled.
+    """Return the supernodes in postorder of the elimination tree, which keeps the fill-in and improves locality.
 
     Liu, The role of elimination trees in sparse factorization, SIAM J. Matrix Anal. Appl. 11 (1990) 134-172.
     """
@@ -188,14 +188,14 @@ def _postorder(around: list[int]) -> list[int]:
         if parent < n:
             around[parent] |= _beyond(around[k], parent)
     order, waiting = [], [n]
-    while waiting:  # parents before children, from the last to the first: read backwards
+    while waiting:  # parents before children, reversed below
         order.append(waiting.pop())
         waiting += children[order[-1]]
     return order[:0:-1]
 
 
 def _beyond(bits: int, last: int) -> int:
-    """Those members of a set that are larger."""
+    """Return the members of a set that are larger than `last`."""
     return (bits >> (last + 1)) << (last + 1)
 
 

@@ -1,4 +1,4 @@
-"""The block system of accelerations with u' eliminated, unless bodies carry many joints each."""
+"""Block system of accelerations with u' eliminated, unless bodies have many joints each."""
 
 from __future__ import annotations
 
@@ -23,37 +23,37 @@ ACCELERATE, ATTEMPT, MOVE = together(
     move="int32(float64*, int64*)",
 )
 MOST_MULTIPLICATIONS = 3
-"""Of the elimination, relative to those of the LU of the whole, up to which it takes less time: measured on bodies that carry 2 to 120
-others.  Its blocks are dense and in order, while the LU follows lists of entries."""
+"""Multiplications of the elimination, relative to an LU of the whole system, up to which it is less expensive: its
+blocks are dense and in order."""
 EVEN = 100.0
-"""Times the square root of the smallest inertia, in the measure of masses, up to which pivots are those of the geometry."""
+"""Ratio of the square roots of inertias, in units of mass, up to which pivots reflect the geometry."""
 LEAST = 1e-9
-"""What accelerations may leave of J u' = gamma in any case, m/s^2 or rad/s^2; relative to the size of mechanisms smaller than 1 m."""
+"""Allowed residual of J u' = gamma, m/s^2 or rad/s^2, times the size of mechanisms smaller than 1 m."""
 GROUND = -1
 
 
 class Eliminated:
-    """J M^-1 J^T lam = J M^-1 f - gamma, then u' = M^-1 (f - J^T lam), for compiled code.
+    """Schur complement J M^-1 J^T lam = J M^-1 f - gamma, then u' = M^-1 (f - J^T lam), for compiled code.
 
-    The matrix is symmetric and positive definite, so its factors need no pivots and keep their pattern.  It is factored by dense
-    blocks in space, and entry by entry in the plane, where blocks are smaller than quads and take 5 % longer.
+    The matrix is symmetric and positive definite, so its factors need no pivoting and keep their pattern.  It is
+    factored by dense blocks for spatial models, and by pin blocks or entries for planar models.
 
     Parameters
     ----------
     state : State
     updates : int
-        Multiplications of the LU of the whole.
+        Multiplications of the LU of the whole system.
 
     Attributes
     ----------
     serves : bool
-        Whether the system is of the kind: no force depends on multipliers or algebraic states, and the LU of the whole takes longer.
+        True if no force depends on multipliers or algebraic states, and the elimination is less expensive.
     pivots_tell : bool
-        Whether pivots tell how near to singular a pose is: it serves, and no inertia is so small that it decides about them.
+        True if it serves, and no inertia is so small that pivots do not show the distance from a singular pose.
     multiplications : int
-        Of the elimination.
+        Multiplications of the elimination.
     table : ndarray of int
-        Addresses (`stiffmbs.solve.native.tables.linear.ELIMINATED`), zeros where it does not serve.
+        Addresses (`stiffmbs.solve.native.tables.linear.ELIMINATED`); zeros if it does not serve.
     """
 
     def __init__(self, state: State, updates: int) -> None:
@@ -107,17 +107,17 @@ class Eliminated:
             fill(self.table, ELIMINATED, self._arrays)
 
     def within_reach(self) -> np.ndarray:
-        """The table, with the addresses of its routines for compiled code that does not hold them itself."""
+        """Return the table, with the addresses of its routines for compiled code without its own references to them."""
         self._cells["attempt"], self._cells["move"] = ATTEMPT.address, MOVE.address
         return self.table
 
     def forget(self) -> None:
-        """Forget how many digits pivots have kept so far, so that a run's rounding does not depend on earlier runs."""
+        """Reset the largest pivots, so that rounding in a run does not depend on earlier runs."""
         self._cells["most_kept"] = 0.0
 
 
 def _bodies(joint: np.ndarray, body: np.ndarray) -> dict[int, list[int]]:
-    """The bodies of each joint, ground left out."""
+    """Return the bodies of each joint, without ground."""
     found: dict[int, set[int]] = {}
     for one, place in zip(joint.tolist(), body.tolist(), strict=True):
         found.setdefault(one, set()).add(place)
@@ -125,7 +125,7 @@ def _bodies(joint: np.ndarray, body: np.ndarray) -> dict[int, list[int]]:
 
 
 def _are_trees(bodies_of: list[list[int]]) -> bool:
-    """Whether no joint connects bodies, or a body and ground, that other joints connect already."""
+    """Return True if no joint closes a loop of bodies or of bodies and ground."""
     parent: dict[int, int] = {}
 
     def root(body: int) -> int:
@@ -144,10 +144,10 @@ def _are_trees(bodies_of: list[list[int]]) -> bool:
 
 
 def _balanced_order(bodies: dict[int, list[int]], count: int) -> list[int]:
-    """An order of the joints with little fill: minimum degree on joints that share a body.
+    """Return an order of the joints with little fill-in: minimum degree on joints that share a body.
 
-    Of joints with as few neighbours the one whose turn depends on the fewest before it comes first: a chain is taken
-    from both ends at a time, so that the processor works on two pivots at once.
+    Ties are resolved in favour of the smallest number of successive dependent pivots.  A chain is thus eliminated
+    from both ends, with two independent pivots at a time.
     """
     around: list[set[int]] = [set() for _ in range(count)]
     of_body: dict[int, set[int]] = {}

@@ -1,4 +1,4 @@
-"""Which joints may be eliminated from a block system without a singular pivot, whatever the pose."""
+"""Selection of joints that can be eliminated from a block system with regular pivots in every pose."""
 
 from __future__ import annotations
 
@@ -6,23 +6,23 @@ from collections.abc import Sequence
 
 
 class EliminatedBodies:
-    """The bodies that are eliminated so far, in groups that the eliminated joints connect.
+    """Eliminated bodies, in groups connected by eliminated joints.
 
-    After bodies B and joints E are eliminated, the pivots of [M J^T; J 0] are regular where the rows of E have full
-    rank in the columns of B.  Rows of joints whose bodies are all in B do, as J has.  A joint with a body outside of B
-    counts as one to ground, so that it can close a loop that is not there, with more rows than freedoms or a dead
-    centre of its own.  A group therefore has either joints to ground or one such open joint: the open joint alone holds
-    a group that moves freely, and its rows are independent of those inside.  Where bodies have few coordinates of their
-    own, as one that slides along an axis, a group must have as many freedoms as its joints have rows.
+    After the elimination of bodies B and joints E, the pivots of [M J^T; J 0] are regular if the rows of E have full
+    rank in the columns of B.  This holds for joints with all bodies in B, because J has full rank.  A joint with a body
+    outside of B acts as a joint to ground, so it may close a loop that has redundant rows or a dead centre.  A group
+    may therefore have either joints to ground or one such open joint: the rows of a single open joint on a free group
+    are independent of those inside.  If bodies have few coordinates, such as a body that slides along an axis, the
+    group must have as many degrees of freedom as its joints have rows.
 
     Parameters
     ----------
     bodies_of : sequence of sequences of int
-        The bodies of each joint, ground left out.
+        Bodies of each joint, without ground.
     freedoms : sequence of int
-        Velocities of each body.
+        Number of velocities of each body.
     rows : sequence of int
-        Equations of each joint.
+        Number of equations of each joint.
     """
 
     def __init__(self, bodies_of: Sequence[Sequence[int]], freedoms: Sequence[int], rows: Sequence[int]) -> None:
@@ -44,7 +44,7 @@ class EliminatedBodies:
                 self._open[group] -= 1
 
     def eliminated_joint(self, joint: int) -> bool:
-        """Eliminate a joint where its pivots are regular; whether they are."""
+        """Eliminate a joint if its pivots are regular; return True in that case."""
         bodies = self._bodies_of[joint]
         groups = {self._group(body) for body in bodies if self._gone[body]}
         ahead = [body for body in bodies if not self._gone[body]]
@@ -62,14 +62,14 @@ class EliminatedBodies:
         return True
 
     def _group(self, body: int) -> int:
-        """The body that stands for the group of an eliminated one."""
+        """Return the representative of an eliminated body's group."""
         while self._parent[body] != body:
             self._parent[body] = self._parent[self._parent[body]]
             body = self._parent[body]
         return body
 
     def _joined(self, joint: int) -> int:
-        """The group of all eliminated bodies of a joint, made one."""
+        """Merge the groups of all eliminated bodies of a joint, and return the result."""
         first, *others = {self._group(body) for body in self._bodies_of[joint] if self._gone[body]}
         for other in others:
             self._parent[other] = first

@@ -1,4 +1,4 @@
-"""In which order a block system's unknowns are eliminated so that little fill comes about, and what that costs."""
+"""Fill-reducing elimination order of a block system's unknowns, with its cost."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from .eliminated_bodies import EliminatedBodies
 
 
 class EliminationOrder(NamedTuple):
-    """An order of elimination with little fill.
+    """Elimination order with little fill-in.
 
     Attributes
     ----------
     unknowns : ndarray of int, shape (n,)
     fill : int
-        Entries that each triangle then has if pivots stay on the diagonal and the blocks of bodies and joints are full.
+        Entries of each triangle with pivots on the diagonal and full blocks of bodies and joints.
     updates : int
-        Multiplications of the elimination, under the same conditions.
+        Multiplications of the elimination under the same conditions.
     """
 
     unknowns: np.ndarray
@@ -30,18 +30,18 @@ class EliminationOrder(NamedTuple):
 
 
 def elimination_order(equations: Equations) -> EliminationOrder:
-    """Bodies and joints are eliminated whole, those first that have the fewest neighbours.
+    """Return a minimum degree order of whole bodies and joints.
 
-    The diagonal block of a joint is zero, or nearly so where rows are relaxed, until bodies of the joint are
-    eliminated.  A joint waits until its block is regular for every pose (`stiffmbs.solve.linear.eliminated_bodies`), so that
-    pivots stay on the diagonal and the fill is the estimated one, in trees and in loops.
+    The diagonal block of a joint is zero, or nearly zero with relaxed rows, until bodies of the joint are eliminated.
+    A joint waits until its block is regular in every pose (`stiffmbs.solve.linear.eliminated_bodies`).  Pivots then
+    stay on the diagonal and the fill-in is as estimated, for trees and loops.
 
     References
     ----------
     George and Liu, The evolution of the minimum degree ordering algorithm, SIAM Review 31 (1989) 1-19.
     """
     n_bodies, owner = _owners(equations)
-    present = [at[at != ABSENT] for at in reversed(equations.at.values())]  # of a body u before q
+    present = [at[at != ABSENT] for at in reversed(equations.at.values())]  # u before q of a body
     natural = np.concatenate([np.empty(0, dtype=np.int64), *present])
     by_owner = natural[np.argsort(owner[natural], kind="stable")]
     sizes = np.bincount(owner, minlength=n_bodies + len(equations.system.joint_start) - 1)
@@ -65,10 +65,10 @@ def elimination_order(equations: Equations) -> EliminationOrder:
 
 
 def nodes_in_order(equations: Equations, order: EliminationOrder) -> list[np.ndarray]:
-    """The unknowns of each body's coordinates, then of its velocities, and of each joint, as they are eliminated.
+    """Return the unknowns of each body's coordinates, of its velocities and of each joint, in the order of elimination.
 
-    The diagonal block of coordinates is next to cj times the unit matrix whatever the forces; with them gone, that of
-    velocities holds what masses, dampers and stiff springs resist with.
+    The diagonal block of coordinates is close to cj times the identity for any forces.  After its elimination, that of
+    velocities contains masses, dampers and springs.
     """
     _, owner = _owners(equations)
     place = np.full(equations.n, -1)
@@ -86,7 +86,7 @@ def nodes_in_order(equations: Equations, order: EliminationOrder) -> list[np.nda
 
 
 def _owners(equations: Equations) -> tuple[int, np.ndarray]:
-    """The number of bodies, and for each unknown the body or, counted on from there, the joint that it belongs to."""
+    """Return the number of bodies, and the body of each unknown or the number of bodies plus its joint."""
     system = equations.system
     n_bodies = len(system.bodies)
     width = {"q": system.of_body.n_q, "x": system.of_body.n_q, "u": system.of_body.n_u}
@@ -99,7 +99,7 @@ def _owners(equations: Equations) -> tuple[int, np.ndarray]:
 
 
 def _counted(equations: Equations, owner: np.ndarray, n_owners: int) -> list[int]:
-    """The freedoms of each body, and the equations of each joint, on one level."""
+    """Return the number of velocities of each body and of equations of each joint, on one level."""
     at = equations.at
     level = [at["u"] if "u" in at else at["q"], at["lam"] if "lam" in at else at["mu"]]
     unknowns = np.concatenate(level)
@@ -108,9 +108,10 @@ def _counted(equations: Equations, owner: np.ndarray, n_owners: int) -> list[int
 
 
 def _least_degree(neighbours: list[set[int]], counted: list[int], n_bodies: int) -> Iterator[tuple[int, set[int]]]:
-    """Nodes, bodies before joints, in the order of least degree, and the neighbours that each has then.
+    """Yield nodes in minimum degree order, bodies before joints, with the neighbours that each has then.
 
-    Counted are the velocities of bodies and the equations of joints.  A joint that has to wait is looked at again after each neighbour's elimination: what it waits for is one of them.
+    `counted` holds the velocities of bodies and the equations of joints.  A waiting joint is checked after the
+    elimination of each neighbour.
     """
     bodies_of = [sorted(k for k in around if k < n_bodies) for around in neighbours[n_bodies:]]
     bodies = EliminatedBodies(bodies_of, counted[:n_bodies], counted[n_bodies:])

@@ -1,4 +1,4 @@
-"""Memory of the sparse LU of one pattern (`stiffmbs.compile.machine.native.factors`)."""
+"""Memory of the sparse LU of a pattern (`stiffmbs.compile.machine.native.factors`)."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from .elimination_order import EliminationOrder
 
 
 def factors_of(n: int, rows: np.ndarray, columns: np.ndarray, order: EliminationOrder) -> dict[str, Any]:
-    """What the layout `stiffmbs.compile.machine.native.tables.FACTORS` asks for.
+    """Return the contents of the layout `stiffmbs.compile.machine.native.tables.FACTORS`.
 
     Parameters
     ----------
     n : int
         Number of unknowns.
     rows, columns : ndarrays of int
-        The entries, by columns.
+        Entries, by columns.
     order : EliminationOrder
-        Of the columns, and how much is filled.
+        Elimination order of the columns, with its fill-in.
     """
     return {
         "n": n, "expected_entries": order.fill + n,

@@ -1,4 +1,4 @@
-"""J M^-1 J^T by dense blocks of joints: the lists along which they are formed and eliminated (`stiffmbs.solve.native.elimination.by_blocks`)."""
+"""Index lists of J M^-1 J^T by dense joint blocks (`stiffmbs.solve.native.elimination.by_blocks`)."""
 
 from __future__ import annotations
 
@@ -19,28 +19,28 @@ from .joint_jacobian import Jacobian, jacobian_of
 from .joint_sides import side_lists
 
 MOST_LINES = 6
-"""Of a product of two quads, in registers."""
+"""Lines of a product of two quads that fit into registers."""
 Rows = list[tuple[int, ...]]
 Piece = tuple[int, int, int]
-"""Shape, first line and first column of a part of a product that fits into registers."""
+"""Shape, first line and first column of the part of a product that fits into registers."""
 
 
 class Joints:
-    """The joints in the order of their elimination, each a node with a panel: its block, then those of later joints.
+    """Joints in the order of elimination, each with a panel: its block, then those of later joints.
 
     Parameters
     ----------
     rows : list of ndarray of int
-        The equations of each joint that are solved for.
+        Equations of each joint that are solved.
     bodies : list of list of int
-        Those that each joint acts on, ground left out.
+        Bodies of each joint, without ground.
 
     Attributes
     ----------
     sizes, widths : lists of int
-        Equations of each joint, and the same filled up to whole quads.
+        Number of equations of each joint, and the same rounded up to whole quads.
     below : list of list of int
-        The later joints that the elimination of each changes.
+        Later joints that the elimination of each joint updates.
     """
 
     def __init__(self, rows: list[np.ndarray], bodies: list[list[int]]) -> None:
@@ -51,7 +51,7 @@ class Joints:
 
     @property
     def updates(self) -> int:
-        """Multiplications of the elimination."""
+        """Return the number of multiplications of the elimination."""
         heights = (
             sum(self.sizes[b] for b in below) + left
             for size, below in zip(self.sizes, self.below, strict=True)
@@ -61,7 +61,7 @@ class Joints:
 
     @cached_property
     def offsets(self) -> list[dict[int, int]]:
-        """Where the blocks of each panel begin in its lines, the joint's own at 0; its length under the number of joints."""
+        """Return the offsets of blocks in the lines of each panel; the line length has the number of joints as key."""
         return [
             dict(
                 zip(
@@ -75,37 +75,37 @@ class Joints:
 
     @cached_property
     def strides(self) -> list[int]:
-        """Lengths of the panels' lines."""
+        """Return the lengths of the panels' lines."""
         return [offsets[len(self.rows)] for offsets in self.offsets]
 
     @cached_property
     def starts(self) -> list[int]:
-        """Where each panel begins, and where the last ends."""
+        """Return the starts of the panels, and the end of the last."""
         return list(
             accumulate((size * stride for size, stride in zip(self.sizes, self.strides, strict=True)), initial=0)
         )
 
     @cached_property
     def multiplied_starts(self) -> list[int]:
-        """Behind all panels: where the blocks right of each joint's own begin, multiplied by its inverse; where the last end."""
+        """Return the starts of each joint's right blocks times its inverse, after all panels, and their end."""
         lengths = (s * (stride - w) for s, stride, w in zip(self.sizes, self.strides, self.widths, strict=True))
         return list(accumulate(lengths, initial=self.starts[-1]))
 
     @cached_property
     def places(self) -> list[int]:
-        """Where each joint begins in a vector of whole quads, and where the last ends."""
+        """Return the start of each joint in a vector of whole quads, and the end of the last."""
         return list(accumulate(self.widths, initial=0))
 
 
 def block_lists(joints: Joints, system: System, kept: np.ndarray) -> dict[str, Any]:
-    """What the table holds of joints (`stiffmbs.solve.native.tables.linear.BLOCK_ELIMINATION`).
+    """Return the lists of joints in `stiffmbs.solve.native.tables.linear.BLOCK_ELIMINATION`.
 
     Parameters
     ----------
     joints : Joints
     system : System
     kept : ndarray of int
-        The entries of J in equations that are solved for.
+        Entries of J in solved equations.
     """
     place = np.full(system.n_c, ABSENT)
     for start, rows in zip(joints.places, joints.rows, strict=False):
@@ -135,7 +135,7 @@ def block_lists(joints: Joints, system: System, kept: np.ndarray) -> dict[str, A
 
 
 def _nodes(joints: Joints, updates: list[Any], right: list[Any]) -> Iterator[tuple[int, ...]]:
-    """The rows of ``node``."""
+    """Yield the rows of ``node``."""
     ends = (accumulate(map(len, part)) for part in (updates, right))
     first = accumulate(joints.sizes, initial=0)
     for k, (pivot, update_end, right_end) in enumerate(zip(first, *ends, strict=False)):
@@ -145,7 +145,7 @@ def _nodes(joints: Joints, updates: list[Any], right: list[Any]) -> Iterator[tup
 
 
 def _pairs(joints: Joints, j: Jacobian, width: int) -> tuple[Rows, Rows]:
-    """The rows of ``pair`` and ``single``."""
+    """Return the rows of ``pair`` and ``single``."""
     pairs: Rows = []
     singles: Rows = []
     for (k, body, first), rows in j.thirds.items():
@@ -162,7 +162,7 @@ def _pairs(joints: Joints, j: Jacobian, width: int) -> tuple[Rows, Rows]:
 
 
 def _products(joints: Joints, j: Jacobian) -> tuple[Rows, Rows]:
-    """The rows of ``forming`` and ``product``: products of blocks of J of two joints of a body."""
+    """Return the rows of ``forming`` and ``product``: products of blocks of J of two joints of a body."""
     of_third: dict[tuple[int, int], list[int]] = {}
     for k, body, first in sorted(j.thirds):
         of_third.setdefault((body, first), []).append(k)
@@ -191,12 +191,12 @@ def _products(joints: Joints, j: Jacobian) -> tuple[Rows, Rows]:
 
 
 def _is_thin(rows: list[set[int]]) -> bool:
-    """Whether each of three velocities stands in one equation at the most."""
+    """Return True if each of three velocities is in at most one equation."""
     return max(map(len, rows)) < 2
 
 
 def _updates(joints: Joints, k: int) -> Iterator[tuple[int, ...]]:
-    """What the elimination of a joint takes out of the panels of later ones: the rows of ``update`` of one node."""
+    """Yield the rows of ``update`` of one joint: updates of the panels of later joints by its elimination."""
     below, offsets = joints.below[k], joints.offsets[k]
     for first, b in enumerate(below):
         factors = joints.multiplied_starts[k] + offsets[b] - joints.widths[k]
@@ -207,7 +207,7 @@ def _updates(joints: Joints, k: int) -> Iterator[tuple[int, ...]]:
 
 
 def _parts(lines: int, width: int) -> Iterator[Piece]:
-    """The parts of a product of so many lines."""
+    """Yield the parts of a product with this number of lines."""
     for first in range(0, lines, MOST_LINES):
         rows = min(MOST_LINES, lines - first)
         for shift, quads in pieces_of(width // QUAD):
@@ -215,7 +215,7 @@ def _parts(lines: int, width: int) -> Iterator[Piece]:
 
 
 def _filled(bodies: list[list[int]]) -> list[list[int]]:
-    """The later joints that share a body with each, or come to do so by elimination."""
+    """Return the later joints that share a body with each joint, or become coupled with it by elimination."""
     of_body: dict[int, list[int]] = {}
     for k, places in enumerate(bodies):
         for body in places:

@@ -15,20 +15,20 @@ if TYPE_CHECKING:
 
 
 class Jacobian(NamedTuple):
-    """J by blocks of a joint and a body, column by column, each filled up to whole quads.
+    """Blocks of J for pairs of a joint and a body, by columns, each padded to whole quads.
 
     Attributes
     ----------
     source, at, column : ndarrays of int
-        Of each entry: its value, its place, its velocity.  What is added to other entries comes last.
+        Value, position and velocity of each entry.  Entries added to others come last.
     begin : dict
-        Where the block of a joint and a body begins.
+        Start of the block of a joint and a body.
     end : int
-        Where the last ends.
+        End of the last block.
     thirds : dict
-        For a joint, a body and the first of three of its velocities, the rows of the joint in which each has entries.
+        Rows of the joint with entries for each of three velocities, by joint, body and first velocity.
     sides : Sides
-        Those thirds whose entries are not copied one by one; what is listed above is without them.
+        Thirds whose entries are not copied one by one; the entries above exclude them.
     """
 
     source: np.ndarray
@@ -41,7 +41,7 @@ class Jacobian(NamedTuple):
 
 
 def jacobian_of(joints: Joints, system: System, kept: np.ndarray) -> Jacobian:
-    """The blocks of J, of which the entries `kept` stand in equations that are solved for."""
+    """Return the blocks of J; its entries `kept` are those in solved equations."""
     node, within = np.zeros(system.n_c, dtype=np.int64), np.zeros(system.n_c, dtype=np.int64)
     for k, rows in enumerate(joints.rows):
         node[rows], within[rows] = k, np.arange(len(rows))
@@ -65,7 +65,7 @@ def jacobian_of(joints: Joints, system: System, kept: np.ndarray) -> Jacobian:
 
 
 def _occurrence(at: np.ndarray) -> np.ndarray:
-    """0 where a number stands first in a list, 1 where it stands again."""
+    """Return 0 for the first occurrence of each number in a list, 1 for others."""
     again = np.ones(len(at), dtype=np.int64)
     again[np.unique(at, return_index=True)[1]] = 0
     return again

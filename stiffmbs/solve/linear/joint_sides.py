@@ -1,4 +1,4 @@
-"""Parts of J whose entries stand so that they need no list of their own: three velocities of a body in all rows of a joint, or one in each of three."""
+"""Regular blocks of J: three velocities of a body in all rows of a joint, or diagonally in three of them."""
 
 from __future__ import annotations
 
@@ -9,23 +9,23 @@ if TYPE_CHECKING:
     from .joint_blocks import Joints
 
 MOST_ROWS = 6
-"""Of a joint whose rows are gathered in registers."""
+"""Rows of a joint that fit into registers."""
 COLUMNS = range(3)
 Third = tuple[int, int, int]
-"""A joint, a body, and the first of three of its velocities."""
+"""Joint, body, and the first of three velocities."""
 
 
 class Sides(NamedTuple):
-    """Which parts of J are of the kind, and where their entries stand among the values.
+    """Regular blocks of J, and the positions of their entries among the values.
 
     Attributes
     ----------
     full : dict
-        Where the three entries of each row begin, by the joint, the body and the first velocity.
+        Start of the three entries of each row, by joint, body and first velocity.
     straight : dict
-        The first row, and the sources of the entries on a diagonal from there.
+        First row, and the sources of the entries on a diagonal from there.
     handled : frozenset
-        The keys of both.
+        Keys of both.
     """
 
     full: dict[Third, list[int]]
@@ -34,7 +34,7 @@ class Sides(NamedTuple):
 
 
 def sides_of(places: Iterable[tuple[int, int, int, int]], sources: Iterable[int], sizes: list[int]) -> Sides:
-    """From the joint, body, velocity and row of each entry of J, and its place among the values."""
+    """Return the regular blocks, from joint, body, velocity and row of each entry of J, and its source."""
     found: dict[Third, dict[tuple[int, int], list[int]]] = {}
     for (k, body, velocity, row), source in zip(places, sources, strict=True):
         third = found.setdefault((k, body, velocity - velocity % 3), {})
@@ -56,7 +56,7 @@ def sides_of(places: Iterable[tuple[int, int, int, int]], sources: Iterable[int]
 
 
 def side_lists(joints: Joints, sides: Sides, begin: Mapping[tuple[int, int], int], width: int) -> dict[str, Any]:
-    """The rows of ``full`` and ``straight`` (`stiffmbs.solve.native.tables.linear.BLOCK_ELIMINATION`)."""
+    """Return the rows of ``full`` and ``straight`` (`stiffmbs.solve.native.tables.linear.BLOCK_ELIMINATION`)."""
     full, straight = [], []
     for (k, body, first), sources in sides.full.items():
         at = begin[k, body] + first * joints.widths[k]

@@ -1,4 +1,4 @@
-"""J M^-1 J^T entry by entry: the lists along which it is formed and factored (`stiffmbs.solve.native.elimination.by_entries`)."""
+"""Index lists of J M^-1 J^T by entries (`stiffmbs.solve.native.elimination.by_entries`)."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from ...compile.system import System
 from ..native.tables.linear import ENTRY_ELIMINATION
 
 Entries = tuple[np.ndarray, np.ndarray, np.ndarray]
-"""Of J: sources, rows in the order of elimination, columns."""
+"""Sources, rows in the order of elimination, and columns of J."""
 
 
 def entry_lists(rows: list[np.ndarray], system: System, kept: np.ndarray) -> dict[str, Any]:
-    """What the table holds of the entries of the matrix and of its factors (`stiffmbs.solve.native.tables.linear.ENTRY_ELIMINATION`).
+    """Return the lists of the matrix and its factors (`stiffmbs.solve.native.tables.linear.ENTRY_ELIMINATION`).
 
     Parameters
     ----------
     rows : list of ndarray of int
-        The equations of each joint that are solved for, in the order of elimination.
+        Solved equations of each joint, in the order of elimination.
     system : System
     kept : ndarray of int
-        The entries of J in them.
+        Entries of J in these equations.
     """
     n, at_lam = sum(map(len, rows)), np.full(system.n_c, ABSENT)
     at_lam[np.concatenate([np.empty(0, dtype=np.int64), *rows])] = np.arange(n)
@@ -56,7 +56,7 @@ def entry_lists(rows: list[np.ndarray], system: System, kept: np.ndarray) -> dic
 
 
 def _products(j: Entries) -> list[tuple[int, int, int, int]]:
-    """Row, column and both factors (by their number among the entries of J) of every product in the lower half of J M^-1 J^T."""
+    """Return row, column and both factors (entries of J) of every product in the lower half of J M^-1 J^T."""
     at_velocity: dict[int, list[tuple[int, int]]] = {}
     for place, (row, column) in enumerate(zip(*(part.tolist() for part in j[1:]), strict=True)):
         at_velocity.setdefault(column, []).append((row, place))
@@ -68,13 +68,13 @@ def _products(j: Entries) -> list[tuple[int, int, int, int]]:
 
 
 def _pairs(entries: list[tuple[int, int]]) -> list[Any]:
-    """Pairs of different entries; both orders where they stand in the same row."""
+    """Return pairs of different entries, in both orders if they are in the same row."""
     both = [(a, b) for a, b in combinations(entries, 2)]
     return both + [(b, a) for a, b in both if a[0] == b[0]]
 
 
 def _filled(entries: set[tuple[int, int]], n: int) -> list[list[int]]:
-    """The rows below the diagonal of each column of the factor, in order."""
+    """Return the sorted rows below the diagonal of each column of the factor."""
     below: list[set[int]] = [set() for _ in range(n)]
     for row, column in entries:
         if row != column:

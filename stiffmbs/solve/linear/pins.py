@@ -1,4 +1,4 @@
-"""J M^-1 J^T of planar pins: the lists along which it is formed and eliminated (`stiffmbs.solve.native.elimination.by_pins`)."""
+"""Index lists of J M^-1 J^T of planar revolute joints (`stiffmbs.solve.native.elimination.by_pins`)."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from ..native.tables.linear import PIN_ELIMINATION
 from .joint_blocks import Joints
 
 FIRST, SECOND = (0, 2), (1, 2)
-"""The velocities of a body that a pin's first and second equation act on."""
+"""Velocities of a body in a revolute joint's first and second equation."""
 NOTHING = np.zeros(3)
 
 
 class Side(NamedTuple):
-    """A body at a pin, and where the entries of J of both equations begin among the values."""
+    """Body at a revolute joint, and the starts of the entries of J of both equations among the values."""
 
     body: int
     first: int
@@ -26,14 +26,14 @@ class Side(NamedTuple):
 
 
 def pin_lists(joints: Joints, system: System, kept: np.ndarray) -> dict[str, Any] | None:
-    """What the table holds of pins (`stiffmbs.solve.native.tables.linear.PIN_ELIMINATION`); None where a joint is no pin.
+    """Return the lists of `stiffmbs.solve.native.tables.linear.PIN_ELIMINATION`; None if a joint is not revolute.
 
     Parameters
     ----------
     joints : Joints
     system : System
     kept : ndarray of int
-        The entries of J in equations that are solved for.
+        Entries of J in solved equations.
     """
     gamma, pins = system.term("acceleration", "gamma"), _pins(joints, system, kept)
     if not pins or sum(joints.sizes) < system.n_c or not np.array_equal(np.sort(gamma.row), np.arange(system.n_c)):
@@ -64,7 +64,7 @@ def pin_lists(joints: Joints, system: System, kept: np.ndarray) -> dict[str, Any
 
 
 def _pins(joints: Joints, system: System, kept: np.ndarray) -> list[list[Side]]:
-    """The bodies of each pin; none at all if a joint is no pin."""
+    """Return the bodies of each revolute joint; an empty list if any joint is of another kind."""
     jacobian, found = system.term("acceleration", "J"), dict[tuple[int, int], dict[int, int]]()
     columns = (part[kept].tolist() for part in (jacobian.row, jacobian.column, jacobian.source))
     for row, column, source in zip(*columns, strict=True):
@@ -79,7 +79,7 @@ def _pins(joints: Joints, system: System, kept: np.ndarray) -> list[list[Side]]:
 
 
 def _side(body: int, *equations: dict[int, int]) -> Side | None:
-    """A body at a joint, if that is a pin: for each equation, the sources of its entries by velocity."""
+    """Return a body at a joint, given the sources by velocity for each equation; None if it is not a revolute joint."""
     if [tuple(entries) for entries in equations] != [FIRST, SECOND]:
         return None
     (first, after_first), (second, after_second) = (entries.values() for entries in equations)
@@ -87,17 +87,17 @@ def _side(body: int, *equations: dict[int, int]) -> Side | None:
 
 
 def _shared(pin: list[Side], other: list[Side]) -> list[tuple[int, int]]:
-    """Which bodies of two pins are the same."""
+    """Return the common bodies of two revolute joints."""
     return [(a, b) for a, own in enumerate(pin) for b, side in enumerate(other) if own.body == side.body]
 
 
 def _both(sides: list[Side]) -> tuple[Side, Side | None]:
-    """Two sides; none where the ground is the second."""
+    """Return two sides; the second is None for ground."""
     return sides[0], sides[1] if len(sides) == 2 else None
 
 
 def _rows(joints: Joints, pins: list[list[Side]], gamma: np.ndarray, ground: int) -> list[tuple[int, ...]]:
-    """The rows of ``pin``; the ground, whose inverse mass is 0, stands behind all bodies."""
+    """Return the rows of ``pin``; the ground, with inverse mass 0, follows all bodies."""
     found: list[tuple[int, ...]] = []
     for rows, sides in zip(joints.rows, pins, strict=True):
         one, other = sides[0], sides[-1]

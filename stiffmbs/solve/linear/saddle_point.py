@@ -1,6 +1,6 @@
-"""The block systems of rigid body mechanics: accelerations and multipliers, and both projections.
+"""Block systems of multibody dynamics: accelerations and multipliers, and projections of positions and velocities.
 
-All three are [D J^T; J 0] [x; w] = [a; b], solved by one sparse LU whose pattern and pivots are found once.
+All three are [D J^T; J 0] [x; w] = [a; b], solved by a sparse LU with a constant pattern and pivot order.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ ACCELERATIONS = Formulation(
     residual=(Product("u", +1, "f"), Product("u", -1, "f_lam", "lam"), Product("lam", +1, "gamma")),
     matrix=(Block("u", "u", "M"), Block("u", "lam", "f_lam", -1), *_SADDLE),
 )
-"""[M J^T; J 0] [u'; lam] = [f; gamma]; one Newton step of it where friction makes f depend on lam."""
+"""[M J^T; J 0] [u'; lam] = [f; gamma]; with friction that depends on lam, one Newton step of it."""
 
 WITH_ALGEBRAIC_STATES = Formulation(
     name="accelerations with algebraic states",
@@ -49,7 +49,7 @@ WITH_ALGEBRAIC_STATES = Formulation(
         Block("x", "lam", "rate_lam", -1),
     ),
 )
-"""The same with algebraic states among the unknowns, 0 = z(x, lam): one Newton step of all of them."""
+"""Accelerations with algebraic states as unknowns, 0 = z(x, lam): one Newton step."""
 
 POSITION_STEP = Formulation(
     name="position step",
@@ -64,10 +64,9 @@ POSITION_STEP = Formulation(
         Block("mu", "q", "C_q"),
     ),
 )
-"""[W C_q^T; C_q 0] [dq; w] = [0; -C]: Newton's smallest move towards the constraints, in m and rad.
+"""[W C_q^T; C_q 0] [dq; w] = [0; -C]: minimum-norm Newton step of the position constraints, in m and rad.
 
-A turn by a small angle moves a quaternion by half of it, so that W is 4 there: a model has the same smallest move in the
-plane and in space.
+A small rotation changes a quaternion by half its angle, so W is 4 there: planar and spatial models have the same step.
 """
 
 VELOCITY_STEP = Formulation(
@@ -78,11 +77,11 @@ VELOCITY_STEP = Formulation(
     residual=(Product("lam", -1, "V"),),
     matrix=(Block("u", "u", "M"), *_SADDLE),
 )
-"""[M J^T; J 0] [du; w] = [0; -V]: the smallest correction in the mass matrix."""
+"""[M J^T; J 0] [du; w] = [0; -V]: the velocity correction of minimum norm in the mass matrix."""
 
 
 def saddle_points(state: State, *formulations: Formulation) -> list[SaddlePoint]:
-    """The block systems of some formulations at one state."""
+    """Return the block systems of some formulations at one state."""
     for formulation in formulations:
         state.load(formulation.residual_set)
     systems = list(map(Equations, formulations, repeat(state.system)))
@@ -96,13 +95,13 @@ def saddle_points(state: State, *formulations: Formulation) -> list[SaddlePoint]
 
 
 def _factors(equations: Equations, order: EliminationOrder) -> tuple[np.ndarray, dict[str, Any]]:
-    """Memory of the factors, and their table."""
+    """Return the table of the factors, and their memory."""
     factors = factors_of(equations.n, *equations.pattern, order)
     return packed_with_memory(FACTORS, factors), factors
 
 
 def _same_matrix(one: Equations, other: Equations) -> bool:
-    """Whether the matrices are the same at every pose, as those of accelerations and of velocities are without friction."""
+    """Return True if two matrices are equal in every pose, as of accelerations and velocities without friction."""
     if one.formulation.unknowns != other.formulation.unknowns:
         return False
     return not any(
@@ -113,15 +112,15 @@ def _same_matrix(one: Equations, other: Equations) -> bool:
 
 
 class SaddlePoint:
-    """One block system with its factors, ready for compiled code.
+    """Block system with its factors, for compiled code.
 
     Attributes
     ----------
     equations : Equations
     order : EliminationOrder
-        Of the LU.
+        Elimination order of the LU.
     factors : tuple of ndarray of int and dict
-        The table of the factors, which block systems with the same matrix share, and their memory.
+        Table and memory of the factors, shared by block systems with the same matrix.
     equations_table, factors_table : ndarrays of int
         Addresses (`stiffmbs.compile.machine.layout`).
     """
@@ -136,5 +135,5 @@ class SaddlePoint:
         self._cells = self.factors_table.view(FACTORS.cells)[0]
 
     def forget_pivots(self) -> None:
-        """Have the pivots sought anew with the next factorisation."""
+        """Search for new pivots in the next factorisation."""
         self._cells["ready"] = 0

@@ -1,1 +1,1 @@
-"""Loops in the language of `stiffmbs.compile.machine.translate`; imported only when they have to be compiled."""
+"""Loops for `stiffmbs.compile.machine.translate`; imported only for compilation."""

@@ -1,8 +1,8 @@
-"""Local errors of velocities, added up along the motion.
+"""Local errors of velocities, accumulated along the motion.
 
-With |u| = sqrt(u^T M u), a local error e of the velocities changes the speed by u^T M e / |u|.  No force corrects that but damping, so the
-speed error P decays at the rate -u^T (df/du) u / |u|^2 alone, and displaces positions by P u / |u| in a second.  |u| is not taken
-below its mean so far: the direction of a mechanism that has come to rest is rounding.
+With |u| = sqrt(u^T M u), a local error e of the velocities changes the speed by u^T M e / |u|.  Only damping reduces
+the speed error P, at the rate -u^T (df/du) u / |u|^2; P displaces positions by P u / |u| per second.  |u| is bounded
+below by its mean so far, because the direction of a mechanism at rest is rounding.
 """
 
 from __future__ import annotations
@@ -13,14 +13,14 @@ from stiffmbs.compile.machine.native.access import compiled, view_of
 from stiffmbs.solve.native.tables.steps import ACCUMULATED_ERRORS
 
 STEPS_APART = 11
-"""Steps from one time that positions are displaced to the next; a prime number does not keep step with periods."""
+"""Steps between displacements of positions; a prime number avoids resonance with periods."""
 
 accumulated_errors_view = view_of("AccumulatedErrors", ACCUMULATED_ERRORS)
 
 
 @compiled
 def is_due(a, h):
-    """Count a step of length h; return whether positions are to be displaced."""
+    """Count a step of length h; return True if positions are to be displaced."""
     a.since += 1
     a.span += h
     return a.since >= STEPS_APART
@@ -47,9 +47,9 @@ def _power(a, y, error):
 
 @compiled
 def displace_by(a, y, error, values):
-    """Displace positions by the local error of the step that ends at y, which stands for those since that was last done.
+    """Displace positions by the local error of the last step, used for all steps since the last displacement.
 
-    Forces damp the motion by their derivatives among `values`.
+    The derivatives of forces in `values` give the damping.
     """
     energy = _energy(a, y)
     if energy > 0.0:
@@ -63,14 +63,14 @@ def displace_by(a, y, error, values):
 
 @compiled
 def note_error(a, y, error):
-    """Note the local error of a step that ends at y; it is taken for that of each step until the next one is noted."""
+    """Note the local error of a step that ends at y, used for each step until the next one is noted."""
     energy = _energy(a, y)
     a.each = _power(a, y, error) / sqrt(energy) if energy > 0.0 else 0.0
 
 
 @compiled
 def note_damping(a, y, rate, faster_rate, part):
-    """Note the rate at which forces damp the motion at y, by the accelerations there and with velocities greater by a part of them."""
+    """Note the damping rate at y, from accelerations there and with velocities increased by the fraction `part`."""
     power = 0.0
     for k in range(a.n):
         j = a.place[k]
@@ -81,7 +81,7 @@ def note_damping(a, y, rate, faster_rate, part):
 
 @compiled
 def displace(a, y, span):
-    """Displace positions over one step that ends at y, by what has been noted."""
+    """Displace positions over one step that ends at y by the noted error."""
     a.since = 1
     a.span = span
     _displace(a, y, _energy(a, y))

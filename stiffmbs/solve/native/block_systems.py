@@ -1,4 +1,4 @@
-"""The block systems of a mechanism solved at its state: moves to the constraints of positions and velocities, accelerations."""
+"""Solution of the block systems of a mechanism: projections of positions and velocities, accelerations."""
 
 from __future__ import annotations
 
@@ -18,24 +18,24 @@ from stiffmbs.compile.machine.native.orientation import take_unit_length
 from stiffmbs.solve.native.statuses import NO_BALANCE, NO_CONVERGENCE, NO_MEMORY, NO_STATE, NOT_FINITE, SINGULAR
 
 MOST_MOVES = 20
-"""Newton's moves back to the constraints, from a state that was near them."""
+"""Largest number of Newton steps of the projection from a nearby state."""
 COORDINATE_ROUNDING = 9e-16
-"""Part of the largest coordinate that no violation can be told below: four roundings."""
+"""Smallest detectable violation relative to the largest coordinate: four roundings."""
 ENTRY_ROUNDING = 4.4e-16
-"""Difference of two entries of block matrices, scaled to a diagonal of 1, that is none: two roundings of 1."""
+"""Difference of two entries in block matrices with unit diagonal that is rounding: two roundings of 1."""
 MOST_FRICTION_ITERATIONS = 40
 FRICTION_TOLERANCE = 1e-13
-"""Change of the multipliers, relative to the largest of them and of the applied forces, at which they are in balance with the friction that they press."""
+"""Change of multipliers, relative to the largest multiplier or force, at which the friction iteration converges."""
 ROUNDED_OFF = 1e-9
-"""Change that is taken for balance all the same when no iteration brings it further down."""
+"""Change that is accepted after the last iteration."""
 STATE_TOLERANCE, STATE_ROUNDED_OFF, SLOW = 1e-12, 1e-7, 0.25
-"""Change of algebraic states, relative to their values or scales, at which Newton's iteration has found them; and the one that
-will do where a move is no shorter than this part of the one before."""
+"""Change of algebraic states, relative to values or scales, at which Newton's iteration converges; larger change that
+is accepted if it is at least the third number times its predecessor."""
 
 
 @compiled
 def largest_of(values, count):
-    """The largest magnitude; infinity where a number is not finite."""
+    """Return the largest magnitude; infinity if a number is not finite."""
     largest = 0.0
     for k in range(count):
         if not isfinite(values[k]):
@@ -46,7 +46,7 @@ def largest_of(values, count):
 
 @compiled
 def largest_open(s, violation):
-    """The largest violation of positions beyond what redundant equations may be off by."""
+    """Return the largest position violation beyond the tolerances of redundant equations."""
     largest = 0.0
     for row in range(s.n_c):
         if not isfinite(violation[row]):
@@ -57,9 +57,9 @@ def largest_open(s, violation):
 
 @compiled
 def _is_as_factored(f):
-    """Whether the matrix is the one whose factors are known, as of velocities at the same pose, or of bodies without joints.
+    """Return True if the matrix equals the factored one, as for velocities at the same pose.
 
-    Term sets round the same terms in different ways: entries may differ by what they lose in the scaled matrix anyway.
+    Term sets round the same terms differently: entries may differ by rounding of the scaled matrix.
     """
     for column in range(f.n):
         for p in range(f.a_start[column], f.a_start[column + 1]):
@@ -70,13 +70,13 @@ def _is_as_factored(f):
 
 @compiled
 def _rounded_alike(f, p, column):
-    """Whether an entry is by rounding alone another one than that whose factors are known."""
+    """Return True if an entry differs from the factored one by rounding only."""
     return abs(f.a[p] - f.factored[p]) * f.scale[f.a_row[p]] * f.scale[column] <= ENTRY_ROUNDING
 
 
 @compiled
 def _solved(s, equations, factors, values):
-    """Fill in, factor and solve one block system; 0, with the solution in the factors' `b`, or a failure."""
+    """Assemble, factor and solve a block system; 0, with the solution in the factors' `b`, or a negative status."""
     e = equations_view(equations)
     matrix = factors_view(factors)
     add_entries(e, values, 0.0, matrix.a)
@@ -96,7 +96,7 @@ def _solved(s, equations, factors, values):
 
 @compiled
 def to_position_constraints(s, m, t, tolerance, most):
-    """Newton's smallest moves until |C| <= tolerance, or rounding; the number of moves, or a negative status."""
+    """Take minimum-norm Newton steps until |C| <= tolerance, or rounding; return their number or a negative status."""
     for move in range(most):
         values = evaluate(s, POSITION, t)
         violation = largest_open(s, values)
@@ -116,7 +116,7 @@ def to_position_constraints(s, m, t, tolerance, most):
 
 @compiled
 def to_velocity_constraints(s, m, t):
-    """The smallest correction of u in the mass matrix that brings J u + C_t to zero."""
+    """Correct u so that J u + C_t = 0, with minimum norm in the mass matrix; return 0 or a negative status."""
     values = evaluate(s, MOTION, t)
     status = _solved(s, m.velocities, m.velocity_factors, values)
     if status < 0:
@@ -129,7 +129,7 @@ def to_velocity_constraints(s, m, t):
 
 @compiled
 def _largest_force(s, e, values):
-    """The largest applied force: multipliers that vanish beside it need no digits of their own."""
+    """Return the largest applied force, the scale below which multipliers are negligible."""
     largest = 0.0
     for k in range(e.n_plain):
         if e.r_row[k] < s.n_u:
@@ -139,7 +139,7 @@ def _largest_force(s, e, values):
 
 @compiled
 def _algebraic_moved(s, m, e, f):
-    """Take over the new values of algebraic states; their largest change, relative to values or scales."""
+    """Update the algebraic states; return their largest change, relative to values or scales."""
     moved = 0.0
     for k in range(m.n_algebraic):
         place = m.algebraic[k]
@@ -151,7 +151,7 @@ def _algebraic_moved(s, m, e, f):
 
 @compiled
 def _algebraic_back(s, m, status):
-    """The algebraic states as they were before an iteration that has failed, and why it has."""
+    """Restore the algebraic states after a failed iteration; return the status."""
     for k in range(m.n_algebraic):
         s.q[m.algebraic[k]] = m.algebraic_before[k]
     return NO_STATE if m.n_algebraic > 0 and status != NO_MEMORY else status
@@ -159,9 +159,9 @@ def _algebraic_back(s, m, status):
 
 @compiled
 def to_accelerations(s, m, t):
-    """Accelerations (in the factors' `b`), multipliers (in lam) and algebraic states (in q) at the current state.
+    """Compute accelerations (in the factors' `b`), multipliers (in lam) and algebraic states (in q).
 
-    One linear solution; Newton's iteration from the values at hand where there are algebraic states, or forces hang on lam.
+    One linear solution, or Newton's iteration from the current values if algebraic states or lam affect forces.
     """
     e = equations_view(m.accelerations)
     f = factors_view(m.acceleration_factors)

@@ -1,4 +1,4 @@
-"""Calls of C functions by their addresses, and copies of memory, in compiled routines."""
+"""Calls of C functions by address, and copies of memory, in compiled routines."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from stiffmbs.compile.machine.translate.values import Operand, Value, builtin
 
 @builtin
 def int32(code: Code, number: Operand) -> Value:
-    """A number as C's int."""
+    """Convert a number to C's int."""
     return code.converted(number, "int32")
 
 
 @builtin
 def call_int(code: Code, function: Operand, arguments: tuple[Value, ...]) -> Value:
-    """Call a C function of the given address that returns an int; `arguments` is a tuple."""
+    """Call a C function at an address that returns an int."""
     address = code.put_value("ints", f"inttoptr {code.integer(function).typed} to ptr")
     given = ", ".join(argument.typed for argument in arguments)
     return code.put_value("int32", f"call i32 {address.text}({given})")
@@ -22,7 +22,7 @@ def call_int(code: Code, function: Operand, arguments: tuple[Value, ...]) -> Val
 
 @builtin
 def call_float(code: Code, function: Operand, arguments: tuple[Value, ...]) -> Value:
-    """Call a C function of the given address that returns a double; `arguments` is a tuple."""
+    """Call a C function at an address that returns a double."""
     address = code.put_value("ints", f"inttoptr {code.integer(function).typed} to ptr")
     given = ", ".join(argument.typed for argument in arguments)
     return code.put_value("float", f"call double {address.text}({given})")

@@ -1,7 +1,7 @@
-"""States near the constraints made consistent: by elimination of velocities where that keeps its digits, else by the LU of the whole.
+"""Projection of states near the constraints, by elimination of velocities if accurate, otherwise by the whole LU.
 
-The elimination's factors belong to one pose.  Moves with them close positions and velocities nearby as well, each up to what J has
-changed since; both are looked at again.
+The factors of the elimination belong to one pose.  Moves with them converge also nearby, for positions and velocities;
+both violations are checked again.
 """
 
 from __future__ import annotations
@@ -29,18 +29,18 @@ from stiffmbs.solve.native.explicit.stages import copied
 from stiffmbs.solve.native.tables.views import eliminated_view
 
 KEPT = 1e-3
-"""Part that pivots have to keep: elimination then loses three digits of sixteen at the most, or the LU takes its place."""
+"""Least pivot relative to its diagonal for elimination, which then loses at most three of sixteen digits."""
 LEFT = 1e-10
-"""Part of the terms of J u' = gamma that accelerations may leave of it: those of a light body hold what forces round off, over its mass."""
+"""Allowed residual of accelerations relative to the terms of J u' = gamma: forces on light bodies amplify rounding."""
 MOST_MOVES = 3
-"""With the same factors, of positions and of velocities: states of a run need one or two."""
+"""Largest number of moves with the same factors, for positions and for velocities."""
 VELOCITY_ROUNDING = 9e-16
-"""Part of the largest velocity that no violation of velocities can be told below: four roundings."""
+"""Smallest detectable violation of velocities relative to the largest velocity: four roundings."""
 
 
 @compiled
 def _eliminated(s, m, t):
-    """Accelerations (in the factors' `b`) and multipliers (in lam) by elimination; whether that is at hand, and pivots keep their digits."""
+    """Compute accelerations (in the factors' `b`) and multipliers (in lam) by elimination; True if accurate."""
     if not m.eliminates:
         return False
     r = eliminated_view(m.eliminated)
@@ -49,7 +49,7 @@ def _eliminated(s, m, t):
 
 @compiled
 def _satisfy_joints(s, m):
-    """Whether accelerations that elimination has found satisfy J u' = gamma as those of the LU do, which pivots alone don't tell."""
+    """Return True if accelerations by elimination satisfy J u' = gamma as accurately as those of the LU."""
     r, e, f = eliminated_view(m.eliminated), equations_view(m.accelerations), factors_view(m.acceleration_factors)
     values = floats(s.values[ACCELERATION])
     add_entries(e, values, 0.0, f.a)
@@ -62,13 +62,13 @@ def _satisfy_joints(s, m):
             r.sizes[f.a_row[p]] += abs(part)
     beyond = 0
     for row in range(s.n_u, f.n):
-        beyond += 0 if abs(r.left[row]) <= LEFT * r.sizes[row] + r.least else 1  # also where it is no number
+        beyond += 0 if abs(r.left[row]) <= LEFT * r.sizes[row] + r.least else 1  # also for NaN
     return beyond == 0
 
 
 @compiled
 def consistent_accelerations(s, m, t):
-    """`stiffmbs.solve.native.block_systems.to_accelerations`, in less time where elimination serves; notes which way was taken."""
+    """Compute `stiffmbs.solve.native.block_systems.to_accelerations`, by elimination if possible; note the method."""
     m.by_elimination = 1 if _eliminated(s, m, t) and _satisfy_joints(s, m) else 0
     if not m.by_elimination:
         return to_accelerations(s, m, t)
@@ -79,7 +79,7 @@ def consistent_accelerations(s, m, t):
 
 @compiled
 def _closed(r, s, m, t, tolerance):
-    """Moves of q and u to both constraints by the factors at hand; whether they got there."""
+    """Project q and u onto the constraints with the current factors; return True if that converges."""
     violations = evaluate(s, MOTION, t)
     close = max(tolerance, COORDINATE_ROUNDING * largest_of(s.q, s.n_pose))
     for _ in range(MOST_MOVES):
@@ -102,7 +102,7 @@ def _closed(r, s, m, t, tolerance):
 
 @compiled
 def to_constraints(s, m, t, tolerance, most):
-    """Bring q and u of a state near the constraints to both; 0 or a negative status."""
+    """Project q and u of a state near the constraints; 0 or a negative status."""
     if _eliminated(s, m, t):
         r = eliminated_view(m.eliminated)
         copied(r.q_before, s.q, s.n_q)

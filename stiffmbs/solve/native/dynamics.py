@@ -1,4 +1,4 @@
-"""The dynamics of a state from Python: assembly, projections, accelerations, and what is reported of a run."""
+"""Dynamics of a state for Python: assembly, projections, accelerations and output rows."""
 
 from __future__ import annotations
 
@@ -22,24 +22,24 @@ from stiffmbs.solve.native.statuses import SINGULAR
 from stiffmbs.solve.native.tables.views import dynamics_view, eliminated_view
 
 AMPLIFIED, MOVED = 1e6, 1e-6
-"""Times a violation, and part of the largest coordinate, that a projection of an output may move a coordinate: beyond that the
-pose is singular to rounding, which then decides where the projection leads."""
+"""Amplification of a violation, and fraction of the largest coordinate, above which the move of a projection is
+refused: the pose is then singular up to rounding."""
 
 
 def assemble(t, tolerance, most, dynamics):
-    """`to_position_constraints` from Python."""
+    """Call `to_position_constraints` from Python."""
     m = dynamics_view(dynamics)
     return to_position_constraints(state_view(m.state), m, t, tolerance, most)
 
 
 def correct_velocities(t, dynamics):
-    """`to_velocity_constraints` from Python."""
+    """Call `to_velocity_constraints` from Python."""
     m = dynamics_view(dynamics)
     return to_velocity_constraints(state_view(m.state), m, t)
 
 
 def accelerate(t, acceleration, dynamics):
-    """`to_accelerations` from Python; accelerations are copied out."""
+    """Call `to_accelerations` from Python, and copy the accelerations."""
     m = dynamics_view(dynamics)
     s = state_view(m.state)
     status = to_accelerations(s, m, t)
@@ -49,10 +49,10 @@ def accelerate(t, acceleration, dynamics):
 
 
 def contradicting(count, begin, end, apart, q, u, mass, rtol, atol, part, tolerances, rate, found, dynamics):
-    """Which of `count` steps have accelerations in their middle that contradict their polynomial; how many.
+    """Mark the steps among `count` whose midpoint accelerations contradict their polynomial; return their number.
 
-    States (n_q, n_u numbers) are given twice a step, so far apart as a part of it on both sides of its middle; `rate` is memory.
-    Where accelerations have no solution they contradict.
+    Each step has two states (n_q, n_u numbers), at a distance of `apart` step lengths before and after its midpoint.
+    `rate` is working memory.  A step without a solution for accelerations is marked, too.
     """
     m = dynamics_view(dynamics)
     s = state_view(m.state)
@@ -77,7 +77,7 @@ def contradicting(count, begin, end, apart, q, u, mass, rtol, atol, part, tolera
 
 @compiled
 def _largest_violation(s, violation):
-    """The largest violation of a joint: the norm over its equations (for a pin the distance of its two points)."""
+    """Return the largest violation of a joint: the norm over its equations (for a revolute joint, the gap)."""
     largest = 0.0
     for joint in range(s.n_joints):
         total = 0.0
@@ -89,7 +89,7 @@ def _largest_violation(s, violation):
 
 @compiled
 def _led_astray(s, q, violation):
-    """Whether a projection has moved a coordinate from q by far more than the violation asks for."""
+    """Return True if a projection has moved a coordinate from q by far more than the violation requires."""
     moved = 0.0
     for k in range(s.n_q):
         moved = max(moved, abs(s.q[k] - q[k]))
@@ -98,7 +98,7 @@ def _led_astray(s, q, violation):
 
 @compiled
 def _output_point(s, m, t, q, project, tolerance, largest):
-    """Bring the state, from coordinates q, back to the constraints where asked, then accelerations, multipliers and output terms."""
+    """Project the state if requested; compute accelerations, multipliers and output terms; 0 or a negative status."""
     for k in range(3):
         largest[k] = 0.0
     take_unit_length(s)
@@ -118,26 +118,25 @@ def _output_point(s, m, t, q, project, tolerance, largest):
     status = consistent_accelerations(s, m, t)
     if status < 0:
         return status
-    share_turns(s, m.turned_for_output, m.n_turned_for_output)  # the others stand since the accelerations
+    share_turns(s, m.turned_for_output, m.n_turned_for_output)  # the others follow from the accelerations
     call_kernels(s, OUTPUT, t)
     return 0
 
 
 @compiled
 def _log_determinant(m):
-    """log |det| of the block matrix of the last accelerations."""
+    """Return log |det| of the block matrix of the last accelerations."""
     if m.by_elimination:
         return log_determinant_by_blocks(eliminated_view(m.eliminated))
     return log_determinant(factors_view(m.acceleration_factors))
 
 
 def output_points(count, times, project, tolerance, n_output, q, u, acceleration, lam, output, judged, dynamics):
-    """Everything that is reported at `count` instants, row by row; the number of rows done.
+    """Compute all reported values at `count` times, row by row; return the number of completed rows.
 
-    q and u (rows of n_q, n_u) are brought back to the constraints where `project` asks for it; written are u', lam,
-    the values of the output terms, and in `judged` four numbers a row: the violations of positions and of
-    velocities (largest of a joint), of positions before the projection, and log |det| of the block matrix.  Where an
-    instant has no solution, the dynamics' `status` holds why.
+    If `project` is true, q and u (rows of n_q, n_u) are projected onto the constraints.  The output is u', lam, the
+    output terms, and four numbers per row in `judged`: violations of positions and of velocities (largest of a joint),
+    of positions before the projection, and log |det| of the block matrix.  `status` of the dynamics holds errors.
     """
     m = dynamics_view(dynamics)
     s = state_view(m.state)

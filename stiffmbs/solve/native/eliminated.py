@@ -1,6 +1,6 @@
 """Accelerations by elimination of u' from the block system: J M^-1 J^T lam = J M^-1 f - gamma.
 
-Far faster than the LU of the whole where bodies carry few joints each; the mass matrix is diagonal.
+The mass matrix is diagonal.  The method is far faster than the whole LU if bodies have few joints each.
 """
 
 from __future__ import annotations
@@ -18,14 +18,14 @@ from stiffmbs.solve.native.tables.views import eliminated_view
 
 @compiled
 def _scale(r):
-    """Divide by the roots of the masses."""
+    """Divide by the square roots of the masses."""
     for k in range(r.n_u):
         r.a[k] *= r.scale[k]
 
 
 @compiled
 def eliminated_accelerations(r, s, t):
-    """Accelerations (in r.a) and multipliers (in lam) at the current state; whether that could be done."""
+    """Compute accelerations (in r.a) and multipliers (in lam) at the current state; return True if successful."""
     values = evaluate(s, ACCELERATION, t)
     for k in range(r.n_u):
         r.a[k] = 0.0
@@ -45,8 +45,10 @@ def eliminated_accelerations(r, s, t):
 
 @compiled
 def smallest_move(r, s, violations):
-    """In r.a, the smallest change of velocities in the mass matrix, or move of the pose, that closes small violations; by J and the
-    factors of the last accelerations."""
+    """Compute in r.a the change of velocities or pose that closes small violations, by the last J and factors.
+
+    Its norm in the mass matrix is minimal.
+    """
     for k in range(r.n_u):
         r.a[k] = 0.0
     if r.by_pins:
@@ -61,7 +63,7 @@ def smallest_move(r, s, violations):
 
 @compiled
 def log_determinant_by_blocks(r):
-    """log |det| of the block matrix [M J^T; J 0], as det M det(J M^-1 J^T)."""
+    """Return log |det| of the block matrix [M J^T; J 0], as det M det(J M^-1 J^T)."""
     b = blocks_view(r.lists)
     total = 0.0
     for k in range(b.n_pivots):
@@ -72,7 +74,7 @@ def log_determinant_by_blocks(r):
 
 
 def attempt(t, acceleration, eliminated):
-    """`eliminated_accelerations` from other compiled code; accelerations are copied out."""
+    """Call `eliminated_accelerations` from other compiled code, and copy the accelerations."""
     r = eliminated_view(eliminated)
     done = eliminated_accelerations(r, state_view(r.state), t)
     for k in range(r.n_u):
@@ -81,14 +83,14 @@ def attempt(t, acceleration, eliminated):
 
 
 def move(violations, eliminated):
-    """`smallest_move` from other compiled code."""
+    """Call `smallest_move` from other compiled code."""
     r = eliminated_view(eliminated)
     smallest_move(r, state_view(r.state), violations)
     return int32(0)
 
 
 def accelerate(t, acceleration, eliminated):
-    """`eliminated_accelerations` from Python; accelerations are copied out."""
+    """Call `eliminated_accelerations` from Python, and copy the accelerations."""
     r = eliminated_view(eliminated)
     done = eliminated_accelerations(r, state_view(r.state), t)
     for k in range(r.n_u):

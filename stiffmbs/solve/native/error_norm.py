@@ -1,16 +1,15 @@
-"""The norm of IDA's error estimates, with errors that strong damping takes away within the step left out.
+"""Norm of IDA's error estimates without the errors that strong damping removes within the step.
 
-A light body in a strong damper has no velocity of its own: M u' = f(q) - c u leaves u = f(q) / c after a time M / c.
-Differences of u, from which the error is estimated, then show neither the error in u, which follows that in q, nor
-where a step or an order is changed: u jumps as the error in q does, over the step.  IDA fails every second step,
-and stays at order 1.  So the estimate d is multiplied by what a step of implicit Euler does with it,
+A light body in a strong damper follows M u' = f(q) - c u, so u = f(q) / c after a time M / c.  Differences of u, which
+estimate the error, then do not represent the error in u, which follows that in q.  After a change of step or order, u
+jumps in proportion to the error in q over the step.  IDA then fails every second step and stays at order 1.  Therefore
+a step of implicit Euler filters the estimate d,
     (dF/dy + cj dF/dy') e = cj dF/dy' d,
-with the iteration matrix and the factors that Newton's iteration has.  For y' = f this is (I - f_y / cj)^-1 d: errors in
-directions with fast decay are damped, and what they do to other unknowns counts; slow directions keep theirs.
+with the current iteration matrix and its factors.  For y' = f this is (I - f_y / cj)^-1 d: it damps errors in
+directions with fast decay, except for their effect on other unknowns, and leaves those in slow directions.
 
-A run that creeps has one more trap.  After a failure a step passes so easily that IDA doubles the next one, which fails
-again.  IDA raises the order after equal steps alone, so such a run stays at order 1 for good.  So steps may not grow again
-before these equal steps have been taken.
+After a failure, such a run may pass the next step so easily that IDA doubles the step and fails again.  IDA raises
+the order only after equal steps, so the order would stay at 1.  Therefore steps may not grow before these equal steps.
 
 References
 ----------
@@ -35,21 +34,20 @@ from stiffmbs.solve.native.statuses import NORM_TABLE, OK, OPERATIONS
 from stiffmbs.solve.native.tables.steps import ERROR_NORM
 
 FADES_LOW, FADES, LOW = 0.99, 0.8, 2
-"""What a step leaves of the count of failures, at orders up to the lowest two and above: at these a run creeps."""
+"""Factor of the failure count in each step, at orders up to the third number and above."""
 TROUBLED, LASTS = 7.0, 1000
-"""Count of failures from which estimates are filtered, and for how many steps.  A run that creeps fails in each step, or in one of seven, which
-counts up to 100 or 15; Andrews' mechanism, where the filter only costs, counts up to 6."""
+"""Failure count above which estimates are filtered, and number of steps for which they are."""
 BEFORE_A_RISE, NEVER = 3, 1e9
-"""Equal steps at order 1 after which IDA may raise it; growth of a step that no estimate allows."""
+"""Equal steps at order 1 before IDA may raise it; step growth that no estimate allows."""
 NO_ESTIMATE = 1e12
-"""Filtered norm beyond which a vector is none of IDA's estimates: IDA measures the solution too, to see what rounding takes of it."""
+"""Filtered norm above which a vector is not an error estimate: IDA also uses the norm for a rounding test."""
 
 error_norm_view = view_of("ErrorNorm", ERROR_NORM)
 
 
 @compiled
 def _filtered(c, estimate):
-    """Multiply an estimate by (dF/dy + cj dF/dy')^-1 cj dF/dy', with cj of the matrix; False where that fails."""
+    """Multiply an estimate by (dF/dy + cj dF/dy')^-1 cj dF/dy', with cj of the matrix; return False on failure."""
     e = equations_view(c.equations)
     s = state_view(c.state)
     values = floats(s.values[e.residual_set])
@@ -64,7 +62,7 @@ def _filtered(c, estimate):
 
 @compiled
 def _look(c):
-    """Count failures, and steps since then."""
+    """Count failures and the steps since then."""
     c.looked = iteration_view(c.iteration).cj
     call_int(c.steps_of, (c.memory, address_of(c.steps)))
     call_int(c.failures_of, (c.memory, address_of(c.failures)))
@@ -73,7 +71,7 @@ def _look(c):
         return
     c.known_steps += steps
     c.known_failures += failures
-    if steps < 0:  # counters begin anew with each start
+    if steps < 0:  # each start resets the counters
         c.trouble = 0.0
         c.until = 0
     call_int(c.order_of, (c.memory, address_of(c.order)))
@@ -90,7 +88,7 @@ def _look(c):
 
 @compiled
 def _let_grow(c):
-    """Let steps grow again where enough equal ones have been taken."""
+    """Allow steps to grow again after enough equal steps."""
     call_int(c.steps_of, (c.memory, address_of(c.steps)))
     if c.steps >= c.equal_until:
         c.equal_until = 0
@@ -98,10 +96,10 @@ def _let_grow(c):
 
 
 def error_norm(estimate, weights):
-    """N_VWrmsNorm: the weighted root mean square of an estimate, filtered where the error test fails often."""
+    """Return the WRMS norm (N_VWrmsNorm) of an estimate, filtered if the error test fails often."""
     c = error_norm_view(ints(ints(estimate[OPERATIONS])[NORM_TABLE]))
     cj = iteration_view(c.iteration).cj
-    if cj != c.looked:  # as it does with every failure
+    if cj != c.looked:  # cj changes with every failure
         _look(c)
     if c.equal_until > 0:
         _let_grow(c)

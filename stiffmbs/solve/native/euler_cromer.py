@@ -19,7 +19,7 @@ from stiffmbs.solve.native.tables.views import dynamics_view
 
 @compiled
 def _step(s, m, t, h, project, tolerance):
-    """u += h u', q += h u, then both projections."""
+    """Compute u += h u', q += h u, and both projections."""
     status = to_accelerations(s, m, t)
     if status < 0:
         return status
@@ -39,7 +39,7 @@ def _step(s, m, t, h, project, tolerance):
 
 
 def euler_cromer(t, h, steps, project, tolerance, dynamics):
-    """So many steps from the current state; 0 or a negative status."""
+    """Take `steps` steps from the current state; 0 or a negative status."""
     m = dynamics_view(dynamics)
     s = state_view(m.state)
     for step in range(steps):

@@ -1,4 +1,4 @@
-"""The fastest rate of a motion, by power iteration on differences of accelerations (von Mises and Pollaczek-Geiringer, 1929)."""
+"""Fastest rate of a motion by power iteration on accelerations (von Mises, Pollaczek-Geiringer, 1929)."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from stiffmbs.solve.native.explicit.stages import accelerated, copied
 from stiffmbs.solve.native.tables.views import dynamics_view
 
 ITERATIONS = 5
-"""Of a symmetric operator these find most of its largest eigenvalue; it is a bound from below."""
+"""Number of iterations; they give a lower bound close to the largest eigenvalue."""
 MOVE = 1e-7
-"""Largest change of a coordinate or velocity, m, rad, m/s, rad/s: small beside what changes a force's law."""
+"""Largest change of a coordinate or velocity, m, rad, m/s, rad/s; small compared with the breakpoints of laws."""
 
 
 @compiled
 def _size(mass, v, n):
-    """The norm of a motion in the mass matrix, in which stiffness and damping are symmetric."""
+    """Return the norm of a motion in the mass matrix, in which stiffness and damping are symmetric."""
     total = 0.0
     for k in range(n):
         total += mass[k] * v[k] * v[k]
@@ -27,7 +27,7 @@ def _size(mass, v, n):
 
 @compiled
 def _growth(t, of_pose, mass, eliminates, work, eliminated, s, m):
-    """How much larger the accelerations are that a move of the pose, or a change of velocities, makes."""
+    """Return the amplification from changes of the pose, or of velocities, to accelerations."""
     n = s.n_u
     at_start, v, w, start = work, shifted(work, n), shifted(work, 2 * n), shifted(work, 3 * n)
     if of_pose:
@@ -61,7 +61,7 @@ def _growth(t, of_pose, mass, eliminates, work, eliminated, s, m):
 
 
 def fastest_rate(t, eliminates, mass, work, eliminated, dynamics):
-    """The largest |lambda|, 1/s, of the motion about the state at hand; 0 where it has no accelerations."""
+    """Return the largest |lambda|, 1/s, of the motion at the current state; 0 without accelerations."""
     m = dynamics_view(dynamics)
     s = state_view(m.state)
     if accelerated(eliminates, eliminated, s, m, t, work) < 0:

@@ -1,9 +1,8 @@
-"""Sparse LU along a fixed order of pivots, as flat lists without inner loops: a linear solver for IDA.
+"""Linear solver for IDA: sparse LU in a fixed order of pivots, as flat lists without inner loops.
 
-The order is found by `stiffmbs.compile.machine.native.factors.factor` with threshold pivoting.  What the elimination then does
-is written down once as a list of updates, `lu[target] -= lu[left] * lu[right]`, that later factorisations repeat: they
-search nothing, and short inner loops, whose ends a processor cannot foresee, are gone.  Where a pivot
-has become too small against its column, the order is found anew.
+`stiffmbs.compile.machine.native.factors.factor` finds the order by threshold pivoting.  The elimination is stored as a
+list of updates, `lu[target] -= lu[left] * lu[right]`, for later factorisations.  They need no search and no short inner
+loops, whose ends a processor cannot predict.  A pivot that becomes too small causes a new order.
 """
 
 from __future__ import annotations
@@ -17,14 +16,14 @@ from stiffmbs.solve.native.tables.linear import FIXED_ORDER
 
 LU, ROW, COLUMN, UPDATE = (list(FIXED_ORDER).index(name) for name in ("lu", "row", "column", "update"))
 LARGEST = 1e3
-"""A pivot is refused when an entry of its column is so many times larger."""
+"""Ratio of an entry to the pivot of its column above which the pivot is rejected."""
 
 fixed_order_view = view_of("FixedOrder", FIXED_ORDER)
 
 
 @compiled
 def _count_updates(f):
-    """The number of updates of the elimination along the pivots in `f`."""
+    """Return the number of updates of the elimination for the pivots in `f`."""
     count = 0
     for j in range(f.n):
         for p in range(f.u_start[j], f.u_start[j + 1] - 1):
@@ -35,7 +34,7 @@ def _count_updates(f):
 
 @compiled
 def _list_memory(table, f):
-    """Memory for the factors in `f` and the list of their updates; whether there is some."""
+    """Provide memory for the factors in `f` and the list of their updates; return False if there is not enough."""
     off_diagonal = f.l_start[f.n] + f.u_start[f.n] - 2 * f.n
     length = 3 * _count_updates(f)
     if off_diagonal + f.n > MOST_INDICES:
@@ -47,12 +46,12 @@ def _list_memory(table, f):
 
 @compiled
 def _listed(s, f):
-    """Write down what the elimination along the pivots in `f` does."""
+    """List the updates of the elimination for the pivots in `f`."""
     n = f.n
     n_lower = f.l_start[n] - n
     n_upper = f.u_start[n] - n
     diagonal = n_lower + n_upper
-    upper = n_lower + n_upper  # the columns' upper entries lie from the last column to the first
+    upper = n_lower + n_upper  # upper entries are stored from the last column to the first
     count = 0
     for k in range(n):
         s.mark[k] = -1
@@ -90,7 +89,7 @@ def _listed(s, f):
 
 @compiled
 def _eliminated(s, f):
-    """Factors of the matrix in `f` by the list; False where a pivot is too small."""
+    """Factor the matrix in `f` by the list; return False if a pivot is too small."""
     n = f.n
     lu = s.lu
     update = s.update
@@ -118,7 +117,7 @@ def _eliminated(s, f):
 
 @compiled
 def factored_anew(factors, kept):
-    """Seek pivots for the matrix in the table of factors, which is scaled for that and kept meanwhile."""
+    """Search for pivots of the matrix in the table of factors, which is temporarily scaled; return the outcome."""
     f = factors_view(factors)
     for p in range(f.a_start[f.n]):
         kept[p] = f.a[p]
@@ -131,7 +130,7 @@ def factored_anew(factors, kept):
 
 
 def setup(solver, matrix):
-    """SUNLinSolSetup: factors along the known order, else along a new one."""
+    """Set up the linear solver (SUNLinSolSetup): factors in the known order, or in a new one."""
     table = ints(solver[CONTENT])
     known = fixed_order_view(table)
     if known.ready and _eliminated(known, factors_view(known.factors)):
@@ -140,7 +139,7 @@ def setup(solver, matrix):
     outcome = factored_anew(known.factors, known.weight)
     if outcome == DONE and not _list_memory(table, factors_view(known.factors)):
         outcome = FULL
-    known.last_flag = outcome  # SUNLinSolLastFlag gives it
+    known.last_flag = outcome  # returned by SUNLinSolLastFlag
     if outcome != DONE:
         return int32(FAILED if outcome == FULL else RECOVERABLE)
     s = fixed_order_view(table)  # the memory may have grown
@@ -151,7 +150,7 @@ def setup(solver, matrix):
 
 
 def solve(solver, matrix, x, b, tolerance):
-    """SUNLinSolSolve: x = A^-1 b."""
+    """Solve A x = b (SUNLinSolSolve)."""
     s = fixed_order_view(ints(solver[CONTENT]))
     f = factors_view(s.factors)
     into, of = floats(call_address(s.array_of, x)), floats(call_address(s.array_of, b))

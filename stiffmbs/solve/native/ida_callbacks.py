@@ -1,4 +1,4 @@
-"""Residual and Jacobian as IDA calls them, with the history of IDA's steps seen from its calls."""
+"""Residual and Jacobian callbacks of scikit-sundae, with a history of IDA's steps inferred from the calls."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ def _note(c, t):
 
 @compiled
 def _data(array, header):
-    """The doubles of a numpy array given by its id: the pointer behind the object's header (PyArrayObject.data)."""
+    """Return the data of a NumPy array given by its id: the pointer after the object's header (PyArrayObject.data)."""
     return floats(ints(array + header)[0])
 
 
 def residual(t, y, yp, r, ida):
-    """The residual r(t, y, y') into a numpy array; notes the time."""
+    """Compute the residual r(t, y, y') in a NumPy array; note the time."""
     c = ida_view(ida)
     _note(c, t)
     s = state_view(c.state)
@@ -40,7 +40,7 @@ def residual(t, y, yp, r, ida):
 
 
 def jacobian(t, y, yp, cj, a, ida):
-    """The iteration matrix dr/dy + cj dr/dy' into a numpy array."""
+    """Compute the iteration matrix dr/dy + cj dr/dy' in a NumPy array."""
     c = ida_view(ida)
     s = state_view(c.state)
     e = equations_view(c.equations)
@@ -49,7 +49,7 @@ def jacobian(t, y, yp, cj, a, ida):
 
 
 def event_functions(t, y, yp, values, ida):
-    """What changes its sign at the breakpoints in the state, into a numpy array."""
+    """Compute the event functions of breakpoints in the state in a NumPy array."""
     c = ida_view(ida)
     s = state_view(c.state)
     load(s, equations_view(c.equations), _data(y, c.array_header), _data(yp, c.array_header))

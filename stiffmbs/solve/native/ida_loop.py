@@ -1,4 +1,4 @@
-"""IDA's callbacks with their C signatures, and the loop over its steps: no Python from one step to the next."""
+"""IDA's callbacks with their C signatures, and the loop over its steps without Python."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ from stiffmbs.solve.native.step_bound import longest_step, step_bound_view
 from stiffmbs.solve.native.tables.steps import HISTORY_WIDTH, MOST_STEPS, SAMPLES
 
 STRETCHED = 1.01
-"""The last step may be this much longer than inputs allow, so that no tiny one is left."""
+"""Factor by which the last step may exceed the limit of inputs, to avoid a tiny remainder."""
 STEPS_APART = 4
-"""The last states are kept as samples, one each few steps."""
+"""Steps between stored samples of states."""
 STALLED = -101
 MOST_TINY, TINY_STEP = 100, 2e-14
-"""IDA would go on forever with steps below the precision of time: this many below this part of t are the end."""
+"""Number of successive steps below this fraction of t at which the run stops: IDA would continue forever."""
 
 
 @compiled
 def _finite(values, count):
-    a, b, c, d, e, f, g, h = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0  # each addition waits for the one before in its sum
+    a, b, c, d, e, f, g, h = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0  # independent sums run in parallel
     whole = count - count % 8
     for k in range(0, whole, 8):
         a += 0.0 * values[k]
@@ -45,7 +45,7 @@ def _finite(values, count):
 
 
 def residual(t, yy, yp, rr, user_data):
-    """IDAResFn: r(t, y, y')."""
+    """Compute the residual r(t, y, y') (IDAResFn)."""
     c = native_ida_view(user_data)
     s = state_view(c.state)
     e = equations_view(c.equations)
@@ -56,7 +56,7 @@ def residual(t, yy, yp, rr, user_data):
 
 
 def jacobian(t, cj, yy, yp, rr, matrix, user_data, work1, work2, work3):
-    """IDALsJacFn: the iteration matrix dr/dy + cj dr/dy'."""
+    """Compute the iteration matrix dr/dy + cj dr/dy' (IDALsJacFn)."""
     c = native_ida_view(user_data)
     s = state_view(c.state)
     e = equations_view(c.equations)
@@ -71,7 +71,7 @@ def jacobian(t, cj, yy, yp, rr, matrix, user_data, work1, work2, work3):
 
 
 def event_functions(t, yy, yp, g, user_data):
-    """IDARootFn: what changes its sign at the breakpoints of forces."""
+    """Compute the event functions of breakpoints of forces (IDARootFn)."""
     c = native_ida_view(user_data)
     s = state_view(c.state)
     load(s, equations_view(c.equations), array_of(c, yy), array_of(c, yp))
@@ -83,7 +83,7 @@ def event_functions(t, yy, yp, g, user_data):
 
 @compiled
 def _longest_to_see(c, bound, t):
-    """The longest step from t that misses nothing of inputs and of periodic or just entered laws."""
+    """Return the longest step from t that resolves inputs and periodic or just entered laws."""
     longest = longest_step(bound, t) if bound.n > 0 else float("inf")
     if c.look_at_start:
         w = event_search_view(c.watch)
@@ -97,7 +97,7 @@ def _longest_to_see(c, bound, t):
 
 @compiled
 def _see_inputs(c, stop):
-    """Have IDA stop where a longer step might miss what an input or a law does; it goes on from there with its history."""
+    """Set IDA's stop time to resolve a feature of an input or law; IDA continues from there with its history."""
     bound = step_bound_view(c.step_bound)
     if bound.n > 0 or c.look_at_start:
         t = c.internal
@@ -118,7 +118,7 @@ def _see_inputs(c, stop):
 
 @compiled
 def stepped(c, ida, toward, stop):
-    """One step; returns IDA's flag and notes the step's end, order and size in the history."""
+    """Take one step; note its end, order and size in the history, and return IDA's flag."""
     before = c.internal
     begun = c.returned
     c.within = 0
@@ -152,7 +152,7 @@ def stepped(c, ida, toward, stop):
 
 @compiled
 def _keep_step(c):
-    """Keep where a step has come, as variational equations are integrated along it afterwards."""
+    """Store the result of a step for the integration of variational equations."""
     n = equations_view(c.equations).n
     row = floats(c.trace + 8 * (2 + 2 * n) * c.traced)
     row[0] = c.returned
@@ -172,7 +172,7 @@ def _report(c, values, row):
 
 @compiled
 def _keep_if_long(c, begun):
-    """Keep states within the last step where it is far longer than those before."""
+    """Store states within the last step if it is much longer than its predecessors."""
     w = long_steps_view(c.long_steps)
     h = c.returned - begun
     if w.room == 0 or not is_to_be_kept(w, h):
@@ -199,7 +199,7 @@ def _sample(c):
 
 @compiled
 def _accumulate(c):
-    """Add up local errors, one each few steps: to read each of them would cost some hundredths of a step."""
+    """Accumulate local errors, read only every few steps to save time."""
     a = accumulated_errors_view(c.accumulated)
     if is_due(a, c.size) and call_int(c.errors_of, (c.memory, c.at_output)) == OK:
         values = floats(state_view(c.state).values[equations_view(c.equations).matrix_set])
@@ -214,7 +214,7 @@ def _stalled(c):
 
 @compiled
 def _report_at(c, t, derivative, current, row):
-    """What is reported of the solution, or of its derivative, at a time within the last step."""
+    """Report the solution, or its derivative, at a time within the last step."""
     if t == c.returned:
         _report(c, array_of(c, current), row)
         return int32(OK)
@@ -229,7 +229,7 @@ def _report_at(c, t, derivative, current, row):
 
 @compiled
 def _served(c, times, count, y_out, yp_out):
-    """Serve the output times up to the returned one; `yp_out` may be null."""
+    """Report at the output times up to the returned time; `yp_out` may be null."""
     flag = int32(OK)
     while c.served < count and times[c.served] <= c.returned:
         k = c.served
@@ -244,9 +244,9 @@ def _served(c, times, count, y_out, yp_out):
 
 @compiled
 def advanced(c, ida, count, times, stop, most, y_out, yp_out):
-    """At most `most` steps towards `stop`, serving output times on the way; returns IDA's last flag.
+    """Take at most `most` steps towards `stop`, and report at output times; return IDA's last flag.
 
-    The first step's size follows from the distance to the first output time, as in IDA's own mode for them.
+    The first step's size follows from the distance to the first output time, as in IDA's normal mode.
     """
     c.stopping = stop
     flag = _served(c, times, count, y_out, yp_out)
@@ -263,21 +263,21 @@ def advanced(c, ida, count, times, stop, most, y_out, yp_out):
 
 @compiled
 def clear_call(c):
-    """Nothing is served, recorded or kept in this call yet."""
+    """Reset the counters of the call."""
     c.served = 0
     c.recorded = 0
     c.traced = 0
 
 
 def advance(count, times, stop, most, y_out, yp_out, ida):
-    """`advanced` from Python."""
+    """Call `advanced` from Python."""
     c = native_ida_view(ida)
     clear_call(c)
     return advanced(c, ida, count, times, stop, most, y_out, yp_out)
 
 
 def steps(most, stop, t_out, y_out, ida):
-    """At most `most` steps towards `stop`, each of them reported; returns IDA's last flag."""
+    """Take at most `most` steps towards `stop`, and report each; return IDA's last flag."""
     c = native_ida_view(ida)
     c.stopping = stop
     clear_call(c)

@@ -1,4 +1,4 @@
-"""What IDA's callbacks and the loop over its steps work on."""
+"""Memory of IDA's callbacks and of the loop over its steps."""
 
 from __future__ import annotations
 
@@ -11,5 +11,5 @@ native_ida_view = view_of("NativeIda", NATIVE_IDA)
 
 @compiled
 def array_of(c, vector):
-    """The numbers of one of SUNDIALS' vectors."""
+    """Return the data of a SUNDIALS vector."""
     return floats(call_address(c.array_of, vector))

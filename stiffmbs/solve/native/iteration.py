@@ -1,22 +1,19 @@
-"""When Newton's iteration in a step has converged: IDA's test, but for rates that were measured long ago.
+"""Convergence test of Newton's iteration in a step: IDA's test with an estimated convergence rate.
 
-What a correction leaves is its size times rate / (1 - rate), with the rate at which corrections shrink.  IDA
-measures it where an iteration matrix is new, and the iteration converges quadratically, and takes it for good until
-cj changes; so in long stretches of equal steps one correction with an ever older matrix passes, whatever it leaves.
-The error estimates become noise, order and steps sink.
+The error after a correction is its size times rate / (1 - rate).  IDA measures the rate while the iteration matrix is
+new and the iteration converges quadratically, and keeps it until cj changes.  In long sequences of equal steps, one
+correction with an ever older matrix then always passes.  The error estimates become noise; order and steps decrease.
 
-Here the rate is foreseen from its two causes. With cj the matrix changes: IDA scales corrections by 2 / (1 + r), r
-being cj over that of the matrix, which for an equation u' = lambda u leaves |1 - 2 / (1 + r) (r - z) / (1 - z)| with
-z = lambda / cj; where nothing grows, Re z <= 0, that is at most |r - 1| / (r + 1). And bodies turn away from where
-the matrix was made: this part is taken to grow with the time since then, as fast as it did when a rate was last
-measured, also under earlier matrices. A rate that was measured where the matrix was new does not count. Where forces
-follow reactions and the iteration has been given up, the rate of the next matrix is measured: friction bends where a reaction
-vanishes, and a matrix for the predicted sign of the reaction leaves another force. A matrix that has become slow, or with
-which the iteration cannot get there in the corrections that are left, is made anew.
+Here the rate is predicted from its two causes.  First, the matrix changes with cj: IDA scales corrections by
+2 / (1 + r), with the ratio r of cj to that of the matrix.  For u' = lambda u and z = lambda / cj, this leaves
+    |1 - 2 / (1 + r) (r - z) / (1 - z)| <= |r - 1| / (r + 1)    for Re z <= 0.
+Second, bodies rotate away from the pose of the matrix.  This part is assumed to grow with the time since then, at the
+last measured rate, also under earlier matrices.  Rates measured with a new matrix do not count.  If forces
+depend on reactions, the rate is measured after a failed iteration: friction has a kink where a reaction vanishes.  A
+matrix with a slow or insufficient convergence is replaced.
 
-How far the iteration is taken follows from the stiffness of the scene for long steps (`stiffmbs.solve.error_control.newton`). An
-error left in a position makes an acceleration, and that a velocity within the step; so shorter steps bear more, in
-proportion to cj.
+For long steps, the tolerance follows from the stiffness of the scene (`stiffmbs.solve.error_control.newton`).  A
+position error causes a velocity error within the step, so shorter steps may leave more, in proportion to cj.
 """
 
 from __future__ import annotations
@@ -26,33 +23,33 @@ from stiffmbs.solve.native.calls import call_address, call_int, int32
 from stiffmbs.solve.native.tables.steps import ITERATION
 
 SETTLED, GO_ON, GIVE_UP = 0, 901, 902
-"""SUN_SUCCESS, SUN_NLS_CONTINUE and SUN_NLS_CONV_RECVR of sundials_nonlinearsolver.h; after the last, the solver has a matrix that is
-not new made anew, and IDA tries a smaller step where it is."""
+"""SUN_SUCCESS, SUN_NLS_CONTINUE and SUN_NLS_CONV_RECVR of sundials_nonlinearsolver.h.  After the last, the solver
+replaces an old matrix, or IDA tries a smaller step."""
 MADE = -1
-"""The age that a matrix is given when it is made; the step's first correction makes it 0."""
+"""Age of a new matrix; the first correction of the step makes it 0."""
 LAST = 3
-"""Corrections before the last one that IDA allows."""
+"""Largest number of corrections before the last one."""
 NOTHING = 1e-8
-"""Part of what may be left that is not worth a look at the rate, as IDA has it."""
+"""Size of a correction, relative to the tolerance, that converges at any rate, as in IDA."""
 UNKNOWN = 20.0
-"""What is left of a correction at the most, relative to it, as IDA has it after a new matrix."""
+"""Largest error after a correction, relative to it, as in IDA with a new matrix."""
 DIVERGING = 0.9
-"""The rate from which the iteration is given up, as IDA has it."""
+"""Rate above which the iteration is stopped, as in IDA."""
 SLOWEST = 0.1
-"""The rate beyond which a matrix is made anew (0.1 is better than 0.2 and 0.3 in the plane, and as good in space)."""
+"""Rate above which a matrix is replaced."""
 TRUSTED = 20
-"""Steps after which a rate is measured anew (with no end to it a bushing of 1e8 N/m takes a third longer)."""
+"""Number of nonlinear solves after which a rate is measured again."""
 LEAST = 0.1
-"""Part of a measured rate that is put down to the matrix' age at the least."""
+"""Least fraction of a measured rate that is attributed to the age of the matrix."""
 LOOSEST, LONG_STEPS = 0.03, 200.0
-"""Part of the tolerance that short steps may leave at the most; cj, 1/s, up to which steps are long."""
+"""Largest part of the tolerance that short steps may leave; cj, 1/s, up to which steps are long."""
 
 iteration_view = view_of("Iteration", ITERATION)
 
 
 @compiled
 def _size(c, correction, weights):
-    """Root mean square in units of the tolerance."""
+    """Return the RMS of a correction in units of the tolerance."""
     values = floats(call_address(c.array_of, correction))
     weight = floats(call_address(c.array_of, weights))
     squares = 0.0
@@ -64,13 +61,13 @@ def _size(c, correction, weights):
 
 @compiled
 def _left(rate, size):
-    """What is left after a correction of a size."""
+    """Return the error after a correction of a size."""
     return min(rate / (1.0 - rate), UNKNOWN) * size if rate < 1.0 else UNKNOWN * size
 
 
 @compiled
 def _predicted(c):
-    """The rate, from those measured before; 1 where it has to be measured."""
+    """Return the rate predicted from earlier ones; 1 if it has to be measured."""
     c.since += 1
     age = c.age
     if age == 0:
@@ -85,7 +82,7 @@ def _predicted(c):
 
 @compiled
 def _first(c, size, enough):
-    """After the first correction, the rate is what is foreseen."""
+    """Test the first correction with the predicted rate."""
     c.age += 1
     age = c.age
     rate = _predicted(c)
@@ -101,7 +98,7 @@ def _first(c, size, enough):
 
 @compiled
 def _later(c, size, enough):
-    """After further corrections it is the mean of theirs."""
+    """Test a further correction with the mean rate of all of them."""
     done = c.done
     age = c.age
     rate = (size / c.first) ** (1.0 / done)
@@ -118,7 +115,7 @@ def _later(c, size, enough):
 
 
 def converged(solver, total, correction, enough, weights, table):
-    """SUNNonlinSolConvTestFn: whether what the iteration leaves is at most `enough`, in units of the tolerance, or what short steps bear."""
+    """Test convergence up to `enough` tolerances, or more for short steps (SUNNonlinSolConvTestFn)."""
     c = iteration_view(table)
     size = _size(c, correction, weights)
     call_int(c.iteration_of, (solver, address_of(c.done)))

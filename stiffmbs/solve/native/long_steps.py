@@ -1,4 +1,4 @@
-"""Steps far longer than those before them, kept with states within them: what they may have passed over is judged after the run."""
+"""Storage of steps much longer than their predecessors, to be checked after the run."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ long_steps_view = view_of("LongSteps", LONG_STEPS)
 
 @compiled
 def is_to_be_kept(w, h):
-    """Whether a step is far longer than those before it, and there is room for it."""
+    """Return True if a step is much longer than its predecessors, and there is space for it."""
     usual = w.usual
     w.usual = usual + (h - usual) / w.remembered
     return h > w.ratio * usual and w.count < w.room
@@ -18,7 +18,7 @@ def is_to_be_kept(w, h):
 
 @compiled
 def next_row(w, begin, end):
-    """Where the states of the next step to be kept belong; it is kept with `w.count += 1`."""
+    """Return memory for the states of the next long step; `w.count += 1` stores it."""
     row = shifted(w.row, w.count * (2 + w.n_nodes * w.width))
     row[0] = begin
     row[1] = end
@@ -27,8 +27,10 @@ def next_row(w, begin, end):
 
 @compiled
 def contradicts(h, acceleration, rate, u, mass, rtol, atol, part, tolerances, n_u):
-    """Whether accelerations differ from the rates of a step of length h by more than a part of them, and, over the step, by more
-    than so many tolerances of a velocity."""
+    """Return True if accelerations contradict the rates of a step of length h.
+
+    They must differ by more than a fraction `part` and, over the step, by more than `tolerances` of a velocity.
+    """
     off = 0.0
     by_forces = 0.0
     by_rates = 0.0

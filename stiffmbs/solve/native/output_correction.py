@@ -1,10 +1,10 @@
-"""Interpolated states of stiff scenes, brought back to the equations.
+"""Polished dense output for stiff scenes.
 
-IDA's interpolant takes each unknown for itself.  Where a step is long against the stiffest oscillation, what that leaves
-in a position makes a force far beyond the forces there are.  Newton's iteration
+IDA interpolates each unknown separately.  If a step is long compared with the stiffest oscillation, interpolation
+errors in positions cause forces far beyond the actual ones.  Newton's iteration
     M delta = F(t, y, y'),  y -= delta,  y' -= cj delta,  M = dF/dy + cj dF/dy'
-restores the equilibrium of stiff forces.  The factors of IDA's last step serve no longer where a body has turned by a small
-angle since then, as stiff directions turn with it; so this iteration has factors of its own, kept while they serve.
+restores the equilibrium of stiff forces.  Small rotations since IDA's last setup also rotate stiff directions, so this
+iteration has its own factors, used as long as they converge.
 """
 
 from __future__ import annotations
@@ -19,23 +19,22 @@ from stiffmbs.solve.native.tables.steps import OUTPUT_CORRECTION
 from stiffmbs.solve.native.tables.views import dynamics_view
 
 APART = 2.0
-"""Factor between cj of the factors and IDA's beyond which they are made anew: accelerations would change too much, or too little."""
+"""Ratio between cj of the factors and IDA's above which factors are replaced."""
 MOST_CORRECTIONS = 8
-"""Corrections."""
+"""Largest number of corrections."""
 SLOWEST = 0.3
-"""A correction that is a larger part of the one before asks for new factors, or ends the iteration in vain."""
+"""Ratio of successive corrections above which factors are replaced, or the iteration fails."""
 
 CLOSED, MOST_MOVES = 1e-12, 20
-"""As reports close joints (`stiffmbs.solve.dynamics.Dynamics.report`)."""
+"""Tolerance and number of projection steps, as in `stiffmbs.solve.dynamics.Dynamics.report`."""
 
 FAR_BELOW, MOST_UNSEEN = 0.2, 7
-"""Part of the force that may be left below which, in the middle of a step, some states after this one are not looked at, and their number at
-the most."""
+"""Fraction of the allowed imbalance in mid-step below which states are skipped, and their largest number."""
 
 TRUSTED = 10
-"""States for which a measured rate serves, or what closing joints makes."""
+"""Number of states for which a measured rate, or the effect of closing joints, is used."""
 WORSE = 3.0
-"""Times the measured figure that is reckoned with: it hangs on the direction of what is left."""
+"""Safety factor of measured values: they depend on the direction of the residual."""
 INFINITE = float("inf")
 
 output_correction_view = view_of("OutputCorrection", OUTPUT_CORRECTION)
@@ -43,7 +42,7 @@ output_correction_view = view_of("OutputCorrection", OUTPUT_CORRECTION)
 
 @compiled
 def _interpolated(b, t):
-    """Take y and y' from IDA's interpolant."""
+    """Evaluate IDA's interpolant for y and y'."""
     if call_int(b.interpolate, (b.memory, t, int32(0), b.at_y)) < OK:
         return False
     return call_int(b.interpolate, (b.memory, t, int32(1), b.at_yp)) >= OK
@@ -51,7 +50,7 @@ def _interpolated(b, t):
 
 @compiled
 def _factored(b, s, e, t):
-    """Factor M at the state at hand."""
+    """Factor M at the current state."""
     b.factored = 0.0
     cj = b.current
     call_int(b.clear, (b.matrix,))
@@ -69,7 +68,7 @@ def _factored(b, s, e, t):
 
 @compiled
 def _look(b, s, e, t):
-    """What the equations leave at the state at hand."""
+    """Compute the residual at the current state."""
     load(s, e, b.y, b.yp)
     add_products(e, evaluate(s, e.residual_set, t), b.y, b.yp, b.defect)
     add_sizes(e, floats(s.values[e.residual_set]), b.y, b.yp, b.size)
@@ -77,7 +76,7 @@ def _look(b, s, e, t):
 
 @compiled
 def _unbalanced(b, defect):
-    """The largest part that the equations of motion leave of the forces in them, in units of what may be left."""
+    """Return the largest relative imbalance of the equations of motion, in units of the allowed one."""
     part = 0.0
     first = 0
     for kind in range(2):
@@ -94,7 +93,7 @@ def _unbalanced(b, defect):
 
 @compiled
 def _by_closing(b, s, e, t, opening):
-    """The same where joints are closed, by a move that knows nothing of stiff forces; notes what it changes for an opening."""
+    """Return the imbalance with joints closed by a projection; note its change for a unit opening."""
     copied(b.pose, s.q, s.n_q)
     if to_position_constraints(s, dynamics_view(b.dynamics), t, CLOSED, MOST_MOVES) < 0:
         copied(s.q, b.pose, s.n_q)
@@ -111,9 +110,9 @@ def _by_closing(b, s, e, t, opening):
 
 @compiled
 def _left(b, s, e, t):
-    """The largest part that the equations of motion leave of the forces in them, also as reported: with joints closed.
+    """Return the largest relative imbalance of the equations of motion, as interpolated and with joints closed.
 
-    What closing them makes is computed where the last figure for it is old, or near to what may be left.
+    The effect of closing joints is computed if its last value is old or close to the limit.
     """
     part = _unbalanced(b, b.defect)
     opening = 0.0
@@ -129,9 +128,9 @@ def _left(b, s, e, t):
 
 @compiled
 def _is_balanced(b, s, e, t, ahead):
-    """Whether the forces of the interpolated state balance well enough; settles how many states after it are not looked at.
+    """Return True if the forces of the interpolated state balance; set the number of states not to be checked.
 
-    Interpolants are exact at both ends of a step, so what is left near them says little of other states.
+    Interpolants are exact at both ends of a step, so states near them do not represent others.
     """
     middle = 4.0 * ahead * (1.0 - ahead)
     part = _left(b, s, e, t)
@@ -142,7 +141,7 @@ def _is_balanced(b, s, e, t, ahead):
 
 @compiled
 def _corrected(b, e):
-    """Make one correction; returns its size in units of the tolerance."""
+    """Apply one correction; return its size in units of the tolerance."""
     call_int(b.solve, (b.solver, b.matrix, b.at_correction, b.at_defect, 0.0))
     cj = b.factored
     squares = 0.0
@@ -156,7 +155,7 @@ def _corrected(b, e):
 
 @compiled
 def _predicted(b, t):
-    """The rate for the first correction: as bodies turn away from where the factors were made; 1 where it has to be measured."""
+    """Return the rate for the first correction, in proportion to the age of the factors; 1 if not measured."""
     b.since += 1
     known = b.growth >= 0.0 and b.since <= TRUSTED
     return WORSE * b.growth * (t - b.made) if known else 1.0
@@ -164,7 +163,7 @@ def _predicted(b, t):
 
 @compiled
 def _note_rate(b, t, rate):
-    """Where the factors are new, the iteration converges quadratically, which says nothing of later states."""
+    """Note the rate, unless factors are new: the iteration then converges quadratically, unlike for later states."""
     if t > b.made:
         b.growth = rate / (t - b.made)
         b.since = 0
@@ -172,7 +171,7 @@ def _note_rate(b, t, rate):
 
 @compiled
 def _settled(b, s, e, t):
-    """Correct until what is left makes no force that counts, by the rate at which corrections shrink or by the balance of forces."""
+    """Correct until the error is negligible, by the convergence rate, or forces balance; return False on failure."""
     rate = _predicted(b, t)
     before = 0.0
     for k in range(MOST_CORRECTIONS):
@@ -193,9 +192,9 @@ def _settled(b, s, e, t):
 
 @compiled
 def corrected(output_correction, state, equations, t, ahead):
-    """Interpolate, and bring the state, held in the table's y and y', back to the equations; False where it stays as it is interpolated.
+    """Interpolate and correct the state in the table's y and y'; return False if the interpolant is to be used.
 
-    `ahead` is the part of the step that is ahead of t.
+    `ahead` is the fraction of the step after t.
     """
     b = output_correction_view(output_correction)
     if b.next_look > 0:

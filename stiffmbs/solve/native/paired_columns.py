@@ -1,11 +1,9 @@
-"""Sparse LU along a fixed order of pivots, by columns that are taken in pairs: a linear solver for IDA.
+"""Linear solver for IDA: sparse LU in a fixed order of pivots with two-column supernodes.
 
-Neighbouring columns have most of their rows in common where bodies have many unknowns that all depend on each other,
-as in space.  An item is a row with its entries in both columns, side by side; where there is one entry, a zero stands
-for the other.  A column of the matrix is reduced by all pairs before it, `x[row] -= lu[item] * x[k] + lu[item + 1] *
-x[k + 1]`, for which half as much is looked up as for single entries, and what is written anew stays near the processor.
-The short inner loops are worth that from some ten rows on; columns that are shorter are better factored by
-`stiffmbs.solve.native.fixed_order`.
+Adjacent columns have most rows in common if many unknowns of bodies are coupled, as in spatial models.  An item is a
+row with its entries in both columns, with zeros for missing ones.  All earlier supernodes update a column by
+`x[row] -= lu[item] * x[k] + lu[item + 1] * x[k + 1]`, with half the index accesses of single entries.  Columns of up to
+about ten rows are factored faster by `stiffmbs.solve.native.fixed_order`.
 """
 
 from __future__ import annotations
@@ -22,16 +20,16 @@ LU, ROW, COLUMN, PLACE, UPDATE = (
     list(PAIRED_COLUMNS).index(name) for name in ("lu", "row", "column", "place", "update")
 )
 FIRST, SECOND = 0, 1
-"""Which side of its items a column has; one alone has the first."""
+"""Position of a column in its items; a single column is the first."""
 WORTH_A_PAIR = 0.8
-"""Items of a pair of columns, relative to its entries, above which they are better taken one by one."""
+"""Ratio of the items of a supernode to its entries above which columns are stored separately."""
 
 paired_view = view_of("PairedColumns", PAIRED_COLUMNS)
 
 
 @compiled
 def _sorted(f):
-    """Put the rows above each pivot in the order of their pivots, in which they can be eliminated."""
+    """Sort the rows above each pivot in the order of their pivots, as required for elimination."""
     for j in range(f.n):
         for p in range(f.u_start[j] + 1, f.u_start[j + 1] - 1):
             row = f.u_row[p]
@@ -44,7 +42,7 @@ def _sorted(f):
 
 @compiled
 def _numbered(s, rows, begin, end, column, item):
-    """Items of a column for those of its rows that have none; the number of the next one."""
+    """Create items for the rows of a column that have none; return the number of the next item."""
     for p in range(begin, end):
         row = rows[p]
         if s.mark[row] < 0:
@@ -56,9 +54,9 @@ def _numbered(s, rows, begin, end, column, item):
 
 @compiled
 def _items(s, rows, begin, end, next_begin, next_end, column, between, item):
-    """Items of two columns, whose rows are given, or of one; the number of the next, or -1 where few rows are common.
+    """Create the items of one or two columns; return the number of the next item, or -1 if few rows are common.
 
-    The first of the items is that of the row between both triangles: others are computed from what it changes.
+    The first item is the row between both triangles, because it changes the coefficient of the others.
     """
     for p in range(begin, end):
         s.mark[rows[p]] = -1
@@ -79,14 +77,14 @@ def _items(s, rows, begin, end, next_begin, next_end, column, between, item):
 
 @compiled
 def _placed(s, rows, begin, end, first_place, side):
-    """Note where in the factors a column's entries stand: on the first or second side of their items."""
+    """Store the positions of a column's entries among the factors."""
     for p in range(begin, end):
         s.place[first_place + p - begin] = 2 * s.mark[rows[p]] + side
 
 
 @compiled
 def _lower_items(s, f):
-    """Items of the columns below the pivots, from the first pair to the last; their number."""
+    """Create the items below the pivots, from the first to the last column; return their number."""
     n = f.n
     item = 0
     j = 0
@@ -109,7 +107,7 @@ def _lower_items(s, f):
 
 @compiled
 def _upper_items(s, f, item):
-    """Items of the columns above the pivots, from the last pair to the first, behind those below; the number of all."""
+    """Create the items above the pivots, from the last to the first column; return the number of all items."""
     n_lower = f.l_start[f.n] - f.n
     j = f.n - 1
     while j >= 0:
@@ -132,7 +130,7 @@ def _upper_items(s, f, item):
 
 @compiled
 def _list_memory(table, f):
-    """Memory for the factors in `f` and their items, of which each has an entry at least; whether there is some."""
+    """Provide memory for the factors in `f` and their items; return False if there is not enough."""
     off_diagonal = f.l_start[f.n] + f.u_start[f.n] - 2 * f.n
     if 2 * off_diagonal + f.n > MOST_INDICES:
         return False
@@ -145,7 +143,7 @@ def _list_memory(table, f):
 
 @compiled
 def _listed(s, f):
-    """Write down what the elimination along the pivots in `f` does."""
+    """List the updates of the elimination for the pivots in `f`."""
     _sorted(f)
     s.n_lower = _lower_items(s, f)
     s.n_items = _upper_items(s, f, s.n_lower)
@@ -170,7 +168,7 @@ def _listed(s, f):
 
 @compiled
 def _reduced(s, x, j):
-    """Take what the columns before it eliminate out of a column x of the matrix."""
+    """Update a column x of the matrix by all columns before it."""
     lu = s.lu
     for r in range(s.update_start[j], s.update_start[j + 1]):
         k = s.update[r]
@@ -178,14 +176,14 @@ def _reduced(s, x, j):
         first = x[k]
         second = x[k + 1] if k + 1 < j else 0.0
         x[s.row[item]] -= lu[2 * item] * first + lu[2 * item + 1] * second
-        second = x[k + 1] if k + 1 < j else 0.0  # which the first item may have changed
+        second = x[k + 1] if k + 1 < j else 0.0  # may have changed by the first item
         for below in range(item + 1, s.item_end[k]):
             x[s.row[below]] -= lu[2 * below] * first + lu[2 * below + 1] * second
 
 
 @compiled
 def _eliminated(s, f):
-    """Factors of the matrix in `f` by the list; False where a pivot is too small."""
+    """Factor the matrix in `f` by the list; return False if a pivot is too small."""
     n = f.n
     lu, x = s.lu, f.work
     above = f.l_start[n] - n
@@ -215,7 +213,7 @@ def _eliminated(s, f):
 
 
 def setup(solver, matrix):
-    """SUNLinSolSetup: factors along the known order, else along a new one."""
+    """Set up the linear solver (SUNLinSolSetup): factors in the known order, or in a new one."""
     table = ints(solver[CONTENT])
     known = paired_view(table)
     if known.ready and _eliminated(known, factors_view(known.factors)):
@@ -224,7 +222,7 @@ def setup(solver, matrix):
     outcome = factored_anew(known.factors, known.weight)
     if outcome == DONE and not _list_memory(table, factors_view(known.factors)):
         outcome = FULL
-    known.last_flag = outcome  # SUNLinSolLastFlag gives it
+    known.last_flag = outcome  # returned by SUNLinSolLastFlag
     if outcome != DONE:
         return int32(FAILED if outcome == FULL else RECOVERABLE)
     s = paired_view(table)  # the memory may have grown
@@ -235,7 +233,7 @@ def setup(solver, matrix):
 
 
 def solve(solver, matrix, x, b, tolerance):
-    """SUNLinSolSolve: x = A^-1 b."""
+    """Solve A x = b (SUNLinSolSolve)."""
     s = paired_view(ints(solver[CONTENT]))
     f = factors_view(s.factors)
     into, of = floats(call_address(s.array_of, x)), floats(call_address(s.array_of, b))

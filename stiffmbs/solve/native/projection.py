@@ -1,4 +1,4 @@
-"""Steps of an integrator brought back to the constraints: by frozen factors where they serve, else by Newton's moves."""
+"""Projection of an integrator's steps onto the constraints, by frozen factors if possible, or by Newton's iteration."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from stiffmbs.solve.native.eliminated import smallest_move
 from stiffmbs.solve.native.tables.views import eliminated_view
 
 MOST_FROZEN_MOVES = 3
-"""One is the rule: the factors are those of a state as near as the step's error."""
+"""Largest number of moves; one usually suffices, because the factors belong to a nearby state."""
 
 
 @compiled
 def _by_frozen_factors(r, s, t, tolerance):
-    """Move q and u by the factors of the last accelerations; whether q came to the constraints.
+    """Move q and u by the factors of the last accelerations; return True if the constraints are satisfied.
 
-    Velocities take one move: what it leaves of their violation is as small as the change of J since.
+    Velocities need one move: the remaining violation is as small as the change of J.
     """
     violations = evaluate(s, POSITION, t)
     close = max(tolerance, COORDINATE_ROUNDING * largest_of(s.q, s.n_pose))
@@ -44,7 +44,7 @@ def _by_frozen_factors(r, s, t, tolerance):
 
 @compiled
 def back_to_constraints(x, s, m, t):
-    """Bring q and u of the state at hand, the end of a step, to both constraints; 0 or a negative status."""
+    """Project q and u of the current state, the end of a step, onto the constraints; 0 or a negative status."""
     if s.n_c == 0:
         take_unit_length(s)
         return 0

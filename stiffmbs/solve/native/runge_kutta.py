@@ -1,4 +1,4 @@
-"""Explicit Runge-Kutta steps with projection: fixed ones, and ones chosen by the error."""
+"""Explicit Runge-Kutta steps with projection, of fixed size or with error control."""
 
 from __future__ import annotations
 
@@ -24,21 +24,20 @@ from stiffmbs.solve.native.tables.views import dynamics_view, explicit_view, sch
 __all__ = ["advance", "end_at_event", "fastest_rate", "fixed_steps"]
 
 SMALLEST_ERROR = 1e-4
-"""What the step control remembers of an error at the least (as in DOPRI5)."""
+"""Smallest previous error in the PI step control, as in DOPRI5."""
 SAFETY, LEAST_FACTOR, LARGEST_FACTOR, FACTOR_AFTER_FAILURE = 0.9, 0.2, 10.0, 0.25
 STRETCHED = 1.01
-"""The last step may be this much longer than asked for, so that no tiny one is left."""
+"""Factor by which the last step may exceed the step size, to avoid a tiny remainder."""
 FAR_BEYOND = 2.0
-"""Times the longest step that stability allows, from which on rounding grows to the tolerance before the error estimate shows it; steps
-that the estimate holds back come to some 1.2 times."""
+"""Multiple of the stability limit above which rounding grows before the error estimate detects it; steps that the
+estimate limits remain closer."""
 STIFF_PART, ENOUGH_STEPS, TOO_MANY_STEPS = 0.1, 10_000, 1e9
-"""A run is given up when this part of its steps was held back by stability, after so many, with so many ahead for each
-number of the state: some ten minutes."""
+"""Limits of a run: fraction of steps limited by stability, number of steps, expected steps times state variables."""
 
 
 @compiled
 def _watch_stiffness(x, c, h):
-    """Count steps that stability bounds, or whose h |lambda|, seen from two stages at the step's end, is beyond what accuracy alone allows."""
+    """Count steps limited by stability, or with h |lambda| beyond its limit by two stages at the step's end."""
     if 0.0 < x.stable < x.h:
         x.stiff_steps += 1
         return
@@ -57,13 +56,13 @@ def _watch_stiffness(x, c, h):
 
 @compiled
 def _is_hopeless(x, end):
-    """Whether stability holds the steps back and too many of them are left."""
+    """Return True if stability limits the steps and too many remain."""
     return x.stiff_steps > STIFF_PART * x.steps and (end - x.t) * x.n > TOO_MANY_STEPS * x.h
 
 
 @compiled
 def _depart(x, c):
-    """The end of the last step is the start of the next."""
+    """Make the end of the last step the start of the next."""
     x.t_before = x.t
     copied(x.y_before, x.y, x.n)
     copied(x.k, shifted(x.k, c.stages * x.n), x.n)
@@ -72,7 +71,7 @@ def _depart(x, c):
 
 @compiled
 def _factor(x, c, error):
-    """How much longer the next step may be (PI control; Hairer, Wanner II, ch. IV.2)."""
+    """Return the growth factor of the step (PI control; Hairer, Wanner II, ch. IV.2)."""
     if error == 0.0:
         return LARGEST_FACTOR
     exponent = c.exponent - 0.75 * c.memory
@@ -81,9 +80,9 @@ def _factor(x, c, error):
 
 @compiled
 def _step(x, c, s, m, end):
-    """One accepted step, as long as the error allows; 0 or a negative status (the state is then as before).
+    """Take one step that passes the error test; 0, or a negative status with the state unchanged.
 
-    `span` is the length of the step; of the last one that was tried, where the status is negative.
+    `span` is the length of the step, or that of the last attempt in case of a negative status.
     """
     _depart(x, c)
     x.span = 0.0
@@ -119,7 +118,7 @@ def _step(x, c, s, m, end):
                 h = h * SHORTER if moved <= MOST_MOVED else h / SHORTER**MOST_MOVED
                 continue
             if status == 0:
-                x.uncertain = 1 if uncertain or moved else 0  # two in a row would creep up to a pose that locks
+                x.uncertain = 1 if uncertain or moved else 0  # two in succession would approach a locking pose
                 x.t = t_new
                 x.span = t_new - t
                 x.h = h * min(most, max(LEAST_FACTOR, _factor(x, c, error)))
@@ -137,10 +136,10 @@ def _step(x, c, s, m, end):
 
 @compiled
 def _shortest_to_event(x, c, s, m, explicit):
-    """The last step that was tried, up to an event in it; 0, `RETRIED`, or a negative status (the state is then as before).
+    """Take the last attempted step up to an event in it; 0, `RETRIED`, or a negative status with the state unchanged.
 
-    A step over a jump has an error of its length times the jump.  A motion that is closer to the jump than the shortest step
-    comes to it by no step that the error allows.
+    A step across a jump has an error of its length times the jump.  If the motion is closer to the jump than the
+    shortest step, no accepted step reaches it.
     """
     status = retaken(x, c, s, m, x.span) if x.span > 0.0 else STEP_TOO_SMALL
     if status == 0:
@@ -157,7 +156,7 @@ def _shortest_to_event(x, c, s, m, explicit):
 
 @compiled
 def _keep_if_long(x, c, s, m):
-    """Keep states within the last step where it is far longer than those before."""
+    """Store states within the last step if it is much longer than its predecessors."""
     w = long_steps_view(x.long_steps)
     if w.room == 0 or not is_to_be_kept(w, x.span):
         return
@@ -169,10 +168,10 @@ def _keep_if_long(x, c, s, m):
 
 
 def advance(end, steps, held, own_steps, explicit):
-    """Integrate towards `end`, for so many steps, until stability has held back `held` of them, or the memory for rows is full.
+    """Integrate towards `end` by at most `steps` steps, until stability has limited `held` of them or memory is full.
 
-    AT_END, AT_EVENT (a force has changed its law there), PAUSED (call again to go on), UNSTABLE (a step went far beyond what
-    stability allows: call again with that for a bound), or a negative status.
+    Returns AT_END, AT_EVENT (a force has changed its law), PAUSED (call again), or a negative status.  After UNSTABLE
+    (a step far beyond the stability limit), call again with that limit.
     """
     x = explicit_view(explicit)
     c = scheme_view(x.scheme)
@@ -221,7 +220,7 @@ def advance(end, steps, held, own_steps, explicit):
 
 
 def fixed_steps(start, h, steps, explicit):
-    """So many steps of length h from the time `start`; 0 or a negative status."""
+    """Take `steps` steps of length h from the time `start`; 0 or a negative status."""
     x = explicit_view(explicit)
     c = scheme_view(x.scheme)
     m = dynamics_view(x.dynamics)

@@ -1,4 +1,4 @@
-"""How long a step may be that sees what the inputs do."""
+"""Bound of the step size that resolves the features of inputs."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ step_bound_view = view_of("StepBound", STEP_BOUND)
 
 @compiled
 def longest_step(f, t):
-    """The longest step from a time on: no longer than is allowed in any stretch that it touches; f.n is not 0."""
+    """Return the longest step from t that is allowed in all intervals that it touches; f.n is not 0."""
     k = f.place
     while k + 1 < f.n and f.starts[k + 1] <= t:
         k += 1

@@ -1,12 +1,12 @@
-"""Variational equations along a run: BDF over the run's own steps, with its own orders and iteration matrices.
+"""Variational equations along a run: BDF with the steps, orders and iteration matrices of the run.
 
-For s = dy/dp of r(t, y, y', p) = 0: r_y s + r_y' s' + r_p = 0.  The formulas are IDA's (Brenan, Campbell, Petzold 1996, ch. 5): of
-order k the predictor goes through the last k + 1 points, and s' = s'_predicted + cj (s - s_predicted).  The equation is linear,
-so that one solution with the matrix of the step gives s (Caracotsios and Stewart, Comput. Chem. Eng. 9, 1985).
+For s = dy/dp of r(t, y, y', p) = 0: r_y s + r_y' s' + r_p = 0.  The formulas are IDA's (Brenan, Campbell, Petzold 1996,
+ch. 5).  The predictor of order k interpolates the last k + 1 points, and s' = s'_predicted + cj (s - s_predicted).  The
+equation is linear: one solution with the step's matrix gives s (Caracotsios, Stewart, Comput. Chem. Eng. 9, 1985).
 
-Behind an event whose instant moves by dt_e/dp, s + y' dt_e/dp is integrated in place of s: the motion seen from the event.  As
-r_y y' + r_y' y'' + r_t = 0, that takes r_p + r_t dt_e/dp in place of r_p.  It is smooth where s itself, which compares a state in
-a contact with one that has not come to it yet, is a large multiple of y'.
+After an event whose time changes by dt_e/dp, s + y' dt_e/dp replaces s: the motion relative to the event.  Because of
+r_y y' + r_y' y'' + r_t = 0, r_p + r_t dt_e/dp then replaces r_p.  The sum is smooth, while s itself is a large multiple
+of y' between the events of neighbouring motions.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ part_view = view_of("Part", PART)
 
 @compiled
 def _take_matrix(v, s, e, t, cj):
-    """The parts of the matrix by y and by y' at the state at hand, and its factors; 0 where they were found."""
+    """Compute and factor the parts of the matrix by y and y' at the current state; 0 or the linear solver's flag."""
     values = evaluate(s, e.matrix_set, t)
     for k in range(v.n_share):
         share_one(s, v.share[k])
@@ -46,7 +46,7 @@ def _take_matrix(v, s, e, t, cj):
 
 @compiled
 def _add_part(s, part, t, t_d, y, yp, r):
-    """r += the change of the residual in one direction."""
+    """Add the change of the residual in one direction to r."""
     p = part_view(part)
     d = direction_view(p.direction)
     evaluate_along(s, d, t, t_d)
@@ -60,7 +60,7 @@ def _add_part(s, part, t, t_d, y, yp, r):
 
 @compiled
 def _take_rate(v, s, t, y, yp):
-    """of_time = r_t, where it is needed."""
+    """Compute of_time = r_t if it is needed."""
     if v.shifted:
         for k in range(v.n):
             v.of_time[k] = 0.0
@@ -69,7 +69,7 @@ def _take_rate(v, s, t, y, yp):
 
 @compiled
 def _take_defect(v, s, direction, t, y, yp):
-    """defect = r_y s + r_y' s' + r_p for the s and s' at hand, shifted as they are."""
+    """Compute defect = r_y s + r_y' s' + r_p for the current s and s', with their shift."""
     shift = v.shift[direction]
     for k in range(v.n):
         v.defect[k] = shift * v.of_time[k] if v.shifted else 0.0
@@ -81,7 +81,7 @@ def _take_defect(v, s, direction, t, y, yp):
 
 @compiled
 def _take_formula(v, t, order):
-    """Coefficients of the predictor's value and slope at t, by Lagrange's polynomials through the last order + 1 points; cj."""
+    """Compute value and slope weights of the predictor at t by Lagrange interpolation; return cj."""
     for i in range(order + 1):
         at = v.times[(v.newest - i + DEPTH) % DEPTH]
         value = 1.0
@@ -101,7 +101,7 @@ def _take_formula(v, t, order):
 
 @compiled
 def _predict(v, direction, order):
-    """s and s' of the predictor."""
+    """Compute s and s' of the predictor."""
     n = v.n
     for k in range(n):
         v.s[k] = 0.0
@@ -118,7 +118,7 @@ def _predict(v, direction, order):
 
 @compiled
 def _stepped(v, s, e, t, order, y, yp, out):
-    """s of all directions at t, into `out`; 0, or the linear solver's flag."""
+    """Compute s of all directions at t in `out`; 0 or the linear solver's flag."""
     load(s, e, y, yp)
     cj = _take_formula(v, t, order)
     flag = _take_matrix(v, s, e, t, cj)
@@ -135,7 +135,7 @@ def _stepped(v, s, e, t, order, y, yp, out):
 
 
 def advance(count, rows, table):
-    """Steps along recorded ones (time, order, y, y'); how many could be made."""
+    """Integrate along recorded steps (time, order, y, y'); return the number of completed steps."""
     v = variations_view(table)
     s = state_view(v.state)
     e = equations_view(v.equations)
@@ -152,7 +152,7 @@ def advance(count, rows, table):
 
 
 def within(row, out, table):
-    """s at a time within the step that follows the last one, whose order it has; 0, or the linear solver's flag."""
+    """Compute s at a time within the step after the last one, with its order; 0 or the linear solver's flag."""
     v = variations_view(table)
     n = v.n
     s = state_view(v.state)
@@ -161,7 +161,7 @@ def within(row, out, table):
 
 
 def defects(row, given, out, table):
-    """r_y s + r_y' s' + r_p of all directions for given s, and s' = 0."""
+    """Compute r_y s + r_y' s' + r_p of all directions for given s and s' = 0."""
     v = variations_view(table)
     n = v.n
     s = state_view(v.state)

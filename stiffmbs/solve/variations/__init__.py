@@ -1,1 +1,1 @@
-"""Variational equations along a run of `bdf`: how the motion changes with the numbers of the system."""
+"""Variational equations along a run of `bdf`: derivatives of the motion with respect to parameters."""

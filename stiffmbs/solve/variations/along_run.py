@@ -1,4 +1,4 @@
-"""Sensitivities along a recorded run: from start to start, with the jumps that breakpoints and events make between them."""
+"""Sensitivities along a recorded run, segment by segment, with jumps at breakpoints and events."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ class Instant:
 
 
 class AlongRun:
-    """The sensitivities of a run.
+    """Sensitivities of a run.
 
     Parameters
     ----------
@@ -119,7 +119,7 @@ class AlongRun:
             s = jump.s
 
     def _parts(self, s: np.ndarray, shift: np.ndarray) -> Shifted:
-        """Of q and u."""
+        """Split sensitivities into those of q and u."""
         return Shifted(s[:, self._equations.at["q"]], s[:, self._equations.at["u"]], shift)
 
     def _instant(self, rows: OutputRows, k: int, s: Shifted) -> Instant:
@@ -166,7 +166,7 @@ class AlongRun:
         self._variations.begin(first[0], segment.rows[0, 0] - first[0], s, rates)
 
     def _row(self, rows: OutputRows, k: int, order: float) -> np.ndarray:
-        """A row of the form of recorded ones for an output instant."""
+        """Return a row of the recorded form for an output time."""
         at, n = self._equations.at, self._equations.n
         y, yp = np.zeros(n), np.zeros(n)
         y[at["q"]], y[at["u"]], yp[at["u"]] = rows.q[k], rows.u[k], rows.acceleration[k]
@@ -175,5 +175,5 @@ class AlongRun:
         return np.concatenate([[rows.t[k], order], y, yp])
 
     def close(self) -> None:
-        """Free what SUNDIALS holds."""
+        """Free the objects of SUNDIALS."""
         self._variations.close()

@@ -33,7 +33,7 @@ class Change:
 
 
 class BlockSystem:
-    """The block system of a state in several directions.
+    """Block system of a state in several directions.
 
     Parameters
     ----------
@@ -100,7 +100,7 @@ class BlockSystem:
         return Change(found_q, moved_u, accelerations, lam)
 
     def outputs(self, t: float, change: Change) -> np.ndarray:
-        """How the output terms change at the state at hand, shape (directions, values)."""
+        """Return the variations of the output terms at the current state, shape (directions, values)."""
         self._outputs = self._outputs or [Direction(self._dynamics.state, "output", each) for each in self._numbers]
         n_values = self._dynamics.system.n_values("output")
         for k, direction in enumerate(self._outputs):

@@ -1,4 +1,4 @@
-"""The variational equations of one system, and their steps (`stiffmbs.solve.native.variations`)."""
+"""Variational equations of a system, and their steps (`stiffmbs.solve.native.variations`)."""
 
 from __future__ import annotations
 
@@ -28,17 +28,17 @@ FUNCTIONS = {"clear": "SUNMatZero", "setup": "SUNLinSolSetup", "solve": "SUNLinS
 
 
 class VariationalEquations:
-    """r_y s + r_y' s' + r_p = 0 for several directions p, along given steps.
+    """Variational equations r_y s + r_y' s' + r_p = 0 for several directions p, along given steps.
 
     Parameters
     ----------
     equations : Equations
         Of the run, in its order of unknowns.
     matrix : Matrix
-        How its iteration matrix is stored and factored.
+        Storage and linear solver of its iteration matrix.
     state : State
     directions : sequence of Numbers
-        How the numbers of the system change.
+        Variations of the parameters of the system.
 
     Attributes
     ----------
@@ -81,11 +81,11 @@ class VariationalEquations:
         self._cells, self._at = self._table.view(VARIATIONS.cells)[0], self._table.ctypes.data
 
     def close(self) -> None:
-        """Free what SUNDIALS holds."""
+        """Free the objects of SUNDIALS."""
         self._session.close()
 
     def shift(self, shift: np.ndarray) -> None:
-        """Integrate s + y' times these from here on, s, shape (directions,)."""
+        """Integrate s + y' times the given shifts from now on, s, shape (directions,)."""
         self._shift[:] = shift
         self._cells["shifted"] = bool(shift.any())
 
@@ -96,7 +96,7 @@ class VariationalEquations:
         self._cells["newest"] = 1
 
     def advance(self, rows: np.ndarray) -> None:
-        """Follow recorded steps.
+        """Integrate over recorded steps.
 
         Parameters
         ----------
@@ -114,14 +114,14 @@ class VariationalEquations:
             raise _singular(rows[done, 0])
 
     def within(self, row: np.ndarray) -> np.ndarray:
-        """s at a time behind the last step, shape (directions, n); `row` is as for `advance`."""
+        """Return s at a time after the last step, shape (directions, n); `row` is as for `advance`."""
         out, row = np.empty((self._count, self.equations.n)), np.ascontiguousarray(row)
         if self._session.call(WITHIN.call, row.ctypes.data, out.ctypes.data, self._at):
             raise _singular(row[0])
         return out
 
     def defects(self, row: np.ndarray, s: np.ndarray) -> np.ndarray:
-        """r_y s + r_p at a state, shape (directions, n)."""
+        """Return r_y s + r_p at a state, shape (directions, n)."""
         out, row, given = np.empty_like(s), np.ascontiguousarray(row), np.ascontiguousarray(s)
         self._session.call(DEFECTS.call, row.ctypes.data, given.ctypes.data, out.ctypes.data, self._at)
         return out
@@ -139,7 +139,7 @@ def _singular(t: float) -> SolverError:
 
 
 class _Part:
-    """dr/dp of one direction: the kernels of what changes, and where their values stand in the residual."""
+    """Residual derivative r_p in one direction: the kernels that depend on it, and the places of their values."""
 
     def __init__(self, equations: Equations, state: State, numbers: Numbers, along: str) -> None:
         system, term_set = state.system, equations.formulation.residual_set

@@ -1,8 +1,11 @@
-"""Jumps of sensitivities where the run starts anew: at breakpoints of inputs, and at events.
+"""Jumps of sensitivities at restarts: at input breakpoints and at events.
 
-Where the law changes at an instant t_e that itself changes with a parameter, q and u just behind it change by
-    q_+ = q_- + (q'_- - q'_+) dt_e/dp,    u_+ = (u_- + u'_- dt_e/dp, brought to the constraints) - u'_+ dt_e/dp
-(Galan, Feehery and Barton, Appl. Numer. Math. 31, 1999), with dt_e/dp = -(g_q q_- + g_u u_- + g_p)/g' for an event function g.
+If a force law changes at a time t_e that depends on a parameter, the sensitivities of q and u just after it are
+
+    q_+ = q_- + (q'_- - q'_+) dt_e/dp,    u_+ = (u_- + u'_- dt_e/dp, projected) - u'_+ dt_e/dp
+
+(Galan, Feehery and Barton, Appl. Numer. Math. 31, 1999), with dt_e/dp = -(g_q q_- + g_u u_- + g_p)/g' for an event
+function g. The projection is that onto the constraints.
 """
 
 from __future__ import annotations
@@ -24,22 +27,23 @@ from .recorded import Segment
 from .saddle import saddle_solution
 
 BreakpointRates = Callable[[float, bool], np.ndarray | None]
-"""Function of a time, s, and of a flag whether the result is required.  It returns the derivatives of the breakpoint at that
-time, shape (directions,), or None if there is no breakpoint."""
+"""Function of a time, s, and a flag that requires a result.
+
+It returns the derivatives of the breakpoint at that time, shape (directions,), or None if there is no breakpoint.
+"""
 NO_JUMP = 100.0
-"""Times the relative tolerance by which rates may differ on both sides of an instant without counting as a jump."""
+"""Largest difference of rates on both sides of an event that does not count as a jump, in relative tolerances."""
 MUCH_LARGER = 2.0
-"""Times by which positions may change more, seen from an event, for them to be integrated so."""
+"""Largest ratio of position sensitivities at a moving to those at a fixed time for which the former are used."""
 ALIKE = 1e-6
-"""Relative difference of the derivatives of event times below which events remain simultaneous, and smallest effect of a
-discontinuity of rates on the state, relative to the state, that is considered."""
+"""Smallest relative difference of event time derivatives of separate events, and smallest relevant effect of a jump."""
 GRAZING = 1e-9
-"""Part of an event function's change in the segment, over its time, below which its rate counts as zero."""
+"""Rate of an event function that counts as zero, relative to its change in the segment over the duration."""
 
 
 @dataclass(frozen=True)
 class State:
-    """One side of an instant: q, u, and their rates."""
+    """State on one side of an event: q, u and their rates."""
 
     t: float
     q: np.ndarray
@@ -51,7 +55,7 @@ class State:
 
 @dataclass(frozen=True)
 class Shifted:
-    """How a state changes in each direction, seen from an instant that moves: s + y' dt_e/dp.
+    """Sensitivities of a state at a moving event: s + y' dt_e/dp.
 
     Attributes
     ----------
@@ -65,11 +69,11 @@ class Shifted:
     shift: np.ndarray
 
     def unshifted(self, q_rates: np.ndarray, acceleration: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """How it changes at a fixed instant, given its rates."""
+        """Return the sensitivities at a fixed time, given the rates of the state."""
         return self.q - np.outer(self.shift, q_rates), self.u - np.outer(self.shift, acceleration)
 
     def shifted_where(self, kept: np.ndarray, q_rates: np.ndarray, acceleration: np.ndarray) -> Shifted:
-        """The same with the shift of some directions alone."""
+        """Remove the shift of the directions that are not `kept`."""
         q, u = self.unshifted(q_rates, acceleration)
         rows = kept[:, None]
         return Shifted(np.where(rows, self.q, q), np.where(rows, self.u, u), np.where(kept, self.shift, 0.0))
@@ -160,7 +164,7 @@ class Jumps:
         return Jump(left, right, (q, u), found.unshifted(right.q_rates, right.acceleration), moved, there)
 
     def _instants(self, before: Segment, left: State, right: State, q: np.ndarray, u: np.ndarray) -> np.ndarray:
-        """Return the derivatives of the event time between two segments; zero if it is undetermined and no rate is discontinuous."""
+        """Return the derivatives of the event time; zero if undetermined without discontinuous rates."""
         jumps = self._counts(left.q_rates - right.q_rates, left.q_rates)
         jumps = jumps or self._counts(left.acceleration - right.acceleration, left.acceleration)
         by_input = self._breakpoint_rates(right.t, jumps and not before.fired)
@@ -199,7 +203,7 @@ class Jumps:
 
     @staticmethod
     def _refuse_apart(moves: dict[str, np.ndarray], t: float) -> None:
-        """Refuse simultaneous events that parameters separate: their discontinuities cannot be told apart."""
+        """Refuse simultaneous events that parameters separate, as their discontinuities cannot be distinguished."""
         (first, *others), (moved, *rest) = list(moves) or [""], list(moves.values()) or [np.zeros(0)]
         for name, other in zip(others, rest, strict=True):
             if not _same(moved, other):
@@ -209,13 +213,13 @@ class Jumps:
                 )
 
     def _end(self, segment: Segment) -> State:
-        """The end of a segment, by the law that held there: the integrator's own y' has seen what follows."""
+        """Return the end of a segment with rates of the force law in it, unlike the integrator's own y'."""
         at, n = self._equations.at, self._equations.n
         t, y = segment.rows[-1][0], segment.rows[-1][2 : 2 + n]
         return self._state(t, y[at["q"]], y[at["u"]])
 
     def _start(self, segment: Segment, ahead: float) -> State:
-        """The start of a segment, by the law that holds from there on: a little ahead, as at the very instant any law may."""
+        """Return the start of a segment with rates of the force law after it, at a time slightly after an event."""
         at, system = self._state(segment.first[0], segment.start.q, segment.start.u), self._dynamics.system
         q_rates = at.q_rates.copy()
         algebraic = system.algebraic_coordinates
@@ -233,7 +237,7 @@ class Jumps:
         return State(t, q, u, rates, acceleration, dynamics.state.lam.copy())
 
     def _event(self, left: State, q: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return the derivatives of event functions in each direction, shape (directions, n), their time derivatives, and their values."""
+        """Return derivatives of event functions, shape (directions, n), their time derivatives, and their values."""
         state, system = self._dynamics.state, self._dynamics.system
         if not self._events:
             by_time = Direction(state, "event_function", unchanged(system), STATE)
@@ -253,7 +257,7 @@ class Jumps:
     def _projected(
         self, left: State, t: float, q: np.ndarray, u: np.ndarray, moved: np.ndarray
     ) -> np.ndarray:  # fmt: skip
-        """How velocities change once they are brought to the constraints by the smallest correction in the mass matrix."""
+        """Return the velocity sensitivities after projection onto the constraints in the mass metric."""
         state, system = self._dynamics.state, self._dynamics.system
         self._motions = self._motions or [Direction(state, "motion", numbers) for numbers in self._numbers]
         state.q[:], state.u[:] = left.q, left.u
@@ -270,5 +274,5 @@ class Jumps:
         return u + solved[: system.n_u].T
 
     def _counts(self, jump: np.ndarray, rates: np.ndarray) -> bool:
-        """Whether rates jump by more than integration leaves them off by."""
+        """Return True if rates jump by more than the integration error."""
         return bool(np.abs(jump).max(initial=0.0) > self._small * np.abs(rates).max(initial=0.0))

@@ -1,4 +1,4 @@
-"""A run of `bdf` with all its steps, between the starts that breakpoints and events make."""
+"""Recorded run of `bdf`: all steps, in segments between restarts at breakpoints and events."""
 
 from __future__ import annotations
 
@@ -20,20 +20,18 @@ from ..integrator import Integrator
 from ..trajectory import Grid
 
 BACK, FURTHEST = 1e-13, 1e-6
-"""Part of the time, or of the time since the start before, by which the end of a segment is moved back at first, and at the most: the
-instant of an event is known to some roundings."""
+"""Smallest (relative to the time) and largest (relative to the segment) shift of a segment's end before an event."""
 SHORTEST = 1e-13
 """Duration, relative to the run, below which a segment is empty: rounding detects an event twice."""
 SUDDEN, JUMP, FELT = 1e-9, 1e-3, 1e-6
-"""Step size, relative to the run, in which no force changes smoothly, and smallest discontinuity in such a step: relative to the
-largest acceleration of the coordinate, and to that of all coordinates, as some have rounding alone."""
+"""Relative step size that indicates a discontinuity, and smallest jump, relative to own and all accelerations."""
 MOST_NUMBERS = 2e8
-"""Numbers that are kept of a run, 1.6 GB."""
+"""Largest number of recorded numbers, 1.6 GB."""
 
 
 @dataclass
 class Segment:
-    """The steps from one start to the next.
+    """Steps between two restarts.
 
     Attributes
     ----------
@@ -43,7 +41,7 @@ class Segment:
     rows : ndarray, shape (steps, 2 + 2 n)
         The same at the end of each step.
     fired : tuple of int
-        The event functions that end it; none where a breakpoint in time, or the end of the run, does.
+        Event functions that end it; empty at a breakpoint in time or the end of the run.
     """
 
     start: InitialValues
@@ -59,7 +57,7 @@ class Segment:
 
 
 class Recorder(Integrator):
-    """Integrator that records its steps, which end at the kinks of tables: derivatives of forces are discontinuous there.
+    """Integrator that records its steps, which end at kinks of tables, as force derivatives are discontinuous there.
 
     Attributes
     ----------
@@ -101,7 +99,7 @@ class Recorder(Integrator):
         return found
 
     def _refuse_jumps_within(self, segment: Segment, sudden: float) -> None:
-        """Refuse a force that is discontinuous without a declared breakpoint: steps become as short as rounding allows there."""
+        """Refuse forces with undeclared discontinuities, where steps are as short as rounding allows."""
         n, at = self.equations.n, self.equations.at["u"]
         t, a = segment.rows[:, 0], segment.rows[:, 2 + n + at]
         system, largest = self.dynamics.system, np.abs(a).max(axis=0)
@@ -125,7 +123,7 @@ class Recorder(Integrator):
     def _anew(
         self, q: np.ndarray, u: np.ndarray, before: float, t: float, ahead: float, chattering: Chattering
     ) -> tuple[InitialValues, float]:
-        """Consistent values, which a segment keeps; no engine starts by itself."""
+        """Return consistent values for the segment; the engine does not restart by itself."""
         return self._consistent(q, u, before, t, ahead)
 
     def _begin(self, start: InitialValues, t: float) -> None:
@@ -135,7 +133,7 @@ class Recorder(Integrator):
         self.segments.append(Segment(start, self.native.present()))
 
     def _end_before_the_jump(self, segment: Segment) -> None:
-        """Move the end of a segment back to where the law that held in it certainly does, by some roundings of time."""
+        """Move the end of a segment back by some roundings of time, to where its force law holds."""
         rows, n = segment.rows, self.equations.n
         if not len(rows):
             return
@@ -161,7 +159,7 @@ class Recorder(Integrator):
             return float(state.values["event_function"][event])
 
     def run(self, start: InitialValues, grid: Grid, passing: bool = False) -> Iterator[Reached]:
-        """As of any integrator, but that none of its breakpoints is passed; the steps are in `segments` afterwards."""
+        """Yield the progress as any integrator, stopping at each breakpoint; the steps are in `segments` afterwards."""
         self.native.keep_steps(True)
         try:
             for reached in super().run(start, grid):

@@ -1,4 +1,4 @@
-"""Solve the block systems for several right-hand sides."""
+"""Solution of the block systems for several right-hand sides."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from ...compile.state import State
 from ...compile.system import System
 
 DENSE_UP_TO = 200
-"""Unknowns up to which a full matrix is solved sooner than a sparse one is put together."""
+"""Largest number of unknowns for which a full matrix is used."""
 Entries = tuple[np.ndarray, np.ndarray, np.ndarray]
 """Row indices, column indices and values."""
 
 
 def saddle_solution(state: State, term_set: str, right: np.ndarray) -> np.ndarray:
-    """Solve [M J^T; J 0] [x; w] = right at the state whose terms have just been computed.
+    """Solve [M J^T; J 0] [x; w] = right at the state whose terms were just evaluated.
 
     Parameters
     ----------
@@ -42,7 +42,7 @@ def acceleration_solution(state: State, right: np.ndarray) -> np.ndarray:
     Parameters
     ----------
     state : State
-        The terms of the set ``acceleration`` have just been computed.
+        With just evaluated terms of the set ``acceleration``.
     right : ndarray, shape (n_u + n_c + algebraic states, k)
     """
     system = state.system

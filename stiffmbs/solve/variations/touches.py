@@ -1,7 +1,7 @@
 """Grazing events, at which the motion is not differentiable: detected in recorded steps, within the integration error.
 
-A force that is discontinuous at g = 0 acts for a time proportional to sqrt(d/g'') if the minimum of g is -d, and not at all if it is +d.
-The derivative with respect to d is unbounded.  If d is below the integration error, it is undetermined whether the force acts.
+If the minimum of g is -d, a force that is discontinuous at g = 0 acts for a time proportional to sqrt(d/g''). If it is
++d, the force does not act. The derivative by d is unbounded, and below the integration error d is undetermined.
 """
 
 from __future__ import annotations
@@ -21,17 +21,16 @@ from .recorded import Recorder, Segment
 NEAR = 1e-3
 """Largest extremum near zero, relative to the largest value of an event function in a segment: the largest rtol."""
 FURTHER, LINEAR = 1e3, 0.1
-"""Ratio of a larger to a smaller displacement from a grazed breakpoint, and ratio of the changes of rates above which the rates are
-discontinuous."""
+"""Ratio of two displacements from a grazed breakpoint, and ratio of rate changes that indicates a jump."""
 
 
 class Touches:
-    """Refuses grazing events.
+    """Detector of grazing events.
 
     Parameters
     ----------
     recorder : Recorder
-        A recorder after its run.
+        After its run.
     """
 
     def __init__(self, recorder: Recorder) -> None:

@@ -1,1 +1,1 @@
-"""Geometry in kernels."""
+"""Geometry kernels for contacts between solids."""

@@ -1,10 +1,10 @@
-"""The common normal of two convex solids, in kernels (`stiffmbs.compile.symbolic.common_normal`).
+"""Common normal of two convex solids, in kernels (`stiffmbs.compile.symbolic.common_normal`).
 
-The normal n of unit length makes n.d - h_i(n) - h_j(n) largest, for d from the centre of j to that of i: that is the distance of the
-solids, or minus the depth of their overlap.  Of solids apart there is one such normal, and for solids that overlap a little it goes
-on from that of their cores, which are thinner all around.  A normal between the cores is where h_i + h_j is least with n.d given, a
-convex problem.  Boyd and Vandenberghe, Convex Optimization (2004), sec. 8.2; Ong and Gilbert, Growth distances, IEEE Transactions
-on Robotics and Automation 12 (1996) 888-903.
+The unit normal n maximises n.d - h_i(n) - h_j(n), with d from the centre of j to that of i. The maximum is the distance
+of the solids, or minus the penetration depth. Separate solids have one such normal. For a small penetration it
+continues the normal of their cores, which are thinner in all directions. The normal between the cores minimises h_i +
+h_j for given n.d, a convex problem. Boyd and Vandenberghe, Convex Optimization (2004), sec. 8.2; Ong and Gilbert,
+Growth distances, IEEE Transactions on Robotics and Automation 12 (1996) 888-903.
 """
 
 from __future__ import annotations
@@ -19,15 +19,14 @@ from .on_sphere import across, along, curvature, made_definite, moved, solved, t
 from .room import room
 
 THINNER = 0.2
-"""Each stage has its ellipsoids thinner by this factor: Newton's method for one starts near the solution for the next."""
+"""Ratio of ellipsoid thickness between stages: each stage starts near its solution."""
 STAGES = 16
-"""From the cores to the solids."""
+"""Stages from the cores to the solids."""
 MOST_STEPS, MOST_HALVINGS = 60, 30
 POLISHES = 4
-"""Steps of Newton's method after the last one that could be told to come nearer."""
+"""Newton steps after the step size has reached rounding."""
 FLAT, ROUGHLY = 1e-14, 1e-8
-"""Part of the size of the solids below which a step promises no change of the distance that could be told from rounding, and that
-at which the stages before the last end."""
+"""Predicted relative increase of the distance at which the iteration ends: last stage, earlier stages."""
 
 
 def _posed(code: Code, arguments: tuple[Operand, ...]) -> Value:
@@ -39,21 +38,21 @@ def _posed(code: Code, arguments: tuple[Operand, ...]) -> Value:
 
 @builtin
 def common_normal(code: Code, component: Operand, *pose: Operand) -> Value | None:
-    """A component of the normal in the axes of j, from j to i; the components of one pose are found together."""
+    """Return a component of the normal in the axes of j, from j to i; all components are computed together."""
     known = code.kept("common_normal", POSE + 3)
     return code.unit.called(code, _component, [code.integer(component), _posed(code, pose), known])
 
 
 @builtin
 def common_normal_slope(code: Code, component: Operand, by: Operand, *normal_and_pose: Operand) -> Value | None:
-    """The derivative of a component by an entry of the pose, at the normal."""
+    """Return the derivative of a component with respect to an entry of the pose, at the normal."""
     normal, pose = _posed(code, normal_and_pose[:3]), _posed(code, normal_and_pose[3:])
     return code.unit.called(code, _slope, [code.integer(component), code.integer(by), normal, pose])
 
 
 @compiled
 def _grow(m, t, n):
-    """Move n on its plane across t to where the support function is least."""
+    """Move n in its plane across t to the minimum of the support function."""
     h, k, g, p, trial = room(10), room(3), room(2), room(2), room(3)
     for _ in range(MOST_STEPS):
         support(m, n, h)
@@ -78,7 +77,7 @@ def _grow(m, t, n):
 
 @compiled
 def _part(m, d, n, flat, polishes):
-    """Turn the unit vector n to where n.d - h(n) is largest to a part `flat` of the size, and by some steps more."""
+    """Rotate the unit vector n to the maximum of n.d - h(n), to a relative accuracy `flat`, then take extra steps."""
     h, k, g, p, trial, t = room(10), room(3), room(2), room(2), room(3), room(6)
     u = shifted(t, 3)
     polished = 0
@@ -109,7 +108,7 @@ def _part(m, d, n, flat, polishes):
 
 @compiled
 def find_normal(pose, n):
-    """The unit vector along which the solids of a pose are furthest apart, or overlap least."""
+    """Find the unit vector of largest distance, or smallest penetration, of two solids."""
     m, t = room(54), room(6)
     for c in range(3):
         n[c] = pose[c]
@@ -134,7 +133,7 @@ def find_normal(pose, n):
 
 @compiled
 def _component(component, pose, known):
-    """By the last pose and its normal, if the pose is the same."""
+    """Return a component of the normal, cached for an unchanged pose."""
     same = True
     for k in range(POSE):
         if known[k] != pose[k]:
@@ -150,9 +149,9 @@ def _component(component, pose, known):
 
 @compiled
 def _changed(pose, m, n, by, change):
-    """The derivative of d minus the support function's gradient by an entry of the pose.
+    """Differentiate d minus the support function's gradient with respect to an entry of the pose.
 
-    Of M n/s with s^2 = n.M n it is M' n/s - M n (n.M' n)/(2 s^3), and M' is that of R D R^T.
+    The derivative of M n/s with s^2 = n.M n is M' n/s - M n (n.M' n)/(2 s^3), and M' is that of R D R^T.
     """
     for c in range(3):
         change[c] = 1.0 if by == c else 0.0
@@ -185,7 +184,7 @@ def _changed(pose, m, n, by, change):
 
 @compiled
 def _slope(component, by, n, pose):
-    """By the implicit function theorem: (t^T h'' t + gap) p = t^T (d - h')' and n' = t p."""
+    """Differentiate the normal by the implicit function theorem: (t^T h'' t + gap) p = t^T (d - h')' and n' = t p."""
     m, h, t, k, g, p, change = room(54), room(10), room(6), room(3), room(2), room(2), room(3)
     ellipsoids(pose, 0.0, 0.0, m)
     support(m, n, h)

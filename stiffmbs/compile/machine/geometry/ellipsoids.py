@@ -1,10 +1,8 @@
-"""Solids as Minkowski sums of ellipsoids, in kernels: their support functions and the derivatives of these.
+"""Solids as Minkowski sums of ellipsoids, in kernels: support functions and their derivatives.
 
-Each solid is a sum of up to three ellipsoids about one middle, so that its support function is h(n) = sum sqrt(n^T M n).
-
-A pose is an array: d, the matrix R whose columns are the axes of the first solid, then the squares of the semi-axes of the three
-ellipsoids of the first solid along its axes and of those of the second one; all in the axes of the second.  An ellipsoid that is
-not there has zeros.
+Each solid is the sum of up to three concentric ellipsoids; its support function is h(n) = sum sqrt(n^T M n). A pose is
+an array in the axes of the second solid: d, the matrix R with the axes of the first solid as columns, and the squared
+semi-axes of the three ellipsoids of each solid along its axes. A missing ellipsoid has zeros.
 """
 
 from __future__ import annotations
@@ -15,17 +13,17 @@ from ..native.access import compiled, shifted
 from .room import room
 
 TURN, SQUARES, POSE = 3, 12, 30
-"""Where R and the squares begin in a pose, and its length."""
+"""Offsets of R and of the squares in a pose, and its length."""
 CORE = 0.5
-"""How much thinner the core is, as a part of half the least size."""
+"""Thickness removed from a solid to form its core, relative to half its smallest dimension."""
 
 
 @compiled
 def ellipsoids(pose, fat, thinner, m):
-    """The matrices G with M = G^T G: semi-axes times axes row by row.
+    """Compute the matrices G with M = G^T G: semi-axes times axes by rows.
 
-    They are those of the solids made thinner by a part of the way to their cores; each semi-axis is at least a part `fat` of its
-    ellipsoid's largest.
+    The solids are thinned by the fraction `thinner` towards their cores. Each semi-axis is at least `fat` times the
+    largest of its ellipsoid.
     """
     for term in range(6):
         squares = shifted(pose, SQUARES + 3 * term)
@@ -42,14 +40,14 @@ def ellipsoids(pose, fat, thinner, m):
 
 @compiled
 def thinned(square, core):
-    """A semi-axis; those of edges, which are far thinner than half the least size, stay."""
+    """Return a thinned semi-axis; edges, far thinner than half the smallest dimension, are unchanged."""
     size = sqrt(square)
     return size - core if size > core else size
 
 
 @compiled
 def least(squares):
-    """Half the least size of a solid: the least semi-axis of one ellipsoid, or the least of the largest ones of several."""
+    """Return half the smallest dimension of a solid: the smallest semi-axis, or smallest maximum over ellipsoids."""
     if squares[3] == 0.0:
         return sqrt(min(squares[0], min(squares[1], squares[2])))
     least = max(squares[0], max(squares[1], squares[2]))
@@ -62,7 +60,7 @@ def least(squares):
 
 @compiled
 def thinnest(pose):
-    """The least ratio of semi-axes of an ellipsoid."""
+    """Return the smallest ratio of semi-axes of an ellipsoid."""
     ratio = 1.0
     for term in range(6):
         at = SQUARES + 3 * term
@@ -75,7 +73,7 @@ def thinnest(pose):
 
 @compiled
 def times(g, n, w):
-    """w = G n, and its length."""
+    """Compute w = G n and return its length."""
     for row in range(3):
         w[row] = g[3 * row] * n[0] + g[3 * row + 1] * n[1] + g[3 * row + 2] * n[2]
     return sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2])
@@ -83,7 +81,7 @@ def times(g, n, w):
 
 @compiled
 def reach(m, n):
-    """h(n)."""
+    """Return h(n)."""
     w = room(3)
     total = 0.0
     for term in range(6):
@@ -93,9 +91,9 @@ def reach(m, n):
 
 @compiled
 def support(m, n, h):
-    """h[0] = h(n), its gradient h[1:4], and its second derivatives h[4:10]: xx, yy, zz, xy, xz, yz.
+    """Compute h[0] = h(n), its gradient h[1:4], and its second derivatives h[4:10]: xx, yy, zz, xy, xz, yz.
 
-    Of s = |G n| with w = G n/s the gradient is G^T w, and the second derivative Q^T Q/s with Q = G - w (G^T w)^T.
+    With s = |G n| and w = G n/s the gradient is G^T w, and the second derivative Q^T Q/s with Q = G - w (G^T w)^T.
     """
     w = room(3)
     for k in range(10):

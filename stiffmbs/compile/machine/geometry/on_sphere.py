@@ -1,4 +1,4 @@
-"""Vectors across a unit vector, and steps along them, in kernels."""
+"""Vectors perpendicular to a unit vector, and steps along them, in kernels."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from ..native.access import compiled, shifted
 
 @compiled
 def across(n, t):
-    """Two unit vectors perpendicular to n, and to each other."""
+    """Compute two unit vectors perpendicular to n and to each other."""
     x, y, z = n[0], n[1], n[2]
     if abs(x) <= abs(y) and abs(x) <= abs(z):
         a, b, c = 0.0, z, -y
@@ -26,13 +26,13 @@ def across(n, t):
 
 @compiled
 def along(v, t):
-    """A scalar product."""
+    """Return a scalar product."""
     return v[0] * t[0] + v[1] * t[1] + v[2] * t[2]
 
 
 @compiled
 def bent(h, s, t):
-    """The second derivative of the support function along two vectors."""
+    """Return the second derivative of the support function along two vectors."""
     x = h[4] * t[0] + h[7] * t[1] + h[8] * t[2]
     y = h[7] * t[0] + h[5] * t[1] + h[9] * t[2]
     z = h[8] * t[0] + h[9] * t[1] + h[6] * t[2]
@@ -41,7 +41,7 @@ def bent(h, s, t):
 
 @compiled
 def curvature(h, t, added, k):
-    """k = t^T h'' t + added: two diagonal entries, and the one beside."""
+    """Compute k = t^T h'' t + added: two diagonal entries, then the off-diagonal one."""
     u = shifted(t, 3)
     k[0] = bent(h, t, t) + added
     k[1] = bent(h, u, u) + added
@@ -50,7 +50,7 @@ def curvature(h, t, added, k):
 
 @compiled
 def made_definite(k):
-    """Let the lesser eigenvalue of a symmetric matrix be its absolute value, where it is not above zero."""
+    """Replace a non-positive smaller eigenvalue of a symmetric matrix by its absolute value."""
     half = 0.5 * (k[0] - k[1])
     spread = sqrt(half * half + k[2] * k[2])
     least = 0.5 * (k[0] + k[1]) - spread
@@ -72,7 +72,7 @@ def made_definite(k):
 
 @compiled
 def solved(k, g, p):
-    """p = k^-1 g."""
+    """Compute p = k^-1 g."""
     det = k[0] * k[1] - k[2] * k[2]
     p[0] = (k[1] * g[0] - k[2] * g[1]) / det
     p[1] = (k[0] * g[1] - k[2] * g[0]) / det
@@ -80,7 +80,7 @@ def solved(k, g, p):
 
 @compiled
 def moved(n, t, p, size, to):
-    """to = n + size (p_0 t_0 + p_1 t_1)."""
+    """Compute to = n + size (p_0 t_0 + p_1 t_1)."""
     for k in range(3):
         to[k] = n[k] + size * (p[0] * t[k] + p[1] * t[3 + k])
 

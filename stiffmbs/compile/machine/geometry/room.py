@@ -1,4 +1,4 @@
-"""Memory of one function in kernels."""
+"""Local memory of functions in kernels."""
 
 from __future__ import annotations
 
@@ -8,5 +8,5 @@ from ..translate.values import Operand, Value, builtin
 
 @builtin
 def room(code: Code, count: Operand) -> Value:
-    """Memory for so many doubles."""
+    """Return memory for the given number of doubles."""
     return code.array(int(code.integer(count).text))

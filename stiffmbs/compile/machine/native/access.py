@@ -1,4 +1,4 @@
-"""Pointers from addresses, calls of kernels by address, and named views of tables of addresses."""
+"""Pointers from addresses, kernel calls by address, and named views of pointer tables."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .tables import EQUATIONS, FACTORS, STATE
 
 
 def compiled(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Marks a function for use in compiled routines: written in the language of `stiffmbs.compile.machine.translate`."""
+    """Mark a function for compiled routines, written in the language of `stiffmbs.compile.machine.translate`."""
     return function
 
 
@@ -22,19 +22,19 @@ def _pointer(code: Code, kind: str, address: Operand) -> Value:
 
 @builtin
 def floats(code: Code, address: Operand) -> Value:
-    """The doubles at an address."""
+    """Return a pointer to the doubles at an address."""
     return _pointer(code, "floats", address)
 
 
 @builtin
 def ints(code: Code, address: Operand) -> Value:
-    """The 64-bit integers at an address."""
+    """Return a pointer to the 64-bit integers at an address."""
     return _pointer(code, "ints", address)
 
 
 @builtin
 def shifted(code: Code, pointer: Value, count: Operand) -> Value:
-    """The pointer to the item `count` places on."""
+    """Return the pointer `count` items further on."""
     return Value(pointer.kind, code.item(pointer, count).text)
 
 
@@ -47,12 +47,12 @@ def call_kernel(code: Code, kernel: Operand, *arguments: Value) -> None:
 
 @builtin
 def address_of(code: Code, cell: Value) -> Value:
-    """The address of a cell, ``address_of(record.cell)``, for C functions that set it; the translator writes it out."""
+    """Return the address of a cell, ``address_of(record.cell)``, for C functions; expanded by the translator."""
     raise Untranslatable(f"found {cell}, expected a cell of a record")
 
 
 def view_of(name: str, layout: Layout) -> Builtin:
-    """A function of compiled code that turns a table laid out by `layout` into a record of pointers, numbers and cells."""
+    """Return a function of compiled code that views a table as a record of pointers, numbers and cells."""
 
     def view(code: Code, table: Value) -> Record:
         fields: dict[str, Value] = {}

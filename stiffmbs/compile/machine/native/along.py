@@ -15,7 +15,7 @@ direction_view = view_of("Direction", DIRECTION)
 
 @compiled
 def share_one(s, at):
-    """Compute what kernels share of the orientation of the body whose first coordinate is at a place."""
+    """Compute the shared orientation values of the body whose first coordinate has index `at`."""
     if s.spatial:
         share_orientation(shifted(s.q, at + 3), shifted(s.turn, TURN_STRIDE * at))
     else:
@@ -26,7 +26,7 @@ def share_one(s, at):
 
 @compiled
 def _share_moved(p, moved, turn):
-    """The derivative of `share_orientation`, by the product rule."""
+    """Differentiate `share_orientation` by the product rule."""
     square = p[0] * p[0] + p[1] * p[1] + p[2] * p[2] + p[3] * p[3]
     n = 2.0 / square
     n_d = -n * n * (p[0] * moved[0] + p[1] * moved[1] + p[2] * moved[2] + p[3] * moved[3])
@@ -55,7 +55,7 @@ def _share_moved(p, moved, turn):
 
 @compiled
 def evaluate_along(s, d, t, t_d):
-    """Compute the derivatives of the terms of a direction's set, at the state held in `s`; what is shared of orientations is there."""
+    """Compute the term derivatives of a direction at the state in `s` with its shared orientation values."""
     for k in range(d.n_turned):
         at = d.turned[k]
         if s.spatial:
@@ -73,5 +73,5 @@ def evaluate_along(s, d, t, t_d):
 
 
 def along(t, t_d, state, direction):
-    """`evaluate_along` from Python, where the terms themselves have just been computed."""
+    """Call `evaluate_along` from Python, after evaluation of the terms themselves."""
     evaluate_along(state_view(state), direction_view(direction), t, t_d)

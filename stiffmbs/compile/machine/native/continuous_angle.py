@@ -1,4 +1,4 @@
-"""Angles counted over whole turns, in kernels (`stiffmbs.compile.symbolic.continuous_angle`)."""
+"""Continuous (unwrapped) angles in kernels (`stiffmbs.compile.symbolic.continuous_angle`)."""
 
 from __future__ import annotations
 
@@ -9,6 +9,6 @@ from .access import compiled
 
 @compiled
 def continuous_angle(sine, cosine, counted):
-    """The angle with a sine and a cosine that is nearest to what is counted."""
+    """Return the angle with a given sine and cosine that is nearest to `counted`."""
     c, s = cos(counted), sin(counted)
     return counted + atan2(sine * c - cosine * s, cosine * c + sine * s)

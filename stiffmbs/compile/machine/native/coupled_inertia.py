@@ -1,21 +1,21 @@
-"""The inertia that an unknown of a block system [D J^T; J 0] feels through its equations."""
+"""Effective inertia of unknowns coupled by equations in a block system [D J^T; J 0]."""
 
 from __future__ import annotations
 
 from .access import compiled
 
 LIGHT, SPREAD_OVER = 1e-6, 4
-"""Part of what joints couple a body to, below which its own inertia is no scale; joints over which that is looked at."""
+"""Part of the coupled inertia below which a body's own inertia is replaced; number of joints it spreads over."""
 COUPLES = 0.1
-"""Part of an equation's largest entry from which on another one couples: one that a pose leaves near zero would count as a gear."""
+"""Part of an equation's largest entry above which an entry couples; smaller ones would act as huge gear ratios."""
 
 
 @compiled
 def spread_inertia(f):
-    """Let each unknown that hardly resists feel what its equations couple it to: D_k in `work` becomes the largest D_j (J_k/J_j)^2.
+    """Replace small inertias in `work` by the coupled ones: D_k becomes the largest D_j (J_k/J_j)^2.
 
-    A body of no inertia on a hinge moves as the hinge and its mass say.  Scaled by its own inertia, its acceleration would be the
-    difference of numbers that are larger by the ratio of both.
+    A body without inertia on a hinge moves with the hinge. Scaled by its own inertia, its acceleration would be a
+    difference of large numbers.
     """
     for _ in range(SPREAD_OVER):
         for row in range(f.n):
@@ -25,7 +25,7 @@ def spread_inertia(f):
 
 @compiled
 def _spread(f, row):
-    """Along one equation, whose row of J is its column in the symmetric matrix."""
+    """Spread inertia along one equation, whose row of J is its column in the symmetric matrix."""
     largest = 0.0
     for p in range(f.a_start[row], f.a_start[row + 1]):
         largest = max(largest, abs(f.a[p]))

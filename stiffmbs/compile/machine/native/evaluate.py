@@ -1,4 +1,4 @@
-"""Running the kernels of a term set, and forming residuals and matrices from their values."""
+"""Evaluation of term sets, and assembly of residuals and matrices from their values."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ CALL_WIDTH = len(CALL)
 
 @compiled
 def evaluate(s, term_set, t):
-    """Compute all terms of a set at the state held in `s`; returns a pointer to their values."""
+    """Compute all terms of a set at the state in `s`; return a pointer to their values."""
     share_turns(s, ints(s.turned[term_set]), s.n_turned[term_set])
     return call_kernels(s, term_set, t)
 
 
 @compiled
 def share_turns(s, turned, count):
-    """Compute what kernels share of the orientations of some bodies, given by their first coordinates."""
+    """Compute the shared orientation values of some bodies, given by their first coordinates."""
     if s.spatial:
         for k in range(count):
             at = turned[k]
@@ -34,7 +34,7 @@ def share_turns(s, turned, count):
             k += 4
             continue
         at = turned[k]
-        cosine, sine = cos(s.q[at + 2]), sin(s.q[at + 2])  # both before a store, so that one call finds them
+        cosine, sine = cos(s.q[at + 2]), sin(s.q[at + 2])  # both before a store, so that the compiler merges the calls
         s.turn[at] = cosine
         s.turn[at + 1] = sine
         k += 1
@@ -42,7 +42,7 @@ def share_turns(s, turned, count):
 
 @compiled
 def call_kernels(s, term_set, t):
-    """Compute all terms of a set where the orientations of their bodies are shared; returns a pointer to their values."""
+    """Compute all terms of a set from current shared orientation values; return a pointer to their values."""
     s.evaluated[0] += 1
     calls = ints(s.calls[term_set])
     values = floats(s.values[term_set])
@@ -61,7 +61,7 @@ def _call(s, call, t, values):
 
 @compiled
 def evaluate_some(s, term_set, t, wanted):
-    """Compute the terms of a set that some of its kernels compute; returns a pointer to the values, of which others stay as they are."""
+    """Compute the terms of the selected kernels of a set; return a pointer to all values."""
     share_turns(s, ints(s.turned[term_set]), s.n_turned[term_set])
     s.evaluated[0] += 1
     calls = ints(s.calls[term_set])
@@ -74,10 +74,10 @@ def evaluate_some(s, term_set, t, wanted):
 
 @compiled
 def load(s, e, y, yp):
-    """Take q, u, mu and lam out of a vector of unknowns, and accelerations out of its derivative.
+    """Copy q, u, mu and lam from a vector of unknowns, and accelerations from its derivative.
 
-    Coordinates that stand still keep what the state holds.  Where the formulation integrates the multipliers, they
-    are derivatives too.
+    Fixed coordinates keep their values. If the formulation integrates the multipliers, they are read from the
+    derivative.
     """
     for k in range(e.n_moving_q):
         at = e.moving_q[k]
@@ -97,7 +97,7 @@ def load(s, e, y, yp):
 
 @compiled
 def add_products(e, values, y, yp, r):
-    """r = sum of factor * value * operand, the operand being 1, an unknown, or an unknown's derivative."""
+    """Compute r = sum of factor * value * operand; the operand is 1, an unknown, or an unknown's derivative."""
     for k in range(e.n):
         r[k] = 0.0
     for k in range(e.n_plain):
@@ -110,7 +110,7 @@ def add_products(e, values, y, yp, r):
 
 @compiled
 def add_sizes(e, values, y, yp, size):
-    """The sum of the magnitudes of what `add_products` adds up in each row."""
+    """Sum the magnitudes of the terms of `add_products` in each row."""
     for k in range(e.n):
         size[k] = 0.0
     for k in range(e.n_plain):
@@ -123,7 +123,7 @@ def add_sizes(e, values, y, yp, size):
 
 @compiled
 def add_entries(e, values, cj, a):
-    """The matrix: every value, times its constant and its part in cj, in its slot."""
+    """Assemble the matrix: each value times (constant + cj * cj-part) is added to its slot."""
     for k in range(e.n_cleared):
         a[k] = 0.0
     for k in range(e.n_bare):
@@ -137,5 +137,5 @@ def add_entries(e, values, cj, a):
 
 
 def terms(t, term_set, state):
-    """Compute all terms of a set at the state held in the table."""
+    """Compute all terms of a set at the state in the table."""
     evaluate(state_view(state), term_set, t)

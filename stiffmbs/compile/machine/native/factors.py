@@ -1,9 +1,8 @@
-"""Sparse LU factors of a matrix whose pattern stays the same.
+"""Sparse LU factorisation of a matrix with constant pattern.
 
-`factor` is Gilbert and Peierls' left-looking LU with threshold partial pivoting (SIAM J. Sci. Stat. Comput. 9,
-1988; in the form of Davis, Direct Methods for Sparse Linear Systems, 2006, ch. 6).  `refactor` repeats the
-elimination along the pivots found before, without searching; where a pivot has become too small against its column
-it gives up and the pivots are sought anew, so that the fixed order is only ever a saving.
+`factor` is the left-looking LU of Gilbert and Peierls with threshold partial pivoting (SIAM J. Sci. Stat. Comput. 9,
+1988; in the form of Davis, Direct Methods for Sparse Linear Systems, 2006, ch. 6). `refactor` repeats the elimination
+with the previous pivots. If a pivot is too small relative to its column, it stops and a new pivot search is needed.
 """
 
 from __future__ import annotations
@@ -16,21 +15,21 @@ from .memory import FLOAT, INT, holds
 from .tables import FACTORS
 
 KEEP_DIAGONAL = 0.1
-"""A diagonal pivot is taken when it is at least this part of the largest in its column (less fill)."""
+"""Smallest diagonal pivot relative to the largest entry of its column that is preferred, to reduce fill."""
 TOO_SMALL = 1e-3
-"""A pivot of an earlier order is refused when it is less than this part of its column."""
+"""Smallest accepted previous pivot relative to the largest entry of its column."""
 
 HUGE_LOG = 1e6
-"""Minus the logarithm that stands for that of zero."""
+"""Replaces -log(0)."""
 
 DONE, SINGULAR, FULL = 0, 1, 2
-"""FULL: there is no memory for more entries."""
+"""FULL: no memory for more entries."""
 L_ROW, L, U_ROW, U = (list(FACTORS).index(name) for name in ("l_row", "l", "u_row", "u"))
 
 
 @compiled
 def _reach(f, column):
-    """The rows that a column's elimination touches, in topological order at stack[top:n]; marks are undone later."""
+    """Find the rows of a column's elimination, in topological order at stack[top:n]; the caller clears the marks."""
     n = f.n
     top = n
     for p in range(f.a_start[column], f.a_start[column + 1]):
@@ -64,7 +63,7 @@ def _reach(f, column):
 
 @compiled
 def _more_memory(table):
-    """Memory for the entries that the factors are expected to have, or twice as many as before; whether there is some."""
+    """Allocate memory for the expected number of entries, or double it; return False if there is none."""
     f = factors_view(table)
     capacity = max(f.expected_entries, 2 * f.capacity)
     if not (holds(table, L_ROW, capacity, INT) and holds(table, L, capacity, FLOAT)):
@@ -77,7 +76,7 @@ def _more_memory(table):
 
 @compiled
 def factor(table):
-    """Find pivots and factors of the matrix, in as much memory as they take; returns DONE, SINGULAR or FULL."""
+    """Find pivots and factors of the matrix, and allocate memory as needed; return DONE, SINGULAR or FULL."""
     while True:
         outcome = _factored_within(factors_view(table))
         if outcome != FULL or not _more_memory(table):
@@ -86,7 +85,7 @@ def factor(table):
 
 @compiled
 def _factored_within(f):
-    """`factor` in the memory at hand; FULL where it is too little."""
+    """Run `factor` in the available memory; return FULL if it is too small."""
     n = f.n
     for k in range(n):
         f.pivot[k] = -1
@@ -99,9 +98,9 @@ def _factored_within(f):
         f.l_start[k] = l_end
         f.u_start[k] = u_end
         column = f.order[k]
-        f.l_start[k + 1] = l_end  # so that a column that is not there yet looks empty
+        f.l_start[k + 1] = l_end  # a column not factored yet must look empty
         top = _reach(f, column)
-        if max(l_end, u_end) + n - top + 1 > f.capacity:  # a column has the rows that are reached, and its pivot
+        if max(l_end, u_end) + n - top + 1 > f.capacity:  # a column has the reached rows and its pivot
             return FULL
         for at in range(top, n):
             f.work[f.stack[at]] = 0.0
@@ -153,7 +152,7 @@ def _factored_within(f):
 
 @compiled
 def refactor(f):
-    """Factors of the matrix in `f` along the pivots of the last `factor`; DONE, or SINGULAR where a pivot is too small."""
+    """Factor the matrix with the pivots of the last `factor`; return DONE, or SINGULAR if a pivot is too small."""
     n = f.n
     for k in range(n):
         column = f.order[k]
@@ -186,7 +185,7 @@ def refactor(f):
 
 @compiled
 def _take_diagonal(f):
-    """The entries of the diagonal above zero, in `work`."""
+    """Copy the positive diagonal entries to `work`; others are zero."""
     for column in range(f.n):
         f.work[column] = 0.0
         for p in range(f.a_start[column], f.a_start[column + 1]):
@@ -196,9 +195,9 @@ def _take_diagonal(f):
 
 @compiled
 def equilibrate(f):
-    """Scales for a block matrix [D J^T; J 0]: 1/sqrt(D) for its first unknowns, rows of unit length for its multipliers.
+    """Scale a block matrix [D J^T; J 0]: 1/sqrt(D) for its first unknowns, rows of unit length for its multipliers.
 
-    Masses and inertias of any size then leave the diagonal as pivots, and the order of elimination its little fill.
+    The diagonal entries are then suitable pivots for masses and inertias of any size, which keeps the fill small.
     """
     _take_diagonal(f)
     _scale_by_work(f)
@@ -206,7 +205,7 @@ def equilibrate(f):
 
 @compiled
 def _scale_by_work(f):
-    """Scales by D in `work`."""
+    """Compute the scales from D in `work`."""
     for column in range(f.n):
         f.scale[column] = 1.0 / sqrt(f.work[column]) if f.work[column] > 0.0 else 0.0
         f.work[column] = 0.0
@@ -231,9 +230,9 @@ def scale(f):
 
 @compiled
 def factored(table):
-    """Factors of the scaled block matrix, by the known scales and pivots where they serve, else by new ones.
+    """Factor the scaled block matrix with the previous scales and pivots if possible, else with new ones.
 
-    The matrix is overwritten by the scaled one.
+    The matrix is overwritten by the scaled matrix.
     """
     f = factors_view(table)
     if f.ready:
@@ -272,7 +271,7 @@ def solve(f, b):
 
 @compiled
 def log_determinant(f):
-    """log |det| of the matrix, before it was scaled."""
+    """Return log |det| of the unscaled matrix."""
     total = 0.0
     product = 1.0
     for k in range(f.n):

@@ -1,4 +1,4 @@
-"""Three columns of J in which a joint has entries in all its rows: they are gathered, and their products summed up, in registers."""
+"""Products of three columns of J with entries in all rows of a joint, computed in registers."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ def add_rows(
     code: Code, rows: Operand, values: Operand, source: Operand, scale: Operand, j: Operand, x: Operand, a: Operand,
     block: Operand, stride: Operand,
 ) -> None:  # fmt: skip
-    """j = scaled entries of J, column by column; x += j a; the lower triangle of block += j j^T.
+    """Compute j = scaled columns of J, x += j a, and the lower triangle of block += j j^T.
 
-    `source` tells where the three entries of each row begin among the values; `scale` and `a` are of the three columns.  The
-    number of rows is a literal; what fills columns of j and x up to whole quads is zero, and of lines of the block undetermined.
+    `source` holds the position of the three entries of each row among the values; `scale` and `a` belong to the three
+    columns. The number of rows is a literal. SIMD padding of j and x is zero; that of the block is undefined.
     """
     n = literal(rows)
     places = [code.load(code.item(source, constant(row))) for row in range(n)]
@@ -55,7 +55,7 @@ def add_rows(
 
 @builtin
 def take_rows(code: Code, rows: Operand, j: Operand, x: Operand, a: Operand) -> None:
-    """a -= j^T x for three columns of so many rows, a literal."""
+    """Compute a -= j^T x for three columns; the number of rows is a literal."""
     parts = -(-literal(rows) // QUAD)
     lines = [loaded(code, code.item(x, constant(QUAD * part)).text) for part in range(parts)]
     for column in COLUMNS:
@@ -69,7 +69,7 @@ def take_rows(code: Code, rows: Operand, j: Operand, x: Operand, a: Operand) -> 
 
 
 def _line(code: Code, numbers: list[Value]) -> Value:
-    """A quad of up to four numbers, zeros behind them."""
+    """Return a vector of up to four numbers, padded with zeros."""
     line = Value("quad", "zeroinitializer")
     for k, number in enumerate(numbers):
         line = code.put_value("quad", f"insertelement {line.typed}, {number.typed}, i32 {k}")

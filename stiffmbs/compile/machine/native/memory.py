@@ -1,7 +1,7 @@
-"""Memory that compiled routines ask for themselves, where its size is known only on the way.
+"""Dynamic memory of compiled routines.
 
-It belongs to a table whose layout says so (`stiffmbs.compile.machine.own_memory`).  After it has grown, the table's view has to
-be made anew.
+It belongs to a table whose layout declares it (`stiffmbs.compile.machine.own_memory`). The table's view must be created
+again after a reallocation.
 """
 
 from __future__ import annotations
@@ -11,16 +11,16 @@ from ..translate.values import Operand, Value, builtin
 from .access import compiled
 
 REALLOCATE = "PyMem_RawRealloc"
-"""The C library's realloc by the name under which each Python has it; needs no lock of the interpreter."""
+"""Python's name of the C library's realloc; needs no interpreter lock."""
 INT, INDEX, FLOAT = 8, 4, 8
 """Bytes of a number."""
 MOST_INDICES = 2**31 - 1
-"""The largest number of an array of 32-bit indices."""
+"""Largest number of an array of 32-bit indices."""
 
 
 @builtin
 def _reallocated(code: Code, address: Operand, size: Operand) -> Value:
-    """The address of so many bytes, which begin with what was at the old address; 0 where there is no memory."""
+    """Return the address of a reallocated block; 0 if there is no memory."""
     code.unit.declare(f"declare ptr @{REALLOCATE}(ptr, i64)")
     before = code.put_value("ints", f"inttoptr {code.integer(address).typed} to ptr")
     after = code.put_value("ints", f"call ptr @{REALLOCATE}({before.typed}, {code.integer(size).typed})")
@@ -29,7 +29,7 @@ def _reallocated(code: Code, address: Operand, size: Operand) -> Value:
 
 @compiled
 def holds(table, column, count, width):
-    """Have the array at a column of a table hold `count` numbers of `width` bytes; whether there is memory for them."""
+    """Resize the array at a column of a table to `count` numbers of `width` bytes; return False without memory."""
     address = _reallocated(table[column], max(count, 1) * width)
     if address == 0:
         return False

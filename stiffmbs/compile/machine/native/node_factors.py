@@ -1,4 +1,4 @@
-"""L D L^T of the small blocks of J M^-1 J^T, and what is solved with them, all in registers."""
+"""L D L^T of the small blocks of J M^-1 J^T, and solutions with them, in registers."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from .quads import (
 
 @builtin
 def factor_symmetric(code: Code, size: Operand, block: Operand, stride: Operand, pivots: Operand) -> None:
-    """L D L^T of a symmetric matrix in its lower triangle, 1/D on the diagonal; writes the pivots D.  The size is a literal."""
+    """Factor a symmetric matrix (lower triangle, literal size) as L D L^T with 1/D on the diagonal; store D."""
     n = literal(size)
     places = _lower(code, n, block, stride)
     a = {at: code.load(place) for at, place in places.items()}
@@ -42,9 +42,10 @@ def eliminate_node(
     code: Code, size: Operand, quads: Operand, block: Operand, stride: Operand, pivots: Operand, scaled: Operand, x: Operand,
     y: Operand,
 ) -> None:  # fmt: skip
-    """L D L^T of a block as `factor_symmetric`, with it L^-1 times the rows right of it and x, and D^-1 L^-1 times both.
+    """Factor a block as `factor_symmetric`, and compute L^-1 and D^-1 L^-1 times x and the rows right of the block.
 
-    The rows begin so many quads behind the block as it is wide, and are `quads` quads long: this and the size are literals.
+    The rows start after the block's width, rounded up to whole SIMD vectors. Their length in SIMD vectors, `quads`, and
+    the size are literals.
     """
     n, parts = literal(size), literal(quads)
     own = QUAD * -(-n // QUAD)
@@ -84,7 +85,7 @@ def eliminate_node(
 def eliminate_rows(
     code: Code, size: Operand, block: Operand, stride: Operand, rows: Operand, scaled: Operand, scaled_stride: Operand
 ) -> None:
-    """rows = L^-1 rows, and scaled = D^-1 L^-1 rows, a quad wide; `rows` have the stride of the factors.  The size is a literal."""
+    """Compute rows = L^-1 rows and scaled = D^-1 L^-1 rows, four columns wide, with a literal size."""
     n = literal(size)
     factors = {at: code.load(place) for at, place in _lower(code, n, block, stride).items()}
     places, own = (_places(code, n, *lines) for lines in ((rows, stride), (scaled, scaled_stride)))
@@ -101,7 +102,7 @@ def eliminate_rows(
 
 @builtin
 def eliminate_vector(code: Code, size: Operand, block: Operand, stride: Operand, x: Operand, scaled: Operand) -> None:
-    """x = L^-1 x, and scaled = D^-1 L^-1 x.  The size is a literal."""
+    """Compute x = L^-1 x and scaled = D^-1 L^-1 x. The size is a literal."""
     n = literal(size)
     factors = {at: code.load(place) for at, place in _lower(code, n, block, stride).items()}
     value = [code.load(code.item(x, constant(k))) for k in range(n)]
@@ -117,7 +118,7 @@ def eliminate_vector(code: Code, size: Operand, block: Operand, stride: Operand,
 
 @builtin
 def complete_vector(code: Code, size: Operand, block: Operand, stride: Operand, x: Operand) -> None:
-    """x = L^-T x.  The size is a literal."""
+    """Compute x = L^-T x. The size is a literal."""
     n = literal(size)
     factors = {at: code.load(place) for at, place in _lower(code, n, block, stride).items()}
     value = [code.load(code.item(x, constant(k))) for k in range(n)]
@@ -132,17 +133,17 @@ def _inverse(code: Code, number: Value) -> Value:
 
 
 def _next_inverse(code: Code, pivot: Value, beside: Value, diagonal: Value) -> Value:
-    """The inverse of the pivot after one, by the determinant of both: its division need not wait for that of the first."""
+    """Return the inverse of the next pivot from a 2 x 2 determinant, so that both divisions run in parallel."""
     product = code.put_value("float", f"fmul {pivot.typed}, {diagonal.text}")
     inverse = _inverse(code, minus_product(code, product, beside, beside))
     return code.put_value("float", f"fmul {pivot.typed}, {inverse.text}")
 
 
 def _places(code: Code, rows: int, into: Operand, stride: Operand) -> list[str]:
-    """Where the quads of some rows stand."""
+    """Return the places of SIMD vectors in some rows."""
     return [code.item(into, times(code, stride, i)).text for i in range(rows)]
 
 
 def _lower(code: Code, size: int, block: Operand, stride: Operand) -> dict[tuple[int, int], Value]:
-    """The places of a block's lower triangle."""
+    """Return the places of a block's lower triangle."""
     return {(i, j): code.item(block, plus(code, times(code, stride, i), j)) for i in range(size) for j in range(i + 1)}

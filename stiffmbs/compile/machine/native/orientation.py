@@ -1,7 +1,7 @@
-"""Orientations of spatial bodies: what kernels share of them, and their rates, for quaternions p of any length.
+"""Shared orientation values of spatial bodies and coordinate rates, for quaternions p of any length.
 
-A = 2/|p|^2 (p_v p_v^T + p_0 [p_v] + p_0^2) - 1 is the rotation matrix whatever the length of p; p' = p w / 2.
-Shabana, Dynamics of Multibody Systems (2013), sec. 2.3; Nikravesh, Computer-Aided Analysis of Mechanical Systems (1988), ch. 6.
+A = 2/|p|^2 (p_v p_v^T + p_0 [p_v] + p_0^2) - 1 is the rotation matrix for any length of p; p' = p w / 2. Shabana,
+Dynamics of Multibody Systems (2013), sec. 2.3; Nikravesh, Computer-Aided Analysis of Mechanical Systems (1988), ch. 6.
 """
 
 from __future__ import annotations
@@ -11,12 +11,12 @@ from math import sqrt
 from .access import compiled, shifted
 
 N_Q, N_U, TURN_STRIDE = 7, 6, 2
-"""Coordinates and velocities of a spatial body, and what is shared for each coordinate (`stiffmbs.compile.bodies.SPACE`)."""
+"""Coordinates and velocities of a spatial body, and shared values per coordinate (`stiffmbs.compile.bodies.SPACE`)."""
 
 
 @compiled
 def share_orientation(p, turn):
-    """A row by row, e = 2 p/|p|^2 and n = 2/|p|^2, for kernels to read."""
+    """Compute A by rows, e = 2 p/|p|^2 and n = 2/|p|^2 for kernels."""
     n = 2.0 / (p[0] * p[0] + p[1] * p[1] + p[2] * p[2] + p[3] * p[3])
     e0, e1, e2, e3 = n * p[0], n * p[1], n * p[2], n * p[3]
     turn[0] = e0 * p[0] + e1 * p[1] - 1.0
@@ -37,7 +37,7 @@ def share_orientation(p, turn):
 
 @compiled
 def _turning(p, w, followed, rate, factor):
-    """rate += factor p w / 2, with those parts of w that p follows."""
+    """Compute rate += factor p w / 2 from the components of w that p follows."""
     half = 0.5 * factor
     p0, p1, p2, p3 = p[0], p[1], p[2], p[3]
     w0, w1, w2 = followed[0] * w[0], followed[1] * w[1], followed[2] * w[2]
@@ -49,7 +49,7 @@ def _turning(p, w, followed, rate, factor):
 
 @compiled
 def add_rates(s, u, factor, target):
-    """target += factor Z(q) u: coordinates moved along velocities."""
+    """Compute target += factor Z(q) u."""
     if s.spatial == 0:
         for k in range(s.n_u):
             target[k] += factor * u[k]
@@ -64,7 +64,7 @@ def add_rates(s, u, factor, target):
 
 @compiled
 def take_unit_length(s):
-    """Quaternions scaled to length 1, which changes no orientation."""
+    """Normalise the quaternions."""
     if s.spatial:
         for body in range(s.n_u // N_U):
             p = shifted(s.q, N_Q * body + 3)

@@ -1,4 +1,4 @@
-"""Calls of Python functions by the addresses of their callbacks (`stiffmbs.compile.callbacks`)."""
+"""Calls of Python functions through their callbacks (`stiffmbs.compile.callbacks`)."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from ..translate.values import Operand, builtin
 
 @builtin
 def python_call(code: Code, address: Operand, count: Operand, output: Operand, by: Operand, *arguments: Operand):
-    """A value of a Python function, or a derivative; nan where it does not answer, which is noted.
+    """Return a value or derivative of a Python function; NaN without an answer, which sets a flag.
 
-    An element has the address of two words among its numbers: that of the C function, and whether a call was left unanswered.
+    One number of the element is the address of two words: the C function, and the flag for a call without an answer.
     """
     array, answer_at = code.array(len(arguments) + 1), constant(len(arguments))
     for k, argument in enumerate((*arguments, constant(math.nan))):

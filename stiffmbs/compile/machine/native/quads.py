@@ -1,6 +1,6 @@
-"""Four floats side by side, which a processor multiplies and adds at once.
+"""Four-lane (SIMD) vectors of doubles.
 
-Every machine gives the same numbers: products are added with one rounding, in an order that is written down here.
+Results are the same on every machine: products are added with one rounding, in the order written here.
 """
 
 from __future__ import annotations
@@ -11,35 +11,35 @@ from ..translate.code import Code, constant
 from ..translate.values import LLVM_TYPES, Operand, Untranslatable, Value, builtin
 
 QUAD = 4
-"""Floats of a quad."""
+"""Lanes of a vector."""
 WIDTHS = {QUAD: "quad", 2 * QUAD: "octet"}
-"""Kinds of vectors by their floats."""
+"""Kinds of vectors by number of lanes."""
 Lines = tuple[Operand, Operand]
-"""Where lines of numbers begin, and how far they are apart."""
+"""Start of rows of numbers, and their stride."""
 
 
 @builtin
 def quad(code: Code, pointer: Operand, index: Operand) -> Value:
-    """The four floats from `index` on."""
+    """Load four floats from `index` on."""
     return loaded(code, code.item(pointer, index).text)
 
 
 @builtin
 def set_quad(code: Code, pointer: Operand, index: Operand, value: Operand) -> None:
-    """Write four floats from `index` on."""
+    """Store four floats from `index` on."""
     write(code, code.item(pointer, index).text, as_quad(value))
 
 
 @builtin
 def spread(code: Code, number: Operand) -> Value:
-    """Four times the same float."""
+    """Broadcast a float to four lanes."""
     one = code.put_value("quad", f"insertelement <4 x double> poison, {code.converted(number, 'float').typed}, i32 0")
     return code.put_value("quad", f"shufflevector {one.typed}, <4 x double> poison, <4 x i32> zeroinitializer")
 
 
 @builtin
 def quad_of(code: Code, *numbers: Operand) -> Value:
-    """Four floats side by side."""
+    """Return a vector of four floats."""
     found = Value("quad", "poison")
     for k, number in enumerate(numbers):
         one = code.converted(number, "float")
@@ -49,26 +49,26 @@ def quad_of(code: Code, *numbers: Operand) -> Value:
 
 @builtin
 def item_of(code: Code, value: Operand, index: Operand) -> Value:
-    """One of four floats; the index is a literal."""
+    """Return one lane of a vector; the index is a literal."""
     return code.put_value("float", f"extractelement {as_quad(value).typed}, i32 {literal(index)}")
 
 
 @builtin
 def nearest_whole(code: Code, value: Operand) -> Value:
-    """The whole numbers next to four floats."""
+    """Round four floats to the nearest integers."""
     code.unit.declare("declare <4 x double> @llvm.rint.v4f64(<4 x double>)")
     return code.put_value("quad", f"call <4 x double> @llvm.rint.v4f64({as_quad(value).typed})")
 
 
 @builtin
 def product_of(code: Code, a: Operand, b: Operand) -> Value:
-    """a * b."""
+    """Return a * b."""
     return code.put_value("quad", f"fmul {as_quad(a).typed}, {as_quad(b).text}")
 
 
 @builtin
 def plus_product(code: Code, total: Operand, a: Operand, b: Operand) -> Value:
-    """total + a * b of quads, or of floats, rounded once."""
+    """Return total + a * b of vectors, or of floats, rounded once."""
     if isinstance(total, Value) and total.kind == "float":
         return plus_product_of_floats(code, total, *(code.converted(factor, "float") for factor in (a, b)))
     return fused(code, as_quad(total), as_quad(a), as_quad(b))
@@ -76,7 +76,7 @@ def plus_product(code: Code, total: Operand, a: Operand, b: Operand) -> Value:
 
 @builtin
 def sum_of(code: Code, value: Operand) -> Value:
-    """The sum of four floats: of both halves first."""
+    """Return the sum of four lanes; both halves are added first."""
     vector = as_quad(value).typed
     upper = code.put_value(
         "quad", f"shufflevector {vector}, <4 x double> poison, <4 x i32> <i32 2, i32 3, i32 2, i32 3>"
@@ -91,10 +91,10 @@ def add_products(
     code: Code, rows: Operand, quads: Operand, into: Operand, stride: Operand, a: Operand, a_stride: Operand, b: Operand,
     b_stride: Operand, depth: Operand,
 ) -> None:  # fmt: skip
-    """into[i, :] += sum of a[k, i] * b[k, :] over k, for so many rows i and quads of columns: both are literals.
+    """Compute into[i, :] += sum of a[k, i] * b[k, :] over k; numbers of rows and column vectors are literals.
 
-    The sums stay in registers.  Strides are those of rows of `into`, and of k in `a` and `b`.  A literal depth is written
-    out without a loop.
+    The sums stay in registers. Strides are those of the rows of `into`, and of k in `a` and `b`. A literal depth is
+    unrolled.
     """
     _change(code, 1.0, (rows, quads), (into, stride), (a, a_stride), (b, b_stride), depth)
 
@@ -104,12 +104,12 @@ def take_products(
     code: Code, rows: Operand, quads: Operand, into: Operand, stride: Operand, a: Operand, a_stride: Operand, b: Operand,
     b_stride: Operand, depth: Operand,
 ) -> None:  # fmt: skip
-    """into[i, :] -= sum of a[k, i] * b[k, :], as `add_products`."""
+    """Compute into[i, :] -= sum of a[k, i] * b[k, :], as `add_products`."""
     _change(code, -1.0, (rows, quads), (into, stride), (a, a_stride), (b, b_stride), depth)
 
 
 def _kept(code: Code, value: Value) -> Value:
-    """A variable with a value."""
+    """Return a variable with a value."""
     variable = code.variable(value.kind)
     code.store(variable, value)
     return variable
@@ -118,7 +118,7 @@ def _kept(code: Code, value: Value) -> Value:
 def _change(
     code: Code, sign: float, shape: tuple[Operand, Operand], into: Lines, a: Lines, b: Lines, depth: Operand
 ) -> None:
-    """Add sums of products, times a sign: their terms written out one by one where the number is a literal, else in a loop."""
+    """Add sums of products times a sign; unrolled for a literal number of terms, else in a loop."""
     rows, quads = map(literal, shape)
     width = QUAD * quads
     places = [code.item(into[0], times(code, into[1], i)).text for i in range(rows)]
@@ -143,7 +143,7 @@ def _change(
 def _loop(
     code: Code, add: Callable[[Value, Value], None], a_stride: Operand, b_stride: Operand, depth: Operand
 ) -> None:
-    """So many terms."""
+    """Write a loop over the terms."""
     k, at_a, at_b = (_kept(code, constant(0)) for _ in range(3))
     head, inside, end = code.name("depth"), code.name("product"), code.name("done")
     code.label(head)
@@ -157,7 +157,7 @@ def _loop(
 
 
 def as_quad(value: Operand) -> Value:
-    """The operand, if it is a quad."""
+    """Return the operand if it is a four-lane vector."""
     if not isinstance(value, Value) or value.kind != "quad":
         raise Untranslatable(f"found {value}, expected a quad")
     return value
@@ -168,39 +168,39 @@ def _is_literal(value: Operand) -> bool:
 
 
 def literal(value: Operand) -> int:
-    """The number that a literal stands for."""
+    """Return the value of a literal."""
     if not isinstance(value, Value) or not _is_literal(value):
         raise Untranslatable(f"found {value}, expected a literal")
     return int(value.text)
 
 
 def plus(code: Code, index: Value, shift: int) -> Value:
-    """An index so many items on."""
+    """Return an index plus a literal."""
     return code.put_value("int", f"add nsw {code.integer(index).typed}, {shift}")
 
 
 def times(code: Code, stride: Operand, count: int) -> Value:
-    """So many strides."""
+    """Return a multiple of a stride."""
     return code.put_value("int", f"mul nsw {code.integer(stride).typed}, {count}")
 
 
 def loaded(code: Code, place: str) -> Value:
-    """The quad at an address."""
+    """Load a four-lane vector."""
     return code.put_value("quad", f"load <4 x double>, ptr {place}, align 8")
 
 
 def write(code: Code, place: str, value: Value) -> None:
-    """Write a vector to an address."""
+    """Store a vector."""
     code.put(f"store {value.typed}, ptr {place}, align 8")
 
 
 def floats_at(code: Code, width: int, place: str) -> Value:
-    """Four or eight floats from a place on."""
+    """Load four or eight floats."""
     return code.put_value(WIDTHS[width], f"load <{width} x double>, ptr {place}, align 8")
 
 
 def spread_over(code: Code, width: int, number: Value) -> Value:
-    """Four or eight times the same float."""
+    """Broadcast a float to four or eight lanes."""
     one = code.put_value(WIDTHS[width], f"insertelement <{width} x double> poison, {number.typed}, i32 0")
     return code.put_value(
         WIDTHS[width], f"shufflevector {one.typed}, <{width} x double> poison, <{width} x i32> zeroinitializer"
@@ -208,18 +208,18 @@ def spread_over(code: Code, width: int, number: Value) -> Value:
 
 
 def fused(code: Code, total: Value, a: Value, b: Value) -> Value:
-    """total + a * b of vectors of one width, rounded once."""
+    """Return total + a * b of vectors of one width, rounded once."""
     kind, width = LLVM_TYPES[total.kind], 4 if total.kind == "quad" else 8
     code.unit.declare(f"declare {kind} @llvm.fma.v{width}f64({kind}, {kind}, {kind})")
     return code.put_value(total.kind, f"call {kind} @llvm.fma.v{width}f64({a.typed}, {b.typed}, {total.typed})")
 
 
 def plus_product_of_floats(code: Code, total: Value, a: Value, b: Value) -> Value:
-    """total + a * b of floats, rounded once."""
+    """Return total + a * b of floats, rounded once."""
     code.unit.declare("declare double @llvm.fma.f64(double, double, double)")
     return code.put_value("float", f"call double @llvm.fma.f64({a.typed}, {b.typed}, {total.typed})")
 
 
 def minus_product(code: Code, total: Value, a: Value, b: Value) -> Value:
-    """total - a * b of floats, rounded once."""
+    """Return total - a * b of floats, rounded once."""
     return plus_product_of_floats(code, total, code.put_value("float", f"fneg {a.typed}"), b)

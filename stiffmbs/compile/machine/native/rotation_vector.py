@@ -1,4 +1,4 @@
-"""Rotation vectors in kernels: the function that makes one of the vector part of a quaternion."""
+"""Rotation vectors from quaternions, in kernels."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ from math import acos, sqrt
 from .access import compiled
 
 NEAR = 0.1
-"""Up to this distance from h = 1 the series is summed, where the closed form loses digits."""
+"""Distance from h = 1 up to which the series is used, where the closed form loses digits."""
 TERMS = 14
-"""Of the series, each a twentieth of the one before or less: all that count."""
+"""Number of terms of the series; each is at most a twentieth of its predecessor."""
 
 
 @compiled
 def _near_one(x, order):
-    """The order-th derivative by h of sum a_k x^k, x = 1 - h, a_0 = 2, a_k = a_(k-1) k/(2k + 1)."""
+    """Return the order-th derivative by h of sum a_k x^k, x = 1 - h, a_0 = 2, a_k = a_(k-1) k/(2k + 1)."""
     total = 0.0
     coefficient = 2.0
     power = 1.0
@@ -32,10 +32,10 @@ def _near_one(x, order):
 
 @compiled
 def rotation_vector(h, order):
-    """The order-th derivative of c(h) = 2 acos(h)/sqrt(1 - h^2), the angle of a rotation over the sine of its half.
+    """Return the order-th derivative of c(h) = 2 acos(h)/sqrt(1 - h^2): rotation angle over the sine of its half.
 
-    h is the scalar part of a unit quaternion, the cosine of half the angle, and c v the rotation vector, v being the
-    vector part.  From (1 - h^2) c' = h c - 2: (1 - h^2) c^(n+1) = (2n + 1) h c^(n) + n^2 c^(n-1).
+    h is the scalar part of a unit quaternion and v its vector part; c v is the rotation vector. From (1 - h^2) c' = h c
+    - 2 follows (1 - h^2) c^(n+1) = (2n + 1) h c^(n) + n^2 c^(n-1).
     """
     if 1.0 - h < NEAR:
         return _near_one(1.0 - h, order)

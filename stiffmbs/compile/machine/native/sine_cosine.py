@@ -1,7 +1,7 @@
-"""Sines and cosines of four angles at once, within one unit of the last place of the exact ones.
+"""Sines and cosines of four angles at once, accurate to one unit in the last place.
 
-The angle is taken back to within an eighth of a turn (Cody and Waite, Software Manual for the Elementary Functions, 1980, ch. 8), with what
-rounding leaves of it.  The polynomials are those of Sun's fdlibm (k_sin.c, k_cos.c).
+The angle is reduced to an eighth of a turn with the rounding error of the reduction (Cody and Waite, Software Manual
+for the Elementary Functions, 1980, ch. 8). The polynomials are those of Sun's fdlibm (k_sin.c, k_cos.c).
 """
 
 from __future__ import annotations
@@ -10,10 +10,10 @@ from .access import compiled
 from .quads import item_of, nearest_whole, plus_product, product_of, quad_of, spread
 
 FARTHEST = 1e5
-"""Angle up to which two parts of pi/2 are enough, rad."""
+"""Largest angle for which two parts of pi/2 suffice, rad."""
 PER_QUARTER = 0.6366197723675814
 QUARTER, QUARTER_REST = 1.5707963267948966, 6.123233995736766e-17
-"""A quarter of a turn is the sum of both, rad."""
+"""Two parts of pi/2, rad."""
 S1, S2, S3 = -1.66666666666666324348e-01, 8.33333333332248946124e-03, -1.98412698298579493134e-04
 S4, S5, S6 = 2.75573137070700676789e-06, -2.50507602534068634195e-08, 1.58969099521155010221e-10
 C1, C2, C3 = 4.16666666666666019037e-02, -1.38888888888741095749e-03, 2.48015872894767294178e-05
@@ -22,7 +22,7 @@ C4, C5, C6 = -2.75573143513906633035e-07, 2.08757232129817482790e-09, -1.1359647
 
 @compiled
 def share_four(q, turned, turn):
-    """Write cosines and sines of the angles of four bodies, given by their first coordinates; whether the angles are near enough."""
+    """Store cosines and sines of four bodies, given by first coordinates; return False for large angles."""
     i, j, k, m = turned[0], turned[1], turned[2], turned[3]
     a, b, c, d = q[i + 2], q[j + 2], q[k + 2], q[m + 2]
     if not (max(abs(a), abs(b)) <= FARTHEST and max(abs(c), abs(d)) <= FARTHEST):

@@ -9,7 +9,7 @@ from .access import compiled
 
 @compiled
 def _area(number, first_piece, knots, pieces):
-    """The integral over the first pieces of a table."""
+    """Return the integral over the first pieces of a table."""
     area = 0.0
     for k in range(pieces):
         piece = first_piece + 4 * k
@@ -20,16 +20,16 @@ def _area(number, first_piece, knots, pieces):
 
 @compiled
 def _piece_area(number, piece, z):
-    """The integral of one piece from its start to z."""
+    """Return the integral of one piece from its start to z."""
     a, b, c, d = number[piece], number[piece + 1], number[piece + 2], number[piece + 3]
     return (((a / 4.0 * z + b / 3.0) * z + c / 2.0) * z + d) * z
 
 
 @compiled
 def spline(number, at, x, order):
-    """The order-th derivative of the table at ``number[at]`` (`stiffmbs.compile.table_values.spline_data`); -1 for its integral.
+    """Return the order-th derivative of the table at ``number[at]``, or its integral from the first point for order -1.
 
-    Outside its points it goes on with the slope of its end, or repeats.  The integral starts at the first point.
+    The data are those of `stiffmbs.compile.table_values.spline_data`; the table extrapolates linearly, or is periodic.
     """
     count = int(number[at])
     knots = at + 2

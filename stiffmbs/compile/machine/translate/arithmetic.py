@@ -1,4 +1,4 @@
-"""Operators between numbers."""
+"""Arithmetic operators."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ COMPARISONS = {
     ast.Eq: ("oeq", "eq"), ast.NotEq: ("une", "ne"), ast.Lt: ("olt", "slt"),
     ast.LtE: ("ole", "sle"), ast.Gt: ("ogt", "sgt"), ast.GtE: ("oge", "sge"),
 }  # fmt: skip
-"""For floats and for integers; a comparison with not-a-number is false, but for !=."""
+"""LLVM predicates for floats and integers; a comparison with NaN is false, except !=."""
 LARGEST_POWER = 64
-"""Whole powers up to this are products."""
+"""Largest integer power computed by multiplication."""
 
 
 def computed(code: Code, operation: ast.operator, left: Operand, right: Operand) -> Value:
-    """The value of a binary operation; powers and remainders as Python defines them."""
+    """Return the value of a binary operation; powers and remainders as Python defines them."""
     a, b = number(left), number(right)
     match operation:
         case ast.Add() | ast.Sub() | ast.Mult():
@@ -39,21 +39,21 @@ def computed(code: Code, operation: ast.operator, left: Operand, right: Operand)
 
 
 def plain(code: Code, operation: type[ast.operator], a: Value, b: Value) -> Value:
-    """A sum, difference or product."""
+    """Return a sum, difference or product."""
     if common([a, b]) == "float":
         return float_operation(code, FLOAT_OPERATIONS[operation], a, b)
     return code.put_value("int", f"{INT_OPERATIONS[operation]} {code.integer(a).typed}, {code.integer(b).text}")
 
 
 def float_operation(code: Code, instruction: str, a: Value, b: Value) -> Value:
-    """An operation on two floats."""
+    """Return an operation on two floats."""
     return code.put_value(
         "float", f"{instruction} {code.converted(a, 'float').typed}, {code.converted(b, 'float').text}"
     )
 
 
 def _divided(code: Code, a: Value, b: Value) -> tuple[Value, Value, Value]:
-    """Quotient and rest towards zero, and 1 where Python's quotient, which is rounded down, is one less."""
+    """Return truncated quotient and remainder, and 1 where Python's floored quotient is one less."""
     top, bottom = code.integer(a), code.integer(b)
     quotient = code.put_value("int", f"sdiv {top.typed}, {bottom.text}")
     rest = code.put_value("int", f"srem {top.typed}, {bottom.text}")
@@ -65,7 +65,7 @@ def _divided(code: Code, a: Value, b: Value) -> tuple[Value, Value, Value]:
 
 
 def power(code: Code, a: Value, b: Value) -> Value:
-    """Whole powers by squaring, others by `pow`."""
+    """Return a power: integer powers by squaring, others by `pow`."""
     if b.kind != "int" or not b.text.lstrip("-").isdigit() or abs(int(b.text)) > LARGEST_POWER:
         return code.unit.called_library(code, "llvm.pow.f64", a, b)
     exponent = int(b.text)
@@ -83,7 +83,7 @@ def power(code: Code, a: Value, b: Value) -> Value:
 
 
 def negated(code: Code, operand: Operand) -> Value:
-    """The opposite number."""
+    """Return the negative."""
     a = number(operand)
     if a.kind == "float":
         return code.put_value("float", f"fneg {a.typed}")
@@ -93,7 +93,7 @@ def negated(code: Code, operand: Operand) -> Value:
 
 
 def compared(code: Code, operation: ast.cmpop, left: Operand, right: Operand) -> Value:
-    """Whether a comparison holds."""
+    """Return the truth value of a comparison."""
     if type(operation) not in COMPARISONS:
         raise Untranslatable(f"the comparison {type(operation).__name__}")
     of_floats, of_ints = COMPARISONS[type(operation)]
@@ -105,14 +105,14 @@ def compared(code: Code, operation: ast.cmpop, left: Operand, right: Operand) ->
 
 
 def selected(code: Code, condition: Value, then: Value, otherwise: Value) -> Value:
-    """One of two values that are both at hand."""
+    """Select one of two computed values."""
     kind = common([then, otherwise])
     a, b = code.converted(then, kind), code.converted(otherwise, kind)
     return code.put_value(kind, f"select {condition.typed}, {LLVM_TYPES[kind]} {a.text}, {b.typed}")
 
 
 def number(operand: Operand) -> Value:
-    """A value that can be computed with."""
+    """Return the operand if it is a number."""
     if not isinstance(operand, Value) or operand.kind not in ("int", "float", "bool", "int32"):
         raise Untranslatable(f"found {operand}, expected a number")
     return operand

@@ -1,4 +1,4 @@
-"""Which names of a function are given a value in one place alone: they need no memory."""
+"""Names assigned in one place only, which need no memory."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from collections.abc import Iterator, Sequence
 
 
 def given_once(tree: ast.FunctionDef) -> set[str]:
-    """The names that one statement of a function assigns, or that are parameters that none assigns."""
+    """Return the names assigned by one statement of a function, and parameters that are never assigned."""
     counts = Counter([argument.arg for argument in tree.args.args])
     counts.update(_assigned(tree.body))
     return {name for name, count in counts.items() if count == 1}
 
 
 def _assigned(body: Sequence[ast.stmt]) -> Iterator[str]:
-    """The name of each assignment among statements, those within others too."""
+    """Yield the name of each assignment in statements and nested statements."""
     for statement in body:
         match statement:
             case ast.Assign(targets):

@@ -1,4 +1,4 @@
-"""The instructions of one function, written down in order."""
+"""Builder of the LLVM instructions of one function."""
 
 from __future__ import annotations
 
@@ -10,21 +10,21 @@ from typing import Any
 from .values import ITEMS, LLVM_TYPES, NUMBERS, Operand, Untranslatable, Value
 
 Lines = list[Any]
-"""Instructions, and lists of instructions that are filled in later."""
+"""Instructions, and lists of instructions that are filled later."""
 
 
 class Code:
-    """A function's instructions, variables and labels.
+    """Instructions, variables and labels of a function.
 
     Parameters
     ----------
     unit : Unit
-        What the function is part of: gives the functions that are called, and takes declarations.
+        Module of the function: provides called functions and takes declarations.
 
     Attributes
     ----------
     reached : bool
-        Whether what is written next can be reached; where not, nothing is to be written.
+        True if the next instruction is reachable; otherwise nothing may be written.
     """
 
     def __init__(self, unit: Any) -> None:
@@ -37,12 +37,12 @@ class Code:
         self._kept: dict[str, Value] = {}
 
     def lines(self) -> Iterator[str]:
-        """All instructions."""
+        """Yield all instructions."""
         yield from _flat(self._entry)
         yield from _flat(self._lines)
 
     def name(self, stem: str = "v") -> str:
-        """A name that is not used yet."""
+        """Return an unused name."""
         self._count += 1
         return f"{stem}{self._count}"
 
@@ -57,7 +57,7 @@ class Code:
         return value
 
     def gap(self) -> Lines:
-        """A place in which instructions can be written later, by `within`."""
+        """Return a place for instructions written later with `within`."""
         gap: Lines = []
         self._lines.append(gap)
         return gap
@@ -70,19 +70,19 @@ class Code:
         self._lines = lines
 
     def branch(self, target: str) -> None:
-        """Go to a label; nothing can follow but a label."""
+        """Branch to a label; only a label may follow."""
         self.put(f"br label %{target}")
         self._targets.add(target)
         self.reached = False
 
     def choose(self, condition: Value, then: str, otherwise: str) -> None:
-        """Go to one of two labels."""
+        """Branch to one of two labels."""
         self.put(f"br {condition.typed}, label %{then}, label %{otherwise}")
         self._targets |= {then, otherwise}
         self.reached = False
 
     def label(self, name: str) -> None:
-        """What follows is reached by branches to this label; if there are none, it is not reached."""
+        """Start a block; without branches to its label it is unreachable."""
         if self.reached:
             self.branch(name)
         self.reached = name in self._targets
@@ -95,35 +95,35 @@ class Code:
         self.reached = False
 
     def variable(self, kind: str) -> Value:
-        """Memory for a value; the optimiser turns it into registers."""
+        """Allocate a variable; LLVM promotes it to registers."""
         name = f"%{self.name('at')}"
         self._entry.append(f"{name} = alloca {LLVM_TYPES[kind]}")
         return Value(kind, name)
 
     def array(self, count: int) -> Value:
-        """Memory for some doubles, as long as the function runs."""
+        """Allocate doubles for the duration of the function."""
         name = f"%{self.name('array')}"
         self._entry.append(f"{name} = alloca [{count} x double]")
         return Value("floats", name)
 
     def kept(self, name: str, count: int) -> Value:
-        """Memory for some doubles that all instructions under a name share; the first is not a number at the start."""
+        """Allocate doubles shared by all instructions with this name; the first is NaN initially."""
         if name not in self._kept:
             self._kept[name] = self.array(count)
             self._entry.append(f"store double 0x7FF8000000000000, ptr {self._kept[name].text}")
         return self._kept[name]
 
     def load(self, variable: Value) -> Value:
-        """The value of a variable."""
+        """Load a variable."""
         tag = tag_of(variable.kind)
         return self.put_value(variable.kind, f"load {LLVM_TYPES[variable.kind]}, ptr {variable.text}{tag}")
 
     def store(self, variable: Value, value: Value) -> None:
-        """Set a variable."""
+        """Store a variable."""
         self.put(f"store {self.converted(value, variable.kind).typed}, ptr {variable.text}{tag_of(variable.kind)}")
 
     def item(self, pointer: Operand, index: Operand) -> Value:
-        """The place of an item: its kind, and its address."""
+        """Return kind and address of an item."""
         if not isinstance(pointer, Value) or pointer.kind not in ITEMS:
             raise Untranslatable("a subscript of what is no pointer")
         kind = ITEMS[pointer.kind]
@@ -133,13 +133,13 @@ class Code:
         )
 
     def integer(self, value: Operand) -> Value:
-        """An integer; a float is refused, as Python does for an index."""
+        """Return an integer; a float is refused, as in Python indices."""
         if not isinstance(value, Value) or value.kind not in ("int", "int32", "bool"):
             raise Untranslatable(f"found {value}, expected an integer")
         return self.converted(value, "int")
 
     def converted(self, value: Operand, kind: str) -> Value:
-        """The value in another kind of at least its range; an int to int32 drops what is above."""
+        """Convert a value to another kind of at least its range; an int to int32 is truncated."""
         if not isinstance(value, Value):
             raise Untranslatable(f"found {value}, expected a {kind}")
         match value.kind, kind:
@@ -160,7 +160,7 @@ class Code:
         raise Untranslatable(f"found a value of kind {value.kind}, expected {kind}")
 
     def truth(self, value: Operand) -> Value:
-        """Whether a number is not zero."""
+        """Return True if a number is not zero."""
         if isinstance(value, Value) and value.kind == "float":
             return self.put_value("bool", f"fcmp une {value.typed}, 0.0")
         if isinstance(value, Value) and value.kind == "bool":
@@ -169,12 +169,12 @@ class Code:
 
 
 def tag_of(kind: str) -> str:
-    """What tells LLVM that memory holds numbers of one kind: a store of another kind doesn't change it (type-based alias analysis)."""
+    """Return the TBAA tag (type-based alias analysis): stores of other kinds do not change the memory."""
     return f", !tbaa !{NUMBERS.index(kind)}" if kind in NUMBERS else ""
 
 
 def tags() -> list[str]:
-    """The definitions of all tags, at the end of a module."""
+    """Return the definitions of all tags, for the end of a module."""
     root = 2 * len(NUMBERS)
     accesses = [f"!{k} = !{{!{len(NUMBERS) + k}, !{len(NUMBERS) + k}, i64 0}}" for k in range(len(NUMBERS))]
     types = [f'!{len(NUMBERS) + k} = !{{!"{kind}", !{root}, i64 0}}' for k, kind in enumerate(NUMBERS)]
@@ -182,7 +182,7 @@ def tags() -> list[str]:
 
 
 def constant(number: bool | int | float) -> Value:
-    """A literal."""
+    """Return a literal."""
     if isinstance(number, bool):
         return Value("bool", "true" if number else "false")
     if isinstance(number, int):
@@ -191,7 +191,7 @@ def constant(number: bool | int | float) -> Value:
 
 
 def common(values: list[Value]) -> str:
-    """The kind that holds all values."""
+    """Return the kind that holds all values."""
     kinds = {"int" if value.kind == "int32" else value.kind for value in values}
     if len(kinds) == 1:
         return kinds.pop()

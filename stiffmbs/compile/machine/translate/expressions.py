@@ -1,4 +1,4 @@
-"""Expressions to instructions."""
+"""Translation of expressions."""
 
 from __future__ import annotations
 
@@ -16,29 +16,29 @@ from .values import POINTERS_TO, Builtin, Cell, Operand, Record, Untranslatable,
 
 
 class Expressions:
-    """Translates the expressions of one function.
+    """Translator of the expressions of one function.
 
     Parameters
     ----------
     code : Code
         Receives the instructions.
     outside : mapping
-        The names of the function's module.
+        Names of the function's module.
     wider : mapping
-        Kinds of variables that need memory, for a wider one than that of their first value or as they are read elsewhere.
+        Kinds of variables that need memory: wider than their first value, or read outside its block.
     given_once : set of str
-        Names that are given a value in one place.
+        Names assigned in one place.
 
     Attributes
     ----------
     variables : dict
-        The places of the function's variables.
+        Addresses of the function's variables.
     values : dict
-        The names that need no memory: their values, in the block that gives them and those within it.
+        Values of names without memory, in the assigning block and blocks within it.
     left : dict
-        Such names of blocks that have ended.
+        Such names of ended blocks.
     records : dict
-        Views under the names that they were given.
+        Views by their names.
     """
 
     def __init__(
@@ -52,7 +52,7 @@ class Expressions:
         self._outside, self._wider, self._given_once = outside, wider, given_once
 
     def set(self, name: str, value: Value) -> None:
-        """Give a name a value; the first decides the kind of a variable, unless a later one needs a wider kind."""
+        """Assign a variable. Its kind is that of the first assignment, widened by later ones."""
         if name in self._given_once and name not in self._wider:
             self.values[name] = self.code.converted(value, "int" if value.kind == "int32" else value.kind)
             return
@@ -64,19 +64,19 @@ class Expressions:
 
     @contextmanager
     def block(self) -> Iterator[None]:
-        """Statements that may be passed over: the values that they give to names are not those of what follows."""
+        """Start a conditional block: values assigned in it are not visible after it."""
         outer, self.values = self.values, dict(self.values)
         yield
         self.left |= {name: value for name, value in self.values.items() if name not in outer}
         self.values = outer
 
     def _declared(self, name: str, kind: str) -> Value:
-        """A new variable, for a first value of the given kind."""
+        """Declare a variable for a first value of the given kind."""
         self.variables[name] = self.code.variable(self._wider.get(name, "int" if kind == "int32" else kind))
         return self.variables[name]
 
     def value(self, node: ast.expr) -> Operand:
-        """Write the instructions for an expression; its value."""
+        """Write the instructions of an expression; return its value."""
         try:
             return self._value(node)
         except Untranslatable as error:
@@ -116,7 +116,7 @@ class Expressions:
         raise Untranslatable("not of the language")
 
     def place(self, node: ast.Subscript | ast.Attribute) -> Value:
-        """Where an item of an array, or a cell of a record, stands in memory."""
+        """Return the address of an array item or a record cell."""
         if isinstance(node, ast.Subscript):
             return self.code.item(self.value(node.value), self.value(node.slice))
         found = self._field(node.value, node.attr)
@@ -131,7 +131,7 @@ class Expressions:
         return record.fields[name]
 
     def truth(self, node: ast.expr) -> Value:
-        """Whether an expression is true."""
+        """Return the truth value of an expression."""
         return self.code.truth(self.value(node))
 
     def _named(self, name: str) -> Operand:
@@ -149,7 +149,7 @@ class Expressions:
         raise Untranslatable(f"'{name}' is no variable and no number")
 
     def _joined(self, node: ast.Compare | ast.BoolOp) -> Value:
-        """``a < b < c``, ``a and b``, ``a or b``: what follows is computed only where it is needed."""
+        """Translate ``a < b < c``, ``a and b``, ``a or b`` with short-circuit evaluation."""
         code = self.code
         steps: list[ast.expr] = node.values if isinstance(node, ast.BoolOp) else node.comparators
         stops_when = isinstance(node, ast.BoolOp) and isinstance(node.op, ast.Or)
@@ -169,7 +169,7 @@ class Expressions:
         return code.load(result)
 
     def _chosen(self, test: ast.expr, then: ast.expr, otherwise: ast.expr) -> Value:
-        """``a if test else b``: only one of them is computed."""
+        """Translate ``a if test else b``; only one branch is evaluated."""
         code = self.code
         labels = code.name("then"), code.name("else")
         end = code.name("chosen")

@@ -1,4 +1,4 @@
-"""The functions of Python and of its module `math` that the language has."""
+"""Functions of Python and its module `math` in the language."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .code import Code
 from .values import Builtin, Operand, Value, builtin
 
 INTRINSICS = ("sqrt", "sin", "cos", "exp", "log")
-"""What LLVM knows by itself; the others are called in the C library that the process has."""
+"""LLVM intrinsics; other functions are called in the C library of the process."""
 OF_THE_LIBRARY = tuple(name for name, function in FORMULA_FUNCTIONS.items() if function.in_c and name not in INTRINSICS)
 
 
@@ -26,7 +26,7 @@ def _library(name: str, *symbols: str) -> dict[Any, Builtin]:
 
 @builtin
 def absolute(code: Code, operand: Operand) -> Value:
-    """abs(x)."""
+    """Translate abs(x)."""
     x = number(operand)
     if x.kind == "float":
         return code.unit.called_library(code, "llvm.fabs.f64", x)
@@ -45,20 +45,20 @@ def _extreme(comparison: ast.cmpop) -> Builtin:
 
 @builtin
 def to_float(code: Code, operand: Operand) -> Value:
-    """float(x)."""
+    """Translate float(x)."""
     return code.converted(operand, "float")
 
 
 @builtin
 def to_int(code: Code, operand: Operand) -> Value:
-    """int(x): towards zero."""
+    """Translate int(x): truncation towards zero."""
     x = number(operand)
     return code.put_value("int", f"fptosi {x.typed} to i64") if x.kind == "float" else code.integer(x)
 
 
 @builtin
 def is_finite(code: Code, operand: Operand) -> Value:
-    """isfinite(x)."""
+    """Translate isfinite(x)."""
     size = code.unit.called_library(code, "llvm.fabs.f64", number(operand))
     return compared(code, ast.Lt(), size, Value("float", "0x7FF0000000000000"))
 

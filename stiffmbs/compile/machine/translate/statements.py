@@ -1,4 +1,4 @@
-"""Statements to instructions."""
+"""Translation of statements."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from .values import Operand, Record, Untranslatable, Value, refuse
 
 
 class Statements:
-    """Translates the body of one function.
+    """Translator of the body of one function.
 
     Attributes
     ----------
     returned : list of (gap, value)
-        Each return: where its instructions belong, and its value.
+        Place of the instructions and value of each return.
     """
 
     def __init__(self, code: Code, expressions: Expressions) -> None:
@@ -27,7 +27,7 @@ class Statements:
         self._loops: list[tuple[str, str]] = []
 
     def write(self, body: Sequence[ast.stmt]) -> None:
-        """Write the instructions for statements, up to one that nothing can follow."""
+        """Write the instructions of statements, up to one that ends the block."""
         for statement in body:
             if not self.code.reached:
                 return
@@ -68,14 +68,14 @@ class Statements:
                 raise refuse(statement, "not of the language")
 
     def leave(self, value: Operand | None) -> None:
-        """Return from the function; with what, is written when all returns are known."""
+        """Return from the function; the instruction is written when all returns are known."""
         if not isinstance(value, Value | None):
             raise Untranslatable("a function returns one number or pointer")
         self.returned.append((self.code.gap(), value))
         self.code.reached = False
 
     def finish(self, wanted: str | None) -> str | None:
-        """Write all returns, as of the wanted kind where there is one; the kind of what the function returns."""
+        """Write all returns, converted to the wanted kind if given; return the function's kind."""
         if self.code.reached:
             self.leave(None)
         values = [value for _, value in self.returned if value is not None]
@@ -132,7 +132,7 @@ class Statements:
         code.label(end)
 
     def _for(self, name: str, limits: list[Value], body: list[ast.stmt]) -> None:
-        """A loop over a range with a literal step; limits are computed once, as in Python."""
+        """Translate a loop over a range with a literal step; limits are evaluated once, as in Python."""
         code = self.code
         start, stop = limits[:2] if len(limits) > 1 else (Value("int", "0"), limits[0])
         step = int(limits[2].text) if len(limits) > 2 else 1
@@ -161,7 +161,7 @@ class Statements:
 
 
 def parameters(names: Sequence[str], values: Sequence[Operand], expressions: Expressions) -> list[str]:
-    """Make a function's parameters its variables; gives their declarations. The fields of a view are passed one by one."""
+    """Make a function's parameters its variables, each field of a view separately; return their declarations."""
     declared = []
     for name, value in zip(names, values, strict=True):
         if isinstance(value, Record):

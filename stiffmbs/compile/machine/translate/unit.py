@@ -1,4 +1,4 @@
-"""Functions with all that they call, as one module of LLVM's assembly."""
+"""LLVM module of functions with all functions they call."""
 
 from __future__ import annotations
 
@@ -16,23 +16,23 @@ from .statements import Statements, parameters
 from .values import LLVM_TYPES, Operand, Record, Untranslatable, Value, Wider
 
 KINDS = {"int64": "int", "int32": "int32", "float64": "float", "int64*": "ints", "float64*": "floats"}
-"""The kinds of the arguments of C functions."""
+"""Kinds of the C argument types."""
 
 
 @dataclass(frozen=True)
 class Entry:
-    """A function that is to be called from outside.
+    """Function callable from outside.
 
     Attributes
     ----------
     function : callable
         Written in the language (`stiffmbs.compile.machine.translate`).
     symbol : str
-        The name of the C function.
+        Name of the C function.
     arguments : list of str
-        The C types of its arguments, of `KINDS`.
+        C types of its arguments, of `KINDS`.
     result : str
-        The C type of what it returns, or ``void``.
+        C type of its result, or ``void``.
     """
 
     function: Callable[..., Any]
@@ -42,18 +42,18 @@ class Entry:
 
 
 def assembly(entries: Sequence[Entry], text: str = "") -> str:
-    """Translate functions, with all that they call, into a module of LLVM's assembly.
+    """Translate functions and those they call into a module of LLVM assembly.
 
     Parameters
     ----------
     entries : sequence of Entry
     text : str, optional
-        The source that the functions are defined in; the files they come from by default.
+        Source of the functions; the files of their code by default.
 
     Raises
     ------
     Untranslatable
-        When something is not of the language; names function and line.
+        If a construct is not in the language; names function and line.
     """
     unit = Unit()
     for entry in entries:
@@ -65,7 +65,7 @@ def assembly(entries: Sequence[Entry], text: str = "") -> str:
 
 
 class Unit:
-    """The functions translated so far, once for each set of kinds that they are called with."""
+    """Translated functions, one for each combination of argument kinds."""
 
     def __init__(self) -> None:
         self._texts: list[str] = []
@@ -74,15 +74,15 @@ class Unit:
         self._begun: set[tuple[Any, ...]] = set()
 
     def text(self) -> str:
-        """The module."""
+        """Return the module."""
         return "\n".join([*sorted(self._declared), *self._texts, *tags()])
 
     def declare(self, declaration: str) -> None:
-        """Note a function that is found elsewhere."""
+        """Declare an external function."""
         self._declared.add(declaration)
 
     def called(self, code: Code, function: Callable[..., Any], values: Sequence[Operand]) -> Value | None:
-        """Write the call of a function in the language, after translating it where it is new."""
+        """Write the call of a function in the language; translate it if new."""
         key = (function, *(value.name if isinstance(value, Record) else _kind(value) for value in values))
         if key not in self._known:
             if key in self._begun:
@@ -100,7 +100,7 @@ class Unit:
         return None
 
     def called_library(self, code: Code, symbol: str, *values: Value) -> Value:
-        """Write the call of a function of floats that LLVM or the C library has."""
+        """Write the call of a floating-point function of LLVM or the C library."""
         declared = ", ".join(["double"] * len(values))
         self.declare(f'declare double @"{symbol}"({declared}) nounwind willreturn memory(none)')
         given = ", ".join(code.converted(value, "float").typed for value in values)
@@ -115,7 +115,7 @@ class Unit:
         wanted: str | None,
         linkage: str,
     ) -> str | None:
-        """Translate one function for arguments of the kinds of `values`; the kind of what it returns."""
+        """Translate one function for the kinds of `values`; return the kind of its result."""
         wider: dict[str, str] = {}
         while True:
             try:

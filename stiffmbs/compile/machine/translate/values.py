@@ -1,4 +1,4 @@
-"""What expressions of the language stand for while they are translated."""
+"""Values of the language during translation."""
 
 from __future__ import annotations
 
@@ -18,20 +18,20 @@ LLVM_TYPES = {
     "quad": "<4 x double>",
     "octet": "<8 x double>",
 }
-"""The kinds of values: numbers, truth values, C's int, pointers to int64, int32 and float64, four floats side by side."""
+"""LLVM types of the kinds: numbers, truth values, C int, pointers to int64, int32 and float64, SIMD vectors."""
 ITEMS = {"ints": "int", "indices": "int32", "floats": "float"}
-"""What a pointer points to."""
+"""Item kinds of pointers."""
 NUMBERS = ("float", "int", "int32")
-"""Kinds of numbers in memory: what is written as one of them is never read as another."""
+"""Kinds of numbers in memory, for type-based alias analysis."""
 POINTERS_TO = {item: pointer for pointer, item in ITEMS.items()}
 
 
 class Untranslatable(TypeError):
-    """A construct that is not of the language; the message says where."""
+    """Construct outside the language; the message contains the line."""
 
 
 class Wider(Exception):
-    """A variable needs memory of a kind that holds all its values: the function must be translated anew with it."""
+    """A variable needs memory of a wider kind; the function must be translated again."""
 
     def __init__(self, name: str, kind: str) -> None:
         super().__init__(name, kind)
@@ -40,30 +40,30 @@ class Wider(Exception):
 
 @dataclass(frozen=True)
 class Value:
-    """A value of one of the kinds in `LLVM_TYPES`, and its name or number in LLVM's assembly."""
+    """Value of a kind in `LLVM_TYPES`, with its name or literal in LLVM assembly."""
 
     kind: str
     text: str
 
     @property
     def typed(self) -> str:
-        """As an operand with its type."""
+        """Operand with its type."""
         return f"{LLVM_TYPES[self.kind]} {self.text}"
 
 
 @dataclass(frozen=True)
 class Cell(Value):
-    """A number in memory under a name: its kind, and its address."""
+    """Named number in memory: kind and address."""
 
     @property
     def typed(self) -> str:
-        """Its address as an operand: functions that are given a cell may set it."""
+        """Address as an operand: functions called with a cell may set it."""
         return f"ptr {self.text}"
 
 
 @dataclass(frozen=True)
 class Record:
-    """Named values and cells that are known one by one; exists only while translating."""
+    """Named values and cells; exists during translation only."""
 
     name: str
     fields: dict[str, Value]
@@ -74,7 +74,7 @@ Operand = Value | Record | tuple[Any, ...]
 
 @dataclass(frozen=True)
 class Builtin:
-    """A function that the translator writes out itself: ``lower(code, *arguments)`` gives its value, or None."""
+    """Function expanded by the translator: ``lower(code, *arguments)`` returns its value, or None."""
 
     lower: Callable[..., Any]
 
@@ -83,10 +83,10 @@ class Builtin:
 
 
 def builtin(lower: Callable[..., Any]) -> Any:
-    """Mark a function ``lower(code, *arguments)`` as one that writes instructions itself."""
+    """Mark a function ``lower(code, *arguments)`` that writes instructions itself."""
     return Builtin(lower)
 
 
 def refuse(node: ast.AST, what: str) -> Untranslatable:
-    """The error for a construct."""
+    """Return the error for a construct."""
     return Untranslatable(f"line {getattr(node, 'lineno', '?')}: {what}: {ast.unparse(node)}")

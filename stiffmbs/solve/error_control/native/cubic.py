@@ -1,4 +1,4 @@
-"""How far states after some steps are from a cubic, and its third derivative."""
+"""Distance of the states after some steps from a cubic, and the third derivative of the cubic."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from stiffmbs.compile.machine.native.access import compiled, shifted
 
 @compiled
 def _divided_difference(n, rows, x, places, count, scale, weights):
-    """Root mean square of the highest divided difference over some states, relative to the sum of its weights."""
+    """Return the RMS of the highest divided difference of some states, relative to its sum of weights."""
     sum_of_weights = 0.0
     for a in range(count):
         weights[a] = 1.0
@@ -29,7 +29,7 @@ def _divided_difference(n, rows, x, places, count, scale, weights):
 
 @compiled
 def _polynomials(count, x, p, squares):
-    """Orthogonal polynomials of degree 0 to 3 at the places x, with 1 before the highest power, and the sums of their squares."""
+    """Compute monic orthogonal polynomials of degree 0 to 3 at the points x, and their sums of squares."""
     for degree in range(4):
         here, before, older = (
             shifted(p, degree * count),
@@ -50,12 +50,11 @@ def _polynomials(count, x, p, squares):
 
 
 def cubic(count, n, rows, rtol, atol, n_few, few, negligible, work, found):
-    """How far `count` rows, a time and n values each, are from the cubics that fit best, in units of the tolerance.
+    """Compare `count` rows, a time and n values each, with the best-fitting cubics, in units of the tolerance.
 
-    `found` receives three numbers: the distance over `few` of the rows, that over all (the largest root mean square of a row), and the
-    root mean square of the cubic coefficients, times being -1 to 1.  The last two are found only where the first is not beyond
-    `negligible`.  `work` has space for
-    n + 6 count + 8 numbers.
+    `found` receives three numbers: the distance of the rows `few`, the largest RMS distance of any row, and the RMS of
+    the cubic coefficients, with times scaled to -1 to 1.  The last two are computed only if the first is at most
+    `negligible`.  `work` has space for n + 6 count + 8 numbers.
     """
     scale, x, p = work, shifted(work, n), shifted(work, n + count)
     off, squares, part = shifted(work, n + 5 * count), shifted(work, n + 6 * count), shifted(work, n + 6 * count + 4)

@@ -1,1 +1,1 @@
-"""Compiled starts of IDA."""
+"""Compiled starts and restarts of IDA."""

@@ -1,4 +1,4 @@
-"""Starting anew behind an event or a breakpoint in one call: consistent values, limits of forces, IDA, a look at both sides."""
+"""Restart after an event or a breakpoint in one call: consistent values, limits of forces, start of IDA."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ anew_view = view_of("Anew", ANEW)
 
 @compiled
 def _beyond_limits(w, s, t):
-    """Whether the state at hand is beyond the limits of a force."""
+    """Return True if the current state is beyond the limits of a force."""
     if w.first_limit == w.n_event_functions:
         return False
     values = evaluate(s, SWITCH, t)
@@ -32,7 +32,7 @@ def _beyond_limits(w, s, t):
 
 @compiled
 def _meets(w, s, m, t):
-    """Whether event functions that follow velocities have other signs on the other side of the state at hand, which stays."""
+    """Return 1 if event functions of velocities change sign near the current state, which is restored."""
     count = w.n_event_functions
     copied(w.q, s.q, s.n_q)
     copied(w.u, s.u, s.n_u)
@@ -49,7 +49,7 @@ def _meets(w, s, m, t):
 
 @compiled
 def back_with_jump(w, s, m, t):
-    """Bring the state at hand back to the constraints, and note the largest change of a velocity; 0 or a negative status."""
+    """Project the current state onto the constraints and note the largest velocity change; 0 or a negative status."""
     copied(w.u, s.u, s.n_u)
     status = brought_back(s, m, t)
     w.jump = 0.0
@@ -60,7 +60,7 @@ def back_with_jump(w, s, m, t):
 
 @compiled
 def counted_anew(w, s, t):
-    """Set the counters of turns to the very angles that they count."""
+    """Set the revolution counters to the exact angles that they count."""
     if w.n_counted > 0:
         values = evaluate(s, POSITION, t)
         for k in range(w.n_counted):
@@ -68,9 +68,9 @@ def counted_anew(w, s, t):
 
 
 def anew(t, ahead, counted, highest_order, table):
-    """Bring the state at hand back to the constraints, past events that come with the one at t, and start IDA; OK or a negative number.
+    """Project the current state, move it past simultaneous events, and start IDA; OK or a negative number.
 
-    With a negative number nothing is started, and Python has to find out why.
+    A negative number means that nothing was started, and Python determines the reason.
     """
     w = anew_view(table)
     b = start_view(w.start)

@@ -1,4 +1,4 @@
-"""Reading IDA's counters."""
+"""Query of IDA's counters."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from stiffmbs.solve.native.calls import call_int
 
 @compiled
 def add_counters(count, functions, memory, value, sums):
-    """Add what each of some functions of IDA's gives to a sum; `value` has room for one number."""
+    """Add the results of some counter functions of IDA to sums; `value` has space for one number."""
     for k in range(count):
         value[0] = 0  # C's long may be shorter
         call_int(functions[k], (memory, value))
@@ -16,5 +16,5 @@ def add_counters(count, functions, memory, value, sums):
 
 
 def count(n, functions, memory, value, sums):
-    """The same, for calls from Python."""
+    """Call `add_counters` from Python."""
     add_counters(n, functions, memory, value, sums)

@@ -1,4 +1,4 @@
-"""Steps over breakpoints in one call: IDA starts anew at each that asks for nothing but consistent values."""
+"""Integration over breakpoints in one call: IDA restarts at each that requires only consistent values."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from stiffmbs.solve.native.tables.views import dynamics_view
 
 @compiled
 def _long_step(w, b):
-    """`stiffmbs.solve.error_control.newton.Stiffness.long_step` at the last start."""
+    """Return `stiffmbs.solve.error_control.newton.Stiffness.long_step` at the last start."""
     longest = float("inf")
     if b.of_positions > 0.0:
         longest = sqrt(w.amplified / b.of_positions)
@@ -31,7 +31,7 @@ def _long_step(w, b):
 
 @compiled
 def _limit(w, b, c):
-    """Set the step beyond which states within it are corrected, and what may be left of them."""
+    """Set the step above which states within it are corrected, and the residual allowed after the correction."""
     correction = output_correction_view(c.output_correction)
     fastest = max(b.of_positions, b.of_velocities * b.of_velocities)
     correction.long = _long_step(w, b)
@@ -40,7 +40,7 @@ def _limit(w, b, c):
 
 @compiled
 def _take_state(s, b, e, y, yp):
-    """The state that unknowns stand for; what stands still as it was at the last start."""
+    """Load the state from the unknowns; constant coordinates are as at the last start."""
     for k in range(s.n_q):
         if b.leader[k] < 0:
             s.q[k] = e.offset[k]
@@ -51,7 +51,7 @@ def _take_state(s, b, e, y, yp):
 
 @compiled
 def _same_offsets(s, b, e):
-    """Whether what moves with other coordinates does so with the offsets of the last start: rows of one call are all read by these."""
+    """Return True if dependent coordinates keep the offsets of the last start, used for all rows of a call."""
     others = 0
     for k in range(s.n_q):
         leader = b.leader[k]
@@ -61,7 +61,7 @@ def _same_offsets(s, b, e):
 
 @compiled
 def _started_behind(w, b, c, t):
-    """Start anew at t from where IDA has come; a negative number, with IDA where it was, where that is left to Python."""
+    """Restart at t from IDA's current state; a negative number, with IDA unchanged, leaves the restart to Python."""
     m = dynamics_view(b.dynamics)
     s = state_view(m.state)
     e = equations_view(c.equations)
@@ -79,9 +79,9 @@ def _started_behind(w, b, c, t):
 
 
 def advance_past(count, times, n_stops, stops, most, highest_order, y_out, table, ida):
-    """At most `most` steps to each of the stops, starting anew behind all but the last, and serving output times; IDA's last flag.
+    """Integrate by at most `most` steps to each stop, restart after all but the last; return IDA's last flag.
 
-    Returns at a stop that is left to Python; how many were passed is in the table.
+    Returns at a stop that Python has to handle; the table holds the number of stops passed.
     """
     w = anew_view(table)
     b = start_view(w.start)

@@ -1,4 +1,4 @@
-"""From one instant to another behind a jump of inputs: consistent values, a start of IDA, its steps, all in one call."""
+"""Restart after a jump of inputs and integration to a later time, in one call."""
 
 from __future__ import annotations
 
@@ -15,20 +15,20 @@ from stiffmbs.solve.native.tables.steps import MOST_STEPS, RESTART
 from stiffmbs.solve.native.tables.views import dynamics_view
 
 POSITION_TOLERANCE, MOST_MOVES = 1e-12, 50
-"""As a start between two pieces of a run has them (`stiffmbs.solve.dynamics.Dynamics.assemble`)."""
+"""Tolerance and largest number of iterations of the projection, as in `stiffmbs.solve.dynamics.Dynamics.assemble`."""
 
 restart_view = view_of("Restart", RESTART)
 
 
 @compiled
 def brought_back(s, m, t):
-    """The state at hand on the constraints; 0 or a negative status."""
+    """Project the current state onto the constraints; 0 or a negative status."""
     return to_constraints(s, m, t, POSITION_TOLERANCE, MOST_MOVES) if s.n_c > 0 else 0
 
 
 @compiled
 def accelerated(s, m, t):
-    """New accelerations and multipliers of the state at hand; 0 or a negative status."""
+    """Compute accelerations and multipliers of the current state; 0 or a negative status."""
     status = consistent_accelerations(s, m, t)
     if status < 0:
         return status
@@ -37,8 +37,10 @@ def accelerated(s, m, t):
 
 
 def restart(t, end, restarts):
-    """Go from the state in the table at t to another instant, and put the state there into the table; OK, or another number
-    with the state as it was: where steps are many, an event is met, or anything fails."""
+    """Integrate from the state in the table at t to `end`, and store the result; return OK.
+
+    Too many steps, an event or a failure give another number, with the state unchanged.
+    """
     w = restart_view(restarts)
     b = start_view(w.start)
     m = dynamics_view(b.dynamics)

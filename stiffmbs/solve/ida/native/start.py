@@ -1,4 +1,4 @@
-"""A start of IDA from consistent values in one call: unknowns, relaxations, what Newton's iteration may leave, IDA itself."""
+"""Start of IDA from consistent values in one call: unknowns, relaxations, Newton tolerance and IDA itself."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ start_view = view_of("Start", START)
 
 @compiled
 def _fill_unknowns(w, s, e, y, yp):
-    """The unknowns and their derivatives from the state at hand, and the offsets of what moves with others."""
+    """Fill the unknowns and their derivatives from the current state, and the offsets of dependent coordinates."""
     for k in range(s.n_q):
         leader = w.leader[k]
         e.offset[k] = s.q[k] - (e.q_ratio[k] * s.q[leader] if leader >= 0 else 0.0)
@@ -48,7 +48,7 @@ def _fill_unknowns(w, s, e, y, yp):
 
 @compiled
 def _relax(w, s, t):
-    """`stiffmbs.solve.error_control.relaxation.relax` at the state at hand."""
+    """Apply `stiffmbs.solve.error_control.relaxation.relax` at the current state."""
     if s.n_c == 0:
         return
     values = evaluate(s, MOTION, t)
@@ -71,7 +71,7 @@ def _relax(w, s, t):
 
 @compiled
 def _largest_row_sum(w, s, values, count, source, row, scale):
-    """The largest sum of scaled magnitudes in a row of a matrix."""
+    """Return the largest row sum of scaled magnitudes of a matrix."""
     for k in range(s.n_u):
         w.sums[k] = 0.0
     for k in range(count):
@@ -86,7 +86,7 @@ def _largest_row_sum(w, s, values, count, source, row, scale):
 
 @compiled
 def _look_at_stiffness(w, s, t):
-    """Put `stiffmbs.solve.error_control.newton.stiffness_at` and `newton_tolerance` at the state at hand into the table."""
+    """Store `stiffmbs.solve.error_control.newton.stiffness_at` and `newton_tolerance` at the current state."""
     values = evaluate(s, TANGENT, t)
     w.of_positions = _largest_row_sum(w, s, values, w.n_f_q, w.f_q_source, w.f_q_row, w.f_q_scale)
     w.of_velocities = _largest_row_sum(w, s, values, w.n_f_u, w.f_u_source, w.f_u_row, w.f_u_scale)
@@ -97,7 +97,7 @@ def _look_at_stiffness(w, s, t):
 
 @compiled
 def begun(w, c, t):
-    """Start IDA at the unknowns that are prepared, as `stiffmbs.solve.ida.ida.NativeIda.begin` does; OK, or a flag below zero."""
+    """Start IDA at the prepared unknowns, as `stiffmbs.solve.ida.ida.NativeIda.begin`; OK or a negative flag."""
     call_int(w.set_newton, (c.memory, w.newton))
     flag = call_int(w.start_anew, (c.memory, t, c.y, c.yp))
     call_int(w.set_first_step, (c.memory, 0.0))
@@ -130,9 +130,9 @@ def begun(w, c, t):
 
 @compiled
 def prepared(w, s, m, e, c, t):
-    """Make ready for a start at the consistent state at hand, with its accelerations and multipliers; OK or a negative number.
+    """Prepare a start at the current consistent state, with its accelerations and multipliers; OK or a negative number.
 
-    Rates behind those of bodies are read from the terms of accelerations, which have to be those of this state.
+    The acceleration terms, which hold the rates of coordinates after those of bodies, must be those of this state.
     """
     for k in range(s.n_c):
         s.mu[k] = 0.0
@@ -150,14 +150,14 @@ def prepared(w, s, m, e, c, t):
 
 @compiled
 def keep_counters(w, c):
-    """Keep what IDA has counted, as its start sets that to zero."""
+    """Add IDA's counters to their sums before a start resets them."""
     add_counters(w.n_counters, w.counter, c.memory, w.count, w.counts)
 
 
 def start(t, counted, highest_order, table):
-    """Start IDA at consistent values that the state holds; OK, or a negative number where that is left to Python.
+    """Start IDA at the consistent values of the state; OK, or a negative number to leave the start to Python.
 
-    What IDA has counted is kept where `counted`.
+    If `counted` is nonzero, IDA's counters are kept.
     """
     w = start_view(table)
     m = dynamics_view(w.dynamics)

@@ -1,1 +1,1 @@
-"""Starts of IDA: at consistent values, behind events and breakpoints, and behind jumps of inputs."""
+"""Starts of IDA: at consistent values, after events and breakpoints, and after jumps of inputs."""

@@ -1,4 +1,4 @@
-"""IDA started anew behind an event or a breakpoint, from a state that need not be consistent, by one compiled call."""
+"""Restart of IDA after an event or a breakpoint, from a state that may be inconsistent, by one compiled call."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ _ANEW = Routine("stiffmbs.solve.ida.native.anew", "anew", "int32(float64, float6
 
 
 class Begun(NamedTuple):
-    """A start of IDA's; the state at hand is the one there.
+    """Result of a restart; the current state is that of the restart.
 
     Attributes
     ----------
     t : float
-        Its time, s: that of the state given, or a little behind it.
+        Time of the restart, s: that of the given state, or slightly later.
     jump : float
-        Largest change of a velocity from the state given, m/s or rad/s.
+        Largest change of a velocity from the given state, m/s or rad/s.
     meets : bool
-        Whether event functions that follow velocities have other signs nearby: forces may drive the motion back to their zeros.
+        True if event functions that depend on velocities change sign nearby: forces may drive the motion back.
     """
 
     t: float
@@ -38,23 +38,23 @@ class Begun(NamedTuple):
 
 
 class StartsAnew:
-    """Compiled starts in the middle of a run.
+    """Compiled restarts within a run.
 
     Parameters
     ----------
     starts : Starts
-        Of IDA.
+        Compiled starts of IDA.
     dynamics : Dynamics
     least : float
-        Least part of the error tolerance that is left of states within long steps.
+        Least part of the error tolerance that may remain in states within long steps.
 
     Attributes
     ----------
     starts : Starts
     may_pass : bool
-        Whether breakpoints may be passed in one call: no event functions are looked at, and no forces follow multipliers.
+        True if one call may pass several breakpoints: no event functions, and no forces that depend on multipliers.
     table : int
-        Its address, for compiled code (`stiffmbs.solve.native.tables.steps.ANEW`).
+        Address of the memory of compiled code (`stiffmbs.solve.native.tables.steps.ANEW`).
     """
 
     def __init__(self, starts: Starts, dynamics: Dynamics, least: float) -> None:
@@ -78,7 +78,7 @@ class StartsAnew:
     def begin(
         self, state: tuple[np.ndarray, np.ndarray], t: float, ahead: float, counted: bool, highest_order: int
     ) -> Begun | None:
-        """Start at consistent values behind a state.
+        """Restart at consistent values after a state.
 
         Parameters
         ----------
@@ -86,15 +86,15 @@ class StartsAnew:
         t : float
             s.
         ahead : float
-            How far the motion may be taken for straight, s, past events that come with the one at t; 0 for not at all.
+            Time of extrapolation past events simultaneous with the one at t, s; 0 for none.
         counted : bool
-            Whether what IDA has counted belongs to this run.
+            True if IDA's counters belong to this run.
         highest_order : int
 
         Returns
         -------
         Begun or None
-            None where there are no consistent values, or a force is beyond its limits: nothing is started then.
+            None, without a start, if there are no consistent values or a force is beyond its limits.
         """
         self._state.q[:], self._state.u[:] = state
         if _ANEW.short_call(t, ahead, counted, highest_order, self.table) < 0:
@@ -104,12 +104,12 @@ class StartsAnew:
 
     @property
     def t(self) -> float:
-        """Time of the last start, s."""
+        """Return the time of the last start, s."""
         return float(self._cells["t"])
 
     @property
     def passed(self) -> tuple[int, int]:
-        """How many breakpoints the last call has passed, and its steps before the last of them."""
+        """Return the number of breakpoints passed by the last call, and its steps before the last of them."""
         return int(self._cells["passed"]), int(self._cells["steps_before"])
 
 

@@ -1,4 +1,4 @@
-"""IDA started anew at one instant after the other, as inputs jump: one compiled call for each."""
+"""Repeated restarts of IDA where inputs jump, one compiled call for each interval."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ _RESTART = Routine("stiffmbs.solve.ida.native.restart", "restart", "int32(float6
 
 
 class Restarts:
-    """The present state, and a way to later ones that forgets what was behind it.
+    """Current state, with integration to later times without history.
 
     Parameters
     ----------
     starts : Starts
-        Of IDA.
+        Compiled starts of IDA.
     present : tuple of ndarrays, shapes (n_q,), (n_u,)
-        Memory of the present q and u, which `advance` starts from and writes.
+        Memory of the current q and u, read and written by `advance`.
 
     Attributes
     ----------
     table : ndarray of int
-        For compiled code (`stiffmbs.solve.native.tables.steps.RESTART`).
+        Table for compiled code (`stiffmbs.solve.native.tables.steps.RESTART`).
     """
 
     def __init__(self, starts: Starts, present: tuple[np.ndarray, np.ndarray]) -> None:
@@ -38,12 +38,11 @@ class Restarts:
 
     @staticmethod
     def serve(system: System, connection: Connection) -> bool:
-        """Whether a compiled start does all that one needs: no event functions to look at, no algebraic states or turns to be counted
-        anew, no threads of a linear solver to hold back."""
+        """Return True if there are no event functions, algebraic states, revolution counters or solver threads."""
         counted = system.n_event_functions or system.n_counters or len(system.algebraic_coordinates)
         return not counted and connection.on_one_thread
 
     def advance(self, t: float, end: float) -> bool:
-        """Go on from the state at t, s, made consistent, to a later time; False, with the state as it was, where that takes a run."""
+        """Integrate from the state at t, s, to a later time; False, with the state unchanged, if it needs a run."""
         done: bool = self._call(t, end, self._at) == 0
         return done

@@ -1,4 +1,4 @@
-"""IDA started, or started anew, from consistent values by one compiled call."""
+"""Start or restart of IDA from consistent values by one compiled call."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ FUNCTIONS = {
     "set_growth": "IDASetEtaFixedStepBounds", "set_highest_order": "IDASetMaxOrd",
 }  # fmt: skip
 OF_STIFFNESS = "of_positions", "of_velocities"
-"""Cells with what makes a `Stiffness`."""
+"""Cells of the fields of a `Stiffness`."""
 
 
 class Starts:
@@ -39,16 +39,16 @@ class Starts:
     dynamics : Dynamics
     equations : Equations
     connection : Connection
-        To IDA.
+        Connection to IDA.
     statistics : Statistics
-        Of IDA.
+        Counters of IDA.
     settings : RunSettings
     control : ErrorControl
 
     Attributes
     ----------
     table : ndarray of int
-        For compiled code (`stiffmbs.solve.native.tables.steps.START`).
+        Table for compiled code (`stiffmbs.solve.native.tables.steps.START`).
     """
 
     def __init__(
@@ -72,11 +72,11 @@ class Starts:
 
     @staticmethod
     def serve(dynamics: Dynamics) -> bool:
-        """Whether a compiled start does all that one needs: rates of algebraic states follow from more than the state."""
+        """Return True if compiled starts apply; rates of algebraic states depend on more than the state."""
         return not len(dynamics.system.algebraic_coordinates)
 
     def begin(self, start: InitialValues, t: float, counted: bool, highest_order: int) -> bool:
-        """Start at consistent values; False, with nothing started, where the stiffness there is not finite, or IDA refuses.
+        """Start at consistent values; False, without a start, if the stiffness is not finite or IDA reports an error.
 
         Parameters
         ----------
@@ -84,7 +84,7 @@ class Starts:
         t : float
             s.
         counted : bool
-            Whether what IDA has counted belongs to this run.
+            True if IDA's counters belong to this run.
         highest_order : int
         """
         state = self._state
@@ -93,13 +93,13 @@ class Starts:
         return begun
 
     def found(self) -> tuple[Stiffness, float]:
-        """The stiffness at the last start and the part of the tolerance that Newton's iteration may leave."""
+        """Return the stiffness at the last start, and the part of the tolerance that Newton's iteration may leave."""
         cells = self._cells
         return Stiffness(*(float(cells[name]) for name in OF_STIFFNESS)), float(cells["newton"])
 
 
 def _places(equations: Equations) -> dict[str, Any]:
-    """Which coordinates and velocities are unknowns, and where they stand."""
+    """Return the coordinates and velocities that are unknowns, and their positions in the vector."""
     coordinates = equations.coordinates
     found: dict[str, Any] = {"leader": _integers(coordinates.independent_of)}
     for name, independent in (("q", coordinates.independent), ("u", coordinates.independent_u)):
@@ -113,7 +113,7 @@ def _places(equations: Equations) -> dict[str, Any]:
 
 
 def _creeping(dynamics: Dynamics, settings: RunSettings) -> dict[str, Any]:
-    """The entries that relaxations follow from, and where these stand among the values of each term set."""
+    """Return the entries that determine relaxations, and the positions of relaxations in each term set."""
     system = dynamics.system
     positions, velocities = system.term("motion", "C_q"), system.term("motion", "J")
     return {
@@ -128,7 +128,7 @@ def _creeping(dynamics: Dynamics, settings: RunSettings) -> dict[str, Any]:
 
 
 def _stiff(dynamics: Dynamics) -> dict[str, Any]:
-    """The entries of the derivatives of forces."""
+    """Return the entries of the derivatives of forces."""
 
     def of(name: str, sums: RowSums) -> dict[str, Any]:
         return {

@@ -1,15 +1,15 @@
-"""Sparse LU by dense blocks of bodies and joints along a fixed order: a linear solver for IDA.
+"""Linear solver for IDA: sparse LU by dense blocks of bodies and joints in a fixed order.
 
-Each node's block is factored with pivots from its own rows (`stiffmbs.solve.linear.native.node_factors`).  What its
-elimination takes out of later blocks is a list of small dense products (`stiffmbs.solve.linear.block_updates`).  The order
-alone keeps blocks away from singular ones (`stiffmbs.solve.linear.elimination_order`), so the factors are tried: on a state of
-the system's own size, by the residual that they leave.  Where that is too large, solutions are refined once, or factors with
-pivots from all rows take their place (`stiffmbs.solve.native.paired_columns`).  While all pivots stay near those of the last trial,
-no other is made.
+Each supernode is factored with pivots from its own rows (`stiffmbs.solve.linear.native.node_factors`).  Updates of
+later blocks are lists of small dense products (`stiffmbs.solve.linear.block_updates`).  Only the order avoids singular
+blocks (`stiffmbs.solve.linear.elimination_order`), so a trial solution checks the factors by its residual.  If that is
+too large, solutions are refined once, or pivoting over all rows replaces these factors
+(`stiffmbs.solve.native.paired_columns`).  No new trial is made while all pivots stay close to those of the last one.
 
 References
 ----------
-Duff and Reid, The multifrontal solution of unsymmetric sets of linear equations, SIAM J. Sci. Stat. Comput. 5 (1984) 633-641.
+Duff and Reid, The multifrontal solution of unsymmetric sets of linear equations, SIAM J. Sci. Stat. Comput. 5 (1984)
+633-641.
 """
 
 from __future__ import annotations
@@ -27,18 +27,18 @@ from stiffmbs.solve.native.tables.linear import BLOCK_LU
 
 LU = list(BLOCK_LU).index("lu")
 WAITS_FOR = 20
-"""Factorisations with pivots before the next attempt without, at the most: one after the first refusal, two after the second, and so on."""
+"""Largest number of factorisations with pivoting before the next attempt without; it grows by one with each refusal."""
 CACHE_LINE = 64
-"""`stiffmbs.solve.linear.blocks.CACHE_LINE`, bytes"""
+"""Equal to `stiffmbs.solve.linear.blocks.CACHE_LINE`, bytes."""
 SHAPES = 16
-"""`stiffmbs.solve.linear.block_updates.SHAPES`"""
+"""Length of `stiffmbs.solve.linear.block_updates.SHAPES`."""
 
 block_view = view_of("BlockLU", BLOCK_LU)
 
 
 @compiled
 def _taken_out(s, k):
-    """Take out of later blocks what the elimination of node k makes, shape by shape."""
+    """Update later blocks by the elimination of supernode k, shape by shape."""
     depth = s.size[k]
     at = s.update_end[SHAPES * k - 1] if k > 0 else 0
     for kind in range(2):
@@ -59,7 +59,7 @@ def _taken_out(s, k):
 
 @compiled
 def _eliminated(s, f):
-    """Factors of the matrix in `f`."""
+    """Factor the matrix in `f`."""
     panels = floats(s.panels)
     for p in range(s.n_lu):
         panels[p] = 0.0
@@ -74,7 +74,7 @@ def _eliminated(s, f):
 
 @compiled
 def _forget(s):
-    """Begin a run as if there had been none before."""
+    """Reset the solver for a new run."""
     s.waits = 0
     s.serves = 0
     s.refused = 0
@@ -85,14 +85,14 @@ def _forget(s):
 
 @compiled
 def _has_pivots(s):
-    """Whether the routines with pivots are at hand; few runs need them, so they are compiled when first asked for."""
+    """Return True if the routines with pivoting are available; they are compiled at the first request."""
     if s.solve_pivots == 0:
         call_int(s.compile_pivots, ())
     return s.solve_pivots != 0
 
 
 def setup(solver, matrix):
-    """SUNLinSolSetup: factors without pivots where they can be trusted, else with pivots."""
+    """Set up the linear solver (SUNLinSolSetup): factors without pivoting if trusted, otherwise with pivoting."""
     table = ints(solver[CONTENT])
     begun = block_view(table)
     if not begun.ready:
@@ -102,7 +102,7 @@ def setup(solver, matrix):
             begun.last_flag = FULL
             return int32(FAILED)
     s = block_view(table)  # the memory may have moved
-    s.panels = table[LU] + (-table[LU]) % CACHE_LINE  # quads that lie in two lines are read far more slowly
+    s.panels = table[LU] + (-table[LU]) % CACHE_LINE  # access to quads across lines is slow
     s.pivoted = 0
     if s.waits > 0:
         s.waits -= 1
@@ -123,7 +123,7 @@ def setup(solver, matrix):
 
 
 def solve(solver, matrix, x, b, tolerance):
-    """SUNLinSolSolve: x = A^-1 b."""
+    """Solve A x = b (SUNLinSolSolve)."""
     s = block_view(ints(solver[CONTENT]))
     if s.pivoted:
         return int32(call_int(s.solve_pivots, (s.with_pivots, matrix, x, b, tolerance)))

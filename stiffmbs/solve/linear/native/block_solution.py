@@ -1,4 +1,4 @@
-"""Solutions by the factors of a block LU without pivots from other nodes: products of blocks and vectors alone."""
+"""Solution by the factors of a block LU with pivots within supernodes: products of blocks and vectors."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from stiffmbs.compile.machine.native.quads import add_products, plus_product, qu
 
 @compiled
 def panel(s, at):
-    """The numbers from a place in the panels on."""
+    """Return the panels from a position on."""
     return shifted(floats(s.panels), at)
 
 
 @compiled
 def _forward(s, k):
-    """Multiply node k of x by L^-1 P, and take it out of later nodes."""
+    """Multiply supernode k of x by L^-1 P, and update later supernodes."""
     size, stride = s.size[k], s.down_width[k]
     down = panel(s, s.start[2 * k])
     lower = panel(s, s.start[2 * k + 1] + size * s.right_width[k])
@@ -35,7 +35,7 @@ def _forward(s, k):
 
 @compiled
 def _backward(s, k):
-    """Complete node k of x by what is known of later nodes, and multiply it by U^-1."""
+    """Update supernode k of x by later supernodes, and multiply it by U^-1."""
     size, stride, width = s.size[k], s.down_width[k], s.right_width[k]
     down, right = panel(s, s.start[2 * k]), panel(s, s.start[2 * k + 1])
     own = shifted(s.x, s.node_start[k])
@@ -57,7 +57,7 @@ def _backward(s, k):
 
 @compiled
 def solved(s, of):
-    """x = A^-1 b by the factors without pivots, at the places of the nodes."""
+    """Compute x = A^-1 b by the factors, at the positions of the supernodes."""
     for p in range(s.node_start[s.n_nodes]):
         s.x[p] = 0.0
     for j in range(s.n):

@@ -1,8 +1,8 @@
-"""Trials of the factors of a block LU: what they leave of a state of the system's own size.
+"""Validation of the factors of a block LU by the residual of a trial solution.
 
 References
 ----------
-Oettli and Prager, Compatibility of approximate solution of linear equations, Numer. Math. 6 (1964) 405-409: the residual's measure.
+Oettli and Prager, Compatibility of approximate solution of linear equations, Numer. Math. 6 (1964) 405-409: residual.
 """
 
 from __future__ import annotations
@@ -11,32 +11,31 @@ from stiffmbs.compile.machine.native.access import compiled, factors_view
 from stiffmbs.solve.linear.native.block_solution import solved
 
 LARGEST_RESIDUAL, REFINABLE = 1e-9, 1e-5
-"""Part of the sizes of a row's terms that a trial may leave, and from which on one refinement of each solution is not tried: it leaves about
-the square.  Fixed orders leave 1e-13 to 1e-15, in long steps of a car on bushings of 1e9 N/m up to 1e-9."""
+"""Allowed residual of a trial, relative to the terms of a row, and largest residual that a refinement can correct."""
 CHANGED = 8.0
-"""Factor by which the size of a pivot differs from that of the last trial when the next is made; by 2 they differ where rows of a block change places."""
+"""Factor by which a pivot must differ from that of the last trial to cause another trial."""
 SERVES = 50
-"""Factorisations after which it is made in any case."""
+"""Factorisations after which a trial is always made."""
 COORDINATE, VELOCITY = 1, 2
 """Kinds of unknowns; multipliers are 0."""
 
 
 @compiled
 def _near_tried(s):
-    """Whether no pivot has changed much since the last trial."""
+    """Return True if no pivot has changed much since the last trial."""
     if s.serves == 0:
         return False
     s.serves -= 1
     far = 0
     for k in range(s.n):
-        ratio = abs(s.pivot[k] * s.tried[k])  # of rows that are as large another may be taken, with another sign
+        ratio = abs(s.pivot[k] * s.tried[k])  # sign ignored: equally large rows may be exchanged
         far += 0 if 1.0 / CHANGED < ratio < CHANGED else 1
     return far == 0
 
 
 @compiled
 def _sized(s, f):
-    """A state of the system's own size in `trial`: coordinates of 1, velocities of the rate, multipliers that matter beside them."""
+    """Scale the trial solution: coordinates of 1, velocities of the rate, multipliers of comparable effect."""
     rate = 0.0
     for k in range(s.n_diagonal):
         rate = max(rate, abs(f.a[s.diagonal[k]]))
@@ -58,7 +57,7 @@ def _sized(s, f):
 
 @compiled
 def _multiply(s, f, by):
-    """A times a vector, in `product`, and the sizes of the terms of each row in `terms`."""
+    """Compute A times a vector in `product`, and the sums of the magnitudes of each row's terms in `terms`."""
     for i in range(f.n):
         s.product[i] = 0.0
         s.terms[i] = 0.0
@@ -71,7 +70,7 @@ def _multiply(s, f, by):
 
 @compiled
 def trusted(s, f):
-    """Whether the factors leave a small residual; by a trial where pivots have changed."""
+    """Return True if the factors leave a small residual; validated by a trial if pivots have changed."""
     if _near_tried(s):
         return True
     _sized(s, f)
@@ -90,7 +89,7 @@ def trusted(s, f):
 
 @compiled
 def _left_after_solution(s, f):
-    """Take what the factors make of `product` from the trial; the largest residual that stays, in units of what is allowed."""
+    """Subtract the solution for `product` from the trial; return the largest residual relative to the allowed one."""
     solved(s, s.product)
     for j in range(f.n):
         s.trial[j] -= s.x[s.place[j]]
@@ -99,13 +98,13 @@ def _left_after_solution(s, f):
     for i in range(f.n):
         left = 0.0 if s.product[i] == 0.0 else abs(s.product[i]) / s.allowed[i]
         if not left <= largest:
-            largest = left if left < float("inf") else float("inf")  # also where it is no number
+            largest = left if left < float("inf") else float("inf")  # also for NaN
     return largest
 
 
 @compiled
 def refine(s, x, b):
-    """Add to a solution what the factors make of its residual."""
+    """Refine a solution once by its residual."""
     _multiply(s, factors_view(s.factors), x)
     for i in range(s.n):
         s.product[i] = b[i] - s.product[i]

@@ -1,12 +1,12 @@
-"""Factors of one node of a block LU (`stiffmbs.solve.linear.native.block_lu`), with pivots from its own rows.
+"""Factors of one supernode of a block LU (`stiffmbs.solve.linear.native.block_lu`), with pivots from its own rows.
 
-The node's block becomes U^-1, its rows right of it L^-1 P times what they were, and later rows times U^-1.  Bodies on stiff bushings have
-blocks that are far softer in some directions than in others.  Products with triangular inverses leave residuals near rounding there.
-The inverse of the whole block would leave some 10 000 times more: what is soft in it cancels where it meets what is stiff.
+Its block is replaced by U^-1, its rows right of it are multiplied by L^-1 P, and later rows by U^-1.  Stiff bushings
+make blocks ill-conditioned.  Products with triangular inverses then still leave residuals near rounding, unlike
+products with the inverse of the whole block.
 
 References
 ----------
-Du Croz and Higham, Stability of methods for matrix inversion, IMA J. Numer. Anal. 12 (1992) 1-19: triangular inverses and residuals.
+Du Croz and Higham, Stability of methods for matrix inversion, IMA J. Numer. Anal. 12 (1992) 1-19.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from stiffmbs.compile.machine.native.quads import add_products, plus_product, pr
 
 @compiled
 def _largest(line, k, size):
-    """Where the largest of a line's numbers from the k-th on stands."""
+    """Return the index of the largest magnitude in a line from the k-th number on."""
     largest = k
     for r in range(k + 1, size):
         if abs(line[r]) > abs(line[largest]):
@@ -35,7 +35,7 @@ def _exchange(line, a, b):
 
 @compiled
 def _reduced(s, line, by, first, width):
-    """Add to a line so many times the multipliers of a pivot."""
+    """Add a multiple of a pivot's multipliers to a line."""
     factor = spread(by)
     for at in range(first, width, 4):
         set_quad(line, at, plus_product(quad(line, at), factor, quad(s.scratch, at)))
@@ -43,7 +43,7 @@ def _reduced(s, line, by, first, width):
 
 @compiled
 def _triangular(s, d, stride, t, width, size, first):
-    """L U of a node's columns, each pivot the largest of its own rows, which are noted; `t` becomes L^-1 P, later rows times U^-1."""
+    """Factor a supernode's columns as L U with row pivoting; `t` becomes L^-1 P, later rows are multiplied by U^-1."""
     for k in range(size):
         s.order[k] = k
     for k in range(size):
@@ -82,7 +82,7 @@ def _triangular(s, d, stride, t, width, size, first):
 
 @compiled
 def _inverted(s, d, stride, width, size):
-    """U^-1 in the place of U, which stands above the diagonal of a node's columns."""
+    """Replace U, above the diagonal of a supernode's columns, by its inverse."""
     for j in range(size):
         line = shifted(d, j * stride)
         inverse = 1.0 / line[j]
@@ -98,7 +98,7 @@ def _inverted(s, d, stride, width, size):
 
 @compiled
 def add_two_quads(rows, into, stride, a, a_stride, b, b_stride, depth):
-    """Products for one to four rows of two quads."""
+    """Add products for one to four rows of two quads."""
     if rows == 4:
         add_products(4, 2, into, stride, a, a_stride, b, b_stride, depth)
     elif rows == 3:
@@ -111,7 +111,7 @@ def add_two_quads(rows, into, stride, a, a_stride, b, b_stride, depth):
 
 @compiled
 def add_one_quad(rows, into, stride, a, a_stride, b, b_stride, depth):
-    """Products for one to four rows of a quad."""
+    """Add products for one to four rows of one quad."""
     if rows == 4:
         add_products(4, 1, into, stride, a, a_stride, b, b_stride, depth)
     elif rows == 3:
@@ -124,7 +124,7 @@ def add_one_quad(rows, into, stride, a, a_stride, b, b_stride, depth):
 
 @compiled
 def _multiplied(s, d, stride, u, width, size):
-    """Multiply a node's rows right of its diagonal block by L^-1 P, `d`, and by -1."""
+    """Multiply a supernode's rows right of its diagonal block by L^-1 P, `d`, and by -1."""
     zero = spread(0.0)
     minus = spread(-1.0)
     for column in range(0, width, 8):
@@ -150,7 +150,7 @@ def _multiplied(s, d, stride, u, width, size):
 
 @compiled
 def factor_node(s, k, down, right, first):
-    """Factor node k, whose panels begin where they are told; its pivots are noted from the first unknown on."""
+    """Factor supernode k, given its panels; its pivots are stored from unknown `first` on."""
     size, width, stride = s.size[k], s.node_start[k + 1] - s.node_start[k], s.down_width[k]
     lower = shifted(right, size * s.right_width[k])
     _triangular(s, down, stride, lower, width, size, first)

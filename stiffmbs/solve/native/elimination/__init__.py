@@ -1,1 +1,1 @@
-"""J M^-1 J^T formed and factored: by dense blocks of joints, or entry by entry."""
+"""Assembly and factorisation of J M^-1 J^T, by dense blocks of joints, pin blocks or entries."""

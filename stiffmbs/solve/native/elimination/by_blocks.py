@@ -1,7 +1,7 @@
 """J M^-1 J^T by dense blocks: one for each joint, and one for two joints of a body.
 
-Joints are eliminated one after the other along the structure (`stiffmbs.solve.linear.joint_blocks`): the effort grows as the number of
-joints in trees, as that of the articulated-body algorithm does (Featherstone, Rigid Body Dynamics Algorithms, 2008, ch. 7).
+Joints are eliminated in a fixed order (`stiffmbs.solve.linear.joint_blocks`).  For trees, the cost is linear in the
+number of joints, as for the articulated-body algorithm (Featherstone, Rigid Body Dynamics Algorithms, 2008, ch. 7).
 """
 
 from __future__ import annotations
@@ -35,14 +35,14 @@ blocks_view = view_of("BlockElimination", BLOCK_ELIMINATION)
 
 @compiled
 def _clear(numbers, count):
-    """Set so many numbers, a multiple of four, to zero."""
+    """Set the first `count` numbers, a multiple of four, to zero."""
     for k in range(0, count, 4):
         set_quad(numbers, k, spread(0.0))
 
 
 @compiled
 def _assemble(r, b, values):
-    """S = j j^T by blocks with j = J M^-1/2, a = M^-1/2 f and x = j a - gamma."""
+    """Assemble S = j j^T by blocks with j = J M^-1/2, and x = j a - gamma with a = M^-1/2 f."""
     _clear(b.x, b.n_x)
     for k in range(b.n_gamma):
         b.x[b.gamma_place[k]] -= values[b.gamma_source[k]]
@@ -74,7 +74,7 @@ def _assemble(r, b, values):
 
 @compiled
 def _factored_block(size, a, stride, pivot):
-    """L D L^T of a node's block in its place, with 1/D on the diagonal; notes the pivots."""
+    """Factor a joint's block in place as L D L^T, with 1/D on the diagonal; store the pivots."""
     if size == 5:
         factor_symmetric(5, a, stride, pivot)
     elif size == 2:
@@ -98,7 +98,7 @@ def _factored_block(size, a, stride, pivot):
 
 @compiled
 def _eliminated_rows(size, block, stride, rows, scaled, width):
-    """V = L^-1 U right of a node's block, and D^-1 V, a quad wide."""
+    """Compute V = L^-1 U right of a joint's block, and D^-1 V, for one quad of columns."""
     if size == 5:
         eliminate_rows(5, block, stride, rows, scaled, width)
     elif size == 2:
@@ -118,7 +118,7 @@ def _eliminated_rows(size, block, stride, rows, scaled, width):
 
 @compiled
 def _eliminated_vector(size, block, stride, x, scaled):
-    """x = L^-1 x of a node, and D^-1 L^-1 x."""
+    """Compute x = L^-1 x of a joint, and D^-1 L^-1 x."""
     if size == 5:
         eliminate_vector(5, block, stride, x, scaled)
     elif size == 2:
@@ -136,7 +136,7 @@ def _eliminated_vector(size, block, stride, x, scaled):
 
 @compiled
 def _completed_vector(size, block, stride, x):
-    """x = L^-T x of a node."""
+    """Compute x = L^-T x of a joint."""
     if size == 5:
         complete_vector(5, block, stride, x)
     elif size == 2:
@@ -153,14 +153,14 @@ def _completed_vector(size, block, stride, x):
 
 @compiled
 def _forward(b, p, first):
-    """Eliminate a node of x: take it out of those whose places stand from `first` on in `right`."""
+    """Eliminate a joint from x, and update those listed from `first` on in `right`."""
     _eliminated_vector(p[0], shifted(b.blocks, p[2]), p[3], shifted(b.x, p[6]), shifted(b.y, p[6]))
     _carry(b, p, first)
 
 
 @compiled
 def _carry(b, p, first):
-    """Take an eliminated node of x out of those whose places stand from `first` on in `right`."""
+    """Update the joints listed from `first` on in `right` by an eliminated joint."""
     size, stride = p[0], p[3]
     block, y = shifted(b.blocks, p[2]), shifted(b.y, p[6])
     rows = shifted(block, p[1])
@@ -176,7 +176,7 @@ def _carry(b, p, first):
 
 @compiled
 def _backward(b):
-    """Complete x from the last node to the first."""
+    """Substitute x from the last joint to the first."""
     for k in range(b.n_nodes - 1, -1, -1):
         p = shifted(b.node, NODE * k)
         size, width = p[0], p[5]
@@ -192,7 +192,7 @@ def _backward(b):
 
 @compiled
 def _factored(r, b):
-    """Blocks eliminated one after the other, and x with them; whether all pivots kept enough digits."""
+    """Eliminate all blocks, and x with them; return True if all pivots are accurate."""
     r.kept = 1.0
     at = 0
     first_right = 0
@@ -235,7 +235,7 @@ def _factored(r, b):
 
 @compiled
 def _take_reactions(r, b):
-    """a -= j^T x."""
+    """Compute a -= j^T x."""
     take_side_reactions(r, b)
     for k in range(b.n_singles):
         p = shifted(b.single, SINGLE * k)
@@ -253,7 +253,7 @@ def _take_reactions(r, b):
 
 @compiled
 def accelerate_by_blocks(r, b, s, values):
-    """From M^-1/2 f in r.a, M^1/2 u' there and multipliers in lam; whether that could be done."""
+    """Compute M^1/2 u' in r.a from M^-1/2 f there, and multipliers in lam; return True if successful."""
     _assemble(r, b, values)
     for k in range(b.n_nodes):
         p = shifted(b.node, NODE * k)
@@ -270,7 +270,7 @@ def accelerate_by_blocks(r, b, s, values):
 
 @compiled
 def move_by_blocks(r, b, s, violations):
-    """In r.a M^1/2 times the smallest change of velocities that closes violations."""
+    """Compute in r.a M^1/2 times the minimum-norm change of velocities that closes violations."""
     _clear(b.x, b.n_x)
     for k in range(s.n_c):
         if b.place[k] >= 0:

@@ -1,4 +1,4 @@
-"""J M^-1 J^T and its factors entry by entry, by flat lists: for planar joints, whose blocks are smaller than quads."""
+"""J M^-1 J^T and its factors by entries in flat lists, for planar joints, whose blocks are smaller than quads."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ entries_view = view_of("EntryElimination", ENTRY_ELIMINATION)
 
 @compiled
 def _assemble(r, e, values):
-    """S = j j^T by slots with j = J M^-1/2, and b = j a - gamma."""
+    """Assemble S = j j^T by slots with j = J M^-1/2, and b = j a - gamma."""
     for k in range(e.n):
         e.b[k] = 0.0
     for k in range(e.n_gamma):
@@ -34,7 +34,7 @@ def _assemble(r, e, values):
 
 @compiled
 def _factored(r, e):
-    """S = L D L^T column by column, and b overwritten by D^-1 L^-1 b on the way; whether all pivots kept enough digits.
+    """Factor S = L D L^T by columns, and overwrite b by D^-1 L^-1 b; return True if all pivots are accurate.
 
     The diagonal slots of `s` receive 1/D.
     """
@@ -64,7 +64,7 @@ def _factored(r, e):
 
 @compiled
 def _forward(e):
-    """b overwritten by D^-1 L^-1 b."""
+    """Overwrite b by D^-1 L^-1 b."""
     for k in range(e.n):
         b = e.b[k]
         for p in range(e.column_start[k] + 1, e.column_start[k + 1]):
@@ -74,7 +74,7 @@ def _forward(e):
 
 @compiled
 def _backward(e):
-    """b overwritten by L^-T b."""
+    """Overwrite b by L^-T b."""
     for k in range(e.n - 1, -1, -1):
         value = e.b[k]
         for p in range(e.column_start[k] + 1, e.column_start[k + 1]):
@@ -84,7 +84,7 @@ def _backward(e):
 
 @compiled
 def accelerate_by_entries(r, e, s, values):
-    """From M^-1/2 f in r.a, M^1/2 u' there and multipliers in lam; whether that could be done."""
+    """Compute M^1/2 u' in r.a from M^-1/2 f there, and multipliers in lam; return True if successful."""
     _assemble(r, e, values)
     if not _factored(r, e):
         return False
@@ -98,7 +98,7 @@ def accelerate_by_entries(r, e, s, values):
 
 @compiled
 def move_by_entries(r, e, s, violations):
-    """In r.a M^1/2 times the smallest change of velocities that closes violations."""
+    """Compute in r.a M^1/2 times the minimum-norm change of velocities that closes violations."""
     for k in range(s.n_c):
         if e.at_lam[k] >= 0:
             e.b[e.at_lam[k]] = violations[k]

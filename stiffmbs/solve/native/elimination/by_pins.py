@@ -1,7 +1,8 @@
-"""J M^-1 J^T of planar pins: blocks of two equations, whose entries stand where a point of one body meets that of another.
+"""J M^-1 J^T of planar revolute joints, by blocks of two equations.
 
-A pin's rows of J are (p, 0, a) and (0, r, b) for the velocities of each of its two bodies.  The effort grows as the number of pins in
-trees, as that of the articulated-body algorithm does (Featherstone, Rigid Body Dynamics Algorithms, 2008, ch. 7).
+The rows of a joint in J are (p, 0, a) and (0, r, b) for the velocities of each of its two bodies.  For trees, the cost
+is linear in the number of joints, as for the articulated-body algorithm (Featherstone, Rigid Body Dynamics
+Algorithms, 2008, ch. 7).
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ pins_view = view_of("PinElimination", PIN_ELIMINATION)
 
 @compiled
 def _assemble(r, e, values):
-    """W = J M^-1, blocks of J W^T, and x = W f - gamma with the forces f in r.a."""
+    """Assemble W = J M^-1, the blocks of J W^T, and x = W f - gamma with the forces f in r.a."""
     for k in range(e.n):
         pin, m, w = shifted(e.pin, PIN * k), shifted(e.inverse, 6 * k), shifted(e.w, 8 * k)
         first, second = shifted(values, pin[0]), shifted(values, pin[1])
@@ -53,10 +54,10 @@ def _assemble(r, e, values):
 
 @compiled
 def _factored(r, e):
-    """Blocks eliminated one after the other, and x with them to D^-1 L^-1 x; whether all pivots kept enough digits.
+    """Eliminate all blocks, and x with them to D^-1 L^-1 x; return True if all pivots are accurate.
 
-    Each block on the diagonal is overwritten by its own 1/D and L, and `scaled` receives -D^-1 L^-1 times those beside it.  (Inverses of
-    blocks would take less, but lose digits where a body is far lighter than others.)
+    Each diagonal block is overwritten by its 1/D and L; `scaled` receives -D^-1 L^-1 times the blocks right of it.
+    Inverses of blocks would be less expensive, but lose digits for very light bodies.
     """
     r.kept = 1.0
     at = 0
@@ -70,7 +71,7 @@ def _factored(r, e):
         if not kept and not keeps_digits(r, determinant / xx, diagonal[1]):
             return False
         first = 1.0 / xx
-        second = xx * (1.0 / determinant)  # beside the other division, which takes as long
+        second = xx * (1.0 / determinant)  # in parallel with the other division
         lower = xy * first
         x0, x1 = x[0], plus_product(x[1], -lower, x[0])
         own[0], own[1], own[2] = first, lower, second
@@ -104,7 +105,7 @@ def _factored(r, e):
 
 @compiled
 def _forward(e):
-    """x overwritten by D^-1 L^-1 x."""
+    """Overwrite x by D^-1 L^-1 x."""
     for k in range(e.n):
         own, x = shifted(e.block, 4 * k), shifted(e.x, 2 * k)
         x0, x1 = x[0], x[1] - own[1] * x[0]
@@ -117,7 +118,7 @@ def _forward(e):
 
 @compiled
 def _backward(r, e):
-    """x overwritten by L^-T x, and W^T x taken out of r.a."""
+    """Overwrite x by L^-T x, and subtract W^T x from r.a."""
     for k in range(e.n - 1, -1, -1):
         x, pin, w = shifted(e.x, 2 * k), shifted(e.pin, PIN * k), shifted(e.w, 8 * k)
         x0, x1 = x[0], x[1]
@@ -139,14 +140,14 @@ def _backward(r, e):
 
 @compiled
 def _clear_ground(r):
-    """No force acts on the ground, which stands behind all bodies."""
+    """Clear the force on the ground, which follows all bodies."""
     for k in range(r.n_u, r.n_u + 3):
         r.a[k] = 0.0
 
 
 @compiled
 def accelerate_by_pins(r, e, s, values):
-    """From f in r.a, u' there and multipliers in lam; whether that could be done."""
+    """Compute u' in r.a from f there, and multipliers in lam; return True if successful."""
     _clear_ground(r)
     _assemble(r, e, values)
     if not _factored(r, e):
@@ -162,7 +163,7 @@ def accelerate_by_pins(r, e, s, values):
 
 @compiled
 def move_by_pins(r, e, violations):
-    """In r.a the smallest change of velocities that closes violations."""
+    """Compute in r.a the minimum-norm change of velocities that closes violations."""
     _clear_ground(r)
     for k in range(e.n):
         row = e.pin[PIN * k + 8]

@@ -1,4 +1,4 @@
-"""Products of parts of blocks, by their shapes: each is written out for itself."""
+"""Products of parts of blocks, unrolled for each shape."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from stiffmbs.compile.machine.native.quads import add_products, take_products
 
 @compiled
 def formed(shape, into, stride, a, a_stride, b, b_stride):
-    """into += a^T b over three velocities, for lines of a shape: twice the number of lines, and one less where it is one quad wide, not two."""
+    """Compute into += a^T b over three velocities; the shape is twice the lines, minus one for a single quad."""
     if shape == 10:
         add_products(5, 2, into, stride, a, a_stride, b, b_stride, 3)
     elif shape == 5:
@@ -37,7 +37,7 @@ def formed(shape, into, stride, a, a_stride, b, b_stride):
 
 @compiled
 def taken(shape, into, stride, a, a_stride, b, b_stride, depth):
-    """into -= a^T b for lines of a shape."""
+    """Compute into -= a^T b for lines of a shape."""
     if shape == 12:
         take_products(6, 2, into, stride, a, a_stride, b, b_stride, depth)
     elif shape == 11:

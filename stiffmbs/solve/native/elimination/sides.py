@@ -1,4 +1,4 @@
-"""Joints' own blocks of J M^-1 J^T, and the right-hand side, from parts of J in which entries stand in an order (`stiffmbs.solve.linear.joint_sides`)."""
+"""Diagonal blocks of J M^-1 J^T and right-hand side by regular blocks of J (`stiffmbs.solve.linear.joint_sides`)."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ FULL, STRAIGHT = 12, 9
 
 @compiled
 def add_full_sides(r, b, values):
-    """j, blocks and x of three velocities that stand in all rows of a joint."""
+    """Add the blocks of J with three velocities in all rows of a joint to j, the blocks and x."""
     for k in range(b.n_full):
         p = shifted(b.full, FULL * k)
         size, source = p[0], shifted(p, 6)
@@ -33,7 +33,7 @@ def add_full_sides(r, b, values):
 
 @compiled
 def add_straight_sides(r, b, values):
-    """The same of three velocities that stand in one row each."""
+    """Add the blocks of J with three velocities in one row each to j, the blocks and x."""
     for k in range(b.n_diagonals):
         p = shifted(b.straight, STRAIGHT * k)
         step, down = p[1], p[4]
@@ -49,7 +49,7 @@ def add_straight_sides(r, b, values):
 
 @compiled
 def take_side_reactions(r, b):
-    """a -= j^T x of both."""
+    """Compute a -= j^T x for both kinds of blocks."""
     for k in range(b.n_full):
         p = shifted(b.full, FULL * k)
         size = p[0]

@@ -1,1 +1,1 @@
-"""Events within steps, as compiled routines."""
+"""Compiled search for events within steps."""

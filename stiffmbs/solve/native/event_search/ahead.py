@@ -1,4 +1,4 @@
-"""States to which the motion goes on from the present one of IDA, by its rates or its accelerations."""
+"""Extrapolation of IDA's current state by its rates or accelerations."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from stiffmbs.solve.native.ida_memory import array_of
 
 @compiled
 def go_straight(c, s, ahead):
-    """Load the state to which the one in c.y goes at its present rates, in a time that may be negative."""
+    """Load the state in c.y, extrapolated linearly by a time that may be negative."""
     y, yp = array_of(c, c.y), array_of(c, c.yp)
     e = equations_view(c.equations)
     for k in range(e.n):
@@ -20,8 +20,8 @@ def go_straight(c, s, ahead):
 
 @compiled
 def go_ahead(c, s, ahead):
-    """Load the state to which the one in c.y goes with its present accelerations."""
+    """Load the state in c.y, extrapolated with its accelerations."""
     for k in range(s.n_u):
-        s.a[k] = 0.0  # coordinates that stand still are not loaded
+        s.a[k] = 0.0  # constant coordinates are not loaded
     go_straight(c, s, ahead)
     add_rates(s, s.a, 0.5 * ahead * ahead, s.q)

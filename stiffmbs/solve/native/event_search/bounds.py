@@ -1,7 +1,7 @@
-"""Whether an event may begin and end within a step, by values and rates at its ends: bounds that hold for a cubic and for a
-convex function, and zones of laws.
+"""Test for possible events within a step, by values and rates at its ends.
 
-The edges of an argument part its law into zones, which overlap where the law goes on smoothly from one into the next.
+The bounds hold for a cubic and for a convex function.  The breakpoints of an argument divide its law into intervals,
+which overlap if the law continues smoothly from one into the next.
 """
 
 from __future__ import annotations
@@ -12,29 +12,29 @@ from stiffmbs.compile.machine.native.access import compiled, view_of
 from stiffmbs.solve.native.tables.steps import EVENT_SEARCH
 
 MARGIN = 0.1
-"""Part of the range of a function's bounds that is added to those between the ends."""
+"""Margin of a function's bounds between the ends, relative to their range."""
 LOOKED_AT, ALSO_AT = 0.4142135623730951, 0.7320508075688772
-"""Places within a part of a step where a cubic is compared with the function: no round fractions of a period."""
+"""Places in a part of a step at which a function is compared with a cubic; no simple fractions of a period."""
 UNKNOWN = 8.0
-"""Times that a function may be further from the cubic than where it was looked at."""
+"""Factor of the deviation from the cubic elsewhere, relative to that at the compared place."""
 STEEP = 8.0
-"""Times that a rate at an end must be larger than the change between the ends for the function to be one that turns round."""
+"""Ratio of an end rate to the change between the ends above which a function has an extremum."""
 WIDER = 2.0
-"""Times the change and the rates in a step that no bound lies further from its ends (those of `_bound` lie within 1.8 of them)."""
+"""Factor of the change and rates in a step by which any bound of `_bound` is at most outside its end values."""
 TURNED = 1.0
-"""rad, by which a body or the argument of a sine may turn in a step without a look inside: rates at the ends tell nothing of whole turns."""
+"""Rotation, rad, of a body or of a sine's argument in a step above which the step is searched."""
 
 BOUNDED = 0.99
-"""Part of the longest step by turns below which a feature bounds the step; what is left is rounding."""
+"""Fraction of the longest step by rotations below which a feature bounds the step; the rest is rounding."""
 WHOLE_TURN = 6.283185307179586
-"""rad, by which the argument of a sine must not turn unseen."""
+"""Period of a sine, rad."""
 
 event_search_view = view_of("EventSearch", EVENT_SEARCH)
 
 
 @compiled
 def zone(w, k, value):
-    """The number of edges of event function k below a value."""
+    """Return the number of breakpoints of event function k below a value."""
     first, end = w.first_edge[k], w.first_edge[k + 1]
     turns = 0
     if w.period[k] > 0.0:
@@ -56,7 +56,7 @@ def zone(w, k, value):
 
 @compiled
 def edge(w, k, number):
-    """The edge between the zones `number` and `number` + 1 of function k; the first or last one beyond those there are."""
+    """Return the breakpoint between the intervals `number` and `number` + 1 of function k, or the first or last one."""
     first, count = w.first_edge[k], w.first_edge[k + 1] - w.first_edge[k]
     if w.period[k] > 0.0:
         turns = number // count
@@ -66,14 +66,14 @@ def edge(w, k, number):
 
 @compiled
 def _overlap(w, k, number):
-    """How far the zones `number` and `number` + 1 of function k, one beside the other, overlap."""
+    """Return the overlap of the adjacent intervals `number` and `number` + 1 of function k."""
     first, count = w.first_edge[k], w.first_edge[k + 1] - w.first_edge[k]
     return w.overlap[first + (number % count if w.period[k] > 0.0 else min(max(number, 0), count - 1))]
 
 
 @compiled
 def beyond(w, k, value, one, other, least):
-    """Whether a function at a value is in a zone that is neither of two, further than it overlaps with these and than `least`."""
+    """Return True if a value is outside two intervals of a function by more than their overlap and `least`."""
     here, low, high = zone(w, k, value), min(one, other), max(one, other)
     if here > high:
         return value - edge(w, k, high) > max(least, _overlap(w, k, high))
@@ -84,21 +84,21 @@ def beyond(w, k, value, one, other, least):
 
 @compiled
 def noted(target, values, count):
-    """Keep the values of all event functions."""
+    """Copy the values of all event functions."""
     for k in range(count):
         target[k] = values[k]
 
 
 @compiled
 def noted_rates(rate, value, nearby, ahead, count):
-    """Rates from values and from those at another instant, so much later."""
+    """Compute rates from values and from those at a time later by `ahead`."""
     for k in range(count):
         rate[k] = (nearby[k] - value[k]) / ahead
 
 
 @compiled
 def left_out(w, k):
-    """Whether a function is not looked at: it is masked, or has no number."""
+    """Return True if a function is ignored: it is masked, or not finite."""
     if not isfinite(w.value_before[k] - w.value_after[k]):
         return True
     return k < w.n_event_functions and (w.masked[k] > 0 or w.value_before[k] == 0.0)
@@ -106,11 +106,11 @@ def left_out(w, k):
 
 @compiled
 def _bound(start, start_rate, end, end_rate, missed, side):
-    """A bound from below (`side` -1) or above (1) on what has these values and rates (times the length) at the ends of a part.
+    """Return a lower (`side` -1) or upper (1) bound of a function with these values and rates times the length.
 
-    That of the cubic's Bezier points, and of the tangents' meeting point, beyond which no convex function goes.  Rates that
-    the change between the ends does not show belong to a function that turns round, maybe often: it may go either way.  So may
-    one that is `missed` by the cubic between the ends.
+    It covers the cubic's Bezier points and the intersection of the tangents, beyond which no convex function extends.
+    If rates contradict the change between the ends, the function has extrema, and may extend to either side.  So may
+    a function that deviates by `missed` from the cubic between the ends.
     """
     p, q = start + start_rate / 3.0, end - end_rate / 3.0
     low, high = min(p, q), max(p, q)
@@ -128,7 +128,7 @@ def _bound(start, start_rate, end, end_rate, missed, side):
 
 @compiled
 def reaches(w, k, start, start_rate, end, end_rate, missed):
-    """Whether an event function may leave its side, or another function come into a zone that is none of those at the ends of the step."""
+    """Return True if an event function may change sign, or another one leave the intervals at the ends of the step."""
     one, other = zone(w, k, w.value_before[k]), zone(w, k, w.value_after[k])
     if abs(one - other) > 1 or (w.lands[k] and beyond(w, k, w.value_after[k], one, one, 0.0)):
         return True
@@ -143,7 +143,7 @@ def reaches(w, k, start, start_rate, end, end_rate, missed):
 
 @compiled
 def turned(w, q_before, q_after, most):
-    """Whether a body, or the argument of a sine, has turned by more than an angle."""
+    """Return True if a body, or the argument of a sine, has rotated by more than `most`."""
     if w.n_zoned == 0:
         return False
     farthest = turned_arguments(w, w.value_before, w.value_after)
@@ -154,7 +154,7 @@ def turned(w, q_before, q_after, most):
 
 @compiled
 def turned_arguments(w, before, after):
-    """The largest change of an argument of a sine, rad."""
+    """Return the largest change of an argument of a sine, rad."""
     farthest = 0.0
     for i in range(w.n_turns):
         farthest = max(farthest, w.radians[i] * abs(after[w.turn[i]] - before[w.turn[i]]))
@@ -163,7 +163,7 @@ def turned_arguments(w, before, after):
 
 @compiled
 def longest_by_turns(w, rate, most):
-    """The longest step in which no argument of a sine turns by more than an angle; infinite where that would take too many steps."""
+    """Return the longest step that changes no argument of a sine by more than `most`; infinite if too short."""
     fastest = fastest_turn(w, rate)
     longest = most / fastest if fastest > 0.0 else float("inf")
     return longest if longest > w.least else float("inf")
@@ -171,7 +171,7 @@ def longest_by_turns(w, rate, most):
 
 @compiled
 def fastest_turn(w, rate):
-    """The largest rate of an argument of a sine, rad/s."""
+    """Return the largest rate of an argument of a sine, rad/s."""
     fastest = 0.0
     for i in range(w.n_turns):
         fastest = max(fastest, w.radians[i] * abs(rate[w.turn[i]]))
@@ -180,9 +180,9 @@ def fastest_turn(w, rate):
 
 @compiled
 def repeats(w, t, passing):
-    """Return how often the fastest law that repeats does so in the run, where features of laws bound a step in each turn; else 1.
+    """Return the number of periods of the fastest law in the run, if its features limit a step in each; else 1.
 
-    Errors in equal features have the same sign and add up, so each must be so much smaller than the tolerance.  Also while `passing` a feature.
+    Errors in equal features add up, so each must be smaller by this factor.  The same holds while `passing` a feature.
     """
     fastest = fastest_turn(w, w.rate_before)
     each_turn = w.narrow > 0 and w.narrow * WHOLE_TURN >= fastest * (t - w.begins)
@@ -193,13 +193,13 @@ def repeats(w, t, passing):
 
 @compiled
 def bounded_by_feature(w):
-    """Return True if a feature bounds the next step of IDA more than arguments of sines do."""
+    """Return True if a feature limits the next step of IDA more than arguments of sines do."""
     return w.longest * fastest_turn(w, w.rate_before) < BOUNDED * TURNED
 
 
 @compiled
 def note_unresolved(w, t, before, after):
-    """Note that arguments of sines turned too far in a step, and which one turned farthest in the first such step."""
+    """Count steps with too large changes of sines' arguments; note the time and the fastest argument of the first."""
     if w.unresolved == 0:
         farthest = turned_arguments(w, before, after)
         for i in range(w.n_turns):
@@ -211,21 +211,21 @@ def note_unresolved(w, t, before, after):
 
 @compiled
 def shift_ends(w):
-    """The end of the last step is the start of the next."""
+    """Make the end of the last step the start of the next."""
     noted(w.value_before, w.value_after, w.n)
     noted(w.rate_before, w.rate_after, w.n)
 
 
 @compiled
 def cubic(start, start_rate, end, end_rate, x):
-    """The cubic with these values and rates (times the length) at 0 and 1."""
+    """Return the cubic at x with these values and rates (times the length) at 0 and 1."""
     y = 1.0 - x
     return (y * y * (1.0 + 2.0 * x) * start + x * x * (3.0 - 2.0 * x) * end) + x * y * (y * start_rate - x * end_rate)
 
 
 @compiled
 def _note_apart(w, h):
-    """Note how far each function stays from the edges of its zone, by bounds wider than those of `_bound`; no number above 0 where that is not known."""
+    """Note the distance of each function from the breakpoints by bounds wider than `_bound`; 0 or less if unknown."""
     for k in range(w.n):
         if not w.near[w.call[k]]:
             continue
@@ -239,9 +239,9 @@ def _note_apart(w, h):
 
 @compiled
 def suspicious(w, h, q_before, q_after):
-    """Whether the values and rates at both ends of a step of length h, and the values at `LOOKED_AT`, allow an event.
+    """Return True if values and rates at both ends of a step of length h, and values at `LOOKED_AT`, allow an event.
 
-    The zones at its start are noted (`note_zones`), and which kernels have a function near their edges.
+    `note_zones` has noted the intervals at its start, and the kernels with a function near a breakpoint.
     """
     if turned(w, q_before, q_after, TURNED):
         return True

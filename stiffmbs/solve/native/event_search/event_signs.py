@@ -1,5 +1,4 @@
-"""The event functions as IDA's search for roots is to see them: each positive where it is first looked at, so that none that is
-zero at a start, or noise about zero, counts as a change."""
+"""Event functions for IDA's root search, each positive at first: zeros and noise at a start cause no event."""
 
 from __future__ import annotations
 
@@ -8,9 +7,9 @@ from stiffmbs.compile.machine.native.access import compiled
 
 @compiled
 def watched(values, signs, masked, g, count):
-    """Fill g; an event function is left out for as many calls (IDA's steps) as it is masked, and while it is exactly zero after that.
+    """Fill g; an event function is ignored in the calls (steps of IDA) while it is masked, and then while it is zero.
 
-    `signs` is +1 or -1 for the sign that an event function had when it was first looked at, and 0 before.
+    `signs` holds the first nonzero sign of each event function, 0 before.
     """
     for k in range(count):
         if masked[k] > 0:

@@ -1,4 +1,4 @@
-"""Switches of forces (a contact closes, friction turns round): the step ends where one changes its sign."""
+"""Event location of explicit integrators: steps end at sign changes of event functions."""
 
 from __future__ import annotations
 
@@ -39,25 +39,24 @@ from stiffmbs.solve.native.explicit.stages import copied, load_state, weighted
 from stiffmbs.solve.native.tables.views import dynamics_view, explicit_view, scheme_view
 
 BEHIND, ROUNDINGS = 1e-10, 2e-15
-"""How far behind the change the step ends, so that the new law holds there: relative to the step, and of the time."""
+"""Distance from an event to the end of a step, relative to the step and to the time."""
 FARTHEST_PAST = 1e-6
-"""Part of the step up to which the motion goes on straight until a change shows that rounding hides."""
+"""Fraction of the step up to which the motion is extrapolated until a sign change exceeds rounding."""
 MOST_RETAKEN, BISECTIONS = 8, 40
 BEFORE_END, ALL = 1.0, 2.0
-"""Which stages must not have seen another law: those at the end of a step that has been cut to a change may be just behind it."""
+"""Bound of the stages that are checked for another law: the end of a shortened step may be just after an event."""
 AT_ANOTHER_LAW, IN_ANOTHER_ZONE = 1, 2
-"""What a step has ended at: an event that integrators start anew from, or an edge of a law's zone, where they go on."""
+"""End of a step: an event, at which integrators restart, or a breakpoint of a law, where they continue."""
 MOST_TURNED = 1.0
-"""rad, by which an argument of a sine may turn in a step (no part of a period, or each step would see the same); one that has turned by
-twice that is taken again.  Six steps in a period integrate it as exactly as the trapezoidal rule; fewer pass a peak with an error estimate
-of zero."""
+"""Change of a sine's argument in a step, rad, no simple fraction of a period; steps with twice that are repeated.  Six
+steps per period integrate a sine as accurately as the trapezoidal rule; fewer may miss a peak."""
 MOST_ERROR, LEAST_FACTOR, RETRIED, NO_EVENT, TURNED_TOO_FAR = 1.0, 0.2, 1, 2, 3
-"""A step that is taken again up to an event is as exact as any other, or a shorter one is tried."""
+"""Error up to which a step to an event is accepted, least factor of a shorter step, and outcomes."""
 
 
 @compiled
 def _load(x, s, y, t):
-    """The state for the kernels, with algebraic states that belong to it."""
+    """Load a state for the kernels, with its algebraic states."""
     load_state(s, y)
     m = dynamics_view(x.dynamics)
     if m.n_algebraic > 0:
@@ -72,7 +71,7 @@ def _values(x, s, y, t):
 
 @compiled
 def _has_changed(x, values, k):
-    """Return True if an event function has left the side on which it was at the step's start; one that was zero there may return to zero."""
+    """Return True if an event function has changed its sign in the step; one that was zero may return to zero."""
     sign, value = x.signs[k], values[k]
     if sign == 0.0:
         return False
@@ -81,7 +80,7 @@ def _has_changed(x, values, k):
 
 @compiled
 def _changed(x, values):
-    """Whether any event function has."""
+    """Return True if any event function has changed its sign."""
     changed = False
     for k in range(x.n_event_functions):
         if _has_changed(x, values, k):
@@ -91,7 +90,7 @@ def _changed(x, values):
 
 @compiled
 def _note_changed(x, values):
-    """Keep which event functions have."""
+    """Store the event functions that have changed their signs."""
     found = event_search_view(x.watch).found
     for k in range(x.n_event_functions):
         found[k] = 1 if _has_changed(x, values, k) else 0
@@ -99,7 +98,7 @@ def _note_changed(x, values):
 
 @compiled
 def _values_ahead(x, s, ahead):
-    """The event functions where the accelerations at the start of the step take the motion in a time."""
+    """Return the event functions after the initial accelerations of the step have acted for a time."""
     for i in range(x.n):
         x.difference[i] = x.y_before[i] + ahead * x.k[i]
     add_rates(s, shifted(x.k, s.n_q), 0.5 * ahead * ahead, x.difference)
@@ -108,7 +107,7 @@ def _values_ahead(x, s, ahead):
 
 @compiled
 def _note_sides_at_start(x, s):
-    """Find the sides to which functions go that are zero at the start of the step and not at its end."""
+    """Find the initial signs of functions that are zero at the start of the step and nonzero at its end."""
     w = event_search_view(x.watch)
     count = x.n_event_functions
     if not leaves_zero(x.signs, w.value_after, count):
@@ -122,7 +121,7 @@ def _note_sides_at_start(x, s):
 
 @compiled
 def _note_rates(x, s, y, rates, t, ahead, value, rate):
-    """Rates of all event functions at a state with these values, taken over a time `ahead`, which may be negative."""
+    """Compute the rates of all event functions at a state over a time `ahead`, which may be negative."""
     w = event_search_view(x.watch)
     for i in range(x.n):
         x.difference[i] = y[i] + ahead * rates[i]
@@ -131,7 +130,7 @@ def _note_rates(x, s, y, rates, t, ahead, value, rate):
 
 @compiled
 def _note_start(x, s, w, small):
-    """Values and rates at the start of the step, those over a small time, where they are not those at the end of the step before."""
+    """Compute values and rates at the start of the step, unless known from the end of the previous step."""
     if not (w.ready and w.begun == x.t_before):
         noted(w.value_before, _values(x, s, x.y_before, x.t_before), w.n)
         leave_zero(w.value_before, x.signs, x.n_event_functions)
@@ -142,7 +141,7 @@ def _note_start(x, s, w, small):
 
 @compiled
 def _turned_too_far(x, s, w):
-    """Whether an argument of a sine has made more than a turn in the step, which is noted where no shorter step is allowed."""
+    """Return True if a sine's argument changes too much in the step; where no shorter step is allowed, note it."""
     if w.n_turns == 0:
         return False
     _note_start(x, s, w, DIFFERENCE * x.span)
@@ -157,7 +156,7 @@ def _turned_too_far(x, s, w):
 
 @compiled
 def _look_within(x, c, s):
-    """Values of all event functions at `LOOKED_AT`, on the cubic through states and rates at both ends."""
+    """Compute all event functions at `LOOKED_AT`, on the cubic through states and rates at both ends."""
     w = event_search_view(x.watch)
     h, theta = x.span, LOOKED_AT
     rest = 1.0 - theta
@@ -170,9 +169,9 @@ def _look_within(x, c, s):
 
 @compiled
 def _stages_have_changed(x, c, s, until):
-    """Whether a stage before a part of the step has seen another law than the start and the end of the step.
+    """Return True if a stage before a part of the step has other signs than the start and the end of the step.
 
-    The weights of such a stage may hide from the error what it has seen.
+    The weights of such a stage may exclude it from the error estimate.
     """
     for row in range(1, c.stages):
         if c.c[row] >= until:
@@ -185,10 +184,10 @@ def _stages_have_changed(x, c, s, until):
 
 @compiled
 def _event_within(x, c, s, m, until):
-    """The time from the step's start to an event that begins and ends within it; 0 for none, a negative status, or the whole
-    length where stages before the part `until` of the step show that there is one but not where.
+    """Return the time from the step's start to an event within it; 0 for none, or a negative status.
 
-    The values at the step's end are those in `value_after`; values and rates at its start are those at the end of the step before.
+    The whole length is returned if stages before the part `until` of the step show an event at an unknown time.
+    `value_after` holds the values at the step's end.
     """
     w = event_search_view(x.watch)
     h = x.span
@@ -217,7 +216,7 @@ def _event_within(x, c, s, m, until):
 
 @compiled
 def _first_change(x, c, s, high):
-    """The time from the step's start, up to `high`, at which the interpolant first shows a change."""
+    """Return the time from the step's start, up to `high`, at which the interpolant first shows a sign change."""
     low = 0.0
     for _ in range(BISECTIONS):
         middle = 0.5 * (low + high)
@@ -231,7 +230,7 @@ def _first_change(x, c, s, high):
 
 @compiled
 def retaken(x, c, s, m, h):
-    """The step again with another length; 0 or a negative status."""
+    """Repeat the step with another length; 0 or a negative status."""
     status = attempt(x, c, s, m, h)
     if status < 0:
         return status
@@ -243,7 +242,7 @@ def retaken(x, c, s, m, h):
 
 @compiled
 def _any_found(x):
-    """Whether the event is one of an event function: those of a law's argument have no sign."""
+    """Return True if the event is one of an event function; those of a law's argument have no sign."""
     found = event_search_view(x.watch).found
     count = 0
     for k in range(x.n_event_functions):
@@ -253,7 +252,7 @@ def _any_found(x):
 
 @compiled
 def _way_past(x, c, s, least, most):
-    """How far to go on for the change to show: where the motion hardly moves on, rounding hides it for longer than `least`."""
+    """Return the time after which a sign change exceeds rounding, `least` or more: slow motions take longer."""
     rates = shifted(x.k, c.stages * x.n)
     ahead = least
     while ahead <= most and _any_found(x):
@@ -267,7 +266,7 @@ def _way_past(x, c, s, least, most):
 
 @compiled
 def _go_past(x, c, ahead):
-    """Move the end of the step on by so little that rates do not change, beyond an event: no stage has seen the law there."""
+    """Extrapolate the end of the step beyond an event by a time in which rates stay constant."""
     rates = shifted(x.k, c.stages * x.n)
     for i in range(x.n):
         x.y[i] += ahead * rates[i]
@@ -276,10 +275,10 @@ def _go_past(x, c, ahead):
 
 @compiled
 def _taken_to_change(x, c, s, m, high, behind):
-    """Take the step again until it ends just before the first change of an event function; 0, a negative status, or `RETRIED`.
+    """Repeat the step until it ends just before the first sign change of an event function.
 
-    The first guess comes from the interpolant of a step whose stages have seen both laws, the next ones from those of
-    steps that end where the guess says.
+    The first estimate comes from the interpolant of a step across the event, later ones from steps that end there.
+    Returns 0, a negative status, or `RETRIED`.
     """
     changed = True
     for _ in range(MOST_RETAKEN):
@@ -300,7 +299,7 @@ def _taken_to_change(x, c, s, m, high, behind):
 
 @compiled
 def _taken_to_event(x, c, s, m, h, behind):
-    """Take the step again up to the first event in it; 0, a negative status, `RETRIED`, or `NO_EVENT`."""
+    """Repeat the step up to its first event; 0, a negative status, `RETRIED`, `NO_EVENT` or `TURNED_TOO_FAR`."""
     w = event_search_view(x.watch)
     noted(w.value_after, _values(x, s, x.y, x.t), w.n)
     _note_sides_at_start(x, s)
@@ -327,10 +326,9 @@ def _taken_to_event(x, c, s, m, h, behind):
 
 
 def end_at_event(explicit):
-    """Where an event function has changed within the last step, or has changed twice, take the step again up to the first change.
+    """Repeat the last step up to its first event, if there is one; 0, a negative status, or `RETRIED`.
 
-    0, a negative status, or `RETRIED` where the step's shortened form cannot be trusted and is left.  It is compiled for scenes
-    with event functions alone.
+    `RETRIED` means that the shortened step is inaccurate and was discarded.  Only scenes with event functions need it.
     """
     x = explicit_view(explicit)
     c = scheme_view(x.scheme)
@@ -370,10 +368,9 @@ def _ended_at_event(x, c, s, m):
 
 @compiled
 def _note_repeats(x, w, events):
-    """Set the factor of the error of a step: the number of turns in the run if laws end a step in each turn, as their errors add up.
+    """Set the factor of a step's error: the number of periods in the run if laws end a step in each.
 
-    Of the steps of a turn only one has the feature: if the argument turns by less than `MOST_TURNED` in a mean step, the factor is smaller
-    in the same ratio.
+    Errors of periods add up.  A mean change of the argument below `MOST_TURNED` reduces the factor in proportion.
     """
     if w.n_turns > 0:
         w.begins = min(w.begins, x.t_before)
@@ -384,14 +381,14 @@ def _note_repeats(x, w, events):
 
 @compiled
 def _goes_on(x, s):
-    """Whether the next step may go on as from any other: an argument has come into another zone of its law, which is no new law."""
+    """Return True if the next step needs no restart: an argument has passed a breakpoint without a sign change."""
     event_search_view(x.watch).ready = 0
     return not (_any_found(x) or _changed(x, _values(x, s, x.y, x.t)))
 
 
 @compiled
 def _gone_back(x, c, h):
-    """Go back to the step's start, for a shorter one."""
+    """Return to the step's start for a shorter step."""
     x.h = h
     copied(x.y, x.y_before, x.n)
     copied(shifted(x.k, c.stages * x.n), x.k, x.n)

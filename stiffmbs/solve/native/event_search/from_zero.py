@@ -1,15 +1,15 @@
-"""Sides of event functions that are exactly zero where a step begins: those to which the motion takes them first."""
+"""Signs of event functions that are exactly zero at the start of a step: those that the motion gives them first."""
 
 from __future__ import annotations
 
 from stiffmbs.compile.machine.native.access import compiled
 
 SHORTEST, LONGEST, LONGER = 2.2e-16, 1e-3, 4.0
-"""Parts of a step from which and up to which the motion is followed from its start, and the factor from one part to the next."""
+"""Smallest and largest fraction of a step over which the initial motion is extrapolated, and factor between them."""
 HELD = 3
-"""Parts in succession in which a function must have the same sign: a single one may be rounding."""
+"""Number of successive equal signs that a function must have: a single one may be rounding."""
 JUST_BEYOND = 1e-300
-"""Value of a function that is zero where the step begins, with the sign that it takes."""
+"""Value of a function that is zero at the start of a step, with the sign that it takes."""
 
 
 @compiled
@@ -32,7 +32,7 @@ def at_zero(values, count):
 
 @compiled
 def begin_sides(seen, held, count):
-    """Clear the signs seen so far, and how often in succession."""
+    """Clear the signs found so far, and their numbers of repetition."""
     for k in range(count):
         seen[k] = 0.0
         held[k] = 0.0
@@ -40,7 +40,7 @@ def begin_sides(seen, held, count):
 
 @compiled
 def note_sides(signs, values, seen, held, count):
-    """Set the sign of each function that has kept it for `HELD` values; return the number of functions still without."""
+    """Set the sign of each function that has kept it for `HELD` values; return the number of functions without."""
     open_ones = 0
     for k in range(count):
         if signs[k] != 0.0:
@@ -57,7 +57,7 @@ def note_sides(signs, values, seen, held, count):
 
 @compiled
 def keep_sides(signs, values, count):
-    """Forget the sides found of functions that are zero, unless values are on all of them; return True if one was found and kept."""
+    """Clear the signs of functions that were zero unless values confirm all; return True if any was found and kept."""
     found, lost = 0, 0
     for k in range(count):
         if abs(signs[k]) == JUST_BEYOND:
@@ -71,7 +71,7 @@ def keep_sides(signs, values, count):
 
 @compiled
 def leave_zero(values, signs, count):
-    """Move values that are exactly zero to the side on which the motion goes on."""
+    """Give values that are exactly zero the sign of the subsequent motion."""
     for k in range(count):
         if values[k] == 0.0:
             values[k] = signs[k]

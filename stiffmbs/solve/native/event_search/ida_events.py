@@ -1,4 +1,4 @@
-"""Events that begin and end within a step of IDA's; compiled for scenes with event functions alone."""
+"""Events within a step of IDA; compiled only for scenes with event functions."""
 
 from __future__ import annotations
 
@@ -35,25 +35,25 @@ from stiffmbs.solve.native.ida_memory import array_of, native_ida_view
 from stiffmbs.solve.native.statuses import OK
 
 UNSEEN = float("inf")
-"""No time at which event functions are known."""
+"""Placeholder for no time at which event functions are known."""
 ROUNDINGS = 1e-15
-"""Events nearer to a step's beginning than this part of the time are not told from it."""
+"""Time from the start of a step, relative to the time, below which an event counts as at the start."""
 MOST_TURNED = 3.0
-"""rad, by which the argument of a sine may turn in a step."""
+"""Largest change of a sine's argument in a step, rad."""
 SHORT_OF, UNSURE = 1e-8, 1e-4
-"""Parts of the longest step, and of the way to an event that is seen ahead, by which a step ends before it."""
+"""Distance from the end of a step to a predicted event, relative to the longest step and to the event's distance."""
 GROWTH = 2.0
-"""Times by which IDA's next step may be longer than the last one."""
+"""Largest ratio of successive steps of IDA."""
 OF_A_ZONE = 0.35
-"""Part of a zone's width, without unit, that a law may pass on each side of a place within a step: two or three steps resolve a zone.  Larger
-parts save steps, and miss more of the narrow laws of the fuzzer `laws` at rtol 1e-2."""
+"""Fraction of an interval of a law that may be passed on each side of a place within a step: two or three steps resolve
+an interval.  Larger fractions save steps, and miss more narrow features."""
 FIRST_STEP = 1e-3
-"""Part of the time to the next stop that IDA's first step takes at the most."""
+"""Largest first step of IDA, relative to the time to the next stop."""
 
 
 @compiled
 def _note_sides(c, w, s, toward):
-    """Find the sides to which functions go that are zero at the start, as IDA's search for roots is to see them."""
+    """Find the initial signs, for IDA's root search, of functions that are zero at the start."""
     count = w.n_event_functions
     for k in range(count):
         w.a[k] = float(w.value_before[k] > 0.0) - float(w.value_before[k] < 0.0)
@@ -72,7 +72,7 @@ def _note_sides(c, w, s, toward):
 
 
 def look_at_start(toward, stop, ida):
-    """Look at the event functions where IDA restarts: the next output point is at `toward`, the next breakpoint at `stop`."""
+    """Evaluate the event functions at a restart of IDA; next output time `toward`, next breakpoint `stop`."""
     c = native_ida_view(ida)
     w = event_search_view(c.watch)
     if not w.ready:
@@ -97,7 +97,7 @@ def look_at_start(toward, stop, ida):
 
 @compiled
 def _go_on(c, w, s):
-    """Take the end of the step for the start of the next, which arguments of sines bound."""
+    """Make the end of the step the start of the next, which arguments of sines limit."""
     if w.n_turns > 0:
         w.longest = longest_by_turns(w, w.rate_after, TURNED)
         if w.longest == float("inf") and turned_arguments(w, w.value_before, w.value_after) > MOST_TURNED:
@@ -110,7 +110,7 @@ def _go_on(c, w, s):
 
 @compiled
 def _look_ahead(c, w, s):
-    """Have the next step pass zones in several steps, and end before an event, where the motion comes near the edges of zones."""
+    """Make the next step resolve the intervals of laws, and end before an event, if breakpoints are near."""
     if w.n_turns == 0 or w.n_zoned == 0 or w.longest == float("inf"):
         return
     ahead = min(w.longest, GROWTH * c.size)
@@ -128,14 +128,14 @@ def _look_ahead(c, w, s):
 
 @compiled
 def _look_at_middle(c, w, s, ahead):
-    """Keep the values of functions near edges at a place within the way that the motion goes in a time with its accelerations."""
+    """Evaluate functions near breakpoints at a place within the extrapolation by accelerations."""
     go_ahead(c, s, LOOKED_AT * ahead)
     noted(w.m, evaluate_some(s, SWITCH, c.returned + LOOKED_AT * ahead, w.near), w.n)
 
 
 @compiled
 def _within_zones(w):
-    """Return True if laws move by less than a part of their zones from the start of a step to the place within it, and from there to its end."""
+    """Return True if laws pass at most a fraction of their intervals in either part of a step."""
     beyond = 0
     for k in range(w.n_event_functions, w.n):
         if w.first_edge[k] == w.first_edge[k + 1] or not w.near[w.call[k]]:
@@ -148,7 +148,7 @@ def _within_zones(w):
 
 @compiled
 def _narrowest(w, k, start, end):
-    """The narrowest zone of function k between two values; those that are narrower than their way from the start are seen from nearer."""
+    """Return the narrowest interval of function k between two values that is wider than its distance from the start."""
     number, last = zone(w, k, start), zone(w, k, end)
     way = 1 if last > number else -1
     narrowest = min(_width(w, k, number), _width(w, k, last))
@@ -164,7 +164,7 @@ def _narrowest(w, k, start, end):
 
 @compiled
 def _width(w, k, number):
-    """The width of a zone; infinite for those at both ends."""
+    """Return the width of an interval; infinite for the outer ones."""
     if w.period[k] == 0.0 and not 0 < number < w.first_edge[k + 1] - w.first_edge[k]:
         return float("inf")
     return edge(w, k, number) - edge(w, k, number - 1)
@@ -172,7 +172,7 @@ def _width(w, k, number):
 
 @compiled
 def _resolve_zones(c, w, s, most):
-    """Bound the next step so that the motion, going on with its accelerations, passes each zone of a law in several steps."""
+    """Limit the next step so that the extrapolated motion passes each interval of a law in several steps."""
     ahead = most
     while ahead > w.least and not _within_zones(w):
         ahead *= LOOKED_AT
@@ -184,7 +184,7 @@ def _resolve_zones(c, w, s, most):
 
 @compiled
 def _aim(c, w, s, ahead):
-    """Have the next step end just before an event that the motion, going on with its accelerations, has within the longest step."""
+    """Make the next step end just before an event of the motion extrapolated by accelerations."""
     t, back = c.returned, -DIFFERENCE * ahead
     go_ahead(c, s, ahead + back)
     noted_rates(w.rate_after, w.value_after, evaluate_some(s, SWITCH, t + ahead + back, w.near), back, w.n)
@@ -204,14 +204,14 @@ def _aim(c, w, s, ahead):
 
 @compiled
 def _evaluate_near(w, s, t):
-    """Evaluate the functions that may change within the step; all of them where arguments of sines bound the next step."""
+    """Evaluate the functions that may change within the step; all if arguments of sines limit the next step."""
     if w.n_turns > 0:
         return evaluate(s, SWITCH, t)
     return evaluate_some(s, SWITCH, t, w.near)
 
 
 def look_within(ida):
-    """Where an event has begun and ended within the last step, go back to its beginning; whether there is one."""
+    """Set IDA's returned state to the first event within the last step; return 1 if there is one, else 0."""
     c = native_ida_view(ida)
     w = event_search_view(c.watch)
     begun = w.begun

@@ -1,4 +1,4 @@
-"""Which kernels have an event function that may come to an edge within a step: the others need no look at rates, nor inside it."""
+"""Selection of kernels with event functions that may reach a breakpoint within a step; others are not searched."""
 
 from __future__ import annotations
 
@@ -6,15 +6,15 @@ from stiffmbs.compile.machine.native.access import compiled
 from stiffmbs.solve.native.event_search.bounds import edge, turned, zone
 
 CLEAR = 4.0
-"""Times that a function must be further from the edges of its zone than it has changed in the step, and than its rate at the
-start brings it, to be far from them."""
+"""Distance of a function from its breakpoints, relative to its change in the step and by its initial rate, above which
+it is far from them."""
 HARDLY_TURNED = 0.3
-"""rad, by which a body may turn in such a step: values at the ends tell nothing of whole turns."""
+"""Largest rotation of a body in such a step, rad: values at the ends do not show whole revolutions."""
 
 
 @compiled
 def note_zones(w):
-    """Keep the edges about the values at the start of the step."""
+    """Store the breakpoints around the values at the start of the step."""
     for k in range(w.n):
         value = w.value_before[k]
         if w.zone_low[k] < value <= w.zone_high[k]:
@@ -29,7 +29,7 @@ def note_zones(w):
 
 @compiled
 def note_near(w, h, q_before, q_after):
-    """Note which kernels have a function near the edges of its zone, by the values at both ends of a step of length h; whether any has."""
+    """Mark the kernels with a function near a breakpoint, by values at both ends of a step; True if any is."""
     note_zones(w)
     nearby = turned(w, q_before, q_after, HARDLY_TURNED)
     for call in range(w.n_calls):
@@ -43,7 +43,7 @@ def note_near(w, h, q_before, q_after):
 
 @compiled
 def _is_near(w, h, k):
-    """Return True if a function comes near an edge of its zone, by its values at both ends of a step and its rate at the start."""
+    """Return True if a function comes near a breakpoint, by values at both ends of a step and the initial rate."""
     start, end = w.value_before[k], w.value_after[k]
     apart = min(min(start, end) - w.zone_low[k], w.zone_high[k] - max(start, end))
     return not apart > CLEAR * (abs(end - start) + h * abs(w.rate_before[k]))
@@ -51,7 +51,7 @@ def _is_near(w, h, k):
 
 @compiled
 def near_an_event(w, h, q_before, q_after):
-    """Return True if an event function comes near an edge of its zone, by the bound of `note_near`."""
+    """Return True if an event function comes near a breakpoint, by the bound of `note_near`."""
     nearby = turned(w, q_before, q_after, HARDLY_TURNED)
     for k in range(w.n_event_functions):
         nearby = nearby or _is_near(w, h, k)
@@ -60,7 +60,7 @@ def near_an_event(w, h, q_before, q_after):
 
 @compiled
 def note_mean_rates(w, h):
-    """For functions that are far from all edges, the rate at the end of a step is that between its ends."""
+    """Set the rates at the end of a step to mean rates for functions that are far from all breakpoints."""
     for k in range(w.n):
         if not w.near[w.call[k]]:
             w.rate_after[k] = (w.value_after[k] - w.value_before[k]) / h

@@ -1,7 +1,7 @@
-"""Passages: the time from a restart of IDA to where the motion leaves a law again, which a first step must not lead over.
+"""Passages: short times from a restart of IDA until the motion leaves a law, which a first step must resolve.
 
-The error estimate of a step of order 1 compares the forces at its ends. Where these agree, as before and after a window, the step is accepted,
-and the forces in between are lost.
+The error estimate of a step of order 1 compares the forces at its ends.  If these agree, as before and after a short
+interval of another law, the step is accepted without the forces in between.
 """
 
 from __future__ import annotations
@@ -14,28 +14,28 @@ from stiffmbs.solve.native.event_search.bounds import zone
 from stiffmbs.solve.native.ida_memory import array_of
 
 START_DIFFERENCE = 1e-9
-"""Part of the time to the next stop over which rates of event functions at a start are taken, and from which on passages are searched."""
+"""Time over which rates of event functions are computed, and least passage, relative to the time to the next stop."""
 SOON = 1e-2
-"""Part of the time to the next stop beyond which IDA's first steps are short enough by themselves (at most 1e-3 of it)."""
+"""Passage relative to the time to the next stop above which IDA's first steps are short enough (at most 1e-3 of it)."""
 BISECTIONS = 6
-"""Halvings that find the end of a passage."""
+"""Bisections to find the end of a passage."""
 STEPS, FIRST_PART = 16.0, 0.125
-"""Least steps of a passage in scenes with laws that repeat, and part of such a step that the first one of order 1 may take."""
+"""Least number of steps of a passage with periodic laws, and the first step of order 1 as a fraction of such a step."""
 LIFTED = 1e-6
-"""Part of a run at its beginning in which every step of a passage is bounded."""
+"""Initial fraction of a run in which every step of a passage is limited."""
 INSIDE = 0.4
-"""Place within a passage where forces are compared with those at the start, and the longest first step: a window is symmetric about 0.5."""
+"""Place within a passage at which forces are compared with those at the start; not 0.5, the centre of symmetry."""
 WORTH = 1.0
-"""Change of an unknown by the forces of a passage, in error tolerances, from which on a first step must not lead over it."""
+"""Change of an unknown by the forces of a passage, in error tolerances, above which a first step must resolve it."""
 
 
 @compiled
 def bound_passage(c, w, s, toward, stop):
-    """Bound steps up to where the motion, going on with the accelerations at the start, leaves a law again.
+    """Limit steps until the motion extrapolated by initial accelerations leaves a law.
 
-    The first step is bounded where the forces of the passage would change an unknown by more than its tolerance. Every step of the passage is
-    bounded in scenes with laws that repeat, as changes below the tolerance add up over their periods, and at the beginning of a run, where
-    contacts that are just closed open and close by rounding.
+    The first step is limited if the forces of the passage change an unknown by more than its tolerance.  Every step of
+    a passage is limited for periodic laws, because smaller changes add up over their periods.  The same holds at the
+    beginning of a run, where closed contacts open and close by rounding.
     """
     if c.returned < w.begins:
         w.begins = c.returned
@@ -54,7 +54,7 @@ def bound_passage(c, w, s, toward, stop):
 
 @compiled
 def _passage(c, w, s, toward, stop):
-    """Return the time after which the motion leaves a law; 0 where it does not before long."""
+    """Return the time after which the motion leaves a law; 0 if it does not soon."""
     ahead = START_DIFFERENCE * (toward - c.returned)
     most = stop - c.returned if w.n_turns > 0 else SOON * (toward - c.returned)
     while ahead < most and not _another_side(c, w, s, ahead):
@@ -73,7 +73,7 @@ def _passage(c, w, s, toward, stop):
 
 @compiled
 def _another_side(c, w, s, ahead):
-    """Whether an event function leaves its side at the start in a time, or a law its zone."""
+    """Return True if an event function changes its sign in a time, or a law its interval."""
     go_ahead(c, s, ahead)
     values = evaluate(s, SWITCH, c.returned + ahead)
     others = 0
@@ -84,9 +84,9 @@ def _another_side(c, w, s, ahead):
 
 @compiled
 def _matters(c, w, s, ahead):
-    """Return True if the forces within a passage change an unknown by more than its tolerance, compared with those at the start.
+    """Return True if the forces within a passage change an unknown by more than its tolerance.
 
-    The residual with the rates at the start is the change of force; an unknown's own rate has the mass as its factor.
+    The residual with the initial rates is the change of force; the mass is the coefficient of an unknown's own rate.
     """
     if call_int(c.weights, (c.memory, c.at_output)) < 0:
         return True

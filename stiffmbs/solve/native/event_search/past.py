@@ -1,4 +1,4 @@
-"""A little further on behind an event, where the motion goes to the other side of an event function at once."""
+"""Extrapolation past an event to further sign changes of event functions."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from stiffmbs.solve.native.explicit.stages import add_rates_behind, copied
 from stiffmbs.solve.native.tables.views import dynamics_view
 
 SHORTER, ROUNDINGS = 0.125, 1e-15
-"""By how much a shorter way is tried as long as it passes as many event functions, and part of the time that no way is shorter than."""
+"""Factor by which the extrapolation is shortened while it passes as many sign changes, and its least relative time."""
 
 
 @compiled
 def _go(s, m, ahead, q):
-    """Take the positions and states to which those in q go straight on in a time, which may be negative."""
+    """Extrapolate the positions and states in q linearly by a time, which may be negative."""
     copied(s.q, q, s.n_q)
     add_rates(s, s.u, ahead, s.q)
     add_rates_behind(s, m, ahead, s.q)
@@ -23,7 +23,7 @@ def _go(s, m, ahead, q):
 
 @compiled
 def _passed(s, m, t, ahead, q, count, values):
-    """How many of the first `count` event functions have another sign after going straight on from q for so long."""
+    """Return the number of the first `count` event functions that change sign within a linear extrapolation from q."""
     _go(s, m, ahead, q)
     later = evaluate(s, SWITCH, t + ahead)
     passed = 0
@@ -34,14 +34,14 @@ def _passed(s, m, t, ahead, q, count, values):
 
 @compiled
 def moved_past(s, m, t, most, count, q, values):
-    """Move the state at hand straight on, for so long at the most, to where event functions that change on that way have changed.
+    """Extrapolate the current state past sign changes of event functions within the time `most`.
 
-    How long that takes; 0 with the state as it was where none changes.  Memory: `q` for positions, `values` for event functions.
+    Returns the time, 0 with the state unchanged for none.  Memory: `q` for positions, `values` for event functions.
     """
     copied(q, s.q, s.n_q)
     if m.n_behind > 0:
         evaluate(s, ACCELERATION, t)
-    _go(s, m, -most, q)  # at the state itself, rounding decides on the side
+    _go(s, m, -most, q)  # at the state itself, rounding decides the signs
     copied(values, evaluate(s, SWITCH, t - most), count)
     passed = _passed(s, m, t, most, q, count, values)
     if passed == 0:
@@ -50,12 +50,12 @@ def moved_past(s, m, t, most, count, q, values):
     ahead = most
     while ahead * SHORTER > ROUNDINGS * abs(t) and _passed(s, m, t, ahead * SHORTER, q, count, values) == passed:
         ahead *= SHORTER
-    ahead = min(ahead / (SHORTER * SHORTER), most)  # nearer by, rounding may show the change too early
+    ahead = min(ahead / (SHORTER * SHORTER), most)  # closer, rounding may show the change too early
     _passed(s, m, t, ahead, q, count, values)
     return ahead
 
 
 def gone_past(t, most, count, q, values, dynamics):
-    """`moved_past` from Python."""
+    """Call `moved_past` from Python."""
     m = dynamics_view(dynamics)
     return moved_past(state_view(m.state), m, t, most, count, q, values)

@@ -1,4 +1,4 @@
-"""Event functions beside a state, accelerations there, and the rates that these give the event functions."""
+"""Event functions near a state, accelerations there, and the resulting rates of the event functions."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from stiffmbs.solve.native.tables.views import dynamics_view
 
 @compiled
 def _take(s, size, q, u, along_q, along_u):
-    """The state moved along a direction, each number by a part of its own size, at least of 1."""
+    """Move the state along a direction, each number in proportion to its size, at least 1."""
     for k in range(s.n_q):
         s.q[k] = q[k] + size * max(1.0, abs(q[k])) * along_q[k]
     for k in range(s.n_u):
@@ -21,7 +21,7 @@ def _take(s, size, q, u, along_q, along_u):
 
 @compiled
 def _event_functions(s, m, t):
-    """Values of the event functions at the state at hand, with the algebraic states that belong to it where these have a solution."""
+    """Return the event functions at the current state, with its algebraic states if these have a solution."""
     if m.n_algebraic > 0:
         consistent_accelerations(s, m, t)
     return evaluate(s, SWITCH, t)
@@ -29,7 +29,7 @@ def _event_functions(s, m, t):
 
 @compiled
 def crossing(s, m, t, size, q, u, along_q, along_u, count, found):
-    """Which of the first `count` event functions differ in sign between the two sides of a move; how many."""
+    """Mark the first `count` event functions with different signs on both sides of a move; return their number."""
     _take(s, size, q, u, along_q, along_u)
     values = _event_functions(s, m, t)
     for k in range(count):
@@ -45,13 +45,13 @@ def crossing(s, m, t, size, q, u, along_q, along_u, count, found):
 
 
 def crossed(t, size, q, u, along_q, along_u, count, found, dynamics):
-    """`crossing` from Python."""
+    """Call `crossing` from Python."""
     m = dynamics_view(dynamics)
     return crossing(state_view(m.state), m, t, size, q, u, along_q, along_u, count, found)
 
 
 def switches(t, size, q, u, along_q, along_u, count, values, dynamics):
-    """The first `count` event functions at a moved state, in `values`."""
+    """Store the first `count` event functions at a moved state in `values`."""
     m = dynamics_view(dynamics)
     s = state_view(m.state)
     _take(s, size, q, u, along_q, along_u)
@@ -60,7 +60,7 @@ def switches(t, size, q, u, along_q, along_u, count, values, dynamics):
 
 @compiled
 def following_velocities(s, m, t, size, q, u, along_u, count, found):
-    """Which of the first `count` event functions change at all with velocities at a state."""
+    """Mark the first `count` event functions that depend on velocities."""
     copied(s.q, q, s.n_q)
     for k in range(s.n_u):
         s.u[k] = u[k] + size * max(1.0, abs(u[k])) * along_u[k]
@@ -73,15 +73,15 @@ def following_velocities(s, m, t, size, q, u, along_u, count, found):
 
 
 def by_velocities(t, size, q, u, along_u, count, found, dynamics):
-    """`following_velocities` from Python."""
+    """Call `following_velocities` from Python."""
     m = dynamics_view(dynamics)
     following_velocities(state_view(m.state), m, t, size, q, u, along_u, count, found)
 
 
 def side(t, size, interval, q, u, along_q, along_u, there, count, values, acceleration, rates, dynamics):
-    """The same, with accelerations and with rates over an interval of time; a negative status where there are no accelerations.
+    """Compute event functions, accelerations and rates over an interval of time at a moved state.
 
-    `there` is memory for coordinates.
+    Returns a negative status if there are no accelerations.  `there` is memory for coordinates.
     """
     m = dynamics_view(dynamics)
     s = state_view(m.state)

@@ -1,14 +1,13 @@
-"""Events that begin and end within one step: bodies that meet and part, a stop touched and left, a bump of a law passed.
+"""Search for events within one step, such as a short contact or a passed feature of a law.
 
-The sign of an event function at both ends of a step says nothing of its inside.  The search looks at values and rates at
-the ends first, by bounds that hold for a cubic and for a convex function.  Only where these reach an edge it follows the
-function along the step's interpolant, in parts that are halved until a cubic describes each of them (Shampine and
-Thompson, Comput. Math. Appl. 39 (2000) 43-49, for the need; Park and Barton, ACM TOMACS 6 (1996) 137-165).
+The signs of an event function at both ends of a step do not determine its values inside.  The search first checks
+values and rates at the ends, by bounds for a cubic and for a convex function.  Only if these include a breakpoint, it
+follows the function along the step's interpolant, in parts that are bisected until a cubic fits (Shampine and Thompson,
+Comput. Math. Appl. 39 (2000) 43-49; Park and Barton, ACM TOMACS 6 (1996) 137-165).
 
-An edge of an event function is zero: the step ends where the event function passes it.  The edges of an argument part its law into zones;
-to go from one zone into the next is nothing that a step's error control does not see, but a zone that the step has passed
-through, or has visited between its ends, has been overlooked.  A zone is visited where its law departs from what it was before
-the edge, further than the zones overlap.
+The breakpoint of an event function is zero: the step ends there.  The breakpoints of an argument divide its law into
+intervals.  Error control covers a transition from one interval into the next.  A missed event is an interval that the
+step has passed, or has visited between its ends, by more than the overlap of the intervals.
 """
 
 from __future__ import annotations
@@ -35,29 +34,29 @@ from stiffmbs.solve.native.event_search.bounds import (
 )
 
 FITS, NOISE = 0.02, 1e-9
-"""Part of the range of its values by which the function may differ from the cubic there, and part of the largest number in the
-state that rounding takes of values and rates."""
+"""Allowed deviation from the cubic relative to the range of values there, and rounding of values and rates relative to
+the largest number in the state."""
 REPEATED = 8.0
-"""Times that a function may miss the cubic of what its rate differs by, taken over another time: in a step of some nanoseconds
-rates are rounding, and no part is short enough for them to fit."""
+"""Allowed deviation from the cubic relative to the change of a rate with its time of difference: in steps of
+nanoseconds, rates are rounding."""
 SHALLOW = 1e-5
-"""Part of that noise which no event function is taken to go beyond zero by: rounding alone changes the sign of a contact that is just closed."""
+"""Depth below zero, relative to that rounding, that is no event: rounding changes the sign of a closed contact."""
 WELL, MOST_MISSED = 0.03, 1e300
-"""Part of what is allowed that the cubic must keep to for the next part of the step to be twice as long: it misses by the fourth
-power; what counts for a function without a number."""
+"""Relative deviation from the cubic below which the next part is doubled (it has order four), and deviation that stands
+for a non-finite one."""
 LEAST_PART, MOST_PARTS, FEW_PARTS = 1e-4, 5000, 100
-"""The last one where no number of parts would follow an argument of a sine."""
+"""Shortest part, largest number of parts, and the same if arguments of sines cannot be followed."""
 DIFFERENCE = 1e-6
-"""Part of a step, or of a part of one, over which rates are taken."""
+"""Fraction of a step, or of a part, over which rates are computed."""
 REFINED, REFINEMENTS = 0.02, 5
-"""Part of a part of a step over which a parabola is laid at an extremum, and how often, each over a tenth of the one before."""
+"""Fraction of a part over which a parabola is fitted at an extremum, and number of fits, each over a tenth."""
 BISECTIONS, BEHIND = 50, 1e-9
-"""The event is put behind the change by this part of the step, so that the new law holds there."""
+"""Bisections to find an event, and distance after it, relative to the step, at which the new law holds."""
 
 
 @compiled
 def _load_at(w, s, place):
-    """The state at a place within the step, from 0 to 1, by the polynomial through the nodes (barycentric formula)."""
+    """Load the state at a place from 0 to 1 within the step, by the interpolant of the nodes (barycentric formula)."""
     total = 0.0
     for i in range(w.n_state):
         w.row[w.n_nodes * w.n_state + i] = 0.0
@@ -81,7 +80,7 @@ def _load_at(w, s, place):
 
 @compiled
 def keep_row(w, s, node):
-    """Keep the state at hand as that of a node."""
+    """Store the current state as that of a node."""
     row = shifted(w.row, node * w.n_state)
     noted(row, s.q, s.n_q)
     noted(shifted(row, s.n_q), s.u, s.n_u)
@@ -95,7 +94,7 @@ def _values(w, s, begun, h, place):
 
 @compiled
 def _mismatch(w, part, noise):
-    """By how much cubics miss the functions that may have an event within a part of the step, relative to what is allowed."""
+    """Return the largest relative deviation from cubics of functions with possible events in a part."""
     worst = 0.0
     for k in range(w.n):
         if left_out(w, k):
@@ -113,7 +112,7 @@ def _mismatch(w, part, noise):
 
 @compiled
 def _note_noise(w, s, begun, h, end, part):
-    """Note by how much rounding alone may make functions miss their cubics: what rates over another time differ by."""
+    """Note the deviation from cubics that rounding explains: the change of rates over another time."""
     apart = 2.0 * DIFFERENCE * part
     nearby = _values(w, s, begun, h, end - apart)
     for k in range(w.n):
@@ -122,7 +121,7 @@ def _note_noise(w, s, begun, h, end, part):
 
 @compiled
 def _extremum(start, start_rate, end, end_rate, which):
-    """Where within (0, 1) the cubic has a slope of zero, the first or second such place; 2 for nowhere."""
+    """Return the first or second extremum of the cubic within (0, 1); 2 if there is none."""
     a = 3.0 * (start_rate + end_rate - 2.0 * (end - start))
     b = 2.0 * (3.0 * (end - start) - 2.0 * start_rate - end_rate)
     inside = b * b - 4.0 * a * start_rate
@@ -139,11 +138,11 @@ def _extremum(start, start_rate, end, end_rate, which):
 
 @compiled
 def _visits(w, k, value, low, high):
-    """Note that a function has a value at a place; whether that is an event.  It was in the zone of the start up to `low`."""
+    """Return True if the value of a function at `high` is an event; it was in the initial interval up to `low`."""
     one, other = zone(w, k, w.value_before[k]), zone(w, k, w.value_after[k])
     here = zone(w, k, value)
     if here != one and not 0.0 <= w.left_high[k] <= high:
-        w.left_low[k], w.left_high[k] = low, high  # nearer than one noted before, which may be where it has come back
+        w.left_low[k], w.left_high[k] = low, high  # the stored one may be after a return
     if k < w.n_event_functions:
         return here != one and abs(value) > w.depth
     if w.lands[k]:
@@ -155,7 +154,7 @@ def _visits(w, k, value, low, high):
 
 @compiled
 def _visits_extremum(w, s, begun, h, k, low, place, part):
-    """Note that a function has its extremum near a place, which parabolas bring nearer; whether that is an event."""
+    """Return True if a function has an event at its extremum near a place, refined by parabolas."""
     apart = REFINED * part
     for _ in range(REFINEMENTS):
         here = _values(w, s, begun, h, place)[k]
@@ -174,13 +173,13 @@ def _visits_extremum(w, s, begun, h, k, low, place, part):
 
 @compiled
 def _seen_at_end(w, k):
-    """Whether an event function has changed at the end of the step, which is seen without a search: it may have changed before, too."""
+    """Return True if an event function has changed sign at the end of the step; it may have changed earlier, too."""
     return k < w.n_event_functions and zone(w, k, w.value_before[k]) != zone(w, k, w.value_after[k])
 
 
 @compiled
 def _first_within(w, s, begun, h, low, part):
-    """The first event of all functions within a part of the step, as a place in the step; 2 for none."""
+    """Return the place in the step of the first event of all functions within a part; 2 if there is none."""
     first = 2.0
     for k in range(w.n):
         if left_out(w, k):
@@ -214,7 +213,7 @@ def _first_within(w, s, begun, h, low, part):
 
 @compiled
 def _change(w, s, begun, h, k):
-    """Where a function leaves the zone in which it was at the start of the step."""
+    """Return the place at which a function leaves its initial interval."""
     here = zone(w, k, w.value_before[k])
     low, high = w.left_low[k], w.left_high[k]
     for _ in range(BISECTIONS):
@@ -228,7 +227,7 @@ def _change(w, s, begun, h, k):
 
 @compiled
 def _turned_in_part(w, part):
-    """By how much the argument of a sine turns in a part of the step, by values and rates there."""
+    """Return the largest change of a sine's argument in a part of the step, by values and rates there."""
     farthest = 0.0
     for i in range(w.n_turns):
         k = w.turn[i]
@@ -239,7 +238,7 @@ def _turned_in_part(w, part):
 
 @compiled
 def first_event_or_change(w, s, begun, h):
-    """The first event within a step, or else the first function that has changed at its end, as a place; 2 for none."""
+    """Return the place of the first event within a step, or of the first sign change at its end; 2 if there is none."""
     first = first_event(w, s, begun, h)
     if first > 1.0:
         for k in range(w.n_event_functions):
@@ -251,7 +250,7 @@ def first_event_or_change(w, s, begun, h):
 
 @compiled
 def _longest_part(w):
-    """A half, or less where a body turns far: rates at the ends of a part must tell of its turning."""
+    """Return the longest part, 0.5 or less if a body rotates far: rates at its ends must represent the rotation."""
     last = shifted(w.row, (w.n_nodes - 1) * w.n_state)
     turned = 0.0
     for k in range(w.n_angles):
@@ -261,7 +260,7 @@ def _longest_part(w):
 
 @compiled
 def first_event(w, s, begun, h):
-    """The place, from 0 to 1, of the first event within a step from `begun` that the nodes describe; 2 for none."""
+    """Return the place, from 0 to 1, of the first event within a step from `begun`; 2 if there is none."""
     noted(w.a, w.value_before, w.n)
     for k in range(w.n):
         w.a_rate[k] = h * w.rate_before[k]

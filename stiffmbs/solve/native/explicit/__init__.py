@@ -1,1 +1,1 @@
-"""Parts of explicit Runge-Kutta steps: their start, stages, error, end and interpolant."""
+"""Explicit Runge-Kutta steps: start, stages, error estimate, end and interpolant."""

@@ -1,4 +1,4 @@
-"""One step of a given length: its stages, and its end brought to the constraints."""
+"""Step of given length: stages, and projection of its end onto the constraints."""
 
 from __future__ import annotations
 
@@ -12,10 +12,9 @@ from stiffmbs.solve.native.statuses import NOT_FINITE
 
 @compiled
 def arrive(x, c, s, m, t):
-    """Bring the new state y to the constraints, and take the rates there: the first stage of the next step.
+    """Project the new state y onto the constraints, and compute the rates there, the first stage of the next step.
 
-    Where the error estimate has asked for them they are kept: the correction is smaller than the error, and
-    evaluating them again changes no digit of it (measured), but costs a sixth of a step.
+    Rates that the error estimate has computed are kept, because the projection is smaller than the error.
     """
     load_state(s, x.y)
     if x.project:
@@ -37,7 +36,7 @@ def arrive(x, c, s, m, t):
 
 @compiled
 def attempt(x, c, s, m, h):
-    """All stages of one step from y_before, and the new state in y; 0 or a negative status."""
+    """Compute all stages of a step from y_before, and the new state y; 0 or a negative status."""
     for row in range(1, c.stages):
         status = take_stage(x, c, s, m, row, h)
         if status < 0:

@@ -1,4 +1,4 @@
-"""The error of a Runge-Kutta step, by the schemes that are embedded in it, and where these tell nothing."""
+"""Error estimate of a Runge-Kutta step by embedded schemes, with detection of invalid estimates."""
 
 from __future__ import annotations
 
@@ -11,25 +11,23 @@ from stiffmbs.solve.native.explicit.stages import add_stages, load_state
 from stiffmbs.solve.native.tables.views import dynamics_view
 
 UNTRUSTED = 1e3
-"""The error that a step counts for which cannot be trusted."""
+"""Error assigned to a step with an invalid estimate."""
 UNSEEN = 1e-2
-"""Estimated error, relative to how far the last stage is from the end, below which the schemes say nothing of it."""
+"""Estimated error relative to the distance of the last stage from the end, below which the estimate is invalid."""
 MOST_BELOW = 100.0
-"""How far below the better of two embedded schemes the estimate may be.  Two schemes tell the error of a third by the rule that
-orders 3 and 5 give, which holds for smooth motion; where friction rises within a step that is off: dop853 had 137
-times the tolerance where the estimate said 0.4 and the scheme of order 5 said 171."""
+"""Largest ratio of the better embedded error to the estimate: the formula of orders 3 and 5 assumes smooth motion."""
 
 
 @compiled
 def _weigh(x):
-    """One over the tolerance of each number of the state, over the step that was tried."""
+    """Compute the inverse tolerance of each state variable for the attempted step."""
     for i in range(x.n):
         x.weight[i] = 1.0 / (x.atol[i] + x.rtol * max(abs(x.y_before[i]), abs(x.y[i])))
 
 
 @compiled
 def _squares(x, c, row):
-    """The mean square of the difference to an embedded scheme, over the tolerance (without the factor h)."""
+    """Return the mean square of the difference to an embedded scheme in tolerances, without the factor h."""
     for i in range(x.n):
         x.difference[i] = 0.0
     add_stages(x, x.difference, shifted(c.errors, row * c.extended), c.stages + 1, 1.0)
@@ -42,7 +40,7 @@ def _squares(x, c, row):
 
 @compiled
 def _error_of(x, c, h):
-    """The estimated error of the step over the tolerance."""
+    """Return the estimated error of the step in tolerances."""
     first = _squares(x, c, 0)
     if c.n_errors == 1:
         return h * sqrt(first)
@@ -52,7 +50,7 @@ def _error_of(x, c, h):
 
 @compiled
 def _squared(x, other):
-    """The squared distance of the new state from another, in tolerances."""
+    """Return the squared distance of the new state from another one, in tolerances."""
     total = 0.0
     for i in range(x.n):
         ratio = (x.y[i] - other[i]) * x.weight[i]
@@ -62,7 +60,7 @@ def _squared(x, other):
 
 @compiled
 def _sees_other_laws(x, h):
-    """Whether some event function of a force is in another zone at the last stage, still in `y_stage`, than at the step's end."""
+    """Return True if an event function is in another interval at the last stage (`y_stage`) than at the step's end."""
     s = state_view(dynamics_view(x.dynamics).state)
     w = event_search_view(x.watch)
     if w.n == 0:
@@ -81,12 +79,11 @@ def _sees_other_laws(x, h):
 
 @compiled
 def trusted_error(x, c, h):
-    """The estimated error over the tolerance, or at least `UNTRUSTED` where the stages have gone astray.
+    """Return the estimated error in tolerances, at least `UNTRUSTED` if the estimate is invalid.
 
-    Stages that leave a stiff contact at its far side see no force there; all differences between schemes then cancel, and
-    the estimate is zero for a step that is nonsense.  The last stage, at the step's end, is then further from the end
-    than the whole step is long.  Where stability holds steps back stages go as far, too: an estimate by one scheme tells it
-    then, unless it is far smaller or the stage sees another law.
+    Stages beyond a stiff contact have no contact force: the differences between schemes cancel, and the estimate is
+    zero.  The last stage, at the step's end, is then further from the end than the whole step is long.  The same occurs
+    where stability limits steps: the estimate of a single scheme is then valid, unless far smaller or of another law.
     """
     _weigh(x)
     error = _error_of(x, c, h)

@@ -1,4 +1,4 @@
-"""The local error of a step, by two steps of half its length."""
+"""Local error of a step by two steps of half its length."""
 
 from __future__ import annotations
 
@@ -8,20 +8,20 @@ from stiffmbs.solve.native.explicit.attempt import arrive, attempt
 from stiffmbs.solve.native.explicit.stages import copied, load_state, rates
 
 HALVED_APART = 251
-"""Steps from one that is measured to the next: a measurement costs two steps.  A prime number does not keep step with periods."""
+"""Steps between two such estimates, which cost two steps; a prime number avoids resonance with periods."""
 FASTER = 1e-3
-"""Part of the velocities by which they are increased to see what damps them."""
+"""Fraction by which velocities are increased to determine the damping."""
 
 
 @compiled
 def is_halved(x):
-    """Return whether the next step is one that is measured: the middle one of so many."""
+    """Return True if the error of the next step is estimated."""
     return x.steps % HALVED_APART == HALVED_APART // 2
 
 
 @compiled
 def _look_at_damping(x, s, m, t):
-    """Note what damps the motion at the start of a step, by accelerations in the second stage; 0 or a negative status."""
+    """Note the damping at the start of a step, by accelerations in the second stage; 0 or a negative status."""
     for i in range(x.n):
         x.halved[i] = x.y_before[i] * (1.0 + FASTER) if i >= x.n_q else x.y_before[i]
     load_state(s, x.halved)
@@ -33,7 +33,7 @@ def _look_at_damping(x, s, m, t):
 
 @compiled
 def two_halves(x, c, s, m, h):
-    """Keep where two steps of half the length lead from y_before, and leave all else as it was; 0 or a negative status."""
+    """Store the result of two half steps from y_before, and restore everything else; 0 or a negative status."""
     start = shifted(x.halved, x.n)
     rate = shifted(x.halved, 2 * x.n)
     end = shifted(x.k, c.stages * x.n)

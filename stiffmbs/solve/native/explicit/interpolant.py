@@ -1,4 +1,4 @@
-"""States within the last Runge-Kutta step, for output times that steps are not cut by.
+"""States within the last Runge-Kutta step, for output times between its ends.
 
 y(theta) = y_before + theta (p_0 + (1 - theta) (p_1 + theta (p_2 + (1 - theta) (p_3 + ...)))).  The first three
 polynomials follow from states and rates at both ends (Hermite), the others are sums of stages; Hairer, Norsett,
@@ -14,15 +14,14 @@ from stiffmbs.solve.native.explicit.stages import add_stages, copied, take_stage
 from stiffmbs.solve.native.statuses import NOT_FINITE_WITHIN
 
 HARDLY_OFF = 0.3
-"""Error of an interpolant without stages of its own, in tolerances, up to which it serves."""
+"""Error of an interpolant without additional stages, in tolerances, up to which it is used."""
 ASTRAY = 100.0
-"""Size of what stages add to the ends of a step, relative to these, from which on they have gone astray; with smooth
-motions it is a tenth to ten."""
+"""Ratio of the stages' terms to those of the ends above which they are invalid; 0.1 to 10 for smooth motions."""
 
 
 @compiled
 def prepare(x, c, s, m):
-    """The coefficients p_k of the last step; 0 or a negative status."""
+    """Compute the coefficients p_k of the last step; 0 or a negative status."""
     n = x.n
     h = x.span
     free = c.n_free > 0 and _free_serves(x, c, h)
@@ -52,7 +51,7 @@ def prepare(x, c, s, m):
 
 @compiled
 def _free_serves(x, c, h):
-    """Whether stages of the step alone give the states within it: they are hardly off, or stages of a higher order would be no better."""
+    """Return True if the stages of the step suffice: the error is small, or additional stages would not reduce it."""
     for i in range(x.n):
         x.difference[i] = 0.0
     add_stages(x, x.difference, c.free_error, c.stages + 1, h)
@@ -65,7 +64,7 @@ def _free_serves(x, c, h):
 
 @compiled
 def _is_fast(x, c, h):
-    """Whether h |lambda|, seen from two stages at the step's end, is above one: powers of it grow with the order then."""
+    """Return True if h |lambda|, by two stages at the step's end, exceeds one: its powers then grow with the order."""
     last = c.stages - 1
     weighted(x, c, x.difference, last, h)
     k_end = shifted(x.k, c.stages * x.n)
@@ -80,12 +79,10 @@ def _is_fast(x, c, h):
 
 @compiled
 def _sound(x, count):
-    """How many of the polynomials count: where sums of stages tell nothing, the rates at the ends, or the ends alone.
+    """Return the number of valid polynomials: all, those of ends and rates, or that of the ends; 0 if not finite.
 
-    None where a stage is no number: a Python function has failed, or a law ends beside the motion.
-
-    At rest steps may be far longer than stability allows.  Their stages amplify rounding, those of the interpolant more than
-    those of the step, whose error is still below the tolerance.
+    A stage is not finite if a Python function fails, or the domain of a law ends near the motion.  At rest, steps may
+    be far longer than stability allows: stages, most of all those of the interpolant, then amplify rounding.
     """
     p = x.polynomial
     ends = 0.0
@@ -108,7 +105,7 @@ def _sound(x, count):
 
 @compiled
 def interpolated(x, c, theta, target):
-    """The state at a part theta of the last step; what it is away from the step's start is summed up first, which rounds less."""
+    """Compute the state at a fraction theta of the last step; the increment is summed first, to reduce rounding."""
     n = x.n
     first = x.polynomial
     for i in range(n):
@@ -125,7 +122,7 @@ def interpolated(x, c, theta, target):
 
 @compiled
 def store_rows(x, c, s, m):
-    """Store the states at all output times up to now; 1 when that is done, 0 when the memory for rows is full, or a status."""
+    """Store the states at all output times so far; 1 if complete, 0 if the memory is full, or a negative status."""
     while x.next_time < x.n_times and x.times[x.next_time] <= x.t:
         if x.rows == x.capacity:
             return 0

@@ -1,4 +1,4 @@
-"""The stages of an explicit Runge-Kutta step: rates of change at weighted sums of earlier ones."""
+"""Stages of an explicit Runge-Kutta step: rates at weighted sums of earlier ones."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def copied(target, source, count):
 
 @compiled
 def add_stages(x, target, weights, count, factor):
-    """target += factor * sum of weights_j k_j over the first `count` stages."""
+    """Compute target += factor * sum of weights_j k_j over the first `count` stages."""
     for j in range(count):
         weight = factor * weights[j]
         if weight != 0.0:
@@ -30,21 +30,21 @@ def add_stages(x, target, weights, count, factor):
 
 @compiled
 def weighted(x, c, target, row, h):
-    """target = y_before + h * sum of a_row,j k_j: where stage `row` is taken."""
+    """Compute target = y_before + h * sum of a_row,j k_j, the state of stage `row`."""
     copied(target, x.y_before, x.n)
     add_stages(x, target, shifted(c.a, row * c.extended), row, h)
 
 
 @compiled
 def load_state(s, y):
-    """The state (q, u) for the kernels."""
+    """Load the state (q, u) for the kernels."""
     copied(s.q, y, s.n_q)
     copied(s.u, shifted(y, s.n_q), s.n_u)
 
 
 @compiled
 def accelerated(eliminates, eliminated, s, m, t, target):
-    """target = u' at the state at hand, by the elimination where it serves; 0 or a negative status."""
+    """Compute target = u' at the current state, by elimination if possible; 0 or a negative status."""
     if eliminates:
         r = eliminated_view(eliminated)
         if eliminated_accelerations(r, s, t):
@@ -59,7 +59,7 @@ def accelerated(eliminates, eliminated, s, m, t, target):
 
 @compiled
 def add_rates_behind(s, m, factor, target):
-    """target += factor * the rates of counters of turns and states, after accelerations at the state at hand."""
+    """Add factor * the rates of revolution counters and states, after accelerations at the current state."""
     values = floats(s.values[ACCELERATION])
     for k in range(m.n_behind):
         target[m.behind_row[k]] += factor * values[m.behind_source[k]]
@@ -67,14 +67,14 @@ def add_rates_behind(s, m, factor, target):
 
 @compiled
 def keep_algebraic(s, m, y):
-    """Put the algebraic states at hand into a state y = (q, u)."""
+    """Copy the current algebraic states into a state y = (q, u)."""
     for k in range(m.n_algebraic):
         y[m.algebraic[k]] = s.q[m.algebraic[k]]
 
 
 @compiled
 def rates(x, s, m, stage, t):
-    """k_stage = (q', u') at the state at hand; 0 or a negative status."""
+    """Compute k_stage = (q', u') at the current state; 0 or a negative status."""
     k = shifted(x.k, stage * x.n)
     for i in range(s.n_q):
         k[i] = 0.0
@@ -87,7 +87,7 @@ def rates(x, s, m, stage, t):
 
 @compiled
 def take_stage(x, c, s, m, row, h):
-    """Stage `row` of the step of length h that starts at t_before; 0 or a negative status."""
+    """Compute stage `row` of the step of length h from t_before; 0 or a negative status."""
     weighted(x, c, x.y_stage, row, h)
     load_state(s, x.y_stage)
     return rates(x, s, m, row, x.t_before + c.c[row] * h)

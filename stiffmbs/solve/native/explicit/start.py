@@ -1,4 +1,4 @@
-"""The start of explicit steps from consistent values: rates and event functions there, and the length of the first step."""
+"""Start of explicit steps from consistent values: rates and event functions there, and the first step size."""
 
 from __future__ import annotations
 
@@ -12,20 +12,19 @@ from stiffmbs.solve.native.event_search.from_zero import LONGER, at_zero, begin_
 from stiffmbs.solve.native.explicit.stages import add_rates_behind, copied, load_state, rates
 
 NO_RATE, SHORT, LONGER_AT_REST, LONGEST_FACTOR = 1e-15, 1e-6, 1e-3, 100.0
-"""Rates below which nothing bounds the step, the length tried where rates tell nothing of one, s, the part of a tried length that is
-taken then at the least, and how many times longer than the tried length a step may be."""
+"""Rate below which the step is unbounded, trial step without information, s, its least fraction, and largest ratio of
+the step to the trial step."""
 SMALL = 1e-5
-"""Sizes, in tolerances, below which states and rates tell nothing of a length."""
+"""Sizes of states and rates, in tolerances, below which they do not determine a step."""
 PART = 0.01
-"""Of the state that the first explicit Euler step changes, and what the highest order term may come to, in tolerances."""
+"""Fraction of the state changed by the first explicit Euler step, and size of the highest-order term in tolerances."""
 FARTHEST, ROUNDINGS = 1e3, 2e-15
-"""Shortest steps within which the motion must leave an event function's zero for the law at the start to be that on the other side,
-and the part of the time that rounding takes."""
+"""Shortest steps within which the motion must leave a zero of an event function, and relative rounding of the time."""
 
 
 @compiled
 def start_steps(x, c, s, m):
-    """The rates q' at the state y in the last stage, beside the accelerations there, and the values of event functions."""
+    """Compute the rates q' at the state y in the last stage, next to its accelerations, and the event functions."""
     load_state(s, x.y)
     copied(s.lam, x.lam, s.n_c)
     k = shifted(x.k, c.stages * x.n)
@@ -44,7 +43,7 @@ def start_steps(x, c, s, m):
 
 @compiled
 def _go_ahead(x, s, k, ahead):
-    """Load the state to which the one at the start goes in a time at rates k; its event functions."""
+    """Load the initial state extrapolated by a time at rates k; return its event functions."""
     for i in range(x.n):
         x.difference[i] = x.y[i] + ahead * k[i]
     add_rates(s, shifted(k, s.n_q), 0.5 * ahead * ahead, x.difference)
@@ -54,9 +53,9 @@ def _go_ahead(x, s, k, ahead):
 
 @compiled
 def _leave_zeros(x, s, m, k):
-    """Take rates slightly after the start where event functions are exactly zero there: rounding decides which law holds at a zero.
+    """Compute rates slightly after the start if event functions are exactly zero there, where rounding decides the law.
 
-    They are not taken where they lead back to the zero, as in sticking friction.
+    They are rejected if they lead back to the zero, as in sticking friction.
     """
     w = event_search_view(x.watch)
     count = x.n_event_functions
@@ -77,7 +76,7 @@ def _leave_zeros(x, s, m, k):
 
 @compiled
 def _size(x, values):
-    """The root mean square of numbers like those of a state, in tolerances."""
+    """Return the RMS of a vector of state variables, in tolerances."""
     total = 0.0
     for i in range(x.n):
         ratio = values[i] * x.weight[i]
@@ -87,7 +86,7 @@ def _size(x, values):
 
 @compiled
 def first_step(x, c, s, m, end):
-    """A first step whose error will be small, s (Hairer, Norsett, Wanner I, ch. II.4, "starting step size")."""
+    """Return a first step with a small error, s (Hairer, Norsett, Wanner I, ch. II.4, "starting step size")."""
     rate = shifted(x.k, c.stages * x.n)
     for i in range(x.n):
         x.weight[i] = 1.0 / (x.atol[i] + x.rtol * abs(x.y[i]))

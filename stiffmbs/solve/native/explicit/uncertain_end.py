@@ -1,8 +1,8 @@
-"""Ends of steps beside a pose at which two branches of the motion meet: rounding decides about accelerations there.
+"""Ends of steps near a bifurcation pose, where rounding determines the accelerations.
 
-At a distance d from such a pose, relative to the mechanism's size, a rounding e of positions puts the mechanism by e/d
-beside its branch, its velocities by e/d^2 and its accelerations by e/d^3.  A step over the pose sees nothing of that.  A
-step that ends beside it hands errors on that no shorter step makes good: the shorter it is, the nearer it comes to the pose.
+Let d be the distance from such a pose, relative to the mechanism's size.  A rounding e of positions causes errors of
+e/d in positions, e/d^2 in velocities and e/d^3 in accelerations.  A step across the pose is not affected.  A step that
+ends near it transfers errors that shorter steps do not reduce, because they end nearer to the pose.
 """
 
 from __future__ import annotations
@@ -11,19 +11,19 @@ from stiffmbs.compile.machine.native.access import compiled, shifted
 from stiffmbs.solve.native.tables.views import eliminated_view
 
 POSITION_ROUNDING = 2.2e-16
-"""Of positions, relative to the size of the mechanism: that of a double."""
+"""Rounding of positions relative to the size of the mechanism: that of a double."""
 CLOSE = 1e-2
-"""Part that the pivots of J M^-1 J^T keep, d^2, from which on an end is looked at."""
+"""Relative size d^2 of the pivots of J M^-1 J^T below which an end is checked."""
 HARMFUL = 0.01
-"""Change of a velocity by such accelerations over the step, relative to the tolerance, with which a step should not end."""
+"""Velocity change by such acceleration errors in a step, in tolerances, above which a step should not end there."""
 MOST_MOVED, SHORTER = 3, 0.55
-"""How often the end of a step is moved back, and to which part of the step each time: the next step then takes no stage near the pose,
-as the stages of dopri5 and dop853 stand at up to 0.33 of it and from 0.6 on."""
+"""Number of times that the end of a step is moved back, and factor of the step: the stages of the next step then avoid
+the pose, because those of dopri5 and dop853 are at up to 0.33 and from 0.6 of a step on."""
 
 
 @compiled
 def uncertain_end(x, c, h):
-    """Whether rounding of positions changes the accelerations at the end of a step by more than the next step bears."""
+    """Return True if rounding of positions changes velocities in the next step by more than `HARMFUL`."""
     if not x.pivots_tell:
         return False
     r = eliminated_view(x.eliminated)

@@ -1,1 +1,1 @@
-"""Compiled loops over the rows of what is reported."""
+"""Compiled loops over output rows."""

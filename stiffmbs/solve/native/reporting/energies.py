@@ -1,4 +1,4 @@
-"""Energies and power at output instants."""
+"""Energies and power at output times."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from stiffmbs.compile.machine.native.access import shifted
 def energies(
     count, n_u, u, mass, n_values, values, n_potential, potential_at, n_power, power_at, kinetic, potential, power
 ):
-    """Kinetic and potential energy and power at `count` instants, from rows of velocities and of the values of output terms."""
+    """Compute kinetic and potential energy and power in `count` rows of velocities and output terms."""
     for row in range(count):
         velocity = shifted(u, row * n_u)
         term = shifted(values, row * n_values)

@@ -1,1 +1,1 @@
-"""Tables that Python and compiled code share (`stiffmbs.compile.machine.layout`)."""
+"""Tables shared by Python and compiled code (`stiffmbs.compile.machine.layout`)."""

@@ -1,4 +1,4 @@
-"""What compiled code works on as it solves linear equations: those of IDA's steps, and the block systems of the dynamics."""
+"""Tables of linear solvers: those of IDA's steps, and those of the block systems of the dynamics."""
 
 from __future__ import annotations
 
@@ -19,10 +19,9 @@ FIXED_ORDER = Layout({
     "ready": INT_CELL, "n_lower": INT_CELL, "n_upper": INT_CELL,
     "lu": OWN_FLOATS, "row": OWN_INDICES, "column": OWN_INDICES, "update_start": INTS, "update": OWN_INDICES, "mark": INTS, "x": FLOATS,
 })  # fmt: skip
-"""A linear solver of IDA's along fixed pivots (`stiffmbs.solve.native.fixed_order`); it begins as the content of the
-solver of SUNDIALS whose place it takes: number of unknowns, pivots, last flag.  `ready` says whether pivots are known;
-`n_lower` and `n_upper` count the entries beside the diagonal.  Its long lists are of 32-bit numbers: a long
-chain's solutions wait for memory."""
+"""Linear solver of IDA with fixed pivots (`stiffmbs.solve.native.fixed_order`).  It begins like the content of the
+SUNDIALS solver that it replaces: number of unknowns, pivots, last flag.  `ready` is 1 if pivots are known; `n_lower`
+and `n_upper` count the entries off the diagonal.  Long lists have 32-bit numbers to save memory access."""
 
 PAIRED_COLUMNS = Layout({
     "n": INT, "pivots": INT, "last_flag": INT_CELL, "array_of": INT, "factors": INTS, "slot": INDICES, "weight": FLOATS,
@@ -30,7 +29,7 @@ PAIRED_COLUMNS = Layout({
     "lu": OWN_FLOATS, "row": OWN_INDICES, "column": OWN_INDICES, "place": OWN_INDICES, "update_start": INTS, "update": OWN_INDICES,
     "item_start": INTS, "item_end": INTS, "side": INTS, "mark": INTS, "x": FLOATS,
 })  # fmt: skip
-"""The same with its columns in pairs, `n_items` in all (`stiffmbs.solve.native.paired_columns`)."""
+"""Linear solver with two-column supernodes, `n_items` in all (`stiffmbs.solve.native.paired_columns`)."""
 
 BLOCK_LU = Layout({
     "n": INT, "pivots": INT, "last_flag": INT_CELL, "array_of": INT, "factors": INTS, "with_pivots": INTS,
@@ -42,12 +41,12 @@ BLOCK_LU = Layout({
     "order": INTS, "unit": FLOATS, "behind": FLOATS, "kind": INTS, "n_diagonal": INT, "diagonal": INTS, "state": FLOATS,
     "pivot": FLOATS, "tried": FLOATS, "trial": FLOATS, "product": FLOATS, "terms": FLOATS, "allowed": FLOATS,
 })  # fmt: skip
-"""The same by dense blocks (`stiffmbs.solve.linear.native.block_lu`); `with_pivots` holds the address of the table
-of columns in pairs that takes over where those cannot be trusted, `compile_pivots` that of the C function that puts the addresses of
-its routines into the next two cells.  `ready` says whether the counts are of this run: whether the factors at
-hand are those with pivots, how many more are, how many factorisations the last trial serves for yet, trials that were failed, and
-whether solutions are refined; `panels` is where the factors begin in `lu`.  `order` tells which rows a node's pivots were found in;
-`unit` and `behind` are the rows of a unit matrix and of ones above its diagonal."""
+"""Linear solver by dense blocks (`stiffmbs.solve.linear.native.block_lu`).  `with_pivots` holds the address of the
+table of `PAIRED_COLUMNS` that replaces inaccurate blocks; `compile_pivots` is the C function that stores the addresses
+of its routines in the next two cells.  `ready` is 1 if the counts are of this run.  `pivoted` is 1 for current factors
+with pivoting, `waits` the number of further ones, `serves` that of factorisations covered by the last trial, `refused`
+that of failed trials.  `refined` is 1 if solutions are refined; `panels` is the start of the factors.  `order` holds
+the pivot rows of a supernode; `unit` and `behind` are the rows of an identity matrix and of ones above its diagonal."""
 
 DYNAMICS = Layout({
     "state": INTS, "positions": INTS, "position_factors": INTS, "velocities": INTS, "velocity_factors": INTS,
@@ -57,11 +56,11 @@ DYNAMICS = Layout({
     "n_turned_for_output": INT, "turned_for_output": INTS,
     "eliminates": INT, "eliminated": INTS, "by_elimination": INT_CELL,
 })  # fmt: skip
-"""The tables of one state and its three block systems; `status` receives why no more instants could be reported;
-`behind` tells where the rates of counters of turns and states stand among the terms of accelerations, and `by_reactions` whether any of them
-depends on multipliers; then the coordinates that are algebraic states, sizes of them that matter, and their last values; and the
-bodies whose orientation output terms ask for beside those that accelerations do, by their first coordinates.  At last whether
-accelerations are tried by elimination (`stiffmbs.solve.native.consistent`), its table, and whether it has found the last ones."""
+"""Tables of a state and its three block systems.  `status` receives the reason of a failure in output rows.  `behind`
+lists the rates of revolution counters and states among the acceleration terms; `by_reactions` is 1 if any depends on
+multipliers.  `algebraic` lists the algebraic states among the coordinates, with their scales and last values, and
+`turned_for_output` the first coordinates of bodies whose orientation only output terms need.  `eliminates` is 1 if
+elimination is tried first (`stiffmbs.solve.native.consistent`), `by_elimination` if it gave the last accelerations."""
 
 ELIMINATED = Layout({
     "state": INTS, "n_u": INT, "trees": INT, "by_blocks": INT, "by_pins": INT, "lists": INTS,
@@ -69,10 +68,10 @@ ELIMINATED = Layout({
     "n_f": INT, "f_source": INDICES, "f_row": INDICES, "scale": FLOATS, "a": FLOATS,
     "attempt": INT_CELL, "move": INT_CELL, "q_before": FLOATS, "u_before": FLOATS, "left": FLOATS, "sizes": FLOATS, "least": FLOAT_CELL,
 })  # fmt: skip
-"""J M^-1 J^T (`stiffmbs.solve.linear.eliminated`): whether no joint closes a loop, whether it is factored by blocks or by pins, and the table of
-these or of the entries; whether there are factors, what their pivots keep, and have kept at the most; forces, M^-1/2, accelerations;
-the addresses of its routines, where other compiled code may ask for them, memory of a state, what the block system leaves and the sizes of its terms, and what may be left
-of small ones."""
+"""Elimination of J M^-1 J^T (`stiffmbs.solve.linear.eliminated`).  `trees` is 1 if no joint closes a loop; `by_blocks`
+and `by_pins` select the table `lists`.  `ready` is 1 if there are factors; `kept` and `most_kept` are the relative
+sizes of their pivots now and at most.  Then follow forces, M^-1/2, accelerations; addresses of routines; memory of a
+state; residuals of the block system, sizes of their terms, and the least allowed residual."""
 
 ENTRY_ELIMINATION = Layout({
     "n": INT, "n_gamma": INT, "n_j": INT, "n_slots": INT, "gamma_source": INDICES, "gamma_row": INDICES,
@@ -81,18 +80,18 @@ ENTRY_ELIMINATION = Layout({
     "column_start": INDICES, "row": INDICES, "update_slot": INDICES,
     "j_scale": FLOATS, "j": FLOATS, "s": FLOATS, "l": FLOATS, "diagonal": FLOATS, "b": FLOATS,
 })  # fmt: skip
-"""The matrix and its factors by flat lists (`stiffmbs.solve.linear.matrix_entries`)."""
+"""Matrix and factors by flat lists (`stiffmbs.solve.linear.matrix_entries`)."""
 
 PIN_ELIMINATION = Layout({
     "n": INT, "n_beside": INT, "pin": INDICES, "inverse": FLOATS, "w": FLOATS, "product": INDICES, "mass": FLOATS,
     "start": INDICES, "later": INDICES, "update": INDICES,
     "block": FLOATS, "diagonal": FLOATS, "beside": FLOATS, "scaled": FLOATS, "x": FLOATS,
 })  # fmt: skip
-"""The same where all joints are planar pins (`stiffmbs.solve.linear.pins`), in the order of their elimination.  Rows of `pin`: where two
-entries of J begin for the first body and both equations, and for the second; two sources of gamma; the first velocities of both bodies;
-the first equation.  `inverse` holds the inverse masses of both bodies.  Blocks beside the diagonal stand pin after pin from `start` on, each
-with the later pin that it belongs to; rows of `product` tell which blocks of J M^-1 each begins with, `mass` what lies between these;
-`update` tells the block that two blocks of a pin change."""
+"""Matrix and factors of planar revolute joints in the order of elimination (`stiffmbs.solve.linear.pins`).  Rows of
+`pin`: starts of two entries of J for both equations of the first body and of the second; two sources of gamma; first
+velocities of both bodies; first equation.  `inverse` holds the inverse masses of both bodies.  Off-diagonal blocks are
+stored joint by joint from `start` on, each with its `later` joint.  Rows of `product` list the blocks of J M^-1 that
+form them, `mass` the masses between these; `update` lists the block that two blocks of a joint update."""
 
 BLOCK_ELIMINATION = Layout({
     "n_gamma": INT, "gamma_source": INDICES, "gamma_place": INDICES,
@@ -103,13 +102,13 @@ BLOCK_ELIMINATION = Layout({
     "n_nodes": INT, "node": INDICES, "n_panels": INT, "blocks": FLOATS, "update": INDICES, "right": INDICES,
     "place": INTS, "n_pivots": INT, "pivot": FLOATS, "diagonal": FLOATS, "n_x": INT, "x": FLOATS, "y": FLOATS,
 })  # fmt: skip
-"""The same by dense blocks (`stiffmbs.solve.linear.joint_blocks`).  Velocities are taken by threes.  Rows of `full`, where
-each has an entry of J in all rows of a joint: how many these are, start and stride of the joint's panel, place in x, block of J for
-the three, the first of them, and where the entries of each row begin among the values.  Rows of `straight`, where each has one entry, on
-a diagonal: place and step in the panel, place in x, place and step in J, first velocity, three sources.  All others are copied into J
-one by one.  Rows of `pair`: a joint's place in x, its block of J for three velocities of a body, the
-first of them, the block's width.  Where each has one entry of J at the most, rows of `single`: place in x, entry, velocity.  Rows of
-`forming`: a shape, where lines are added, their stride, and both factors with theirs; of `product`: where the product of two single
-entries is added, and both.  Rows of `node`: size, width, start and stride of the node's panel, start and width of what stands right
-of its block after the elimination, divided by the pivots, place in x, first pivot, end of its rows in `update` (a shape, where lines
-are taken from, their stride, both factors), end in `right`, which holds the places in x of what stands right of blocks."""
+"""Matrix and factors by dense blocks, for groups of three velocities (`stiffmbs.solve.linear.joint_blocks`).  Rows of
+`full`, for velocities with entries of J in all rows of a joint: number of rows; start and stride of the joint's panel;
+position in x; block of J; first velocity; start of each row's entries among the values.  Rows of `straight`, for
+velocities with one entry each, on a diagonal: position and step in the panel; position in x; position and step in J;
+first velocity; three sources.  All other entries are copied into J one by one.  Rows of `pair`: a joint's position in
+x; its block of J for three velocities; the first velocity; the block's width.  Rows of `single`, for at most one entry
+per velocity: position in x, entry, velocity.  Rows of `forming`: shape; target and stride; both factors with strides.
+Rows of `product`: target and factors for two single entries.  Rows of `node`: size, width, start and stride of the
+panel; start and width of the eliminated right blocks divided by pivots; position in x; first pivot; ends of its rows in
+`update` (shape, target, stride, both factors) and in `right`, which holds the positions in x of right blocks."""

@@ -1,4 +1,4 @@
-"""What compiled code works on as it integrates: IDA and explicit steps, and what is seen within them."""
+"""Tables of integrators: steps of IDA and explicit steps, and the search within them."""
 
 from __future__ import annotations
 
@@ -8,35 +8,35 @@ IDA = Layout({
     "state": INTS, "equations": INTS, "array_header": INT, "n_event_functions": INT, "signs": FLOATS, "masked": INTS,
     "last_time": FLOAT_CELL, "steps": INT_CELL, "rejected": INT_CELL, "n_ends": INT, "ends": FLOATS,
 })  # fmt: skip
-"""What IDA's callbacks work on; `array_header` is the size of the header before the data pointer of a numpy array.  They
-note the last time asked for, count steps accepted and rejected, and keep the first ends of steps."""
+"""Tables of scikit-sundae's callbacks.  `array_header` is the size of the header before the data pointer of a NumPy
+array.  The callbacks note the last time, count accepted and rejected steps, and store the first ends of steps."""
 
 SCHEME = Layout({
     "order": INT, "stages": INT, "extended": INT, "n_errors": INT, "n_dense": INT, "n_free": INT, "error_needs_end": INT,
     "c": FLOATS, "a": FLOATS, "errors": FLOATS, "dense": FLOATS, "free": FLOATS, "free_error": FLOATS,
     "exponent": FLOAT_CELL, "memory": FLOAT_CELL, "stability": FLOAT_CELL,
 })  # fmt: skip
-"""The coefficients of a Runge-Kutta scheme (`stiffmbs.solve.explicit.scheme`), one column for each stage."""
+"""Coefficients of a Runge-Kutta scheme (`stiffmbs.solve.explicit.scheme`), one column for each stage."""
 
 STEP_BOUND = Layout({"n": INT, "place": INT_CELL, "starts": FLOATS, "longest": FLOATS})
-"""The longest steps that see what the inputs do (`stiffmbs.solve.events.step_bound`); n is 0 where nothing bounds a step."""
+"""Longest steps that resolve inputs (`stiffmbs.solve.events.step_bound`); n is 0 if nothing limits a step."""
 
 LONG_STEPS = Layout({
     "n_nodes": INT, "node": FLOATS, "width": INT, "ratio": FLOAT_CELL, "remembered": FLOAT_CELL, "room": INT_CELL, "count": INT_CELL, "usual": FLOAT_CELL, "row": FLOATS,
 })  # fmt: skip
-"""Where steps far longer than those before are kept (`stiffmbs.solve.native.long_steps`): one row each of the step's two ends and its
-states, of `width` numbers, at the nodes.  Cells: times the usual step beyond which a step is long, and of how many steps the usual one
-is the mean; rows there is room for (0 where none is kept), rows kept, the usual step."""
+"""Storage of long steps (`stiffmbs.solve.native.long_steps`): one row for both ends of a step and its states, of
+`width` numbers, at the nodes.  Cells: ratio of a long step to the usual one, number of steps in the mean that is usual,
+space for rows (0 for none), stored rows, usual step."""
 
 ACCUMULATED_ERRORS = Layout({
     "n": INT, "place": INTS, "mass": FLOATS, "displaced": FLOATS, "furthest": FLOATS,
     "n_damped": INT, "damped_source": INTS, "damped_row": INTS, "damped_column": INTS, "damped_factor": FLOATS,
     "each": FLOAT_CELL, "damping": FLOAT_CELL, "speed_error": FLOAT_CELL, "path": FLOAT_CELL, "time": FLOAT_CELL, "since": INT_CELL, "span": FLOAT_CELL,
 })  # fmt: skip
-"""What local errors of velocities come to (`stiffmbs.solve.native.accumulated_errors`): where the velocities stand among the unknowns, their
-masses, how far positions are displaced, and the largest amounts of that so far; entries of the derivatives of forces by velocities.  Cells: what
-the last error that was read adds to the speed, the rate at which forces damp the motion, 1/s, the error of the speed, the path so
-far, weighted with masses, and its time, s; steps since positions were displaced, and their length, s."""
+"""Accumulated local errors of velocities (`stiffmbs.solve.native.accumulated_errors`): positions of the velocities
+among the unknowns, their masses, displacements of positions, and the largest ones so far; entries of the derivatives of
+forces by velocities.  Cells: change of the speed by the last error, damping rate, 1/s, error of the speed,
+mass-weighted path and its time, s; steps since the last displacement, and their length, s."""
 
 EXPLICIT = Layout({
     "dynamics": INTS, "eliminated": INTS, "eliminates": INT_CELL, "pivots_tell": INT, "scheme": INTS, "n": INT, "n_q": INT, "project": INT_CELL,
@@ -49,11 +49,11 @@ EXPLICIT = Layout({
     "n_times": INT, "times": FLOATS, "next_time": INT_CELL,
     "capacity": INT, "rows": INT_CELL, "row_t": FLOATS, "row_y": FLOATS, "ends": FLOATS,
 })  # fmt: skip
-"""An explicit integration between two calls: the state y = (q, u) now and before the last step (of length `span`), the
-event functions' values there, the stages k, one over the tolerance of each number in the last step tried, how many polynomials describe
-the last step (0: they are not made), the counters, the output times (none: every step), and memory for the rows and ends of steps that one call stores.  Where steps are to start anew
-`started` is 0: the state, its accelerations in the last stage, and `lam` are consistent values then.  `measured` is 1 where `halved` has the
-state that two steps of half the length lead to; `repeats` is how often laws repeat whose features end a step in each turn."""
+"""Explicit integration between two calls: the state y = (q, u) now and before the last step of length `span`; its event
+functions; the stages k; inverse tolerances of the last attempt; the number of polynomials of the last step (0 if not
+computed); counters; output times (none for every step); memory for the rows and ends of steps in one call.  `started`
+is 0 before a restart: the state, its accelerations in the last stage, and `lam` are then consistent.  `measured` is 1
+if `halved` has the result of two half steps; `repeats` is the number of periods of laws that end a step in each."""
 
 NATIVE_IDA = Layout({
     "state": INTS, "equations": INTS, "array_of": INT, "matrix": INT, "pattern": INTS,
@@ -68,19 +68,19 @@ NATIVE_IDA = Layout({
     "long_steps": INTS, "accumulated": INTS, "errors_of": INT, "error_norm": INTS,
     "trace": INT_CELL, "traced": INT_CELL, "seen": FLOAT_CELL,
 })  # fmt: skip
-"""What the callbacks and the loop of the native IDA work on (`stiffmbs.solve.native.ida_loop`): functions and objects
-of SUNDIALS by their addresses, the values of the matrix, how its pattern is written, and what is reported.
+"""Memory of the callbacks and the loop of the native IDA (`stiffmbs.solve.native.ida_loop`): addresses of SUNDIALS
+functions and objects, values and pattern of the matrix, and reported unknowns.
 
-Cells: the time of the returned state, the time that IDA has reached inside, size (0 before the first) and order of its
-last step, size of the one that it will try next; where it was last told to stop; output points served, tiny steps in succession, whether the last event
-was found by the search within the step; steps in the history, steps since the last sample, place of the next one; the address
-of rows for time, order, y and y' of each step (0: none are kept), and rows written in this call; the time for which the state holds the values of event functions."""
+Cells: times of the returned state and of IDA's internal state; size (0 before the first) and order of its last step,
+size of the next attempt; last stop time; output times served, tiny steps in succession, 1 if the last event was found
+within the step; steps in the history, steps since the last sample, position of the next one; address of rows for time,
+order, y and y' of each step (0 for none), and rows written in this call; time of the event functions in the state."""
 
 MOST_STEPS, HISTORY_ROWS, HISTORY_WIDTH = 2048, 4096, 3
-"""Steps of any one call up to a breakpoint, and of all that it passes, which the history has rows for: time of the end, order, size."""
+"""Steps of a call up to a breakpoint, and rows of the history of a call: time of the end, order, size."""
 
 SAMPLES = 16
-"""Rows of the samples: the time and what is reported."""
+"""Number of samples of time and reported unknowns."""
 
 START = Layout({
     "dynamics": INTS, "ida": INT, "error_norm": INTS, "n_watched": INT, "rate": FLOATS, "leader": INTS,
@@ -94,14 +94,13 @@ START = Layout({
     "n_counters": INT, "counter": INTS, "count": INTS, "counts": INTS,
     "set_newton": INT, "start_anew": INT, "set_first_step": INT, "set_growth": INT, "set_highest_order": INT,
 })  # fmt: skip
-"""What IDA is started with at consistent values (`stiffmbs.solve.ida.native.start`): independent coordinates and velocities, and where
-they stand among the unknowns; the entries that relaxations and the tolerance of Newton's iteration follow from, and where relaxations
-stand in each term set; functions that read IDA's counters, room for one number, and the sums of what they gave; functions of SUNDIALS.
-Cells are set once, but for what a start leaves behind: bounds on the stiffness, and the part of the tolerance that Newton's
-iteration may leave."""
+"""Data of IDA's compiled starts (`stiffmbs.solve.ida.native.start`): independent coordinates and velocities, and their
+positions among the unknowns; entries for the relaxations and the Newton tolerance; positions of relaxations in each
+term set; IDA's counter functions, space for one number, and their sums; functions of SUNDIALS.  A start changes only
+both bounds of the stiffness, and the part of the tolerance that Newton's iteration may leave."""
 
 RESTART = Layout({"start": INTS, "q": FLOATS, "u": FLOATS})
-"""What IDA is started anew with behind a jump of inputs (`stiffmbs.solve.ida.native.restart`): the state from one call to the next."""
+"""Restart of IDA after a jump of inputs (`stiffmbs.solve.ida.native.restart`), with the state between calls."""
 
 ANEW = Layout({
     "start": INTS, "n_event_functions": INT, "first_limit": INT, "n_counted": INT, "counted_source": INTS, "counted_row": INTS,
@@ -109,12 +108,12 @@ ANEW = Layout({
     "t": FLOAT_CELL, "jump": FLOAT_CELL, "meets": INT_CELL,
     "amplified": FLOAT_CELL, "least": FLOAT_CELL, "largest_jump": FLOAT_CELL, "indistinct": FLOAT_CELL, "passed": INT_CELL, "steps_before": INT_CELL,
 })  # fmt: skip
-"""What IDA is started anew with behind an event or a breakpoint (`stiffmbs.solve.ida.native.anew`): event functions, the first of those that
-are limits of forces, counters of turns and the angles that they count, a move to both sides of a state, and memory for a state and
-event functions.  Cells: the size of the move; where it was started, the largest change of a velocity, and whether event functions that follow
-velocities change between both sides; for breakpoints that are passed in one call (`stiffmbs.solve.ida.native.passing`) what the length of
-long steps and the residual of states within them follow from, the largest change of a velocity that need not be told, the part of a time
-within which another one is the same, how many were passed, and the steps of the call before the last of them."""
+"""Data of restarts of IDA after an event or a breakpoint (`stiffmbs.solve.ida.native.anew`): event functions, the first
+of those that are limits of forces; revolution counters and their angles; a move to both sides of a state; memory for a
+state and event functions.  Cells: size of the move; time of the restart, largest velocity change, 1 if event functions
+of velocities change sign between both sides.  For breakpoints passed in one call (`stiffmbs.solve.ida.native.passing`):
+factor of long steps and least residual within them; largest velocity change without a report; relative tolerance of
+equal times; number of breakpoints passed, and steps before the last."""
 
 OUTPUT_CORRECTION = Layout({
     "factored": FLOAT_CELL, "current": FLOAT_CELL, "enough": FLOAT_CELL, "long": FLOAT_CELL,
@@ -126,27 +125,26 @@ OUTPUT_CORRECTION = Layout({
     "at_y": INT, "y": FLOATS, "at_yp": INT, "yp": FLOATS, "at_defect": INT, "defect": FLOATS,
     "at_correction": INT, "correction": FLOATS, "at_weight": INT, "weight": FLOATS, "size": FLOATS,
 })  # fmt: skip
-"""Newton's iteration on an interpolated state (`stiffmbs.solve.native.output_correction`): functions, linear solver, and vectors.
+"""Newton's iteration on interpolated states (`stiffmbs.solve.native.output_correction`).
 
-Cells: cj of the factors (0 where there are none), cj of IDA's, the part of the tolerance that may be left, the step, s,
-beyond which states within it are corrected; the time at which the factors were made, what the rate of convergence
-grows by in a second from there (below 0: not known), and states corrected since that was measured; the part of the largest
-force that may be left, states that are not looked at after one that is balanced, and those of them that are to come.  The rows of the
-equations of motion: those of forces, then those of moments, and where either end.  What closing joints left of the forces
-for an opening of 1 m, in units of what may be left, and for how many states that serves; the rows of position constraints, the system
-that joints are closed by, and memory for a pose."""
+Cells: cj of the factors (0 for none), cj of IDA, part of the tolerance that may remain, step, s, above which states
+within it are corrected; time of the factors, growth of the convergence rate per second from there (negative if
+unknown), states corrected since its measurement; allowed imbalance relative to the largest force, number of states not
+checked after a balanced one, and the remaining number.  Then rows of the equations of motion, forces before moments,
+and their ends; effect of closing joints by 1 m on the imbalance, in units of the allowed one, and the number of states
+for which it is used; rows of position constraints; system that closes joints; memory for a pose."""
 
 ITERATION = Layout({
     "n": INT, "by_reactions": INT, "memory": INT, "array_of": INT, "cj_of": INT, "iteration_of": INT,
     "cj": FLOAT_CELL, "matrix_cj": FLOAT_CELL, "first": FLOAT_CELL, "by_cj": FLOAT_CELL, "growth": FLOAT_CELL, "span": FLOAT_CELL,
     "done": INT_CELL, "age": INT_CELL, "since": INT_CELL, "slow": INT_CELL, "given_up": INT_CELL,
 })  # fmt: skip
-"""What the convergence test of Newton's iteration in a step works on (`stiffmbs.solve.native.iteration`).
+"""Convergence test of Newton's iteration in a step (`stiffmbs.solve.native.iteration`).
 
-Cells: cj, that of the matrix, size of the first correction, the part of the rate by the change of cj, what the rest grows by
-in a time (below 0: not known), and the time since the matrix was made, by the sum of 1/cj, which a step is but for a factor
-of 1 to 2.3; corrections before this one, steps since the matrix was made, steps since a rate was measured, whether the
-matrix is to be made anew."""
+Cells: cj, cj of the matrix, size of the first correction, part of the rate by the change of cj, growth of the remaining
+rate (negative if unknown); age of the matrix as the sum of 1/cj, proportional to time within a factor of 2.3;
+corrections before this one, steps since the matrix was computed, steps since a rate was measured; 1 to replace the
+matrix, 1 after a failed iteration."""
 
 ERROR_NORM = Layout({
     "memory": INT, "norm": INT, "array_of": INT, "steps_of": INT, "failures_of": INT, "order_of": INT,
@@ -155,12 +153,12 @@ ERROR_NORM = Layout({
     "equal_until": INT_CELL, "growth": FLOAT_CELL, "set_growth": INT,
     "iteration": INTS, "state": INTS, "equations": INTS, "solve": INT, "solver": INT, "matrix": INT, "at_change": INT, "change": FLOATS, "at_filtered": INT, "filtered": FLOATS,
 })  # fmt: skip
-"""What the norm of IDA's error estimates works on (`stiffmbs.solve.native.error_norm`).
+"""Norm of IDA's error estimates (`stiffmbs.solve.native.error_norm`).
 
-Cells: failures of the error test, each counted less with each step since then; whether all estimates are filtered; cj when
-failures were last looked for; steps and failures of the error test, the same when they were last looked at; the step up to
-which estimates are filtered; the order of the last step; how often a law repeats where steps resolve one of its features, else 1; the step up to which steps may not grow (0: they may), and the factor by
-which the test must let them grow else."""
+Cells: failures of the error test with a weight that decreases with each step; 1 to filter all estimates; cj at the last
+check of failures; steps and failures of the error test, and the same at the last check; step up to which estimates are
+filtered; order of the last step; number of periods of a law whose features are resolved, else 1; step up to which steps
+may not grow (0 for none), and least growth factor afterwards."""
 
 EVENT_SEARCH = Layout({
     "n": INT, "n_event_functions": INT, "masked": INTS, "first_edge": INTS, "edges": FLOATS, "overlap": FLOATS, "period": FLOATS,
@@ -171,12 +169,12 @@ EVENT_SEARCH = Layout({
     "ready": INT_CELL, "begun": FLOAT_CELL, "depth": FLOAT_CELL,
     "least": FLOAT_CELL, "duration": FLOAT_CELL, "longest": FLOAT_CELL, "target": FLOAT_CELL, "passage": FLOAT_CELL, "first": FLOAT_CELL, "under_way": INT_CELL, "begins": FLOAT_CELL, "narrow": INT_CELL, "passed": FLOAT_CELL, "unresolved": INT_CELL, "fastest": INT_CELL, "first_unresolved": FLOAT_CELL,
 })  # fmt: skip
-"""What the search for events within a step works on (`stiffmbs.solve.native.event_search.within_step`): the event functions with their
-edges, their values and rates at both ends of the step and of a part of it, the kernel that computes each and which kernels
-have one near an edge, states of the step at some nodes, which functions are arguments of sines or of periodic tables of few zones with the
-radians of a unit of them, of which functions steps end at each edge, and how many functions have edges.
+"""Search for events within a step (`stiffmbs.solve.native.event_search.within_step`): event functions with their
+breakpoints; their values and rates at both ends of the step and of a part of it; the kernel of each, and kernels with a
+function near a breakpoint; states of the step at nodes; arguments of sines or of periodic tables with few intervals,
+and their unit in radians; functions whose breakpoints end steps; number of functions with breakpoints.
 
-Cells: whether values at the start of the step are known, that start's time, and how far an event function must go beyond
-zero; the shortest and the longest step that the arguments of sines ask for, the longest step up to a time at which the motion is to leave the
-law at a start, the longest first step there, whether the run has left its beginning, the time of which follows, how many steps a feature of a law has bounded,
-and that time; steps in which an argument turned too far to be resolved, the number of the first such argument, and when."""
+Cells: 1 if values at the start of the step are known, time of that start, least depth of an event below zero; shortest
+and longest step for the arguments of sines; longest step until the motion leaves its initial law, longest first step
+there; 1 after the beginning of the run, time of the beginning, number of steps limited by features, end of the passage;
+number of steps with unresolved arguments, first such argument, and its time."""

@@ -1,4 +1,4 @@
-"""What compiled code works on as it integrates variational equations."""
+"""Tables of variational equations."""
 
 from __future__ import annotations
 
@@ -12,19 +12,18 @@ VARIATIONS = Layout({
     "at_defect": INT, "defect": FLOATS, "at_correction": INT, "correction": FLOATS, "s": FLOATS, "rates": FLOATS,
     "history": FLOATS, "times": FLOATS, "weight": FLOATS, "slope": FLOATS, "newest": INT_CELL, "cj": FLOAT_CELL,
 })  # fmt: skip
-"""The variational equations along a run (`stiffmbs.solve.native.variations`): rows and columns of the matrix' slots, their place
-in the linear solver, and their parts by y and by y'; addresses of the tables of `PART`; linear solver and vectors; a
-direction's s and s'; the last `DEPTH` s of all directions with their times, and the coefficients of a step.
+"""Variational equations along a run (`stiffmbs.solve.native.variations`): rows and columns of the matrix' slots, their
+positions in the linear solver, and their parts by y and by y'; addresses of the tables of `PART`; linear solver and
+vectors; s and s' of a direction; the last `DEPTH` values of s of all directions with their times, and the coefficients
+of a step. `by_time` is the `PART` of r_t, `shift` the derivative of the event time in each direction.
 
-`by_time` is the `PART` of r_t, `shift` the time by which each direction's s is shifted.
-
-Cells: whether any is, which row of the history is the last, and cj of the step."""
+Cells: 1 if any shift is nonzero, newest row of the history, cj of the step."""
 
 DEPTH = 8
-"""Steps that are remembered; order 5 needs six before the present one."""
+"""Number of stored steps; order 5 needs six before the current one."""
 
 PART = Layout({
     "direction": INTS, "n_plain": INT, "n_with_y": INT, "n_with_yp": INT,
     "row": INDICES, "source": INDICES, "operand": INDICES, "factor": FLOATS,
 })  # fmt: skip
-"""dr/dp of one direction: its `DIRECTION`, and lines as those of a residual."""
+"""Derivative dr/dp of one direction: its `DIRECTION`, and lines as those of a residual."""

@@ -1,4 +1,4 @@
-"""The tables of integrators and of the dynamics as compiled code sees them."""
+"""Views of the tables of integrators and of the dynamics for compiled code."""
 
 from __future__ import annotations
 
