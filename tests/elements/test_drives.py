@@ -231,3 +231,13 @@ def test_a_drive_goes_on_behind_its_corner_as_its_formula_does_there(law, wanted
     late = solution.time > 0.501
     slope = (wanted(solution.time + 1e-6) - wanted(solution.time - 1e-6)) / 2e-6
     np.testing.assert_allclose(solution["wheel.omega"][late], slope[late], atol=1e-6)
+
+
+def test_a_prescribed_motion_in_another_unit_is_refused():
+    for kind, position in (("revolute", "3 m"), ("prismatic", "3 rad")):
+        scene = f"""
+bodies: {{a: {{mass: 1, inertia: 1}}}}
+joints: {{pin: {{type: {kind}, i: a, j: ground}}, motor: {{type: drive, joint: pin, position: "{position}*t/(1 s)"}}}}
+"""
+        with pytest.raises(InputError, match=r"joints\.motor\.position: found"):
+            stiffmbs.check(stiffmbs.read_scene(scene))

@@ -279,3 +279,17 @@ def test_the_equation_of_a_distance_is_its_stretch():
     state = State(stiffmbs.compile_model(model.data()))
     state.evaluate("position", 0.0)
     assert state.vector("position", "C") == pytest.approx(0.002, rel=1e-3)
+
+
+def test_a_weld_between_turning_bodies_keeps_their_angle():
+    """Two bodies at 0.3 rad spin about their centre of mass at 2 rad/s; the equation itself is solved."""
+    scene = stiffmbs.read_scene("""
+bodies:
+  a: {mass: 1, inertia: 1, angle: 0.3, omega: 2}
+  b: {mass: 1, inertia: 1, position: [0.5, 0.2], angle: 0.3, omega: 2}
+joints: {weld: {type: fixed, i: a, j: {body: b, point: [-0.5, -0.2]}}}
+run: {duration: 1, rtol: 1e-9, presolve: false}
+""")
+    solution = stiffmbs.run(scene)
+    np.testing.assert_allclose(solution["a.angle"], solution["b.angle"], atol=1e-7)
+    assert solution["a.angle"][-1] > 1.5

@@ -5,6 +5,7 @@ import pytest
 
 import stiffmbs
 from stiffmbs.analyses.run import prepare
+from stiffmbs.solve.trajectory import Outcome
 
 G = 9.81
 LAW = "stiffness: 1e5, exponent: 1.5"
@@ -140,3 +141,19 @@ def test_a_push_that_damping_ends_is_an_event_of_its_own(settings):
         "run: {duration: 0.5, rtol: 1e-7}\n"
     )
     assert prepare(scene, **settings).integrate().statistics["events"] == 3
+
+
+@pytest.mark.parametrize(
+    "settings", [{"solver": "bdf"}, {"solver": "projected", "scheme": "dop853"}], ids=lambda s: s["solver"]
+)
+def test_a_sphere_whose_centre_enters_a_solid_ends_the_run_at_its_surface(settings):
+    """The normal of the contact is not defined at the surface: the run ends at a thousandth of the radius from it."""
+    scene = stiffmbs.read_scene(
+        f"dimensions: 3\nbodies: {{b: {{mass: 1, {BALL}, position: [0, 0, 0.25], velocity: [0, 0, -1]}}}}\n"
+        f"forces: {{c: {{{SPHERE_BOX}, stiffness: 1, exponent: 1.5}}}}\n"
+        "run: {duration: 0.5, points: 51, rtol: 1e-9}\n"
+    )
+    solution = stiffmbs.run(scene, **settings)
+    assert solution.outcome is not Outcome.DONE and "'c'" in solution.message
+    assert solution["b.z"][-1] == pytest.approx(0.1 + 1e-4, abs=1.1e-2) and solution["b.z"][-1] > 0.1
+    assert solution.time[-1] < 0.15 + 1e-3

@@ -75,3 +75,18 @@ def test_algebraic_states_pass_on_states_to_rates_and_forces():
     matrix = [[0, 1, 0], [(-20 - 50) / 2, -12 / 2, 15 / 2], [-5, -3, -4]]
     values = sorted((v for mode in found.modes for v in mode.eigenvalues), key=lambda v: (v.real, v.imag))
     assert values == pytest.approx(sorted(np.linalg.eigvals(matrix), key=lambda v: (v.real, v.imag)), rel=1e-8)
+
+
+@pytest.mark.parametrize("K", [5, 9, -9])
+def test_a_state_that_reads_a_reaction_comes_to_rest(K):
+    """A push of K p on a pad whose reaction sets p: p = m g/(F0 - K)."""
+    scene = stiffmbs.read_scene(f"""
+gravity: [0, -9.81]
+bodies: {{b: {{mass: 2, inertia: 1}}}}
+joints: {{rail: {{type: prismatic, i: b, j: ground}}}}
+states: {{p: {{rate: "fy(rail)/10 - p", start: 0}}}}
+forces: {{f: {{type: force, i: b, force: ["3 - 50*b.x", "-({K})*p"]}}}}
+""")
+    found = stiffmbs.equilibrium(scene)
+    assert found.channels["p"] == pytest.approx(2 * 9.81 / (10 - K), rel=1e-9)
+    assert found.channels["rail.fy"] == pytest.approx(10 * 2 * 9.81 / (10 - K), rel=1e-9)

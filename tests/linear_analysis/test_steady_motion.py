@@ -219,3 +219,11 @@ def test_the_command(tmp_path):
     assert "in steady motion" in json.loads(told.stdout)["message"]
     wrong = CliRunner().invoke(main, ["equilibrium", str(scene), "--velocity", "1,2"])
     assert wrong.exit_code == 2 and "velocity: found 2 numbers, expected 3" in wrong.output
+
+
+def test_an_unstable_state_is_found_by_shortened_newton_steps():
+    """Full Newton steps on atan(20 p) from p = 1 go to -30, 1400, ...; p = 0 is unstable."""
+    scene = stiffmbs.read_scene(SLED + 'states: {p: {rate: "atan(20*p)", start: 1}}\n')
+    found = stiffmbs.equilibrium(scene, motion=SteadyMotion(velocity=(20, 0)))
+    assert found.channels["p"] == pytest.approx(0.0, abs=1e-9)
+    assert "unstable" in found.notes[0]

@@ -5,6 +5,8 @@ import pytest
 
 import stiffmbs
 from stiffmbs import Body, Marker, Model, Revolute
+from stiffmbs.analyses.job import prepare
+from stiffmbs.solve.error_control.precision import too_fine
 from stiffmbs.solve.trajectory import Outcome
 
 
@@ -37,3 +39,18 @@ def test_tolerances_that_rounding_allows_are_kept(speed, rtol):
     assert solution.outcome is Outcome.DONE
     expected = np.sqrt(speed**2 - 2 * 9.81 * np.sin(solution["bar.angle"]) / 1.1)
     assert np.allclose(solution["bar.omega"], expected, rtol=3e3 * rtol, atol=0)
+
+
+@pytest.mark.parametrize("x, rounding", [(0.5, 2.22e-16), (4.0, 8.9e-16)])
+def test_the_rounding_of_a_flat_equation_is_told_in_numbers(x, rounding):
+    """Rounding of coordinates, those of 1 at least, over the slope 1e-9 sqrt(2) of the equation."""
+    job = prepare(
+        stiffmbs.read_scene(f"""
+bodies: {{b: {{mass: 1, inertia: 1, position: [{x}, {-x}]}}}}
+joints: {{flat: {{type: equation, zero: 1e-9*(b.x + b.y)}}}}
+run: {{duration: 1, rtol: 1e-9}}
+""")
+    )
+    sentence = too_fine(job.dynamics, job.settings, 0.0, job.start.q)
+    assert sentence.startswith("rtol = 1e-09 asks for more digits than rounding leaves: 'flat' changes by 1e-09")
+    assert f"moves these by {rounding / 1.4142e-9:.1g}" in sentence

@@ -433,3 +433,18 @@ def test_a_jump_of_accelerations_is_refused_from_a_size_on(step, jumps, refused)
             recorder.passed(1.0)
     else:
         recorder.passed(1.0)
+
+
+def test_a_request_changes_with_the_channels_that_it_reads():
+    """x = v t + F t^2/(2 m) in a request: the derivatives come by its channels alone, or by its parameter as well."""
+    scene = stiffmbs.read_scene("""
+parameters: {F: 3 N, m: 2 kg}
+bodies: {sled: {mass: m, inertia: 1, velocity: [0.5, 0]}}
+joints: {rail: {type: prismatic, i: sled, j: ground}}
+forces: {push: {type: force, i: sled, force: [F, 0]}}
+requests: {double: 2*sled.x, product: F*sled.x}
+run: {duration: 1 s, rtol: 1e-9}
+""")
+    double, product = (sensitivities(scene, ["F", "m"], f"final({name})") for name in ("double", "product"))
+    assert double.to == pytest.approx({"F": 2 / 4, "m": -2 * 3 / 8}, rel=1e-7)
+    assert product.to == pytest.approx({"F": 0.5 + 3 / 4 + 3 / 4, "m": -9 / 8}, rel=1e-7)
