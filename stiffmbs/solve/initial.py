@@ -121,6 +121,9 @@ def consistent_values(dynamics: Dynamics, t: float) -> InitialValues:
     if system.n_counters:
         state.count_anew(t)
     status, acceleration = dynamics.accelerate(t)
+    if status < 0 and system.forces_by_reactions:  # the magnitude of a reaction has no derivative at zero
+        state.lam[: system.n_c] = np.max(system.mass)  # of the heaviest body at 1 m/s^2
+        status, acceleration = dynamics.accelerate(t)
     if status < 0:
         raise AssemblyError(_sentence(dynamics, status, t))
     change = np.where(system.open_rates, 0.0, state.u - u0)

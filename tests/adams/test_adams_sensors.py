@@ -179,3 +179,17 @@ def test_a_kinematic_simulation_ends_at_a_sensor(run_with):
     t = np.sqrt(np.pi / 6 / 1.5)
     np.testing.assert_allclose(found.time[[6, 7, 9]], [t, t, t + 0.2], atol=1e-7)
     assert found["PART_2.wy"][7] == pytest.approx(3 * t, abs=1e-6) and not np.any(found["MOTION_1.ty"][7:])
+
+
+@pytest.mark.parametrize(("component", "expected"), [(1, 2 * G), (5, 2 * G * 1000)])
+def test_reactions_in_functions_have_the_units_of_the_dataset(tmp_path, component, expected):
+    """A bar of 2 kg is welded to ground at 1000 mm of its centre of mass: N and N mm, in a request and in a force."""
+    function = f"1E-3*JOINT(1, 0, {component}, 0)"
+    more = f"""PART/3, MASS=1, CM=31, IP=1,1,1
+MARKER/31, PART=3
+SFORCE/1, TRANSLATIONAL, ACTIONONLY, I=31, J=11, FUNCTION={function}
+REQUEST/1, F2={function}"""
+    (tmp_path / "model.adm").write_text(PENDULUM.format(sensor=more).replace("REVOLUTE", "FIXED"))
+    found = stiffmbs.run(tmp_path / "model.adm", duration=0.1, points=3)
+    np.testing.assert_allclose(found["REQUEST_1.f2"], 1e-3 * expected, rtol=1e-9)
+    np.testing.assert_allclose(np.abs(found["PART_3.ay"]), 1e-3 * expected, rtol=1e-9)

@@ -257,3 +257,16 @@ def test_a_spring_between_points_at_one_place_is_refused(fields):
     without.add("mass", Body(mass=1, inertia=1))
     without.add("spring", SpringDamper(i="mass", j="ground", stiffness=10.0))
     assert stiffmbs.run(without, duration=0.1)["mass.x"][-1] == 0
+
+
+@pytest.mark.parametrize("settings", [{}, {"solver": "projected", "scheme": "dop853"}], ids=["bdf", "dop853"])
+def test_a_force_may_follow_the_magnitude_of_a_reaction(settings):
+    """sqrt(fx^2 + fy^2) has no derivative where the first guess has no reaction: 0.1 m g on 1 kg."""
+    scene = stiffmbs.read_scene("""
+gravity: [0, -9.81]
+bodies: {a: {mass: 2, inertia: 1}, b: {mass: 1, inertia: 1}}
+joints: {rail: {type: prismatic, i: a, j: ground}}
+forces: {f: {type: force, i: b, force: ["0.1*sqrt(fx(rail)^2 + fy(rail)^2)", 0]}}
+run: {duration: 0.1, points: 3}
+""")
+    np.testing.assert_allclose(stiffmbs.run(scene, **settings)["b.ax"], 0.1 * 2 * 9.81, rtol=1e-9)
