@@ -99,3 +99,17 @@ def test_a_ball_with_side_spin_slides_on_a_parabola_until_it_rolls():
 def test_what_is_wrong_with_a_contact_is_said(fields, message):
     with pytest.raises(stiffmbs.InputError, match=message):
         spatial.SphereContact(i="a", j="b", stiffness=1, **fields)
+
+
+@pytest.mark.parametrize("part", [1e-3, 0.5, 3.0])
+def test_friction_is_smoothed_below_its_velocity(part):
+    """mu N tanh(v/v_smooth) against the sliding velocity (0.6, 0.8) v, at the start."""
+    speed, depth = part * 1e-4, 1e-3
+    model = ball(free=True, position=(0, 0, 0.1 - depth), velocity=(0.6 * speed, 0.8 * speed, 0))
+    fields = {"radius": 0.1, "stiffness": 1e6, "friction": 0.3, "smooth_velocity": 1e-4}
+    model.add("floor", spatial.SphereContact(i="ball", j="ground", **fields))
+    solution = stiffmbs.run(model, duration=1e-12, points=2)
+    drag = 0.3 * solution["floor.fz"][0] * np.tanh(part)
+    assert solution["floor.fz"][0] > 10
+    assert solution["floor.fx"][0] == pytest.approx(-0.6 * drag, rel=1e-6)
+    assert solution["floor.fy"][0] == pytest.approx(-0.8 * drag, rel=1e-6)

@@ -325,3 +325,10 @@ def test_requests_are_the_same_in_space(solution):
     for name in SAME.split():
         bound = 1e-6 * np.abs(solution[name]).max() + 1e-8
         np.testing.assert_allclose(space[name], solution[name], rtol=0, atol=bound, err_msg=name)
+
+
+def test_scales_of_small_forces_are_theirs():
+    """The force of an element in all directions; a tenth of a newton is not taken for one."""
+    channels = {"f.fx": np.array([0.0, 0.03]), "f.fy": np.array([-0.1, 0.02]), "b.vx": np.array([2e-3, -1e-3])}
+    sizes = scales(channels, 1.0)
+    assert sizes["f.fx"] == sizes["f.fy"] == 0.1 and sizes["b.vx"] == 2e-3

@@ -133,8 +133,9 @@ def test_a_number_that_takes_a_channel_at_its_jump_is_refused():
     scene["parameters"] |= {"s": 0.4}
     assert sensitivities(read(scene), ["F"], "integral(cart.ax)").to["F"] == pytest.approx(0.35 / 2, rel=1e-9)
     for of in ("integral(cart.ax)", "mean(push.fx)"):
-        with pytest.raises(SolverError, match=r"is discontinuous at the output time t = 0\.4 s, and 's' moves"):
-            sensitivities(read(scene), ["F", "s"], of)
+        for to in (["F", "s"], ["F", "m", "s"]):
+            with pytest.raises(SolverError, match=r"is discontinuous at the output time t = 0\.4 s, and 's' moves"):
+                sensitivities(read(scene), to, of)
     assert sensitivities(read(scene), ["s"], "final(cart.vx)").to["s"] == pytest.approx(10)
     assert sensitivities(read(scene), ["s"], "final(cart.ax)").to["s"] == pytest.approx(0, abs=1e-9)
     assert sensitivities(read(scene), ["s"], "cart.vx").to["s"][-1] == pytest.approx(10)
