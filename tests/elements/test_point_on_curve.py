@@ -112,3 +112,18 @@ joints:
     np.testing.assert_allclose(np.hypot(x, y), 0.5, atol=1e-9)
     np.testing.assert_allclose(z, 0.1 + 0.1 * np.sin(2 * np.arctan2(y, x)), atol=1e-9)
     assert np.ptp(z) > 0.1
+
+
+@pytest.mark.parametrize(("end", "accepted"), [("6.2831853", False), ("6.283185307", True), ("6.283185312", True)])
+def test_a_turn_is_known_by_its_first_nine_digits(end, accepted):
+    """A table of a cam's radius over a turn of 2 pi, as a program writes it."""
+    scene = (
+        "bodies: {a: {mass: 1, inertia: 1, position: [1, 0]}}\n"
+        "joints: {cam: {type: point_on_curve, i: a, j: ground, radius: "
+        f"{{table: [[0, 1], [2, 1.1], [4, 0.9], [{end}, 1]], ends: periodic}}}}}}\n"
+    )
+    if accepted:
+        assert stiffmbs.check(stiffmbs.read_scene(scene)).degrees_of_freedom == 2
+        return
+    with pytest.raises(stiffmbs.InputError, match="expected a periodic one over a full turn"):
+        stiffmbs.read_scene(scene)

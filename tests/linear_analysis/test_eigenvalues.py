@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from stiffmbs.linear_analysis.eigenvalues import eigen
+from stiffmbs.linear_analysis.eigenvalues import eigen, is_singular
 
 
 @pytest.mark.parametrize("scale", [1e-12, 1e-6, 1.0, 1e6, 1e12])
@@ -12,3 +12,10 @@ def test_eigenvalues_scale_with_the_matrix(scale):
     values, _, zeros = eigen(scale * np.array([[-3.0, 0.0], [1.0, 0.0]]), 0, 2)
     assert values == pytest.approx([-3 * scale], rel=1e-12)
     assert zeros.eigenvectors.shape == (2, 1)
+
+
+@pytest.mark.parametrize(("part", "singular"), [(0.7, True), (1.4, False)])
+def test_singular_values_count_as_zero_up_to_ten_roundings_for_each_row(part, singular):
+    """Two rows of length 1 with the angle phi between them have the smallest singular value phi/sqrt(2)."""
+    phi = np.sqrt(2) * part * 10 * 2 * np.finfo(float).eps
+    assert is_singular(np.array([[1.0, 0.0], [1.0, phi]])) is singular
