@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from typing import Any
 
 import numpy as np
 
@@ -72,15 +73,18 @@ def _grown(system: System, rows: OutputRows) -> str:
         far[block] = np.max(np.abs(rows.q[block] - rows.q[0]) * of_places, axis=1)
         speed[block] = np.max(np.abs(rows.u[block]) * of_rates, axis=1)
         release(rows.q, rows.u)
+    farthest, fastest = (
+        lambda row: np.abs(rows.q[row] - rows.q[0])[..., : system.first_state] * of_places[: system.first_state],
+        lambda row: np.abs(rows.u[row]) * of_rates,
+    )
     if np.nanmax(far) > limit and exponential(rows.t, np.fmax.accumulate(far)):
-        return _growth_sentence(
-            system, rows, far, limit, f"{UNBOUNDED_MOTION:.0e} times the mechanism's size of {system.size:.3g} m"
-        )
+        what = f"{UNBOUNDED_MOTION:.0e} times the mechanism's size of {system.size:.3g} m"
+        return _growth_sentence(system, rows, far, limit, what, farthest)
     if np.nanmax(speed) > SPEED_OF_LIGHT:
-        return _growth_sentence(system, rows, speed, SPEED_OF_LIGHT, "the speed of light")
+        return _growth_sentence(system, rows, speed, SPEED_OF_LIGHT, "the speed of light", fastest)
     if np.nanmax(far) > resolved and _connected(system):
         what = f"where rounding takes more than {RESOLVED:.0e} of the mechanism's size of {system.size:.3g} m"
-        return _growth_sentence(system, rows, far, resolved, what)
+        return _growth_sentence(system, rows, far, resolved, what, farthest)
     return ""
 
 
@@ -94,19 +98,22 @@ def _connected(system: System) -> bool:
     )
 
 
-def _growth_sentence(system: System, rows: OutputRows, values: np.ndarray, limit: float, what: str) -> str:
-    first = int(np.argmax(values > limit))
+def _growth_sentence(
+    system: System, rows: OutputRows, values: np.ndarray, limit: float, what: str, sizes: Callable[[Any], np.ndarray]
+) -> str:
+    """Return the sentence on values beyond a limit, and on the body that has the largest of them.
+
+    `sizes` returns their components at a row or at all rows: those of the first body, of the second, ...
+    """
+    largest = sizes(int(np.nanargmax(values))).reshape(len(system.bodies), -1)
+    body = int(np.argmax(np.nanmax(largest, axis=1)))
+    width = largest.shape[1]
+    first = int(np.argmax(np.max(sizes(slice(None))[:, body * width : (body + 1) * width], axis=1) > limit))
     unit = "m/s" if limit == SPEED_OF_LIGHT else "m"
     return (
-        f"the motion grows beyond sense: at t = {rows.t[first]:.6g} s {_body(system, rows, first)} is past {what}, and comes to "
+        f"the motion grows beyond sense: at t = {rows.t[first]:.6g} s '{system.bodies[body]}' is past {what}, and comes to "
         f"{np.nanmax(values):.2g} {unit}{_strongest(system, rows, first)}; look for a wrong sign of a stiffness, damping or force"
     )
-
-
-def _body(system: System, rows: OutputRows, row: int) -> str:
-    """Return the fastest body at a row."""
-    way = np.abs(rows.u[row]) * system.per_velocity(1.0, system.size)
-    return f"'{system.bodies[int(np.nanargmax(way)) // system.of_body.n_u]}'"
 
 
 def _strongest(system: System, rows: OutputRows, row: int) -> str:

@@ -65,9 +65,8 @@ def _all_along(found: LongSteps, steps: np.ndarray, settings: RunSettings) -> tu
     """Return steps and fractions of them, evenly spaced in time; an odd number in each includes its midpoint."""
     spacing = settings.duration / PARTS_OF_A_RUN
     counts = 2 * ((found.end - found.begin)[steps] / (2.0 * spacing)).astype(int) + 1
-    of_step = np.repeat(steps, counts)
-    number = np.arange(len(of_step)) - np.repeat(np.cumsum(counts) - counts, counts)
-    return of_step, (number + 0.5) / counts[of_step]
+    first, of_number = (np.repeat(values, counts) for values in (np.cumsum(counts) - counts, counts))
+    return np.repeat(steps, counts), (np.arange(len(first)) - first + 0.5) / of_number
 
 
 def _judged(

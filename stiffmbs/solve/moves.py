@@ -72,8 +72,6 @@ def moves(system: System, q: np.ndarray, u: np.ndarray) -> tuple[Move, ...]:
     """
     if max(np.abs(q).max(initial=0.0), np.abs(u).max(initial=0.0)) <= WORTH_TELLING:
         return ()
-    if max(np.abs(q).max(initial=0.0), np.abs(u).max(initial=0.0)) <= WORTH_TELLING:
-        return ()
     straight, width = system.of_body.linear, system.of_body.n_u
     found = []
     for body, of_q, of_u in zip(system.bodies, q.reshape(-1, width), u.reshape(-1, width), strict=True):

@@ -197,3 +197,19 @@ def test_the_error_of_a_loose_tolerance_is_no_broken_balance():
     found = stiffmbs.run(stiffmbs.read_scene(text), solver="bdf", rtol=1e-2)
     assert np.ptp(found["energy.total"]) > 0.1 * found["energy.total"][0]
     assert not any("broken" in note for note in found.notes)
+
+
+@pytest.mark.parametrize("omega", [0, 1e3, 1e6])
+def test_growth_names_the_body_that_grows_and_not_the_fastest(omega):
+    """A block runs away as cosh(t), beside a wheel of the same mechanism that spins evenly."""
+    scene = stiffmbs.read_scene(f"""
+bodies:
+  wheel: {{mass: 1, inertia: 1, omega: {omega}}}
+  block: {{mass: 1, inertia: 1, position: [1, 0]}}
+joints: {{axle: {{type: revolute, i: wheel, j: ground}}}}
+forces: {{spring: {{type: spring_damper, i: block, j: ground, stiffness: -1, free_length: 0.9}}}}
+run: {{duration: 30, points: 41, rtol: 1e-4}}
+""")
+    solution = stiffmbs.run(scene, solver="projected", scheme="dop853")
+    (note,) = (note for note in solution.notes if "grows beyond sense" in note)
+    assert "at t = 12.75 s 'block' is past 1e+04 times" in note
