@@ -58,7 +58,9 @@ Completion of commands and options by the Tab key, from the next shell on:
 """
 
 
-@click.group(cls=Subcommands, sections=SECTIONS, context_settings={"help_option_names": ["-h", "--help"]}, epilog=COMPLETION)
+@click.group(
+    cls=Subcommands, sections=SECTIONS, context_settings={"help_option_names": ["-h", "--help"]}, epilog=COMPLETION
+)
 @click.version_option(package_name="stiffmbs")
 def main() -> None:
     """Stiff multibody dynamics: motion and joint forces of mechanisms described in scenes.

@@ -41,14 +41,15 @@ if TYPE_CHECKING:
 )
 @click.option("--figure", type=click.Path(path_type=Path), help="Draw the scene's figure: .png, .svg or .pdf.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line instead of the summary.")
+@click.option("--all", "all_loads", is_flag=True, help="List the loads of all elements, not only the ten largest.")
 @state_options
 @solving_options
 @click.option(
     "--verify", is_flag=True, help="Solve again, tighter and in another way: error bars, and what is in doubt."
 )
 def run(
-    scene: str, output: Path | None, figure: Path | None, as_json: bool, verify: bool, state: str | None, at: float | None,
-    **options: Any,
+    scene: str, output: Path | None, figure: Path | None, as_json: bool, all_loads: bool, verify: bool, state: str | None,
+    at: float | None, **options: Any,
 ) -> None:  # fmt: skip
     """Solve SCENE and show the range of every joint force.
 
@@ -70,7 +71,7 @@ def run(
     results, written = _write(scene, output, as_json, solution)
     if figure is not None:
         written = _draw(scene, figure, solution, loaded, as_json) and written
-    _show(scene, solution, results, as_json)
+    _show(scene, solution, results, as_json, all_loads)
     sys.exit(0 if solution.outcome.name == "DONE" and written else STOPPED_EARLY)
 
 
@@ -109,13 +110,13 @@ def _write(scene: str, output: Path | None, as_json: bool, solution: Any) -> tup
     return str(path), True
 
 
-def _show(scene: str, solution: Any, results: str, as_json: bool) -> None:
+def _show(scene: str, solution: Any, results: str, as_json: bool, all_loads: bool) -> None:
     from ..show import summary
 
     if as_json:
         click.echo(summary.as_json(scene, solution))
         return
-    summary.print_summary(scene, solution, results, console())
+    summary.print_summary(scene, solution, results, console(), all_loads)
 
 
 def console() -> Console:

@@ -32,24 +32,26 @@ OF_POTENTIAL = 1e-10
 """The same for parts of the largest potential energy."""
 
 
-def balance_words(balance: Balance) -> str:
-    """The balance as the summary says it."""
+def balance_words(balance: Balance, start: float) -> str:
+    """Return the energy balance as a summary prints it, from the energy at the start, J."""
     change, work = float(balance.change[-1]), float(balance.work[-1])
     if balance.keeps_energy:
-        return f"changes by at most {balance.imbalance:.3g} J"
-    words = (
-        f"changes by {change:+.6g} J until the end, of which {work:+.6g} J is work of what has no potential; "
-        "the balance is kept to "
+        return f"{start:.9g} J; changes by at most {balance.imbalance:.3g} J"
+    resolved = " (resolved at the output times only)" if balance.resolved > balance.imbalance else ""
+    return (
+        f"{start:.9g} J -> {start + change:.9g} J; non-conservative work {work:.6g} J; "
+        f"balance error {balance.imbalance:.2g} J{resolved}"
     )
-    kept = f"{balance.imbalance:.2g} J"
-    if balance.resolved > balance.imbalance:
-        kept += ", as far as the output instants resolve that work"
-    if balance.between > max(TOLD * balance.scale, balance.imbalance):
-        kept += (
-            f", but for {balance.between:.2g} J between output instants that the solver took several steps for "
-            "(points: steps or --verify resolve these)"
-        )
-    return words + kept
+
+
+def unresolved_work(balance: Balance) -> str:
+    """Return a note on the work between output times that their values do not resolve, or an empty string."""
+    if balance.keeps_energy or balance.between <= max(TOLD * balance.scale, balance.imbalance):
+        return ""
+    return (
+        f"between output times {balance.between:.2g} J of work is not resolved, as the solver took several steps there; "
+        "use 'points: steps' or --verify"
+    )
 
 
 def balance_notes(

@@ -207,11 +207,17 @@ class Solution(Mapping[str, np.ndarray]):
 
         return loaded(Path(path))
 
-    def summary(self) -> str:
-        """What ``stiffmbs run`` shows: the range of every joint force, energy balance, statistics of the solver, notes."""
+    def summary(self, all: bool = False) -> str:
+        """Return what ``stiffmbs run`` prints: loads of elements, energy balance, statistics of the solver, notes.
+
+        Parameters
+        ----------
+        all : bool
+            Whether to list the loads of all elements; by default the ten largest are listed.
+        """
         from ..show.summary import summary
 
-        return summary(self)
+        return summary(self, all)
 
     def plot(self, *channels: str, x: str = "time", z: str = "", title: str = "", equal: bool = False) -> Sheet:
         """Draw channels over time, or over another channel (needs matplotlib, the extra ``plot``).

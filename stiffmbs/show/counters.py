@@ -1,4 +1,4 @@
-"""What a solver counted, in words."""
+"""Statistics of a solver as lines of a summary."""
 
 from __future__ import annotations
 
@@ -9,17 +9,17 @@ WORK = {
     "residuals": "residuals", "newton_iterations": "Newton iterations", "jacobians": "Jacobians",
     "factorizations": "factorizations", "accelerations": "accelerations", "moves": "moves",
 }  # fmt: skip
-"""Counters of work, in the order in which they are told."""
+"""Counters of work, in the order of a summary."""
 AS_MANY_AS = {"newton_iterations": "residuals", "factorizations": "jacobians"}
-"""Counters that are told only where they differ from others."""
-IN_VAIN = {"error_test_failures": "failed the error test", "convergence_failures": "did not converge"}
-"""Steps that were repeated, and why."""
-STARTS = {"breakpoints": ("breakpoint of inputs", "breakpoints of inputs"), "events": ("event", "events")}
-"""Instants at which the solver stops and starts anew: one, and several."""
+"""Counters that are shown only where they differ from others."""
+REPEATED = {"error_test_failures": "failed the error test", "convergence_failures": "did not converge"}
+"""Reasons for which steps were repeated."""
+RESTARTS = {"breakpoints": ("input breakpoint", "input breakpoints"), "events": ("event", "events")}
+"""Instants at which the solver restarts: one, and several."""
 
 
-def solver_words(solver: Mapping[str, Any]) -> str:
-    """One line on a run's solver: its name, its steps, and what they cost.
+def solver_lines(solver: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    """Yield label and text of each line on the solver of a run: its name, its steps, and their cost.
 
     Parameters
     ----------
@@ -27,16 +27,24 @@ def solver_words(solver: Mapping[str, Any]) -> str:
         The statistics of a `Solution`.
     """
     chosen = {"scheme": "scheme", "linear_solver": "linear solver"}
-    name = [solver["name"], *(f"{word} {solver[key]}" for key, word in chosen.items() if key in solver)]
-    parts = (name, _steps(solver), _work(solver), _starts(solver), [f"{solver['seconds'] * 1e3:.1f} ms"])
-    return "; ".join(", ".join(told) for told in map(list, parts) if told)
+    yield (
+        "solver",
+        ", ".join([solver["name"], *(f"{word} {solver[key]}" for key, word in chosen.items() if key in solver)]),
+    )
+    yield "steps", ", ".join(_steps(solver))
+    restarts = [
+        f"{solver[counter]} {words[solver[counter] > 1]}" for counter, words in RESTARTS.items() if solver.get(counter)
+    ]
+    if restarts:
+        yield "restarts", f"at {' and '.join(restarts)}"
+    yield "cost", ", ".join([*_work(solver), f"{solver['seconds'] * 1e3:.1f} ms"])
 
 
 def _steps(solver: Mapping[str, Any]) -> Iterator[str]:
-    told = [f"{solver[counter]} more {why}" for counter, why in IN_VAIN.items() if solver.get(counter)]
-    if solver.get("rejected") and not told:
-        told = [f"{solver['rejected']} more refused"]
-    yield f"{solver['steps']} steps" + (f" ({', '.join(told)})" if told else "")
+    repeated = [f"{solver[counter]} more {why}" for counter, why in REPEATED.items() if solver.get(counter)]
+    if solver.get("rejected") and not repeated:
+        repeated = [f"{solver['rejected']} more rejected"]
+    yield str(solver["steps"]) + (f" ({', '.join(repeated)})" if repeated else "")
     if "order" in solver:
         yield f"order {solver['order']} at the end"
 
@@ -44,22 +52,14 @@ def _steps(solver: Mapping[str, Any]) -> Iterator[str]:
 def _work(solver: Mapping[str, Any]) -> Iterator[str]:
     for counter, word in WORK.items():
         if counter in solver and solver[counter] != solver.get(AS_MANY_AS.get(counter, "")):
-            yield f"{solver[counter]} {word}{_asked_for(solver) if counter == 'jacobians' else ''}"
+            yield f"{solver[counter]} {word}{_slow_convergence(solver) if counter == 'jacobians' else ''}"
 
 
-def _asked_for(solver: Mapping[str, Any]) -> str:
-    """How many matrices were made because Newton's iteration did not settle with an older one.
+def _slow_convergence(solver: Mapping[str, Any]) -> str:
+    """Return how many Jacobians were computed because Newton's iteration converged too slowly with an older one.
 
     IDA counts them as failures of the iteration, and once more where a new matrix did not help, so that the step did not
     converge.
     """
-    asked = solver.get("newton_failures", 0) - solver.get("convergence_failures", 0)
-    return f" ({asked} of them as Newton's iteration was too slow with an older one)" if asked > 0 else ""
-
-
-def _starts(solver: Mapping[str, Any]) -> Iterator[str]:
-    starts = [
-        f"{solver[counter]} {what[solver[counter] > 1]}" for counter, what in STARTS.items() if solver.get(counter)
-    ]
-    if starts:
-        yield f"started anew at {' and '.join(starts)}"
+    slow = solver.get("newton_failures", 0) - solver.get("convergence_failures", 0)
+    return f" ({slow} after slow Newton convergence)" if slow > 0 else ""

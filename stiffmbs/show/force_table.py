@@ -21,18 +21,28 @@ NOT_UNIQUE = "*"
 Cell = Mapping[str, float]
 
 
-def force_table(solution: Solution) -> Table:
-    """A row for each element; in space one for its force, and one for its torque where it has any."""
+def force_table(solution: Solution, most: int | None = None) -> Table:
+    """Return a table with a row for each element; in space one for its force, and one for its torque if it has any.
+
+    Parameters
+    ----------
+    solution : Solution
+    most : int, optional
+        Number of elements, those of the largest loads in the order of the scene; all by default.
+    """
     from rich.table import Table
 
     ranges = channel_ranges(solution)
     own = [name for name in ranges if name not in solution.requested]
     in_space = any(name.endswith(".tz") for name in own)
     components = SPACE.reactions if in_space else PLANE.reactions
-    elements = dict.fromkeys(owner_of(name) for name in own if name.endswith(f".{components[-1]}"))
-    noise = SHOWN_AS_ZERO * max(
-        (_largest(ranges[f"{element}.{component}"]) for element in elements for component in components), default=0.0
-    )
+    every = elements_of(solution)
+    loads = {element: tuple(_largest(ranges[f"{element}.{part}"]) for part in components) for element in every}
+    noise = SHOWN_AS_ZERO * max((max(load) for load in loads.values()), default=0.0)
+    n_forces = 3 if in_space else 2
+    by_load = sorted(every, key=lambda element: (max(loads[element][:n_forces]), max(loads[element])), reverse=True)
+    shown = set(by_load[:most])
+    elements = [element for element in every if element in shown]
 
     def cells(element: str, components: Sequence[str]) -> list[str]:
         return [_shown(solution, f"{element}.{part}", ranges[f"{element}.{part}"], noise) for part in components]
@@ -53,6 +63,13 @@ def force_table(solution: Solution) -> Table:
         if acts(element, components[3:]):
             table.add_row("  torque", *cells(element, components[3:]))
     return table
+
+
+def elements_of(solution: Solution) -> list[str]:
+    """Return the elements that have a force and torque among the channels, in the order of the scene."""
+    own = [name for name in solution.channels if name not in solution.requested]
+    last = (SPACE if any(name.endswith(".tz") for name in own) else PLANE).reactions[-1]
+    return list(dict.fromkeys(owner_of(name) for name in own if name.endswith(f".{last}")))
 
 
 def _largest(cell: Cell) -> float:

@@ -24,7 +24,7 @@ from ..results.error_bars import UNKNOWN
 from ..results.files import refuse_path, write_text
 from ..results.scales import scales
 from ..results.solution import Solution, channel_ranges
-from .counters import solver_words
+from .counters import solver_lines
 from .digits import with_bar
 from .drawing.derive import drawing_of
 from .drawing.marks import marks_of
@@ -97,10 +97,10 @@ def report_page(scene: Scene, solution: Solution, text: str = "", sections: Sequ
     points = len(solution.time) + len(solution.step_times)
     return template.render(
         solution=solution, check=report, settings=_settings(scene), peaks=_peaks(solution),
-        start=float(solution.time[0]), end=float(solution.time[-1]), energy=balance_words(solution.balance),
+        start=float(solution.time[0]), end=float(solution.time[-1]), energy=balance_words(solution.balance, float(solution.channels["energy.total"][0])),
         figures=[_embedded(sheet, points) for sheet in figures], version=version("stiffmbs"),
         sections=[(section, [_embedded(sheet, 0) for sheet in section.figures]) for section in sections],
-        counted=solver_words(solution.solver), violation=float(np.nanmax(solution.channels["constraint.position"])),
+        counted=[f"{label}: {text}" for label, text in solver_lines(solution.solver)], violation=float(np.nanmax(solution.channels["constraint.position"])),
         forces=joint_forces(solution), modes=_modes(scene), text=text, moving=_moving(scene, solution, report), **page_parts(),
     )  # fmt: skip
 

@@ -4,19 +4,20 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
+from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..results.energy_balance_notes import balance_words
+from ..results.energy_balance_notes import balance_words, unresolved_work
 from ..results.error_bars import UNKNOWN
 from ..results.solution import Solution, channel_ranges
 from ..solve.trajectory import Outcome
-from .counters import solver_words
+from .counters import solver_lines
 from .escaped import console as escaping_console
-from .force_table import NOT_UNIQUE, force_table
+from .force_table import NOT_UNIQUE, elements_of, force_table
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -26,6 +27,10 @@ if TYPE_CHECKING:
 
 UNBROKEN = 10_000
 """Characters of a line in files, pipes and texts."""
+INDENT = 13
+"""Width of the labels of lines."""
+MOST_LOADS = 10
+"""Number of elements whose loads are shown by default."""
 STATUS = {Outcome.DONE: "done", Outcome.INTERRUPTED: "interrupted", Outcome.STOPPED: "stopped"}
 
 
@@ -88,42 +93,55 @@ def _finite(content: Any) -> Any:
             return content
 
 
-def summary(solution: Solution) -> str:
-    """See `Solution.summary`."""
+def summary(solution: Solution, all: bool = False) -> str:
+    """Return the summary as text; see `Solution.summary`."""
     from io import StringIO
 
     text = StringIO()
-    _print(solution.name or "model", solution, escaping_console(file=text, width=UNBROKEN))
+    _print(solution.name or "model", solution, escaping_console(file=text, width=UNBROKEN), all)
     return text.getvalue().rstrip()
 
 
-def print_summary(scene: str, solution: Solution, results: str, console: Console) -> None:
-    """What was solved, the range of every joint force, energy drift, solver statistics, where the results lie."""
-    _print(scene, solution, console)
-    console.print(f"results: {results}", highlight=False, markup=False, emoji=False, soft_wrap=True)
+def print_summary(scene: str, solution: Solution, results: str, console: Console, all: bool = False) -> None:
+    """Print the loads of the elements, the energy balance, the statistics of the solver, the notes, and the file of the results."""
+    line = _print(scene, solution, console, all)
+    line("results", results)
 
 
 @np.errstate(all="ignore")  # of a diverged run sums overflow
-def _print(scene: str, solution: Solution, console: Console) -> None:
+def _print(scene: str, solution: Solution, console: Console, all: bool) -> Callable[[str, str], None]:
+    """Print the summary; return the function that prints a further line of it."""
     say = partial(console.print, highlight=False, markup=False, emoji=False)  # names may hold anything
-    start, end = solution.time[0], solution.time[-1]
-    say(f"{solution.name or scene}: {start:g} s to {end:g} s, {solution.message}")
-    for note in solution.notes:
-        say(f"note: {note}")
-    for sentence in solution.presolve:
-        say(f"presolve: {sentence}")
-    for sentence in solution.verification:
-        say(f"verified: {sentence}")
-    table = force_table(solution)
+
+    def line(label: str, text: str) -> None:
+        wrapped = wrap(text, max(console.width - INDENT, INDENT), break_on_hyphens=False, replace_whitespace=False)
+        first, *others = wrapped if len(text) > console.width - INDENT else [text]
+        say(label.ljust(INDENT) + "\n".join([first, *(" " * INDENT + other for other in others)]), soft_wrap=True)
+
+    say(f"{solution.name or scene}: {solution.time[0]:g} s to {solution.time[-1]:g} s, {solution.message}")
+    _print_loads(solution, console, say, all)
+    energy, constraints = solution.channels["energy.total"], ("constraint.position", "constraint.velocity")
+    line("energy", balance_words(solution.balance, float(energy[0])))
+    position, velocity = (np.nanmax(solution.channels[name]) for name in constraints)
+    line("constraints", f"hold to {position:.2g} in position, {velocity:.2g} in velocity")
+    for label, text in solver_lines(solution.solver):
+        line(label, text)
+    for label, sentences in (("presolve", solution.presolve), ("verified", solution.verification)):
+        for sentence in sentences:
+            line(label, sentence)
+    unresolved = unresolved_work(solution.balance)
+    for number, note in enumerate([*solution.notes, *([unresolved] if unresolved else [])], 1):
+        line("notes" if number == 1 else "", f"{number}. {note}")
+    return line
+
+
+def _print_loads(solution: Solution, console: Console, say: Callable[[str], None], all: bool) -> None:
+    n_elements = len(elements_of(solution))
+    most = None if all or n_elements <= MOST_LOADS + 1 else MOST_LOADS
+    table = force_table(solution, most)
     if table.row_count:
-        say("force and torque on the first body, min .. max (N, N m):")
+        largest = "" if most is None else f"the {most} largest of {n_elements} (--all shows all), "
+        say(f"force and torque on the first body, {largest}min .. max (N, N m):")
         console.print(table)
     if solution.not_unique:
         say(f"{NOT_UNIQUE} not determined by rigid bodies: one of many possible values")
-    total = solution.channels["energy.total"]
-    say(
-        f"energy: {total[0]:.9g} J at the start, {balance_words(solution.balance)}; "
-        f"constraints hold to {np.nanmax(solution.channels['constraint.position']):.2g} in position, "
-        f"{np.nanmax(solution.channels['constraint.velocity']):.2g} in velocity",
-    )
-    say(f"solver: {solver_words(solution.solver)}")

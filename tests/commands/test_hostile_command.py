@@ -37,7 +37,7 @@ def test_names_that_read_as_markup_are_shown_as_they_are(folder, name):
     result = invoke("run", "scene.yaml", "--figure", "out.svg")
     assert result.exit_code == 0, result.output
     assert result.output.startswith(f"{name}: 0 s to 0.1 s")
-    assert f"note: note {name}\n" in result.output
+    assert f". note {name}\n" in result.output
     assert invoke("check", "scene.yaml").output.startswith(f"{name}: ")
 
 
@@ -59,7 +59,7 @@ def test_a_scene_is_read_from_standard_input(folder, command):
     wrong = invoke(*command, "-", input="bodies: {b: 3}\n")
     assert wrong.exit_code == 2
     assert "standard input, line 1, bodies.b: found 3" in wrong.output
-    assert invoke("run", "-", input=text).output.endswith("results: stdin.results.npz\n")
+    assert invoke("run", "-", input=text).output.endswith("results      stdin.results.npz\n")
 
 
 def test_a_dataset_is_converted_from_standard_input(folder):

@@ -153,7 +153,7 @@ def test_the_report_reaches_the_user(tmp_path):
     scene = tmp_path / "welded.yaml"
     scene.write_text(WELDED)
     shown = CliRunner().invoke(main, ["run", str(scene), "-o", str(tmp_path / "out.csv")])
-    assert "presolve: fixed joints make one body of cart and box" in shown.output
+    assert "presolve     fixed joints make one body of cart and box" in shown.output
     found = json.loads(CliRunner().invoke(main, ["run", str(scene), "--json"]).output)
     assert "62 unknowns become 18" in found["presolve"]
     checked = CliRunner().invoke(main, ["check", str(scene), "--json"])

@@ -1,7 +1,7 @@
-"""The solver's line of a summary says what its counters mean."""
+"""The lines of a summary on the solver say what its counters mean."""
 
 import stiffmbs
-from stiffmbs.show.counters import solver_words
+from stiffmbs.show.counters import solver_lines
 
 from ..conftest import EXAMPLES
 
@@ -13,12 +13,12 @@ IDA = {
 
 
 def test_matrices_made_anew_are_no_failures():
-    assert solver_words(IDA) == (
-        "bdf, linear solver dense, 19 unknowns; "
-        "1000 steps (4 more failed the error test, 2 more did not converge), order 5 at the end; "
-        "2000 residuals, 310 Jacobians (300 of them as Newton's iteration was too slow with an older one); "
-        "started anew at 3 events; 72.5 ms"
-    )
+    assert list(solver_lines(IDA)) == [
+        ("solver", "bdf, linear solver dense, 19 unknowns"),
+        ("steps", "1000 (4 more failed the error test, 2 more did not converge), order 5 at the end"),
+        ("restarts", "at 3 events"),
+        ("cost", "2000 residuals, 310 Jacobians (300 after slow Newton convergence), 72.5 ms"),
+    ]
 
 
 def test_what_did_not_happen_is_not_told():
@@ -30,9 +30,11 @@ def test_what_did_not_happen_is_not_told():
         "rejected": 0,
         "events": 0,
     }
-    assert solver_words(quiet) == (
-        "bdf, linear solver dense, 19 unknowns; 1000 steps, order 5 at the end; 2000 residuals, 310 Jacobians; 72.5 ms"
-    )
+    assert list(solver_lines(quiet)) == [
+        ("solver", "bdf, linear solver dense, 19 unknowns"),
+        ("steps", "1000, order 5 at the end"),
+        ("cost", "2000 residuals, 310 Jacobians, 72.5 ms"),
+    ]
 
 
 def test_explicit_steps_count_accelerations():
@@ -45,17 +47,19 @@ def test_explicit_steps_count_accelerations():
         "events": 0,
         "seconds": 0.001,
     }
-    assert solver_words(found) == (
-        "projected; 56 steps (1 more refused); 851 accelerations; started anew at 2 breakpoints of inputs; 1.0 ms"
-    )
-    assert "; started anew at 1 breakpoint of inputs and 1 event; " in solver_words(
-        found | {"breakpoints": 1, "events": 1}
-    )
+    assert list(solver_lines(found)) == [
+        ("solver", "projected"),
+        ("steps", "56 (1 more rejected)"),
+        ("restarts", "at 2 input breakpoints"),
+        ("cost", "851 accelerations, 1.0 ms"),
+    ]
+    both = dict(solver_lines(found | {"breakpoints": 1, "events": 1}))
+    assert both["restarts"] == "at 1 input breakpoint and 1 event"
 
 
 def test_every_counter_of_a_run_is_told_or_known_to_be_part_of_another():
     solution = stiffmbs.run(stiffmbs.load_scene(EXAMPLES / "bar_pendulum.yaml"), duration=0.5)
-    words = solver_words(solution.solver)
+    words = str(list(solver_lines(solution.solver)))
     known = {"newton_failures", "rejected", "breakpoints", "events", "convergence_failures"}
     told = [
         k for k, v in solution.solver.items() if isinstance(v, int) and k not in known and v and str(v) not in words

@@ -267,7 +267,7 @@ def test_command_shows_bars_and_json_gains_errors(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     path = str(EXAMPLES / "cart_pendulum.yaml")
     shown = CliRunner().invoke(main, ["run", path, "--verify"])
-    assert shown.exit_code == 0 and "±" in shown.output and "verified: solved again" in shown.output
+    assert shown.exit_code == 0 and "±" in shown.output and "\nverified     solved again" in shown.output
     cells = json.loads(CliRunner().invoke(main, ["run", path, "--verify", "--json"]).output)["channels"]
     keys = {"first", "last", "min", "max", "t_min", "t_max", "error", "min_error", "max_error"}
     assert all(cell.keys() == keys for cell in cells.values())

@@ -1,0 +1,67 @@
+"""The summary of a run: labels and values, the largest loads, numbered notes."""
+
+import io
+
+import pytest
+
+import stiffmbs
+from stiffmbs.show.escaped import console
+from stiffmbs.show.summary import INDENT, print_summary
+
+LINKS = 14
+
+
+@pytest.fixture(scope="module")
+def chain():
+    """A hanging chain, whose first joint carries most, and a setting that the solver does not read."""
+    bodies = {f"b{k}": {"mass": 1, "inertia": 1, "position": [0, -k]} for k in range(LINKS)}
+    joints = {"j0": {"type": "revolute", "i": "b0", "j": "ground"}} | {
+        f"j{k}": {"type": "revolute", "i": f"b{k}", "j": {"body": f"b{k - 1}", "point": [0, -1]}}
+        for k in range(1, LINKS)
+    }
+    scene = {"gravity": [0, -9.81], "bodies": bodies, "joints": joints}
+    model = stiffmbs.read_scene(str(scene))
+    return stiffmbs.run(model, duration=0.1, points=3, solver="projected", scheme="rk4", step=0.01, rtol=1e-5)
+
+
+def printed(solution, width, all=False):
+    file = io.StringIO()
+    print_summary("scene", solution, "out.npz", console(file=file, width=width), all)
+    return file.getvalue().splitlines()
+
+
+def test_the_ten_largest_loads_are_listed_in_the_order_of_the_scene(chain):
+    lines = printed(chain, 200)
+    (head,) = [line for line in lines if line.startswith("force and torque")]
+    assert f"the 10 largest of {LINKS} (--all shows all)" in head
+    assert [line.split()[1] for line in lines if line.startswith("│")] == [f"j{k}" for k in range(10)]
+
+
+def test_all_loads_are_listed_when_asked_for(chain):
+    lines = printed(chain, 200, all=True)
+    assert [line.split()[1] for line in lines if line.startswith("│")] == [f"j{k}" for k in range(LINKS)]
+    assert chain.summary(all=True).count("\n│") == LINKS and chain.summary().count("\n│") == 10
+
+
+def test_notes_are_numbered_and_lines_have_labels(chain):
+    lines = printed(chain, 1000)
+    labels = [line[:INDENT].strip() for line in lines if line[:1].isalpha()]
+    assert [label for label in labels if label in ("energy", "constraints", "solver", "steps", "cost", "notes", "results")] == [
+        "energy", "constraints", "solver", "steps", "cost", "notes", "results",
+    ]  # fmt: skip
+    (note,) = [line for line in lines if line.startswith("notes")]
+    assert note[INDENT:].startswith("1. rtol = 1e-05 has no effect")
+    assert lines[-1] == "results      out.npz"
+
+
+@pytest.mark.parametrize("width", [40, 80])
+def test_long_lines_are_wrapped_below_their_values(chain, width):
+    values, unbroken = (_below_the_table(printed(chain, each)) for each in (width, 1000))
+    assert all(len(line) <= width for line in values)
+    assert any(line.startswith(" " * INDENT) for line in values)
+    words, expected = (" ".join(line[INDENT:] for line in lines).split() for lines in (values, unbroken))
+    assert words == expected
+
+
+def _below_the_table(lines):
+    return lines[next(k for k, line in enumerate(lines) if line.startswith("energy")) :]
