@@ -35,6 +35,7 @@ def run_with(tmp_path):
     return run
 
 
+@pytest.mark.long
 def test_without_its_hinge_the_bar_falls_freely(run_with):
     found = run_with(FREE + RUN)
     np.testing.assert_allclose(found["PART_2.z"], 3 - G * found.time**2 / 2, atol=1e-7)
@@ -55,6 +56,7 @@ def test_a_component_of_gravity_that_is_not_given_stays(run_with):
     assert found["PART_2.z"][-1] == pytest.approx(3 - G / 2, abs=1e-7)
 
 
+@pytest.mark.long
 def test_what_is_activated_again_holds(run_with):
     found = run_with("DEACTIVATE/JOINT, ID=1\nACTIVATE/JOINT, ID=1\n" + RUN)
     np.testing.assert_array_equal(found["PART_2.z"], run_with(RUN)["PART_2.z"])

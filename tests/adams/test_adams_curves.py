@@ -94,6 +94,7 @@ def test_a_bead_goes_round_a_closed_wire_that_leaves_its_plane(turn):
     np.testing.assert_allclose(found["energy.total"], found["energy.total"][0], atol=1e-6)
 
 
+@pytest.mark.long
 def test_a_bead_slides_along_a_wire_that_is_bent_in_space():
     points = np.column_stack([X, 60 * np.sin(X / 150), Z])
     found = stiffmbs.run(read_adams(dataset(points, first=points[2])), duration=0.5, points=26, rtol=1e-10)

@@ -81,6 +81,7 @@ def _same_motion(scene, again, **how):
 QUICK = ("slider", "coupler", "bushing", "states")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "kind",
     [pytest.param(kind, marks=[] if kind in QUICK else pytest.mark.long) for kind in BETWEEN if kind != "planar"],

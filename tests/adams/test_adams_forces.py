@@ -45,6 +45,7 @@ SPRINGDAMPER/1, TRANS, I=20, J=30, K=5, C=1, LENGTH=0.5, FORCE=2
     np.testing.assert_allclose(angular, np.broadcast_to(angular[0], angular.shape), atol=1e-5)
 
 
+@pytest.mark.long
 def test_springs_bushings_fields_and_beams_start_with_their_forces():
     """At a known displacement and velocity of marker I in the axes of J, the force is what the statement says."""
     text = r"""PART/2, MASS=1, CM=20, IP=1,1,1, QG=0.1,0.2,0.3, VX=1, VY=2, VZ=3, WX=0.1, WY=0.2, WZ=0.3
@@ -74,6 +75,7 @@ BEAM/1, I=20, J=1, LENGTH=0.1, AREA=1E-4, IXX=2E-10, IYY=1E-10, IZZ=1E-10, EMODU
     np.testing.assert_allclose(acting("BEAM_1"), expected, atol=1e-9)
 
 
+@pytest.mark.long
 def test_a_force_by_formula():
     """A pendulum of a point mass on a rod, braked in one sense only: IF, VARVAL, SIGN and a step in time."""
     text = (

@@ -80,6 +80,7 @@ def pendulum(torque):
     return solve_ivp(rates, (0, TIMES[-1]), [0, 5], t_eval=TIMES, rtol=1e-11, atol=1e-12).y
 
 
+@pytest.mark.long
 def test_a_pin_rubs_by_force_thrust_moment_and_preload(tmp_path):
     text = """FRICTION/1, JOINT=1, MU_STATIC=0.4, MU_DYNAMIC=0.3, FRICTION_ARM=0.05, BENDING_REACTION_ARM=0.2
 , PIN_RADIUS=0.1, STICTION_TRANSITION_VELOCITY=0.2, TRANSITION_VELOCITY_COEFFICIENT=2, MAX_STICTION_DEFORMATION=0.01

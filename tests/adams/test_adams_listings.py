@@ -59,6 +59,7 @@ def reaction(case, quantity):
     return channels(solution, "REQUEST_5", names[0 if named else 1])
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("quantity", RELATIVE)
 @pytest.mark.parametrize("case", CASES)
 def test_adams_lists_the_same(case, quantity):

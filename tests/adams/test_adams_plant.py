@@ -25,6 +25,7 @@ END
 """
 
 
+@pytest.mark.long
 def test_an_input_is_given_and_an_output_read():
     scene = read_adams(CART)
     usual = stiffmbs.run(scene, duration=1, points=11, rtol=1e-9)

@@ -42,6 +42,7 @@ def test_constraints_take_as_many_freedoms_as_in_adams(statement, equations):
     assert (report.rank, report.degrees_of_freedom) == (equations, 12 - equations)
 
 
+@pytest.mark.long
 def test_a_linear_actuator_carries_weight_and_inertia():
     """1 kg on a guide at 45 degrees, led by 0.1 sin 5t along it: f = m (a + g sin 45)."""
     text = (
@@ -66,6 +67,7 @@ REQUEST/1, F2=MOTION(1,0,4,2)\F3=MOTION(1,0,1,0)\F4=DZ(41,2,2)\F6=VZ(41,2,2)\F7=
     np.testing.assert_allclose(np.abs(solution["REQUEST_1.f8"]), G * math.sin(math.pi / 4), atol=1e-6)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kind", ["DISPLACEMENT, FUNC=8*TIME", "VELOCITY, FUNC=8", "ACCELERATION, FUNC=16"])
 def test_a_motor_turns_many_times(kind):
     text = TWO + f"JOINT/1, REVOLUTE, I=21, J=1\nMOTION/1, JOINT=1, {kind}\nVARIABLE/1, FUNC=AZ(21,1)"
@@ -76,6 +78,7 @@ def test_a_motor_turns_many_times(kind):
     np.testing.assert_allclose(solution["MOTION_1.tz"], torque, atol=1e-5)
 
 
+@pytest.mark.long
 def test_a_sleeve_is_turned_and_pushed():
     text = (
         TWO
@@ -116,6 +119,7 @@ SFORCE/1, ROTATIONAL, I=21, J=1, FUNCTION=2
 )
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("second", ["I=31, J=13", "I=13, J=31"])
 def test_gears_share_a_torque(second):
     """Radii 0.25 and 0.75: w1 = -3 w2; 2 N m on wheel 1 turns it with 2/(I1 + I2/9)."""
@@ -214,6 +218,7 @@ def test_a_constant_velocity_joint_turns_evenly(marker):
     np.testing.assert_allclose(solution["VARIABLE_1"], 4 * solution.t, atol=1e-6)
 
 
+@pytest.mark.long
 def test_a_ball_rolls_by_its_own_constraint():
     """A disc on edge that rolls along x: x' = -r w about y, held upright."""
     text = (

@@ -181,6 +181,7 @@ def test_a_kinematic_simulation_ends_at_a_sensor(run_with):
     assert found["PART_2.wy"][7] == pytest.approx(3 * t, abs=1e-6) and not np.any(found["MOTION_1.ty"][7:])
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("component", "expected"), [(1, 2 * G), (5, 2 * G * 1000)])
 def test_reactions_in_functions_have_the_units_of_the_dataset(tmp_path, component, expected):
     """A bar of 2 kg is welded to ground at 1000 mm of its centre of mass: N and N mm, in a request and in a force."""

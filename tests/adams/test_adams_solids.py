@@ -89,6 +89,7 @@ def test_pairs_that_are_not_solved_are_refused():
         made("GRAPHICS/1, PLANE, RM=1\nGRAPHICS/3, CYLINDER, CM=22, LENGTH=300\nCONTACT/1, IGEOM=3, JGEOM=1, " + LAW)
 
 
+@pytest.mark.long
 def test_the_force_of_a_contact_is_that_on_the_side_of_igeom():
     """A ball at rest on a plane, asked for as IGEOM and as JGEOM, on either side."""
     text = """ball

@@ -68,6 +68,7 @@ def turning(height, angle, spin, times, inertia, weight):
     return solve_ivp(rates, (times[0], times[-1]), [angle, spin], t_eval=times, rtol=1e-10, atol=1e-12).y
 
 
+@pytest.mark.long
 def test_an_eccentric_disc_lifts_a_flat_face():
     """The face is at e sin(angle) + R; the force on it by its acceleration, and no torque about the point of contact."""
     found = stiffmbs.run(

@@ -57,6 +57,7 @@ def test_an_interrupted_run_is_not_taken_again():
     assert any(CREEP in note and note.endswith("the results may be wrong by that") for note in solution.notes)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("restarted", [False, True])
 def test_steps_of_a_simulation_go_on_with_exact_constraints(restarted):
     model = pulled(1e6)

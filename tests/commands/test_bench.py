@@ -17,6 +17,7 @@ def bench(*arguments):
     return CliRunner().invoke(main, ["bench", *arguments])
 
 
+@pytest.mark.long
 def test_rows_are_those_of_compare():
     result = bench("simple_pendulum", "--json")
     assert result.exit_code == 0
@@ -29,6 +30,7 @@ def test_rows_are_those_of_compare():
         assert row["seconds"] > 0
 
 
+@pytest.mark.long
 def test_the_table_names_the_machine_and_the_fastest():
     result = bench("simple_pendulum")
     machine, conclusion, *rows = result.output.splitlines()

@@ -274,6 +274,7 @@ def test_json_also_reports_wrong_input(in_folder):
     assert "bodies.cart.mass" in report["message"]
 
 
+@pytest.mark.long
 def test_schema_accepts_the_examples_and_refuses_a_misspelt_key():
     import jsonschema
     from ruamel.yaml import YAML

@@ -160,6 +160,7 @@ def test_what_is_no_range_is_refused(text):
         values_in("--over", f"k={text}")
 
 
+@pytest.mark.long
 def test_a_report_with_all_sections(examples, tmp_path):
     page = tmp_path / "page.html"
     result = invoke(

@@ -110,6 +110,7 @@ def test_a_full_standard_output_is_told(folder, arguments, buffered):
     assert "No space left on device" in errors
 
 
+@pytest.mark.long
 def test_a_closed_standard_output_is_told_and_results_are_written(folder):
     done = subprocess.run(
         ["sh", "-c", '"$0" -m stiffmbs run scene.yaml -o out.npz >&-', sys.executable], capture_output=True, text=True

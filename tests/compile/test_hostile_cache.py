@@ -126,6 +126,7 @@ def test_a_sticky_folder_of_the_user_s_own_serves(directory):
     assert cache.read(NAME) == b"content"
 
 
+@pytest.mark.long
 def test_code_of_another_function_or_garbage_under_a_right_code_is_compiled_anew(directory):
     assert value(TWICE, 21.0) == 42.0
     entries = {path.name for path in cache.own_directory().iterdir()}

@@ -141,6 +141,7 @@ run: {duration: 1 s, points: 101}
 """
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("solver", ["bdf", "auto"])
 def test_a_drive_that_a_mechanism_locks_against_ends_the_run(solver):
     """The slider reaches its dead centre, crank and rod in one line, at 0.5 m + L."""

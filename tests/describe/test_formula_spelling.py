@@ -48,6 +48,7 @@ def by_tokens():
     return found
 
 
+@pytest.mark.long
 @settings(max_examples=1000, deadline=None)
 @given(TEXTS)
 def test_every_formula_has_the_tree_of_its_tokens(by_tokens, text):

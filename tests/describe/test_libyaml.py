@@ -113,6 +113,7 @@ def contents(draw):
     )
 
 
+@pytest.mark.long
 @settings(max_examples=100, deadline=None)
 @given(contents(), st.sampled_from((None, True, False)), st.booleans())
 def test_what_was_written_is_read_back(content, in_one_line, by_ruamel):
@@ -167,6 +168,7 @@ def test_without_the_libyaml_that_was_compared_python_reads_the_same(read, monke
     assert len(read) == 1
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("fault", "message"),
     [

@@ -109,6 +109,7 @@ def test_a_parameter_may_bear_a_units_name_where_it_is_clear():
         quantity("3 N/m", parameters)
 
 
+@pytest.mark.long
 @given(st.text(max_size=30))
 def test_any_text_is_a_number_or_refused(text):
     with contextlib.suppress(FormulaError):

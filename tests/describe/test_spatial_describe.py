@@ -306,6 +306,7 @@ def test_a_gear_in_space_starts_as_drawn():
     assert dict(model.data().elements_at_initial_pose())["mesh"].offset == pytest.approx(0.1 + 0.7 * 0.2)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("driven", [{"joint": "pin1"}, {"coordinate": "az(wheel1, ground)"}], ids=["joint", "formula"])
 def test_gears_and_drives_in_space_turn_over_and_over(driven):
     """A driven wheel turns its neighbour by the ratio of their teeth, over many turns."""

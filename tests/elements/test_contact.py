@@ -82,6 +82,7 @@ def test_a_ball_in_a_hole_keeps_inside_and_keeps_its_energy():
     assert solution.energy_drift() < 1e-6
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("surface", ["line", "circle", "hole"])
 def test_bodies_in_contact_keep_momentum_and_angular_momentum(surface):
     model = Model()

@@ -104,6 +104,7 @@ def test_turns_are_counted_beside_a_pole():
     assert not any("whole turns" in note for note in solution.notes)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("points", [2, 7, 101])
 def test_an_angle_that_swings_between_output_points_is_counted(points):
     model = geared()

@@ -109,6 +109,7 @@ def test_a_field_with_a_name_of_the_symbolic_element_or_of_the_base_is_refused_w
         make(family, name)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("family", FAMILIES.values(), ids=FAMILIES)
 @pytest.mark.parametrize("make", (force, joint))
 def test_other_names_mean_the_field(family, make):
@@ -117,6 +118,7 @@ def test_other_names_mean_the_field(family, make):
         np.testing.assert_allclose(end(family, make, name), expected, atol=1e-12, err_msg=name)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ("revolute_0", "joint_friction_0", "bushing_0", "cylindrical_0", "vertical_tyre_0"))
 def test_symbols_of_numbers_differ_from_all_others(name):
     found = derived(name)

@@ -167,6 +167,7 @@ class Pin(spatial.Joint):
     loads = staticmethod(spatial.Revolute.loads)
 
 
+@pytest.mark.long
 def test_a_joint_that_states_its_loads_rubs_and_is_driven():
     def braked(hinge):
         model = spatial.Model(gravity=(0, -9.81, 0))

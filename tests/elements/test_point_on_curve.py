@@ -44,6 +44,7 @@ ECCENTRIC = {
 }  # fmt: skip
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("curve", "accuracy"),
     [
@@ -78,6 +79,7 @@ def test_curve_turns_with_its_marker():
     np.testing.assert_allclose(y, 0.5 - x**2, atol=1e-10)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("solver", ["bdf", "kinematic"])
 def test_a_cam_with_a_narrow_bump_lifts_its_follower_in_every_turn(solver):
     """A formula of the polar angle itself, which lies between -pi and pi however often the cam has turned."""
@@ -97,6 +99,7 @@ run: {duration: 2 s, points: 2001, max_step: 0.5 ms}
     np.testing.assert_allclose(solution["f.y"], 1 + 0.1 * np.exp(-(((angle - 0.96) / 0.01) ** 2)), atol=1e-9)
 
 
+@pytest.mark.long
 def test_a_cam_in_space_lifts_its_follower_by_its_height():
     """A barrel cam: a follower at the radius 0.5 is at the height 0.1 sin(2 theta) beside the cam's own."""
     scene = read_scene(
@@ -114,6 +117,7 @@ joints:
     assert np.ptp(z) > 0.1
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("end", "accepted"), [("6.2831853", False), ("6.283185307", True), ("6.283185312", True)])
 def test_a_turn_is_known_by_its_first_nine_digits(end, accepted):
     """A table of a cam's radius over a turn of 2 pi, as a program writes it."""

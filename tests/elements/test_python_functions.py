@@ -51,6 +51,7 @@ def test_the_motion_is_that_of_formulas(settings, fields):
     np.testing.assert_allclose(found["pull.torque"], expected["turn.torque"], atol=1e-5)
 
 
+@pytest.mark.long
 def test_the_motion_is_the_same_in_space():
     plane, space = (
         stiffmbs.run(model(j="post"), duration=0.5, rtol=1e-8),
@@ -99,6 +100,7 @@ def test_a_function_is_called_again_in_the_next_run():
     assert stiffmbs.run(made, duration=1.0).outcome.name == "DONE"
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("solver", "calls"), [("bdf", range(20, 400, 29)), ("projected", range(10, 60, 3))])
 def test_an_exception_at_any_call_leaves_no_wrong_number(solver, calls):
     """Also where the stages of an explicit step's interpolant fail: then nothing within that step is reported."""

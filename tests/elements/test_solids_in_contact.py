@@ -93,6 +93,7 @@ def test_a_ball_that_slides_over_another_is_pressed_on_by_its_weight_less_what_i
     np.testing.assert_allclose(along, -0.2 * normal, rtol=1e-4)
 
 
+@pytest.mark.long
 def test_a_sphere_meets_the_edge_of_a_box_at_its_distance():
     """Without gravity a sphere flies past an edge at 0.0999 m of it, or at 0.1001 m without any force."""
     for distance, touched in ((0.0999, True), (0.1001, False)):
@@ -108,6 +109,7 @@ def test_friction_needs_both_coefficients():
         solved(f"{CYLINDER}, {LAW}, friction: 0.2", BALL)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("lean", [0.02, -0.03, 0.6])
 def test_both_ends_of_a_leaning_cylinder_press_on_the_plane(lean):
     """k (-g)^1.5 at the lowest point of each rim, with its moment about the middle; 0.02 rad: both ends overlap."""
@@ -128,6 +130,7 @@ def test_both_ends_of_a_leaning_cylinder_press_on_the_plane(lean):
     assert abs(0.014 * found["b.wdx"][0]) == pytest.approx(abs(moment), rel=1e-5)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "settings", [{"solver": "bdf"}, {"solver": "projected", "scheme": "dop853"}], ids=lambda s: s["solver"]
 )

@@ -277,6 +277,7 @@ def test_the_quaternions_that_bodies_are_described_with_do_not_wind_a_bushing():
     assert solution["mount.tz"][0] == pytest.approx(-2 * np.radians(20), rel=1e-9)
 
 
+@pytest.mark.long
 def test_a_rotation_vector_is_that_of_the_logarithm():
     """The elastic moments of any rotation against a potential of SciPy's rotation vectors, by differences."""
     for seed in range(5):
@@ -304,6 +305,7 @@ def _elastic_moments(seed, stiffness):
     return [*force, *(torque - np.cross(i.point, force))], -np.array(gradient)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("angle", [0.0, 1e-3, 0.4, 1.0, 2.5, 3.6])
 @pytest.mark.parametrize("free", [None, *(pytest.param(k, marks=pytest.mark.long) for k in range(3))])
 def test_derivatives_of_a_coupled_bushing_at_small_and_large_rotations(angle, free):
@@ -316,6 +318,7 @@ def test_derivatives_of_a_coupled_bushing_at_small_and_large_rotations(angle, fr
     assert_close(term(state, "tangent", "f_u"), derivative(lambda: term(state, "motion", "f"), state.u))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("stiffness", [1e4, 1e6, 1e9])
 def test_a_stiff_bushing_holds_as_a_spherical_joint_does(stiffness):
     """The deflection is the force over the stiffness: a pendulum's motion differs by about that, and its force too."""
@@ -378,6 +381,7 @@ def cantilever(**load):
     return np.array(place) - [0.8, 0, 0, 0, 0, 0], section
 
 
+@pytest.mark.long
 def test_a_cantilever_deflects_as_timoshenko_says():
     """F L^3/(3 E I) and, by shear, asy F L/(G A); slope F L^2/(2 E I), without shear."""
     F = 10.0

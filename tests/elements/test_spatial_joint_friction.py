@@ -45,6 +45,7 @@ def test_a_pin_is_braked_by_the_force_across_it():
     np.testing.assert_allclose(braking, np.tile(-0.1 * 50 * 0.02 * Z, (5, 1)), atol=1e-9)
 
 
+@pytest.mark.long
 def test_a_bearing_is_pressed_by_its_moment_and_a_collar_by_the_thrust():
     fields = {"radius": 0.02, "length": 0.2, "thrust_radius": 0.05}
     solution = run(held(spatial.Revolute, spin=(0, 0, -10), force=(0, 50, -70), torque=(3, 4, 0), **fields))
@@ -52,6 +53,7 @@ def test_a_bearing_is_pressed_by_its_moment_and_a_collar_by_the_thrust():
     np.testing.assert_allclose(solution["body.wz"], -10 + torque / 0.06 * solution.time, atol=1e-7)
 
 
+@pytest.mark.long
 def test_a_guide_is_pressed_by_force_moment_and_torsion():
     fields = {"torsion_radius": 0.05, "length": 0.2}
     solution = run(held(spatial.Prismatic, speed=3, force=(30, 40, 0), torque=(3, 4, 2), **fields))
@@ -75,6 +77,7 @@ def test_a_ball_is_braked_against_its_angular_velocity():
     np.testing.assert_allclose(solution["body.wy"], 6 - 0.1 * 50 * 0.02 / 0.05 * solution.time, atol=1e-7)
 
 
+@pytest.mark.long
 def test_a_body_stays_where_friction_holds_it():
     """It creeps as the smoothing says: tanh(v/v_smooth) = load/(mu N)."""
     model = held(spatial.Prismatic, force=(30, 40, 3), smooth_velocity=1e-3)

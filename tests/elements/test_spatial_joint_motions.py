@@ -53,6 +53,7 @@ def test_a_universal_joint_turns_unevenly(bend):
     np.testing.assert_allclose(solution["first.wx"], 7, atol=1e-9)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("of_second", [ALONG_X, ALONG_MINUS_X], ids=["same", "opposite"])
 @pytest.mark.parametrize("bend", np.radians([0, 20, 40, 60]))
 def test_shafts_in_a_constant_velocity_joint_turn_alike(bend, of_second):
@@ -63,6 +64,7 @@ def test_shafts_in_a_constant_velocity_joint_turn_alike(bend, of_second):
     np.testing.assert_allclose(solution["second.wx"], 2 + 3 * np.cos(3 * solution.time), atol=1e-7)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("of_second", [ALONG_X, ALONG_MINUS_X], ids=["same", "opposite"])
 def test_the_reaction_of_a_constant_velocity_joint_in_a_formula(of_second):
     """A force that reads the torque in the joint reads that which is reported, whichever sense the axes are drawn with."""
@@ -92,6 +94,7 @@ def falling_nut(*joints):
     return model
 
 
+@pytest.mark.long
 @BOTH
 @pytest.mark.parametrize(
     ("sense", "joints"),
@@ -139,6 +142,7 @@ REFERRING = {
 }
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "solver", [{}, {"presolve": False}, {"solver": "projected"}], ids=["bdf", "as-is", "projected"]
 )
@@ -165,6 +169,7 @@ def test_elements_that_refer_to_a_screw(offset, kind, of, solver):
     np.testing.assert_allclose(advance, PITCH * turn / TURN, rtol=1e-6, atol=1e-9)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("ratio", [17 / 31, -3.0, np.sqrt(2)], ids=["17/31", "internal", "irrational"])
 def test_bevel_gears_mesh_over_many_turns(ratio):
     """theta_1 + ratio theta_2 = 0 from the drawn start, however many turns, and the motor turns both wheels."""
@@ -186,6 +191,7 @@ def test_bevel_gears_mesh_over_many_turns(ratio):
     np.testing.assert_allclose(solution["teeth.tz"], -0.03 * 10 / ratio**2, rtol=1e-6)
 
 
+@pytest.mark.long
 @BOTH
 def test_a_pinion_carries_its_rack_on_turn_after_turn(solver):
     """M s'' = F, I theta'' = -F R + ..., let roll down a slope of 30 degrees: (M + I/R^2) s'' = M g sin."""
@@ -214,6 +220,7 @@ def test_a_pinion_carries_its_rack_on_turn_after_turn(solver):
     np.testing.assert_allclose(solution["teeth.fx"], force * np.cos(slope), rtol=1e-8)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("start", [0.3, np.pi, 3.5, -20.0])
 def test_drives_turn_and_push_a_sleeve_over_many_turns(start):
     model = spatial.Model()
@@ -230,6 +237,7 @@ def test_drives_turn_and_push_a_sleeve_over_many_turns(start):
     np.testing.assert_allclose(solution["turn.tz"], 0.03 * np.sin(t), atol=1e-8)
 
 
+@pytest.mark.long
 def test_a_measured_angle_is_driven_over_many_turns():
     model = spatial.Model()
     model.add("arm", wheel())
@@ -239,6 +247,7 @@ def test_a_measured_angle_is_driven_over_many_turns():
     np.testing.assert_allclose(solution["arm.wz"], 8, atol=1e-9)
 
 
+@pytest.mark.long
 @BOTH
 def test_a_disc_rolls_without_slipping(solver):
     """The plane by a user's equation of positions, rolling by two of velocities, which have no position form."""

@@ -191,6 +191,7 @@ def test_a_jump_that_drives_the_motion_back_is_found():
     assert looked_at("-2*sign(block.vx)", 1e-9)[0] == 1
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("scene", "profile", "damping"),
     [(wheel_on_road, "crest", 50.0), (follower, "crest", 0.0), (follower, "pothole", 50.0), (follower, "bump", 500.0)],

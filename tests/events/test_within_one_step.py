@@ -12,6 +12,7 @@ from tests.stress.families.events import within_one_step
 from tests.stress.fuzzers import contacts
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("case", within_one_step.CASES, ids=lambda case: case.name)
 def test_what_begins_and_ends_within_one_step_is_seen(case):
     verdict = case.judge()
@@ -145,6 +146,7 @@ forces:
         assert solution["b.x"][-1] == pytest.approx(2.5 - 7.5, abs=0.05)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("velocity, start", [(-1.0, 0.3847), (-1.0, 0.4017), (-0.5, 0.3424), (-0.5, 0.3593)])
 def test_the_first_touch_comes_first_where_the_step_ends_in_a_later_one(velocity, start):
     """A pin on a spinning disc that drifts to a wall touches it, leaves it, and touches it again a turn later.

@@ -17,6 +17,7 @@ def test_a_damper_of_one_direction_has_both_sides():
         transfer(slider("-20*max(b.vx, 0)"), ["b.fx"], ["b.vx"])
 
 
+@pytest.mark.long
 def test_a_ball_that_just_touches_has_both_sides():
     found = stiffmbs.modes(ball(0.1))
     rates = sorted(np.abs(np.linalg.eigvals(side.matrix)).max() for side in found.sides)

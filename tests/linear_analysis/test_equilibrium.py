@@ -15,6 +15,7 @@ from tests.stress.random_tree import random_tree
 from ..conftest import EXAMPLES
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("height", [-0.2, -0.05, 0.0, 0.1, 0.2])
 def test_the_half_car_settles_from_any_height(height):
     scene = stiffmbs.load_scene(EXAMPLES / "half_car.yaml")
@@ -38,11 +39,13 @@ def test_a_run_from_equilibrium_stays_at_rest():
         assert np.ptp(found[name]) < 1e-8
 
 
+@pytest.mark.long
 def test_a_ball_falls_onto_the_floor_and_sinks_in():
     found = equilibrium(stiffmbs.load_scene(EXAMPLES / "bouncing_ball.yaml"))
     assert found.channels["floor.fy"] == pytest.approx(0.5 * 9.81, rel=1e-9)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name, channel, value", [("bar_pendulum", "bar.y", -0.3), ("heavy_top", "top.z", None)])
 def test_pendulums_hang_down(name, channel, value):
     found = equilibrium(stiffmbs.load_scene(EXAMPLES / f"{name}.yaml"))
@@ -52,6 +55,7 @@ def test_pendulums_hang_down(name, channel, value):
     assert found.channels[channel] == pytest.approx(hanging if value is None else value, abs=1e-9)
 
 
+@pytest.mark.long
 def test_a_torsion_spring_in_space_unwinds_by_turns():
     """k (20 rad - a) = m g r cos a after nearly two turns; in the plane the angle is a coordinate."""
     from scipy.optimize import brentq

@@ -45,6 +45,7 @@ def test_a_column_of_two_links_buckles_at_its_critical_load(load, buckled):
     assert 10 * (b - a) == pytest.approx(load * np.sin(b), abs=1e-8)
 
 
+@pytest.mark.long
 def test_a_column_of_ten_links_under_far_too_much_load():
     found = stiffmbs.equilibrium(read(column(20.0, links=10)))
     modes = stiffmbs.modes(read(column(20.0, links=10)), start_from=found.solution)
@@ -78,6 +79,7 @@ forces:
 """A wheel carrier under a leaf spring, led by a lower arm and a tie rod, on a tyre, as in the Iltis; round numbers."""
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("lift", [-0.1, 0.0, 0.2])
 def test_a_leaf_spring_and_a_tie_rod_carry_the_car_from_any_height(lift):
     scene = stiffmbs.read_scene(SUSPENSION, [("lift", str(lift))])

@@ -37,6 +37,7 @@ def test_two_hundred_random_equilibria(first):
     assert {seed: v.detail for seed, v in verdicts.items() if v.outcome is not Outcome.RIGHT} == {}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", [0, 1])
 def test_a_pose_beside_an_equilibrium_is_seen_to_be_none(seed, monkeypatch):
     """The judge can fail: accelerations and motion tell a state that is a little off."""

@@ -10,6 +10,7 @@ from tests.stress.families.analyses.rolling_modes import SKATE, TRAILER
 from tests.stress.mechanisms.bicycle import bicycle, published
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("speed", range(11))
 def test_the_benchmark_bicycle_has_its_published_eigenvalues(speed):
     """Weave, capsize and castering, and rolling on as the only rigid body motion."""

@@ -28,6 +28,7 @@ def test_in_equilibrium_states_stay_as_they_are():
     assert not found.notes
 
 
+@pytest.mark.long
 def test_a_state_that_cannot_come_to_rest_is_named(few_moves):
     model = controlled_cart()
     model.add("clock", State(rate=1, start=0))

@@ -61,6 +61,7 @@ forces:
 """
 
 
+@pytest.mark.long
 def test_a_car_on_a_circle_rolls_outwards():
     """k a = m h (W^2 (R + h sin a) cos a + g sin a) for a chassis of equal moments of inertia about a roll axis."""
     rate, radius, height = 0.4, 30.0, 0.5
@@ -165,6 +166,7 @@ run: {duration: 2 s, rtol: 1e-8}
 """
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "relaxation",
     [pytest.param("", marks=pytest.mark.long, id="steady"), pytest.param(", relaxation: [0.3, 0.5]", id="lagging")],
@@ -182,6 +184,7 @@ def test_a_wheel_spins_as_its_tyre_asks(relaxation):
     assert run["tyre.load"] == pytest.approx(np.full(len(run.time), 4000.0), abs=1e-3)
 
 
+@pytest.mark.long
 def test_a_speed_that_no_force_tells_is_refused(few_moves):
     scene = stiffmbs.read_scene(SLED.replace("40 N - 2 N s/m*vx(sled)", "40 N"))
     with pytest.raises(stiffmbs.SolverError, match=r"the largest imbalance is left in sled\.fx"):
@@ -221,7 +224,8 @@ def test_the_command(tmp_path):
     assert wrong.exit_code == 2 and "velocity: found 2 numbers, expected 3" in wrong.output
 
 
-def test_an_unstable_state_is_found_by_shortened_newton_steps():
+@pytest.mark.long
+def test_an_unstable_state_is_found_by_shortened_newton_steps(few_moves):
     """Full Newton steps on atan(20 p) from p = 1 go to -30, 1400, ...; p = 0 is unstable."""
     scene = stiffmbs.read_scene(SLED + 'states: {p: {rate: "atan(20*p)", start: 1}}\n')
     found = stiffmbs.equilibrium(scene, motion=SteadyMotion(velocity=(20, 0)))

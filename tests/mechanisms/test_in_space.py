@@ -305,6 +305,7 @@ def test_what_cannot_be_converted_is_told(arguments, words):
     assert words in result.stderr
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("settings", [{}, {"solver": "projected", "scheme": "rk4", "step": 1e-3}, {"presolve": False}])
 def test_other_solvers_give_the_planar_numbers_too(settings):
     """With explicit steps of fixed length errors of both are those of the step."""

@@ -54,6 +54,7 @@ def test_symmetric_top_against_three_hinges():
     np.testing.assert_allclose(energies(links, q, u), energies(links, q, u)[0], rtol=1e-11)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "omega",
     [
@@ -79,6 +80,7 @@ def test_free_body_against_euler_equations(omega):
     np.testing.assert_allclose(np.einsum("nij,nj->ni", turn, J * w), np.tile(J * omega, (501, 1)), atol=1e-12)
 
 
+@pytest.mark.long
 def test_bricard_closes_and_keeps_its_energy():
     mechanism = Bricard()
     np.testing.assert_allclose(
@@ -109,6 +111,7 @@ def test_bricard_has_one_degree_of_freedom_and_one_redundant_equation():
         assert size[5] < 1e-14
 
 
+@pytest.mark.long
 def test_slider_crank():
     mechanism = SliderCrank()
     assert mechanism.slider(0.0) == pytest.approx((0.2, 0.04), rel=1e-12)

@@ -127,6 +127,7 @@ def test_a_torsion_pendulum_counts_its_turns(settings):
     np.testing.assert_allclose(axes(solution, "wheel"), matrices(half), atol=1e-7)
 
 
+@pytest.mark.long
 @SOLVERS
 def test_a_nut_falls_along_a_screw(settings):
     """Its turning takes most of what its weight does; the thread passes on the torque that turns it."""

@@ -130,6 +130,7 @@ def column_with_two_arms():
     ]
 
 
+@pytest.mark.long
 @SOLVERS
 def test_a_double_pendulum_on_a_turning_column(settings):
     """Bodies on three hinges whose axes are all at right angles, against three hinge angles."""

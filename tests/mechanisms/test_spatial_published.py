@@ -62,6 +62,7 @@ def bricard_reference():
     return lambda t: np.array([mechanism.corners(angles)[2] for angles in mechanism.motion(t)[:2].T])
 
 
+@pytest.mark.long
 @SOLVERS_OF_LONG_RUNS
 def test_bricard(solved, bricard_reference, settings):
     """Ten seconds: energy to 1e-7 J, and the path by the one coordinate."""
@@ -114,6 +115,7 @@ def four_rods():
     return times, [poses(links, angles) for angles in q.T]
 
 
+@pytest.mark.long
 @SOLVERS
 def test_a_chain_of_hinges_in_space(solved, four_rods, settings):
     """Four rods against four hinge angles."""
@@ -142,6 +144,7 @@ def test_a_long_chain_in_space_keeps_its_energy_and_its_spin(solved, links, join
     np.testing.assert_allclose(spin, spin[0], rtol=1e-6)
 
 
+@pytest.mark.long
 def test_stiff_flyball_governor(solved):
     """Ten seconds against three coordinates: spring-dampers in space between turning bodies."""
     solution = solved("governor", rtol=1e-10)
@@ -160,6 +163,7 @@ def crank_reference():
     return SliderCrank().motion(np.linspace(0, 2, 21))
 
 
+@pytest.mark.long
 @SOLVERS
 def test_spatial_slider_crank(solved, crank_reference, settings):
     """Two seconds: the loop in closed form for the crank's angle, and that angle by its one equation of motion."""

@@ -108,6 +108,7 @@ def welded_at(model, name, parent, rng):
     model.add(f"weld_{name}", Fixed(i=i, j=Marker(body=parent, point=at, orientation=there)))
 
 
+@pytest.mark.long
 @settings(max_examples=10, deadline=None, suppress_health_check=list(HealthCheck), derandomize=True)
 @given(seed=st.integers(0, 10**6), welds=st.integers(1, 3))
 def test_random_welds_on_a_double_pendulum(seed, welds):
@@ -293,6 +294,7 @@ def driven_and_welded(rng):
     return model
 
 
+@pytest.mark.long
 def test_turns_are_counted_where_mechanisms_are_solved_apart():
     model = driven_and_welded(np.random.default_rng(4))
     with_it, without = both(model, duration=2.0, points=21, rtol=1e-10)
@@ -309,6 +311,7 @@ def test_turns_are_counted_where_mechanisms_are_solved_apart():
     np.testing.assert_allclose(with_it["wheel0.q3"] ** 2, np.sin((8 * t + 5 * t**2) / 2) ** 2, atol=1e-7)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", range(12))
 @pytest.mark.parametrize("kind", ["bushing", "field"])
 def test_a_bushing_on_merged_bodies_starts_at_the_angle_that_is_drawn(kind, seed):

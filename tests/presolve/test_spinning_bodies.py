@@ -66,6 +66,7 @@ def steps(model, duration, **settings):
     return model.run(duration=duration, output=0.05, rtol=1e-6, **settings).solver["steps"]
 
 
+@pytest.mark.long
 def test_steps_do_not_depend_on_speed():
     counts = [steps(rolling(speed), 4) for speed in (5, 20, 80)]
     assert max(counts) <= 1.2 * min(counts)

@@ -54,6 +54,7 @@ def shared(model, first=1.0, others=1.0, **how):
     return case, at_rest
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("ratio", [1.0, 3.0, 0.2])
 def test_two_hinges_of_a_door_share_its_weight_by_their_stiffness(ratio):
     case, at_rest = shared(door(), ratio)

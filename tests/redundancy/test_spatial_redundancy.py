@@ -311,6 +311,7 @@ def test_rank_of_random_loops_and_uniqueness_by_an_independent_matrix(seed, bodi
     assert set(report.not_unique) == loose
 
 
+@pytest.mark.long
 @FEW
 @given(SEEDS, st.integers(2, 3), st.integers(2, 5))
 def test_remedies_make_reactions_unique(seed, bodies, joints):

@@ -131,6 +131,7 @@ def test_a_spring_of_wrong_sign_that_is_solved_to_the_end_is_told_and_named():
     assert "'block'" in note and "'spring'" in note
 
 
+@pytest.mark.long
 def test_a_report_of_a_diverged_run_has_no_all_clear():
     pytest.importorskip("jinja2")
     pytest.importorskip("matplotlib")

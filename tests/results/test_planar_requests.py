@@ -320,6 +320,7 @@ SAME = (
 )
 
 
+@pytest.mark.long
 def test_requests_are_the_same_in_space(solution):
     space = stiffmbs.run(spatial.in_space(stiffmbs.read_scene(SCENE)))
     for name in SAME.split():

@@ -66,6 +66,7 @@ def arm(tmp_path, variant):
     return path
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("sign", [1, -1])
 @pytest.mark.parametrize("variant", VARIANTS)
 def test_accelerations_are_those_of_mujoco(tmp_path, variant, sign):

@@ -116,6 +116,7 @@ CLOSED = """<mujoco><worldbody>
 </worldbody><equality>{}</equality></mujoco>"""
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("equality", "freedom"),
     [

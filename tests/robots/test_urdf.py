@@ -75,6 +75,7 @@ def test_transmissions_say_what_is_driven(tmp_path):
     assert list(load_robot(_file(tmp_path, ARM.replace("</robot>", given))).inputs) == ["twist_input"]
 
 
+@pytest.mark.long
 def test_mimicking_joints_are_coupled():
     scene = load_robot(PANDA, coordinates={"panda_finger_joint1": 0.02, "panda_finger_joint2": 0.02})
     run = stiffmbs.run(scene, duration=0.2, output=0.1, rtol=1e-9)

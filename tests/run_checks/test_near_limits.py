@@ -19,6 +19,7 @@ def thrown(stiffness, speed):
     return stiffmbs.run(model, duration=1, rtol=1e-8, points=401)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("stiffness, limit", [((1, 1, 1, 2, 2, 2), np.pi), (FREE, np.pi / 2)])
 def test_bodies_turned_beyond_use_are_told_with_the_first_instant(stiffness, limit):
     rate = np.sqrt(2 / 0.1)

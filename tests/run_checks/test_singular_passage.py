@@ -64,6 +64,7 @@ def test_dips_are_seen_from_outputs_on_both_sides():
     assert deepest_dips(passed)[-1] in (20, int(np.nanargmin(passed)))
 
 
+@pytest.mark.long
 def test_a_look_that_is_cut_short_is_told():
     """A law that fails in the second run alone, which looks at the passage."""
     calls, last = itertools.count(), [10**9]

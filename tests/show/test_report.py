@@ -53,6 +53,7 @@ def page_of(tmp_path):
     return make
 
 
+@pytest.mark.long
 def test_a_page_holds_check_peaks_figures_and_settings(page_of):
     page = page_of("cart_pendulum", "--rtol", "1e-7")
     assert page.headings == [
@@ -72,6 +73,7 @@ def test_a_page_holds_check_peaks_figures_and_settings(page_of):
         assert part in text
 
 
+@pytest.mark.long
 def test_a_page_needs_nothing_from_elsewhere(page_of):
     page = page_of("cart_pendulum", "--duration", "2")
     assert len(page.addresses) == 3
@@ -87,6 +89,7 @@ def test_a_run_is_not_verified_where_one_says_so(page_of):
     assert not any("\u00b1" in text for text in page.texts)
 
 
+@pytest.mark.long
 def test_what_is_in_doubt_stands_first(page_of):
     page = page_of("cam_follower")
     doubt = next(k for k, text in enumerate(page.texts) if "sensitive" in text or "less certain" in text)

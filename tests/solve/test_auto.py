@@ -37,6 +37,7 @@ def test_a_scene_that_is_stiff_from_the_first_is_left_to_bdf(examples):
     np.testing.assert_array_equal(chosen.step_times, implicit.step_times)
 
 
+@pytest.mark.long
 def test_hands_are_changed_as_one_or_the_other_gets_ahead():
     """A vibration in full swing, by which explicit steps are ahead, until a damper stops it: then bdf is."""
     model = Model()
@@ -119,6 +120,7 @@ def test_bdf_that_falls_behind_is_left_again():
     np.testing.assert_allclose(solution["a.y"], mean + (0.01 - mean) * np.cos(1e3 * solution.time), atol=1e-4)
 
 
+@pytest.mark.long
 def test_where_explicit_steps_stop_the_run_is_bdfs_from_its_start():
     """Cranks through a flat pose: a start near it, in mid-run, would put them on a wrong way.
 
@@ -174,6 +176,7 @@ def test_bdf_is_tried_sooner_from_rest(height, name):
     assert stiffmbs.run(model, solver="auto", duration=2.0, rtol=1e-4).solver["name"] == name
 
 
+@pytest.mark.long
 def test_bdf_comes_back_where_explicit_steps_cost_more_than_its_own_had(examples):
     """A rough road holds explicit steps back by accuracy, which the fastest rate at the change of hands did not tell."""
     road = examples / "vehicles" / "quarter_car.yaml"

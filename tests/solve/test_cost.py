@@ -7,6 +7,7 @@ from stiffmbs.solve.cost import of_explicit_step
 from tests.bench.costs import SCENES
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("name", "measured"),
     [

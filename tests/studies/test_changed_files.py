@@ -53,6 +53,7 @@ print(float(stiffmbs.sweep("scene.yaml", {"bodies.b.mass": [1.0]}, outputs=["fin
 """
 
 
+@pytest.mark.long
 @pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     ("file", "old", "new"),
@@ -100,6 +101,7 @@ def test_a_file_that_cases_name_is_part_of_the_store(tmp_path):
         sweep(tmp_path / "scene.yaml", **study)
 
 
+@pytest.mark.long
 def test_a_file_that_changes_during_a_study_ends_it(tmp_path):
     """The cases that are done are kept, and belong to the first content."""
     (tmp_path / "scene.yaml").write_text(WHEEL.format(road="{type: grid, file: a.txt}", mesh="", tyre=VERTICAL))

@@ -69,6 +69,7 @@ def test_intervals_hold_the_truth_in_95_of_100_data_sets():
     assert 0.90 <= np.mean(held) <= 0.99
 
 
+@pytest.mark.long
 def test_data_come_from_files_and_gaps_are_left_out(tmp_path):
     data = noisy(2)
     expected = fit(stiffmbs.read_scene(SLED), {name: values[5:] for name, values in data.items()}, PARAMETERS)
@@ -80,6 +81,7 @@ def test_data_come_from_files_and_gaps_are_left_out(tmp_path):
         assert found.values[name] == pytest.approx(expected.values[name], rel=1e-6)
 
 
+@pytest.mark.long
 def test_channels_of_other_noise_are_weighted_by_it():
     """A channel with a hundred times the noise must not spoil what a good one tells."""
     data = noisy(3)
@@ -91,6 +93,7 @@ def test_channels_of_other_noise_are_weighted_by_it():
     assert both.values["k"] == pytest.approx(alone.values["k"], rel=2e-3)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("data", "parameters", "error", "sentence"),
     [

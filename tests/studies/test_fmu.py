@@ -53,6 +53,7 @@ def simulated(fmu, values=None, pushes=()):
     return {name: np.array(found) for name, found in json.loads(done.stdout.splitlines()[-1]).items()}
 
 
+@pytest.mark.long
 def test_an_fmu_moves_as_the_run_does(scene, tmp_path):
     """Free, with another parameter, and pushed from 0.5 s on: by the closed form of the oscillator."""
     fmu = tmp_path / "pushed.fmu"
@@ -131,6 +132,7 @@ for made, _ in instances:
 """
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("files", "freed"), [(1, "freed"), (3, "kept"), (3, "freed")])
 def test_a_process_may_have_many_instances_of_one_or_several_files(tmp_path, files, freed):
     paths = [tmp_path / f"sled{k}.fmu" for k in range(files)]
@@ -180,6 +182,7 @@ os._exit(0)  # at exit, PythonFMU 0.7.0 deletes a static object after its destru
 """
 
 
+@pytest.mark.long
 def test_a_scene_may_have_any_name(tmp_path):
     paths = [tmp_path / f"x{k}.fmu" for k in range(len(NAMES))]
     for k, (name, path) in enumerate(zip(NAMES, paths, strict=True)):

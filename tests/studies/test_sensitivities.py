@@ -68,6 +68,7 @@ def test_a_force_that_ends_at_an_instant_that_moves():
     assert found.to == pytest.approx(expected, rel=1e-7)
 
 
+@pytest.mark.long
 def test_an_event_at_which_a_force_jumps():
     """A sled at speed v meets a constant resistance behind x = a: x = a + v s - R/(2 m) s^2, s = 1 - a/v."""
     text = PUSHED.replace("F: 3 N, T: 0.4 s", "R: 0.6 N, a: 0.2 m").replace(
@@ -83,6 +84,7 @@ def test_an_event_at_which_a_force_jumps():
     assert found.to == pytest.approx(expected, rel=1e-7)
 
 
+@pytest.mark.long
 def test_kinks_of_a_table_of_straight_lines():
     """Against the variational equations of x'' = k p(x) for the velocity v at the start and for k, integrated from kink to kink."""
     table = np.array([[-2, 33], [-0.2, 0.6], [0.1, -0.3], [2, -82]])
@@ -110,6 +112,7 @@ def test_kinks_of_a_table_of_straight_lines():
     assert found.to == pytest.approx({"v": y[2], "k": y[4]}, rel=1e-6)
 
 
+@pytest.mark.long
 def test_a_bounce_on_a_stiff_floor():
     """A lossless bounce lasts pi/w and ends with the speed that it began with; the motion before and behind is free."""
     text = """
@@ -169,6 +172,7 @@ def test_a_changed_copy_of_a_scene_is_refused():
         sensitivities(longer, ["k"], "final(sled.x)")
 
 
+@pytest.mark.long
 def test_a_start_in_equilibrium():
     text = SLED.replace("-k*sled.x", "9 - k*sled.x") + "start: equilibrium\n"
     found = sensitivities(stiffmbs.read_scene(text), ["k", "c"], "final(sled.x)")
@@ -355,6 +359,7 @@ forces:
 """
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("referring", "force", "of"),
     [
@@ -390,6 +395,7 @@ def test_an_extremum_of_what_is_zero_up_to_rounding_has_no_single_time(reduction
         Formula(f"{reduction}(x)", t, {"x": x}).dual({"x": t[:, None]})
 
 
+@pytest.mark.long
 def test_coordinates_at_rest_have_no_jumps():
     """A door on a vertical hinge: the accelerations of its other coordinates are rounding."""
     k, inertia = 15.0, 7 + 20 * 0.45**2

@@ -71,6 +71,7 @@ def test_an_algebraic_state_follows_what_it_is_a_formula_of(force):
     assert all(of_state.values())
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("scene", "outputs"),
     [
@@ -128,6 +129,7 @@ def test_breakpoints_on_output_instants(force, of):
         assert slope == pytest.approx((above - below) / 2e-6, rel=1e-3, abs=1e-4)
 
 
+@pytest.mark.long
 def test_a_number_that_takes_a_channel_at_its_jump_is_refused():
     scene = cart("branch(t - s, F, 0, 0)")
     scene["parameters"] |= {"s": 0.4}
@@ -141,6 +143,7 @@ def test_a_number_that_takes_a_channel_at_its_jump_is_refused():
     assert sensitivities(read(scene), ["s"], "cart.vx").to["s"][-1] == pytest.approx(10)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("over", [0.0, 1e-15, -1e-15, 1e-13, -1e-13, 1e-11, -1e-11])
 @pytest.mark.parametrize(
     "law", ["branch(-cart.x - A + OVER, 0, 0, F)", "branch(-cart.vx - A*sqrt(k/m) + OVER, 0, 0, F)"]
@@ -224,6 +227,7 @@ def test_events_at_one_instant_that_a_parameter_moves_apart_are_refused(of_a, of
             sensitivities(scene, to, "final(a.vx)")
 
 
+@pytest.mark.long
 def test_events_at_one_instant_that_move_together():
     """Both bodies are slowed from x = 0 on, at the same instant: v - F (0.5 - 0.2/v)/m."""
     scene = read(two_sleds("branch(a.x, 0, 0, -F)", "branch(b.x, 0, 0, -F)"))
@@ -232,6 +236,7 @@ def test_events_at_one_instant_that_move_together():
         assert found == pytest.approx({"v": 1 - 5 * 0.2 / mass, "F": -0.3 / mass}, rel=1e-6, abs=1e-9)
 
 
+@pytest.mark.long
 def test_kinks_at_one_instant_may_move_apart():
     scene = two_sleds("-100*max(a.x - A, 0)*(1 + a.vx)", "-60*max(b.x - B, 0)")
     for of, to in (("final(a.vx)", "A"), ("final(b.vx)", "B"), ("final(b.x)", "v")):

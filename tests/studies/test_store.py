@@ -33,6 +33,7 @@ def killed_again_and_again(scene, store, cases, kills, chance):
     )
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kills", [2, pytest.param(20, marks=pytest.mark.long)])
 def test_a_killed_study_ends_with_the_same_table_to_the_last_bit(examples, tmp_path, kills):
     scene, cases = str(examples / "half_car.yaml"), 24 if kills == 2 else 400

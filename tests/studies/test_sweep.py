@@ -144,6 +144,7 @@ def table(path, **how):
     )
 
 
+@pytest.mark.long
 def test_threads_and_processes_give_the_same_table_to_the_last_bit(examples):
     path = examples / "half_car.yaml"
     expected = table(path)

@@ -55,6 +55,7 @@ def test_a_held_wheel_does_not_creep():
     assert angles[1.2 * C][-1] > 1
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("torque", [{"torque": C}, None], ids=["brake", "motor"])
 def test_the_carrier_takes_the_opposite_torque(torque):
     model = hub(spin=20.0, fixed=False)
@@ -103,6 +104,7 @@ run: {duration: 5 s, rtol: 1e-6}
 """
 
 
+@pytest.mark.long
 def test_a_braked_wheel_stops_and_stands_on_a_slope():
     text = SCENE.replace("VELOCITY", "3").replace("SLOPE", "0.1").replace("TORQUE", "500 N m")
     found = run(read_scene(text))

@@ -45,6 +45,7 @@ def deflection(road, x, y):
     return float(reactions(system, state.values["output"][None, :])["tyre.deflection"][0])
 
 
+@pytest.mark.long
 def test_heights_between_lines(grid):
     road = GridRoad(file=grid())
     assert deflection(road, 3.0, 2.5) == pytest.approx(0.04, abs=1e-9)  # beyond the last line
@@ -52,6 +53,7 @@ def test_heights_between_lines(grid):
     assert deflection(road, 4.0, 0.5) == pytest.approx(0.01, rel=5e-3)
 
 
+@pytest.mark.long
 def test_a_scene_finds_the_file_beside_it(grid, tmp_path):
     grid()
     scene = """

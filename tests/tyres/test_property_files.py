@@ -161,6 +161,7 @@ run: {duration: 1 ms}
 """
 
 
+@pytest.mark.long
 def test_a_scene_finds_the_file_beside_it(read, tmp_path):
     read()
     (tmp_path / "scene.yaml").write_text(SCENE)

@@ -58,6 +58,7 @@ def test_the_lateral_slip_lags_by_its_relaxation_length():
     assert found["tyre.deflection_y"][late] == pytest.approx(length * expected[late], abs=1e-6)
 
 
+@pytest.mark.long
 def test_the_longitudinal_slip_lags_by_its_relaxation_length():
     tyre = FialaTyre(i="wheel", **FIALA, relaxation=LENGTHS)
     model = gliding(tyre, 20.0, sideways="0")
@@ -118,6 +119,7 @@ def test_from_a_standstill_to_speed_and_back_without_chatter():
     assert found.solver["steps"] < 3500
 
 
+@pytest.mark.long
 def test_steady_slip_is_the_limit():
     lagging = MagicFormulaTyre(i="wheel", properties={"coefficients": SMALL})
     steady = MagicFormulaTyre(i="wheel", properties={"coefficients": SMALL}, transient=False)
@@ -156,6 +158,7 @@ def test_uncombined_forces_are_those_of_each_slip_alone():
     assert found["overturning"] == pytest.approx(across["overturning"], rel=0.05)
 
 
+@pytest.mark.long
 def test_a_mode_below_zero_mirrors_the_tyre():
     mirrored = at_slip(use_mode=-4)
     assert at_slip()["lateral"] != pytest.approx(mirrored["lateral"], rel=1e-3)

@@ -25,6 +25,7 @@ def load_at(road, x, y=0.0, deflection=0.03):
     return reported(model)["load"]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("road", "x", "height"),
     [
@@ -79,6 +80,7 @@ class Dunes(Road):
         return r.crest * sympy.cos(x) * sympy.cos(y)
 
 
+@pytest.mark.long
 def test_a_road_of_the_users_own():
     assert load_at(Dunes(), 0.0) == pytest.approx(K * 0.05, rel=1e-9)
 

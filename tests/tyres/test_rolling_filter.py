@@ -152,6 +152,7 @@ def test_a_filtered_road_of_the_users_own_keeps_its_other_fields():
     assert found == pytest.approx(0.02, rel=1e-6)
 
 
+@pytest.mark.long
 def test_a_wheel_climbs_a_filtered_kerb():
     """It stands a hand before the kerb, on the circle about its edge."""
     kerb = StepRoad(start=0.1, length=0.001, rise=0.05, filter_radius=RADIUS)

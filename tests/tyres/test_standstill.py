@@ -71,6 +71,7 @@ def standing(tyre, camber=0.0, gravity=(0, 0, -9.81)):
     return model
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "name", [pytest.param(name, marks=pytest.mark.long if name == "lagging magic" else ()) for name in TYRES]
 )

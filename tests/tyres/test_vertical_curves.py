@@ -28,6 +28,7 @@ def loaded(properties, deflection, camber=0.0, **more):
     return reported(wheel(MagicFormulaTyre(i="wheel", properties=properties), 0.32, deflection, camber=camber, **more))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("deflection", "load"), [(0.01, 3000), (0.02, 5000), (0.03, 8000), (-0.001, 0)])
 def test_the_load_is_that_of_the_curve(tyre, deflection, load):
     """In mm and kN, the units of the file; VERTICAL_STIFFNESS plays no part, and its damping stays."""
@@ -64,6 +65,7 @@ def by_strips(depth, camber, width, count=200_000):
     return 2e6 * mean, 2e6 * (y * pressed).mean()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("camber", [0.0, 0.03, -0.03, 0.1, -0.2])
 @pytest.mark.parametrize("deflection", [0.02, 0.038, 0.0401, 0.045, 0.06])
 def test_the_rim_presses_on_the_road_by_its_curve(tyre, deflection, camber):

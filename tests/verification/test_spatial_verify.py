@@ -49,6 +49,7 @@ def nearly_a_parallelogram():
     )
 
 
+@pytest.mark.long
 def test_another_branch_is_told_with_time_and_poses(monkeypatch):
     monkeypatch.setattr(taken_again, "CREPT", np.inf)  # exact constraints see the micron at any tolerance
     found = stiffmbs.verify(nearly_a_parallelogram())
@@ -77,6 +78,7 @@ def double_pendulum():
     )
 
 
+@pytest.mark.long
 def test_a_chaotic_motion_is_told_with_the_time_from_which_it_is_not_known():
     scene = double_pendulum()
     found = stiffmbs.verify(scene)
@@ -165,6 +167,7 @@ def test_a_spring_changed_in_place_moves_as_one_given_at_first():
     assert np.max(np.abs(job.integrate().q - before)) > 0.01
 
 
+@pytest.mark.long
 def test_a_report_holds_channels_units_and_figures_of_space(tmp_path):
     pytest.importorskip("jinja2")
     pytest.importorskip("matplotlib")

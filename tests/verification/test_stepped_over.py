@@ -25,6 +25,7 @@ def body_at_a_bump():
     return model
 
 
+@pytest.mark.long
 def test_a_bump_that_no_step_has_seen_is_found_along_the_run(monkeypatch):
     """The trajectory of a body that does not react, as an integrator without any search for events returns it."""
     job = prepare(body_at_a_bump(), duration=1.0, points=14)
@@ -58,6 +59,7 @@ def _unaware(monkeypatch, job):
     return replace(solved(job), history=History(np.array([0.0, 0.2, 0.9, 1.0]), np.empty(0, dtype=int)))
 
 
+@pytest.mark.long
 def test_runs_that_are_all_blind_get_bars_that_hold_the_error_and_the_remedy(monkeypatch):
     job = prepare(body_at_a_bump(), duration=1.0, points=14)
     first = _unaware(monkeypatch, job)

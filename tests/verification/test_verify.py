@@ -158,6 +158,7 @@ def double_pendulum():
     )
 
 
+@pytest.mark.long
 def test_a_chaotic_motion_is_told_with_the_time_from_which_it_is_not_known():
     scene = double_pendulum()
     found = stiffmbs.verify(scene)
@@ -217,6 +218,7 @@ def test_reactions_without_a_unique_value_have_no_bars():
     assert "beam.x" in found.errors
 
 
+@pytest.mark.long
 def test_few_output_instants_over_singular_poses_are_no_obstacle():
     found = stiffmbs.verify(example("four_bars"), points=3)
     assert any("between the output instants" in note for note in found.notes)
@@ -242,6 +244,7 @@ def test_an_impact_between_output_instants_is_seen():
     assert any("between the output instants" in note for note in coarse.notes)
 
 
+@pytest.mark.long
 def test_what_is_done_does_not_depend_on_the_clock(monkeypatch):
     """On a machine so busy that each look at the clock is a minute after the one before, the same is found."""
     scene = example("governor")

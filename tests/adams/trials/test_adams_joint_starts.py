@@ -1,6 +1,7 @@
 """Initial displacements and velocities of joints that differ from what is drawn."""
 
 import numpy as np
+import pytest
 
 import stiffmbs
 from stiffmbs.adams.load import convert_file
@@ -36,6 +37,7 @@ def leaning(angle):
     return np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]])
 
 
+@pytest.mark.long
 def test_a_double_pendulum_starts_at_the_angles_of_its_joints(tmp_path):
     """Both angles and their rates are those of JOINT, though parts are drawn on a line and at rest."""
     solution = played(tmp_path, TEXT.format(first="30D, 1.5", second="-0.8, 2"), 0.5, HEAD)
@@ -79,6 +81,7 @@ JOINT/1, TRANSLATIONAL, I=21, J=11, IC=0.2
     np.testing.assert_allclose(found["PART_2.x"], solution["PART_2.x"], atol=1e-12)
 
 
+@pytest.mark.long
 def test_joints_overrule_velocities_of_parts_that_contradict_them(tmp_path):
     """The hinge turns at 2 rad/s against a part that says 3; the free direction keeps what the part says."""
     text = """PART/2, MASS=2, CM=21, IP=1,1,1, WZ=3, VZ=1

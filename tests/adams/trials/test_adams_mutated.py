@@ -106,6 +106,7 @@ def mechanism(n, unit):
     return Mechanism(parts, joints, [spring, others], tuple(np.array([n["gx"], n["gy"], n["gz"]]) * L))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", [0, *(pytest.param(k, marks=pytest.mark.long) for k in range(1, 200))])
 @pytest.mark.sampled(23)
 def test_changed_numbers_change_both_alike(seed):

@@ -116,6 +116,7 @@ SPRINGDAMPER/1, TRANSLATIONAL, I=31, J=10, K=40, C=0.5, LENGTH=1
 """
 
 
+@pytest.mark.long
 def test_parts_that_are_joined_on_the_way_go_on_together_and_settle(run_with):
     """Momentum is kept where a joint becomes active; then oscillation, an equilibrium, and another one under gravity."""
     found = run_with(

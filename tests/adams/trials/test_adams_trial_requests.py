@@ -112,6 +112,7 @@ def holds_accelerations(both, request, names, question):
     near(table(solution, request, names), rows, 2e-5)
 
 
+@pytest.mark.long
 def test_displacements(both):
     holds(both, "REQUEST_1", "x y z", lambda v: v.axes(SEAT).T @ apart(v, TIP, SEAT), 1e-6)
     holds(both, "REQUEST_1", "psi theta phi", lambda v: body313(v, TIP, SEAT), 2e-6)

@@ -14,6 +14,7 @@ COMPILED = "compiled"
 PROBLEMS = {benchmark.name: benchmark for benchmark in BENCHMARKS}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "name",
     [

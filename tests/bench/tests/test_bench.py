@@ -1,8 +1,6 @@
 """The benchmarks: yardsticks by hand against references, closed values and this package; what the command prints."""
 
 import json
-import subprocess
-import sys
 import time
 
 import numpy as np
@@ -58,6 +56,7 @@ def test_starts_by_hand_are_consistent(name):
     run.close()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "name",
     [pytest.param(name, marks=pytest.mark.long if name in LONG_RACES else ()) for name in PROBLEMS],
@@ -82,6 +81,7 @@ def test_references_have_the_published_values():
     np.testing.assert_allclose(found, andrews_problem.ANGLES_AT_END, rtol=5e-10)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("k_b", [1e5, *(pytest.param(k_b, marks=pytest.mark.long) for k_b in (1e7, 1e9))])
 def test_the_half_cars_references_are_those_of_other_programs(k_b):
     y = half_car_problem.reference(k_b)[:, 1]
@@ -143,6 +143,7 @@ WITHOUT_YARDSTICK = (
 )
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", [pytest.param(name, marks=MANY if name in LONG_LOOKS else ()) for name in FAMILIES])
 def test_quick_look_in_json(name):
     result = CliRunner().invoke(bench, ["--quick", "--json", name])
@@ -220,13 +221,6 @@ def test_contestants_that_never_arrive_are_left_out():
 
     problem = Problem("none", lambda: np.zeros(1), lambda: [Contestant("one", False, at)])
     assert problem.measured() == []
-
-
-def test_families_are_named_in_any_folder(tmp_path, monkeypatch):
-    """The scenes of one family lie in the folder `examples` of the directory at hand."""
-    monkeypatch.chdir(tmp_path)
-    code = "from tests.bench.benchmark import families; assert all(families().values())"
-    assert subprocess.run([sys.executable, "-c", code], cwd=tmp_path).returncode == 0
 
 
 @pytest.mark.long

@@ -34,6 +34,7 @@ LOOSE = {"lambdify and NumPy": 1.0, "Exudyn generalised-alpha": 5e-3}
 NUMPY = Maths(np.sin, np.cos, np.sqrt, min, max)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "name", [pytest.param(name, marks=pytest.mark.long if name in ("andrews", "half_car") else ()) for name in PROBLEMS]
 )

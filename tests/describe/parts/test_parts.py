@@ -156,6 +156,7 @@ def test_what_is_wrong_is_told_in_one_sentence_with_its_place(found, reason):
     assert "\n" not in str(told.value)
 
 
+@pytest.mark.long
 def test_values_of_all_parts_are_bounded(monkeypatch):
     monkeypatch.setattr("stiffmbs.describe.parts.instances.MOST_VALUES", 1000)
     with pytest.raises(InputError, match="found parts of more than 1000 values"):

@@ -72,6 +72,7 @@ def test_a_gif_has_a_picture_for_each_instant(tmp_path):
     assert (np.abs(pixels[1] - pixels[0]).max(axis=2) > 60).mean() > 0.005
 
 
+@pytest.mark.long
 @pytest.mark.skipif(_ffmpeg() is None, reason="no ffmpeg is installed")
 def test_an_mp4_is_one(tmp_path):
     path = tmp_path / "x.mp4"

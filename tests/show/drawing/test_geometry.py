@@ -35,6 +35,7 @@ def volume(solid):
     return float(np.einsum("nk,nk->n", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])).sum() / 6)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("solid", "expected", "part"),
     [

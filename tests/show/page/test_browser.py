@@ -59,6 +59,7 @@ def coloured(image):
     return (np.ptp(image, axis=2) > 30).mean()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("command", "scene", "options"),
     [
@@ -92,6 +93,7 @@ def test_it_plays_to_its_end_and_again(tab, opened):
     assert float(tab.run("document.querySelector('input[type=range]').value")) < 900
 
 
+@pytest.mark.long
 def test_bodies_turn_as_they_do_in_the_run(tab, opened):
     """A bar let go from the horizontal hangs when it is lowest."""
     solution = stiffmbs.run(EXAMPLES / "bar_pendulum.yaml")
@@ -105,6 +107,7 @@ def test_bodies_turn_as_they_do_in_the_run(tab, opened):
     assert sizes[0][1] > 5 * sizes[0][0] and sizes[1][0] > 5 * sizes[1][1]
 
 
+@pytest.mark.long
 def test_the_scrubber_sets_the_time_of_plots_and_mechanism(tab, opened):
     opened("animate", EXAMPLES / "cart_pendulum.yaml")
     before = pixels(tab, ".plot canvas")
@@ -115,6 +118,7 @@ def test_the_scrubber_sets_the_time_of_plots_and_mechanism(tab, opened):
     assert (np.abs(pixels(tab, ".plot canvas") - before).max(axis=2) > 60).any()
 
 
+@pytest.mark.long
 def test_a_drag_zooms_and_a_click_sets_the_time(tab, opened):
     opened("animate", EXAMPLES / "bar_pendulum.yaml")
     tab.run("document.querySelector('.plot').scrollIntoView()")
@@ -143,6 +147,7 @@ def test_keys_move_the_time(tab, opened):
     tab.key(" ", "Space", " ")
 
 
+@pytest.mark.long
 def test_a_body_is_followed_and_a_path_is_traced(tab, opened):
     opened("animate", EXAMPLES / "rolling_disc.yaml", "--duration", 2)
     tab.run("shown.shown.state.follow = 'disc'; shown.shown.stale = true")
@@ -155,6 +160,7 @@ def test_a_body_is_followed_and_a_path_is_traced(tab, opened):
     assert (np.abs(pixels(tab, ".viewer canvas") - followed).max(axis=2) > 60).any()
 
 
+@pytest.mark.long
 def test_names_and_titles_are_no_markup(tab, opened, tmp_path):
     scene = tmp_path / "odd.yaml"
     scene.write_text(
@@ -167,6 +173,7 @@ def test_names_and_titles_are_no_markup(tab, opened, tmp_path):
     assert "onerror" in tab.run("document.title")
 
 
+@pytest.mark.long
 def test_runs_are_drawn_over_each_other(tab, opened, tmp_path):
     paths = []
     for length in ("0.6 m", "0.9 m"):
@@ -183,6 +190,7 @@ def test_runs_are_drawn_over_each_other(tab, opened, tmp_path):
     assert (np.abs(pixels(tab, ".viewer canvas") - image).max(axis=2) > 20).mean() > 0.001
 
 
+@pytest.mark.long
 def test_every_control_has_a_name_for_screen_readers(tab, opened):
     opened("report", EXAMPLES / "four_bar.yaml", "--no-verify")
     tree = tab.do("Accessibility.getFullAXTree")["nodes"]

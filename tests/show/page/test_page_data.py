@@ -71,6 +71,7 @@ def test_poses_of_a_page_are_those_of_the_run():
     assert force["unit"] == "N"
 
 
+@pytest.mark.long
 def test_a_page_of_a_large_model_stays_small():
     """Three times the channels of a car for ten seconds."""
     scene = stiffmbs.load_scene(EXAMPLES / "chain.yaml", [("N", "80")])

@@ -28,6 +28,7 @@ def slider_at(angle, height=0.4, length=1.5):
     return x, (CRANK * np.sin(angle) * y - CRANK * np.cos(angle) * z) / x
 
 
+@pytest.mark.long
 def test_a_slider_crank_through_two_turns():
     solution = stiffmbs.run(driven(), duration=2.0, points=201, solver="kinematic")
     x, slope = slider_at(START + SPEED * solution.time)

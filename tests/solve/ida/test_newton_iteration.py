@@ -48,6 +48,7 @@ def test_steps_of_a_linear_scene_stay_what_they_were(examples):
     assert counted["residuals"] < 1.1 * before["residuals"]
 
 
+@pytest.mark.long
 def test_reactions_that_vanish_under_friction_do_not_stall_the_steps():
     """The moment in a slider with friction changes its sign: reactions went back and forth between the two signs from step to step."""
     content = fmu._scene(np.random.default_rng(1000474))

@@ -41,6 +41,7 @@ def beside(dynamics, distance):
     return (x + rng.uniform(-distance, distance, len(x)) for x in (system.q, system.u))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("make", [chain, car])
 def test_a_state_beside_the_constraints_is_reported_as_by_the_lu(make):
     """The projections differ in their measure alone: both move by as little as the state is off."""

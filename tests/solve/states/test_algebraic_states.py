@@ -95,6 +95,7 @@ def test_modes_and_response_have_the_state_put_out() -> None:
     assert found[0, 0] == pytest.approx((5 + s) / slope * 0.5 / (s * s + (10 * s + 50) / slope), rel=1e-6)
 
 
+@pytest.mark.long
 def test_an_equilibrium_solves_for_it() -> None:
     found = stiffmbs.equilibrium(pushed("p^3 + p - 5*cart.x", "4 - p"))
     assert found.channels["p"] == pytest.approx(4, rel=1e-9)

@@ -33,6 +33,7 @@ def rates(t, y):
     ]  # fmt: skip
 
 
+@pytest.mark.long
 def test_a_controlled_cart_with_filters_moves_as_scipy_says():
     solution = stiffmbs.run(stiffmbs.read_scene(SCENE))
     found = solve_ivp(rates, (0, 3), [0] * 9, t_eval=solution.time, rtol=1e-11, atol=1e-13, method="Radau")

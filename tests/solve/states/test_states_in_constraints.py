@@ -136,6 +136,7 @@ run: {duration: 0.5 s, output: 50 ms}
 """
 
 
+@pytest.mark.long
 def test_states_of_a_mirrored_part_are_those_of_the_part():
     solution = stiffmbs.run(stiffmbs.read_scene(MIRRORED), solver="projected")
     assert np.ptp(solution["left.lag"]) > 0.1

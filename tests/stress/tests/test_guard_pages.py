@@ -46,6 +46,7 @@ def test_a_lattice_stays_within_its_arrays(cells):
     assert "1 cases, nothing touched outside" in done.stdout
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("array", ["x", *(pytest.param(name, marks=pytest.mark.long) for name in ("work", "b"))])
 def test_an_array_that_is_one_number_too_short_is_found(array):
     done = python("-c", TOO_SHORT.format(array=array))

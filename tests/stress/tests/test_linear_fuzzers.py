@@ -18,6 +18,7 @@ def test_nothing_is_wrong(fuzzer, seed):
     assert verdict.outcome in (Outcome.RIGHT, Outcome.TOLD), verdict
 
 
+@pytest.mark.long
 def test_a_wrong_sign_in_the_accelerations_is_found(monkeypatch):
     right = tangent_space.linearised
 
@@ -29,11 +30,13 @@ def test_a_wrong_sign_in_the_accelerations_is_found(monkeypatch):
     assert modes.trial(7).outcome is Outcome.WRONG
 
 
+@pytest.mark.long
 def test_a_load_at_the_origin_in_place_of_the_centre_of_mass_is_found(monkeypatch):
     monkeypatch.setattr(inputs, "_place", lambda data, body, marker: {"body": body})
     assert transfer.trial(7).outcome is Outcome.WRONG
 
 
+@pytest.mark.long
 def test_a_growing_motion_without_a_note_is_found(monkeypatch):
     assert stability.trial(15).outcome is Outcome.RIGHT
     monkeypatch.setattr("stiffmbs.analyses.settled._growth", lambda dynamics, t: [])

@@ -36,6 +36,7 @@ def _label(value):
     return value if isinstance(value, str) else value.name
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("family", "case"), QUICK, ids=_label)
 def test_case(family, case):
     (row,) = outcomes([(family, case)])

@@ -25,6 +25,7 @@ def curves(text, **sizes):
     return stiffmbs.kinematics_and_compliance(stiffmbs.read_scene(text), points=7, **{**NONE, **sizes})
 
 
+@pytest.mark.long
 def test_a_trailing_arm_moves_its_wheel_on_a_circle():
     """About a pivot across the car nothing is steered or leans; the rate is that of the spring, and of the weight's arm."""
     pivot, wheel, seat, tower = (0.42, 0.28), (0.0, 0.30), (-0.05, 0.28), (-0.02, 0.66)
@@ -55,6 +56,7 @@ def test_a_trailing_arm_moves_its_wheel_on_a_circle():
     assert bump["left.load"][1:-1] == pytest.approx(expected[1:-1], rel=1e-4)
 
 
+@pytest.mark.long
 def test_a_rigid_axle_leans_with_its_wheels():
     """Pads at +-z below wheels 1.48 m apart turn it by asin(z/0.74 m); forces apart cancel, together they move it sideways."""
     scene = {
@@ -84,6 +86,7 @@ def _turn_for(patch, height):
     return brentq(lambda turn: -patch[0] * np.sin(turn) + patch[1] * (np.cos(turn) - 1) - height, -0.3, 0.3)
 
 
+@pytest.mark.long
 def test_left_and_right_are_mirror_images_on_bushings():
     found = curves(axle("double_wishbone", "bushing"), lateral=2, lateral_parallel=2, aligning=50, roll=20)
     assert set(found.sweeps) == {"bump", "roll", "lateral", "lateral_parallel", "aligning"}
@@ -141,6 +144,7 @@ def test_what_is_wrong_is_told(arguments, sentence):
         stiffmbs.kinematics_and_compliance(stiffmbs.read_scene(axle("double_wishbone", "rigid")), **arguments)
 
 
+@pytest.mark.long
 def test_the_command_writes_table_curves_figure_and_json(tmp_path):
     scene = tmp_path / "axle.yaml"
     scene.write_text(axle("double_wishbone", "bushing"))
