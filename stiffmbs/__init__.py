@@ -1,4 +1,4 @@
-"""A stiff multibody solver: bodies, joints and forces in, motion and the force in every joint out.
+"""Stiff multibody solver: computes motion and joint reactions from bodies, joints and forces.
 
 Examples
 --------
@@ -42,7 +42,7 @@ _LATER = {
     "listed_statements": ".adams.listing", "build_fmu": ".studies.fmu.build", "differences": ".results.listings.differences",
     "animate": ".show.drawing.animate", "draw": ".show.drawing.draw",
 }  # fmt: skip
-"""The modules of what is loaded when it is used, and its name there where that is another."""
+"""Module of each name that is loaded on first use; a different name in that module follows a colon."""
 
 _MODULES = {"fields": ".fields", "si": ".describe.units.si", "spatial": ".spatial"}
 

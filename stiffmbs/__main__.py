@@ -9,9 +9,9 @@ from .interrupts import QuickEnd, collect_from_now_on
 
 
 def start() -> None:
-    """The command ``stiffmbs``; also where there is too little memory to load it."""
+    """Run the command ``stiffmbs``; report a failed import, as for lack of memory."""
     end = QuickEnd.of_the_command()
-    # pydantic would look for plugins among all installed packages: 10 to 20 ms, and none is of use here
+    # otherwise pydantic searches all installed packages for plugins, which takes time
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
     try:
         from .commands.main import main

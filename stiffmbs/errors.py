@@ -1,4 +1,4 @@
-"""The package's own exceptions: each is one sentence that names the element, what was found and what was expected."""
+"""Exceptions of the package; each message names the element, the value found and the value expected."""
 
 from __future__ import annotations
 
@@ -7,39 +7,39 @@ from contextlib import contextmanager
 
 
 class StiffmbsError(Exception):
-    """Base of every error that the package raises on purpose."""
+    """Base class of the errors that the package raises."""
 
 
 class InputError(StiffmbsError):
-    """The description is wrong: a scene, a model, or a setting (exit status 2)."""
+    """Invalid scene, model or setting (exit status 2)."""
 
 
 class ChannelError(InputError, KeyError):
-    """A solution has no channel of that name; a `KeyError` too, as of every mapping."""
+    """Unknown channel name of a solution; also a `KeyError`, as for every mapping."""
 
     __str__ = InputError.__str__
 
 
 class AssemblyError(StiffmbsError):
-    """The bodies cannot be moved or accelerated so that every joint holds (exit status 1)."""
+    """No pose, velocity or acceleration satisfies all joints (exit status 1)."""
 
 
 class SolverError(StiffmbsError):
-    """An integrator stopped early (exit status 1); what was computed up to there is kept."""
+    """Early stop of an integrator (exit status 1); results up to there are kept."""
 
 
 class ChatteringError(SolverError):
-    """A force chatters: no solution exists beyond this time, with any solver or tolerance."""
+    """Chattering of a force: no solution exists beyond this time, with any solver or tolerance."""
 
 
 @contextmanager
 def needs(package: str, extra: str) -> Iterator[None]:
-    """Tell what to install where a package is missing that few parts need.
+    """Raise an error that names the extra to install if an optional package is missing.
 
     Raises
     ------
     InputError
-        In place of the error that an import of the package raises.
+        In place of the `ModuleNotFoundError` of that package.
     """
     try:
         yield

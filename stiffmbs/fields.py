@@ -1,4 +1,4 @@
-"""The types of fields of own elements, besides `stiffmbs.Marker` and numbers with units (`stiffmbs.si`).
+"""Field types of user-defined elements, in addition to `stiffmbs.Marker` and numbers with units (`stiffmbs.si`).
 
 Examples
 --------

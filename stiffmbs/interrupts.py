@@ -1,4 +1,4 @@
-"""How the command starts and ends quickly: Ctrl-C while it is loaded, searches that it leaves out, and garbage collection."""
+"""Fast start and exit of the command: Ctrl-C during loading, plugin searches, garbage collection."""
 
 from __future__ import annotations
 
@@ -13,30 +13,27 @@ from collections.abc import Iterator
 from typing import Any, NoReturn
 
 INTERRUPTED = 130
-"""Exit status of a command that was interrupted before it had any results: 128 + SIGINT, as shells have it."""
+"""Exit status of a command that is interrupted before it has results: 128 + SIGINT."""
 NEW_OBJECTS = 200_000
-"""So many make the garbage collector look: more than a short run makes with the modules that it loads (70 000 to 160 000), as one look
-at 50 000 of them takes 8 % of it."""
+"""Number of new objects after which the garbage collector runs; more than a short run creates."""
 
 
 def quiet_while_loading() -> None:
-    """Let Ctrl-C end the command ``stiffmbs`` without a traceback while it is being loaded, and nothing be collected.
+    """Prepare the command ``stiffmbs`` for a fast start: quiet Ctrl-C, no plugin search, no garbage collection.
 
-    Pydantic does not look for plugins in all installed packages, as none serves here.  SymPy remembers all results, where it
-    usually keeps 1000: that saves 10 % of deriving.
-    Programs that import the package keep their own ways.
+    SymPy's cache gets no size limit.  Nothing changes for programs that import the package.
     """
     if not _is_the_command():
         return
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
     os.environ.setdefault("SYMPY_CACHE_SIZE", "None")
-    gc.disable()  # modules and classes stay: looking through them again and again takes 5 % of a short run
+    gc.disable()  # modules and classes stay alive: scanning them is wasted time
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
         signal.signal(signal.SIGINT, _end)
 
 
 def collect_from_now_on() -> None:
-    """Have the garbage collector look at what is made from now on, seldom: a run loads modules whose classes stay."""
+    """Resume garbage collection at a low frequency, without the objects that exist already."""
     gc.freeze()
     gc.set_threshold(NEW_OBJECTS)
     gc.enable()
@@ -44,10 +41,7 @@ def collect_from_now_on() -> None:
 
 @contextlib.contextmanager
 def uncollected() -> Iterator[None]:
-    """Collect nothing for a while: expressions live on in SymPy's caches, and looking through them takes 5 to 10 % of deriving.
-
-    Of translating a kernel, whose syntax tree is kept until the end, it takes two fifths.
-    """
+    """Suspend garbage collection during derivation and translation, whose objects stay alive."""
     enabled = gc.isenabled()
     gc.disable()
     try:
@@ -58,17 +52,16 @@ def uncollected() -> Iterator[None]:
 
 
 class QuickEnd:
-    """Lets the process of a command end without taking its modules apart, which takes longer than many a run."""
+    """Exit handler that ends the process without the teardown of its modules."""
 
     def __init__(self) -> None:
         self.status: int | None = None
 
     @classmethod
     def of_the_command(cls) -> QuickEnd:
-        """One that is called as the process ends, after all that is registered later.
+        """Return a handler that is called last at exit.
 
-        Other programs end in their own ways, and so does a command for which something was registered earlier, as by a
-        ``sitecustomize``: that would not be called.
+        It is not registered in other programs, nor if an earlier exit function exists, which it would skip.
         """
         end = cls()
         if _is_the_command() and not atexit._ncallbacks():
@@ -77,7 +70,7 @@ class QuickEnd:
 
     @contextlib.contextmanager
     def noted(self) -> Iterator[None]:
-        """Take note of the exit status that the command asks for."""
+        """Record the exit status that the command requests."""
         try:
             yield
         except SystemExit as asked:
@@ -85,7 +78,7 @@ class QuickEnd:
             raise
 
     def __call__(self) -> None:
-        """End at once; in the usual way after a traceback, and for a debugger or a tracer of lines."""
+        """End the process; do nothing after a traceback or under a debugger or line tracer."""
         if self.status is None or sys.gettrace() is not None:
             return
         for stream in (sys.stdout, sys.stderr):

@@ -1,4 +1,4 @@
-"""What the package offers and does not load before it is used."""
+"""Lazy loading of the names that the package offers."""
 
 from __future__ import annotations
 
@@ -8,33 +8,33 @@ from typing import Any
 
 
 def elements_of(model: str) -> dict[str, type[Any]]:
-    """The classes of shipped elements by their names.
+    """Return the classes of shipped elements by name.
 
     Parameters
     ----------
     model : str
-        The module of the package that holds the ``JOINTS`` and ``FORCES`` of models, beginning with a dot.
+        Module of the package that holds the ``JOINTS`` and ``FORCES`` of models, beginning with a dot.
     """
     kinds = import_module(model, __package__)
     return {element.__name__: element for some in (kinds.JOINTS, kinds.FORCES) for element in some.shipped.values()}
 
 
 def loaded(name: str, package: str, model: str, later: Mapping[str, str]) -> Any:
-    """An attribute of a module of the package that is not there yet.
+    """Import an attribute of a module on first use.
 
     Parameters
     ----------
     name, package : str
-        Of the attribute, and of the module.
+        Names of the attribute and of the module.
     model : str
-        The module with the elements that it offers (`elements_of`).
+        Module with the elements that are offered (`elements_of`).
     later : mapping of str to str
-        The module that defines each name, beginning with a dot; behind a colon its name there, where that is another.
+        Module that defines each name, beginning with a dot; a different name in that module follows a colon.
 
     Raises
     ------
     AttributeError
-        When the module does not offer it.
+        If the module does not offer the name.
     """
     if name in later:
         module, _, own_name = later[name].partition(":")

@@ -1,4 +1,4 @@
-"""Roads, for tyres, and the base of own roads.
+"""Roads for tyres, and the base class of user-defined roads.
 
 Examples
 --------

@@ -1,4 +1,4 @@
-"""The names of what `stiffmbs.solve` holds; schema, messages, help and types follow from these."""
+"""Names of solvers, schemes and formulations; schema, messages, help and types are derived from them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Mechanisms in space: bodies, markers, joints and forces of three dimensions, used as those of `stiffmbs` are.
+"""Spatial mechanisms: bodies, markers, joints and forces in three dimensions, used like those of `stiffmbs`.
 
 Examples
 --------

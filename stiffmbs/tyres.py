@@ -1,4 +1,4 @@
-"""Properties of tyres, and the base of own tyres.
+"""Tyre properties, and the base class of user-defined tyres.
 
 Examples
 --------

@@ -1,1 +1,1 @@
-"""What is done with a model: prepared, checked, run, compiled ahead."""
+"""Analyses of a model: checks, runs, equilibria, linearisation."""

@@ -1,4 +1,4 @@
-"""Checking a model without running it: degrees of freedom, redundant equations, reactions without a unique value."""
+"""Check of a model without a run: degrees of freedom, redundant constraints, reactions without a unique value."""
 
 from __future__ import annotations
 
@@ -29,41 +29,40 @@ from ..solve.subsystems import Subsystem, presolved
 from .job import Examined, Runnable, data_of, examined
 
 MOST_MOVES = 50
-"""Bodies that are named of those which assembly moves; `Report.moved` has all."""
+"""Number of moved bodies that a message names at most; `Report.moved` lists all."""
 
 
 @dataclass(frozen=True, repr=False)
 class Report:
-    """What `check` found.
+    """Result of `check`.
 
     Attributes
     ----------
     name : str
-        Of the scene.
     degrees_of_freedom : int
         n_u - rank.
     equations, rank : int
-        Constraint equations, and how many of them are independent in general.
+        Number of constraint equations, and of those that are independent in general.
     redundant : tuple of (str, str)
-        Joint and name of the equations that a run leaves out.
+        Joint and name of each equation that a run leaves out.
     not_unique : tuple of str
-        Channels of reactions that have no unique value.
+        Reaction channels without a unique value.
     overconstraints : tuple of Overconstraint
-        What is held more than once, with reasons and remedies.
+        Redundant constraints, with reasons and remedies.
     inconsistencies : tuple of str
         Sentences on equations that no motion satisfies.
     extra_freedoms : int
         Degrees of freedom at the start beyond those in general: more than 0 at a singular pose.
     unknowns : tuple of (int, int)
-        Of the formulation SI2: of all bodies and equations, and of what is solved for.
+        Number of unknowns of the formulation SI2, before and after presolve.
     presolve : tuple of str
-        What is left out of the solution because it follows from the rest, a sentence each.
+        Sentences on the parts that presolve removes from the solution.
     moved : tuple of Move
-        What assembly changes of the bodies as described.
+        Changes of the described bodies by assembly.
     messages : tuple of str
-        All else that there is to say, a sentence each.
+        All other messages, one sentence each.
     sound : bool
-        Whether nothing stands in the way of a run with unique reactions.
+        True if nothing prevents a run with unique reactions.
     """
 
     name: str
@@ -82,19 +81,13 @@ class Report:
     sound: bool
 
     def _repr_html_(self) -> str:
-        """What a notebook shows."""
+        """Return the representation in a notebook."""
         from ..show.html import report_html
 
         return report_html(self)
 
     def as_dict(self, scene: str) -> dict[str, Any]:
-        """The content of ``stiffmbs check --json``.
-
-        Parameters
-        ----------
-        scene : str
-            The file, or what else the scene is called.
-        """
+        """Return the content of ``stiffmbs check --json``; `scene` is the file or name of the scene."""
         return {
             "scene": scene,
             "degrees_of_freedom": self.degrees_of_freedom,
@@ -129,7 +122,7 @@ def check(model: Runnable, settings: RunSettings | None = None, **changes: Unpac
     model : Model, Scene, str or Path
         A model, a scene, or a scene's file.
     settings : RunSettings, optional
-        Whose ``drop_first``, ``start`` and ``duration`` are used; the scene's own by default.
+        Settings of the run; by default those of the scene.
     **changes
         Fields of the settings to change.
 
@@ -140,7 +133,7 @@ def check(model: Runnable, settings: RunSettings | None = None, **changes: Unpac
     Raises
     ------
     InputError
-        When the model or a setting is wrong.
+        If the model or a setting is wrong.
     """
     data = data_of(model)
     if isinstance(data, Scene) and data.stages:
@@ -182,7 +175,7 @@ def check(model: Runnable, settings: RunSettings | None = None, **changes: Unpac
 
 
 def _of_stages(scene: Scene, reports: Sequence[Report]) -> Report:
-    """The report on the first stage, with what there is to say of the others."""
+    """Return the report on the first stage, with the messages on the others."""
     first = reports[0]
     messages = [
         f"stage {k} of {len(reports)}: {message}"
@@ -195,7 +188,7 @@ def _of_stages(scene: Scene, reports: Sequence[Report]) -> Report:
 
 
 def _assembly_sentence(start: InitialValues | None) -> Iterator[str]:
-    """What assembly changes, where it is no problem."""
+    """Yield a sentence on the changes by assembly if they are not a problem."""
     if start and not start.moved_far and (sentence := start.position_sentence(MOST_MOVES)):
         yield sentence
 

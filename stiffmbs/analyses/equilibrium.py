@@ -19,29 +19,28 @@ from .steady import settled_in_motion
 
 @dataclass(frozen=True)
 class EquilibriumFound:
-    """A static equilibrium.
+    """Static equilibrium, or state of steady motion.
 
     Attributes
     ----------
     name : str
-        Of the model.
     t : float
-        At which forces and drives are taken, s.
+        Time at which forces and drives are evaluated, s.
     channels : dict of str to float
         Poses of bodies, forces and torques of elements, energies, requests.
     moves : int
-        That led there.
+        Number of moves of the search.
     imbalance : float
-        Largest generalised force that is left, relative to the largest that acts.
+        Largest remaining generalised force, relative to the largest acting one.
     moved : dict of str to (float, float)
-        How far each body is from its described pose: its centre of mass, m, and its rotation, rad.
+        Distance of each body from its described pose: displacement of its centre of mass, m, and rotation, rad.
     free : tuple of str
-        Bodies that take part in motions that nothing holds; the first one each, with its coordinate.
+        First body and its coordinate of each motion that nothing resists.
     notes : tuple of str
     eigenvalues : tuple of complex
-        Of motions beside a steady one, 1/s, in the frame that moves with it; none at rest.
+        Eigenvalues of perturbations of a steady motion, 1/s, in the frame that moves with it; empty at rest.
     solution : Solution
-        The same as results of one instant: ``stiffmbs.run(model, start_from=found.solution)`` starts there.
+        Results of one instant: ``stiffmbs.run(model, start_from=found.solution)`` starts there.
     """
 
     name: str
@@ -56,13 +55,7 @@ class EquilibriumFound:
     solution: Solution
 
     def as_dict(self, scene: str) -> dict[str, Any]:
-        """The content of ``stiffmbs equilibrium --json``.
-
-        Parameters
-        ----------
-        scene : str
-            The file, or what else the scene is called.
-        """
+        """Return the content of ``stiffmbs equilibrium --json``; `scene` is the file or name of the scene."""
         return {
             "scene": scene, "status": "done", "message": self.solution.message,
             "imbalance": self.imbalance, "moved": self.moved, "channels": self.channels,
@@ -79,18 +72,18 @@ def equilibrium(
     motion: SteadyMotion | None = None,
     **changes: Unpack[Settings],
 ) -> EquilibriumFound:
-    """The pose at rest, or in steady motion, in which all forces balance, sought from the described one.
+    """Find the pose at rest, or in steady motion, in which all forces balance.
 
     Parameters
     ----------
     model : Model, Scene, str or Path
         A model, a scene, or a scene's file.
     settings : RunSettings, optional
-        Its start is the instant at which forces and drives are taken.
+        Forces and drives are evaluated at its start.
     start_from : Solution, str, Path or SavedState, optional
-        A state whose pose it is sought from in place of the described one; as for `stiffmbs.run`.
+        State from whose pose the search starts, instead of the described one; as for `stiffmbs.run`.
     motion : SteadyMotion, optional
-        At constant speed or on a circle; that of a scene which starts in one by default.
+        Motion at constant speed or on a circle; by default that of a scene that starts in one.
     **changes
         Fields of the settings to change.
 
@@ -103,7 +96,7 @@ def equilibrium(
     InputError, AssemblyError
         As for `stiffmbs.run`.
     SolverError
-        Where there is none, or none is found; names the body with the largest imbalance.
+        If there is no equilibrium or none is found; the message names the body with the largest imbalance.
     """
     data = data_of(model)
     if isinstance(data, Scene):

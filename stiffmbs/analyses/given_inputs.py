@@ -1,4 +1,4 @@
-"""Values that a run is given for the inputs of a model."""
+"""Input values given to a run."""
 
 from __future__ import annotations
 
@@ -17,33 +17,32 @@ from ..errors import InputError
 from ..solve.settings import output_grid
 
 Given: TypeAlias = float | Callable[[float], float] | tuple[Any, Any] | Table
-"""A constant, a function of t, s, or times and values with straight lines between."""
+"""Constant, function of t in s, or times and values with linear interpolation."""
 FEWEST, MOST = 257, 40_000
-"""Points of a spline that follows a function: at the first try, and above which none is tried."""
+"""Initial number of points of a spline through a function, and the number at which refinement stops."""
 FOLLOWED = 1e-11
-"""Error of such a spline halfway between its points, relative to the largest value; the points between are added afterwards."""
+"""Tolerated error of that spline halfway between its points, relative to the largest value."""
 JUMP, ROUNDINGS = 0.5, 1e-12
-"""Part of the change between two points that has to be left where it jumps; how near its sides are taken, relative to the time."""
+"""Part of a change that remains at a jump; distance of both sides of a jump, relative to the time."""
 SAMPLES = 1001
-"""At which functions are read where a run reports its own steps."""
+"""Number of samples of a function if a run reports its own steps."""
 
 
 def with_inputs(data: ModelData, inputs: Mapping[str, Given] | None, settings: RunSettings) -> ModelData:
-    """A model with other values of its inputs.
+    """Return a model with other input values.
 
     Parameters
     ----------
     data : ModelData
     inputs : mapping of str to number, callable, (times, values) or Table
-        A smooth callable is followed by a spline to eleven digits.  One that jumps, or whose slope does, is read at the output instants and
-        on both sides of jumps, with straight lines between.
+        A smooth callable is approximated by a spline with a relative error of 1e-11.  A callable with jumps or kinks is
+        sampled at the output times and on both sides of jumps, with linear interpolation.
     settings : RunSettings
-        Of the run.
 
     Raises
     ------
     InputError
-        When the model has no such input, or a value is no finite number.
+        If the model has no such input, or a value is not a finite number.
     """
     if not inputs:
         return data
@@ -70,7 +69,7 @@ def _value(name: str, given: Given, settings: RunSettings) -> Amount | Table:
 
 
 def _followed(name: str, given: Callable[[float], float], settings: RunSettings) -> Table:
-    """A function as a spline, of twice as many points until it is followed; else as straight lines between output instants."""
+    """Approximate a function by a spline that is refined, or else by linear interpolation between output times."""
     from scipy.interpolate import CubicSpline
 
     grid = output_grid(settings)
@@ -95,7 +94,7 @@ def _followed(name: str, given: Callable[[float], float], settings: RunSettings)
 def _jumps(
     name: str, given: Callable[[float], float], points: list[tuple[float, float]]
 ) -> Iterator[tuple[float, float]]:
-    """Both sides of each jump between neighbouring points, one in each gap, found by halving the gap."""
+    """Yield both sides of the jumps between neighbouring points, found by bisection, at most one per interval."""
     largest = max(abs(value) for _, value in points)
     apart = ROUNDINGS * max(abs(points[0][0]), abs(points[-1][0]))
     for before, after in itertools.pairwise(points):
@@ -109,7 +108,7 @@ def _jumps(
 
 
 def _merged(ends: np.ndarray, between: np.ndarray) -> np.ndarray:
-    """Numbers and those between them, in turn."""
+    """Interleave points and midpoints."""
     found = np.empty(len(ends) + len(between))
     found[::2], found[1::2] = ends, between
     return found

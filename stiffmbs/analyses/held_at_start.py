@@ -1,4 +1,4 @@
-"""Starts at which joints hold that do not hold later: initial conditions of joints (Adams/Solver, JOINT statement, IC)."""
+"""Joint conditions at the start alone: initial conditions of joints (Adams/Solver, JOINT statement, IC)."""
 
 from __future__ import annotations
 
@@ -13,23 +13,22 @@ from ..solve.initial import consistent_values, initial_values
 
 
 def hold_at_start(dynamics: Dynamics, scene: Scene, t: float) -> None:
-    """Move the state at hand by the least amount to where the joints hold that a scene has at its start alone.
+    """Move the current state by the least amount to satisfy the joints that hold at the start alone.
 
-    Equations of positions hold for positions alone, those of velocities for velocities: a drive of a position leaves the
-    velocity open.
+    Position equations constrain positions alone, velocity equations velocities: a position drive leaves the velocity
+    free.
 
     Parameters
     ----------
     dynamics : Dynamics
-        Of the scene.
     scene : Scene
     t : float
-        s.
+        Time, s.
 
     Raises
     ------
     AssemblyError
-        When no such state is found.
+        If no such state is found.
     """
     from .job import examined
 

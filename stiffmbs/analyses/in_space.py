@@ -1,4 +1,4 @@
-"""Planar models and scenes in space."""
+"""Conversion of planar models and scenes to space."""
 
 from __future__ import annotations
 
@@ -29,31 +29,31 @@ def in_space(planar: PlanarData) -> SpatialScene: ...
 
 
 def in_space(planar: PlanarModel | PlanarData) -> Model | SpatialScene:
-    """A planar model or scene in space: in the x-y plane of the ground, element by element.
+    """Convert a planar model or scene to space: in the x-y plane of the ground, element by element.
 
-    A model built in Python becomes a model of this module, to which more can be added; a scene becomes a scene.
+    A model built in Python becomes a model of this module, to which elements can be added; a scene becomes a scene.
 
-    Names stay, and so do numbers.  Revolute joints turn about z, prismatic joints slide along the axes of their markers,
-    circles in contact become spheres.  Moments of inertia about x and y are taken as large as that about z: they do
-    nothing in the plane.  Bodies that no revolute, prismatic or fixed joint keeps in the plane are kept there by a
-    `planar` joint, ``NAME_in_plane``.  The forces are those of the plane; of closed loops those across the plane are not
-    unique, as in any overconstrained mechanism.  In formulas ``bar.angle`` becomes ``az(bar, ground)`` and ``bar.omega``
+    Names and numbers are kept.  Revolute joints rotate about z, prismatic joints slide along the axes of their markers,
+    circles in contact become spheres.  The moments of inertia about x and y are set to that about z; they have no
+    effect in the plane.  Bodies that no revolute, prismatic or fixed joint keeps in the plane get a `planar` joint,
+    ``NAME_in_plane``.  The forces equal those in the plane; out-of-plane reactions of closed loops are not unique, as
+    in any overconstrained mechanism.  In formulas ``bar.angle`` becomes ``az(bar, ground)`` and ``bar.omega`` becomes
     ``wz(bar)``.
 
     Parameters
     ----------
     planar : Model or Scene
-        Of the plane.
+        Planar model or scene.
 
     Returns
     -------
     Model or Scene
-        Of space.
+        Spatial model or scene.
 
     Raises
     ------
     InputError
-        When it is no planar model, or holds an element that has no counterpart in space; names it.
+        If the model is not planar, or has an element without a counterpart in space; the message names it.
     """
     if isinstance(planar, PlanarModel):
         return _built(planar)
@@ -67,7 +67,7 @@ def _embedded(planar: PlanarData) -> SpatialScene:
 
 
 def text_in_space(path: str | Path, changes: Sequence[tuple[str, str]] = ()) -> str:
-    """The text of the scene in space of a planar scene's file, some values changed; errors as for `load_scene` too."""
+    """Return a planar scene's file, with changed values, as spatial scene text; errors also as for `load_scene`."""
     planar = load_scene(path, changes)
     if not isinstance(planar, PlanarData):
         raise InputError(f"{source_name(path)}: found a scene in space, expected a planar one")
@@ -86,7 +86,7 @@ def _checked(found: Written, source: str) -> SpatialScene:
 
 
 def _built(planar: PlanarModel) -> Model:
-    """A model in space with all that a planar one built in Python has."""
+    """Return a spatial model with all elements of a planar model built in Python."""
     scene = _embedded(planar.data())
     model = Model(scene.name, scene.gravity)
     for section in ("markers", "bodies", "states", "inputs", "joints", "forces", "requests"):

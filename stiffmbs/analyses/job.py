@@ -1,4 +1,4 @@
-"""A job: a model compiled, examined for redundant equations and assembled, ready to be solved."""
+"""Jobs: compiled models, examined for redundant equations and assembled."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ LOGGER = logging.getLogger(__name__)
 
 
 class Examined(NamedTuple):
-    """A model compiled and examined for redundant equations."""
+    """Model compiled and examined for redundant equations."""
 
     data: ModelData
     settings: RunSettings
@@ -42,7 +42,7 @@ class Examined(NamedTuple):
     start_from: SavedState | None = None
 
     def dynamics(self) -> Dynamics:
-        """Of the system without its redundant equations."""
+        """Return the dynamics of the system without its redundant equations."""
         system = self.redundancy.system
         active = self.redundancy.active
         return Dynamics(system if active.all() else replace(system, active=active))
@@ -50,7 +50,7 @@ class Examined(NamedTuple):
 
 @dataclass(frozen=True)
 class Job:
-    """A model compiled and assembled, ready to be integrated any number of times."""
+    """Model compiled and assembled, ready to be integrated any number of times."""
 
     data: ModelData
     settings: RunSettings
@@ -63,16 +63,16 @@ class Job:
 
     @cached_property
     def on_constraints(self) -> bool:
-        """Whether states are on the constraints but for the tolerance."""
+        """Return True if states satisfy the constraints up to the tolerance."""
         return near_constraints(self.settings)
 
     def evaluations(self) -> int:
-        """How often the equations of the system and of its parts were evaluated so far."""
+        """Return the number of evaluations of the equations of the system and its subsystems so far."""
         parts = (self.dynamics, *(subsystem.dynamics for subsystem in self.subsystems))
         return sum(dynamics.state.evaluations for dynamics in parts)
 
     def integrate(self, watch: ProgressCallback | None = None) -> Trajectory:
-        """Integrate from the start, what the presolve made of the model; see `stiffmbs.solve.trajectory`."""
+        """Integrate the presolved model from its start; see `stiffmbs.solve.trajectory`."""
         solve, watch = SOLVERS[self.settings.solver].solve, watch or unwatched
         LOGGER.info("solving %s by %s", self.data.name, self.settings.solver)
 
@@ -87,16 +87,16 @@ class Job:
 
 
 Runnable: TypeAlias = ModelBuilder[Any, Any, Any] | ModelData | str | Path
-"""What can be solved: a model, a scene, or a scene's file."""
+"""Solvable input: a model, a scene, or the file of a scene."""
 
 
 def data_of(model: Runnable) -> ModelData:
-    """What a model or a file holds.
+    """Return the data of a model or a file.
 
     Raises
     ------
     InputError
-        When it is neither, or the file cannot be read.
+        If it is neither, or the file cannot be read.
     """
     match model:
         case ModelBuilder():
@@ -128,14 +128,14 @@ def prepare(
 
 
 def start_of_job(job: Job) -> InitialValues:
-    """The start of a job whose numbers have changed; errors as for `run`."""
+    """Return the start of a job after a parameter change; errors as for `run`."""
     with told_faults(job.dynamics.system):
         job.dynamics.return_to_start()
         return _start(job.data, job.dynamics, job.grid.start, job.start_from)
 
 
 def _start(data: ModelData, dynamics: Dynamics, t: float, state: SavedState | None) -> InitialValues:
-    """The saved state that is given, else the equilibrium or the described state, whichever the scene asks for."""
+    """Return the saved state if given, else the equilibrium or the described state, as the scene requests."""
     if state is not None:
         take_nearest_turns(dynamics, t, state.is_new)
         start = consistent_values(dynamics, t)
@@ -168,7 +168,7 @@ def _start(data: ModelData, dynamics: Dynamics, t: float, state: SavedState | No
 def examined(
     model: Runnable, settings: RunSettings | None = None, start_from: StartFrom | None = None, **changes: Any
 ) -> Examined:
-    """Compile a model and look for redundant equations; parameters and errors as for `run`."""
+    """Compile a model and examine it for redundant equations; parameters and errors as for `run`."""
     data = data_of(model)
     if isinstance(data, Scene) and data.stages:
         raise InputError("found a scene with stages, which only a run follows, expected a scene of one run")

@@ -1,4 +1,4 @@
-"""Scenes from files of any kind: YAML, an Adams/Solver dataset, or a robot's URDF or MJCF."""
+"""Loading of scenes: YAML files, Adams/Solver datasets, and robots in URDF or MJCF."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ if TYPE_CHECKING:
     from ..describe.scene import Scene
 
 DATASET = ".adm"
-"""How the name of an Adams/Solver dataset ends."""
+"""File suffix of Adams/Solver datasets."""
 ROBOTS = (".urdf", ".xml", ".mjcf")
-"""How those of robots' files end."""
+"""File suffixes of robots."""
 
 
 def load_scene(path: str | Path, changes: Sequence[tuple[str, str]] = ()) -> Scene:
@@ -24,20 +24,20 @@ def load_scene(path: str | Path, changes: Sequence[tuple[str, str]] = ()) -> Sce
     Parameters
     ----------
     path : str or Path
-        A YAML file, or ``-`` for standard input; a dataset where its name ends in ``.adm``, a robot in URDF where it
-        ends in ``.urdf``, in MJCF (needs the extra ``robots``) in ``.xml`` or ``.mjcf``.
+        A YAML file, or ``-`` for standard input; a dataset if its name ends in ``.adm``, a robot in URDF if it ends in
+        ``.urdf``, in MJCF (needs the extra ``robots``) if it ends in ``.xml`` or ``.mjcf``.
     changes : sequence of (path, text)
-        Values put in place of the file's, such as ``("bodies.cart.mass", "12 kg")``.
+        Values that replace those of the file, such as ``("bodies.cart.mass", "12 kg")``.
 
     Returns
     -------
     Scene
-        `PlanarScene`, or `SpatialScene` where it says ``dimensions: 3``.
+        `PlanarScene`, or `SpatialScene` if the file has ``dimensions: 3``.
 
     Raises
     ------
     InputError
-        When the file cannot be read or is no valid scene; names the file, the line and the path in it.
+        If the file cannot be read or is not a valid scene; the message names the file, the line and the path in it.
     """
     for change in changes:
         if not (isinstance(change, tuple | list) and len(change) == 2 and isinstance(change[0], str)):

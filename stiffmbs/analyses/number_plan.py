@@ -1,8 +1,7 @@
-"""Where the values of a study stand among the compiled numbers of a job, so that a case is a few of them changed in place.
+"""Mapping of the values of a study to the compiled numbers of a job, of which each case changes a few in place.
 
-Nothing is read, checked or sorted anew: the forces were read once with numbers that are followed
-(`stiffmbs.describe.files.followed`).  Where a comparison comes out otherwise with other values, the whole scene of the
-case is read, which takes other equations or says what is wrong.
+The forces are read once with tracked numbers (`stiffmbs.describe.files.followed`).  If a comparison of these has
+another result with other values, the whole scene of the case is read: it has other equations or is invalid.
 """
 
 from __future__ import annotations
@@ -27,16 +26,16 @@ from .renumber import may_be_input, renumberable
 
 @dataclass(frozen=True)
 class _Numbers:
-    """The numbers of a force in its group.
+    """Numbers of a force in its group.
 
     Attributes
     ----------
     now : ndarray
-        Those that compiled code reads.
+        Numbers that compiled code reads.
     fixed : ndarray
-        What they are, but for those that follow the values of a case.
+        Their values, except for those that depend on the case.
     slots, places : ndarrays of int
-        Which ones do, and which numbers of the record they are.
+        Indices of the numbers that depend on the case, in `now` and in the record.
     """
 
     now: np.ndarray
@@ -51,19 +50,19 @@ class _Numbers:
 
 @dataclass(frozen=True)
 class NumberPlan:
-    """How the values of a case are put into a job.
+    """Plan by which the values of a case are written into a job.
 
     Attributes
     ----------
     job : Job
-        Whose compiled system takes them.  The forces in its data have the values of no case.
+        Job whose compiled system is changed.  The forces in its data have the values of no case.
     forces : OtherForces
     record : Record
     like : tuple
-        The kinds of the values, as lists of numbers are of one length.
+        Types of the values: numbers, or lists of numbers of a given length.
     numbers : tuple of _Numbers
     of_inputs : bool
-        Whether formulas or tables of time stand in the forces.
+        True if the forces contain formulas or tables of time.
     """
 
     job: Job
@@ -74,14 +73,14 @@ class NumberPlan:
     of_inputs: bool
 
     def with_values(self, values: Sequence[Any]) -> Job | None:
-        """The job of a case; None where its scene must be read as a whole.
+        """Return the job of a case, or None if its whole scene must be read.
 
         The compiled system is changed in place, as by `stiffmbs.analyses.renumber.renumbered`.
 
         Raises
         ------
         AssemblyError
-            When there is no consistent start with these values.
+            If there is no consistent start with these values.
         """
         if tuple(map(_like, values)) != self.like:
             return None
@@ -101,12 +100,12 @@ class NumberPlan:
 
 
 def number_plan(job: Job, forces: OtherForces, values: Sequence[Any]) -> NumberPlan | None:
-    """How other values are put into a job that has some; None where each case must be read.
+    """Return the plan by which other values are written into a job, or None if the scene of each case must be read.
 
     Parameters
     ----------
     job : Job
-        Of the scene that was read as a whole with these values.
+        Job of the scene that was read as a whole with these values.
     forces : OtherForces
     values : sequence
     """
@@ -121,7 +120,7 @@ def number_plan(job: Job, forces: OtherForces, values: Sequence[Any]) -> NumberP
         numbers = [_numbers(job, scene, name, record, values, forces) for name in forces.affected]
         if notes_of(scene) != notes_of(job.data):
             return None
-    except Exception:  # an element's code that such a number does not suit raises whatever Python does
+    except Exception:  # an element's code may raise any exception for a tracked number
         return None
     known = [each for each in numbers if each is not None]
     if len(known) < len(numbers):
@@ -132,12 +131,12 @@ def number_plan(job: Job, forces: OtherForces, values: Sequence[Any]) -> NumberP
 
 
 def _starts_by_forces(scene: Scene) -> bool:
-    """Whether the start may look at the described forces."""
+    """Return True if the start may depend on the described forces."""
     return bool(scene.at_start) or isinstance(scene.start, SteadyMotion)
 
 
 def _like(value: Any) -> Any:
-    """Of what kind a value is; None for one that is no number and no list of numbers."""
+    """Return the type of a number or of a list of numbers, or None for other values."""
     if isinstance(value, list | tuple):
         parts = tuple(map(_like, value))
         return None if None in parts else parts
@@ -147,7 +146,7 @@ def _like(value: Any) -> Any:
 def _numbers(
     job: Job, scene: Scene, name: str, record: Record, values: Sequence[Any], forces: OtherForces
 ) -> _Numbers | None:
-    """Where the numbers of a force are; None where it is not the same with numbers that are followed."""
+    """Return the location of the numbers of a force, or None if the force differs when its numbers are tracked."""
     system, (force, as_read) = job.dynamics.system, (_placed(data, name) for data in (scene, job.data))
     group = next((group for group in system.groups if name in group.names), None)
     if group is None or _markers(force) != _markers(as_read):

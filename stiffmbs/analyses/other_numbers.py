@@ -1,4 +1,4 @@
-"""Many runs of one model with other numbers in a force, prepared once."""
+"""Repeated runs of a prepared model with changed parameters of a force."""
 
 from __future__ import annotations
 
@@ -10,26 +10,26 @@ from .renumber import renumbered
 
 
 def with_numbers(job: Job, name: str, **numbers: Any) -> Job:
-    """The same job with other numbers in a force: nothing is compiled, examined or presolved again.
+    """Return a job with changed parameters of a force, without a new compilation, examination or presolve.
 
-    The model is prepared anew only where its equations change, or where the presolve solves mechanisms apart.  The compiled
-    system is changed in place, so `job` itself must not be integrated again.  Threads may work at once, each with a job of its
-    own from `prepare`.
+    The model is prepared again only if its equations change, or if the presolve solves mechanisms separately.  The
+    compiled system is changed in place, so `job` itself must not be integrated again.  Threads may run concurrently,
+    each with its own job from `prepare`.
 
     Parameters
     ----------
     job : Job
     name : str
-        Of the force.
+        Name of the force.
     **numbers
-        Its fields to change, in SI units: ``stiffness=300.0``, ``stiffness=[1e6, 1e6, 500.0]``.
+        Fields to change, in SI units: ``stiffness=300.0``, ``stiffness=[1e6, 1e6, 500.0]``.
 
     Raises
     ------
     InputError
-        When there is no such force, or a field is unknown or out of bounds.
+        If there is no such force, or a field is unknown or out of bounds.
     AssemblyError
-        When there is no consistent start with these numbers.
+        If there is no consistent start with these numbers.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""What Python functions of forces raise, told in one sentence."""
+"""Errors in Python functions of forces, reported in one sentence."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from ..solve.trajectory import Outcome, Trajectory
 
 @contextmanager
 def told_faults(system: System) -> Iterator[None]:
-    """Give an error that a function's fault brought about the words of that fault.
+    """Replace an error that a faulty function caused by one with the message of that fault.
 
     Raises
     ------
@@ -33,7 +33,7 @@ def told_faults(system: System) -> Iterator[None]:
 
 
 def up_to_a_fault(system: System, trajectory: Trajectory) -> Trajectory:
-    """A trajectory with the words of the fault that ended it, if one did."""
+    """Return a trajectory with the message of the fault that ended it, if any."""
     fault = fault_of(system) if system.has_functions else None
     if fault is None or trajectory.outcome is Outcome.DONE:
         return trajectory

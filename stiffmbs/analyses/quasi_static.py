@@ -19,15 +19,15 @@ from .solution_at_rest import solution_at_rest
 
 @takes_settings
 def quasi_static(model: Runnable, settings: RunSettings | None = None, **changes: Unpack[Settings]) -> Solution:
-    """Equilibria at rest at all output instants, each sought from the pose of the one before.
+    """Compute static equilibria at all output instants, each from the pose of the previous one.
 
-    Forces, drives and tables of time change slowly: what depends on velocities does nothing.
+    Forces, drives and tables of time are assumed to change slowly: forces that depend on velocities have no effect.
 
     Parameters
     ----------
     model : Model, Scene, str or Path
     settings : RunSettings, optional
-        Its output instants; those of a scene by default.
+        Settings with the output instants; by default those of the scene.
     **changes
         Fields of the settings to change.
 
@@ -41,7 +41,7 @@ def quasi_static(model: Runnable, settings: RunSettings | None = None, **changes
     InputError, AssemblyError
         As for `stiffmbs.run`.
     SolverError
-        Where no equilibrium is found; names the instant.
+        If no equilibrium is found; the message names the instant.
     """
     data = data_of(model)
     if isinstance(data, Scene):
@@ -57,7 +57,7 @@ def quasi_static(model: Runnable, settings: RunSettings | None = None, **changes
 
 
 def _next(dynamics: Dynamics, t: float) -> Equilibrium:
-    """The equilibrium at an instant from the present pose, which is then that of the equilibrium."""
+    """Find the equilibrium at a given time from the current pose, and move the state to it."""
     status = dynamics.assemble(t)
     if status < 0:
         raise AssemblyError(f"t = {t:g} s: the constraints do not meet: {failure(dynamics, status, t)}")

@@ -1,4 +1,4 @@
-"""A prepared job with the numbers of another model of the same structure, changed in place."""
+"""In-place parameter change of a prepared job, to another model of the same structure."""
 
 from __future__ import annotations
 
@@ -23,35 +23,38 @@ from ..presolve.presolve import may_be_apart
 from .job import Job, start_of_job
 
 HELD = ("dimensions", "gravity", "markers", "bodies", "joints")
-"""What must be the same: it decides about coordinates, rank and the start."""
+"""Sections that must be equal: they determine coordinates, rank and the start."""
 
 
 def renumbered(job: Job, data: ModelData) -> Job | None:
-    """The job of a model that differs by numbers in forces alone; None where the model must be prepared anew.
+    """Return the job of a model that differs only in numbers of forces, or None if the model must be prepared again.
 
-    The compiled system is changed in place: `job` must not be integrated again.  The start is assembled anew, so that a run
-    gives the same numbers as one of the model prepared by itself.
+    The compiled system is changed in place: `job` must not be integrated again.  The start is assembled again, so that
+    a run gives the same numbers as one of the separately prepared model.
 
     Parameters
     ----------
     job : Job
     data : ModelData
-        The other model.
+        Other model.
 
     Raises
     ------
     AssemblyError
-        When the other model has no consistent start.
+        If the other model has no consistent start.
     """
     if not write_numbers(job, data):
         return None
-    job.dynamics.forget_pivots()  # so that a run does not depend on those before it
+    job.dynamics.forget_pivots()  # a run must not depend on earlier ones
     changed = replace(job, data=data)
     return replace(changed, start=start_of_job(changed))
 
 
 def write_numbers(job: Job, data: ModelData) -> bool:
-    """Give the compiled forces of a job the numbers of another model; False, with nothing changed, where it must be prepared anew."""
+    """Write the numbers of another model into the compiled forces of a job.
+
+    Return False, with nothing changed, if the other model must be prepared again.
+    """
     changes = changes_of_numbers(job, data)
     if changes is None:
         return False
@@ -64,7 +67,7 @@ def write_numbers(job: Job, data: ModelData) -> bool:
 
 
 def changes_of_numbers(job: Job, data: ModelData) -> list[Change] | None:
-    """The forces of another model with other numbers than those of a job; None where it must be prepared anew."""
+    """Return the force changes from a job to another model, or None if that model must be prepared again."""
     system = job.dynamics.system
     if not renumberable(job) or not _same_structure(job.data, data):
         return None
@@ -78,12 +81,12 @@ def changes_of_numbers(job: Job, data: ModelData) -> list[Change] | None:
         any(_moved(job.data.forces[name], data.forces[name]) for name in {c.name for c in written} & {*data.forces})
         and data.size() != system.size
     ):
-        return None  # tolerances follow from the size
+        return None  # tolerances depend on the size
     return written
 
 
 def renumberable(job: Job) -> bool:
-    """Whether other numbers may be put into a job: the presolve has not solved mechanisms apart, nor could it with others."""
+    """Return True if other numbers may be written into a job: presolve separates no mechanism, with any numbers."""
     system = job.dynamics.system
     if not job.settings.presolve:
         return True
@@ -91,7 +94,7 @@ def renumberable(job: Job) -> bool:
 
 
 def _moved(before: Element, after: Element) -> bool:
-    """Whether a force acts at other markers, or may: their places are followed (`stiffmbs.describe.files.followed`)."""
+    """Return True if a force acts at other markers, or may do so as their positions are tracked."""
     try:
         return list(before.markers()) != list(after.markers())
     except NotFollowed:
@@ -123,17 +126,17 @@ def _same_states(before: ModelData, after: ModelData) -> bool:
 
 
 def _beginnings(data: ModelData) -> dict[str, tuple[float, float, bool]]:
-    """Where states begin, and what their tolerances follow from."""
+    """Return the initial values of the states, the scales of their tolerances, and which are algebraic."""
     return {name: (value.start, value.scale, value.algebraic) for name, value in data.state_values().items()}
 
 
 def _held_by_states(data: ModelData) -> bool:
-    """Whether a joint has states or inputs in its equations."""
+    """Return True if the equations of a joint contain states or inputs."""
     return any(formula.states for joint in data.joints.values() for _, formula in joint.parts(Formula))
 
 
 def _changed_by_states(before: ModelData, after: ModelData) -> Iterator[tuple[str, Element]]:
-    """The equations of states, and unchanged forces in which states, outputs or inputs may stand by formulas of their own."""
+    """Yield the state equations, and unchanged forces whose formulas may contain states, outputs or inputs."""
     if _same_states(before, after):
         return
     yield from after.state_equations()
@@ -149,7 +152,7 @@ def _changed(before: ModelData, after: ModelData) -> Iterator[tuple[str, Element
 
 
 def may_be_input(element: Element) -> bool:
-    """Whether an element has a table, or a formula with time in it."""
+    """Return True if an element has a table, or a formula of time."""
     if next(element.parts(Table), None):
         return True
     return any(
@@ -162,7 +165,7 @@ def may_be_input(element: Element) -> bool:
 
 @dataclass(frozen=True)
 class Change:
-    """An element of a group that takes the place of one with other numbers."""
+    """Replacement of an element of a group by one with other numbers."""
 
     group: Group
     number: int
@@ -172,12 +175,12 @@ class Change:
 
     @property
     def name(self) -> str:
-        """Of the element."""
+        """Name of the element."""
         return self.group.names[self.number]
 
     @property
     def of_inputs(self) -> bool:
-        """Whether the element, as it is or as it becomes, may have a formula or a table of time."""
+        """Return True if the old or the new element may have a formula or a table of time."""
         return may_be_input(self.element) or may_be_input(self.group.elements[self.number])
 
     def write(self) -> None:
@@ -186,7 +189,7 @@ class Change:
 
 
 def _change(system: System, name: str, force: Element, data: ModelData) -> Change | None:
-    """A force with its new numbers; None where it has other equations, bodies or tables of another length."""
+    """Return the change of a force, or None if its equations, bodies or table lengths differ."""
     kind, found = sorted_out(name, force, data)
     group = next((group for group in system.groups if name in group.names), None)
     if group is None or kind != group.kind:

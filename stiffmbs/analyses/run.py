@@ -1,4 +1,4 @@
-"""The main entry: a model is prepared, solved, examined and turned into channels."""
+"""Runs: a model is prepared, solved, examined and converted to channels."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ from .start_from import StartFrom
 from .taken_again import Computed, on_exact_constraints, seen_through
 
 OF_ANY_ERROR = ACCUMULATED.tolerances * ACCUMULATED.usual_rtol
-"""Estimated error of a position, relative to a mechanism's size, below which none is reported, whatever the tolerances."""
+"""Estimated position error, relative to the mechanism's size, below which none is reported, with any tolerances."""
 
 
 @takes_settings
@@ -51,36 +51,36 @@ def run(
     inputs: Mapping[str, Given] | None = None,
     **changes: Unpack[Settings],
 ) -> Solution:
-    """Solve a model.
+    """Simulate a model over time.
 
     Parameters
     ----------
     model : Model, Scene, str or Path
-        What to solve: a model, a scene, or the file that a scene or an Adams/Solver dataset is read from.
+        A model, a scene, or the file of a scene or an Adams/Solver dataset.
     settings : RunSettings, optional
-        How; the scene's own by default.
+        Settings of the run; by default those of the scene.
     watch : callable, optional
         Called with the time reached, s.
     start_from : Solution, str, Path or SavedState, optional
-        A state to start from in place of the described one, at its time unless `start` is given: the last of a solution
-        or of a file of results, or ``solution.state(at=2.0)``.
-    inputs : mapping of str to float, callable or (times, values), optional
-        Values of the model's inputs: constants, functions of t, s, which are read at the output instants, or times and values;
-        with straight lines between.
+        State to start from instead of the described one, at its time unless `start` is given: the last of a solution or
+        of a results file, or ``solution.state(at=2.0)``.
+    inputs : mapping of str to float, callable, (times, values) or Table, optional
+        Values of the model's inputs: constants, functions of t, s, or times and values with linear interpolation.  A
+        smooth function becomes a spline; another is sampled at the output instants.
     **changes
         Fields of the settings to change: ``duration=2.0, rtol=1e-8``.
 
     Returns
     -------
     Solution
-        Also for a run that stopped early: it then holds what was computed, and `message` says why it ended.
+        If the run stops early, it holds the results up to there, and `message` states the reason.
 
     Raises
     ------
     InputError
-        When the model or a setting is wrong, or the state that of other bodies.
+        If the model or a setting is invalid, or the state belongs to other bodies.
     AssemblyError
-        When no consistent start is found.
+        If no consistent start is found.
     """
     data = data_of(model)
     if isinstance(data, Scene) and data.stages:
@@ -95,7 +95,7 @@ def run(
 
 @dataclass(frozen=True)
 class Finished:
-    """A job that was integrated and examined.
+    """Job that was integrated and examined.
 
     Attributes
     ----------
@@ -107,7 +107,7 @@ class Finished:
     notes : tuple of str
     structure : StructureNotes
     examined : RunResults or None
-        Channels and energy balance; None where a glance has shown that there is nothing to say of them.
+        Channels and energy balance; None if the scan of the output rows found nothing to report.
     """
 
     job: Job
@@ -138,9 +138,9 @@ class Finished:
         )
 
 
-@np.errstate(all="ignore")  # a diverged run has numbers that overflow
+@np.errstate(all="ignore")  # numbers of a diverged run overflow
 def finished(job: Job, watch: ProgressCallback | None = None) -> Finished:
-    """Integrate what was prepared, and examine it; errors as for `run`."""
+    """Integrate and examine a prepared job; errors as for `run`."""
     computed, overlooked = seen_through(job, lambda job: on_exact_constraints(job, lambda job: _computed(job, watch)))
     trajectory, rows, seen = computed.trajectory, computed.rows, computed.seen
     if not len(rows.t):
@@ -176,7 +176,7 @@ def _headline(outcome: Outcome, message: str, doubts: Sequence[str]) -> str:
 
 
 def solved(job: Job, watch: ProgressCallback | None = None) -> Solution:
-    """Integrate what was prepared, and turn it into channels; errors as for `run`."""
+    """Integrate a prepared job and return its channels; errors as for `run`."""
     found = finished(job, watch)
     trajectory, rows, results, structure = found.trajectory, found.rows, found.results, found.structure
     statistics = {"name": trajectory.solver or job.settings.solver, **trajectory.statistics}
@@ -191,7 +191,7 @@ def solved(job: Job, watch: ProgressCallback | None = None) -> Solution:
 
 
 def _computed(job: Job, watch: ProgressCallback | None) -> Computed:
-    """Integrate a job and report it."""
+    """Integrate a job and compute its output rows."""
     trajectory = _sound_part(job, up_to_a_fault(job.dynamics.system, job.integrate(watch)))
     rows, left_out = reported(job.dynamics, trajectory, job.on_constraints)
     seen = glance_at(job.dynamics.system, rows, trajectory.step_times, OVERLOOKED_PART)
@@ -199,18 +199,18 @@ def _computed(job: Job, watch: ProgressCallback | None) -> Computed:
 
 
 def _reported_at(job: Job, times: np.ndarray) -> OutputRows:
-    """The run once more, up to the last of other instants, reported at its start and at these."""
+    """Repeat the run up to the last of the given times, with rows at its start and at these times."""
     grid = replace(job.grid, end=float(times[-1]), times=np.union1d(job.grid.start, times))
     again = replace(job, grid=grid)
     trajectory = up_to_a_fault(job.dynamics.system, again.integrate())
     rows = reported(job.dynamics, trajectory, job.on_constraints)[0]
     if job.dynamics.system.has_functions:
-        fault_of(job.dynamics.system)  # it has left out rows; the next run begins without it
+        fault_of(job.dynamics.system)  # clears the fault that left out rows, before the next run
     return rows
 
 
 def _sound_part(job: Job, trajectory: Trajectory) -> Trajectory:
-    """A trajectory up to where a mechanism locks, for equations that were left out, or for prescribed velocities."""
+    """Return a trajectory up to where the mechanism locks by omitted equations or by prescribed velocities."""
     system = job.dynamics.system
     if job.redundancy.active.all() and system.holonomic.all():
         return trajectory
@@ -227,7 +227,7 @@ def _sound_part(job: Job, trajectory: Trajectory) -> Trajectory:
 
 
 def _ending(job: Job, rows: OutputRows, trajectory: Trajectory) -> tuple[Outcome, str]:
-    """How the run ended, and the sentence for it: also stopped where states have no accelerations and reactions."""
+    """Return the outcome and message of a run; a row without accelerations and reactions counts as a stop."""
     if len(rows.t) == len(trajectory.t):
         return trajectory.outcome, trajectory.message
     t, q, u = (array[len(rows.t)] for array in (trajectory.t, trajectory.q, trajectory.u))

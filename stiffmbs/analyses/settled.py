@@ -1,4 +1,4 @@
-"""A stable equilibrium of a system, with what is said of unstable ones on the way."""
+"""Stable equilibrium of a system, with notes on unstable ones found by the search."""
 
 from __future__ import annotations
 
@@ -20,42 +20,44 @@ from ..solve.equilibria.steady_motion import at_rest
 from ..solve.initial import InitialValues
 
 MOST_FOR_EIGENVALUES, MOST_CONSERVATIVE = 1500, 150
-"""Largest numbers of velocities for which eigenvalues are computed (dense matrices): in general, and if all forces have a
-potential, so that static stability is sufficient."""
+"""Largest numbers of velocities for eigenvalues (dense matrices): in general, and if all forces are conservative.
+
+For conservative forces static stability is sufficient.
+"""
 SYMMETRIC = 1e-9
 """Asymmetry of a stiffness matrix, relative to its largest entry, that counts as rounding."""
 BRANCH = 1e-3
 """Move along an unstable direction, relative to the mechanism's size, or rad, from which a stable pose is sought."""
 MOST_BRANCHES = 3
 FAR = 0.2
-"""Distance from the described pose, as a part of the mechanism's size, from which on it is told."""
+"""Distance from the described pose, relative to the mechanism's size, above which a note reports it."""
 SAME_MOTION = 1e-8
-"""Singular value of free motions, relative to the largest, up to which they are the same."""
+"""Singular value of free motions, relative to the largest, up to which they are linearly dependent."""
 LARGE_PART = 0.5
-"""Size of a velocity, relative to the largest in free motions, from which on the first such one gives them its name."""
+"""Size of a velocity, relative to the largest in free motions, above which the first such velocity names the motion."""
 GROWING = 1e-6
-"""Real part of an eigenvalue, relative to the largest of all, from which on a motion grows: double zeros are known to that."""
+"""Real part above which a motion grows, relative to the largest eigenvalue: the accuracy of double zeros."""
 GROWING_OF_ITS_OWN, ROUNDED = 1e-6, 1e-10
 """Real part above which an eigenvalue is unstable, relative to its own magnitude and to the largest magnitude."""
 
 
 @dataclass(frozen=True)
 class Settled:
-    """A system at rest in an equilibrium.
+    """System in an equilibrium.
 
     Attributes
     ----------
     start : InitialValues
-        For a run from there.
+        Initial values of a run from there.
     moves : int
-        That led there.
+        Number of moves of the search.
     imbalance : float
-        Largest generalised force that is left, relative to the largest that acts.
+        Largest remaining generalised force, relative to the largest acting one.
     free : tuple of str
-        For each motion that nothing holds the velocity that is largest in it.
+        Largest velocity of each motion that nothing resists.
     notes : tuple of str
     eigenvalues : tuple of complex
-        Of motions beside a steady one, 1/s, in the frame that moves with it; none at rest.
+        Eigenvalues of perturbations of a steady motion, 1/s, in the frame that moves with it; empty at rest.
     """
 
     start: InitialValues
@@ -67,15 +69,15 @@ class Settled:
 
 
 def settled(dynamics: Dynamics, start: InitialValues, t: float) -> Settled:
-    """A stable equilibrium, with notes on unstable ones on the way, and what is free to move in it.
+    """Find a stable equilibrium, with notes on unstable ones and on free motions.
 
     Parameters
     ----------
     dynamics : Dynamics
     start : InitialValues
-        The pose from which it is sought.
+        Pose from which the search starts.
     t : float
-        s.
+        Time, s.
     """
     system, state = dynamics.system, dynamics.state
     state.q[:] = start.q
@@ -98,20 +100,20 @@ def settled(dynamics: Dynamics, start: InitialValues, t: float) -> Settled:
 
 
 def moving_in_equilibrium(dynamics: Dynamics, start: InitialValues, t: float) -> InitialValues:
-    """The pose of the equilibrium at rest with the described velocities, made consistent: a car that begins to roll.
+    """Find the equilibrium pose at rest and make the described velocities consistent there: a car that begins to roll.
 
     Parameters
     ----------
     dynamics : Dynamics
     start : InitialValues
-        The pose from which it is sought, and the velocities.
+        Pose from which the search starts, and the velocities.
     t : float
-        s.
+        Time, s.
 
     Raises
     ------
     SolverError
-        Where no equilibrium is found, or the velocities have no accelerations there.
+        If no equilibrium is found, or the velocities have no accelerations there.
     """
     state = dynamics.state
     state.q[:] = start.q
@@ -133,7 +135,7 @@ def moving_in_equilibrium(dynamics: Dynamics, start: InitialValues, t: float) ->
 
 
 def _far_away(dynamics: Dynamics, start: InitialValues, found: Equilibrium) -> Iterator[str]:
-    """That the equilibrium lies far from the described pose, as of a car that has rolled there."""
+    """Yield a note if the equilibrium is far from the described pose, as of a car that has rolled there."""
     system, of_body = dynamics.system, dynamics.system.of_body
     pose = slice(0, of_body.n_q * len(system.bodies))
     places, described = (q[pose].reshape(-1, of_body.n_q)[:, : of_body.linear] for q in (found.q, start.q))
@@ -185,7 +187,7 @@ def _is_conservative(dynamics: Dynamics, t: float) -> bool:
 
 
 def _directions(dynamics: Dynamics, t: float) -> tuple[np.ndarray | None, list[str]]:
-    """The most unstable direction at an equilibrium (as velocities), and the names of what is free."""
+    """Return the most unstable direction (as velocities) or None, and the names of free velocities."""
     system = dynamics.system
     known = balance_at(dynamics, t, at_rest(system.of_body.dimensions))
     scale = system.per_velocity(system.size, 1.0)
@@ -196,7 +198,7 @@ def _directions(dynamics: Dynamics, t: float) -> tuple[np.ndarray | None, list[s
 
 
 def _independent(shapes: np.ndarray) -> Iterator[int]:
-    """Numbers of velocities, one for each independent motion among some, that do not depend on how these are combined."""
+    """Yield the index of a velocity for each independent motion; it does not depend on how the motions are combined."""
     basis, sizes, _ = np.linalg.svd(
         shapes / np.maximum(np.linalg.norm(shapes, axis=0), np.finfo(float).tiny), full_matrices=False
     )
@@ -214,7 +216,7 @@ def _name(dynamics: Dynamics, shape: np.ndarray) -> str:
 
 
 def _branch(dynamics: Dynamics, found: Equilibrium, direction: np.ndarray, t: float) -> Equilibrium | None:
-    """The equilibrium that a small move along a direction leads to; None where there is none."""
+    """Return the equilibrium reached after a small move along a direction, or None."""
     dynamics.state.q[:] = dynamics.system.of_body.moved(found.q, BRANCH * direction)
     dynamics.assemble(t)
     try:

@@ -1,4 +1,4 @@
-"""Equilibria as results, one instant each."""
+"""Solutions of equilibria, one instant each."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from .job import Job
 def solution_at_rest(
     job: Job, t: np.ndarray, q: np.ndarray, u: np.ndarray, message: str, notes: tuple[str, ...], solver: dict[str, Any]
 ) -> Solution:
-    """The channels of equilibria.
+    """Return the channels of equilibria.
 
     Parameters
     ----------
@@ -29,12 +29,12 @@ def solution_at_rest(
     message : str
     notes : tuple of str
     solver : dict
-        What is told of how they were found.
+        Statistics of the search.
 
     Raises
     ------
     SolverError
-        Where one has no reactions.
+        If an equilibrium has no reactions.
     """
     system = job.dynamics.system
     rows = job.dynamics.report(t, q, u, project=False)

@@ -1,4 +1,4 @@
-"""Runs that start from a saved state in place of the described one."""
+"""Runs that start from a saved state instead of the described one."""
 
 from __future__ import annotations
 
@@ -20,17 +20,17 @@ from ..results.saved_state import SavedState, read_state
 from ..results.solution import Solution
 
 StartFrom: TypeAlias = SavedState | Solution | str | Path
-"""A saved state: one row of a solution or of a file of results, the last unless told otherwise."""
+"""Saved state: one row of a solution or of a results file, by default the last."""
 MOST_NAMES = 5
 
 
 def state_to_start_from(given: StartFrom | None) -> SavedState | None:
-    """The state that is meant; None where none is given.
+    """Return the state to start from, or None if none is given.
 
     Raises
     ------
     InputError
-        When it is nothing that holds a state.
+        If the argument holds no state.
     """
     match given:
         case None | SavedState():
@@ -43,25 +43,24 @@ def state_to_start_from(given: StartFrom | None) -> SavedState | None:
 
 
 def starting_at(state: SavedState | None, given: RunSettings | None, changes: dict[str, Any]) -> dict[str, Any]:
-    """Changes of settings for a run that starts at the time of its state, unless the caller asks for another start."""
+    """Return settings changes with the state's time as the start, unless the caller requests another start."""
     asked = "start" in changes or (given is not None and "start" in given.model_fields_set)
     return changes if state is None or asked else {**changes, "start": state.t}
 
 
 def started_from(system: System, model: ModelData, state: SavedState | None) -> System:
-    """A system whose start is a saved state; as it is where there is none.
+    """Return a system that starts from a saved state, or the same system if there is none.
 
     Parameters
     ----------
     system : System
-        Of the model.
     model : ModelData
     state : SavedState, optional
 
     Raises
     ------
     InputError
-        When the state is that of other bodies.
+        If the state belongs to other bodies, or lacks values.
     """
     if state is None:
         return system
@@ -91,7 +90,7 @@ def started_from(system: System, model: ModelData, state: SavedState | None) -> 
 
 
 def _turns(system: System, model: ModelData, state: SavedState) -> np.ndarray:
-    """The counters of turns; those of requests that the state does not know begin anew."""
+    """Return the revolution counters; those of requests that the state does not have start at zero."""
     of_requests = {name for name, _ in model.angle_counters()}
     first = system.n_pose
     turns = np.zeros(system.n_counters)
@@ -106,7 +105,7 @@ def _turns(system: System, model: ModelData, state: SavedState) -> np.ndarray:
 
 
 def _states(system: System, state: SavedState) -> np.ndarray:
-    """The values of the states of the user's own."""
+    """Return the values of user-defined states."""
     for name in system.states:
         if not np.isfinite(state.channels.get(name, np.nan)):
             raise InputError(f"{state.source}: found no number for the state '{name}', expected one in each row")

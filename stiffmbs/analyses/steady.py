@@ -1,4 +1,4 @@
-"""Equilibria in steady motion: of a car at constant speed, on a straight road or on a circle."""
+"""Equilibria in steady motion, as of a car at constant speed on a straight road or on a circle."""
 
 from __future__ import annotations
 
@@ -21,36 +21,36 @@ from ..solve.initial import InitialValues
 from .settled import GROWING, Settled
 
 MOST_FOR_STABILITY = 1500
-"""Velocities up to which the stability of a steady motion is looked at (dense matrices)."""
+"""Number of velocities up to which the stability of a steady motion is assessed (dense matrices)."""
 
 MOTION_AHEAD = 1e-3
-"""How far a motion goes, rad or parts of the mechanism's size, until it is looked at whether forces still balance."""
+"""Distance along a motion, rad or parts of the mechanism's size, after which the balance of forces is checked."""
 STEADY_IMBALANCE, PRESCRIBED_BESIDE = 1e-6, 1e-8
-"""Imbalance there, relative to the largest force; and velocity, relative to the largest, that a joint may prescribe beside the motion's."""
+"""Accepted relative imbalance there, and accepted velocity error of joints relative to the largest velocity."""
 
 
 def settled_in_motion(
     model: ModelData, dynamics: Dynamics, start: InitialValues, t: float, described: Described
 ) -> Settled:
-    """An equilibrium in steady motion, and whether it is stable.
+    """Find an equilibrium in steady motion and assess its stability.
 
     Parameters
     ----------
     model : ModelData
     dynamics : Dynamics
-        Of the model.
     start : InitialValues
-        The pose from which it is sought, and the spins of bodies that neither rolling constraints nor forces tell.
+        Pose from which the search starts, and the spins of bodies that neither rolling constraints nor forces
+        determine.
     t : float
-        s.
+        Time, s.
     described : SteadyMotion
 
     Raises
     ------
     InputError
-        When the motion has another number of dimensions, or a body cannot spin.
+        If the motion has another number of dimensions, or a body cannot spin.
     SolverError
-        Where none is found, a joint does not let the mechanism move so, or forces do not stay as they are.
+        If none is found, a joint prevents the motion, or the forces do not stay in balance.
     """
     found = _found(model, dynamics, start, t, described)
     values = _eigenvalues(dynamics, t, found)
@@ -62,7 +62,7 @@ def settled_in_motion(
 def start_in_motion(
     model: ModelData, dynamics: Dynamics, start: InitialValues, t: float, described: Described
 ) -> InitialValues:
-    """The start of a run in steady motion, whether that is stable or not; parameters and errors as for `settled_in_motion`."""
+    """Return initial values in steady motion, unchecked for stability; arguments as for `settled_in_motion`."""
     found = _found(model, dynamics, start, t, described)
     return _moving(start, found, ("whether the steady motion that the run starts in is stable was not looked at",))
 
@@ -88,7 +88,7 @@ def _moving(start: InitialValues, found: Equilibrium, notes: tuple[str, ...]) ->
 
 
 def _eigenvalues(dynamics: Dynamics, t: float, found: Equilibrium) -> np.ndarray | None:
-    """Those of motions beside the steady one; None where they cannot be told."""
+    """Return the eigenvalues of perturbations of the steady motion, or None if they cannot be computed."""
     if dynamics.system.n_u > MOST_FOR_STABILITY:
         return None
     state = dynamics.state
@@ -127,7 +127,7 @@ def _vector(system: System, name: str, found: tuple[float, ...]) -> np.ndarray:
 
 
 def _rotation(model: ModelData, described: Described) -> np.ndarray:
-    """W; a number in space is about the direction against gravity, or z without."""
+    """Return W; in space a single number is about the direction against gravity, or about z without gravity."""
     found = described.rotation
     if model.dimensions == 2:
         if isinstance(found, tuple):
@@ -141,7 +141,7 @@ def _rotation(model: ModelData, described: Described) -> np.ndarray:
 
 
 def _spin(system: System, body: str) -> int:
-    """The number of a body's angular velocity about its axis of symmetry."""
+    """Return the index of a body's angular velocity about its axis of symmetry."""
     if body not in system.bodies:
         raise InputError(f"rolling: found no body '{body}', expected one of {', '.join(system.bodies)}")
     n_u, linear = system.of_body.n_u, system.of_body.linear
@@ -172,7 +172,7 @@ def _refuse_joints(dynamics: Dynamics, t: float) -> None:
 
 
 def _refuse_unsteady(dynamics: Dynamics, t: float, motion: SteadyMotion) -> None:
-    """Refuse an equilibrium of one instant: a little later on the way forces balance no more."""
+    """Raise an error if the forces no longer balance a little later in the motion."""
     state, system = dynamics.state, dynamics.system
     rates = np.abs(motion.carried(dynamics)) * system.per_velocity(1 / system.size, 1.0)
     if not np.max(rates, initial=0.0):
@@ -181,7 +181,7 @@ def _refuse_unsteady(dynamics: Dynamics, t: float, motion: SteadyMotion) -> None
     with state.unchanged():
         start = state.q.copy()
         half = system.of_body.moved(start, 0.5 * later * motion.carried(dynamics))
-        state.q[:] = half  # the midpoint rule: velocities of carried bodies turn on the way
+        state.q[:] = half  # midpoint rule: velocities of carried bodies rotate on the way
         middle = motion.carried(dynamics)
         state.q[:] = system.of_body.moved(start, later * middle)
         dynamics.assemble(t + later)

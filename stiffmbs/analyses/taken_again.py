@@ -1,8 +1,11 @@
-"""Runs that are taken again, as their results contradict the equations.
+"""Reruns of jobs whose results contradict their equations.
 
-Where steps passed over something, with a start at each instant that shows it: the step that ends there sees the force, and its
-error estimate makes it as short as it has to be.  Where relaxed constraints crept beyond the tolerance, with exact ones: SI2 holds J u + C_t = E_lam lam, with an E_lam so small that forces of usual size change nothing.  Where equations are nearly
-dependent, or forces are huge for the masses, lam is not: velocities creep, and energy is lost.
+After missed events a job is rerun with a restart at each instant that shows one.  The step that ends there includes the
+force, and its error estimate shortens it as required.
+
+If relaxed constraints drift beyond the tolerance, a job is rerun with exact ones.  SI2 holds J u + C_t = E_lam lam,
+with E_lam so small that forces of usual size have no effect.  If equations are nearly dependent, or forces are huge for
+the masses, lam is not of usual size: velocities drift, and energy is lost.
 """
 
 from __future__ import annotations
@@ -27,22 +30,20 @@ if TYPE_CHECKING:
     from .job import Job
 
 ROUNDS, STARTS = 3, 1000
-"""How often a run is taken again, and with how many starts at the most."""
+"""Number of reruns, and of restarts in a rerun, at most."""
 AGAIN = "the run was taken again with a start there; what neither output instants nor long steps show, max_step or more output points do"
 LEFT = "the results may be wrong from there on; set max_step to far less than that"
 
 RELAXED, EXACT = "SI2", "SI2_exact"
 CREPT = 10.0
-"""Tolerances of a velocity, as a mean over the run, up to which creep is left alone: with 25 a pendulum's error is that many
-tolerances too.  The examples have 0 to 5."""
+"""Mean velocity drift over the run, in tolerances, up to which a run is accepted."""
 LESS = 0.5
-"""Part of the creep that exact constraints may leave."""
+"""Part of the drift that exact constraints may leave."""
 
 
 @dataclass(frozen=True)
 class Computed:
-    """Trajectory of a run with its reported values, notes on omitted output times, findings of the scan of the rows, and notes that
-    question the results."""
+    """Trajectory and rows of a run, notes on omitted rows, results of the scan of rows, and notes on doubts."""
 
     trajectory: Trajectory
     rows: OutputRows
@@ -52,13 +53,13 @@ class Computed:
 
 
 def seen_through(job: Job, compute: Callable[[Job], Computed]) -> tuple[Computed, list[str]]:
-    """Compute a job until no instant looked at contradicts its steps; what there is to say of that.
+    """Compute a job until no checked instant contradicts its steps; return it with notes on missed events.
 
     Parameters
     ----------
     job : Job
     compute : callable
-        Integrates a job and reports it.
+        Function that integrates a job and reports it.
     """
     found = compute(job)
     seen = left = _overlooked(job, found)
@@ -80,7 +81,7 @@ def seen_through(job: Job, compute: Callable[[Job], Computed]) -> tuple[Computed
 
 
 def _overlooked(job: Job, computed: Computed) -> Overlooked | None:
-    """What output instants, or instants within long steps, show."""
+    """Return the missed events that output instants, or instants within long steps, show."""
     system, trajectory = job.dynamics.system, computed.trajectory
     if not system.has_laws:
         return None
@@ -94,13 +95,13 @@ def _overlooked(job: Job, computed: Computed) -> Overlooked | None:
 
 
 def on_exact_constraints(job: Job, compute: Callable[[Job], Computed]) -> Computed:
-    """Compute a job, and once more by SI2_exact where its constraints crept; of that the result has a note.
+    """Compute a job, and rerun it with SI2_exact if its constraints drift; the result has a note on that.
 
     Parameters
     ----------
     job : Job
     compute : callable
-        Integrates a job and reports it.
+        Function that integrates a job and reports it.
     """
     found = compute(job)
     compared = _compared(job, found)
@@ -114,7 +115,7 @@ def on_exact_constraints(job: Job, compute: Callable[[Job], Computed]) -> Comput
         return _doubted(found, f"{creep.sentence()}; the results may be wrong by that")
     again = compute(exactly(job))
     if len(again.rows.t) >= len(found.rows.t):
-        # what stays is no creep, but jumps of velocities that no breakpoint tells
+        # the rest is no drift, but jumps of velocities without a known breakpoint
         if creep.mean > CREPT and _creep(job, again).mean > LESS * creep.mean:
             return found
         return _noted(again, f"{creep.sentence()}; the run was taken again by formulation {EXACT}")
@@ -133,18 +134,18 @@ def _creep(job: Job, computed: Computed) -> Creep:
 
 
 def _compared(job: Job, computed: Computed) -> tuple[System, OutputRows, Trajectory, RunSettings]:
-    """What creep is told by."""
+    """Return the data from which drift is computed."""
     return job.dynamics.system, computed.rows, computed.trajectory, job.settings
 
 
 def relaxed(job: Job) -> bool:
-    """Whether a run follows relaxed constraints."""
+    """Return True if a run has relaxed constraints."""
     chosen = job.settings.formulation == RELAXED and "formulation" in traits_of(job.settings).reads
     return chosen and job.on_constraints and job.dynamics.system.n_c > 0
 
 
 def exactly(job: Job) -> Job:
-    """The job with exact constraints."""
+    """Return the job with exact constraints."""
     return replace(job, settings=changed(job.settings, {"formulation": EXACT}))
 
 

@@ -1,4 +1,4 @@
-"""Models of every kind of element in the forms in which it is mostly used: what `stiffmbs cache warm` compiles."""
+"""Models of all kinds of elements in their usual forms, which `stiffmbs cache warm` compiles."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ BODIES = ("a", "b", "c")
 
 
 def usual_elements(dimensions: int) -> ModelBuilder:
-    """A model of all forms of all kinds, users' own that are registered among them; it is compiled, never solved.
+    """Return a model of all forms of all kinds, including registered user-defined ones; it is compiled, never solved.
 
     Parameters
     ----------
@@ -33,7 +33,7 @@ def usual_elements(dimensions: int) -> ModelBuilder:
 
 
 def usual_bearings() -> ModelBuilder:
-    """A model in space of all joints that a body is mostly free to spin in: body ``a``, beside another."""
+    """Return a spatial model of all joints in which body ``a`` may spin freely, relative to another body."""
     from ..describe.spatial.joints.cylindrical import Cylindrical
     from ..describe.spatial.joints.revolute import Revolute
     from ..describe.spatial.joints.spherical import Spherical
@@ -77,7 +77,7 @@ def _bodies_in_space() -> ModelBuilder:
 
 
 def _add_joints(model: ModelBuilder, revolute: Any, prismatic: Any) -> None:
-    """Joints for others to refer to."""
+    """Add joints that other elements refer to."""
     model.add("pin", revolute(i="a", j="ground"))
     model.add("second_pin", revolute(i="b", j="ground"))
     model.add("slider", prismatic(i="c", j="ground"))

@@ -1,4 +1,4 @@
-"""Deriving and compiling ahead what first runs would wait for."""
+"""Derivation and compilation ahead of first runs."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ from .usual_elements import usual_bearings, usual_elements
 
 
 def warm() -> None:
-    """Compile every kind of element in its usual forms, bearings of bodies that keep a spin of their own, and the routines of all solvers.
+    """Compile all kinds of elements in their usual forms, bearings of spinning bodies, and the routines of all solvers.
 
-    Formulas that stand in a scene make kinds of their own, which are compiled when they are first met, and so is what one
-    formulation alone uses.
+    Formulas in a scene form kinds of their own, which are compiled on first use, like code that a single formulation
+    uses.
     """
     with ProcessPoolExecutor(mp_context=get_context("spawn")) as processes:
         list(processes.map(compile_usual, usual_kinds()))
@@ -33,14 +33,14 @@ def warm() -> None:
 
 
 def usual_kinds() -> tuple[Kind, ...]:
-    """All kinds of elements in their usual forms, and joints of bodies whose quaternions don't follow their spin."""
+    """Return the usual kinds of elements, and joints of bodies whose quaternions do not follow their spin."""
     models = [usual_elements(dimensions).data() for dimensions in (2, 3)]
     spun = [SpinningBodies(usual_bearings().data(), {"a": axis}) for axis in AXES]
     return tuple(dict.fromkeys(kind for model in (*models, *spun) for kind in kinds_of(model)))
 
 
 def routines() -> Iterator[Routine]:
-    """Every compiled routine that a module of the package declares."""
+    """Yield every compiled routine that a module of the package declares."""
     for package in (compile_package, solve_package, results_package, run_checks_package):
         for module in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
             if ".native." not in f"{module.name}.":

@@ -1,1 +1,1 @@
-"""The commands of ``stiffmbs``, one file each."""
+"""Commands of ``stiffmbs``, one file each."""

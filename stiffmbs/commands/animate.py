@@ -45,9 +45,9 @@ def animate(
     scene: str, results: tuple[Path, ...], output: Path | None, view: str, speed: float, rate: float, traces: tuple[str, ...],
     names: bool, forces: bool, as_json: bool, **options: Any,
 ) -> None:  # fmt: skip
-    """Show SCENE in motion: its run, or RESULTS (.npz) of runs and of mode shapes, drawn over each other.
+    """Animate SCENE: its run, or RESULTS (.npz) of runs and of mode shapes, drawn over each other.
 
-    Exit status: 0 done, 1 stopped early (what was solved is shown) or not written, 2 the input is wrong.
+    Exit status: 0 done, 1 stopped early (the part that was solved is shown) or not written, 2 the input is wrong.
     """
     from ..show.drawing.animate import check_animation, check_pace, traced, write_animation
     from ..show.drawing.film import Pace

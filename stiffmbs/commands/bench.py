@@ -22,8 +22,8 @@ SOME_FAILED, WRONG_INPUT = 1, 2
 def bench(names: tuple[str, ...], as_json: bool) -> None:
     """Measure run time against error of bdf, dop853 and auto on the shipped examples.
 
-    EXAMPLE is a name that `stiffmbs examples list` shows; all examples without one.  Errors and times are those of
-    `stiffmbs compare`.
+    EXAMPLE is a name that `stiffmbs examples list` shows; by default all examples are measured.  Errors and times are
+    those of `stiffmbs compare`.
 
     Exit status: 0 measured, 1 some example could not be measured or the command was interrupted, 2 there is no such
     example.

@@ -20,14 +20,15 @@ WORDS = {
 def cache() -> None:
     """Show, clear or fill the cache of compiled equations.
 
-    It lies in the user's cache directory, or where the variable STIFFMBS_CACHE says, and can be removed at any time.
+    It is in the user's cache directory, or in the directory named by the variable STIFFMBS_CACHE, and can be removed at
+    any time.
     """
 
 
 @cache.command()
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line.")
 def show(as_json: bool) -> None:
-    """Say where the cache lies and what it holds."""
+    """Show the directory of the cache and its content."""
     from ..cache.entries import DIRECTORY_VARIABLE, cache_directory
     from ..compile.machine.cache_contents import stored
 
@@ -43,7 +44,7 @@ def show(as_json: bool) -> None:
 
 @cache.command()
 def clear() -> None:
-    """Remove all entries; the next runs compile anew."""
+    """Remove all entries; the next runs compile again."""
     from ..cache.entries import cache_directory
     from ..compile.machine.cache_contents import clear as cleared
 
@@ -57,7 +58,7 @@ def clear() -> None:
 
 @cache.command(short_help="Compile all usual elements and all solvers ahead.")
 def warm() -> None:
-    """Compile all kinds of elements in their usual forms and all solvers, so that first runs need not wait."""
+    """Compile all kinds of elements in their usual forms and all solvers, to shorten first runs."""
     from ..analyses.warm import warm as fill
     from ..cache.entries import cache_directory
     from ..compile.machine.cache import KERNEL, RECORD, ROUTINE

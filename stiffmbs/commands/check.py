@@ -26,7 +26,7 @@ PROBLEMS = 1
 def check(scene: str, as_json: bool, changes: list[tuple[str, str]]) -> None:
     """Report SCENE's degrees of freedom, redundant equations, and reactions without a unique value.
 
-    Of an Adams/Solver dataset every statement is listed first: read, left out, or refused, and why.
+    For an Adams/Solver dataset every statement is listed first: read, left out, or refused, with the reason.
 
     Exit status: 0 sound, 1 problems, 2 the input is wrong.
     """
@@ -52,12 +52,12 @@ def check(scene: str, as_json: bool, changes: list[tuple[str, str]]) -> None:
 
 
 def _listed(scene: str) -> Sequence[ListedStatement]:
-    """The statements of a dataset; none of anything else, or of what cannot be read at all."""
+    """Return the statements of a dataset, or none for other or unreadable files."""
     if Path(scene).suffix.lower() != DATASET:
         return ()
     from ..adams.listing import listed_statements
 
     try:
         return listed_statements(scene)
-    except StiffmbsError:  # told where the scene is made
+    except StiffmbsError:  # reported when the scene is read
         return ()

@@ -55,11 +55,12 @@ if TYPE_CHECKING:
 def compare(scene: str, output: Path | None, as_json: bool, **options: Any) -> None:
     """Measure run time against error of solvers, schemes and formulations on SCENE.
 
-    The reference is a motion on which bdf and dop853 agree at tight tolerances; where they do not, the comparison is refused.
-    With --over it measures time at an equal error against a parameter, and names where bdf and explicit steps cross.
+    The reference is a motion on which bdf and dop853 agree at tight tolerances; if they disagree, the comparison is
+    refused. With --over it measures time at an equal error against a parameter, and names where bdf and explicit steps
+    cross.
 
-    Exit status: 0 done, 1 interrupted (what was measured is shown), there is no reference, or the figure could not be
-    written, 2 the input is wrong.
+    Exit status: 0 done, 1 interrupted (measurements so far are shown), there is no reference, or the figure could not
+    be written, 2 the input is wrong.
     """
     from .progress import Telling
 
@@ -79,7 +80,7 @@ def compare(scene: str, output: Path | None, as_json: bool, **options: Any) -> N
 
 
 def _found(scene: str, options: dict[str, Any], tell: Any) -> Found:
-    """What was measured, as it was asked for."""
+    """Return the comparison that the options request."""
     asked = {name: options[name] for name in ("measure", "repeats", "longest")}
     asked |= {name: _names(options[name]) for name in ("solvers", "formulations") if options[name]}
     changes = [*options["changes"], *([("run.duration", options["duration"])] if options["duration"] else [])]
@@ -125,7 +126,7 @@ def _show(scene: str, found: Found, as_json: bool) -> None:
 
 
 def _draw(path: Path, found: Found) -> bool:
-    """Draw the figure; whether it could be written."""
+    """Draw the figure; return True if it was written."""
     from ..comparison.figure import write_figure
 
     try:

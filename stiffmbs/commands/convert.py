@@ -34,9 +34,9 @@ DATASET = ".adm"
 def convert(
     scene: str, output: Path | None, in_space: bool, coordinates: tuple[str, ...], changes: list[tuple[str, str]]
 ) -> None:
-    """Write the scene that an Adams/Solver dataset (.adm) or a robot (URDF, MJCF) is run as, or a planar scene in space.
+    """Convert an Adams/Solver dataset (.adm) or a robot (URDF, MJCF) to a scene, or a planar scene to space.
 
-    Where OUTPUT ends in .adm, any of these is written as a dataset, and a command file (.acf) with its run is put beside it.
+    If OUTPUT ends in .adm, the scene is written as a dataset, with a command file (.acf) for its run next to it.
 
     Exit status: 0 done, 1 the file could not be written, 2 the input is wrong.
     """
@@ -70,7 +70,7 @@ def _write(path: Path | None, text: str) -> None:
 def _as_dataset(
     path: str, output: Path, coordinates: tuple[str, ...], changes: list[tuple[str, str]]
 ) -> dict[Path | None, str]:
-    """A dataset and its command file, by the names that they get."""
+    """Return a dataset and its command file, by their paths."""
     from ..adams.export.dataset_text import command_text, dataset_text
     from ..adams.load import COMMANDS
     from ..analyses.in_space import in_space
@@ -95,7 +95,7 @@ def _in_space(scene: str, changes: list[tuple[str, str]]) -> str:
 
 
 def _of_other(path: str, coordinates: tuple[str, ...], changes: list[tuple[str, str]]) -> str:
-    """The text of a scene from a file of another program."""
+    """Return the text of a scene from a file of another program."""
     from ..adams.load import convert_file
     from ..analyses.load_scene import ROBOTS
     from ..robots.load import convert_robot

@@ -38,7 +38,7 @@ def draw(
 ) -> None:  # fmt: skip
     """Draw SCENE at an instant: bodies, joints, forces and ground by their symbols, force arrows to scale.
 
-    Exit status: 0 done, 1 no motion leads to such a state, or the file could not be written, 2 the input is wrong.
+    Exit status: 0 done, 1 no such state is found, or the file could not be written, 2 the input is wrong.
     """
     from ..show.drawing.draw import check_drawing, state_drawn, summary, write_drawing
     from ..show.drawing.view import check_view

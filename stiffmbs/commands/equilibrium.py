@@ -51,9 +51,9 @@ def equilibrium(
     scene: str, output: Path | None, as_json: bool, velocity: str | None, rotation: str | None, about: str | None,
     rolling: tuple[str, ...], speed: str | None, state: str | None, at: float | None, **options: Any,
 ) -> None:  # fmt: skip
-    """Find the equilibrium of SCENE from its described pose: poses, forces, and what is free to move.
+    """Find the equilibrium of SCENE from its described pose: poses, forces, and free motions.
 
-    It is static, or quasi-static where a velocity or a rotation is given, in which all bodies move together.
+    It is static, or steady if a velocity or a rotation is given, with which all bodies move together.
 
     Exit status: 0 done, 1 no equilibrium was found or the file could not be written, 2 the input is wrong.
     """
@@ -81,7 +81,7 @@ def equilibrium(
 def _motion(
     velocity: str | None, rotation: str | None, about: str | None, rolling: tuple[str, ...], speed: str | None
 ) -> SteadyMotion | None:
-    """The steady motion that options ask for; None for none."""
+    """Return the steady motion that options request, or None."""
     turning = _numbers(rotation)
     given: dict[str, Any] = {
         "velocity": _numbers(velocity), "rotation": turning[0] if turning and len(turning) == 1 else turning,
@@ -94,7 +94,7 @@ def _motion(
 
 
 def _numbers(text: str | None) -> list[Any] | None:
-    """Numbers, or texts with units, between commas."""
+    """Return numbers, or texts with units, separated by commas."""
     return None if text is None else [_number(part.strip()) for part in text.split(",")]
 
 

@@ -46,7 +46,7 @@ def _sought_options(command: Command) -> Command:
 def fit(
     scene: str, data: str, parameters: tuple[str, ...], start: tuple[str, ...], as_json: bool, **options: Any
 ) -> None:
-    """Find the parameters with which SCENE follows the channels in FILE best, with 95 % confidence intervals.
+    """Fit parameters of SCENE to the channels in FILE, with 95 % confidence intervals.
 
     Exit status: 0 done, 1 the search did not converge, 2 the input is wrong.
     """
@@ -74,7 +74,7 @@ def optimise(
     scene: str, minimise: str, keep: tuple[str, ...], parameters: tuple[str, ...], start: tuple[str, ...], as_json: bool,
     **options: Any,
 ) -> None:  # fmt: skip
-    """Find the parameters of SCENE that make an output least, within bounds and under constraints.
+    """Find the parameters of SCENE that minimise an output, within bounds and under constraints.
 
     Exit status: 0 done, 1 the search did not converge, 2 the input is wrong.
     """

@@ -1,4 +1,4 @@
-"""The command ``stiffmbs``: its subcommands have a file each."""
+"""Command ``stiffmbs`` with its subcommands, one file each."""
 
 from __future__ import annotations
 

@@ -40,9 +40,9 @@ from .scene import STOPPED_EARLY, changes_of, in_file, refuse, solving_options, 
 def modes(
     scene: str, state: str | None, at: float | None, output: Path | None, amplitude: float, as_json: bool, **options: Any
 ) -> None:  # fmt: skip
-    """Linearise SCENE about a state: frequency, damping and participation of each mode, as many as degrees of freedom.
+    """Linearise SCENE about a state: frequency, damping and participation of each mode, one per degree of freedom.
 
-    Exit status: 0 done, 1 no motion leads to such a state or a file could not be written, 2 the input is wrong.
+    Exit status: 0 done, 1 no such state is found or a file could not be written, 2 the input is wrong.
     """
     from ..analyses.linearised.modes import modes as found_modes
     from ..results.files import check_output, write

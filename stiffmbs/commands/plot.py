@@ -40,7 +40,7 @@ def plot(
     source: str, channels: tuple[str, ...], against: str, others: tuple[Path, ...], title: str, output: Path | None,
     live: bool, as_json: bool, **options: Any,
 ) -> None:  # fmt: skip
-    """Plot CHANNELS of a run: of RESULTS (.npz), or of SCENE, which is solved first.  Each unit has a plot of its own.
+    """Plot CHANNELS of a run: of RESULTS (.npz), or of SCENE, which is solved first.  Each unit has its own plot.
 
     Exit status: 0 done, 1 the file could not be written, 2 the input is wrong.
     """
@@ -74,7 +74,7 @@ def _live(
     source: str, channels: tuple[str, ...], against: str, title: str, others: tuple[Path, ...], output: Path | None,
     options: dict[str, Any],
 ) -> Figure:  # fmt: skip
-    """Solve a scene and draw what was solved so far, in a window."""
+    """Solve a scene and plot the solution so far in a window."""
     from ..show.live_window import show_live
     from ..studies.follow import follow
 

@@ -1,4 +1,4 @@
-"""The command as a process: signals, memory, and a standard output that is full or closed, each without a traceback."""
+"""Process of a command: signals, memory, and a full or closed standard output, without tracebacks."""
 
 from __future__ import annotations
 
@@ -24,20 +24,20 @@ OF_OUTPUT = (errno.ENOSPC, errno.EIO, errno.EBADF, errno.EPIPE, errno.EDQUOT)
 ASKING_TO_END = ("SIGINT", "SIGTERM")
 STANDARD_FILES = (0, 1, 2)
 AGAIN = 0.01
-"""Seconds after which an interrupt is raised again that met a callback."""
+"""Delay after which an interrupt lost in a callback is raised again, s."""
 
 
 class Process(click.Group):
-    """A group of commands that ends with an exit status and a sentence, whatever happens.
+    """Group of commands that always ends with an exit status and a message.
 
-    SIGTERM does what Ctrl-C does: a run that has begun keeps its results, with exit status 1; anything else ends with 130.
+    SIGTERM acts like Ctrl-C: a run that has started keeps its results, with exit status 1; otherwise the status is 130.
     """
 
     def main(self, *arguments: Any, **options: Any) -> Any:
-        """Run the command that is asked for; see `click.Command.main`."""
+        """Run the requested command; see `click.Command.main`."""
         closed = _with_standard_files()
         with _signals(), _no_interrupt_lost(), _escaping(), warnings.catch_warnings():
-            # Numbers that overflow are told where they end up, in sentences.
+            # Overflows are reported in sentences where they have an effect.
             warnings.simplefilter("ignore", RuntimeWarning)
             status = 0
             try:
@@ -50,7 +50,7 @@ class Process(click.Group):
 
 
 def _status(command: Any) -> int:
-    """The exit status of a command; a sentence is told for what went wrong."""
+    """Return the exit status of a command; print a message on a failure."""
     try:
         ended = command()
     except SystemExit as end:
@@ -87,9 +87,9 @@ def _tell(sentence: str) -> None:
 
 
 def _with_standard_files() -> bool:
-    """Let no file that is opened later take the place of a standard one; whether standard output is closed."""
+    """Reserve the descriptors of standard files; return True if standard output is closed."""
     closed = sys.stdout is None
-    if not closed and sys.stdout is not sys.__stdout__:  # a test's, or another program's
+    if not closed and sys.stdout is not sys.__stdout__:  # stream of a test, or of another program
         return False
     for number in STANDARD_FILES:
         try:
@@ -105,12 +105,12 @@ def _with_standard_files() -> bool:
 
 
 def _flushed(told: bool) -> bool:
-    """Whether all that was printed has been written; what cannot be is given up, so that the interpreter doesn't try again.
+    """Flush standard output and return True on success; otherwise discard it, so that Python does not retry.
 
     Parameters
     ----------
     told : bool
-        Whether the user knows already why the command failed: a buffer that cannot be written fails here a second time.
+        True if a failure was already reported: an unwritable buffer fails here a second time.
     """
     try:
         sys.stdout.flush()
@@ -141,7 +141,7 @@ def _escaping() -> Iterator[None]:
 
 @contextlib.contextmanager
 def _signals() -> Iterator[None]:
-    """Let requests to end interrupt a command; after it, as its process ends, they are of no use any more."""
+    """Let signals interrupt a command; ignore them afterwards, while the process ends."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
@@ -157,7 +157,7 @@ def _signals() -> Iterator[None]:
 
 @contextlib.contextmanager
 def _no_interrupt_lost() -> Iterator[None]:
-    """Raise an interrupt again that meets a weak reference's callback: Python would print its traceback there and go on."""
+    """Raise an interrupt again if it occurs in a weak reference's callback, where Python would only print it."""
     before = sys.unraisablehook
 
     def raised_again(unraisable: Any) -> None:
@@ -175,6 +175,6 @@ def _no_interrupt_lost() -> Iterator[None]:
 
 def _interrupt() -> None:
     if hasattr(signal, "pthread_kill"):
-        signal.pthread_kill(threading.main_thread().ident or 0, signal.SIGINT)  # a real one, which wakes what sleeps
+        signal.pthread_kill(threading.main_thread().ident or 0, signal.SIGINT)  # a real signal, which wakes sleep
     else:
         interrupt_main()

@@ -1,4 +1,4 @@
-"""What shows on standard error, on a terminal, that a command is at work."""
+"""Progress of a command on standard error, on a terminal."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from .terminal.listener import Listener
 from .terminal.logging_options import is_quiet
 
 SHOWN_AFTER, BETWEEN_UPDATES = 2.0, 0.1
-"""Seconds after which progress is shown, and from one time that it is written to the next."""
+"""Delay before progress is shown, and least time between updates, s."""
 
 
 class ProgressBar:
-    """Called with the time reached; shows what a run is doing when it takes long and someone can see it.
+    """Progress bar of a long run on a terminal, called with the time reached.
 
-    While it is entered it listens to what the package tells by Python's logging: what is derived, compiled, assembled, and
-    the size and order of steps.
+    As a context manager it listens to the log records of the package: derivation, compilation, assembly, and the size
+    and order of steps.
 
     Parameters
     ----------
     start, end : float
-        Of the run, s.
+        Start and end of the run, s.
     """
 
     def __init__(self, start: float, end: float) -> None:
@@ -46,7 +46,7 @@ class ProgressBar:
         self._show(reached=reached, after="left", total=self._end - self._start, completed=t - self._start)
 
     def _tell_stage(self, stage: str, slow: bool) -> None:
-        """Show what is done before and between steps: at once where it takes long, as deriving and compiling do."""
+        """Show the stages before and between steps; slow ones, as derivation and compilation, at once."""
         if slow or self._bar is not None or time.monotonic() - self._begun > SHOWN_AFTER:
             self._show(description=stage)
 
@@ -74,7 +74,7 @@ class ProgressBar:
 
 
 class Telling:
-    """Called with a line on what is being done; shows the last one while someone can see it."""
+    """Status line on a terminal, called with a line on the progress."""
 
     def __init__(self) -> None:
         self._seen = sys.stderr.isatty()

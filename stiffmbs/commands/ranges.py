@@ -16,20 +16,20 @@ RANGE = re.compile(rf"\s*({NUMBER})\s*(?:\.\.|:)\s*({NUMBER})\s*(?::\s*(\d+)\s*)
 WITH_UNIT = re.compile(rf"\s*({NUMBER})\s*([^\W\d_][\w /*^()-]*)?")
 DECADE = 10.0
 LINEAR = 5
-"""Numbers of a range of less than a decade, where nobody says how many."""
+"""Default number of points of a range of less than a decade."""
 EXPECTED = "expected a range such as 1e5..1e9, with a number of points 1e5..1e9:9, or numbers 1,2,5"
 
 
 def numbers_in(option: str, text: str, per_decade: int = 1) -> tuple[float, ...]:
-    """The numbers of a range or a list: evenly spaced in their logarithms over a decade or more, else evenly.
+    """Return the numbers of a range or a list: logarithmically spaced over a decade or more, else linearly.
 
     Parameters
     ----------
     option : str
-        For messages.
+        Option for messages.
     text : str
     per_decade : int
-        How many there are in a decade, where the range does not say.
+        Default number of points per decade.
 
     Raises
     ------
@@ -62,7 +62,7 @@ def _listed(option: str, text: str) -> tuple[float, ...]:
 
 @dataclass(frozen=True)
 class Values:
-    """A parameter and its values, in SI units, with their dimension where units were written."""
+    """Parameter and its values, SI units, with their dimension if units are given."""
 
     parameter: str
     numbers: tuple[float, ...]
@@ -70,7 +70,7 @@ class Values:
 
 
 def values_in(option: str, text: str) -> Values:
-    """A parameter and its values: ``k_b=1e5..1e9``, ``k_b=100..1e6 N/mm:9``.
+    """Read a parameter and its values: ``k_b=1e5..1e9``, ``k_b=100..1e6 N/mm:9``.
 
     A number without a unit has that of the last one.
 
@@ -96,7 +96,7 @@ def values_in(option: str, text: str) -> Values:
 
 
 def _in_si(option: str, found: re.Match[str] | None, unit: str, text: str) -> Quantity:
-    """A number with its unit, or with the one of the last number."""
+    """Return a number with its unit, or with that of the last number."""
     from ..describe.formula.text import FormulaError
     from ..describe.units.quantity import quantity
 

@@ -42,9 +42,10 @@ def report(
     scene: str, output: Path | None, verify: bool, equilibrium: bool, compare: bool, kc: tuple[str, ...], loads: bool,
     **options: Any,
 ) -> None:  # fmt: skip
-    """Check and solve SCENE and write one page on it: findings, settings, peaks with error bars, figures, the solver's steps.
+    """Check and solve SCENE and write a report: findings, settings, peaks with error bars, figures, solver steps.
 
-    Where there is no equilibrium, no such axle or no reference for a comparison, the page says why.
+    If there is no equilibrium, no such axle or no reference for a comparison, the page states the reason.
+
     Exit status: 0 done, 1 stopped early (the page is written all the same), 2 the input is wrong.
     """
     from ..show.report import check_report, write_report
@@ -76,7 +77,7 @@ def report(
 
 
 def _section(title: str, made: Callable[[], Section]) -> Section:
-    """What is asked for besides, or why there is none."""
+    """Return a requested section, or the reason why there is none."""
     from ..show.sections import Section
 
     try:

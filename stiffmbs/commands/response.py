@@ -38,10 +38,12 @@ def response(
     scene: str, inputs: tuple[str, ...], outputs: tuple[str, ...], lowest: float, highest: float, points: int,
     at: float | None, path: Path | None, as_json: bool, **options: Any,
 ) -> None:  # fmt: skip
-    """Linearise SCENE about a state, and show how outputs answer to harmonic inputs: gain and phase.
+    """Linearise SCENE about a state, and show the frequency response of outputs to inputs: gain and phase.
 
-    An input is a force or torque on a body in ground axes, or a parameter of SCENE, such as the height of a road in its formulas.
-    Exit status: 0 done, 1 the file could not be written or no motion leads to such a state, 2 the input is wrong.
+    An input is a force or torque on a body in ground axes, or a parameter of SCENE, such as the height of a road in its
+    formulas.
+
+    Exit status: 0 done, 1 the file could not be written or no such state is found, 2 the input is wrong.
     """
     import numpy as np
 

@@ -53,8 +53,8 @@ def run(
 ) -> None:  # fmt: skip
     """Solve SCENE and show the range of every joint force.
 
-    Exit status: 0 done, 1 stopped early (results up to there are kept) or a file that was asked for could not be
-    written, 2 the input is wrong.
+    Exit status: 0 done, 1 stopped early (results up to there are kept) or a requested file could not be written, 2 the
+    input is wrong.
     """
     try:
         if output is not None:
@@ -88,7 +88,7 @@ def _drawing() -> Any:
 
 
 def _draw(scene: str, path: Path, solution: Any, loaded: Scene, as_json: bool) -> bool:
-    """Draw the figure; whether it could be written."""
+    """Draw the figure; return True if it was written."""
     try:
         return is_written(path, lambda: _drawing().draw(path, solution, loaded.figure))
     except StiffmbsError as error:
@@ -96,7 +96,7 @@ def _draw(scene: str, path: Path, solution: Any, loaded: Scene, as_json: bool) -
 
 
 def _write(scene: str, output: Path | None, as_json: bool, solution: Any) -> tuple[str, bool]:
-    """Write the results where asked, or beside the user's work; says where they lie, and whether none that was asked for is missing."""
+    """Write the results to the requested or default file; return where, and False if a requested file is missing."""
     path = output or file_beside(scene, ".results.npz")
     if output is None and as_json:
         return "not written", True
@@ -120,7 +120,7 @@ def _show(scene: str, solution: Any, results: str, as_json: bool, all_loads: boo
 
 
 def console() -> Console:
-    """Standard output; lines are broken to the width of a terminal, or of COLUMNS, and nowhere else."""
+    """Return a console for standard output; lines are broken only at the width of a terminal or of COLUMNS."""
     from ..show.escaped import console as escaping_console
     from ..show.summary import UNBROKEN
 

@@ -14,11 +14,11 @@ if TYPE_CHECKING:
     from ..results.solution import Solution
 
 RESULTS = ".npz"
-"""How the name of a file of results ends."""
+"""File suffix of results."""
 
 
 def loaded_runs(paths: Sequence[Path]) -> dict[str, Solution]:
-    """Runs from files of results, by names that tell them apart.
+    """Return runs from files of results, by distinct names.
 
     Raises
     ------
@@ -30,13 +30,13 @@ def loaded_runs(paths: Sequence[Path]) -> dict[str, Solution]:
 
 
 def _name(path: Path, paths: Sequence[Path]) -> str:
-    """The file's name without its endings; all of its path where another one has the same."""
+    """Return the file's name without its suffixes, or its path if another file has the same name."""
     stem = path.name.removesuffix(RESULTS).removesuffix(".results")
     return stem if [other.name for other in paths].count(path.name) == 1 else str(path)
 
 
 def runs_of(source: str, others: Sequence[Path], options: dict[str, Any]) -> dict[str, Solution]:
-    """The run of a scene, or of a file of results, and other runs from files; a run alone has no name.
+    """Return the run of a scene, or of a file of results, and other runs from files; a single run has no name.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What commands on a scene share: options that change it, solving it, refusing it."""
+"""Shared parts of commands on a scene: options, solution, errors."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ CHANGES = click.option(
 
 
 def solving_options(command: Command) -> Command:
-    """The options ``--rtol``, ``--duration``, ``--solver``, ``--scheme`` and ``--set`` of a command; see `changes_of`."""
+    """Add the options ``--rtol``, ``--duration``, ``--solver``, ``--scheme`` and ``--set``; see `changes_of`."""
     options = (
         click.option("--rtol", help="Relative tolerance of bdf and the adaptive schemes."),
         click.option("--duration", help="Time to solve, s, or with a unit."),
@@ -61,13 +61,13 @@ def solving_options(command: Command) -> Command:
 
 
 def changes_of(options: dict[str, Any]) -> list[tuple[str, str]]:
-    """All changes that the options of `solving_options` ask for, as paths and values."""
+    """Return all changes that the options of `solving_options` request, as paths and values."""
     chosen = [(f"run.{name}", options[name]) for name in ("rtol", "duration", "solver", "scheme")]
     return options["changes"] + [(path, value) for path, value in chosen if value is not None]
 
 
 def state_options(command: Command) -> Command:
-    """The options ``--from`` and ``--at`` of a command that may start from a saved state; see `start_of`."""
+    """Add the options ``--from`` and ``--at`` to a command that may start from a saved state; see `start_of`."""
     options = (
         click.option(
             "--from", "state", metavar="FILE", help="Start from the state in FILE, results of run -o or equilibrium -o."
@@ -80,12 +80,12 @@ def state_options(command: Command) -> Command:
 
 
 def start_of(scene: Scene, state: str | None, at: float | None, changes: list[tuple[str, str]]) -> dict[str, Any]:
-    """What `state_options` ask for, as keywords of a job; the time at the start is the state's unless ``--set`` has it.
+    """Return the values of `state_options` as keywords of a job; the start is the state's time unless ``--set`` has it.
 
     Raises
     ------
     InputError
-        When there is no such state.
+        If there is no such state.
     """
     if state is None:
         if at is not None:
@@ -99,12 +99,12 @@ def start_of(scene: Scene, state: str | None, at: float | None, changes: list[tu
 
 
 def solve_scene(path: str, scene: Scene, verified: bool, **start: Any) -> Solution:
-    """Solve a scene with a progress bar, from where `start_of` tells.
+    """Solve a scene with a progress bar, from the start of `start_of`.
 
     Raises
     ------
     InputError, AssemblyError
-        The latter names the file.
+        The message names the file.
     """
     from .progress import ProgressBar
 
@@ -119,7 +119,7 @@ def solve_scene(path: str, scene: Scene, verified: bool, **start: Any) -> Soluti
 
 @contextmanager
 def in_file(path: str) -> Iterator[None]:
-    """Put the file's name before what is found wrong with a scene after it was read."""
+    """Add the file's name to errors in a scene that are found after it was read."""
     try:
         yield
     except (InputError, AssemblyError) as error:
@@ -127,7 +127,7 @@ def in_file(path: str) -> Iterator[None]:
 
 
 def refuse_own_input(option: str, scene: str, output: Path) -> None:
-    """Refuse to write over the file that is read, by whatever name it is called.
+    """Reject an output that is the input file under any name.
 
     Raises
     ------
@@ -135,7 +135,7 @@ def refuse_own_input(option: str, scene: str, output: Path) -> None:
     """
     try:
         same = scene != STANDARD_INPUT and os.path.samefile(scene, output)
-    except (OSError, ValueError):  # one of them is not there
+    except (OSError, ValueError):  # one of them does not exist
         return
     if same:
         raise InputError(f"{option} {output}: found the file that is read, {scene}, expected another one")
@@ -152,12 +152,12 @@ def is_written(path: Path, write: Callable[[], object]) -> bool:
 
 
 def file_beside(scene: str, ending: str) -> Path:
-    """Where a command writes that is not told where: a file in the working folder, named after the scene."""
+    """Return the default output file: in the working folder, named after the scene."""
     return Path(f"{'stdin' if scene == STANDARD_INPUT else Path(scene).stem}{ending}")
 
 
 def refuse(scene: str, error: StiffmbsError, as_json: bool = False) -> NoReturn:
-    """End the command with one sentence on what is wrong with the input, or on what the solver did not find."""
+    """End the command with one sentence on the invalid input, or on the failure of the solver."""
     from ..show.summary import error_as_json
 
     unsolved = isinstance(error, SolverError)

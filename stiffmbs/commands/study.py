@@ -42,10 +42,10 @@ def study(
     scene: str, vary: tuple[str, ...], sample: str | None, seed: int, outputs: tuple[str, ...], workers: int,
     processes: bool, output: Path | None, as_json: bool, **options: Any,
 ) -> None:  # fmt: skip
-    """Solve SCENE for a grid or a sample of values, and keep what is asked for of each run.
+    """Solve SCENE for a grid or a sample of values, and keep the requested outputs of each run.
 
-    Each case that is done is kept in FILE.study beside the output until the table is written: a study that was stopped, in
-    whatever way, goes on from there when it is started again.
+    Each completed case is kept in FILE.study next to the output until the table is written: an interrupted study
+    continues from there when it is started again.
 
     Exit status: 0 done, 1 not all cases could be solved or the file could not be written, 2 the input is wrong.
     """
@@ -86,7 +86,7 @@ def _solved(ready: Any, workers: int, processes: bool, store: Path | None, watch
 
 
 def _write(output: Path | None, store: Path | None, data: xarray.Dataset, write: Any) -> bool:
-    """Write the table where asked, and then let go of the rows; whether it could be written."""
+    """Write the table if requested, and then remove the stored rows; return True unless writing fails."""
     if output is None or store is None:
         return True
     if not is_written(output, lambda: write(output, data)):
@@ -103,7 +103,7 @@ def _show(scene: str, data: xarray.Dataset, as_json: bool) -> None:
 
 
 class _Bar:
-    """Shows how far a study is on standard error, where someone can see it."""
+    """Progress bar of a study on standard error, on a terminal."""
 
     def __init__(self) -> None:
         self._bar: Any = None

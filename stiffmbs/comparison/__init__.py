@@ -1,4 +1,4 @@
-"""Solvers compared on a scene of a user's own: run time against error, and against a parameter at an equal error.
+"""Comparison of solvers on any scene: run time against error, and against a parameter at an equal error.
 
 The reference comes from an implicit and an explicit integrator that agree.
 """

@@ -1,4 +1,4 @@
-"""Times at equal errors, between what was measured."""
+"""Run times at equal errors, interpolated between measurements."""
 
 from __future__ import annotations
 
@@ -11,20 +11,20 @@ from .interpolation import value_at_error
 from .row import Row
 
 CLOCK_RESOLUTION = 1e-9
-"""Time, s, that a solution takes at the least: clocks may show none."""
+"""Least time of a solution, s, as clocks may show zero."""
 
 
 @dataclass(frozen=True)
 class AtError:
-    """Times at one error.
+    """Run times at one error.
 
     Attributes
     ----------
     error : float
     seconds, steps : mappings of str to float
-        Of each solver that reaches the error.
+        Values of each solver that reaches the error.
     better : tuple of str
-        Solvers of which every setting is more accurate than that; theirs is the time of the fastest setting.
+        Solvers whose every setting is more accurate; their time is that of the fastest setting.
     """
 
     error: float
@@ -34,11 +34,11 @@ class AtError:
 
     @property
     def fastest(self) -> str:
-        """The solver that takes the least time."""
+        """Return the solver with the least time."""
         return min(self.seconds, key=lambda name: self.seconds[name])
 
     def as_dict(self) -> dict[str, object]:
-        """An entry of ``at_errors`` in ``stiffmbs compare --json``."""
+        """Return an entry of ``at_errors`` in ``stiffmbs compare --json``."""
         return {
             "error": self.error,
             "seconds": dict(self.seconds),
@@ -48,7 +48,7 @@ class AtError:
 
 
 def decades(rows: Sequence[Row], measure: str, resolved: float) -> list[float]:
-    """Powers of ten among the errors that were measured, the largest first; just one above all where none is known."""
+    """Return the powers of ten within the measured errors, the largest first; the next above `resolved` if none is."""
     errors = [row.errors[measure] for row in rows if row.errors and np.isfinite(row.errors[measure])]
     known = [error for error in errors if error > resolved]
     if not known:
@@ -58,14 +58,14 @@ def decades(rows: Sequence[Row], measure: str, resolved: float) -> list[float]:
 
 
 def times_at(rows: Sequence[Row], measure: str, resolved: float, targets: Sequence[float]) -> Iterator[AtError]:
-    """Times at errors, by lines through the measured points about each.
+    """Yield run times at given errors, interpolated between the neighbouring measurements.
 
     Parameters
     ----------
     rows : sequence of Row
     measure : str
     resolved : float
-        Errors below this are not known.
+        Error below which errors are not resolved.
     targets : sequence of float
     """
     done = [row for row in rows if row.errors and np.isfinite(row.errors[measure])]
@@ -90,6 +90,6 @@ def times_at(rows: Sequence[Row], measure: str, resolved: float, targets: Sequen
 
 
 def _read(rows: Sequence[Row], measure: str, values: Sequence[float], target: float) -> float | None:
-    """What one solver needs at an error, of values at each of its rows; None where its errors are all on one side."""
+    """Return the interpolated value of one solver at an error, or None if all its errors are on one side."""
     least = [max(value, CLOCK_RESOLUTION) for value in values]
     return value_at_error(zip((row.errors[measure] for row in rows), least, strict=True), target)

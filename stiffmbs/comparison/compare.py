@@ -1,4 +1,4 @@
-"""Run time against error of solvers, schemes and formulations, on any model."""
+"""Run time against error of solvers, schemes and formulations, for any model."""
 
 from __future__ import annotations
 
@@ -23,23 +23,22 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Comparison:
-    """Solvers compared on a model.
+    """Comparison of solvers on a model.
 
     Attributes
     ----------
     name : str
-        Of the model.
     measure : str
-        What errors are measured in: ``positions`` (m, rad), ``velocities`` or ``forces``.
+        Measure of errors: ``positions`` (m, rad), ``velocities`` or ``forces``.
     rows : tuple of Row
-        For each way to solve and each setting.
+        Measurements for each solver entry and each setting.
     at_errors : tuple of AtError
         Times at equal errors, powers of ten from the largest on.
     reference : Reference
     entries : tuple of Entry
-        The ways to solve.
+        Compared solvers, with schemes and formulations.
     interrupted : bool
-        Whether the user ended it early.
+        True if the user ended it early.
     """
 
     name: str
@@ -52,19 +51,13 @@ class Comparison:
 
     @property
     def conclusion(self) -> str:
-        """Who is fastest at which errors, in a sentence."""
+        """Return a sentence on the fastest solver at each error."""
         from .words import conclusion
 
         return conclusion(self)
 
     def as_dict(self, scene: str) -> dict[str, Any]:
-        """The content of ``stiffmbs compare --json``.
-
-        Parameters
-        ----------
-        scene : str
-            The file, or what else the scene is called.
-        """
+        """Return the content of ``stiffmbs compare --json``; `scene` is the file or name of the scene."""
         return {
             "scene": scene, "measure": self.measure, "rows": [row.as_dict(self.measure) for row in self.rows],
             "errors": {name: [row.errors.get(name) for row in self.rows] for name in self.reference.agreement},
@@ -74,7 +67,7 @@ class Comparison:
         }  # fmt: skip
 
     def plot(self) -> Sheet:
-        """Time against error, both logarithmic, as a figure of matplotlib's."""
+        """Plot time against error, both logarithmic, as a figure of matplotlib."""
         from .figure import work_precision
 
         return work_precision(self)
@@ -101,8 +94,8 @@ def compare(
 ) -> Comparison:
     """Measure run time against error of solvers on a model.
 
-    The reference is a motion on which bdf and dop853, both at a relative tolerance of 1e-12, agree.  Times are of the
-    integration alone: medians of the processor's time, all taking turns.
+    The reference is a motion on which bdf and dop853, both at a relative tolerance of 1e-12, agree.  Times are medians
+    of the processor time of the integration alone; all solvers take turns.
 
     Parameters
     ----------
@@ -111,22 +104,22 @@ def compare(
     solvers : sequence of str
         ``bdf``, ``auto``, ``kinematic``, ``dop853``, ``dopri5``, ``rk4``, ``euler_cromer``, or ``all``.
     formulations : sequence of str
-        Of bdf, each compared: ``SI2``, ``SI1``, ``I3``, ...
+        Formulations of bdf to compare: ``SI2``, ``SI1``, ``I3``, ...
     tolerances : sequence of float
         Relative tolerances.
     steps : sequence of float
-        Of the schemes with fixed steps, s; parts of the duration without them.
+        Steps of the schemes with fixed steps, s; by default parts of the duration.
     measure : str
-        What the error is measured in: the largest over all output instants of ``positions`` (m or rad, of all bodies),
+        Measure of the error, the largest over all output instants: ``positions`` (m or rad, of all bodies),
         ``velocities`` (m/s or rad/s), or ``forces`` (N or N m, of joints and forces that are unique).
     repeats : int
-        How often each run is timed; those that take longer than 0.2 s are timed once.
+        Number of timings of each run; runs longer than 0.2 s are timed once.
     longest : float
-        A run that takes longer is given up, s; each run of the reference may take ten times as long.
+        Time limit of a run, s; each run of the reference may take ten times as long.
     settings : RunSettings, optional
-        The scene's own by default.
+        Settings of the run; by default those of the scene.
     tell : callable, optional
-        Called with a line on what is being done.
+        Called with a line of text on the progress.
     **changes
         Fields of the settings to change.
 
@@ -139,7 +132,7 @@ def compare(
     InputError, AssemblyError
         As for `stiffmbs.run`.
     SolverError
-        Where there is no reference: the two integrators disagree, or one does not come to the end.
+        If there is no reference: the two integrators disagree, or one does not reach the end.
     """
     data = data_of(model)
     plan = plan_of(solvers, formulations, tolerances, steps, measure, repeats, longest)
@@ -159,12 +152,12 @@ def compare(
 
 
 def measured(swept: Iterator[Point], plan: Plan, tell: Tell) -> tuple[list[Point], bool]:
-    """Points with their times; and whether the user ended this early, who then has what there is.
+    """Return points with their times, and True if the user ended this early.
 
     Raises
     ------
     KeyboardInterrupt
-        When the user ends it before there is anything.
+        If the user ends it before there is any point.
     """
     points: list[Point] = []
     try:
@@ -184,7 +177,7 @@ def _told(repeats: int, tell: Tell) -> Iterator[int]:
 
 
 def refuse_unmeasured(plan: Plan, exact: Reference) -> None:
-    """Refuse a measure in which there is nothing to compare.
+    """Reject a measure without values to compare.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What solvers compared over a parameter have taken."""
+"""Results of a comparison of solvers over a parameter."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class AtValue:
-    """What was measured at one value of the parameter.
+    """Measurements at one value of the parameter.
 
     Attributes
     ----------
@@ -25,7 +25,7 @@ class AtValue:
     at : AtError or None
         Times at the error.
     message : str
-        Why there are none, or the solvers that have none, with reasons; empty where all do.
+        Reason why there are none, or the solvers that have none, with reasons; empty if all have one.
     """
 
     value: float
@@ -36,22 +36,21 @@ class AtValue:
 
 @dataclass(frozen=True)
 class ComparisonOver:
-    """Solvers compared over a parameter.
+    """Comparison of solvers over a parameter.
 
     Attributes
     ----------
     name : str
-        Of the model.
     parameter : str
     measure : str
-        What errors are measured in: ``positions`` (m, rad), ``velocities`` or ``forces``.
+        Measure of errors: ``positions`` (m, rad), ``velocities`` or ``forces``.
     error : float
-        At which times are compared.
+        Error at which times are compared.
     values : tuple of AtValue
     entries : tuple of Entry
-        The ways to solve.
+        Compared solvers, with schemes and formulations.
     interrupted : bool
-        Whether the user ended it early.
+        True if the user ended it early.
     """
 
     name: str
@@ -64,29 +63,23 @@ class ComparisonOver:
 
     @property
     def at(self) -> tuple[AtError | None, ...]:
-        """Times at the error, by value."""
+        """Return the times at the error, by value."""
         return tuple(one.at for one in self.values)
 
     @property
     def crossings(self) -> tuple[Crossing, ...]:
-        """Where implicit steps become faster than explicit ones, or the other way."""
+        """Return the values at which implicit steps become faster than explicit ones, or the reverse."""
         return tuple(crossings([one.value for one in self.values], self.at, self.entries)) if self.values else ()
 
     @property
     def conclusion(self) -> str:
-        """Where which kind of integrator is faster, in a sentence."""
+        """Return a sentence on the ranges in which each kind of integrator is faster."""
         from .words import conclusion_over
 
         return conclusion_over(self)
 
     def as_dict(self, scene: str) -> dict[str, Any]:
-        """The content of ``stiffmbs compare --over ... --json``: a row for each value and solver, at the equal error.
-
-        Parameters
-        ----------
-        scene : str
-            The file, or what else the scene is called.
-        """
+        """Return the content of ``stiffmbs compare --over ... --json``, with a row for each value and solver."""
         return {
             "scene": scene, "measure": self.measure, "rows": [row for one in self.values for row in self._rows(one)],
             "over": {"parameter": self.parameter, "values": [one.value for one in self.values], "error": self.error},
@@ -119,7 +112,7 @@ class ComparisonOver:
         return found
 
     def plot(self) -> Sheet:
-        """Time against the parameter as a figure of matplotlib's."""
+        """Plot time against the parameter as a figure of matplotlib."""
         from .figure import over_parameter
 
         return over_parameter(self)

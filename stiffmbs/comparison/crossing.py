@@ -1,4 +1,4 @@
-"""Where over a parameter implicit steps become faster than explicit ones, or the other way."""
+"""Crossings over a parameter: values at which implicit steps become faster than explicit ones, or the reverse."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ Best = tuple[str, float]
 
 @dataclass(frozen=True)
 class Crossing:
-    """Between two values of a parameter the other kind of integrator becomes the faster one.
+    """Change of the faster kind of integrator between two values of a parameter.
 
     Attributes
     ----------
     before, then : str
-        The solver that is faster below, and the one that is above.
+        Faster solver below, and above.
     at : float
-        Where both take the same time.
+        Value at which both take the same time.
     between : (float, float)
-        The values of the parameter on both sides.
+        Values of the parameter on both sides.
     measured : bool
-        Whether both have a time on both sides; else one of them fails there, and `at` is the middle.
+        True if both have a time on both sides; otherwise one of them fails there, and `at` is the middle.
     """
 
     before: str
@@ -38,17 +38,17 @@ class Crossing:
     measured: bool
 
     def as_dict(self) -> dict[str, Any]:
-        """An entry of ``crossings`` in ``stiffmbs compare --json``."""
+        """Return an entry of ``crossings`` in ``stiffmbs compare --json``."""
         return {"before": self.before, "then": self.then, "at": self.at, "between": list(self.between)}
 
 
 def crossings(values: Sequence[float], at: Sequence[AtError | None], entries: Sequence[Entry]) -> Iterator[Crossing]:
-    """The crossings of the best implicit and the best explicit integrator.
+    """Yield the crossings of the best implicit and the best explicit integrator.
 
     Parameters
     ----------
     values : sequence of float
-        Of the parameter, in order.
+        Values of the parameter, in order.
     at : sequence of AtError or None
         Times at the error, by value.
     entries : sequence of Entry
@@ -60,8 +60,8 @@ def crossings(values: Sequence[float], at: Sequence[AtError | None], entries: Se
     known = [(value, pair) for value, pair in zip(values, best, strict=True) if any(np.isfinite(b[1]) for b in pair)]
     logarithmic = _logarithmic(values)
     for (a, one), (b, other) in itertools.pairwise(known):
-        with np.errstate(divide="ignore"):  # infinite where one kind has no time
-            lead = [float(np.log(pair[0][1] / pair[1][1])) for pair in (one, other)]  # of explicit steps where positive
+        with np.errstate(divide="ignore"):  # infinite if one kind has no time
+            lead = [float(np.log(pair[0][1] / pair[1][1])) for pair in (one, other)]  # positive: explicit is faster
         if lead[0] * lead[1] >= 0:
             continue
         measured = bool(np.all(np.isfinite(lead)))
@@ -76,5 +76,5 @@ def _best(seconds: Mapping[str, float], names: Sequence[str]) -> Best:
 
 
 def _logarithmic(values: Sequence[float]) -> bool:
-    """Whether the values are positive and spread over more than a decade."""
+    """Return True if the values are positive and spread over a decade or more."""
     return min(values) > 0 and max(values) >= 10 * min(values)

@@ -1,4 +1,4 @@
-"""The ways to solve a scene that are compared: solvers, schemes and formulations."""
+"""Compared solver configurations: solvers, schemes and formulations."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from ..solve.settings import changed, traits_of
 
 BDF, PROJECTED, DEFAULT_SCHEME = "bdf", "projected", "dop853"
 USUAL = (BDF, DEFAULT_SCHEME, "auto")
-"""Solvers that are compared where nobody asks for others."""
+"""Solvers that are compared by default."""
 EXACT = "kinematic"
 KNOWN = (BDF, *SCHEMES, *(name for name in SOLVERS if name not in (BDF, PROJECTED, EXACT)), EXACT)
 ALL = "all"
@@ -23,17 +23,17 @@ ALL = "all"
 
 @dataclass(frozen=True)
 class Entry:
-    """A way to solve.
+    """Solver configuration.
 
     Attributes
     ----------
     name : str
     settings : mapping of str to object
-        That choose it.
+        Settings that select it.
     varied : str
-        What makes it more accurate: ``rtol``, ``step``, or nothing.
+        Setting that controls its accuracy: ``rtol``, ``step``, or empty.
     implicit, explicit : bool
-        Which kind of steps it takes; neither for what chooses between them, or takes none.
+        Kind of its steps; both are False if it chooses between the kinds, or takes no steps.
     """
 
     name: str
@@ -44,36 +44,36 @@ class Entry:
 
     @property
     def chooses(self) -> bool:
-        """Whether it chooses between others that are compared."""
+        """Return True if it chooses between other solvers."""
         return bool(self.varied) and not self.implicit and not self.explicit
 
     def at(self, settings: RunSettings, value: float) -> RunSettings:
-        """The settings of a run of it; an absolute tolerance stays in proportion to the relative one."""
+        """Return the settings of a run; an absolute tolerance stays in proportion to the relative one."""
         changes = {**self.settings, **({self.varied: value} if self.varied else {})}
         if self.varied == "rtol" and settings.atol:
             changes["atol"] = settings.atol * value / settings.rtol
         return changed(settings, changes)
 
     def setting(self, value: float) -> str:
-        """What a row says of it: ``rtol 1e-05``."""
+        """Return the setting as text: ``rtol 1e-05``."""
         return f"{self.varied} {value:.3g}" if self.varied else "exact"
 
 
 def entries_of(solvers: Sequence[str], formulations: Sequence[str], settings: RunSettings) -> tuple[Entry, ...]:
-    """The ways to solve that are asked for.
+    """Return the requested solver configurations.
 
     Parameters
     ----------
     solvers : sequence of str
         ``bdf``, ``auto``, ``kinematic``, schemes of `projected`, or ``all``, which is all but ``kinematic``.
     formulations : sequence of str
-        Of bdf; that of the settings where there are none.
+        Formulations of bdf; by default that of the settings.
     settings : RunSettings
 
     Raises
     ------
     InputError
-        When a name is unknown, or formulations are given and bdf is not among the solvers.
+        If a name is unknown, or formulations are given without bdf among the solvers.
     """
     names = [name for given in solvers for name in (KNOWN[:-1] if given == ALL else [given])]
     names = [DEFAULT_SCHEME if name == PROJECTED else name for name in dict.fromkeys(names)]

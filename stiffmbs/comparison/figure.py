@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure as Sheet
 
 SIZE = (7, 4.2)
-"""Of figures, inches."""
+"""Size of figures, inches."""
 
 
 def write_figure(path: Path, sheet: Sheet) -> None:
@@ -31,7 +31,7 @@ def write_figure(path: Path, sheet: Sheet) -> None:
 
 
 def work_precision(comparison: Comparison) -> Sheet:
-    """Time against error of each solver, both logarithmic."""
+    """Plot time against error of each solver, both logarithmic."""
     from matplotlib.figure import Figure as Sheet
 
     sheet = Sheet(figsize=SIZE, layout="constrained")
@@ -48,7 +48,7 @@ def work_precision(comparison: Comparison) -> Sheet:
 
 
 def over_parameter(comparison: ComparisonOver) -> Sheet:
-    """Time of each solver against the parameter, and where they cross."""
+    """Plot the time of each solver against the parameter, with the crossings."""
     from matplotlib.figure import Figure as Sheet
 
     sheet = Sheet(figsize=SIZE, layout="constrained")
@@ -75,12 +75,12 @@ def over_parameter(comparison: ComparisonOver) -> Sheet:
 
 
 def curve(axes: Any, x: Sequence[float], seconds: Sequence[float], label: str, marker: str = ".") -> None:
-    """Times of a solver, on logarithmic axes; lines differ in color and in stroke."""
+    """Plot the times of a solver on logarithmic axes; lines differ in color and in stroke."""
     axes.loglog(x, seconds, marker=marker, label=label, **stroke(len(axes.lines)))
 
 
 def finished(axes: Any, x: str, title: str) -> None:
-    """Give the axes their labels, grid and legend."""
+    """Add labels, grid and legend to the axes."""
     axes.set(xlabel=x, ylabel="time of a solution, s", title=title)
     dress(axes)
     legend_below(axes.figure, [axes])

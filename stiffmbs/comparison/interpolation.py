@@ -1,4 +1,4 @@
-"""Interpolate what solvers need, such as time or steps, to an error between those that were measured."""
+"""Interpolation of the cost of solvers, such as time or steps, at an error between measured ones."""
 
 from __future__ import annotations
 
@@ -8,28 +8,28 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 WINDOW = 10**1.5
-"""Points with errors within this factor of the target determine the line."""
+"""Factor around the target error within which points determine the line."""
 FEWEST = 4
-"""Points of a line; where there are fewer within the window, it runs between the two neighbours of the target."""
+"""Least number of points of a line; with fewer in the window, it runs between the two neighbours of the target."""
 
 
 def value_at_error(points: Iterable[tuple[float, float]], target: float) -> float | None:
-    """Return the value at an error: on a line through many points about it, or between two neighbours.
+    """Return the value at an error: on a line through several points about it, or between two neighbours.
 
-    A point that has a smaller error and a smaller value than the line counts with its own value: looser settings that
-    take longer, where steps follow stability and not the error, make no solver slower.
+    A point with a smaller error and a smaller value than the line counts with its own value.  Looser settings may take
+    longer where stability, not the error, limits steps; they make no solver slower.
 
     Parameters
     ----------
     points : iterable of (float, float)
         Errors and values, each positive.
     target : float
-        The error.
+        Error.
 
     Returns
     -------
     float or None
-        None where all errors are larger than the target, or there are none.
+        None if all errors are larger than the target, or there are none.
     """
     own = sorted(points, key=lambda point: point[0])
     if not own or own[0][0] > target:

@@ -1,4 +1,4 @@
-"""The machine and the versions that times were measured with."""
+"""Machine and package versions of measured times."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ def machine() -> dict[str, Any]:
 
 
 def machine_sentence() -> str:
-    """Return what times were measured on, in one line."""
+    """Return the machine and versions in one line."""
     return ", ".join(f"{name} {value}" for name, value in machine().items())
 
 
 def _processor() -> str:
-    """Return its name as the system tells it."""
+    """Return the name of the processor."""
     try:
         with open("/proc/cpuinfo", encoding="utf-8") as lines:
             names = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
@@ -37,7 +37,7 @@ def _processor() -> str:
 
 
 def _version(package: str) -> str:
-    """Return the version of a package, empty where it is not installed."""
+    """Return the version of a package, or an empty string if it is not installed."""
     try:
         return version(package)
     except PackageNotFoundError:

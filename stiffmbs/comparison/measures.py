@@ -1,4 +1,4 @@
-"""What the error of a motion is measured in: positions, velocities, or forces."""
+"""Error measures of a motion: positions, velocities, or forces."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from ..results.scales import kind_of
 from ..results.solution import Solution
 
 ROTATION = ".rotation"
-"""Ending of what stands for the four parameters of a body in space: the angle between two orientations, rad."""
+"""Suffix of the name that replaces the quaternion of a body in space: the angle between two orientations, rad."""
 QUATERNION = SPACE.positions[SPACE.linear :]
 
 
 @dataclass(frozen=True)
 class Measure:
-    """Channels whose errors are measured together: the kinds of them, and their unit."""
+    """Channels with a common error measure: their kinds and their unit."""
 
     kinds: tuple[str, ...]
     unit: str
@@ -33,12 +33,12 @@ MEASURES = {
 
 
 def measure_of(name: str) -> Measure:
-    """A measure by its name.
+    """Return a measure by its name.
 
     Raises
     ------
     InputError
-        When there is no such measure.
+        If there is no such measure.
     """
     if name not in MEASURES:
         raise InputError(f"measure: found '{name}', expected one of {', '.join(MEASURES)}")
@@ -46,7 +46,7 @@ def measure_of(name: str) -> Measure:
 
 
 def compared(solution: Solution) -> dict[str, tuple[str, ...]]:
-    """What each measure compares: channels of bodies, joints and forces; no requests, no reactions that are not unique."""
+    """Return the channels of each measure: of bodies, joints and forces, without requests and non-unique reactions."""
     left_out = {*solution.requested, *solution.not_unique}
     found: dict[str, list[str]] = {name: [] for name in MEASURES}
     for channel in solution.channels:
@@ -60,17 +60,17 @@ def compared(solution: Solution) -> dict[str, tuple[str, ...]]:
 
 
 def difference(one: Mapping[str, np.ndarray], other: Mapping[str, np.ndarray], name: str) -> np.ndarray:
-    """How far two motions are apart over time in a channel, or in the rotation of a body in space."""
+    """Return the difference of two motions over time in a channel, or in the rotation of a body in space."""
     if not name.endswith(ROTATION) or name in one:
         return np.abs(one[name] - other[name])
     body = name.removesuffix(ROTATION)
     p, r = (np.stack([run[f"{body}.{part}"] for part in QUATERNION]) for run in (one, other))
-    chord = np.minimum(np.linalg.norm(p - r, axis=0), np.linalg.norm(p + r, axis=0))  # p and -p are one orientation
+    chord = np.minimum(np.linalg.norm(p - r, axis=0), np.linalg.norm(p + r, axis=0))  # p and -p are one rotation
     return 4 * np.arcsin(np.minimum(chord / 2, 1.0))
 
 
 def largest(one: Mapping[str, np.ndarray], other: Mapping[str, np.ndarray], name: str) -> float:
-    """The largest difference over time, at instants where both have a value; infinite where a number overflowed."""
+    """Return the largest difference over time, at instants where both have a value; infinite if a number overflowed."""
     apart = difference(one, other, name)
     known = apart[~np.isnan(apart)]
     return float(known.max()) if known.size else np.inf

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     pass
 
 USUAL_ERROR = 1e-4
-"""In positions, m or rad."""
+"""Default error in positions, m or rad."""
 WHOLE = 1e15
 Family = Callable[[float], Runnable]
 
@@ -49,18 +49,18 @@ def compare_over(
     tell: Tell | None = None,
     **changes: Unpack[Settings],
 ) -> ComparisonOver:
-    """Measure run time at an equal error against a parameter of a model, and where bdf and explicit steps cross.
+    """Measure run time at an equal error against a parameter of a model, and find where bdf and explicit steps cross.
 
     Parameters
     ----------
     model : str, Path or callable
-        A scene's file, or a function that makes a model, a scene or a file's name of a value.
+        A scene's file, or a function of a value that returns a model, a scene or a file's name.
     parameter : str
-        A parameter of the scene, or the path of any of its values; of a function just a name.
+        A parameter of the scene, or the path of any of its values; for a function, any name.
     values : sequence of float
-        Of the parameter, SI units.
+        Values of the parameter, SI units.
     error : float, optional
-        At which times are compared, in the unit of the measure; of positions 1e-4 m or rad without it.
+        Error at which times are compared, in the unit of the measure; by default 1e-4 m or rad for positions.
     solvers, formulations, tolerances, steps, measure, repeats, longest, settings, tell, **changes
         As for `stiffmbs.compare`.
 
@@ -73,7 +73,7 @@ def compare_over(
     InputError
         As for `stiffmbs.run`.
     SolverError
-        Where there is no reference at any value.
+        If there is no reference at any value, or no solver reaches the error.
     """
     plan = plan_of(solvers, formulations, tolerances, steps, measure, repeats, longest)
     at_error = _error(error, measure)
@@ -111,7 +111,7 @@ def compare_over(
 def _at_value(
     value: float, sweep: Sweep, plan: Plan, entries: Sequence[Entry], error: float, tell: Tell
 ) -> tuple[AtValue, bool]:
-    """Times at the error for one value; and whether the user ended this early."""
+    """Return times at the error for one value, and True if the user ended this early."""
     resolved = sweep.reference.resolved(plan.measure)
     if error < resolved:
         message = f"the reference is good to {resolved:.1e} alone, expected an error above that"
@@ -127,13 +127,13 @@ def _at_value(
 
 
 def _reason(name: str, rows: Sequence[Row]) -> str:
-    """Why a solver has no time at the error."""
+    """Return the reason why a solver has no time at the error."""
     messages = [row.message for row in rows if row.solver == name and row.message]
     return messages[-1] if messages else "the error was not reached"
 
 
 def _error(error: float | None, measure: str) -> float:
-    """The error at which times are compared; there is a usual one of positions alone."""
+    """Return the error at which times are compared; only positions have a default."""
     if error is None and measure != "positions":
         raise InputError(
             f"error: found none, expected one in {measure_of(measure).unit}, as errors of {measure} are compared"
@@ -146,9 +146,9 @@ def _error(error: float | None, measure: str) -> float:
 def with_parameter(
     path: str | Path, parameter: str, changes: Sequence[tuple[str, str]] = (), dimension: Dimension | None = None
 ) -> Family:
-    """A scene as a function of one of its parameters, or of any other value in it, in SI units; standard input is read once.
+    """Return a scene as a function of a parameter or any other value in it, SI units; standard input is read once.
 
-    Where the dimension of the values is known, the scene refuses one that does not fit.
+    If the dimension of the values is known, the scene rejects another dimension.
     """
     if str(path) == STANDARD_INPUT:
         text = file_text(path)
@@ -157,7 +157,7 @@ def with_parameter(
 
 
 def _written(value: float, dimension: Dimension | None) -> str:
-    """With its unit, where it has one; whole numbers without a point, as counts are written."""
+    """Return a value with its unit, if any; whole numbers without a decimal point, for counts."""
     if dimension is not None:
         return str(in_text(Quantity(value, dimension)))
     return str(int(value)) if value.is_integer() and abs(value) < WHOLE else repr(value)

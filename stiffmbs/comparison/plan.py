@@ -1,4 +1,4 @@
-"""What a comparison measures: ways to solve, at which settings, by what error, and how often."""
+"""Plan of a comparison: solver configurations, their settings, the error measure, and the repeats."""
 
 from __future__ import annotations
 
@@ -18,21 +18,21 @@ from .measures import measure_of
 PER_DECADE = 4
 LOOSEST, TIGHTEST = 1e-3, 1e-8
 TOLERANCES = tuple(float(f"{10.0**k:.2g}") for k in np.arange(-3, -8.01, -1 / PER_DECADE))
-"""Relative tolerances that are tried where nobody asks for others."""
+"""Default relative tolerances."""
 STEPS = tuple(10.0**k for k in np.arange(-2, -5.1, -1 / PER_DECADE))
-"""Steps of the schemes with fixed steps, in parts of the duration."""
+"""Default steps of the schemes with fixed steps, in parts of the duration."""
 REPEATS = 9
 LONGEST_RUN = 20.0
-"""Time, s, after which a run is given up."""
+"""Time limit of a run, s."""
 LONGER_REFERENCE = 10.0
-"""So many times as long may each run of the reference take."""
+"""Factor on the time limit for each run of the reference."""
 OF_SOLVERS = ("solver", "scheme", "formulation", "rtol", "step")
-"""Settings that a comparison chooses itself."""
+"""Settings that a comparison varies itself."""
 
 
 @dataclass(frozen=True)
 class Plan:
-    """What is asked for.
+    """Plan of a comparison.
 
     Attributes
     ----------
@@ -40,11 +40,11 @@ class Plan:
     tolerances : tuple of float
         Relative tolerances, the loosest first.
     steps : tuple of float
-        Of fixed steps, s, the longest first; empty for parts of the duration.
+        Fixed steps, s, the longest first; empty for parts of the duration.
     measure : str
     repeats : int
     longest : float
-        Time, s, after which a run is given up.
+        Time limit of a run, s.
     """
 
     solvers: tuple[str, ...]
@@ -56,7 +56,7 @@ class Plan:
     longest: float
 
     def entries(self, settings: RunSettings) -> tuple[Entry, ...]:
-        """The ways to solve; a tolerance or step that none of them takes is refused."""
+        """Return the solver configurations; reject a tolerance or step that is invalid for one of them."""
         found = entries_of(self.solvers, self.formulations, settings)
         for entry in found:
             for value in self.values(entry, settings):
@@ -64,7 +64,7 @@ class Plan:
         return found
 
     def values(self, entry: Entry, settings: RunSettings) -> tuple[float, ...]:
-        """At what an entry is tried, from loose to tight."""
+        """Return the values of an entry's varied setting, from loose to tight."""
         if entry.varied == "rtol":
             return self.tolerances
         if entry.varied == "step":
@@ -76,7 +76,7 @@ def plan_of(
     solvers: Sequence[str], formulations: Sequence[str], tolerances: Sequence[float], steps: Sequence[float],
     measure: str, repeats: int, longest: float,
 ) -> Plan:  # fmt: skip
-    """A plan, whose numbers are checked.
+    """Return a plan after a check of its numbers.
 
     Raises
     ------
@@ -99,12 +99,12 @@ def _loose_first(values: Sequence[float]) -> tuple[float, ...]:
 
 
 def base_settings(model: ModelData, settings: RunSettings | None, changes: Mapping[str, object]) -> RunSettings:
-    """The settings of a comparison: the scene's own with some changed, and output instants that all solvers share.
+    """Return the settings of a comparison: the scene's own with changes, and output instants common to all solvers.
 
     Raises
     ------
     InputError
-        When a setting is wrong, or is one that the comparison chooses itself.
+        If a setting is invalid, or is one that the comparison varies itself.
     """
     own = [name for name in changes if name in OF_SOLVERS]
     if own:

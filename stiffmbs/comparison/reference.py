@@ -1,4 +1,4 @@
-"""The reference of a comparison: a motion on which an implicit and an explicit integrator agree."""
+"""Reference of a comparison: a motion on which an implicit and an explicit integrator agree."""
 
 from __future__ import annotations
 
@@ -21,38 +21,40 @@ from ..verification.solve_again import Deadline
 from .measures import MEASURES, ROTATION, compared, difference, largest
 
 TIGHT, TIGHTER, LOOSER = 1e-12, 1e-13, (1e-11, 1e-10, 1e-9)
-"""Relative tolerances: the first is tried first, the next where the two disagree, the last ones in turn where one does not end:
-of the stiffest scenes rounding stops steps before."""
+"""Relative tolerances: the first, the next if the integrators disagree, the others if a run does not end.
+
+In the stiffest scenes rounding stops steps at tight tolerances.
+"""
 NEAR_ENOUGH, AGREED = 1e-6, 1e-5
-"""Parts of a channel's motion: two runs that differ by less need no tighter ones; by more they have no reference."""
+"""Differences relative to a channel's motion: no tighter runs below the first, no reference above the second."""
 FORCES_AGREED = 1e-2
-"""Part of a force's size by which it may differ: of stiff springs it magnifies what positions differ by."""
+"""Accepted difference of a force relative to its size; stiff springs magnify differences of positions."""
 NO_MOTION = 1e-4
-"""Motions smaller than this, in sizes of the mechanism and rad, need not agree to a part of themselves."""
+"""Size of motions below which they need not agree relative to themselves, in sizes of the mechanism and rad."""
 RESOLVED = 3.0
-"""Errors are measured down to so many times what the two integrators differ by."""
+"""Ratio of the smallest resolved error to the difference of the two integrators."""
 ROUNDING_OF_A_RUN = 1e-11
-"""Part of a measure's size that rounding takes over a run."""
+"""Rounding error over a run, relative to the size of a measure."""
 NAMED = 4
 Tell = Callable[[str], None]
 
 
 @dataclass(frozen=True)
 class Reference:
-    """A motion on which two integrators agree.
+    """Motion on which two integrators agree.
 
     Attributes
     ----------
     solution : Solution
-        By the explicit one.
+        Solution of the explicit one.
     names : (str, str)
-        What was solved: ``bdf at rtol 1e-12`` and ``dop853 at rtol 1e-12``.
+        Names of the runs: ``bdf at rtol 1e-12`` and ``dop853 at rtol 1e-12``.
     channels : mapping of str to tuple of str
-        What each measure compares.
+        Channels that each measure compares.
     agreement : mapping of str to float
         Largest difference of the two in each measure.
     part : float
-        The same of positions, relative to the motion of each body.
+        Largest difference of positions, relative to the motion of each body.
     left_out : tuple of str
         Reactions that are not compared, as rigid bodies do not determine them.
     notes : tuple of str
@@ -67,7 +69,7 @@ class Reference:
     notes: tuple[str, ...]
 
     def errors(self, channels: Mapping[str, np.ndarray]) -> dict[str, float]:
-        """The largest error of a motion over time in each measure."""
+        """Return the largest error of a motion over time in each measure."""
         return {
             measure: max(largest(channels, self.solution, name) for name in names)
             for measure, names in self.channels.items()
@@ -75,17 +77,17 @@ class Reference:
         }
 
     def resolved(self, measure: str) -> float:
-        """The smallest error that can be told from that of the reference, and from rounding."""
+        """Return the smallest error that exceeds the error of the reference and rounding."""
         return max(RESOLVED * self.agreement[measure], ROUNDING_OF_A_RUN * self.size(measure))
 
     def size(self, measure: str) -> float:
-        """The largest value of the channels of a measure, of positions how far they come from the start."""
+        """Return the largest value of the channels of a measure; for positions, the largest change since the start."""
         at_start = measure == "positions"
         values = [self.solution[name] for name in self.channels[measure] if name in self.solution.channels]
         return max((float(np.nanmax(np.abs(v - v[0] if at_start else v))) for v in values), default=1.0)
 
     def sentences(self) -> list[str]:
-        """How well the two integrators agree, and what is not compared."""
+        """Return sentences on the agreement of the two integrators, and on the channels that are not compared."""
         agree = ", ".join(f"{self.agreement[name]:.1e} {MEASURES[name].unit} ({name})" for name in self.agreement)
         told = [f"reference: {self.names[0]} and {self.names[1]} agree within {agree}"]
         if self.left_out:
@@ -95,7 +97,7 @@ class Reference:
 
 @dataclass(frozen=True)
 class _Pair:
-    """Both integrators at a tolerance."""
+    """Solutions of both integrators at a tolerance."""
 
     implicit: Solution
     explicit: Solution
@@ -104,7 +106,7 @@ class _Pair:
     channels: Mapping[str, tuple[str, ...]]
 
     def parts(self, measure: str) -> dict[str, np.ndarray]:
-        """Differences over time in the channels of a measure, relative to the size of each."""
+        """Return the differences over time in the channels of a measure, relative to the size of each."""
         return {
             name: difference(self.implicit, self.explicit, name) / size
             for name in self.channels[measure]
@@ -112,27 +114,27 @@ class _Pair:
         }
 
     def part(self, measure: str) -> float:
-        """The largest of these."""
+        """Return the largest difference in a measure, relative to the sizes of the channels."""
         return max((float(np.nanmax(values)) for values in self.parts(measure).values()), default=0.0)
 
 
 def reference(model: ModelData, settings: RunSettings, allowed: float, tell: Tell) -> Reference:
-    """Solve a model tightly by both integrators.
+    """Solve a model at tight tolerances by both integrators.
 
     Parameters
     ----------
     model : ModelData
     settings : RunSettings
-        Of the comparison: duration, output points, and what else is no matter of the solver.
+        Settings of the comparison that do not depend on the solver: duration, output points and others.
     allowed : float
-        Time for each run, s.
+        Time limit of each run, s.
     tell : callable
-        Called with what is being done.
+        Called with a line of text on the progress.
 
     Raises
     ------
     SolverError
-        Where one does not come to the end, or they disagree: which channel, when, and by how much.
+        If a run does not reach the end, or they disagree; the message names the channel, the time and the difference.
     InputError, AssemblyError
         As for `stiffmbs.run`.
     """
@@ -156,7 +158,7 @@ def reference(model: ModelData, settings: RunSettings, allowed: float, tell: Tel
 
 
 def _pair(model: ModelData, settings: RunSettings, rtol: float, allowed: float, tell: Tell) -> _Pair | str:
-    """Both runs, or why there is no such pair."""
+    """Return both runs, or the reason why there is no such pair."""
     solutions, names = [], []
     for integrator in (IMPLICIT, EXPLICIT):
         chosen = changed(settings, {**integrator, "rtol": rtol, "atol": None})
@@ -177,7 +179,7 @@ def _pair(model: ModelData, settings: RunSettings, rtol: float, allowed: float, 
 
 
 def _sizes(solution: Solution, size: float) -> dict[str, float]:
-    """Scales of channels; of places no less than what rounding of a mechanism at rest is small beside."""
+    """Return the scales of channels; those of positions and angles are at least `NO_MOTION`."""
     least = {"position": NO_MOTION * size, "angle": NO_MOTION}
     found = scales(solution.channels, size, solution.requested)
     return {name: max(scale, least.get(kind_of(name), 0.0)) for name, scale in found.items()}

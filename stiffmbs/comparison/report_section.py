@@ -1,4 +1,4 @@
-"""A comparison as a section of a report."""
+"""Comparison as a section of a report."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from .table import BETTER, BETTER_WORDS, failures, milliseconds
 
 
 def comparison_section(comparison: Comparison) -> Section:
-    """Times at equal errors, the reference, the conclusion, and the figure."""
+    """Return a section with times at equal errors, the reference, the conclusion, and the figure."""
     at = comparison.at_errors
     names = dict.fromkeys(name for one in at for name in one.seconds)
     rows = [

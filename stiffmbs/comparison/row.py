@@ -1,4 +1,4 @@
-"""A measurement, as it stands in a table."""
+"""Measurement as a row of a table."""
 
 from __future__ import annotations
 
@@ -11,19 +11,19 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Row:
-    """A way to solve at a setting.
+    """Measurement of a solver configuration at a setting.
 
     Attributes
     ----------
     solver, setting : str
-        ``dop853``, ``rtol 1e-06``.
+        Texts such as ``dop853`` and ``rtol 1e-06``.
     errors : mapping of str to float
-        Largest over all output instants and channels, by measure; empty where it failed.
+        Largest errors over all output instants and channels, by measure; empty if the run failed.
     seconds : float
-        Median of the times of a solution; NaN where it failed.
+        Median of the times of a solution; nan if the run failed.
     steps : int
     message : str
-        Why it failed; empty where it did not.
+        Reason of a failure; else empty.
     """
 
     solver: str
@@ -34,7 +34,7 @@ class Row:
     message: str = ""
 
     def as_dict(self, measure: str) -> dict[str, Any]:
-        """A row of ``stiffmbs compare --json``; error and time are None, and there is a message, where it failed."""
+        """Return a row of ``stiffmbs compare --json``; a failed run has a message, and None as error and time."""
         found = {"solver": self.solver, "setting": self.setting, "error": _finite(self.errors.get(measure, np.nan))}
         told = {"message": self.message} if self.message else {}
         return {**found, "seconds": _finite(self.seconds), "steps": self.steps, **told}

@@ -1,4 +1,4 @@
-"""A way to solve at settings from loose to tight, each measured against a reference."""
+"""Measurements of a solver configuration at settings from loose to tight, against a reference."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ from .row import Row
 from .turns import ONCE, Timed, seconds_of
 
 ENOUGH_SETTINGS = 2
-"""So many settings in succession that are far more accurate than asked for end a sweep."""
+"""Number of successive settings far more accurate than required after which a sweep ends."""
 WARM_UP = 1e-3
-"""Part of the duration that is solved before a run is timed, so that all is compiled and set up."""
+"""Part of the duration that is solved before a timed run, to compile code and set up caches."""
 
 
 @dataclass
 class Point(Timed):
-    """A way to solve at a setting, with its errors by measure; a message where it failed."""
+    """Solver configuration at a setting, with its errors by measure, or a message if it failed."""
 
     entry: Entry
     setting: str
@@ -40,14 +40,14 @@ class Point(Timed):
     message: str = ""
 
     def row(self) -> Row:
-        """As measured."""
+        """Return the measurement as a row."""
         seconds = self.median if self.seconds else np.nan
         return Row(self.entry.name, self.setting, self.errors, seconds, self.steps, self.message)
 
 
 @dataclass(frozen=True)
 class Sweep:
-    """What is measured, and how long it may take.
+    """Common data of the measurements, with their time limit.
 
     Attributes
     ----------
@@ -55,9 +55,9 @@ class Sweep:
     settings : RunSettings
     reference : Reference
     longest : float
-        A run that takes longer is given up, s.
+        Time limit of a run, s.
     tell : callable
-        Called with what is being done.
+        Called with a line of text on the progress.
     """
 
     model: ModelData
@@ -67,7 +67,7 @@ class Sweep:
     tell: Tell
 
     def points(self, entry: Entry, values: Sequence[float], target: tuple[str, float] | None = None) -> Iterator[Point]:
-        """From loose to tight; a run that is given up is the last, and so are two beyond the target.
+        """Yield points from loose to tight, up to a run beyond the time limit, or to two settings beyond the target.
 
         Parameters
         ----------
@@ -75,7 +75,7 @@ class Sweep:
         values : sequence of float
             Tolerances or steps, the loosest first.
         target : (str, float), optional
-            A measure, and the error that is sought.
+            A measure, and the required error.
         """
         beyond = 0
         for value in values:
@@ -97,7 +97,7 @@ class Sweep:
                 return
 
     def _first(self, job: Job, entry: Entry, setting: str, compiles: bool) -> tuple[Point, bool]:
-        """Return the first solution at a setting, timed again where it may have compiled code; and whether it took too long."""
+        """Return the first point at a setting, timed again after possible compilation, and True if it took too long."""
         deadline = Deadline(job.grid.start, job.grid.end, self.longest)
         seconds, trajectory = seconds_of(lambda: job.integrate(deadline))
         if compiles and seconds >= ONCE and trajectory.outcome is Outcome.DONE:
@@ -118,7 +118,7 @@ class Sweep:
 
     @np.errstate(all="ignore")  # numbers of a diverged run overflow
     def _errors(self, job: Job, trajectory: Trajectory) -> dict[str, float]:
-        """By measure; none where not all output instants have a solution."""
+        """Return the errors by measure; empty if some output instants have no solution."""
         rows, _ = reported(job.dynamics, trajectory, near_constraints(job.settings))
         if len(rows.t) < len(self.reference.solution.time):
             return {}

@@ -1,4 +1,4 @@
-"""Comparisons as tables for a person."""
+"""Comparisons as text with tables."""
 
 from __future__ import annotations
 
@@ -19,21 +19,21 @@ if TYPE_CHECKING:
     from rich.table import Table
 
 BETTER = "*"
-"""Stands behind a time at which a solver is more accurate than asked for, at all its settings."""
+"""Mark of a time at which all settings of a solver are more accurate than required."""
 BETTER_WORDS = f"{BETTER} more accurate at every setting: the time of the fastest"
 INTERRUPTED = "interrupted by the user; what was measured is shown"
 BESIDE, FIRST, EACH = 4, 16, 28
-"""Solvers whose rows stand beside each other at the most; characters of the first column, and of a solver's."""
+"""Number of solvers side by side at most; characters of the first column, and of a solver's."""
 Print = Callable[["Console"], None]
 
 
 def text(comparison: Comparison) -> str:
-    """As `print_comparison` shows it."""
+    """Return the output of `print_comparison`."""
     return _text(partial(print_comparison, comparison))
 
 
 def text_over(comparison: ComparisonOver) -> str:
-    """As `print_over` shows it."""
+    """Return the output of `print_over`."""
     return _text(partial(print_over, comparison))
 
 
@@ -44,7 +44,7 @@ def _text(show: Print) -> str:
 
 
 def print_comparison(comparison: Comparison, console: Console) -> None:
-    """What was measured, times at equal errors, the reference, and the conclusion."""
+    """Print the measurements, times at equal errors, the reference, and the conclusion."""
     say = partial(console.print, highlight=False, markup=False, emoji=False)
     unit = MEASURES[comparison.measure].unit
     say(
@@ -68,7 +68,7 @@ def print_comparison(comparison: Comparison, console: Console) -> None:
 
 
 def print_over(comparison: ComparisonOver, console: Console) -> None:
-    """Times against the parameter, and where integrators cross."""
+    """Print times against the parameter, and the crossings of integrators."""
     say = partial(console.print, highlight=False, markup=False, emoji=False)
     unit = MEASURES[comparison.measure].unit
     say(
@@ -87,7 +87,7 @@ def print_over(comparison: ComparisonOver, console: Console) -> None:
 
 
 def measured_tables(comparison: Comparison, beside: int) -> Iterator[Table]:
-    """A line for each setting, so many solvers beside each other; those with the same settings stand together."""
+    """Yield tables with a line for each setting and several solvers side by side, grouped by the kind of setting."""
     from rich.table import Table
 
     of_solver: dict[str, dict[str, Row]] = {}
@@ -107,7 +107,7 @@ def measured_tables(comparison: Comparison, beside: int) -> Iterator[Table]:
 
 
 def _together(of_solver: dict[str, dict[str, Row]], beside: int) -> Iterator[list[str]]:
-    """Names of solvers whose rows share a table."""
+    """Yield the names of solvers whose rows share a table."""
     kinds: dict[str, list[str]] = {}
     for name, rows in of_solver.items():
         kinds.setdefault(next(iter(rows)).partition(" ")[0], []).append(name)
@@ -125,14 +125,14 @@ def _cells(row: Row | None, measure: str, resolved: float) -> list[str]:
 
 
 def failures(rows: Sequence[Row]) -> Iterator[str]:
-    """A sentence for each row that failed."""
+    """Yield a sentence for each row that failed."""
     for row in rows:
         if row.message:
             yield f"{row.solver}, {row.setting}: {row.message}"
 
 
 def at_errors_table(comparison: Comparison) -> Table:
-    """Time of each solver at each error."""
+    """Return a table of the time of each solver at each error."""
     heads = [f"{at.error:.0e}" for at in comparison.at_errors]
     names = dict.fromkeys(name for at in comparison.at_errors for name in at.seconds)
     rows = [[name, *(_time(name, at) for at in comparison.at_errors)] for name in names]
@@ -140,7 +140,7 @@ def at_errors_table(comparison: Comparison) -> Table:
 
 
 def over_table(comparison: ComparisonOver) -> Table:
-    """Time of each solver at each value of the parameter."""
+    """Return a table of the time of each solver at each value of the parameter."""
     names = [entry.name for entry in comparison.entries]
     rows = [[f"{one.value:.4g}", *(_time(name, one.at) for name in names)] for one in comparison.values]
     return _table([comparison.parameter, *names], rows)
@@ -164,5 +164,5 @@ def _table(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> Table:
 
 
 def milliseconds(seconds: float) -> str:
-    """A time with three digits, ms."""
+    """Return a time with three digits, ms."""
     return f"{seconds * 1e3:#.3g}".rstrip(".")

@@ -1,4 +1,4 @@
-"""Solutions that are timed by turns, so that what slows the machine for a while slows all of them."""
+"""Timing of solutions in turns, so that disturbances of the machine affect all of them."""
 
 from __future__ import annotations
 
@@ -9,39 +9,39 @@ from dataclasses import dataclass
 from typing import Any, TypeVar
 
 ONCE = 0.2
-"""Solutions that take longer, s, are timed a single time."""
+"""Time above which solutions are timed only once, s."""
 Found = TypeVar("Found")
 
 
 @dataclass
 class Timed:
-    """A solution that is timed: what solves it again (None for slow ones), and the times so far, s."""
+    """Timed solution: a function that solves it again (None for slow ones), and its times so far, s."""
 
     solve: Callable[[], Any] | None
     seconds: list[float]
 
     def measure(self) -> None:
-        """Time it once more, unless it is slow."""
+        """Time the solution once more, unless it is slow."""
         if self.solve is not None:
             self.seconds.append(seconds_of(self.solve)[0])
 
     @property
     def median(self) -> float:
-        """Of the times, s."""
+        """Return the median of the times, s."""
         return statistics.median(self.seconds)
 
 
 def seconds_of(solve: Callable[[], Found]) -> tuple[float, Found]:
-    """Processor time of a solution, which other programs on the machine leave alone, and the solution."""
+    """Return the processor time of a solution, which excludes other programs, and the solution."""
     begun = time.process_time()
     found = solve()
     return time.process_time() - begun, found
 
 
 def take_turns(timed: Sequence[Timed], rounds: Iterable[int]) -> None:
-    """Time all of them in each round, forwards and backwards by turns; the first times, which met cold caches, are dropped.
+    """Time all solutions in each round, forwards and backwards in turn, and drop the first times, with cold caches.
 
-    Backwards each comes after another neighbour, so that none always follows one of other code and finds caches cold.
+    The neighbours of a solution differ between both orders, so that none always follows other code with cold caches.
     """
     for k in rounds:
         for one in timed[:: -1 if k % 2 else 1]:

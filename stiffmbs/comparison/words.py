@@ -1,4 +1,4 @@
-"""What a comparison comes to, in sentences."""
+"""Conclusions of a comparison, in sentences."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ if TYPE_CHECKING:
     from .comparison_over import ComparisonOver
 
 ALIKE = 1.1
-"""Times that differ by less than this factor are the same but for noise."""
+"""Factor within which times are equal up to noise."""
 
 
 def conclusion(comparison: Comparison) -> str:
-    """Who is fastest at which errors, and by how much; what chooses between others is compared with the better of them."""
+    """Return the fastest solvers at each error, with ratios, and the cost of solvers that choose between others."""
     unit = MEASURES[comparison.measure].unit
     racing, choosing = _sides(comparison.entries)
     runs = [
@@ -37,21 +37,21 @@ def conclusion(comparison: Comparison) -> str:
 
 
 def _sides(entries: Sequence[Entry]) -> tuple[list[str], list[str]]:
-    """Names of those that race, and of those that choose between them."""
+    """Return the names of the compared solvers, and of those that choose between them."""
     racing = [entry.name for entry in entries if not entry.chooses]
     choosing = [entry.name for entry in entries if entry.chooses]
     return (racing, choosing) if racing else (choosing, [])
 
 
 def _fastest(at: AtError, racing: Sequence[str]) -> tuple[str, ...]:
-    """The fastest of some solvers, and those that are as fast but for noise."""
+    """Return the fastest of some solvers, and those that are equal up to noise."""
     times = {name: at.seconds[name] for name in racing if name in at.seconds}
     most = ALIKE * min(times.values(), default=0.0)
     return tuple(name for name, seconds in times.items() if seconds <= most)
 
 
 def _are_fastest(names: Sequence[str], run: Sequence[AtError], racing: Sequence[str]) -> str:
-    """Who is the fastest, and by how much before the best of the others; of one alone how long it takes."""
+    """Return the fastest solvers and their ratio to the best of the others; for a single solver, its time."""
     if len(racing) == 1:
         return f"{racing[0]} takes {_span([1e3 * at.seconds[racing[0]] for at in run])} ms"
     who = (
@@ -73,7 +73,7 @@ def _are_fastest(names: Sequence[str], run: Sequence[AtError], racing: Sequence[
 
 
 def _choices(found: Sequence[AtError], racing: Sequence[str], choosing: Sequence[str]) -> Iterator[str]:
-    """What it costs to leave the choice to a solver."""
+    """Yield the times of solvers that choose, relative to the fastest."""
     for name in choosing:
         ratios = [
             at.seconds[name] / min(at.seconds[other] for other in racing if other in at.seconds)
@@ -91,7 +91,7 @@ def _span(ratios: Sequence[float]) -> str:
 
 
 def conclusion_over(comparison: ComparisonOver) -> str:
-    """Where which kind of integrator is faster."""
+    """Return the ranges in which each kind of integrator is faster."""
     racing, choosing = _sides(comparison.entries)
     times = [at for at in comparison.at if at is not None]
     told = [*_crossing_sentences(comparison), *_choices(times, racing, choosing)]

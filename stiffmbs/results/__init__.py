@@ -1,1 +1,1 @@
-"""What comes out of a run: channels, reactions, energies, requests, and the files that hold them."""
+"""Results of a run: channels, reactions, energies, requests, and their files."""

@@ -1,4 +1,4 @@
-"""Results in the form of Adams' .res files in XML, which Adams/PostProcessor imports.  MSC Adams/Solver, RESULTS statement, XRF."""
+"""Results as Adams .res files in XML, for Adams/PostProcessor (MSC Adams/Solver, RESULTS statement, XRF)."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ NAMESPACE = "http://www.mscsoftware.com/:xrf10"
 
 
 def write_adams_results(path: Path, solution: Solution) -> None:
-    """Write all channels over time: a map of what the numbers of a step are, then the steps.
+    """Write all channels over time: a map that names the numbers of a step, then the steps.
 
-    An entity is what stands before the last dot of a channel's name, a component what stands behind it.
+    The entity is the part of a channel's name before its last dot, the component the part after it.
     """
     from xml.sax.saxutils import quoteattr
 

@@ -1,4 +1,4 @@
-"""Orientations and angular velocities in the bodies' own axes, where the solver knows them in principal axes."""
+"""Conversion of orientations and angular velocities between principal axes and the bodies' own axes."""
 
 from __future__ import annotations
 
@@ -13,9 +13,10 @@ OWN_ARE_PRINCIPAL = np.array([1.0, 0.0, 0.0, 0.0])
 def in_own_axes(
     system: System, q: np.ndarray, u: np.ndarray, acceleration: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Coordinates, velocities and accelerations, one instant a row, of bodies as they are described.
+    """Return coordinates, velocities and accelerations of the described bodies, one row per instant.
 
-    Counters of turns and states are left out.  Where all own axes are principal ones, and in the plane, the arrays are returned as they are.
+    Revolution counters and states are left out.  The arrays are returned unchanged in the plane, or if all own axes are
+    principal ones.
     """
     axes = system.principal_axes
     q = q[:, : system.n_pose]
@@ -25,24 +26,24 @@ def in_own_axes(
 
 
 def from_own_axes(system: System, q: np.ndarray) -> np.ndarray:
-    """Coordinates as the solver has them, from those of bodies as they are described."""
+    """Return the solver's coordinates from those of the described bodies."""
     return _turned_back(q, system.principal_axes) if system.principal_axes.size else q
 
 
 def rates_from_own_axes(system: System, u: np.ndarray) -> np.ndarray:
-    """Velocities as the solver has them, from those of bodies as they are described."""
+    """Return the solver's velocities from those of the described bodies."""
     return _seen_from(u, CONJUGATE * system.principal_axes) if system.principal_axes.size else u
 
 
 def _turned_back(q: np.ndarray, axes: np.ndarray) -> np.ndarray:
-    """Every quaternion p replaced by p a."""
+    """Replace every quaternion p by p a."""
     bodies = q.reshape(len(q), -1, 7).copy()
     bodies[..., 3:] = times(bodies[..., 3:], axes)
     return bodies.reshape(q.shape)
 
 
 def _seen_from(u: np.ndarray, axes: np.ndarray) -> np.ndarray:
-    """Angular velocities w, in axes that are turned by a, in those that they are turned from: a w conj(a)."""
+    """Transform angular velocities w from axes rotated by a to the original ones: a w conj(a)."""
     bodies = u.reshape(len(u), -1, 6).copy()
     bodies[..., 3:] = rotated(axes, bodies[..., 3:])
     return bodies.reshape(u.shape)

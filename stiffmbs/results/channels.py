@@ -1,4 +1,4 @@
-"""The channels of a solution: every time history by name."""
+"""Channels of a solution: every time history by name."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from .states import state_channels
 
 
 def channels_of(model: ModelData, system: System, rows: OutputRows) -> dict[str, np.ndarray]:
-    """All channels by name: bodies, joints and forces, energies, constraint violations, requests."""
+    """Return all channels by name: bodies, joints and forces, energies, constraint violations, requests."""
     channels: dict[str, np.ndarray] = {}
     of_body = system.of_body
     states = rows.q, rows.u, rows.acceleration
@@ -43,12 +43,12 @@ def channels_of(model: ModelData, system: System, rows: OutputRows) -> dict[str,
 
 
 def named(channels: Mapping[str, np.ndarray], name: str) -> np.ndarray:
-    """A channel by its name.
+    """Return a channel by its name.
 
     Raises
     ------
     ChannelError
-        When there is none of this name; names those near it.
+        If there is no such channel; the message names similar ones.
     """
     try:
         return channels[name]
@@ -59,19 +59,19 @@ def named(channels: Mapping[str, np.ndarray], name: str) -> np.ndarray:
 
 
 def series_of(model: ModelData, system: System, rows: OutputRows, name: str) -> np.ndarray:
-    """One channel; that of a joint or force without the others.
+    """Return one channel; for a joint or force, without computing the others.
 
     Raises
     ------
     ChannelError
-        When there is none of this name.
+        If there is no such channel.
     """
     at = -1 if model.requests else system.reported.get(name, -1)
     return rows.values[:, at] if at >= 0 else named(channels_of(model, system, rows), name)
 
 
 def turns_of(system: System, q: np.ndarray) -> dict[str, np.ndarray]:
-    """What is counted of angles over whole turns, rad, by element and number: ``spring/0``.
+    """Return the revolution counters of angles, rad, by element and number: ``spring/0``.
 
     Parameters
     ----------
@@ -83,7 +83,7 @@ def turns_of(system: System, q: np.ndarray) -> dict[str, np.ndarray]:
 
 
 def counters(model: ModelData, system: System, q: np.ndarray) -> dict[str, np.ndarray]:
-    """What is counted of angles over whole turns for requests, rad, by the angle's text."""
+    """Return the revolution counters of requests, rad, by the text of the angle."""
     names = {name for name, _ in model.angle_counters()}
     return {
         name: q[:, places[0]]

@@ -1,4 +1,4 @@
-"""Read result files whose content may be damaged."""
+"""Reading of result files whose content may be damaged."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ def readable(path: Path) -> Iterator[None]:
     Raises
     ------
     OSError
-        When it is not a regular file, or cannot be read.
+        If it is not a regular file, or cannot be read.
     ValueError
-        When its content cannot be read.
+        If its content cannot be read.
     """
     check_regular(path)
     try:

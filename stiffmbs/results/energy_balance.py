@@ -1,10 +1,11 @@
-"""The energy balance of a run: kinetic + potential energy against the work of everything that has no potential.
+"""Energy balance of a run: kinetic + potential energy against the work of non-conservative forces.
 
 Along a motion T + V changes by the work of dampers, drives, friction, applied forces and laws without a potential
-(`stiffmbs.compile.symbolic.losses` has their power).  Both are computed from the states that a run reports, so their difference
-tells how well these satisfy the equations of motion, whatever the integrator believes of its own error.
+(`stiffmbs.compile.symbolic.losses` has their power).  Both are computed from the reported states.  Their difference
+shows how well these satisfy the equations of motion, independent of the integrator's own error estimate.
 
-The work is integrated by the trapezoidal rule with end corrections, of order 4; the same rule on every other instant tells how well these resolve the power.
+The work is integrated by the trapezoidal rule with end corrections, of order 4.  The same rule on every other instant
+shows how well the instants resolve the power.
 """
 
 from __future__ import annotations
@@ -26,11 +27,11 @@ WORK, STEPS_INSIDE = together(
 )
 
 MOST_INSTANTS = 100_000
-"""Instants that a balance is made of at the most; of more every other one counts, or fewer."""
+"""Number of instants of a balance at most; of more, only every second (or third, ...) is used."""
 BROKEN = 1e-2
-"""Part of the exchanged energy that may be missing before it is told."""
+"""Part of the exchanged energy that may be missing before it is reported."""
 SEEN = 1
-"""Steps of the solver that may end inside an interval whose work the values at its ends tell."""
+"""Number of solver steps that may end inside an interval whose work is resolved."""
 
 
 @dataclass(frozen=True)
@@ -40,21 +41,21 @@ class Balance:
     Attributes
     ----------
     t : ndarray, shape (n,)
-        Instants at which all is known, s.
+        Instants at which all values are known, s.
     change : ndarray, shape (n,)
-        Of kinetic + potential energy since the start.
+        Change of kinetic + potential energy since the start.
     work : ndarray, shape (n,)
-        Of everything without a potential since the start.
+        Work of non-conservative forces since the start.
     within : ndarray, shape (n - 1,)
-        What the end corrections of the quadrature add in each interval.
+        End corrections of the quadrature in each interval.
     steps : ndarray of int, shape (n - 1,)
-        How many of the solver's own steps end inside each interval.
+        Number of the solver's own steps that end inside each interval.
     resolved : float
-        How far the work is from that of every other instant: what the quadrature resolves.
+        Difference between the work and that of every other instant: resolution of the quadrature.
     scale : float
-        The energy that is exchanged: the largest kinetic energy, change of the potential energy, or work.
+        Exchanged energy: the largest kinetic energy, change of the potential energy, or work.
     keeps_energy : bool
-        Whether nothing does such work for certain: the work is then zero, not computed.
+        True if no non-conservative force exists: the work is then zero, not computed.
     """
 
     t: np.ndarray
@@ -68,33 +69,33 @@ class Balance:
 
     @property
     def open(self) -> np.ndarray:
-        """What is missing in the balance since the start, shape (n,)."""
+        """Return the energy missing in the balance since the start, shape (n,)."""
         return self.change - self.work
 
     @property
     def furthest(self) -> float:
-        """The largest magnitude of that, or of what is missing in one interval."""
+        """Return the largest magnitude of the energy missing since the start, or in one interval."""
         open_ = self.open
         return float(max(np.max(np.abs(open_), initial=0.0), np.max(np.abs(np.diff(open_)), initial=0.0)))
 
     @property
     def _seen(self) -> np.ndarray:
-        """The intervals whose work the instants may resolve: those of hardly more than one step of the solver."""
+        """Return True for intervals whose work may be resolved: those with at most one solver step inside."""
         return (self.steps <= SEEN) | self.keeps_energy
 
     @property
     def imbalance(self) -> float:
-        """The largest magnitude of what is missing, summed over the intervals that the instants resolve."""
+        """Return the largest magnitude of the missing energy, summed over the intervals that the instants resolve."""
         missing = np.cumsum(np.where(self._seen, np.diff(self.open), 0.0))
         return float(np.max(np.abs(missing), initial=0.0))
 
     @property
     def between(self) -> float:
-        """The sum of what is missing in the other intervals: work between instants, or an error."""
+        """Return the sum of the energies missing in the other intervals: work between instants, or an error."""
         return float(np.sum(np.abs(np.diff(self.open)), where=~self._seen))
 
     def as_dict(self) -> dict[str, float | bool]:
-        """The object ``balance`` of ``stiffmbs run --json``, J."""
+        """Return the object ``balance`` of ``stiffmbs run --json``, J."""
         return {
             "change": float(self.change[-1]), "work": float(self.work[-1]), "imbalance": self.imbalance,
             "between": self.between, "resolved": self.resolved, "conservative": self.keeps_energy,
@@ -102,14 +103,14 @@ class Balance:
 
 
 def energy_balance(system: System, rows: OutputRows, steps: np.ndarray) -> Balance:
-    """The balance at the instants of a run; those without values are passed over.
+    """Return the balance at the instants of a run; those without values are skipped.
 
     Parameters
     ----------
     system : System
     rows : OutputRows
     steps : ndarray
-        Ends of the solver's own steps, s; empty where it does not tell them.
+        Ends of the solver's own steps, s; empty if unknown.
     """
     thinned, keeps_energy = slice(None, None, 1 + len(rows.t) // MOST_INSTANTS), system.keeps_energy
     with np.errstate(all="ignore"):  # a diverged run has no balance
@@ -133,28 +134,28 @@ def energy_balance(system: System, rows: OutputRows, steps: np.ndarray) -> Balan
 
 
 def may_be_broken(missing: float, exchanged: float) -> bool:
-    """Whether a balance in which some energy is missing is worth a closer look, J."""
+    """Return True if the energy missing in a balance, J, requires a closer check."""
     return missing > BROKEN * exchanged
 
 
 def work_since_start(t: np.ndarray, power: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
-    """The integral of a power by the trapezoidal rule with end corrections.
+    """Integrate a power by the trapezoidal rule with end corrections.
 
     Davis and Rabinowitz, Methods of Numerical Integration (1984), sec. 2.9.
 
     Parameters
     ----------
     t, power : ndarrays, shape (n,)
-        s, W; n is 1 or more.
+        Times, s, and power, W; n is 1 or more.
 
     Returns
     -------
     work : ndarray, shape (n,)
-        J.
+        Work since the start, J.
     within : ndarray, shape (n - 1,)
-        What the corrections add in each interval, J.
+        End corrections in each interval, J.
     resolved : float
-        How far the work is from that of every other instant, J.
+        Difference between the work and that of every other instant, J.
     """
     t, power = np.ascontiguousarray(t), np.ascontiguousarray(power)
     total, within = np.empty(len(t)), np.empty(len(t) - 1)
@@ -163,7 +164,7 @@ def work_since_start(t: np.ndarray, power: np.ndarray) -> tuple[np.ndarray, np.n
 
 
 def steps_inside(t: np.ndarray, steps: np.ndarray) -> np.ndarray:
-    """How many of increasing steps end inside each interval between increasing instants, its ends left out; shape (n - 1,)."""
+    """Return the number of steps that end strictly inside each interval between increasing instants; shape (n - 1,)."""
     t, steps = np.ascontiguousarray(t), np.ascontiguousarray(steps, dtype=float)
     inside = np.empty(max(len(t) - 1, 0), dtype=np.int64)
     at_t, at_steps, at_inside = addresses(t, steps, inside)
@@ -172,7 +173,7 @@ def steps_inside(t: np.ndarray, steps: np.ndarray) -> np.ndarray:
 
 
 def potentials(system: System, values: np.ndarray) -> dict[str, np.ndarray]:
-    """The potential energy of each element that has one, J, shape (n,)."""
+    """Return the potential energy of each element that has one, J, shape (n,)."""
     at = 1 + TERM_SETS["output"].index("potential")
     return {
         name: values[:, system.places["output"][g, at] + e]

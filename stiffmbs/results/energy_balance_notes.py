@@ -1,9 +1,9 @@
-"""What the energy balance of a run says of it, in sentences: only what is certain from the instants that are reported.
+"""Sentences on the energy balance of a run, as far as the reported instants are conclusive.
 
-Where nothing but potentials acts, kinetic + potential energy is constant at whatever instants it is looked at.  Work of
-dampers, drives and friction is integrated from values at the output instants, which may miss a contact between two of
-them.  So it is judged only where several of them lie within one step of the solver: there the motion is one smooth
-polynomial, and so is the power unless the step went over something that it has not seen.
+With conservative forces alone, kinetic + potential energy is constant at any instants.  The work of dampers, drives and
+friction is integrated from values at the output instants, which may miss a contact in between.  It is therefore judged
+only where several instants lie within one step of the solver.  There the motion is a smooth polynomial, and so is the
+power unless the step missed an event.
 """
 
 from __future__ import annotations
@@ -19,17 +19,17 @@ from ..solve.settings import traits_of
 from .energy_balance import BROKEN, Balance, potentials
 
 FINER = ("rtol", "max_step", "step")
-"""Settings that make steps shorter."""
+"""Settings that shorten steps."""
 PER_TOLERANCE = 100.0
-"""Times the relative tolerance that may be missing before it is told, where that is more than `BROKEN`."""
+"""Missing part of the exchanged energy that is accepted, in relative tolerances, if that is more than `BROKEN`."""
 TOLD = 1e-6
-"""Part of the exchanged energy above which what lies between output instants is told."""
+"""Part of the exchanged energy above which work between output instants is reported."""
 CERTAIN = 3.0
-"""Times the end corrections of the quadrature by which the balance of an interval must be open."""
+"""Ratio of an interval's missing energy to the end corrections of the quadrature above which it counts."""
 OF_TOLERANCE = 10.0
-"""Energies below so many times the work of the largest force along an error of the tolerance are not looked at."""
+"""Factor on the work of the largest force along a position error of the tolerance; smaller energies are ignored."""
 OF_POTENTIAL = 1e-10
-"""The same for parts of the largest potential energy."""
+"""Part of the largest potential energy below which energies are ignored."""
 
 
 def balance_words(balance: Balance, start: float) -> str:
@@ -57,12 +57,12 @@ def unresolved_work(balance: Balance) -> str:
 def balance_notes(
     system: System, balance: Balance, rows: OutputRows, settings: RunSettings, steps: np.ndarray
 ) -> Iterator[str]:
-    """A sentence where a balance that may be broken is so for certain.
+    """Yield a sentence if a balance is certainly broken.
 
     Parameters
     ----------
     steps : ndarray
-        Ends of the solver's own steps, s; empty where it does not tell them.
+        Ends of the solver's own steps, s; empty if unknown.
     """
     allowed = may_be_missing(system, balance, rows, settings)
     if balance.keeps_energy:
@@ -72,13 +72,13 @@ def balance_notes(
 
 
 def may_be_missing(system: System, balance: Balance, rows: OutputRows, settings: RunSettings) -> float:
-    """An energy that may be missing in a balance before it is told, J."""
+    """Return the energy that may be missing in a balance before it is reported, J."""
     part = BROKEN if traits_of(settings).fixed_steps else max(BROKEN, PER_TOLERANCE * settings.rtol)
     return part * balance.scale + _negligible(system, rows, settings)
 
 
 def _negligible(system: System, rows: OutputRows, settings: RunSettings) -> float:
-    """An energy that tolerance and rounding do not resolve, J."""
+    """Return the energy below tolerance and rounding, J."""
     with np.errstate(all="ignore"):
         force = np.nanmax(np.abs(rows.values[:, system.term("output", "reaction").source]), initial=0.0)
         weight = np.nanmax(np.abs(system.mass[None, :] * rows.acceleration[:1]), initial=0.0)
@@ -89,7 +89,7 @@ def _negligible(system: System, rows: OutputRows, settings: RunSettings) -> floa
 def _changed(
     system: System, balance: Balance, rows: OutputRows, settings: RunSettings, allowed: float
 ) -> Iterator[str]:
-    """Of a scene that keeps its energy: where that first changed too much."""
+    """Yield a sentence for a conservative scene: the time at which its energy first changes too much."""
     beyond = np.flatnonzero(np.abs(balance.open) > allowed)
     if not len(beyond):
         return
@@ -104,7 +104,7 @@ def _changed(
 
 
 def _left(system: System, balance: Balance, rows: OutputRows, steps: np.ndarray, allowed: float) -> Iterator[str]:
-    """Of any other scene: the interval within one step of the solver whose balance is open the furthest."""
+    """Yield a sentence for any other scene: the interval within one solver step with the most missing energy."""
     inside = within_steps(balance.t[:-1], balance.t[1:], steps)
     missing = np.abs(np.diff(balance.open))
     missing = np.where(inside & (missing > CERTAIN * np.abs(balance.within)), missing, 0.0)
@@ -119,7 +119,7 @@ def _left(system: System, balance: Balance, rows: OutputRows, steps: np.ndarray,
 
 
 def within_steps(begin: np.ndarray, end: np.ndarray, steps: np.ndarray) -> np.ndarray:
-    """Whether each interval between two instants lies inside one step of the solver, its ends strictly."""
+    """Return True for each interval between two instants that lies strictly inside one step of the solver."""
     if not len(steps):
         return np.zeros(len(begin), dtype=bool)
     after, before = np.searchsorted(steps, begin, side="right"), np.searchsorted(steps, end, side="left")
@@ -129,7 +129,7 @@ def within_steps(begin: np.ndarray, end: np.ndarray, steps: np.ndarray) -> np.nd
 
 
 def _where(system: System, balance: Balance, rows: OutputRows, k: int) -> str:
-    """The element whose potential energy changes most in an interval, as a clause."""
+    """Return a clause on the element whose potential energy changes most in an interval."""
     at = np.searchsorted(rows.t, balance.t[k : k + 2])
     changes = {
         name: float(abs(np.diff(values[at])[0]))

@@ -1,14 +1,14 @@
-"""How far the peaks of a channel, and its values over time, may lie from the truth: what several runs say of one.
+"""Error bars: bounds on the errors of a channel's peaks and of its values over time, from several runs.
 
-Of a run y0 and better ones y1, y2, ... at the same instants, the error of y0 is about y0 - y1: exactly so but for the
-error of y1 (Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, 1993, ch. II.4).  Where a better run
-has at most half the error of y0, twice the largest difference bounds it.
+For a run y0 and more accurate ones y1, y2, ... at the same instants, the error of y0 is y0 - y1 up to the error of y1
+(Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, 1993, ch. II.4).  If a better run has at most half
+the error of y0, twice the largest difference bounds it.
 
-A difference of two peaks is a single number, and may be small by accident: where y0 comes close to the truth on its
-way from one side to the other, y1 may have the same error.  With errors normally distributed, r times as large in y1 as in
-y0, twice the difference is too small for 0.42 r of the peaks, and k times too small for a k-th of these: their ratio has
-a Cauchy distribution.  So y1 has to be much better than y0, and a further run made in another way has to agree: that
-both err as y0 does is rare in proportion to the product.
+A difference of two peaks is a single number, and may be small by accident if y1 has the same error as y0.  Let errors
+be normally distributed, r times as large in y1 as in y0.  Then twice the difference is too small for 0.42 r of the
+peaks, and k times too small for a k-th of these: the ratio has a Cauchy distribution.  So y1 must be much more accurate
+than y0, and a further run by another method must agree.  The probability that both share the error of y0 is
+proportional to the product.
 """
 
 from __future__ import annotations
@@ -20,26 +20,26 @@ import numpy as np
 
 Fine = tuple[np.ndarray, np.ndarray, np.ndarray]
 SAFETY = 2.0
-"""Times the difference: right where a better run has half the error at most."""
+"""Factor on the difference, valid if a better run has at most half the error."""
 LEVEL = 1e-300
-"""Curvature below which a peak is as good as flat."""
+"""Curvature below which a peak counts as flat."""
 FINER = 1.1
-"""Times what finer instants show: the finest show a little more."""
+"""Factor on the excess at finer instants, as the finest show a little more."""
 
 
 @dataclass(frozen=True)
 class ErrorBar:
-    """What is not known of one channel, in its own unit; NaN where nothing is known.
+    """Error bounds of one channel, in its own unit; nan if unknown.
 
     Attributes
     ----------
     over_time : float
         Largest error at an output instant.
     least, greatest : float
-        Half widths of the bars of the channel's least and greatest value: error of the solver, and what the channel
-        may reach between output instants.
+        Half widths of the bars of the channel's least and greatest value: error of the solver, and possible excess
+        between output instants.
     sampled_least, sampled_greatest : float
-        The latter part alone.
+        The possible excess alone.
     """
 
     over_time: float
@@ -53,18 +53,18 @@ UNKNOWN = ErrorBar(np.nan, np.nan, np.nan)
 
 
 def error_bar(values: np.ndarray, others: Sequence[np.ndarray], fine: Fine | None, rounding: float) -> ErrorBar:
-    """The error bar of one channel.
+    """Return the error bar of one channel.
 
     Parameters
     ----------
     values : ndarray, shape (n,)
-        As reported; instants without a value are passed over, here and in all else.
+        Reported values; instants without a value are skipped here and in the other arguments.
     others : sequence of ndarray, shapes (m,), m <= n
-        From better runs at the same instants, shorter where they ended before.
+        Values of better runs at the same instants, shorter if they ended earlier.
     fine : (ndarray, ndarray, ndarray of int), optional
-        Instants, s, values there, and which of them are reported: of a run that looks between the reported ones.
+        Times, s, and values of a run with instants between the reported ones, and the indices of these.
     rounding : float
-        What nobody knows better.
+        Rounding error.
 
     Returns
     -------
@@ -82,7 +82,7 @@ def error_bar(values: np.ndarray, others: Sequence[np.ndarray], fine: Fine | Non
 
 
 def _bar_of_maximum(values: np.ndarray, others: Sequence[np.ndarray], fine: Fine | None) -> tuple[float, float]:
-    """The bar of the greatest value, and the part of it that comes from between the instants."""
+    """Return the error bar of the greatest value, and the part of it that lies between the instants."""
     at = int(np.nanargmax(values))
     reaching = [other for other in others if len(other) > at]
     if others and not reaching:
@@ -93,15 +93,15 @@ def _bar_of_maximum(values: np.ndarray, others: Sequence[np.ndarray], fine: Fine
 
 
 def between(times: np.ndarray, values: np.ndarray, at: np.ndarray) -> float:
-    """How much a run at many instants exceeds its values at the reported ones, up to the tops of parabolas.
+    """Return the excess of a run at many instants over its values at the reported ones, with parabolas at its peaks.
 
-    Every peak counts that has its top between two instants, for another may be the highest at those that are looked at.
+    All peaks between two instants count, as any of them may be the highest.
 
     Parameters
     ----------
     times, values : ndarrays, shape (n,)
     at : ndarray of int
-        Which of them are reported.
+        Indices of the reported instants.
     """
     highest = float(np.nanmax(values[at]))
     k = 1 + np.flatnonzero((values[1:-1] >= values[:-2]) & (values[1:-1] >= values[2:]))
@@ -110,7 +110,7 @@ def between(times: np.ndarray, values: np.ndarray, at: np.ndarray) -> float:
     bend = np.minimum((rise - fall) / (after - before), -LEVEL)
     slope = fall - bend * before
     around = [values[np.clip(k + beside, 0, len(values) - 1)] for beside in (-2, -1, 1, 2)]
-    top = np.minimum(slope**2 / (-4 * bend), values[k] - np.nanmin(around, axis=0))  # of jumps no more than these
+    top = np.minimum(slope**2 / (-4 * bend), values[k] - np.nanmin(around, axis=0))  # limit at jumps
     shown = float(np.nanmax(values)) - highest
     reached = values[k] - highest
     return max(FINER * shown, float(np.max(np.where(reached > 0, FINER, 1.0) * reached + SAFETY * top, initial=0.0)))

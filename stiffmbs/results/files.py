@@ -1,4 +1,4 @@
-"""Writing every channel over time to a file: .csv, .npz, .nc, .tab, .res."""
+"""Writing of every channel over time to a file: .csv, .npz, .nc, .tab, .res."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from .solution import Solution
 
 
 def _write_csv(path: Path, solution: Solution) -> None:
-    # Columns of ones tell what is not unique, so that the names of channels stay as they are.
+    # Columns of ones mark channels without a unique value, so that the names of channels stay unchanged.
     marks = [f"{name}.not_unique" for name in solution.not_unique]
     heads = [f"{name} ({unit})" if (unit := solution.unit(name)) else name for name in ("time", *solution.channels)]
     columns = (solution.time, *solution.channels.values())
@@ -35,7 +35,7 @@ def _write_csv(path: Path, solution: Solution) -> None:
 
 
 def _write_npz(path: Path, solution: Solution) -> None:
-    """As `numpy.savez` does, but for memory: one array after the other."""
+    """Write an archive as `numpy.savez` does, one array after the other to save memory."""
     marked = {"not_unique": np.array(solution.not_unique)} if solution.not_unique else {}
     with ZipFile(path, "w") as archive:
         for name, values in {"time": solution.time, **solution.channels, **marked, **record(solution)}.items():
@@ -55,7 +55,7 @@ def _write_netcdf(path: Path, solution: Solution) -> None:
 
 
 def _write_table(path: Path, solution: Solution) -> None:
-    """Columns apart by tabs, their names between double quotes, as Adams/PostProcessor exports tables."""
+    """Write tab-separated columns with names in double quotes, as Adams/PostProcessor exports tables."""
     heads = [f'"{name}"' for name in ("time", *solution.channels)]
     columns = np.column_stack([solution.time, *solution.channels.values()])
     np.savetxt(path, columns, delimiter="\t", fmt="%.16e", header="\t".join(heads), comments="", encoding="utf-8")
@@ -71,12 +71,12 @@ WRITERS: dict[str, Callable[[Path, Solution], None]] = {
 
 
 def check_output(path: Path, option: str = "-o") -> None:
-    """Refuse, before anything is solved, a file that could not be written.
+    """Check that a file can be written, before anything is solved.
 
     Raises
     ------
     InputError
-        For an unknown ending, a missing folder, or a missing package.
+        If the suffix is unknown, or the folder or a package is missing.
     """
     refuse_path(option, path, WRITERS)
     if path.suffix == ".nc" and find_spec("xarray") is None:
@@ -84,12 +84,12 @@ def check_output(path: Path, option: str = "-o") -> None:
 
 
 def refuse_path(option: str, path: Path, endings: Collection[str]) -> None:
-    """Refuse a file of an unknown ending, or in a folder that is not there or cannot be written to.
+    """Reject a file with an unknown suffix, or in a folder that is missing or not writable.
 
     Raises
     ------
     InputError
-        Names the option.
+        The message names the option.
     """
     if path.suffix not in endings:
         raise InputError(f"{option} {path}: found the ending '{path.suffix}', expected one of {', '.join(endings)}")
@@ -107,16 +107,15 @@ def refuse_path(option: str, path: Path, endings: Collection[str]) -> None:
 
 
 def write(path: Path, solution: Solution) -> None:
-    """Write all channels; the file appears whole or not at all.
+    """Write all channels to a file, completely or not at all.
 
     Parameters
     ----------
     path : Path
-        Ends in .csv (a header line of names and units, time first), .npz (arrays by channel name, ``time``, and what
-        `Solution.load` needs besides, under names with a slash), .nc, .tab (columns apart by tabs, for other programs), or .res
-        (Adams' XML).  Channels without
-        a unique value are marked: by a column ``rail.fy.not_unique`` of ones, by an array ``not_unique`` of names, or
-        by the attribute ``unique`` of each variable.
+        The suffix selects the format: .csv (a header line of names and units, time first), .npz (arrays by channel
+        name, ``time``, and further data for `Solution.load` under names with a slash), .nc, .tab (tab-separated
+        columns), or .res (Adams' XML).  Channels without a unique value are marked: by a column ``rail.fy.not_unique``
+        of ones, an array ``not_unique`` of names, or the attribute ``unique`` of each variable.
     """
     written_whole(path, lambda part: WRITERS[path.suffix](part, solution))
 
@@ -127,13 +126,13 @@ def write_text(path: Path, text: str) -> None:
 
 
 def written_whole(path: Path, write_to: Callable[[Path], object]) -> None:
-    """Let a file be written beside its place and put there when it is whole.
+    """Write a file next to its place, and move it there when it is complete.
 
     Parameters
     ----------
     path : Path
     write_to : callable
-        Writes to the path it is given.
+        Function that writes to a given path.
     """
     if path.exists() and not path.is_file():  # a pipe or device
         write_to(path)
@@ -144,7 +143,7 @@ def written_whole(path: Path, write_to: Callable[[Path], object]) -> None:
         write_to(Path(name))
         umask = os.umask(0)
         os.umask(umask)
-        os.chmod(name, 0o666 & ~umask)  # as an ordinary new file; mkstemp's are private
+        os.chmod(name, 0o666 & ~umask)  # mode of an ordinary new file; mkstemp's are private
         os.replace(name, path)
     except BaseException:
         os.unlink(name)

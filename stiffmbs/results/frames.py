@@ -1,4 +1,4 @@
-"""Solutions as tables of pandas and data sets of xarray."""
+"""Solutions as pandas tables and xarray data sets."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def data_frame(solution: Solution) -> pandas.DataFrame:
-    """See `Solution.to_pandas`."""
+    """Return a table; see `Solution.to_pandas`."""
     _refuse_missing("pandas", "pip install pandas")
     import pandas
 
@@ -25,7 +25,7 @@ def data_frame(solution: Solution) -> pandas.DataFrame:
 
 
 def data_set(solution: Solution) -> xarray.Dataset:
-    """See `Solution.to_xarray`."""
+    """Return a data set; see `Solution.to_xarray`."""
     _refuse_missing("xarray", "pip install 'stiffmbs[netcdf]'")
     import xarray
 

@@ -1,4 +1,4 @@
-"""Solutions one after the other as one."""
+"""Concatenation of solutions in time."""
 
 from __future__ import annotations
 
@@ -15,31 +15,30 @@ from .scales import kind_of
 from .solution import Solution
 
 SAME_VALUE = 1e-6
-"""Part of the size of a channel's kind by which two values may differ and be one."""
+"""Difference up to which two values are equal, relative to the largest value of channels of that kind."""
 VIOLATIONS = "constraint."
 ROUNDING = 1e-9
-"""Part of forces and torques that each other may have as rounding, over lengths that are given."""
+"""Rounding of torques relative to forces times a length, and of forces relative to torques over a length."""
 MECHANICAL = ("force", "torque")
-"""Kinds of channels that are zero where their element is not there."""
+"""Kinds of channels that are zero if their element does not exist."""
 COUNTED = (
     "steps", "residuals", "jacobians", "factorizations", "error_test_failures", "convergence_failures", "newton_iterations",
     "newton_failures", "rejected", "accelerations", "breakpoints", "events", "moves", "seconds",
 )  # fmt: skip
-"""Statistics of solvers that add up; of others the last run's stand."""
+"""Solver statistics that are added up; of others the value of the last run is kept."""
 
 
 def joined(name: str, solutions: Sequence[Solution]) -> Solution:
-    """The results of runs that follow each other in time.
+    """Join the results of runs that follow each other in time.
 
-    Where one ends and the next begins there are two rows of one time, before and after what changes there; one, that after it, where
-    no channel changes.  Channels that a run does not have are zero if they are forces or torques of an element, which is not
-    there then; others have no value.
+    At each transition there are two rows of one time, before and after it; only the second is kept if no channel
+    changes. Channels that a run lacks are zero if they are forces or torques of an element, otherwise nan.
 
     Parameters
     ----------
     name : str
     solutions : sequence of Solution
-        One at least.
+        At least one.
     """
     first = solutions[0]
     if len(solutions) == 1:
@@ -75,7 +74,7 @@ def joined(name: str, solutions: Sequence[Solution]) -> Solution:
 
 
 def _kept_rows(solutions: Sequence[Solution]) -> list[slice]:
-    """All rows of each, without the last where the next begins with the same."""
+    """Return the rows of each solution, without the last row if the next solution starts with the same values."""
     sizes: dict[str, float] = {}
     for solution in solutions:
         for name, values in solution.channels.items():
@@ -90,14 +89,14 @@ def _kept_rows(solutions: Sequence[Solution]) -> list[slice]:
 
 
 def _with_rounding(sizes: dict[str, float]) -> None:
-    """Let forces and torques be at least the rounding of each other: where one of both is zero, its size is rounding alone."""
+    """Raise the sizes of forces and torques to at least the rounding of each other, as a zero one is pure rounding."""
     force, torque = (sizes.get(kind, 0.0) for kind in MECHANICAL)
     length = sizes.get("position") or 1.0
     sizes["force"], sizes["torque"] = max(force, ROUNDING * torque / length), max(torque, ROUNDING * force * length)
 
 
 def _goes_on(before: Solution, after: Solution, sizes: Mapping[str, float]) -> bool:
-    """Whether all channels end as they begin, to what the tolerance of a run leaves; `sizes` are those of their kinds."""
+    """Return True if all channels continue from one solution to the next; `sizes` are those of their kinds."""
     return all(
         np.isclose(
             values[-1], after.channels[name][0], rtol=0, atol=SAME_VALUE * sizes[kind_of(name) or name], equal_nan=True
@@ -115,7 +114,7 @@ def _values(solution: Solution, channel: str, requested: Iterable[str]) -> np.nd
 
 
 def _notes(told: Sequence[Sequence[str]]) -> tuple[str, ...]:
-    """Sentences once, with the numbers of the runs that they are of where not all say them."""
+    """Return each sentence once, with the numbers of its runs unless all have it."""
     all_of_them = dict.fromkeys(sentence for sentences in told for sentence in sentences)
     found = []
     for sentence in all_of_them:
@@ -126,7 +125,7 @@ def _notes(told: Sequence[Sequence[str]]) -> tuple[str, ...]:
 
 
 def _statistics(solutions: Sequence[Solution]) -> dict[str, Any]:
-    """Counts added up, other things as in the last run."""
+    """Return the sums of counters, and the other statistics of the last run."""
     found: dict[str, Any] = {}
     for solution in solutions:
         for name, value in solution.solver.items():
@@ -135,7 +134,7 @@ def _statistics(solutions: Sequence[Solution]) -> dict[str, Any]:
 
 
 def _balance(balances: Sequence[Balance]) -> Balance:
-    """The balance over all runs: what changes between them is no work."""
+    """Return the balance over all runs; changes between them are not work."""
     change, work = (_one_after_the_other([getattr(b, name) for b in balances]) for name in ("change", "work"))
     between = np.zeros(1)
     return Balance(
@@ -151,7 +150,7 @@ def _balance(balances: Sequence[Balance]) -> Balance:
 
 
 def _one_after_the_other(parts: Sequence[np.ndarray]) -> np.ndarray:
-    """Histories since the start of each, as one since the start of the first."""
+    """Join histories since the start of each run into one since the start of the first."""
     found, reached = [], 0.0
     for part in parts:
         found.append(part + reached)

@@ -1,4 +1,4 @@
-"""What is measured between two markers over time; named as in Adams."""
+"""Measures between two markers over time, named as in Adams."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .marker_motion import MarkerMotion
 
 Between = Callable[[MarkerMotion, MarkerMotion], np.ndarray]
 ALIGNED = 1e-12
-"""Sine of the angle between two axes z below which they are one."""
+"""Sine of the angle between two z axes below which they count as parallel."""
 
 VECTORS: dict[str, Between] = {
     "d": lambda i, j: i.point - j.point,
@@ -35,7 +35,7 @@ def _distance_rate(i: MarkerMotion, j: MarkerMotion) -> np.ndarray:
 
 
 def _relative(i: MarkerMotion, j: MarkerMotion) -> np.ndarray:
-    """The quaternion of i's axes in j's, shape (n, 4)."""
+    """Return the quaternion of i's axes in j's, shape (n, 4)."""
     return times(j.orientation * CONJUGATE, i.orientation)
 
 
@@ -44,7 +44,7 @@ def _quaternion(k: int, i: MarkerMotion, j: MarkerMotion) -> np.ndarray:
 
 
 def axis(k: int, i: MarkerMotion, j: MarkerMotion) -> np.ndarray:
-    """The k-th axis of i in the axes of j, shape (n, 3)."""
+    """Return the k-th axis of i in the axes of j, shape (n, 3)."""
     w, x, y, z = _relative(i, j).T
     return np.column_stack(
         (
@@ -61,7 +61,7 @@ def _az(i: MarkerMotion, j: MarkerMotion) -> np.ndarray:
 
 
 def _psi(i: MarkerMotion, j: MarkerMotion) -> np.ndarray:
-    """First angle of the turns about z, x, z; where z and z are one, all of the turn is counted here."""
+    """Return the first Euler angle of the sequence z, x, z; if the z axes are parallel, it is the whole rotation."""
     z = axis(2, i, j)
     return np.where(np.hypot(z[:, 0], z[:, 1]) > ALIGNED, np.arctan2(z[:, 0], -z[:, 1]), _az(i, j))
 
@@ -81,4 +81,4 @@ SCALARS: dict[str, Between] = {
     "psi": _psi, "theta": _theta, "phi": _phi,
     **{f"q{k}": partial(_quaternion, k) for k in range(4)},
 }  # fmt: skip
-"""Numbers, shape (n,)."""
+"""Scalar measures, shape (n,)."""

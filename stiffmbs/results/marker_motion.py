@@ -1,4 +1,4 @@
-"""How markers move over a run, from the channels of their bodies."""
+"""Motion of markers over a run, from the channels of their bodies."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from ..describe.marker import GROUND, MarkerReference
 from ..describe.requests.output import Term
 
 Channels = Mapping[str, np.ndarray]
-"""By name, shape (n,)."""
+"""Channels by name, shape (n,)."""
 
 
 @dataclass(frozen=True, eq=False)
 class MarkerMotion:
-    """A marker over time, all in ground axes, one instant a row.
+    """Motion of a marker over time in ground axes, one row per instant.
 
     Attributes
     ----------
     point, velocity, acceleration : ndarray, shape (n, 3)
     orientation : ndarray, shape (n, 4)
-        The quaternion of its axes.
+        Quaternion of its axes.
     omega, alpha : ndarray, shape (n, 3)
         Angular velocity and acceleration.
     """
@@ -38,11 +38,11 @@ class MarkerMotion:
     alpha: np.ndarray
 
     def along(self, vectors: np.ndarray) -> np.ndarray:
-        """Vectors in ground axes in this marker's, shape (n, 3)."""
+        """Transform vectors from ground axes to this marker's axes, shape (n, 3)."""
         return rotated(self.orientation * CONJUGATE, vectors)
 
     def placed(self, point: np.ndarray, orientation: np.ndarray) -> MarkerMotion:
-        """What is fixed to this marker at a point, and with an orientation, in its axes."""
+        """Return the motion of a frame fixed to this marker, with its point and orientation in this marker's axes."""
         arm = rotated(self.orientation, np.broadcast_to(point, self.point.shape))
         turning = np.cross(self.omega, arm)
         return MarkerMotion(
@@ -56,15 +56,15 @@ class MarkerMotion:
 
 
 class Motions:
-    """Finds the motion of markers, and what joints and forces do; all as in space, the plane being its x-y plane.
+    """Motion of markers, and actions of joints and forces; the plane is the x-y plane of space.
 
     Attributes
     ----------
     model : ModelData
     channels : mapping of str to ndarray
-        Of a run of it.
+        Channels of a run of the model.
     count : int
-        Instants.
+        Number of instants.
     """
 
     def __init__(self, model: Any, channels: Channels, count: int) -> None:
@@ -73,24 +73,24 @@ class Motions:
         self._bodies: dict[str, MarkerMotion] = {}
 
     def of(self, marker: MarkerReference) -> MarkerMotion:
-        """The motion of a marker."""
+        """Return the motion of a marker."""
         point, orientation = self._family.place(self.model, marker)
         return self.of_body(marker.body).placed(point, orientation)
 
     def of_body(self, body: str) -> MarkerMotion:
-        """The motion of a body's centre of mass with the body's own axes; of ground, rest."""
+        """Return the motion of a body's centre of mass with the body's own axes; rest for ground."""
         if body not in self._bodies:
             moving = body != GROUND
             self._bodies[body] = self._family.body_motion(body, self.channels) if moving else self._at_rest()
         return self._bodies[body]
 
     def action(self, element: str) -> tuple[np.ndarray, np.ndarray]:
-        """Force and torque of a joint or force on its first body, in ground axes, shape (n, 3)."""
+        """Return force and torque of a joint or force on its first body, in ground axes, shape (n, 3)."""
         force, torque = self._family.action(element, self.channels)
         return force, torque
 
     def continuous_angle(self, term: Term, counters: Channels) -> np.ndarray:
-        """An angle over whole turns, shape (n,), of counters where the family needs them."""
+        """Return an unwrapped angle, shape (n,), from revolution counters if required."""
         angle: np.ndarray = self._family.continuous_angle(term, self, counters)
         return angle
 

@@ -1,4 +1,4 @@
-"""What a run reports: its channels, its energy balance, and what these say of it."""
+"""Results of a run: channels, energy balance, and notes on these."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ from .undefined_values import no_number_sentences
 
 
 class RunResults(NamedTuple):
-    """The results of a run.
+    """Results of a run.
 
     Attributes
     ----------
     channels : dict of str to ndarray, shape (n,)
     balance : Balance
     turns : dict of str to ndarray, shape (n,)
-        What is counted of angles over whole turns, rad.
+        Revolution counters of angles, rad.
     broken_balance, undefined : tuples of str
         Sentences on the energy balance, and on channels without a number at some instants.
     """
@@ -40,20 +40,19 @@ class RunResults(NamedTuple):
 def results_of_run(
     model: ModelData, system: System, rows: OutputRows, settings: RunSettings, steps: np.ndarray
 ) -> RunResults:
-    """The results of what was computed.
+    """Return the results of a computed run.
 
     Parameters
     ----------
     model : ModelData
     system : System
-        Of the model.
     rows : OutputRows
     settings : RunSettings
     steps : ndarray
-        Ends of the solver's own steps, s; empty where it does not tell them.
+        Ends of the solver's own steps, s; empty if unknown.
     """
     channels, balance = channels_of(model, system, rows), energy_balance(system, rows, steps)
-    solved_there = ~np.isnan(rows.position_violation)  # the others are told as left out
+    solved_there = ~np.isnan(rows.position_violation)  # the other instants are reported as left out
     gaps = with_gaps(channels) if model.requests or not rows.finite else {}
     known = {name: values[solved_there] for name, values in gaps.items()}
     return RunResults(

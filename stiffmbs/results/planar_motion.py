@@ -1,4 +1,4 @@
-"""Bodies, markers and forces of the plane in the x-y plane of space, over a run."""
+"""Planar bodies, markers and forces in the x-y plane of space, over a run."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .marker_motion import Channels, MarkerMotion, Motions
 
 
 def body_motion(body: str, channels: Channels) -> MarkerMotion:
-    """The motion of a body's centre of mass with the body's own axes."""
+    """Return the motion of a body's centre of mass with the body's own axes."""
     x, y, angle, vx, vy, omega, ax, ay, alpha = (
         channels[f"{body}.{name}"] for name in ["x", "y", "angle", "vx", "vy", "omega", "ax", "ay", "alpha"]
     )
@@ -26,21 +26,21 @@ def body_motion(body: str, channels: Channels) -> MarkerMotion:
 
 
 def place(model: Any, marker: MarkerReference) -> tuple[np.ndarray, np.ndarray]:
-    """Where a marker is on its body, from the centre of mass, and the quaternion of its axes in the body's."""
+    """Return the position of a marker relative to the centre of mass, and the quaternion of its axes in the body's."""
     placed = model.place(marker)
     half = placed.angle / 2
     return np.array([*placed.point, 0.0]), np.array([math.cos(half), 0.0, 0.0, math.sin(half)])
 
 
 def action(element: str, channels: Channels) -> tuple[np.ndarray, np.ndarray]:
-    """Force and torque of a joint or force on its first body, in ground axes, shape (n, 3)."""
+    """Return force and torque of a joint or force on its first body, in ground axes, shape (n, 3)."""
     fx, fy, torque = (channels[f"{element}.{name}"] for name in ("fx", "fy", "torque"))
     zero = np.zeros_like(fx)
     return np.column_stack([fx, fy, zero]), np.column_stack([zero, zero, torque])
 
 
 def continuous_angle(term: Term, motions: Motions, counters: Channels) -> np.ndarray:
-    """The angle of marker i against marker j: those of the bodies count their turns themselves."""
+    """Return the angle of marker i relative to marker j; angles of planar bodies are unwrapped."""
     i, j = (_angle(marker, motions) for marker in term.markers)
     return np.broadcast_to(i - j, motions.count)
 

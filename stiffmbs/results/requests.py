@@ -1,4 +1,4 @@
-"""Requests: what their formulas give over a run, from its channels."""
+"""Evaluation of requests over a run, from its channels."""
 
 from __future__ import annotations
 
@@ -25,22 +25,22 @@ _FUNCTIONS: Functions = {name: function.array for name, function in FUNCTIONS.it
 
 
 def requested(model: ModelData, time: np.ndarray, channels: Channels, counters: Channels) -> dict[str, np.ndarray]:
-    """The requests of a model at each instant.
+    """Return the requests of a model at each instant.
 
     Parameters
     ----------
     model : ModelData
     time : ndarray, shape (n,)
-        s.
+        Times, s.
     channels : mapping of str to ndarray
-        Of bodies, joints, forces and the whole, shape (n,).
+        Channels of bodies, joints, forces and the whole model, shape (n,).
     counters : mapping of str to ndarray
-        What is counted of angles over whole turns, as `ModelData.angle_counters` names them, rad, shape (n,).
+        Revolution counters of angles, as `ModelData.angle_counters` names them, rad, shape (n,).
 
     Returns
     -------
     dict of str to ndarray
-        By channel, shape (n,), in the order in which the model has them.
+        Values by channel, shape (n,), in the order of the model.
     """
     outputs = model.outputs()
     functions = {
@@ -65,7 +65,7 @@ def _value(output: Output, time: np.ndarray, channels: Channels, terms: _Terms, 
     of_terms = {placeholder(k): term for k, term in enumerate(output.terms)}
 
     def names(name: str) -> Any:
-        """The values over time that a name stands for."""
+        """Return the values over time of a name."""
         if name == TIME:
             return time
         if name in output.quantities:
@@ -74,7 +74,7 @@ def _value(output: Output, time: np.ndarray, channels: Channels, terms: _Terms, 
             return terms.value(of_terms[name])
         return channels[name]
 
-    values = evaluate(output.tree, names, functions, np.float64)  # divides by zero without complaint
+    values = evaluate(output.tree, names, functions, np.float64)  # divides by zero without an error
     return np.array(np.broadcast_to(np.asarray(values, dtype=float), time.shape))
 
 
@@ -87,7 +87,7 @@ class _Terms:
         self._known: dict[Term, np.ndarray] = {}
 
     def value(self, term: Term) -> np.ndarray:
-        """What a term is over time."""
+        """Return the values of a term over time."""
         if term not in self._known:
             self._known[term] = self._action(term) if term.element else self._measure(term)
         return self._known[term]

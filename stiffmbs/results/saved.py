@@ -1,6 +1,6 @@
-"""What an .npz file holds of a run besides its channels, so that it can be read again.
+"""Data of a run in an .npz file in addition to its channels, from which the run can be restored.
 
-Its names have a slash, which no channel has: ``run/about`` is one text, JSON; the rest are arrays.
+These names have a slash, which no channel has: ``run/about`` is a JSON text; the others are arrays.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ TEXTS = ("notes", "not_unique", "presolve", "verification")
 
 
 def record(solution: Solution) -> dict[str, np.ndarray]:
-    """The arrays to save besides the channels."""
+    """Return the arrays to save in addition to the channels."""
     about: dict[str, Any] = {
         "name": solution.name,
         "outcome": solution.outcome.name,
@@ -49,12 +49,12 @@ def record(solution: Solution) -> dict[str, np.ndarray]:
 
 
 def _plain(value: Any) -> Any:
-    """A number of NumPy's as Python's."""
+    """Return a number of NumPy as a Python number."""
     return value.item()
 
 
 def loaded(path: Path) -> Solution:
-    """See `Solution.load`."""
+    """Read a solution; see `Solution.load`."""
     if path.suffix != ".npz":
         raise InputError(
             f"load {path}: found the ending '{path.suffix}', expected .npz: other files hold the channels alone"

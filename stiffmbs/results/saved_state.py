@@ -1,4 +1,4 @@
-"""The state of all bodies at one instant of saved results: where a run can start from."""
+"""State of all bodies at one instant of saved results, from which a run can start."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 SAME_INSTANT = 1e-9
 """Part of the time between two rows by which an instant may differ from that of a row."""
 TURNS = "run/turns/"
-"""Before the names of counts of turns in .npz files."""
+"""Prefix of the names of revolution counters in .npz files."""
 
 
 @dataclass(frozen=True)
@@ -32,15 +32,15 @@ class SavedState:
     Attributes
     ----------
     source : str
-        What messages call it: a file, or the name of a solution.
+        File, or name of a solution, for messages.
     t : float
-        s.
+        Time, s.
     channels : mapping of str to float
         Every channel at that instant.
     turns : mapping of str to float
-        What is counted of angles over whole turns in space, rad, by element and number: ``spring/0``.
+        Revolution counters of angles in space, rad, by element and number: ``spring/0``.
     elements : frozenset of str, optional
-        Joints and forces of the run that it is of, where that is known: the turns of others are counted anew.
+        Joints and forces of the saved run, if known: the counters of other elements start again.
     """
 
     source: str
@@ -50,24 +50,24 @@ class SavedState:
     elements: frozenset[str] | None = None
 
     def is_new(self, element: str) -> bool:
-        """Whether the run that it is of did not have an element."""
+        """Return True if the saved run is known not to have an element."""
         return self.elements is not None and element not in self.elements
 
 
 def read_state(path: str | Path, at: float | None = None) -> SavedState:
-    """One row of a file that ``stiffmbs run -o`` or ``stiffmbs equilibrium -o`` wrote.
+    """Read one row of a file that ``stiffmbs run -o`` or ``stiffmbs equilibrium -o`` wrote.
 
     Parameters
     ----------
     path : str or Path
-        Ends in .npz, .csv or .nc.
+        Name in .npz, .csv or .nc.
     at : float, optional
-        The instant of the row, s; the last row by default.
+        Time of the row, s; the last row by default.
 
     Raises
     ------
     InputError
-        When the file cannot be read, holds no channels over time, or has no row at that instant.
+        If the file cannot be read, holds no channels over time, or has no row at that time.
     """
     file = Path(path)
     source = quoted(str(file))
@@ -86,7 +86,7 @@ def read_state(path: str | Path, at: float | None = None) -> SavedState:
 
 
 def state_of(solution: Solution, at: float | None) -> SavedState:
-    """See `Solution.state`."""
+    """Return a state; see `Solution.state`."""
     turns = {TURNS + name: values for name, values in solution.turns.items()}
     name = f"the results of '{solution.name}'" if solution.name else "the results"
     return _row(name, solution.time, {**solution.channels, **turns}, at)

@@ -1,4 +1,4 @@
-"""How large each channel is for an error in it to matter: channels of one kind are measured together."""
+"""Scales of channels for the judgement of errors; channels of one kind have a common scale."""
 
 from __future__ import annotations
 
@@ -11,14 +11,13 @@ from ..describe.parts.names import owner_of
 
 SMALL = {"force": 1e-2, "torque": 1e-2}
 LITTLE = 0.1
-"""Part of the largest of a kind that an element or body counts for at the least: who asks for the force of a small
-bushing wants it, but a body that hardly moves is not looked at for its motion."""
+"""Least size of a body or element relative to the largest of its kind: smaller for forces than for motions."""
 FIXED = 1e-8
-"""Motions smaller than this, in sizes of the mechanism and rad, are no motions."""
+"""Largest motion that counts as none, in sizes of the mechanism and rad."""
 CROSSED = 1e-3
-"""The same for torques beside forces, and for rotations beside motions, at the size of the mechanism."""
+"""Least size of torques relative to forces, and of rotations relative to displacements, at the mechanism's size."""
 REQUEST_ROUNDING = 1e-14
-"""Part of the largest number of all channels below which a request, whose unit nobody knows, is nothing but rounding."""
+"""Part of the largest number of all channels below which a request of unknown unit is only rounding."""
 MEASURED = {
     "position": "x y z deflection", "angle": "angle slip_angle camber", "orientation": "q0 q1 q2 q3", "velocity": "vx vy vz",
     "angular velocity": "omega wx wy wz", "acceleration": "ax ay az", "angular acceleration": "alpha wdx wdy wdz",
@@ -32,24 +31,24 @@ UNITS = {
 TURNING = {
     "angle": "position", "orientation": "position", "angular velocity": "velocity", "angular acceleration": "acceleration",
 }  # fmt: skip
-"""Kinds that follow from others by a length: at rest in one of them, the other says what is small."""
+"""Kinds with the kind that sets their least size by a length, for mechanisms at rest."""
 PLACES = ("position", "angle", "orientation")
-"""Kinds that are measured from where they are at the start."""
+"""Kinds that are measured relative to their start values."""
 
 
 def kind_of(channel: str) -> str:
-    """What a channel measures; nothing for requests and constraint violations."""
+    """Return the kind of a channel; empty for requests and constraint violations."""
     return KINDS.get(channel.rpartition(".")[2], "") if "." in channel else ""
 
 
 def _owner(channel: str) -> str:
-    """The body, element or request whose channels are measured together."""
+    """Return the body, element or request whose channels have a common scale."""
     owner = owner_of(channel)
     return channel if owner == "constraint" else owner
 
 
 def _kind(channel: str, requested: Mapping[str, str]) -> str:
-    """The kind of a channel; of a request whose name and unit both say so: ``push.x`` may be a force."""
+    """Return the kind of a channel; of a request, only if its unit agrees, as ``push.x`` may be a force."""
     kind = kind_of(channel)
     return kind if channel not in requested or requested[channel] == UNITS.get(kind, "") else ""
 
@@ -57,20 +56,21 @@ def _kind(channel: str, requested: Mapping[str, str]) -> str:
 def scales(
     channels: Mapping[str, np.ndarray], size: float, requested: Mapping[str, str] = MappingProxyType({})
 ) -> dict[str, float]:
-    """The size of each channel: of what its body or element does in all directions, at least a little of the largest.
+    """Return the size of each channel: the largest value of its body or element, but at least a part of all.
 
     Parameters
     ----------
     channels : mapping of str to ndarray
     size : float
-        Of the mechanism, m.
+        Size of the mechanism, m.
     requested : mapping of str to str
-        The channels that are requests, with their units.
+        Channels that are requests, with their units.
 
     Returns
     -------
     dict of str to float
-        In the unit of the channel; of requests the largest value of their components; zero where nothing moves or acts.
+        Size in the unit of the channel; for requests the largest value of their components; zero where nothing moves or
+        acts.
     """
     own: dict[tuple[str, str], float] = {}
     kinds = {name: _kind(name, requested) for name in channels}

@@ -1,4 +1,4 @@
-"""The result of a run: channels over time by name, statistics, and what there is to say about it."""
+"""Result of a run: channels over time by name, statistics, and notes."""
 
 from __future__ import annotations
 
@@ -33,37 +33,35 @@ class Solution(Mapping[str, np.ndarray]):
     Attributes
     ----------
     name : str
-        Of the scene.
     time : ndarray, shape (n,)
         Output instants, s.
     channels : dict of str to ndarray
         Every channel over time, SI units, radians.
     outcome : Outcome
     message : str
-        One sentence on how the run ended.
+        Sentence on the end of the run.
     notes : tuple of str
-        What the user should know besides: moves at the assembly, warnings.
+        Further information: moves at the assembly, warnings.
     solver : dict
         Name, steps, residuals, jacobians, seconds.
     history : History
-        The solver's own steps and their orders, where it tells them.
+        The solver's own steps and their orders, if available.
     not_unique : tuple of str
-        Channels of reactions that rigid bodies do not determine; what they hold is one of many possible values.
+        Reaction channels that rigid bodies do not determine; their values are one of many possible solutions.
     requested : mapping of str to str
-        Channels that are requests, not of bodies or elements, with their SI units; empty for plain numbers, and where nothing
-        tells the unit.
+        Channels that are requests, with their SI units; empty for plain numbers and unknown units.
     presolve : tuple of str
-        What was left out of the solution because it follows from the rest, a sentence each.
+        Sentences on the parts that presolve removed from the solution.
     errors : mapping of str to ErrorBar
-        How far channels may lie from the truth, where the run was verified.
+        Error bars of channels, if the run was verified.
     verification : tuple of str
-        What the run was compared with, a sentence each.
+        Sentences on the runs used for verification.
     balance : Balance
-        Of energy and work.
+        Balance of energy and work.
     figure : Figure, optional
-        The plot that shows what the scene is about, where it has one.
+        Main plot of the scene, if it has one.
     turns : mapping of str to ndarray
-        What is counted of angles over whole turns in space, rad, by element and number: ``spring/0``.
+        Revolution counters of angles in space, rad, by element and number: ``spring/0``.
     """
 
     name: str
@@ -85,28 +83,28 @@ class Solution(Mapping[str, np.ndarray]):
 
     @property
     def success(self) -> bool:
-        """Whether the whole time was solved."""
+        """Return True if the whole time was solved."""
         return self.outcome is Outcome.DONE
 
     @property
     def units(self) -> dict[str, str]:
-        """The SI unit of each channel; empty for plain numbers, and where nothing tells it."""
+        """Return the SI unit of each channel; empty for plain numbers and unknown units."""
         return {channel: self.unit(channel) for channel in self.channels}
 
     def unit(self, channel: str) -> str:
-        """The unit of one channel, or of ``"time"``; see `units`."""
+        """Return the unit of one channel, or of ``"time"``; see `units`."""
         if channel == "time":
             return "s"
         return self.requested[channel] if channel in self.requested else UNITS.get(kind_of(channel), "")
 
     @property
     def step_times(self) -> np.ndarray:
-        """Ends of the solver's own steps, s, where it tells them."""
+        """Return the ends of the solver's own steps, s, if available."""
         return self.history.t
 
     @property
     def t(self) -> np.ndarray:
-        """The same as `time`."""
+        """Return `time`."""
         return self.time
 
     def __getitem__(self, channel: str) -> np.ndarray:
@@ -125,7 +123,7 @@ class Solution(Mapping[str, np.ndarray]):
         return f"<Solution '{self.name}': {len(self.channels)} channels at {len(self.time)} instants, {self.message}>"
 
     def _repr_html_(self) -> str:
-        """What a notebook shows."""
+        """Return the representation in a notebook."""
         from ..show.html import solution_html
 
         return solution_html(self)
@@ -136,41 +134,41 @@ class Solution(Mapping[str, np.ndarray]):
         )
 
     def to_pandas(self) -> pandas.DataFrame:
-        """A table with a column for each channel, over time, s; its ``attrs`` hold the units (needs pandas).
+        """Return a table with a column for each channel, over time, s; its ``attrs`` hold the units (needs pandas).
 
         Raises
         ------
         InputError
-            When pandas is not installed.
+            If pandas is not installed.
         """
         from .frames import data_frame
 
         return data_frame(self)
 
     def to_xarray(self) -> xarray.Dataset:
-        """A variable for each channel, over time, s, with its unit (needs xarray, the extra ``netcdf``).
+        """Return a data set of all channels over time, s, with their units (needs xarray, the extra ``netcdf``).
 
         Raises
         ------
         InputError
-            When xarray is not installed.
+            If xarray is not installed.
         """
         from .frames import data_set
 
         return data_set(self)
 
     def save(self, path: str | Path) -> None:
-        """Write every channel to a file, as ``stiffmbs run -o`` does; it appears whole or not at all.
+        """Write every channel to a file, completely or not at all, as ``stiffmbs run -o`` does.
 
         Parameters
         ----------
         path : str or Path
-            Ends in .npz (which `load` reads), .csv, .nc or .tab.
+            Name in .npz (which `load` reads), .csv, .nc, .tab or .res.
 
         Raises
         ------
         InputError
-            For another ending, a missing folder, or a missing package.
+            If the suffix is unknown, or the folder or a package is missing.
         """
         from .files import check_output, write
 
@@ -178,7 +176,7 @@ class Solution(Mapping[str, np.ndarray]):
         write(Path(path), self)
 
     def state(self, at: float | None = None) -> SavedState:
-        """The state of all bodies at one instant, for ``stiffmbs.run(model, start_from=...)``.
+        """Return the state of all bodies at one instant, for ``stiffmbs.run(model, start_from=...)``.
 
         Parameters
         ----------
@@ -188,7 +186,7 @@ class Solution(Mapping[str, np.ndarray]):
         Raises
         ------
         InputError
-            When there is no such instant.
+            If there is no such instant.
         """
         from .saved_state import state_of
 
@@ -196,12 +194,12 @@ class Solution(Mapping[str, np.ndarray]):
 
     @classmethod
     def load(cls, path: str | Path) -> Solution:
-        """What `save` or ``stiffmbs run -o`` wrote to an .npz file.
+        """Read an .npz file that `save` or ``stiffmbs run -o`` wrote.
 
         Raises
         ------
         InputError
-            When the file cannot be read, or is none of these.
+            If the file cannot be read, or is not of this kind.
         """
         from .saved import loaded
 
@@ -220,43 +218,43 @@ class Solution(Mapping[str, np.ndarray]):
         return summary(self, all)
 
     def plot(self, *channels: str, x: str = "time", z: str = "", title: str = "", equal: bool = False) -> Sheet:
-        """Draw channels over time, or over another channel (needs matplotlib, the extra ``plot``).
+        """Plot channels over time, or over another channel (needs matplotlib, the extra ``plot``).
 
         Parameters
         ----------
         *channels : str
-            What to draw; without any the scene's own figure, or the total energy.
+            Channels to plot; by default the scene's own figure, or the total energy.
         x : str
             A channel, or ``"time"``.
         z : str
             A channel: the figure is then a path in space, of one channel over `x`.
         title : str
-            Of the figure; the scene's name by default.
+            Title of the figure; the scene's name by default.
         equal : bool
-            Whether all axes have one scale, as for paths.
+            True for the same scale on all axes, as for paths.
 
         Returns
         -------
         matplotlib.figure.Figure
-            One of pyplot's, so that ``pyplot.show()`` shows it.
+            Figure of pyplot, which ``pyplot.show()`` displays.
 
         Raises
         ------
         InputError
-            When there is no such channel, or no matplotlib.
+            If there is no such channel, or matplotlib is not installed.
         """
         from ..show.figure import plotted
 
         return plotted(self, Figure(y=channels, x=x, z=z, title=title, equal=equal) if channels else self.figure)
 
     def energy_drift(self) -> float:
-        """Largest change of the total energy since the start, J."""
+        """Return the largest change of the total energy since the start, J."""
         total = self.channels["energy.total"]
         return float(np.nanmax(np.abs(total - total[0])))
 
 
 def channel_ranges(solution: Solution) -> dict[str, dict[str, float]]:
-    """First, last, least and largest value of every channel, and when the latter two occur; nan where it has no value."""
+    """Return the first, last, least and greatest value of every channel, with times of the extremes; else nan."""
     ranges = {}
     for name, values in solution.channels.items():
         low, high = (0, 0) if np.isnan(values).all() else (int(np.nanargmin(values)), int(np.nanargmax(values)))

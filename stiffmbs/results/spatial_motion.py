@@ -1,4 +1,4 @@
-"""Bodies, markers and forces of space over a run."""
+"""Spatial bodies, markers and forces over a run."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .marker_motion import Channels, MarkerMotion, Motions
 
 
 def body_motion(body: str, channels: Channels) -> MarkerMotion:
-    """The motion of a body's centre of mass with the body's own axes."""
+    """Return the motion of a body's centre of mass with the body's own axes."""
 
     def columns(names: str) -> np.ndarray:
         return np.column_stack([channels[f"{body}.{name}"] for name in names.split()])
@@ -27,7 +27,7 @@ def body_motion(body: str, channels: Channels) -> MarkerMotion:
 
 
 def place(model: Any, marker: MarkerReference) -> tuple[np.ndarray, np.ndarray]:
-    """Where a marker is on its body, from the centre of mass, and the quaternion of its axes in the body's."""
+    """Return the position of a marker relative to the centre of mass, and the quaternion of its axes in the body's."""
     placed = model.place(marker)
     point = np.array(placed.point)
     if marker.body != GROUND:
@@ -36,13 +36,13 @@ def place(model: Any, marker: MarkerReference) -> tuple[np.ndarray, np.ndarray]:
 
 
 def action(element: str, channels: Channels) -> tuple[np.ndarray, np.ndarray]:
-    """Force and torque of a joint or force on its first body, in ground axes, shape (n, 3)."""
+    """Return force and torque of a joint or force on its first body, in ground axes, shape (n, 3)."""
     force, torque = (np.column_stack([channels[f"{element}.{kind}{axis}"] for axis in "xyz"]) for kind in "ft")
     return force, torque
 
 
 def continuous_angle(term: Term, motions: Motions, counters: Channels) -> np.ndarray:
-    """The angle of marker i about an axis of marker j that is nearest to its counter, which the integration follows."""
+    """Return the angle of marker i about an axis of marker j, unwrapped by its revolution counter."""
     i, j = (motions.of(marker) for marker in term.markers)
     sine, cosine = _sine_and_cosine(term.function[1], i, j)
     counted = counters[str(term)]
@@ -51,7 +51,7 @@ def continuous_angle(term: Term, motions: Motions, counters: Channels) -> np.nda
 
 
 def _sine_and_cosine(about: str, i: MarkerMotion, j: MarkerMotion) -> tuple[np.ndarray, np.ndarray]:
-    """As in `stiffmbs.compile.symbolic.spatial_frames.SpatialFrame.angle_about`."""
+    """Return sine and cosine of an angle as in `stiffmbs.compile.symbolic.spatial_frames.SpatialFrame.angle_about`."""
     if about == "z":
         x = axis(0, i, j)
         return x[:, 1], x[:, 0]

@@ -1,4 +1,4 @@
-"""The channels of states: their values and rates, and the outputs of their equations."""
+"""Channels of states: their values and rates, and the outputs of their equations."""
 
 from __future__ import annotations
 
@@ -9,19 +9,19 @@ from ..compile.terms import TERM_SETS
 
 
 def state_channels(system: System, q: np.ndarray, values: np.ndarray) -> dict[str, np.ndarray]:
-    """Values and rates of states, and outputs, by name.
+    """Return values and rates of states, and outputs, by name.
 
     Parameters
     ----------
     system : System
     q : ndarray, shape (n, n_q)
     values : ndarray
-        Of the set ``output``, one instant a row.
+        Values of the set ``output``, one row per instant.
     """
     channels = {name: q[:, system.first_state + k] for k, name in enumerate(system.states)}
     algebraic = {name for name, is_algebraic in zip(system.states, system.algebraic, strict=True) if is_algebraic}
     for name, signal in _signals(system, values):
-        if name not in algebraic:  # what is zero all the time
+        if name not in algebraic:  # the signal of an algebraic state is always zero
             channels[f"{name}.rate" if name in channels else name] = signal
     return channels
 

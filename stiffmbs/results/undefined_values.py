@@ -1,4 +1,4 @@
-"""Notes on channels that have no value at some of the output times, as of a request that divides by zero."""
+"""Notes on channels without a value at some output times, as of a request that divides by zero."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ MOST_NAMED = 5
 
 
 def no_number_sentences(time: np.ndarray, channels: Mapping[str, np.ndarray]) -> Iterator[str]:
-    """A sentence for each channel with NaN or infinite values, and one for all beyond the first few.
+    """Yield a sentence for each channel with NaN or infinite values, and one for all beyond the first few.
 
     Parameters
     ----------
     time : ndarray, shape (n,)
-        s.
+        Times, s.
     channels : mapping of str to ndarray, shape (n,)
     """
     found = {name: ~np.isfinite(values) for name, values in channels.items()}

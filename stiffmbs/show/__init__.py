@@ -1,1 +1,1 @@
-"""Results for people and programs: solutions with named channels, summaries, files, the command line."""
+"""Presentation of results: summaries, tables, plots, drawings, animations and pages."""

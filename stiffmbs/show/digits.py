@@ -1,26 +1,26 @@
-"""Numbers with as many digits as are known."""
+"""Numbers with their significant digits."""
 
 from __future__ import annotations
 
 import math
 
 PLENTY = 9
-"""Significant digits of a number that is known better."""
+"""Most significant digits of a number."""
 LEAST_WITHOUT_EXPONENT = 1e-3
-"""Smaller numbers are written with an exponent."""
+"""Least number that is written without an exponent."""
 
 
 def with_bar(value: float, half: float, noise: float = 0.0) -> str:
-    """A value and the half width of its error bar, as ``12.345 ± 0.002``.
+    """Return a value and the half width of its error bar, as ``12.345 ± 0.002``.
 
-    The bar has one digit, rounded up, two where the first would be 1; the value has its last digit at the same place.
+    The bar has one digit, rounded up, or two if the first would be 1; the last digit of the value is at the same place.
 
     Parameters
     ----------
     value, half : float
-        NaN for a bar that is not known.
+        The half width is nan if it is unknown.
     noise : float
-        Values and bars up to this size are zero.
+        Size up to which values and bars are zero.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""A static equilibrium as a table for a person."""
+"""Static equilibria as text."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from ..describe.model_data import ModelData
 
 
 def equilibrium_text(found: EquilibriumFound, model: ModelData) -> str:
-    """Poses of bodies, then the force and torque of each element on its first body, and states."""
+    """Return a table of the poses of bodies, the force and torque of each element on its first body, and states."""
     kind = BODY_KINDS[model.dimensions]
     head = f"{found.name or 'model'}: equilibrium at t = {found.t:g} s after {found.moves} moves, imbalance {found.imbalance:.1e}"
     tables = (

@@ -1,9 +1,9 @@
-"""Escape control and formatting characters in text for terminals and pages.
+"""Escaping of control and formatting characters in text for terminals and pages.
 
-Names and files may hold characters that control a terminal or change the writing direction.  The following are written as escapes
-that JSON reads as the same character, such as ``\\u202e``: control characters (C0 and C1), formatting characters (such as
-bidirectional overrides and zero-width characters), line separators other than a line feed, and code points without a character.
-Unicode Standard Annex 9, section 3.1; Unicode Technical Report 36, section 2.
+Names and files may hold characters that control a terminal or change the writing direction.  The following are written
+as escapes that JSON reads as the same character, such as ``\\u202e``: control characters (C0 and C1), formatting
+characters (such as bidirectional overrides and zero-width characters), line separators other than a line feed, and code
+points without a character. Unicode Standard Annex 9, section 3.1; Unicode Technical Report 36, section 2.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ class EscapingStream:
     Parameters
     ----------
     stream : file object
-        Of text.
+        Text stream.
     """
 
     def __init__(self, stream: Any) -> None:

@@ -1,4 +1,4 @@
-"""Drawing the plot that a scene asks for (needs matplotlib, the extra ``plot``)."""
+"""Plots defined by scenes (needs matplotlib, the extra ``plot``)."""
 
 from __future__ import annotations
 
@@ -22,18 +22,18 @@ ENDINGS = (".png", ".svg", ".pdf")
 SIZE = (8, 5)
 TOTAL_ENERGY = Figure(title="total energy", y=("energy.total",))
 MOST_PLOTS = 6
-"""With more units than that, all lines share one plot, and the legend names the units."""
+"""Number of units above which all lines share one plot, with the units in the legend."""
 LARGEST = 1e100
-"""Beyond it matplotlib finds no ticks for an axis."""
+"""Largest value for which matplotlib finds ticks of an axis."""
 
 
 def check_figure(option: str, path: Path) -> None:
-    """Refuse, before anything is solved, a figure that could not be drawn to the path of an option.
+    """Check that a figure can be drawn to the path of an option, before anything is solved.
 
     Raises
     ------
     InputError
-        For an unknown ending, a missing folder, or a missing matplotlib.
+        If the suffix is unknown, or the folder or matplotlib is missing.
     """
     refuse_path(option, path, ENDINGS)
     if find_spec("matplotlib") is None:
@@ -47,12 +47,12 @@ def draw(path: Path, solution: Solution, figure: Figure | None) -> None:
 
 
 def drawn(solution: Solution, figure: Figure | None) -> Sheet:
-    """A scene's own figure; without one, the total energy over time.
+    """Draw a scene's own figure, or the total energy over time if it has none.
 
     Raises
     ------
     InputError
-        When the figure names an unknown channel.
+        If the figure names an unknown channel.
     """
     from matplotlib.figure import Figure as Sheet
 
@@ -62,12 +62,12 @@ def drawn(solution: Solution, figure: Figure | None) -> Sheet:
 
 
 def plotted(solution: Solution, figure: Figure | None) -> Sheet:
-    """See `Solution.plot`."""
+    """Return a figure of pyplot; see `Solution.plot`."""
     if find_spec("matplotlib") is None:
         raise InputError("plot: found no matplotlib, expected it installed: pip install 'stiffmbs[plot]'")
     figure = figure or TOTAL_ENERGY
     for channel in (*figure.y, *([figure.x] if figure.x != "time" else []), *([figure.z] if figure.z else [])):
-        solution[channel]  # refused before there is an empty figure
+        solution[channel]  # raises an error before an empty figure is made
     from matplotlib import pyplot
 
     sheet = pyplot.figure(figsize=SIZE, layout="constrained")
@@ -76,30 +76,30 @@ def plotted(solution: Solution, figure: Figure | None) -> Sheet:
 
 
 def _drawable(values: np.ndarray) -> np.ndarray:
-    """Values without those of a diverged run that an axis cannot hold."""
+    """Return values with nan for those of a diverged run that exceed an axis."""
     return np.where(np.abs(values) < LARGEST, values, np.nan)
 
 
 def draw_on(sheet: Sheet, solution: Solution, figure: Figure) -> None:
-    """Draw a figure on an empty sheet of matplotlib's; errors as for `drawn`."""
+    """Draw a figure on an empty sheet of matplotlib; errors as for `drawn`."""
     draw_runs(sheet, {"": solution}, figure)
 
 
 def draw_runs(sheet: Sheet, runs: Mapping[str, Solution], figure: Figure) -> None:
-    """Draw the same channels of several runs, a plot for each unit, and a legend where it hides nothing.
+    """Draw the same channels of several runs, with one plot for each unit and a legend below.
 
     Parameters
     ----------
     sheet : matplotlib.figure.Figure
-        Empty.
+        Empty sheet.
     runs : mapping of str to Solution
-        By what the legend calls them; a single run may have no name.
+        Runs by their names in the legend; a single run may have no name.
     figure : Figure
 
     Raises
     ------
     InputError
-        When a run has no such channel.
+        If a run has no such channel.
     """
     first = next(iter(runs.values()))
     units = [""] if figure.z else list(dict.fromkeys(first.unit(channel) for channel in figure.y))
@@ -138,13 +138,13 @@ def _name_axes(plots: Any, solution: Solution, figure: Figure, units: Sequence[s
 
 
 def _label(solution: Solution, channel: str) -> str:
-    """A channel with its unit, where it has one."""
+    """Return a channel with its unit, if any."""
     unit = solution.unit(channel)
     return f"{channel} ({unit})" if unit else channel
 
 
 def _is_mathematical(title: str) -> bool:
-    """Whether the formulas between dollar signs can be drawn as such; else they are shown as they are written."""
+    """Return True if the formulas between dollar signs are valid; otherwise they are shown as text."""
     from matplotlib.mathtext import MathTextParser
 
     try:

@@ -1,4 +1,4 @@
-"""The table of a summary: the range of each component of the force and torque of every element."""
+"""Force table of a summary: the range of each component of the force and torque of every element."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ if TYPE_CHECKING:
     from rich.table import Table
 
 SHOWN_AS_ZERO = 1e-11
-"""Part of the largest force below which a force is shown as zero: what solutions in space leave of forces that vanish."""
+"""Part of the largest force below which a force is shown as zero."""
 NOT_UNIQUE = "*"
-"""Stands behind the range of a reaction that has no unique value."""
+"""Mark of the range of a reaction without a unique value."""
 Cell = Mapping[str, float]
 
 
@@ -81,7 +81,7 @@ def _shown(solution: Solution, name: str, cell: Cell, noise: float) -> str:
 
 
 def _range(cell: Cell, bar: ErrorBar | None, noise: float) -> str:
-    """Least and greatest value; of a verified run each on a line with what is known of it."""
+    """Return the least and greatest value; for a verified run, each on a line with its error bar."""
     ends = (cell["min"], cell["max"])
     if bar is None:
         return " .. ".join(_digits(end, noise) for end in ends)

@@ -1,4 +1,4 @@
-"""What notebooks show of models, reports and solutions: tables, and pictures where matplotlib is installed."""
+"""Notebook representations of models, reports and solutions: tables, and pictures if matplotlib is installed."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ if TYPE_CHECKING:
     from ..results.solution import Solution
 
 MOST_ROWS = 40
-"""Of a table; the others are counted."""
+"""Number of rows of a table; further ones are counted."""
 MOST_DRAWN = 200
-"""Bodies and elements up to which a model is drawn without being asked."""
+"""Number of bodies and elements up to which a model is drawn by default."""
 
 
 def model_html(model: Any) -> str:
-    """A model's content by sections, with its drawing as described.
+    """Return a model's content by sections, with its drawing as described.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ def model_html(model: Any) -> str:
 
 
 def report_html(report: Report) -> str:
-    """What `stiffmbs.check` found."""
+    """Return the findings of `stiffmbs.check`."""
     rows = [
         ("degrees of freedom", report.degrees_of_freedom), ("constraint equations", report.equations), ("rank", report.rank),
         ("redundant", ", ".join(f"{joint}.{equation}" for joint, equation in report.redundant) or "none"),
@@ -56,7 +56,7 @@ def report_html(report: Report) -> str:
 
 
 def solution_html(solution: Solution) -> str:
-    """How a run ended, its figure, and the range of every channel."""
+    """Return the final message of a run, its figure, and the range of every channel."""
     ranges = channel_ranges(solution)
     rows = [
         (
@@ -78,7 +78,7 @@ def escape(text: str) -> str:
 
 
 def _placed(part: Any) -> str:
-    """The bodies that an element acts between."""
+    """Return the markers between which an element acts."""
     return ", ".join(str(getattr(part, name)) for name in ("i", "j") if getattr(part, name, None) is not None)
 
 
@@ -95,7 +95,7 @@ def _table(heads: Sequence[str], rows: Sequence[Iterable[Any]]) -> str:
 
 
 def _drawing(model: Any, count: int) -> str:
-    """The model as it is described; nothing where it cannot be drawn."""
+    """Return a picture of the described model, or an empty string if it cannot be drawn."""
     if find_spec("matplotlib") is None or count > MOST_DRAWN:
         return ""
     from .drawing.draw import state_drawn
@@ -105,7 +105,7 @@ def _drawing(model: Any, count: int) -> str:
     try:
         drawing, poses = state_drawn(model, described=True)
         sheet = picture(drawing, poses, view_named("", drawing.dimensions, drawing.gravity), Shown(True, False))
-    except StiffmbsError:  # a model that is not complete yet
+    except StiffmbsError:  # the model may be incomplete
         return ""
     return _picture(sheet)
 

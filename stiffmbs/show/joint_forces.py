@@ -1,4 +1,4 @@
-"""The largest force and torque of each joint and force element of a run, with its instant and error bar."""
+"""Largest force and torque of each joint and force element of a run, with its time and error bar."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from ..results.solution import Solution
 from .digits import with_bar
 
 ZERO_LOAD = 1e-11
-"""Part of the largest force, or torque, of all elements below which one is zero."""
+"""Part of the largest force, or torque, of all elements below which one counts as zero."""
 
 
 def joint_forces(solution: Solution) -> list[dict[str, str]]:
-    """A row for each element's force, and for its torque where it has one or it is not unique: ``name what peak at unique``.
+    """Return rows ``name what peak unit at unique``: one per force, and per torque that is nonzero or not unique.
 
-    The peak is the largest magnitude at the output instants.  Its bar is the magnitude of the components' bars, as the
-    magnitude of a vector errs by no more than the vector does.
+    The peak is the largest magnitude at the output instants.  Its bar is the magnitude of the components' bars, a bound
+    on the error of the vector.
     """
     own = [name for name in solution.channels if name not in solution.requested]
     in_space = any(name.endswith(".tz") for name in own)
@@ -57,7 +57,7 @@ def _row(
 
 
 def _peak(solution: Solution, element: str, parts: Sequence[str]) -> tuple[float, float]:
-    """The largest magnitude and its instant; zero where nothing is known."""
+    """Return the largest magnitude and its time; zero if all values are nan."""
     sizes = np.sqrt(sum(np.square(solution.channels[f"{element}.{part}"]) for part in parts))
     if np.isnan(sizes).all():
         return 0.0, float(solution.time[0])

@@ -26,11 +26,11 @@ SHOWN = {
     "aligning": ("toe", "camber"),
     "aligning_parallel": ("toe", "camber"),
 }
-"""What is usually read off each load case."""
+"""Characteristics drawn for each load case."""
 
 
 def kc_text(scene: str, found: KinematicsAndCompliance) -> str:
-    """The slopes of all curves at the middle, and the values at both ends."""
+    """Return the slopes of all curves at the middle, and the values at both ends, as text."""
     lines = [f"{scene}: {found.axle.left} and {found.axle.right} on a rig, {found.message}"]
     for sweep in found.sweeps.values():
         x = sweep.abscissa
@@ -44,12 +44,12 @@ def kc_text(scene: str, found: KinematicsAndCompliance) -> str:
 
 
 def unit_of(channel: str) -> str:
-    """The unit of a characteristic."""
+    """Return the unit of a characteristic."""
     return UNITS[channel.split(".")[1]]
 
 
 def kc_csv(found: KinematicsAndCompliance) -> str:
-    """All curves, a row for each point of each load case."""
+    """Return all curves as CSV, one row for each point of each load case."""
     names = sorted({channel for sweep in found.sweeps.values() for channel in sweep.channels})
     rows = [",".join(["case", "input", *(f"{name} [{unit_of(name)}]" for name in names)])]
     for name, sweep in found.sweeps.items():
@@ -60,7 +60,7 @@ def kc_csv(found: KinematicsAndCompliance) -> str:
 
 
 def kc_figure(found: KinematicsAndCompliance) -> Sheet:
-    """A row of curves for each load case, left and right."""
+    """Draw a row of curves for each load case, left and right."""
     from matplotlib.figure import Figure
 
     columns = max(len(SHOWN[name]) for name in found.sweeps)
@@ -73,19 +73,19 @@ def kc_figure(found: KinematicsAndCompliance) -> Sheet:
 
 
 def draw_kc(path: Path | str, found: KinematicsAndCompliance) -> None:
-    """The same as a file.
+    """Write the figure to a file.
 
     Raises
     ------
     OSError
-        When the file cannot be written.
+        If the file cannot be written.
     """
     sheet = kc_figure(found)
     written_whole(Path(path), lambda part: sheet.savefig(part))
 
 
 def kc_section(found: KinematicsAndCompliance) -> Section:
-    """Slopes at the middle and values at both ends of all curves, and the curves, for a report."""
+    """Return a report section: slopes at the middle and values at both ends of all curves, and the figure."""
     tables = []
     for sweep in found.sweeps.values():
         x, case = sweep.abscissa, sweep.case

@@ -1,4 +1,4 @@
-"""A window with plots that grow while a run goes on (needs matplotlib, the extra ``plot``)."""
+"""Window with plots that are updated during a run (needs matplotlib, the extra ``plot``)."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ if TYPE_CHECKING:
 
 
 def show_live(solutions: Iterator[Solution], channels: Sequence[str], against: str, title: str = "") -> Figure:
-    """Draw each of the solutions as it comes, in one window, until the last one or until the window is closed.
+    """Draw each of the solutions as it arrives, in one window, until the last one or until the window is closed.
 
     Parameters
     ----------
     solutions : iterator of Solution
-        As `stiffmbs.follow` hands them out.
+        Solutions as `stiffmbs.follow` yields them.
     channels : sequence of str
-        Without any the scene's own figure.
+        Channels; by default the scene's own figure.
     against : str
         A channel, or time.
     title : str
@@ -32,12 +32,12 @@ def show_live(solutions: Iterator[Solution], channels: Sequence[str], against: s
     Returns
     -------
     Figure
-        What was drawn.
+        Figure that was drawn.
 
     Raises
     ------
     InputError
-        When a run has no such channel.
+        If a run has no such channel.
     """
     from matplotlib import pyplot
 
@@ -56,6 +56,6 @@ def show_live(solutions: Iterator[Solution], channels: Sequence[str], against: s
 
 
 def _refresh(sheet: Sheet) -> None:
-    """Paint now, and let the window answer the mouse."""
+    """Redraw, and process window events."""
     sheet.canvas.draw_idle()
     sheet.canvas.flush_events()

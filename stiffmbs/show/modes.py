@@ -1,4 +1,4 @@
-"""Natural modes as a table for a person."""
+"""Natural modes as text."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from ..linear_analysis.modes import Mode, Motion
 
 MOST_BODIES = 4
 LEAST_SHARE = 0.01
-"""Part in the kinetic energy from which on a body is named."""
+"""Part in the kinetic energy above which a body is named."""
 
 
 def modes_text(found: Modes) -> str:
-    """A table of modes: frequency, damping, eigenvalues, and the bodies that take part."""
+    """Return a table of modes: frequency, damping, eigenvalues, and the participating bodies."""
     count = found.degrees_of_freedom
     head = f"{found.name or 'model'} at t = {found.t:g} s: {count} degree{'s' if count != 1 else ''} of freedom"
     columns = f"{'':>4}  {'Hz':>12}  {'damping':>10}  {'eigenvalues, 1/s':<28}  kinetic energy"

@@ -19,11 +19,11 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure as Sheet
 
 WIDTH, HEIGHT = 8.0, 3.4
-"""Of a plot, inch."""
+"""Size of a plot, inch."""
 
 
 def check_plot(path: Path | None) -> None:
-    """Refuse, before anything is solved, a plot that could not be drawn; without a path one in a window.
+    """Check that a plot can be drawn to a file, or in a window without a path, before anything is solved.
 
     Raises
     ------
@@ -42,12 +42,12 @@ def _has_screen() -> bool:
 
 
 def figure_of(runs: Mapping[str, Solution], channels: Sequence[str], against: str, title: str = "") -> Figure:
-    """What is to be drawn: the channels, or without any the scene's own figure or the total energy.
+    """Return the figure to draw: the given channels, by default the scene's own figure or the total energy.
 
     Raises
     ------
     InputError
-        When a run has no such channel.
+        If a run has no such channel.
     """
     first = next(iter(runs.values()))
     if channels:
@@ -62,12 +62,12 @@ def figure_of(runs: Mapping[str, Solution], channels: Sequence[str], against: st
 
 
 def plotted_runs(runs: Mapping[str, Solution], figure: Figure, in_window: bool = False) -> Sheet:
-    """The plots on a sheet; in a window one of pyplot's.
+    """Return the plots on a sheet; in a window, a figure of pyplot.
 
     Parameters
     ----------
     runs : mapping of str to Solution
-        By what the legend calls them; a single run may have no name.
+        Runs by their names in the legend; a single run may have no name.
     figure : Figure
     in_window : bool
     """
@@ -87,7 +87,7 @@ def plotted_runs(runs: Mapping[str, Solution], figure: Figure, in_window: bool =
 
 
 def write_plot(path: Path, sheet: Sheet) -> None:
-    """Write a sheet; the file appears whole or not at all."""
+    """Write a sheet to a file, completely or not at all."""
     written_whole(path, lambda part: sheet.savefig(part, dpi=130))
 
 

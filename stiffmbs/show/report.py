@@ -1,4 +1,4 @@
-"""One page on a scene and its run, with everything in it (needs jinja2 and matplotlib, the extra ``report``)."""
+"""Report: a single page on a scene and its run (needs jinja2 and matplotlib, the extra ``report``)."""
 
 from __future__ import annotations
 
@@ -44,19 +44,19 @@ if TYPE_CHECKING:
 
 NEEDED = ("jinja2", "matplotlib")
 MOST_MODES = 40
-"""Lines of modes."""
+"""Number of lines of modes."""
 MOST_LINES = 5_000
-"""Points of a line drawing; with more it is a picture of pixels."""
+"""Number of points above which a line drawing becomes a bitmap."""
 ENERGIES = Figure(title="energy (J)", y=("energy.kinetic", "energy.potential", "energy.total"))
 
 
 def check_report(path: Path) -> None:
-    """Refuse, before anything is solved, a page that could not be written.
+    """Check that a report can be written, before anything is solved.
 
     Raises
     ------
     InputError
-        For an ending other than .html, a missing folder, or a missing package.
+        If the suffix is not .html, or the folder or a package is missing.
     """
     refuse_path("-o", path, (".html",))
     for package in NEEDED:
@@ -67,27 +67,27 @@ def check_report(path: Path) -> None:
 def write_report(
     path: Path, scene: Scene, solution: Solution, text: str = "", sections: Sequence[Section] = ()
 ) -> None:
-    """Write the page; it appears whole or not at all.
+    """Write the page to a file, completely or not at all.
 
     Parameters
     ----------
     path : Path
     scene : Scene
-        As it was solved.
+        Scene as it was solved.
     solution : Solution
-        With error bars where it was verified.
+        Its solution, with error bars if it was verified.
     text : str
-        Of the scene's file.
+        Text of the scene's file.
     sections : sequence of Section
-        What else was asked for.
+        Additional sections.
     """
     page = report_page(scene, solution, text, sections)
     write_text(path, page)
 
 
-@np.errstate(all="ignore")  # of a diverged run sums overflow
+@np.errstate(all="ignore")  # sums of a diverged run overflow
 def report_page(scene: Scene, solution: Solution, text: str = "", sections: Sequence[Section] = ()) -> str:
-    """The page as HTML, figures and all."""
+    """Return the page as HTML, with its figures."""
     template = environment().from_string(files(__package__).joinpath("report.html").read_text(encoding="utf-8"))
     report = check(scene)
     figures = [drawn(solution, scene.figure)] if scene.figure else []
@@ -106,14 +106,14 @@ def report_page(scene: Scene, solution: Solution, text: str = "", sections: Sequ
 
 
 def _moving(scene: Scene, solution: Solution, report: Report) -> dict[str, str]:
-    """The mechanism in motion, with its channels."""
+    """Return the page data of the moving mechanism, with its channels."""
     shown = scene.figure.y if scene.figure else ()
     drawing = drawing_of(scene, marks_of(report))
     return page_data(drawing, {"": poses_of(scene, solution.time, solution.channels)}, solution, shown)
 
 
 def _modes(scene: Scene) -> list[str]:
-    """Natural modes about the start as lines of a table, the slowest first, or why there are none."""
+    """Return natural modes about the start as lines of a table, the slowest first, or the reason why there are none."""
     try:
         lines = modes_text(modes(scene)).splitlines()
     except StiffmbsError as error:
@@ -123,7 +123,7 @@ def _modes(scene: Scene) -> list[str]:
 
 
 def _settings(scene: Scene) -> dict[str, Any]:
-    """Every setting, those that the scene sets first."""
+    """Return every setting, those of the scene first."""
     chosen = {
         name: getattr(scene.run, name) for name in type(scene.run).model_fields if name in scene.run.model_fields_set
     }
@@ -131,7 +131,7 @@ def _settings(scene: Scene) -> dict[str, Any]:
 
 
 def _peaks(solution: Solution) -> list[dict[str, str]]:
-    """A row for each channel: its least and greatest value with bars and times, its error over time."""
+    """Return a row for each channel: its least and greatest value with bars and times, and its error over time."""
     rows = []
     sizes = scales(solution.channels, 1.0, solution.requested)
     for name, cell in channel_ranges(solution).items():
@@ -153,7 +153,7 @@ def _peaks(solution: Solution) -> list[dict[str, str]]:
 
 
 def _embedded(sheet: Sheet, points: int) -> str:
-    """A figure as the address of an image that holds it."""
+    """Return a figure as a data URL."""
     form = "svg" if points < MOST_LINES else "png"
     content = io.BytesIO()
     sheet.savefig(content, format=form, dpi=110, metadata={"Date": None} if form == "svg" else None)

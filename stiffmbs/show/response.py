@@ -1,4 +1,4 @@
-"""Frequency responses as a table, as JSON and as columns of a file."""
+"""Frequency responses as text, as JSON and as CSV."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from ..linear_analysis.transfer import Transfer
 
 
 def response_text(scene: str, found: Transfer, frequencies: np.ndarray, values: np.ndarray) -> str:
-    """For each input and output the gain at both ends, and its peaks.
+    """Return the gain and phase of each input and output at both ends, and at the peaks, as text.
 
     Parameters
     ----------
     scene : str
     found : Transfer
     frequencies : ndarray, shape (n,)
-        Hz.
+        Frequencies, Hz.
     values : ndarray, shape (n, outputs, inputs)
     """
     lines = [f"{scene}: gain and phase from {frequencies[0]:g} Hz to {frequencies[-1]:g} Hz"]
@@ -33,7 +33,7 @@ def response_text(scene: str, found: Transfer, frequencies: np.ndarray, values: 
 
 
 def response_as_json(scene: str, found: Transfer, frequencies: np.ndarray, values: np.ndarray) -> str:
-    """One object: frequencies, and real and imaginary part by input and output; arguments as of `response_text`."""
+    """Return frequencies, and real and imaginary part by input and output, as JSON; arguments as of `response_text`."""
     parts = {
         name: {
             output: [[value.real, value.imag] for value in values[:, o, i].tolist()]
@@ -45,7 +45,7 @@ def response_as_json(scene: str, found: Transfer, frequencies: np.ndarray, value
 
 
 def response_csv(found: Transfer, frequencies: np.ndarray, values: np.ndarray) -> str:
-    """Columns of gain and phase; arguments as of `response_text`."""
+    """Return columns of gain and phase as CSV; arguments as of `response_text`."""
     pairs = [(i, o) for i in range(len(found.inputs)) for o in range(len(found.outputs))]
     names = [f"{found.inputs[i]} -> {found.outputs[o]} {part}" for i, o in pairs for part in ("gain", "phase [deg]")]
     columns = [

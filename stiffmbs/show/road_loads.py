@@ -1,4 +1,4 @@
-"""Loads of bushings as a table."""
+"""Loads of bushings as text."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from .sections import Section, Table
 
 
 def road_loads_text(scene: str, found: RoadLoads) -> str:
-    """A line for each component of each bushing: its peak, when, and in which case.
+    """Return a line for each component of each bushing: its peak with time and load case.
 
     Parameters
     ----------
@@ -22,7 +22,7 @@ def road_loads_text(scene: str, found: RoadLoads) -> str:
 
 
 def road_loads_section(found: RoadLoads) -> Section:
-    """The same for a report: a line for each bushing, each peak with its time."""
+    """Return a report section with a line for each bushing, and the time of each peak."""
     rows = [
         (name, *(f"{peak.value:.5g} at {peak.time:.4g} s" for peak in peaks)) for name, peaks in found.peaks.items()
     ]

@@ -1,4 +1,4 @@
-"""Sections of a report that a user asks for."""
+"""Optional sections of a report."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Table:
-    """Heads of columns, and rows of cells."""
+    """Table: heads of columns, and rows of cells."""
 
     heads: tuple[str, ...]
     rows: tuple[tuple[str, ...], ...]
@@ -24,7 +24,7 @@ class Table:
 
 @dataclass(frozen=True)
 class Section:
-    """A title, sentences, tables, and figures of matplotlib's."""
+    """Section: a title, sentences, tables, and figures of matplotlib."""
 
     title: str
     sentences: tuple[str, ...]
@@ -33,7 +33,7 @@ class Section:
 
 
 def equilibrium_section(found: EquilibriumFound, model: ModelData) -> Section:
-    """Poses of bodies; forces and torques of elements on their first bodies."""
+    """Return a section with the poses of bodies, and forces and torques of elements on their first bodies."""
     kind = BODY_KINDS[model.dimensions]
     head = f"At t = {found.t:g} s, with an imbalance of {found.imbalance:.1e} of the largest force."
     tables = (

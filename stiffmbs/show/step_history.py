@@ -1,4 +1,4 @@
-"""A drawing of a solver's own steps: their length, and their order where it varies."""
+"""Plot of a solver's own steps: their length, and their order if it varies."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def step_history(history: History) -> Sheet:
-    """Step length over time on a logarithmic axis, and below it the order where it is known."""
+    """Plot the step length over time on a logarithmic axis, and below it the order if known."""
     from matplotlib.figure import Figure as Sheet
 
     told = len(history.order) == len(history.t)

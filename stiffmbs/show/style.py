@@ -1,27 +1,27 @@
-"""How lines of plots are told apart: by colors for the colour-blind, and by strokes, which also show in grey."""
+"""Colors and strokes that distinguish the lines of plots, for colour-blind readers and in grey."""
 
 from __future__ import annotations
 
 from typing import Any
 
 COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#000000")
-"""Okabe and Ito, Color Universal Design (2008)."""
+"""Colors of Okabe and Ito, Color Universal Design (2008)."""
 STROKES: tuple[Any, ...] = ("-", "--", "-.", ":", (0, (8, 2)), (0, (5, 1, 1, 1, 1, 1)))
 
 
 def stroke(k: int) -> dict[str, Any]:
-    """Color and stroke of the k-th line of a plot; they repeat together after 42 lines."""
+    """Return color and stroke of the k-th line of a plot; they repeat together after 42 lines."""
     return {"color": COLORS[k % len(COLORS)], "linestyle": STROKES[k % len(STROKES)], "linewidth": 1.4}
 
 
 def dress(axes: Any) -> None:
-    """A light grid, and no frame above and to the right."""
+    """Add a light grid, and remove the frame above and to the right."""
     axes.grid(alpha=0.3)
     axes.spines[["top", "right"]].set_visible(False)
 
 
 def legend_below(sheet: Any, axes: Any, columns: int = 3) -> None:
-    """The legend of all lines under the plots, where it hides nothing."""
+    """Add the legend of all lines below the plots, where it hides nothing."""
     handles, labels = [], []
     for one in axes:
         found = one.get_legend_handles_labels()

@@ -1,4 +1,4 @@
-"""A solution in words and tables, for a person and for a program."""
+"""Summaries of a solution: text with tables, and JSON."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from ..analyses.check import Report
 
 UNBROKEN = 10_000
-"""Characters of a line in files, pipes and texts."""
+"""Line width of files, pipes and texts, characters."""
 INDENT = 13
 """Width of the labels of lines."""
 MOST_LOADS = 10
@@ -34,9 +34,9 @@ MOST_LOADS = 10
 STATUS = {Outcome.DONE: "done", Outcome.INTERRUPTED: "interrupted", Outcome.STOPPED: "stopped"}
 
 
-@np.errstate(all="ignore")  # of a diverged run sums overflow
+@np.errstate(all="ignore")  # sums of a diverged run overflow
 def as_json(scene: str, solution: Solution) -> str:
-    """The one-line JSON object of ``stiffmbs run --json``."""
+    """Return the one-line JSON object of ``stiffmbs run --json``."""
     return json_line(
         {
             "scene": scene,
@@ -55,7 +55,7 @@ def as_json(scene: str, solution: Solution) -> str:
 
 
 def _with_errors(solution: Solution) -> dict[str, dict[str, float]]:
-    """The ranges of all channels, of a verified run with their errors; null where nothing is known."""
+    """Return the ranges of all channels, with errors for a verified run; nan if unknown."""
     ranges = channel_ranges(solution)
     if solution.verification:
         for name, cell in ranges.items():
@@ -65,23 +65,23 @@ def _with_errors(solution: Solution) -> dict[str, dict[str, float]]:
 
 
 def check_as_json(scene: str, report: Report, listed: Sequence[ListedStatement] = ()) -> str:
-    """The one-line JSON object of ``stiffmbs check --json``, of a dataset with its statements."""
+    """Return the one-line JSON object of ``stiffmbs check --json``; for a dataset, with its statements."""
     statements = {"statements": [statement.as_dict() for statement in listed]} if listed else {}
     return json_line(report.as_dict(scene) | statements)
 
 
 def error_as_json(scene: str, message: str, status: str = "error") -> str:
-    """The one-line JSON object for a scene that could not be run, or that has no result."""
+    """Return the one-line JSON object for a scene that could not be run, or that has no result."""
     return json_line({"scene": scene, "status": status, "message": message})
 
 
 def json_line(content: Any) -> str:
-    """Anything as one line of JSON; NaN and infinity become null."""
+    """Return one line of JSON; NaN and infinity become null."""
     return json.dumps(_finite(content), allow_nan=False)
 
 
 def _finite(content: Any) -> Any:
-    """JSON knows no NaN and no infinity: they become null."""
+    """Replace NaN and infinity, which JSON does not have, by None."""
     match content:
         case dict():
             return {key: _finite(value) for key, value in content.items()}
@@ -103,15 +103,15 @@ def summary(solution: Solution, all: bool = False) -> str:
 
 
 def print_summary(scene: str, solution: Solution, results: str, console: Console, all: bool = False) -> None:
-    """Print the loads of the elements, the energy balance, the statistics of the solver, the notes, and the file of the results."""
+    """Print loads, energy balance, solver statistics, notes, and the file of the results."""
     line = _print(scene, solution, console, all)
     line("results", results)
 
 
-@np.errstate(all="ignore")  # of a diverged run sums overflow
+@np.errstate(all="ignore")  # sums of a diverged run overflow
 def _print(scene: str, solution: Solution, console: Console, all: bool) -> Callable[[str, str], None]:
     """Print the summary; return the function that prints a further line of it."""
-    say = partial(console.print, highlight=False, markup=False, emoji=False)  # names may hold anything
+    say = partial(console.print, highlight=False, markup=False, emoji=False)  # names may contain markup
 
     def line(label: str, text: str) -> None:
         wrapped = wrap(text, max(console.width - INDENT, INDENT), break_on_hyphens=False, replace_whitespace=False)

@@ -1,1 +1,1 @@
-"""Studies: many runs of one scene with other values, and what they show."""
+"""Studies: many runs of one scene with other values, and their evaluation."""

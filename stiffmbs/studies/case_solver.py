@@ -1,4 +1,4 @@
-"""Solving the cases of a study one after the other: read, compiled and assembled once for each structure."""
+"""Sequential solution of the cases of a study; each structure is read, compiled and assembled once."""
 
 from __future__ import annotations
 
@@ -30,20 +30,20 @@ from ..solve.trajectory import Outcome
 from .outputs import Output
 
 MOST_STRUCTURES = 8
-"""Jobs of different structures that are kept at a time."""
+"""Number of jobs of different structures that are kept at a time."""
 MOST_WORDS = 1000
-"""Characters that are kept of what there is to say of a case."""
+"""Length of the message of a case at most, characters."""
 
 
 @dataclass(frozen=True)
 class Task:
-    """What all cases of a study share; it can be pickled.
+    """Data that all cases of a study share; it can be pickled.
 
     Attributes
     ----------
     scene : WrittenScene
     names : tuple of str
-        What is varied, as `stiffmbs.load_scene` changes it.
+        Varied parameters or paths, as `stiffmbs.load_scene` changes them.
     settings : mapping
         Settings of the run that all cases share.
     outputs : tuple of Output
@@ -62,15 +62,14 @@ class Row:
     Attributes
     ----------
     case : int
-        Its number.
     status : str
         ``done``, ``stopped`` early, or ``error``.
     message : str
         Error message, and notes of the run.
     values : tuple of float or ndarray
-        The outputs, numbers or series; numbers are nan where the run was not done.
+        Outputs, numbers or series; numbers are nan if the run was not completed.
     files : mapping of str to str
-        Digests of the files that cases name, but not the scene of the study.
+        Digests of the files that cases name, without those of the study's scene.
     """
 
     case: int
@@ -85,7 +84,7 @@ class ChangedFileError(InputError):
 
 
 class CaseSolver:
-    """Solves cases in one thread; another one has a solver of its own.
+    """Solver of cases in one thread; each thread needs its own.
 
     Parameters
     ----------
@@ -108,7 +107,7 @@ class CaseSolver:
         Raises
         ------
         InputError
-            When a value is not valid, or a file has changed since the study began.
+            If a value is not valid, or a file has changed since the study began.
         """
         found = self._other_forces.scene(values) if self._other_forces and len(values) else None
         if found is not None:
@@ -124,7 +123,7 @@ class CaseSolver:
         return scene
 
     def _check_files(self, files: Mapping[str, str]) -> None:
-        """Refuse a file that has changed since the scene or another case was read."""
+        """Reject a file that has changed since the scene or another case was read."""
         for name, digest in files.items():
             if self._task.scene.files.get(name, self._files.get(name, digest)) != digest:
                 raise ChangedFileError(
@@ -133,23 +132,23 @@ class CaseSolver:
         self._files |= {name: digest for name, digest in files.items() if name not in self._task.scene.files}
 
     def solution(self, values: Sequence[Any]) -> Solution:
-        """The solution of a case; errors as for `stiffmbs.run`."""
+        """Return the solution of a case; errors as for `stiffmbs.run`."""
         return solved(self.job(self.scene(values)))
 
     def channels(self, values: Sequence[Any]) -> tuple[str, ...]:
-        """The names of the channels of a case; errors as for `stiffmbs.run`."""
+        """Return the names of the channels of a case; errors as for `stiffmbs.run`."""
         job = self.job(self.scene(values))
         start = job.start
         rows = job.dynamics.report(np.array([job.grid.start]), start.q[None], start.u[None], project=False)
         return tuple(channels_of(job.data, job.dynamics.system, rows))
 
     def row(self, case: int, values: Sequence[Any]) -> Row:
-        """A case with its outputs, or with what went wrong."""
+        """Solve a case and return its outputs, or its error."""
         try:
             solution = finished(self._job_of_case(values))
             done = solution.outcome is Outcome.DONE
             outputs = tuple(_kept(output, solution, done) for output in self._task.outputs)
-        except NotFollowed:  # something looks at the described forces after all
+        except NotFollowed:  # something depends on the described forces after all
             if self._plan is None:
                 raise
             self._plan, self._jobs = None, []
@@ -165,7 +164,7 @@ class CaseSolver:
         return Row(case, "done" if done else "stopped", told[:MOST_WORDS], outputs, dict(self._files))
 
     def _job_of_case(self, values: Sequence[Any]) -> Job:
-        """The job of a case whose data may be those of another one, as only its compiled numbers are looked at."""
+        """Return the job of a case; its data may belong to another case, as only its compiled numbers are used."""
         if self._plan is None:
             job = self.job(self.scene(values))
             if self._may_plan and self._other_forces:
@@ -178,25 +177,25 @@ class CaseSolver:
         return found
 
     def _undefined(self, outputs: Sequence[float | np.ndarray], done: bool) -> Iterator[str]:
-        """A sentence for each number of a whole run that is none, as of a logarithm of what is not positive."""
+        """Yield a sentence for each output number of a completed run that is not finite, such as log(0)."""
         for output, value in zip(self._task.outputs, outputs, strict=True):
             if done and not output.is_series and not np.isfinite(value):
                 yield f"output '{output.name}': found {value}, expected a finite number"
 
     def _settings(self, of_scene: RunSettings) -> RunSettings:
-        """Those of a scene with the task's changes, checked once as long as the scene's are the same."""
+        """Return the settings of a scene with the task's changes, checked once for the same settings of the scene."""
         if self._of_scene is not of_scene:
             self._of_scene, self._changed = of_scene, changed(of_scene, dict(self._task.settings))
         return self._changed
 
     def job(self, scene: Scene, settings: RunSettings | None = None) -> Job:
-        """A job for a scene: one of the same structure with other numbers, or a new one; errors as for `stiffmbs.run`.
+        """Return a job for a scene, with changed numbers if the structure is known; errors as for `stiffmbs.run`.
 
         Parameters
         ----------
         scene : Scene
         settings : RunSettings, optional
-            Those of the scene with the task's changes by default.
+            Settings of the run; by default those of the scene with the task's changes.
         """
         settings = settings or self._settings(scene.run)
         for k, known in enumerate(self._jobs):
@@ -215,7 +214,7 @@ class CaseSolver:
 
 
 def _kept(output: Output, solution: Finished, done: bool) -> float | np.ndarray:
-    """An output of a run; a reduction of one that stopped early is not known."""
+    """Return an output of a run; a reduction of a run that stopped early is nan."""
     if not done and not output.is_series:
         output.value(solution)
         return np.nan
@@ -223,7 +222,7 @@ def _kept(output: Output, solution: Finished, done: bool) -> float | np.ndarray:
 
 
 def written_scene(model: Any) -> WrittenScene:
-    """What a model is read from, again and again.
+    """Return the source from which the cases of a model are read.
 
     Parameters
     ----------
@@ -232,7 +231,7 @@ def written_scene(model: Any) -> WrittenScene:
     Raises
     ------
     InputError
-        When the file cannot be read, the scene was changed since, or the model cannot be written as a scene.
+        If the file cannot be read, the scene is a changed copy, or the model cannot be written as a scene.
     """
     from ..analyses.job import data_of
     from ..describe.model_text import model_text
@@ -251,6 +250,6 @@ def written_scene(model: Any) -> WrittenScene:
 
 
 def _as_written(scene: Scene) -> bool:
-    """Whether a scene is what it was read from, and no changed copy of that."""
+    """Return True if a scene is as it was read, not a changed copy."""
     as_read = scene.validated.scene
     return as_read is None or as_read is scene or bool(as_read == scene)

@@ -1,4 +1,4 @@
-"""The cases of a study: a full grid, or a sample."""
+"""Cases of a study: a full grid, or a sample."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ MOST_CASES = 10_000_000
 
 @dataclass(frozen=True)
 class Cases:
-    """What is solved.
+    """Cases of a study.
 
     Attributes
     ----------
     variations : tuple of Variation
     drawn : tuple of tuple
-        For a sample the values of each variation, case by case; empty for a grid.
+        Values of each variation of a sample, case by case; empty for a grid.
     """
 
     variations: tuple[Variation, ...]
@@ -34,39 +34,39 @@ class Cases:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """What is varied."""
+        """Names of the varied parameters or paths."""
         return tuple(one.name for one in self.variations)
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Values of each variation in a grid; the number of cases of a sample."""
+        """Number of values of each variation of a grid, or number of cases of a sample."""
         return (len(self.drawn[0]),) if self.drawn else tuple(len(one.values) for one in self.variations)
 
     def __len__(self) -> int:
         return math.prod(self.shape)
 
     def __iter__(self) -> Iterator[tuple[Any, ...]]:
-        """The values of each case, in the order of `names`; in a grid the last varies fastest."""
+        """Iterate over the values of the cases, in the order of `names`; in a grid the last varies fastest."""
         if self.drawn:
             return zip(*self.drawn, strict=True)
         return itertools.product(*(one.values for one in self.variations))
 
 
 def cases_of(variations: Sequence[Variation], sample: str | None = None, seed: int = 0) -> Cases:
-    """The cases that variations make.
+    """Return the cases of variations.
 
     Parameters
     ----------
     variations : sequence of Variation
     sample : str, optional
-        ``lhs:500``, ``sobol:512`` or ``random:500``; the full grid without it.
+        ``lhs:500``, ``sobol:512`` or ``random:500``; the full grid by default.
     seed : int
-        Of the sample, which is the same each time.
+        Seed of the sample, which is reproducible.
 
     Raises
     ------
     InputError
-        When a name stands there twice, a range of a grid has no count, or the sample cannot be read.
+        If a name occurs twice, a range of a grid has no count, there are too many cases, or the sample is invalid.
     """
     names = [one.name for one in variations]
     if not names:
@@ -96,7 +96,7 @@ def _drawn(variations: Sequence[Variation], sample: str, seed: int) -> tuple[tup
 
 
 def _points(kind: str, count: int, width: int, seed: int) -> np.ndarray:
-    """Points of the unit cube, shape (count, width)."""
+    """Return points of the unit cube, shape (count, width)."""
     if kind == "random":
         return np.random.default_rng(seed).random((count, width))
     from scipy.stats import qmc

@@ -1,4 +1,4 @@
-"""The table of a study as a data set of xarray."""
+"""Results of a study as a data set of xarray."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ CASE, TIME = "case", "time"
 def data_set(
     cases: Cases, outputs: Sequence[Output], rows: Iterable[Row], time: np.ndarray, title: str
 ) -> xarray.Dataset:
-    """All rows with the varied values as coordinates.
+    """Return a data set of all rows, with the varied values as coordinates.
 
-    A grid has a dimension for each of what is varied; vectors and matrices one of numbers, with the values beside it.  A sample
-    has the dimension ``case``.
+    A grid has one dimension for each varied value; for vectors and matrices it is a number, with the values as a
+    coordinate. A sample has the dimension ``case``.
     """
     with needs("xarray", "netcdf"):
         import xarray
@@ -56,7 +56,7 @@ def data_set(
 
 
 def _coordinates(cases: Cases) -> tuple[tuple[str, ...], dict[str, Any]]:
-    """The names of the dimensions, and what is varied along them."""
+    """Return the names of the dimensions, and the varied values along them."""
     if cases.drawn:
         coordinates = {CASE: np.arange(len(cases))}
         for name, values in zip(cases.names, cases.drawn, strict=True):
@@ -78,7 +78,7 @@ def _along(name: str, dimension: str, values: Sequence[Any]) -> dict[str, Any]:
 
 
 def _array(name: str, values: Sequence[Any]) -> np.ndarray:
-    """Values of one form as an array; numbers where all are."""
+    """Return values of one shape as an array, of numbers if all are numbers."""
     try:
         array = np.array(values)
     except ValueError:
@@ -89,12 +89,12 @@ def _array(name: str, values: Sequence[Any]) -> np.ndarray:
 
 
 def check_output(path: Path) -> None:
-    """Refuse, before anything is solved, a file that could not be written.
+    """Check that a file can be written, before anything is solved.
 
     Raises
     ------
     InputError
-        For an unknown ending, a missing folder, or a missing package.
+        If the suffix is unknown, or the folder or a package is missing.
     """
     from ..results.files import refuse_path
 
@@ -104,12 +104,12 @@ def check_output(path: Path) -> None:
 
 
 def write(path: Path, data: xarray.Dataset) -> None:
-    """Write a data set; the file appears whole or not at all.
+    """Write a data set to a file, completely or not at all.
 
     Parameters
     ----------
     path : Path
-        Ends in .nc, where ``_per_`` stands for the ``/`` in a name, or in .csv, a line for each case without its series.
+        Name in .nc, where ``_per_`` replaces ``/`` in names, or in .csv, with a line for each case without series.
     """
     from ..results.files import written_whole
 

@@ -1,4 +1,4 @@
-"""Work spread over the threads of a process, over processes, or over a cluster."""
+"""Distribution of work over threads, processes or a cluster."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from .case_solver import Row
 from .worker import Chunk, solve_chunk
 
 AHEAD = 3
-"""Chunks under way or waiting for each worker: results stay few, and no worker waits."""
+"""Number of chunks for each worker that are running or waiting, so that no worker is idle."""
 TRIES = 3
-"""Times that a chunk is given to an executor whose worker ended."""
+"""Number of attempts for a chunk whose worker ended."""
 
 
 @contextmanager
 def executor_of(workers: int | None, executor: Executor | None) -> Iterator[tuple[Executor | None, int]]:
-    """An executor and the number of its workers; none for work in this very thread."""
+    """Yield an executor and the number of its workers, or None for work in the current thread."""
     if executor is not None:
         yield executor, workers or _workers_of(executor)
         return
@@ -35,19 +35,19 @@ def executor_of(workers: int | None, executor: Executor | None) -> Iterator[tupl
 
 
 def _workers_of(executor: Executor) -> int:
-    """As many as it tells; enough for a small cluster where it does not."""
+    """Return the number of workers that an executor reports, or else one for a small cluster."""
     return int(getattr(executor, "_max_workers", 0) or 16)
 
 
 def rows_of(
     task: bytes, chunks: Iterator[Chunk], executor: Executor | None, workers: int, keep: Callable[[list[Row]], None]
 ) -> None:
-    """Solve chunks of cases wherever an executor solves them, and keep their rows as they are done.
+    """Solve chunks of cases by an executor, and keep their rows as they are completed.
 
     Raises
     ------
     SolverError
-        When the executor's workers end again and again.
+        If workers of the executor end repeatedly.
     """
     if executor is None:
         for chunk in chunks:

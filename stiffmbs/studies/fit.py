@@ -1,4 +1,4 @@
-"""Parameters that make a model follow measured channels best: least squares, with confidence intervals."""
+"""Parameter estimation: least-squares fit of a model to measured channels, with confidence intervals."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ from .uncertainty import of_common_noise, of_separate_noise
 
 CONFIDENCE = 0.95
 ROUNDS = 3
-"""Times that channels are weighted by what they were off by in the fit before."""
+"""Number of fits in which channels are weighted by the residuals of the previous fit."""
 INSIDE = 1e-6
-"""How far from its bounds a search starts, as a part of each range."""
+"""Distance of the start of a search from the bounds, as a part of each range."""
 FAR = 1e3
-"""Weighted residual where a model cannot be solved."""
+"""Weighted residual of a model that cannot be solved."""
 
 
 @dataclass(frozen=True)
@@ -66,7 +66,7 @@ class Fit:
     message: str
 
     def as_dict(self) -> dict[str, Any]:
-        """What ``stiffmbs fit --json`` prints."""
+        """Return the content of ``stiffmbs fit --json``."""
         return {
             "status": "done" if self.success else "stopped", "message": self.message, "runs": self.runs,
             "parameters": {
@@ -86,31 +86,32 @@ def fit(
     sigma: Mapping[str, float] | None = None,
     **settings: Any,
 ) -> Fit:
-    """Find the parameters with which a model follows measured channels best.
+    """Fit parameters of a model to measured channels.
 
-    The sum of squares of (model - data) / sigma is made least by `scipy.optimize.least_squares` within the bounds.  Derivatives are
-    forward sensitivities (`stiffmbs.sensitivities`), or central differences of runs where the model has none.
+    `scipy.optimize.least_squares` minimises the sum of squares of (model - data) / sigma within the bounds.
+    Derivatives are forward sensitivities (`stiffmbs.sensitivities`), or central differences of runs if the model has
+    none.
 
     Parameters
     ----------
     scene : str, Path, Scene or Model
     data : mapping, Solution, pandas.DataFrame, str or Path
-        Measured channels over ``time``, or formulas of channels; values that are nan are left out.
+        Measured channels over ``time``, or formulas of channels; nan values are left out.
     parameters : mapping of str to Range or (float, float)
-        What is sought, parameters or paths of the scene, with bounds; a range with ``log=True`` is searched by its logarithm.
+        Parameters or paths of the scene, with bounds; a range with ``log=True`` is searched by its logarithm.
     start : mapping of str to float, optional
-        Where the search starts; the middle of each range by default.
+        Start of the search; by default the middle of each range.
     sigma : mapping of str to float, optional
-        Standard deviation of each channel's noise, up to a common factor; by default estimated from what is left.
+        Standard deviation of each channel's noise, up to a common factor; by default estimated from the residuals.
     **settings
         Fields of the run's settings to change, such as ``rtol=1e-8``.
 
     Raises
     ------
     InputError
-        When the scene, the data or a parameter is wrong, or data do not determine a parameter.
+        If the scene, the data or a parameter is invalid, or the data do not determine a parameter.
     SolverError
-        When the model cannot be solved where the search starts.
+        If the model cannot be solved at the start of the search.
 
     References
     ----------
@@ -143,7 +144,7 @@ def _weights(found: Measured, sigma: Mapping[str, float] | None) -> dict[str, fl
 
 
 class _Model:
-    """The model at points of the unit cube, beside the data."""
+    """Model at points of the unit cube, compared with the data."""
 
     def __init__(self, scene: Any, ranges: Sought, data: Measured, settings: Mapping[str, Any]) -> None:
         self._outputs: tuple[Output, ...] = outputs_of({name: name for name in data.channels})
@@ -160,11 +161,11 @@ class _Model:
 
     @property
     def runs(self) -> int:
-        """Integrations so far."""
+        """Number of integrations so far."""
         return self._runs
 
     def solution(self, point: np.ndarray) -> Solution:
-        """At the times of the data; errors as for `stiffmbs.run`."""
+        """Return the solution at the times of the data; errors as for `stiffmbs.run`."""
         scene = self._solver.scene(self._ranges.values(point))
         job = self._solver.job(scene, self._settings)
         self._runs += 1
@@ -172,7 +173,7 @@ class _Model:
         return solved(replace(job, grid=grid))
 
     def check(self, point: np.ndarray) -> None:
-        """Refuse a start that cannot be solved."""
+        """Raise an error if the model cannot be solved at the start of the search."""
         solution = self.solution(point)
         if solution.outcome is not Outcome.DONE:
             raise SolverError(f"the model where the search starts: {solution.message}")
@@ -180,7 +181,7 @@ class _Model:
             output.refuse_unknown(solution)
 
     def searched(self, point: np.ndarray, weights: Mapping[str, float]) -> Any:
-        """What `scipy.optimize.least_squares` finds from a point on."""
+        """Return the result of `scipy.optimize.least_squares` from a point on."""
         from scipy.optimize import least_squares
 
         return least_squares(
@@ -195,7 +196,7 @@ class _Model:
         }
 
     def residuals(self, point: np.ndarray, weights: Mapping[str, float]) -> np.ndarray:
-        """Weighted, those of all channels."""
+        """Return the weighted residuals of all channels."""
         kept = {name: np.isfinite(values) for name, values in self._data.channels.items()}
         try:
             solution = self.solution(point)
@@ -209,7 +210,7 @@ class _Model:
         return np.concatenate([weights[name] * off[name][rows] for name, rows in kept.items()])
 
     def jacobian(self, point: np.ndarray, weights: Mapping[str, float]) -> np.ndarray:
-        """By sensitivities; by differences where the model has none."""
+        """Return the Jacobian by sensitivities, or by differences if the model has none."""
         try:
             slopes = self._gradients.at(point)
         except StiffmbsError:
@@ -222,7 +223,7 @@ class _Model:
         return np.concatenate(parts)
 
     def _by_differences(self, point: np.ndarray, weights: Mapping[str, float]) -> np.ndarray:
-        """By central differences, one-sided at the bounds."""
+        """Return the Jacobian by central differences, one-sided at the bounds."""
         columns = []
         for k in range(len(point)):
             ends = [point.copy(), point.copy()]
@@ -232,13 +233,13 @@ class _Model:
         return np.column_stack(columns)
 
     def by_channel(self, rows: np.ndarray) -> list[np.ndarray]:
-        """Rows of `residuals` or `jacobian`, those of each channel by themselves."""
+        """Split rows of `residuals` or `jacobian` by channel."""
         return np.split(
             rows, np.cumsum([int(np.isfinite(values).sum()) for values in self._data.channels.values()])[:-1]
         )
 
     def residual_rms(self, point: np.ndarray) -> dict[str, float]:
-        """Of each channel."""
+        """Return the root mean square of the residuals by channel."""
         off = self._differences(self.solution(point))
         return {name: float(np.sqrt(np.nanmean(values**2))) for name, values in off.items()}
 

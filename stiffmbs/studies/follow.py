@@ -1,4 +1,4 @@
-"""A run that can be looked at while it goes on."""
+"""Runs that yield intermediate solutions."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ from ..solve.trajectory import Ending, History, Outcome
 from .stepping import stepper_of
 
 SHARE = 5.0
-"""Time of solving, relative to that of reporting what was solved: a long run is reported less and less often."""
+"""Least ratio of the time of solving to the time of reporting, so that long runs are reported less often."""
 INTERVALS = 500
-"""Between instants that are reported where a run asks for the solver's own steps."""
+"""Number of intervals between reported instants if a run has the solver's own steps as output."""
 STILL_SOLVING = "still solving"
 
 
@@ -36,18 +36,18 @@ def follow(
     start_from: StartFrom | None = None,
     **changes: Unpack[Settings],
 ) -> Iterator[Solution]:
-    """Solve a model, and hand out the solution so far now and then, and the whole in the end.
+    """Solve a model, and yield the solution so far from time to time, finally the whole solution.
 
-    bdf goes on with its history, as in `stiffmbs.run`; explicit solvers start anew at each output instant.  What `run` tells of a
-    whole solution (notes, verification) is not looked for.
+    bdf keeps its history, as in `stiffmbs.run`; explicit solvers restart at each output instant.  Notes and
+    verification, as of `stiffmbs.run`, are omitted.
 
     Parameters
     ----------
     model : Model, Scene, str or Path
     every : float
-        Least time between two solutions, s of the clock.
+        Least wall-clock time between two solutions, s.
     settings : RunSettings, optional
-        The scene's own by default.
+        Settings of the run; by default those of the scene.
     start_from : Solution, str, Path or SavedState, optional
         As for `stiffmbs.run`.
     **changes
@@ -56,14 +56,14 @@ def follow(
     Yields
     ------
     Solution
-        From the start up to the present; the last one is whole, or stopped where the solver could not go on.
+        Results from the start to the current time; the last one is complete, or ends where the solver stopped.
 
     Raises
     ------
     InputError
-        When the model or a setting is wrong.
+        If the model or a setting is invalid.
     AssemblyError
-        When no consistent start is found.
+        If no consistent start is found.
 
     Examples
     --------
@@ -102,7 +102,7 @@ def _followed(job: Job, every: float) -> Iterator[Solution]:
 
 
 def _so_far(job: Job, t: np.ndarray, q: np.ndarray, u: np.ndarray, outcome: Outcome, message: str) -> Solution:
-    """The solution at some instants, from the start on."""
+    """Return the solution at the given instants, from the start on."""
     system = job.dynamics.system
     with job.dynamics.state.unchanged():
         rows = job.dynamics.report(t, q, u, project=True)

@@ -1,4 +1,4 @@
-"""Inputs of a simulation: values of the scene that stand in its forces, changed between steps."""
+"""Inputs of a simulation: values in the forces of a scene that change between steps."""
 
 from __future__ import annotations
 
@@ -15,38 +15,38 @@ from ..errors import InputError
 from .case_solver import CaseSolver
 
 TRIED = (-1.7, -0.4, 0.3, 1.0, 2.9, 1e3)
-"""Values at which it is tried whether numbers of forces are linear in an input, apart from zero."""
+"""Values at which the linearity of force parameters in an input is tested, in addition to zero."""
 SAME_NUMBER = 8 * float(np.finfo(float).eps)
 
 
 @dataclass(frozen=True)
 class _Linear:
-    """Numbers of a force in which an input stands: numbers[place] = offset + slope * value, for each (place, offset, slope)."""
+    """Numbers of a force that depend on an input: numbers[place] = offset + slope * value by (place, offset, slope)."""
 
     numbers: np.ndarray
     parts: Sequence[tuple[int, float, float]]
 
     def write(self, value: float) -> None:
-        for place, offset, slope in self.parts:  # few: numpy costs more than they do
+        for place, offset, slope in self.parts:  # few parts: a loop is faster than numpy
             self.numbers[place] = offset + slope * value
 
 
 class InputNumbers:
-    """What inputs change in a compiled model.
+    """Numbers of a compiled model that depend on inputs.
 
     Parameters
     ----------
     job : Job
-        Whose forces they stand in.
+        Job whose forces have the inputs.
     solver : CaseSolver
-        Of the scene with these inputs.
+        Solver of the scene with these inputs.
     values : mapping of str to float
-        The inputs, parameters or paths of the scene, with their first values.
+        Inputs, parameters or paths of the scene, with their initial values.
 
     Raises
     ------
     InputError
-        When an input changes more than numbers of forces.
+        If an input changes more than numbers of forces.
     """
 
     def __init__(self, job: Job, solver: CaseSolver, values: Mapping[str, float]) -> None:
@@ -64,12 +64,12 @@ class InputNumbers:
         return self._solver.scene([float(values[name]) for name in self._names])
 
     def set(self, values: Mapping[str, float]) -> bool:
-        """Change inputs; whether any of them has another value than before.
+        """Change inputs; return True if any of them has a new value.
 
         Raises
         ------
         InputError
-            When there is no such input, or its value does not fit.
+            If there is no such input, or its value is invalid.
         """
         changed = {name: value for name, value in values.items() if self.values.get(name) != value}
         if not changed:
@@ -91,7 +91,7 @@ class InputNumbers:
         return True
 
     def _linear(self) -> dict[str, Sequence[_Linear]] | None:
-        """Where each input stands, each in numbers of its own and linearly; None where forces must be read anew."""
+        """Return the numbers that depend on each input alone and linearly, or None if forces must be read again."""
         found: dict[str, Sequence[_Linear]] = {}
         taken: set[tuple[int, int]] = set()
         for name in self._names:
@@ -106,7 +106,7 @@ class InputNumbers:
         return found
 
     def _linear_parts(self, name: str) -> Sequence[_Linear] | None:
-        """Numbers that are offset + slope * value at all values that are tried; None where they are not."""
+        """Return the numbers that equal offset + slope * value at all tested values, or None if any does not."""
         tried = {value: self._changes(name, value) for value in (0.0, 1.0, *TRIED)}
         known = {value: changes for value, changes in tried.items() if changes is not None}
         if len(known) < len(tried):
@@ -128,7 +128,7 @@ class InputNumbers:
         return parts
 
     def _changes(self, name: str, value: float) -> dict[tuple[int, int], Change] | None:
-        """The forces that differ from the present ones where an input has some value, by their places."""
+        """Return the forces, by their places, that differ from the current ones for a value of an input."""
         try:
             found = changes_of_numbers(self._job, self._scene({**self.values, name: value}))
         except InputError:

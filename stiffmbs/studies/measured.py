@@ -17,14 +17,14 @@ from ..results.solution import Solution
 
 @dataclass(frozen=True)
 class Measured:
-    """What was measured.
+    """Measured channels over time.
 
     Attributes
     ----------
     time : ndarray, shape (n,)
-        Increasing, s.
+        Increasing times, s.
     channels : dict of str to ndarray
-        Shapes (n,); nan where a channel has no value.
+        Values, shapes (n,); nan where a channel has no value.
     """
 
     time: np.ndarray
@@ -32,7 +32,7 @@ class Measured:
 
 
 def measured(data: Any) -> Measured:
-    """Data to fit a model to.
+    """Return the data of a fit.
 
     Parameters
     ----------
@@ -42,7 +42,7 @@ def measured(data: Any) -> Measured:
     Raises
     ------
     InputError
-        When times do not increase, or a channel has another length or no values.
+        If times do not increase, or a channel has another length or no values.
     """
     time, channels = _read(data)
     time = np.asarray(time, dtype=float)

@@ -1,4 +1,4 @@
-"""Parameters that make an output least, within bounds and under constraints."""
+"""Minimisation of an output over parameters, within bounds and under constraints."""
 
 from __future__ import annotations
 
@@ -18,29 +18,29 @@ from .sensitivities.formulas import of_whole_time
 from .sensitivities.gradients import Gradients
 
 STEP = 1e-3
-"""Of central differences, as a part of each range."""
+"""Step of central differences, as a part of each range."""
 REMEMBERED = 10_000
 FEASIBLE = 1e-6
-"""Part of a bound by which a constraint may be off."""
+"""Accepted violation of a constraint, as a part of its bound."""
 
 
 @dataclass(frozen=True)
 class Optimum:
-    """What was found.
+    """Result of an optimisation.
 
     Attributes
     ----------
     values : dict of str to float
-        The parameters, SI units.
+        Parameters, SI units.
     objective : float
     before : float
-        The objective where the search started.
+        Objective at the start of the search.
     constraints : dict of str to float
-        The constrained outputs.
+        Constrained outputs.
     runs : int
-        Integrations that it took.
+        Number of integrations.
     success : bool
-        Whether the search converged with all constraints satisfied.
+        True if the search converged with all constraints satisfied.
     message : str
     """
 
@@ -53,7 +53,7 @@ class Optimum:
     message: str
 
     def as_dict(self) -> dict[str, Any]:
-        """What ``stiffmbs optimise --json`` prints."""
+        """Return the content of ``stiffmbs optimise --json``."""
         return {
             "status": "done" if self.success else "stopped", "message": self.message, "runs": self.runs,
             "parameters": self.values, "objective": self.objective, "before": self.before, "constraints": self.constraints,
@@ -70,7 +70,7 @@ def optimise(
     tolerance: float = 1e-6,
     **settings: Any,
 ) -> Optimum:
-    """Find the parameters that make an output of a scene least: a local minimum, by sequential quadratic programming.
+    """Minimise an output of a scene: find a local minimum by sequential quadratic programming.
 
     Parameters
     ----------
@@ -78,11 +78,11 @@ def optimise(
     objective : str
         A formula of channels and of ``peak``, ``rms`` and the like, as in `stiffmbs.sweep`: ``"rms(chassis.ay)"``.
     parameters : mapping of str to Range or (float, float)
-        What is varied, parameters or paths of the scene, with bounds; a range with ``log=True`` is searched by its logarithm.
+        Parameters or paths of the scene, with bounds; a range with ``log=True`` is searched by its logarithm.
     constraints : mapping of str to (float or None, float or None), optional
         Least and largest value of further outputs: ``{"peak(travel)": (None, 0.08)}``.
     start : mapping of str to float, optional
-        Where the search starts; the middle of each range by default.
+        Start of the search; by default the middle of each range.
     tolerance : float
         Part of the objective by which the last step may still improve it.
     **settings
@@ -91,13 +91,14 @@ def optimise(
     Raises
     ------
     InputError
-        When the scene, an output or a parameter is wrong.
+        If the scene, an output or a parameter is invalid.
     SolverError
-        When the model cannot be solved where the search starts.
+        If the model cannot be solved at the start of the search.
 
     References
     ----------
-    Kraft, A software package for sequential quadratic programming, DFVLR-FB 88-28, 1988 (`scipy.optimize.minimize`, SLSQP).
+    Kraft, A software package for sequential quadratic programming, DFVLR-FB 88-28, 1988 (`scipy.optimize.minimize`,
+    SLSQP).
     """
     limits, ranges = dict(constraints or {}), sought(parameters)
     model = _Model(scene, objective, limits, ranges, settings)
@@ -145,7 +146,7 @@ class _Model:
         self.runs = 0
 
     def check(self, point: np.ndarray) -> np.ndarray:
-        """The outputs where the search starts."""
+        """Return the outputs at the start of the search."""
         known = self._solver.channels(self._ranges.values(point))
         for output in self._outputs:
             output.refuse_unknown(known)
@@ -155,7 +156,7 @@ class _Model:
         return found
 
     def outputs(self, point: np.ndarray) -> np.ndarray:
-        """The objective, then the constrained outputs; nan where the model cannot be solved."""
+        """Return the objective and the constrained outputs; nan if the model cannot be solved."""
         key = np.ascontiguousarray(point).tobytes()
         if key not in self._known:
             if len(self._known) >= REMEMBERED:
@@ -167,9 +168,10 @@ class _Model:
         return self._known[key]
 
     def slopes(self, point: np.ndarray) -> np.ndarray:
-        """Derivatives of all outputs, shape (outputs, parameters): by sensitivities where they are outputs at single instants.
+        """Return the derivatives of all outputs, shape (outputs, parameters), by sensitivities or differences.
 
-        Those of means over time are by differences, as the runs that these take cost less; so are those of models without sensitivities.
+        Differences are used if an output is a mean over time, where they cost less, or if the model has no
+        sensitivities.
         """
         key = np.ascontiguousarray(point).tobytes()
         if self._sloped != key:
@@ -187,7 +189,7 @@ class _Model:
         return slopes
 
     def _by_differences(self, point: np.ndarray) -> np.ndarray:
-        """By central differences, one-sided at the bounds."""
+        """Return the derivatives by central differences, one-sided at the bounds."""
         columns = []
         for k in range(len(point)):
             ends = [point.copy(), point.copy()]
@@ -197,7 +199,7 @@ class _Model:
         return np.column_stack(columns)
 
     def sides(self) -> list[dict[str, Any]]:
-        """The constraints as functions that must not be negative, in parts of their bounds."""
+        """Return the constraints as functions that must not be negative, relative to their bounds."""
         found = []
         for k, (text, (low, high)) in enumerate(self._limits.items(), start=1):
             if low is None and high is None:

@@ -1,4 +1,4 @@
-"""What a study keeps of each run: channels, their reductions, and formulas of both."""
+"""Outputs of a study: channels, their reductions, and formulas of both."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from ..errors import ChannelError, InputError
 Series = np.ndarray
 TIME = "time"
 FORMULAS = 256
-"""Of which the trees are kept."""
+"""Number of formulas whose syntax trees are cached."""
 
 
 class Reported(Protocol):
-    """A solution, or what stands for one: output instants, and channels by name."""
+    """Solution or equivalent object: output instants, and channels by name."""
 
     @property
     def time(self) -> np.ndarray: ...
@@ -54,7 +54,7 @@ REDUCTIONS: dict[str, Callable[[Series, Series], float]] = {
     "min": lambda t, x: float(np.min(x)), "max": lambda t, x: float(np.max(x)),
     "t_min": lambda t, x: float(t[int(np.argmin(x))]), "t_max": lambda t, x: float(t[int(np.argmax(x))]),
 }  # fmt: skip
-"""Numbers of a channel over time: ``peak`` is its largest magnitude, means and integrals are by the trapezoidal rule."""
+"""Reductions of a channel over time: ``peak`` is the largest magnitude; integrals use the trapezoidal rule."""
 FUNCTIONS: dict[str, Callable[..., Any]] = {
     "abs": np.abs, "sqrt": np.sqrt, "exp": np.exp, "log": np.log, "sin": np.sin, "cos": np.cos, "tan": np.tan,
     "atan2": np.arctan2, "hypot": np.hypot,
@@ -67,32 +67,33 @@ OPERATORS: dict[type[ast.AST], Callable[..., Any]] = {
 
 @dataclass(frozen=True)
 class Output:
-    """One variable of a study.
+    """Output variable of a study.
 
     Attributes
     ----------
     name : str
     text : str
-        A formula of channels, ``time`` and `REDUCTIONS`: ``peak(rail.fy)``, ``rms(chassis.ay - front.ay)``, ``rail.fy``.
+        A formula of channels, ``time`` and `REDUCTIONS`: ``peak(rail.fy)``, ``rms(chassis.ay - front.ay)``,
+        ``rail.fy``.
     """
 
     name: str
     text: str
 
     def value(self, solution: Reported) -> float | np.ndarray:
-        """The number, or the series over the output instants, of a run.
+        """Return the number, or the series over the output instants, of a run.
 
         Raises
         ------
         InputError
-            When it names no channel.
+            If the formula names an unknown channel.
         """
         with np.errstate(all="ignore"):
             found = _value(parsed(self.text).body, solution)
         return np.asarray(found, dtype=float) if np.ndim(found) else float(found)
 
     def refuse_unknown(self, known: Collection[str]) -> None:
-        """Refuse a channel that is not among the known ones.
+        """Reject a channel that is not among the known ones.
 
         Raises
         ------
@@ -107,17 +108,17 @@ class Output:
 
     @property
     def is_series(self) -> bool:
-        """Whether it is a series over time."""
+        """Return True if the output is a series over time."""
         return _is_series(parsed(self.text).body)
 
 
 def outputs_of(found: Mapping[str, str] | list[str] | tuple[str, ...] | str) -> tuple[Output, ...]:
-    """The outputs that a user asks for: formulas, or formulas by name.
+    """Return the outputs of a study from formulas, or from formulas by name.
 
     Raises
     ------
     InputError
-        When a formula cannot be read.
+        If a formula is invalid.
     """
     if isinstance(found, str):
         found = [found]
@@ -129,7 +130,7 @@ def outputs_of(found: Mapping[str, str] | list[str] | tuple[str, ...] | str) -> 
 
 @lru_cache(maxsize=FORMULAS)
 def parsed(text: str) -> ast.Expression:
-    """The tree of a formula."""
+    """Return the syntax tree of a formula."""
     try:
         return ast.parse(text.strip().replace("^", "**"), mode="eval")
     except (SyntaxError, ValueError):
@@ -137,7 +138,7 @@ def parsed(text: str) -> ast.Expression:
 
 
 def channel_of(node: ast.AST) -> str | None:
-    """The dotted name that a part of a formula is; None where it is none."""
+    """Return the dotted name of a part of a formula, or None if it is not a name."""
     match node:
         case ast.Name(name):
             return name
@@ -148,7 +149,7 @@ def channel_of(node: ast.AST) -> str | None:
 
 
 def _channels(node: ast.AST) -> Iterator[str]:
-    """The channels that a formula names."""
+    """Yield the channels that a formula names."""
     name = channel_of(node)
     if name:
         yield name

@@ -1,4 +1,4 @@
-"""Parameters that are sought: their ranges, and numbers from 0 to 1 that stand for them."""
+"""Ranges of parameters, scaled to numbers from 0 to 1."""
 
 from __future__ import annotations
 
@@ -26,16 +26,16 @@ class Sought:
     ranges: tuple[Range, ...]
 
     def values(self, point: np.ndarray) -> list[float]:
-        """The values at a point, shape (n,)."""
+        """Return the values at a point, shape (n,)."""
         return [float(one.at(part)) for one, part in zip(self.ranges, point, strict=True)]
 
     def point(self, values: Mapping[str, float]) -> np.ndarray:
-        """The point of some values; the middle of a range for those that are not given.
+        """Return the point of given values; missing values are the middle of their range.
 
         Raises
         ------
         InputError
-            When a value is out of its range, or of no parameter.
+            If a value is out of its range, or belongs to no parameter.
         """
         for name in values:
             if name not in self.names:
@@ -43,7 +43,7 @@ class Sought:
         return np.array([_part(name, one, values.get(name)) for name, one in zip(self.names, self.ranges, strict=True)])
 
     def slopes(self, point: np.ndarray) -> np.ndarray:
-        """Derivatives of the values by the point's coordinates, shape (n,)."""
+        """Return the derivatives of the values by the point's coordinates, shape (n,)."""
         spans = [np.log(one.high / one.low) if one.log else one.high - one.low for one in self.ranges]
         return np.array([
             span * (value if one.log else 1.0)
@@ -52,12 +52,12 @@ class Sought:
 
 
 def sought(parameters: Mapping[str, Any]) -> Sought:
-    """Parameters by name with their ranges, each a `Range` or a pair of its ends.
+    """Return parameters with their ranges, each a `Range` or a pair of its ends.
 
     Raises
     ------
     InputError
-        When there is none, or a range is none.
+        If there is no parameter, or a range is invalid.
     """
     if not parameters:
         raise InputError("parameters: found none, expected one or more with their ranges")

@@ -1,4 +1,4 @@
-"""A model solved step by step, with inputs that are changed in between."""
+"""Step-by-step simulation of a model, with inputs that change between steps."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ from .input_numbers import InputNumbers
 from .stepping import Stepper, stepper_of
 
 OWN_INPUTS = "inputs"
-"""The section of a scene with its inputs."""
+"""Section of a scene with its inputs."""
 INPUT = "simulation/input/"
-"""Before the names of inputs in files of saved simulations."""
+"""Prefix of the names of inputs in files of saved simulations."""
 LOOK = 64
-"""Steps between two looks for creep of relaxed constraints, besides steps 1, 2, 4, 8, ..."""
+"""Number of steps between checks for drift of relaxed constraints, in addition to those at steps 1, 2, 4, 8, ..."""
 
 
 @takes_settings
@@ -41,26 +41,26 @@ def simulation(
     settings: RunSettings | None = None,
     **changes: Unpack[Settings],
 ) -> Simulation:
-    """A model to be solved step by step.
+    """Return a simulation of a model that is advanced step by step.
 
     Parameters
     ----------
     model : Model, Scene, str or Path
     inputs : mapping of str to float, optional
-        What will be changed between steps, with its first values: parameters or paths of the scene that stand in forces and states
-        alone, such as ``{"F": 0.0}`` or ``{"forces.motor.torque": 0.0}``; SI units.  The inputs of the model that are numbers are
-        among them by their names anyway.
+        Inputs to change between steps, with their initial values, SI units.  They are parameters or paths of the scene
+        that occur only in forces and states, such as ``{"F": 0.0}`` or ``{"forces.motor.torque": 0.0}``.  Numeric
+        inputs of the model are always included, by their names.
     settings : RunSettings, optional
-        The scene's own by default.
+        Settings of the run; by default those of the scene.
     **changes
         Fields of the settings to change.
 
     Raises
     ------
     InputError
-        When the model, a setting or an input is wrong.
+        If the model, a setting or an input is invalid.
     AssemblyError
-        When no consistent start is found.
+        If no consistent start is found.
 
     Examples
     --------
@@ -78,12 +78,12 @@ def simulation(
 
 
 class Simulation:
-    """A model that is solved step by step; made by `stiffmbs.simulation`.
+    """Model that is solved step by step; made by `stiffmbs.simulation`.
 
     Attributes
     ----------
     t : float
-        The present time, s.
+        Current time, s.
     """
 
     def __init__(self, solver: CaseSolver, inputs: Mapping[str, float], settings: RunSettings) -> None:
@@ -95,7 +95,7 @@ class Simulation:
         self.reset()
 
     def reset(self) -> None:
-        """Go back to the start, with the first values of the inputs."""
+        """Return to the start, with the initial values of the inputs."""
         job = self._job
         self._inputs.set(self._first)
         job.dynamics.forget_pivots()
@@ -107,37 +107,37 @@ class Simulation:
 
     @property
     def q(self) -> np.ndarray:
-        """Coordinates of all bodies at present."""
+        """Return the current coordinates of all bodies."""
         return self._stepper.q.copy()
 
     @property
     def u(self) -> np.ndarray:
-        """Velocities of all bodies at present."""
+        """Return the current velocities of all bodies."""
         return self._stepper.u.copy()
 
     @property
     def inputs(self) -> dict[str, float]:
-        """The present values of the inputs."""
+        """Return the current values of the inputs."""
         return dict(self._inputs.values)
 
     def step(self, dt: float, inputs: Mapping[str, float] | None = None) -> None:
-        """Go on by a time, with inputs that hold from now on.
+        """Advance by a time step, with inputs that are constant from now on.
 
-        Where no input changes, the integrator goes on with its history, as in one run; where one does, it starts anew.
+        If no input changes, the integrator keeps its history, as in one run; otherwise it restarts.
 
         Parameters
         ----------
         dt : float
-            s, greater than 0.
+            Time step, s, greater than 0.
         inputs : mapping of str to float, optional
-            New values; those of others stay.
+            New values; other inputs keep theirs.
 
         Raises
         ------
         InputError
-            When dt is not positive, or an input is unknown.
+            If dt is not positive, or an input is unknown.
         SolverError
-            When the solver cannot go on; the state is the one before.
+            If the solver fails; the state is then the previous one.
         """
         if not 0 < dt < np.inf:
             raise InputError(f"step: found dt = {dt}, expected a time greater than 0 s")
@@ -152,7 +152,7 @@ class Simulation:
         self.t, self._known = end, None
 
     def _advance(self, end: float) -> None:
-        """Go on to a later time; with relaxed constraints again where exact ones do not come there, as through a singular pose."""
+        """Advance to a later time; use relaxed constraints again if exact ones fail, as in a singular pose."""
         try:
             self._stepper.advance(end)
         except SolverError:
@@ -162,7 +162,7 @@ class Simulation:
             self._stepper.advance(end)
 
     def _advance_without_creep(self, end: float) -> None:
-        """Go on to a later time; once more from here and with exact constraints, now and later, where the relaxed ones creep."""
+        """Advance to a later time; if relaxed constraints drift, repeat this with exact ones and keep these."""
         q, u = self.q, self.u
         self._stepper.advance(end)
         dynamics, settings = self._job.dynamics, self._job.settings
@@ -170,13 +170,13 @@ class Simulation:
             dynamics.state.q[:] = self._stepper.q
             creep = creep_at(dynamics, end, self._stepper.u, settings)
         if creep > CREPT:
-            with suppress(SolverError):  # in a singular pose, which relaxed constraints alone pass
+            with suppress(SolverError):  # in a singular pose, which only relaxed constraints pass
                 exact = self._steps_of(exactly(self._job), q, u)
                 exact.advance(end)
                 self._go_on_with(exact, relaxed=False)
 
     def _steps_of(self, job: Job, q: np.ndarray, u: np.ndarray) -> Stepper:
-        """A stepper from a state at the present time."""
+        """Return a stepper from a state at the current time."""
         return stepper_of(job, restarted(job.dynamics, self.t, q, u), self.t)
 
     def _go_on_with(self, stepper: Stepper, relaxed: bool) -> None:
@@ -184,12 +184,12 @@ class Simulation:
         self._places = self._places_of_bodies()
 
     def set_inputs(self, inputs: Mapping[str, float]) -> None:
-        """Values of inputs from now on; those of others stay.
+        """Set inputs from now on; other inputs keep their values.
 
         Raises
         ------
         InputError
-            When an input is unknown, or its value does not fit.
+            If an input is unknown, or its value is invalid.
         """
         if inputs and self._inputs.set(inputs):
             self._stepper.jump()
@@ -197,19 +197,19 @@ class Simulation:
 
     @property
     def channels(self) -> dict[str, float]:
-        """Every channel at present, as in a solution.
+        """Return every channel at the current time, as in a solution.
 
         Raises
         ------
         AssemblyError
-            When there are no accelerations and reactions at present.
+            If no accelerations and reactions are found at the current time.
         """
         if self._known is None:
             self._known = {name: float(values[0]) for name, values in self._report()[0].items()}
         return dict(self._known)
 
     def __getitem__(self, channel: str) -> float:
-        """The present value of a channel."""
+        """Return the current value of a channel."""
         place = self._places.get(channel)
         if place:
             values, number = place
@@ -221,13 +221,13 @@ class Simulation:
 
     @property
     def state(self) -> SavedState:
-        """The present state, from which a run may start: ``stiffmbs.run(model, start_from=sim.state)``."""
+        """Return the current state, from which a run may start: ``stiffmbs.run(model, start_from=sim.state)``."""
         channels, turns = self._report()
         known, counted = ({name: float(values[0]) for name, values in part.items()} for part in (channels, turns))
         return SavedState("the simulation", self.t, known, counted)
 
     def _report(self) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
-        """Channels and counts of turns at present, one value each."""
+        """Return the current channels and revolution counters, one value each."""
         job, dynamics = self._job, self._job.dynamics
         with dynamics.state.unchanged():
             rows = dynamics.report(np.array([self.t]), self.q[None], self.u[None], project=True)
@@ -238,12 +238,12 @@ class Simulation:
         return channels_of(job.data, dynamics.system, rows), turns_of(dynamics.system, rows.q)
 
     def save(self, path: str | Path) -> None:
-        """Write the present state and inputs to a file .npz, which `load` and ``stiffmbs run --from`` read.
+        """Write the current state and inputs to a file .npz, which `load` and ``stiffmbs run --from`` read.
 
         Raises
         ------
         InputError
-            For another ending.
+            If the file has another suffix.
         """
         file = Path(path)
         if file.suffix != ".npz":
@@ -255,12 +255,12 @@ class Simulation:
         written_whole(file, lambda part: np.savez(part, time=np.array([self.t]), **content))
 
     def load(self, path: StartFrom) -> None:
-        """Go on from a saved state: a file that `save` or ``stiffmbs run -o`` wrote, a `SavedState` or a `Solution`.
+        """Continue from a saved state: a file that `save` or ``stiffmbs run -o`` wrote, a `SavedState` or a `Solution`.
 
         Raises
         ------
         InputError
-            When the file cannot be read, or is of another model.
+            If the file cannot be read, or belongs to another model.
         """
         found = state_to_start_from(path)
         assert found is not None
@@ -275,7 +275,7 @@ class Simulation:
         self.t, self._known = found.t, None
 
     def _places_of_bodies(self) -> dict[str, tuple[np.ndarray, int]]:
-        """In the plane channels of bodies are coordinates and velocities themselves."""
+        """Return the places of planar channels that are coordinates or velocities."""
         system = self._job.dynamics.system
         if system.of_body.dimensions == 3:
             return {}

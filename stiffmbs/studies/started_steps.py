@@ -1,4 +1,4 @@
-"""Steps of a simulation between instants at which its inputs jump: IDA starts anew at each of them."""
+"""Steps of a simulation between jumps of its inputs, with a restart of IDA at each of them."""
 
 from __future__ import annotations
 
@@ -16,25 +16,24 @@ from ..solve.settings import changed
 from ..solve.trajectory import Grid
 
 NO_PAUSE = 10**9
-"""Steps after which IDA need not come back."""
+"""Number of steps after which IDA returns; never reached."""
 PART, FINEST = 0.01, 1e-12
-"""Part of the tolerance that starts are given, down to the finest.  Errors of starts add up: a cart-pendulum whose force jumps each ms
-is off by 1.2e-6 m after 10 s at rtol 1e-8, and by 9e-9 with this part of it; one run without jumps is off by 3e-8."""
+"""Part of the tolerance that restarts get, and the finest tolerance; errors of restarts accumulate."""
 
 
 class StartedSteps:
-    """Each of them a start of IDA's and the steps up to the next instant: one compiled call, where that serves.
+    """Restarts of IDA, each with the steps to the next instant, in one compiled call if possible.
 
     Parameters
     ----------
     job : Job
     q, u : ndarrays
-        Memory of the present state.
+        Memory of the current state.
 
     Attributes
     ----------
     compiled : Restarts or None
-        The compiled starts.
+        Compiled restarts.
     """
 
     def __init__(self, job: Job, q: np.ndarray, u: np.ndarray) -> None:
@@ -46,25 +45,25 @@ class StartedSteps:
         self._features: InputFeatures | None = None
 
     def advance(self, t: float, end: float, features: InputFeatures) -> None:
-        """Go on from the state at t, s, to a later time; the state is then the one there.
+        """Advance the state from time t to a later time.
 
         Parameters
         ----------
         t, end : float
-            s.
+            Times, s.
         features : InputFeatures
-            Of the inputs around these times.
+            Features of the inputs around these times.
 
         Raises
         ------
         SolverError
-            When it cannot be reached; the state is then as it was.
+            If the end cannot be reached; the state is then unchanged.
         """
         if not (self.compiled and self._quickly(t, end, features) and self.compiled.advance(t, end)):
             self._run(t, end)
 
     def _quickly(self, t: float, end: float, features: InputFeatures) -> bool:
-        """Whether no breakpoint lies between; the integrator then sees the inputs."""
+        """Return True if no breakpoint lies between; the integrator then has the inputs."""
         if self._features is not features:
             self._engine.see_inputs(features, end - t)
             self._features = features
@@ -72,7 +71,7 @@ class StartedSteps:
         return not len(between) or not np.any((between >= just_before(t)) & (between <= just_after(end)))
 
     def _run(self, t: float, end: float) -> None:
-        self._features = None  # the run sees the inputs up to its end alone
+        self._features = None  # the run has the inputs up to its end only
         self._engine.pause_after(NO_PAUSE)
         start = restarted(self._dynamics, t, self._q, self._u)
         for reached in self._integrator.run(start, Grid(t, end, np.array([end]))):
@@ -81,12 +80,12 @@ class StartedSteps:
 
 
 def sound(integrator: Integrator, reached: Reached) -> Reached:
-    """Where an integrator has come.
+    """Return the state that an integrator has reached.
 
     Raises
     ------
     SolverError
-        When it cannot go on.
+        If the integrator fails.
     """
     integrator.reached = reached
     if reached.failure:
@@ -95,7 +94,7 @@ def sound(integrator: Integrator, reached: Reached) -> Reached:
 
 
 def _finer(settings: RunSettings) -> RunSettings:
-    """The settings of a run with the tolerance of starts."""
+    """Return the settings of a run with the tolerance of restarts."""
     part = max(PART, min(1.0, FINEST / settings.rtol))
     absolute = None if settings.atol is None else part * settings.atol
     return changed(settings, {"rtol": part * settings.rtol, "atol": absolute})

@@ -1,4 +1,4 @@
-"""How a simulation goes from one instant to the next: with IDA's own steps, or by short runs of explicit solvers."""
+"""Steppers of a simulation: IDA's own steps, or short runs of explicit solvers."""
 
 from __future__ import annotations
 
@@ -21,35 +21,35 @@ from .started_steps import StartedSteps, sound
 
 
 class Stepper(Protocol):
-    """Goes on from consistent values.
+    """Stepper from consistent values.
 
     Attributes
     ----------
     q, u : ndarrays
-        The present state, overwritten by each step.
+        Current state, overwritten by each step.
     """
 
     q: np.ndarray
     u: np.ndarray
 
     def advance(self, t: float) -> None:
-        """Go on to a later time.
+        """Advance to a later time.
 
         Raises
         ------
         SolverError
-            When it cannot be reached.
+            If it cannot be reached.
         """
 
     def jump(self) -> None:
-        """Forget what is behind the present state, as inputs jump here."""
+        """Discard the history before the current state, as inputs jump here."""
 
     def restart(self, t: float, q: np.ndarray, u: np.ndarray) -> None:
-        """Go on from another state."""
+        """Continue from another state."""
 
 
 def stepper_of(job: Job, start: InitialValues, t: float) -> Stepper:
-    """IDA's where bdf solves natively; short runs of any other solver."""
+    """Return a stepper: with IDA's own steps for bdf with the native engine, else with short runs."""
     if job.settings.solver == "bdf":
         integrator = Integrator(job.dynamics, job.settings)
         if isinstance(integrator.engine, NativeEngine):
@@ -58,18 +58,18 @@ def stepper_of(job: Job, start: InitialValues, t: float) -> Stepper:
 
 
 class ImplicitSteps:
-    """IDA's own steps, as long as they would be in one run, and states within the last of them.
+    """IDA's own steps, as long as in one run, with interpolation in the last step.
 
-    Behind a jump of inputs the first step of a simulation ends a step of IDA's too, as inputs mostly jump again there.
+    After a jump of inputs, IDA ends a step at the end of the first simulation step, as inputs mostly jump again there.
 
     Parameters
     ----------
     job : Job
     integrator : Integrator
-        With the native engine.
+        Integrator with the native engine.
     start : InitialValues
     t : float
-        s.
+        Time, s.
     """
 
     def __init__(self, job: Job, integrator: Integrator, start: InitialValues, t: float) -> None:
@@ -86,7 +86,7 @@ class ImplicitSteps:
         return StartedSteps(self._job, self.q, self.u)
 
     def _look_through(self, t: float) -> None:
-        """Have the inputs looked through once for all steps that follow."""
+        """Determine the features of the inputs once for all following steps."""
         if t >= self._end:
             self._end = t + self._job.settings.duration
             self._features = self._dynamics.input_features(t, self._end)
@@ -108,7 +108,7 @@ class ImplicitSteps:
             self._begin(restarted(self._dynamics, self._t, self.q, self.u), self._t)
         while self._t < t:
             reached = next(self._steps, None)
-            if reached is None:  # the end of what was looked through
+            if reached is None:  # end of the interval with known input features
                 self._look_through(self._t)
                 self._begin(
                     restarted(self._dynamics, self._t, *self._integrator.split(self._engine.at(self._t))), self._t
@@ -129,14 +129,14 @@ class ImplicitSteps:
 
 
 class ShortRuns:
-    """A run from each instant to the next, of a solver that needs no history.
+    """Runs from each instant to the next, by a solver without history.
 
     Parameters
     ----------
     job : Job
     start : InitialValues
     t : float
-        s.
+        Time, s.
     """
 
     def __init__(self, job: Job, start: InitialValues, t: float) -> None:
@@ -147,7 +147,7 @@ class ShortRuns:
     def advance(self, t: float) -> None:
         """See `Stepper`."""
         if t > self._t:
-            if t > self._end:  # inputs are looked through once for all steps that follow
+            if t > self._end:  # input features are determined once for all following steps
                 self._end = t + self._settings.duration
                 self._job.dynamics.input_features(self._t, self._end)
             grid = Grid(self._t, t, np.array([self._t, t]))

@@ -1,4 +1,4 @@
-"""Rows of a study in an SQLite file: whole rows survive however the process ends."""
+"""Rows of a study in an SQLite file; completed rows survive an abnormal end of the process."""
 
 from __future__ import annotations
 
@@ -41,14 +41,14 @@ class Store:
     Parameters
     ----------
     path : Path or None
-        The file, which is created if it does not exist; None for a store in memory.
+        File, which is created if it does not exist; None for a store in memory.
     study : mapping of str to str
         Everything that the rows depend on, by its name in messages; a store in which a part differs is refused.
 
     Raises
     ------
     InputError
-        When the file belongs to another study, or is not a store; the message names the changed parts.
+        If the file belongs to another study, or is not a store; the message names the changed parts.
     """
 
     def __init__(self, path: Path | None, study: Mapping[str, str]) -> None:
@@ -71,7 +71,7 @@ class Store:
 
     @contextmanager
     def _readable(self) -> Iterator[None]:
-        """Refuse a file that cannot be read as a store."""
+        """Raise an error if a file cannot be read as a store."""
         try:
             yield
         except (InputError, SolverError):
@@ -92,7 +92,7 @@ class Store:
         Raises
         ------
         InputError
-            When it does not.
+            If it does not.
         """
         tables = self._file.execute("select count(*) from sqlite_master").fetchone()[0]
         if tables and self._file.execute("pragma user_version").fetchone()[0] != FORMAT:
@@ -140,7 +140,7 @@ class Store:
         Raises
         ------
         ChangedFileError
-            When a file that the case of a row names had different content in another case.
+            If a file that the case of a row names had different content in another case.
         """
         self._unwritten |= {row.case: row for row in rows}
         if failed := self._write_rest():
@@ -222,7 +222,7 @@ def _code(columns: tuple[object, ...]) -> bytes:
 
 
 def _packed(row: Row) -> tuple[int, str, str, bytes, bytes, bytes]:
-    """A row of the table; the length of a number is -1."""
+    """Return a row of the table; the length of a number is -1."""
     lengths = [len(value) if isinstance(value, np.ndarray) else -1 for value in row.values]
     numbers = np.concatenate([np.empty(0), *(np.atleast_1d(np.asarray(value, dtype="<f8")) for value in row.values)])
     columns = (

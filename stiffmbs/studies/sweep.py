@@ -1,4 +1,4 @@
-"""The front door: many runs of one scene with other values."""
+"""Parameter sweeps: many runs of one scene with other values."""
 
 from __future__ import annotations
 
@@ -34,19 +34,19 @@ if TYPE_CHECKING:
 LARGEST_CHUNK, CHUNKS_PER_WORKER = 8, 8
 GRID = tuple(f"run.{name}" for name in ("start", "duration", "output", "points"))
 StudyProgress = Callable[[int, int, float], None]
-"""Called with the cases done, all cases, and the estimated time left, s."""
+"""Callback with the number of completed cases, the number of all cases, and the estimated time left, s."""
 
 
 @dataclass(frozen=True)
 class Study:
-    """A study that is ready to be solved.
+    """Study that is ready to be solved.
 
     Attributes
     ----------
     task : Task
     cases : Cases
     time : ndarray
-        The output instants of series, s.
+        Output instants of series, s.
     title : str
     """
 
@@ -57,7 +57,7 @@ class Study:
 
     @property
     def parts(self) -> dict[str, str]:
-        """Everything that its rows depend on, by its name in messages: texts, and digests of files."""
+        """Return everything on which the rows depend, by its name in messages: texts, and digests of files."""
         from .. import __version__
 
         task = self.task
@@ -71,7 +71,7 @@ class Study:
         self, workers: int | None = None, executor: Executor | None = None, store: str | Path | None = None,
         watch: StudyProgress | None = None,
     ) -> xarray.Dataset:  # fmt: skip
-        """Solve the cases that the store does not have yet; parameters and errors as for `sweep`."""
+        """Solve the cases that the store lacks; parameters and errors as for `sweep`."""
         if workers is not None and workers < 1:
             raise InputError(f"workers: found {workers}, expected 1 or more")
         task = pickle.dumps(self.task)
@@ -92,7 +92,7 @@ class Study:
 
 
 class _Progress:
-    """Tells how far a study is, with the time left by what the cases of this session took."""
+    """Progress reports of a study, with the time left estimated from the cases of this session."""
 
     def __init__(self, total: int, before: int, watch: StudyProgress | None) -> None:
         self._total, self._before, self._done, self._watch = total, before, before, watch
@@ -129,42 +129,42 @@ def sweep(
     Parameters
     ----------
     scene : str, Path, Scene or Model
-        A file of a scene has parameters; a model has paths alone.
+        A file of a scene has parameters; a model has only paths.
     vary : mapping, optional
-        What is varied, by parameters or paths that no keyword can name: ``{"forces.spring.stiffness": [100, 200]}``,
+        Values by parameters or paths that no keyword can name: ``{"forces.spring.stiffness": [100, 200]}``,
         ``{"bodies.bar.angle": Range(0, 1)}``, ``{"run.rtol": [1e-6, 1e-8]}``.  Each value may be a vector or a matrix.
     sample : str, optional
-        ``lhs:500`` (Latin hypercube), ``sobol:512`` or ``random:500`` cases in place of the full grid; values are drawn from
-        ranges, or picked from lists.
+        ``lhs:500`` (Latin hypercube), ``sobol:512`` or ``random:500`` cases instead of the full grid; values are drawn
+        from ranges, or picked from lists.
     seed : int
-        Of the sample.
+        Seed of the sample.
     outputs : mapping of str to str, sequence of str, optional
-        What is kept of each run, formulas of channels and of ``peak``, ``t_peak``, ``rms``, ``mean``, ``integral``, ``min``,
-        ``max``, ``t_min``, ``t_max``, ``first`` and ``final`` of them, at the output instants; the peak of every channel of
-        the scene's figure, or of the total energy, by default.
+        Formulas of channels and of ``peak``, ``t_peak``, ``rms``, ``mean``, ``integral``, ``min``, ``max``, ``t_min``,
+        ``t_max``, ``first`` and ``final`` of them, at the output instants; by default the peak of every channel of the
+        scene's figure, or of the total energy.
     workers : int, optional
-        Threads that solve at once; 1 by default.
+        Number of threads; 1 by default.
     executor : concurrent.futures.Executor, optional
-        What solves in place of threads: a ``ProcessPoolExecutor``, or ``client.get_executor()`` of a Dask cluster.
+        Executor that replaces threads: a ``ProcessPoolExecutor``, or ``client.get_executor()`` of a Dask cluster.
     store : str or Path, optional
-        A file that keeps each case once it is done; a study that was stopped goes on from there.
+        File that keeps each completed case; an interrupted study continues from there.
     watch : callable, optional
-        Called with the cases done, all cases, and the time left, s.
+        Called with the number of completed cases, the number of all cases, and the time left, s.
     **parameters
-        What is varied, by name; and settings of the run that all cases share, such as ``solver="auto"``, ``rtol=1e-8``.
+        Varied values by name; and settings of the run that all cases share, such as ``solver="auto"``, ``rtol=1e-8``.
 
     Returns
     -------
     xarray.Dataset
-        A variable for each output, with what is varied as coordinates, and ``status`` and ``message`` of each case.  Of a case
-        that failed reductions are nan, and its message says why.
+        A variable for each output, with the varied values as coordinates, and ``status`` and ``message`` of each case.
+        In a failed case reductions are nan, and the message states the reason.
 
     Raises
     ------
     InputError
-        When the scene, what is varied, an output or the store is wrong.
+        If the scene, a varied value, an output or the store is invalid.
     SolverError
-        When workers of an executor end again and again.
+        If workers of an executor end repeatedly.
 
     Examples
     --------
@@ -183,7 +183,7 @@ def study_of(
     outputs: Mapping[str, str] | Sequence[str] | str | None,
     parameters: Mapping[str, Any],
 ) -> Study:
-    """A study, with one of its scenes read to see that all fits; parameters and errors as for `sweep`."""
+    """Return a study after a check that one of its cases can be prepared; parameters and errors as for `sweep`."""
     written = written_scene(scene)
     known = CaseSolver(Task(written, (), {}, ())).scene(())
     settings = {name: value for name, value in parameters.items() if _is_setting(name, value, known)}
@@ -201,12 +201,12 @@ def study_of(
 
 
 def _refuse_unfit(task: Task, cases: Cases) -> None:
-    """Refuse what no case can be solved with: names that the scene does not have, channels that no run has.
+    """Reject names that the scene does not have, and channels that no run has.
 
     Raises
     ------
     InputError, AssemblyError
-        When neither the first nor the last case can be prepared.
+        If neither the first nor the last case can be prepared.
     """
     solver, all_cases = CaseSolver(task), [*islice(cases, 1), _last(cases)]
     faults = []
@@ -229,13 +229,13 @@ def _last(cases: Cases) -> tuple[Any, ...]:
 
 
 def _is_setting(name: str, value: Any, scene: Scene) -> bool:
-    """Whether a keyword is a setting that all cases share."""
+    """Return True if a keyword is a setting that all cases share."""
     several = isinstance(value, list | tuple | np.ndarray | Range | Variation)
     return name in RunSettings.model_fields and name not in scene.parameters and not several
 
 
 def _path(name: str, scene: Scene) -> str:
-    """A setting's bare name stands for its path."""
+    """Return the path of a name, which may be the bare name of a setting."""
     return f"run.{name}" if name in RunSettings.model_fields and name not in scene.parameters else name
 
 
@@ -245,7 +245,7 @@ def _usual(scene: Scene) -> list[str]:
 
 
 def _refuse_other_instants(cases: Cases, outputs: Sequence[Output]) -> None:
-    """Series of all cases stand in one table."""
+    """Reject series if output instants vary: those of all cases share one table."""
     series = next((one.name for one in outputs if one.is_series), None)
     other = next((name for name in cases.names if name in GRID), None)
     if series and other:
@@ -255,7 +255,7 @@ def _refuse_other_instants(cases: Cases, outputs: Sequence[Output]) -> None:
 
 
 def _instants(scene: Scene, settings: Mapping[str, Any], outputs: Sequence[Output]) -> np.ndarray:
-    """The output instants of series; none where there are no series."""
+    """Return the output instants of series; empty if there are none."""
     if not any(one.is_series for one in outputs):
         return np.empty(0)
     times = output_grid(changed(scene.run, dict(settings))).times

@@ -1,4 +1,4 @@
-"""The table of a study in words and as JSON."""
+"""Results of a study as text and as JSON."""
 
 from __future__ import annotations
 
@@ -12,23 +12,23 @@ if TYPE_CHECKING:
 
 STATUS, MESSAGE = "status", "message"
 MOST_TOLD = 5
-"""Failed cases that are told by their messages."""
+"""Number of failed cases whose messages are listed."""
 
 
 def numbers(data: xarray.Dataset) -> list[str]:
-    """The variables that are one number for each case."""
+    """Return the variables that are one number for each case."""
     return [
         str(name) for name in data.data_vars if name not in (STATUS, MESSAGE) and data[name].dims == data[STATUS].dims
     ]
 
 
 def varied(data: xarray.Dataset) -> list[str]:
-    """The coordinates that are varied along the cases."""
+    """Return the coordinates that vary over the cases."""
     return [str(name) for name in data.coords if set(data[name].dims) & set(data[STATUS].dims) and name != "case"]
 
 
 def text(data: xarray.Dataset) -> str:
-    """Ranges of all outputs with where their extremes are, and what went wrong."""
+    """Return the ranges of all outputs with the cases of their extremes, and the failed cases."""
     done = int((data[STATUS] == "done").sum())
     lines = [f"{data.attrs.get('title', '')}: {done} of {data[STATUS].size} cases done"]
     for name in numbers(data):
@@ -55,7 +55,7 @@ def _short(value: Any) -> str:
 
 
 def _case(data: xarray.Dataset, number: int) -> dict[str, Any]:
-    """What is varied in a case."""
+    """Return the varied values of a case."""
     dims = data[STATUS].dims
     index = dict(zip(dims, np.unravel_index(number, data[STATUS].shape), strict=True))
     places = {name: {d: k for d, k in index.items() if d in data[name].dims} for name in varied(data)}
@@ -63,7 +63,7 @@ def _case(data: xarray.Dataset, number: int) -> dict[str, Any]:
 
 
 def as_dict(scene: str, data: xarray.Dataset) -> dict[str, Any]:
-    """What ``--json`` prints: every case with what is varied, its outputs that are numbers, its status and message."""
+    """Return the content of ``--json``: every case with its varied values, numeric outputs, status and message."""
     rows = []
     outputs = {name: data[name].values.ravel() for name in numbers(data)}
     status, message = (data[name].values.ravel() for name in (STATUS, MESSAGE))

@@ -1,4 +1,4 @@
-"""How certain fitted parameters are, by the linearised model."""
+"""Uncertainty of fitted parameters, by the linearised model."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 
 ROUNDS = 4
-"""Of estimates of the channels' noise, each with the leverages of the one before: they settle by a factor of the leverage per value."""
+"""Number of estimates of the channels' noise, each with the leverages of the previous one."""
 
 
 @dataclass(frozen=True)
 class Uncertainty:
-    """Of p parameters.
+    """Uncertainty of p parameters.
 
     Attributes
     ----------
@@ -27,7 +27,7 @@ class Uncertainty:
 
 
 def of_common_noise(J: np.ndarray, r: np.ndarray) -> Uncertainty:
-    """That of residuals r with derivatives J whose noise is known up to a common factor.
+    """Return the uncertainty for residuals r with derivatives J and noise that is known up to a common factor.
 
     Seber and Wild, Nonlinear Regression (1989), sec. 5.1.
     """
@@ -36,11 +36,11 @@ def of_common_noise(J: np.ndarray, r: np.ndarray) -> Uncertainty:
 
 
 def of_separate_noise(J: Sequence[np.ndarray], r: Sequence[np.ndarray]) -> Uncertainty:
-    """That of channels, each with a noise of its own which its residuals tell.
+    """Return the uncertainty for channels with separate noise, estimated from their residuals.
 
-    A channel loses as many degrees of freedom to the parameters as its leverages sum up to.  The variance of a parameter is a sum over
-    channels, whose degrees of freedom are those of Satterthwaite, Biometrics Bulletin 2 (1946) 110-114.  Where a channel has none
-    left, the noise is taken for a common one.
+    A channel loses as many degrees of freedom to the parameters as the sum of its leverages.  The variance of a
+    parameter is a sum over channels, whose degrees of freedom are those of Satterthwaite, Biometrics Bulletin 2 (1946)
+    110-114.  If a channel has none left, common noise is assumed.
 
     Parameters
     ----------

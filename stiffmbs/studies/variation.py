@@ -1,4 +1,4 @@
-"""What a study varies: one value of the scene over a list, or over a range."""
+"""Variations of a study: one value of the scene over a list, or over a range."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ MOST_VALUES = 10_000_000
 
 @dataclass(frozen=True)
 class Range:
-    """A range that a sample draws values from.
+    """Range from which a sample draws values.
 
     Parameters
     ----------
     low, high : float
-        Its ends, SI units.
+        Ends of the range, SI units.
     log : bool
-        Whether values are spread evenly over the logarithm.
+        True if values are spread evenly over the logarithm.
 
     Raises
     ------
     InputError
-        When the ends are no numbers in increasing order, or not positive for a logarithm.
+        If the ends are not finite numbers in increasing order, or not positive for a logarithm.
     """
 
     low: float
@@ -42,7 +42,7 @@ class Range:
             raise InputError(f"range: found {self.low:g} to {self.high:g}, expected positive ends for a logarithm")
 
     def at(self, part: np.ndarray) -> np.ndarray:
-        """Values at parts of the way from the lower to the upper end, shape as `part`."""
+        """Return the values at parts of the range, 0 at its lower and 1 at its upper end; shape as `part`."""
         if self.log:
             return np.exp(np.log(self.low) + part * (np.log(self.high) - np.log(self.low)))
         return self.low + part * (self.high - self.low)
@@ -50,16 +50,16 @@ class Range:
 
 @dataclass(frozen=True)
 class Variation:
-    """One value of the scene and what it takes.
+    """Value of the scene that varies.
 
     Attributes
     ----------
     name : str
         A parameter, or a path such as ``forces.bushing.stiffness`` or ``run.rtol``.
     values : tuple
-        What it takes in a grid: numbers, text, or nested lists for vectors and matrices; empty for a range without a count.
+        Values of a grid: numbers, text, or nested lists for vectors and matrices; empty for a range without a count.
     range : Range or None
-        What a sample draws from; None where it picks one of the values.
+        Range from which a sample draws; None if it picks one of the values.
     """
 
     name: str
@@ -67,7 +67,7 @@ class Variation:
     range: Range | None = None
 
     def drawn(self, part: np.ndarray) -> tuple[Any, ...]:
-        """What a sample takes at numbers from 0 to 1, shape (n,)."""
+        """Return the values of a sample for numbers from 0 to 1, shape (n,)."""
         if self.range is not None:
             return tuple(self.range.at(part).tolist())
         picked = np.minimum((part * len(self.values)).astype(int), len(self.values) - 1)
@@ -75,18 +75,18 @@ class Variation:
 
 
 def variation(name: str, found: Any) -> Variation:
-    """What a keyword of `stiffmbs.sweep` asks for.
+    """Return the variation that a keyword of `stiffmbs.sweep` describes.
 
     Parameters
     ----------
     name : str
-    found : sequence, ndarray, Range or Variation
-        The values, of which each may be a vector or a matrix.
+    found : sequence, ndarray, Range, Variation or str
+        Values, each of which may be a vector or a matrix; or text as for `read_variation`.
 
     Raises
     ------
     InputError
-        When it is none of these, or holds nothing.
+        If it is none of these, or is empty.
     """
     if isinstance(found, Range):
         return Variation(name, (), found)
@@ -105,14 +105,14 @@ def _plain(value: Any) -> Any:
 
 
 def read_variation(text: str, option: str = "--vary") -> Variation:
-    """What ``--vary``, or another option, asks for: ``k_b=1e5:1e9:200:log``, ``k_b=1e5:1e9:log``, ``zeta=0.02,0.1``.
+    """Read the variation of ``--vary`` or another option: ``k_b=1e5:1e9:200:log``, ``zeta=0.02,0.1``.
 
-    Values may have units (``0.1 m:0.5 m:5``).
+    Without the count it is the range of a sample.  Values may have units (``0.1 m:0.5 m:5``).
 
     Raises
     ------
     InputError
-        When it cannot be read.
+        If the text is invalid.
     """
     name, equals, given = (part.strip() for part in text.partition("="))
     if not (name and equals and given):
@@ -144,12 +144,12 @@ def _spread(place: str, count: str) -> np.ndarray:
 
 
 def number(text: str) -> float:
-    """A number, or one with a unit, in SI units.
+    """Read a number, or a quantity with a unit, in SI units.
 
     Raises
     ------
     InputError
-        When it is neither.
+        If the text is neither.
     """
     try:
         return float(text)
@@ -162,7 +162,7 @@ def number(text: str) -> float:
 
 
 def _listed(place: str, given: str) -> list[Any]:
-    """The values between commas that stand outside of brackets."""
+    """Return the values between commas outside of brackets."""
     from ..describe.files.yaml_text import read_yaml
 
     found = read_yaml(f"[{given}]", place)
@@ -172,7 +172,7 @@ def _listed(place: str, given: str) -> list[Any]:
 
 
 def _asnumber(value: Any) -> Any:
-    """Text such as ``1e5``, which YAML leaves as it is, as a number."""
+    """Convert text such as ``1e5``, which YAML does not read as a number."""
     if isinstance(value, list):
         return [_asnumber(part) for part in value]
     try:

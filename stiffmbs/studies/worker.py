@@ -1,4 +1,4 @@
-"""What a worker does, in a thread, another process or on another machine: solves a few cases."""
+"""Worker of a study, in a thread, another process or on another machine."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from .case_solver import CaseSolver, Row, Task
 Chunk = Sequence[tuple[int, tuple[Any, ...]]]
 """Cases with their numbers."""
 STUDIES = 2
-"""Of which a process keeps what it has compiled."""
+"""Number of studies whose compiled jobs a process keeps."""
 
 
 @lru_cache(maxsize=STUDIES)
 def _solvers(task: bytes) -> LifoQueue[CaseSolver]:
-    """The solvers of a study in this process that no thread works with at the moment."""
+    """Return the idle solvers of a study in this process."""
     return LifoQueue()
 
 
@@ -34,7 +34,7 @@ def solve_chunk(task: bytes, chunk: Chunk) -> list[Row]:
     Returns
     -------
     list of Row
-        In the order of the cases; a case that failed is a row that says why.
+        Rows in the order of the cases; that of a failed case has the reason.
     """
     idle = _solvers(task)
     try:
@@ -43,5 +43,5 @@ def solve_chunk(task: bytes, chunk: Chunk) -> list[Row]:
         found: Task = pickle.loads(task)
         solver = CaseSolver(found)
     rows = [solver.row(case, values) for case, values in chunk]
-    idle.put(solver)  # not after an interruption: what it holds may be half changed
+    idle.put(solver)  # not after an interruption, which may leave the solver inconsistent
     return rows

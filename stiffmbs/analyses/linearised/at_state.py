@@ -1,4 +1,4 @@
-"""A model at a state: its start, or where a run comes to."""
+"""Model at a state: its start, or a state of a run."""
 
 from __future__ import annotations
 
@@ -19,16 +19,16 @@ from ..start_from import StartFrom
 
 @dataclass(frozen=True)
 class AtState:
-    """A model whose state satisfies the constraints, with accelerations and multipliers.
+    """Model whose state satisfies the constraints, with accelerations and multipliers.
 
     Attributes
     ----------
     data : ModelData
     redundancy : Redundancy
     dynamics : Dynamics
-        Its state has q, u and lam.
+        Dynamics whose state has q, u and lam.
     t : float
-        s.
+        Time, s.
     acceleration : ndarray, shape (n_u,)
     """
 
@@ -46,14 +46,14 @@ def at_state(
     start_from: StartFrom | None = None,
     **changes: Any,
 ) -> AtState:
-    """A model at its start, or at an instant of its motion.
+    """Return a model at its start, or at a time of its motion.
 
     Parameters
     ----------
     model : Model, Scene, str or Path
     settings : RunSettings, optional
     at : float, optional
-        The instant, s; the start of the run by default.
+        Time, s; the start of the run by default.
     start_from : Solution, str, Path or SavedState, optional
         As for `stiffmbs.run`.
     **changes
@@ -64,7 +64,7 @@ def at_state(
     InputError, AssemblyError
         As for `stiffmbs.run`.
     SolverError
-        Where no motion leads to that instant.
+        If the run does not reach that time, or no accelerations are found there.
     """
     job = prepare(model, settings, start_from, **changes)
     t = job.grid.start

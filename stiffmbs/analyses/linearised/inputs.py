@@ -18,25 +18,25 @@ from ...errors import InputError
 from ..load_scene import load_scene
 
 Parameterised = Callable[[float], ModelBuilder[Any, Any, Any] | ModelData]
-"""The model for a value of an input, which is zero at the state."""
+"""Model as a function of an input, which is zero at the state."""
 FORCE = "input_"
-"""Name of the force that stands for an input."""
+"""Name of the force that represents an input."""
 
 
 def force_on(model: ModelBuilder[Any, Any, Any] | ModelData, name: str) -> Parameterised:
-    """A model with a force or torque of any size added to it.
+    """Return a model as a function of an added force or torque.
 
     Parameters
     ----------
     model : Model or Scene
     name : str
-        An input of the model, or ``BODY.COMPONENT`` at the centre of mass, or ``BODY.MARKER.COMPONENT`` at a marker: ``chassis.fy``, ``bar.end.fx``;
-        in ground axes, N or N m.
+        An input of the model, or ``BODY.COMPONENT`` at the centre of mass, or ``BODY.MARKER.COMPONENT`` at a marker:
+        ``chassis.fy``, ``bar.end.fx``; in ground axes, N or N m.
 
     Raises
     ------
     InputError
-        When there is no such body or component.
+        If there is no such body or component.
     """
     data: ModelData = model.data() if isinstance(model, ModelBuilder) else model
     if name in data.inputs:
@@ -55,15 +55,15 @@ def force_on(model: ModelBuilder[Any, Any, Any] | ModelData, name: str) -> Param
 
 @dataclass(frozen=True)
 class ForceOnBody:
-    """A model as a function of a force or torque on a body.
+    """Model as a function of a force or torque on a body.
 
     Attributes
     ----------
     data : ModelData
     place : dict
-        Marker at which it acts.
+        Marker at which the force acts.
     component : int
-        Its number among the components of a reaction.
+        Index among the components of a reaction.
     """
 
     data: ModelData
@@ -79,7 +79,7 @@ class ForceOnBody:
 
 
 def _input_of(data: ModelData, name: str) -> Parameterised:
-    """A model as a function of how far one of its inputs is from its value."""
+    """Return a model as a function of the change of one of its inputs."""
     value = data.inputs[name]
     if isinstance(value, Table):
         raise InputError(f"input '{name}': found a table, expected a number to vary")
@@ -95,7 +95,7 @@ def _place(data: ModelData, body: str, marker: str) -> dict[str, Any]:
 
 
 def _applied(dimensions: int, at: dict[str, Any], loads: list[float]) -> Force:
-    """The applied force or torque with some components, of which one differs from zero at most."""
+    """Return the applied force or torque with the given components, of which at most one is nonzero."""
     force, torque = tuple(loads[:dimensions]), tuple(loads[dimensions:])
     if dimensions == 2:
         from ...describe.forces.applied import AppliedForce, AppliedTorque
@@ -109,20 +109,19 @@ def _applied(dimensions: int, at: dict[str, Any], loads: list[float]) -> Force:
 
 
 def parameter_of(path: str | Path, name: str, changes: list[tuple[str, str]]) -> Parameterised:
-    """A scene as a function of how far one of its parameters is from its value.
+    """Return a scene as a function of the change of one of its parameters.
 
     Parameters
     ----------
     path : str or Path
     name : str
-        Of the parameter.
     changes : list of (str, str)
         As for `load_scene`.
 
     Raises
     ------
     InputError
-        When the scene has no such parameter with a number.
+        If the scene has no such parameter.
     """
     found = load_scene(path, changes).parameters
     if name not in found:

@@ -1,4 +1,4 @@
-"""One period of a natural mode as results over time, which can be drawn, animated and saved like those of a run."""
+"""One period of a natural mode as results over time, to be drawn, animated and saved like those of a run."""
 
 from __future__ import annotations
 
@@ -18,29 +18,29 @@ from ...solve.trajectory import History, Outcome
 from .at_state import AtState
 
 UNHURRIED = 1.0
-"""Time that a mode which does not oscillate takes to and fro, s."""
+"""Period shown for a mode that does not oscillate, s."""
 
 
 def mode_shape(found: AtState, own_axes: csr_array, mode: Mode, number: int, amplitude: float, points: int) -> Solution:
-    """A mode about a state over one period, with an amplitude that stays.
+    """Return one period of a mode about a state, at constant amplitude.
 
     Parameters
     ----------
     found : AtState
     own_axes : sparse array, shape (n_u, n_u)
-        From ground axes to those of u.
+        Transformation from ground axes to the axes of u.
     mode : Mode
     number : int
-        What it is called by.
+        Number of the mode in the name of the results.
     amplitude : float
-        The largest displacement, or rotation times the mechanism's size, relative to that size.
+        Largest displacement, or rotation times the mechanism's size, relative to that size.
     points : int
-        Instants, both ends included.
+        Number of instants, both ends included.
 
     Raises
     ------
     SolverError
-        Where the mechanism cannot move so far.
+        If the mechanism cannot move so far.
     """
     dynamics, state = found.dynamics, found.dynamics.state
     system = dynamics.system

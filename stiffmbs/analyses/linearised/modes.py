@@ -22,10 +22,10 @@ from .mode_shapes import mode_shape
 from .sides import Kink, kink_at
 
 AT_REST = 1e-6
-"""Acceleration relative to that of gravity (to 1 m/s^2 without), below which a state counts as an equilibrium."""
+"""Acceleration below which a state counts as an equilibrium, relative to gravity (to 1 m/s^2 without gravity)."""
 
 MOST_LISTED = 6
-"""Eigenvalues that a note lists for each side of a breakpoint."""
+"""Number of eigenvalues that a note lists for each side of a breakpoint."""
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,6 @@ class Modes:
     Attributes
     ----------
     name : str
-        Name of the model.
     t : float
         Time of the state, s.
     degrees_of_freedom : int
@@ -65,36 +64,30 @@ class Modes:
     sides: tuple[StateMatrix, ...] = ()
 
     def shape(self, number: int, amplitude: float = 0.1, points: int = 61) -> Solution:
-        """One period of a mode as results over time, which can be drawn and saved like those of a run.
+        """Return one period of a mode as results over time, which can be drawn and saved like those of a run.
 
         Parameters
         ----------
         number : int
-            1 for the slowest.
+            Number of the mode; 1 for the slowest.
         amplitude : float
-            The largest displacement, or rotation times the mechanism's size, relative to that size.
+            Largest displacement, or rotation times the mechanism's size, relative to that size.
         points : int
-            Instants, both ends included.
+            Number of instants, both ends included.
 
         Raises
         ------
         InputError
-            When there is no such mode.
+            If there is no such mode.
         SolverError
-            Where the mechanism cannot move so far.
+            If the mechanism cannot move so far.
         """
         if not 1 <= number <= len(self.modes):
             raise InputError(f"mode {number}: found no such mode, expected one of 1 to {len(self.modes)}")
         return mode_shape(self.about, self.own_axes, self.modes[number - 1], number, amplitude, points)
 
     def as_dict(self, scene: str) -> dict[str, Any]:
-        """The content of ``stiffmbs modes --json``.
-
-        Parameters
-        ----------
-        scene : str
-            The file, or what else the scene is called.
-        """
+        """Return the content of ``stiffmbs modes --json``; `scene` is the file or name of the scene."""
         return {
             "scene": scene, "t": self.t, "degrees_of_freedom": self.degrees_of_freedom,
             "modes": [mode.as_dict() for mode in self.modes], "notes": list(self.notes),
@@ -109,16 +102,16 @@ def modes(
     start_from: StartFrom | None = None,
     **changes: Unpack[Settings],
 ) -> Modes:
-    """Natural frequencies, damping and shapes of a model, linearised about a state on its constraints.
+    """Compute natural frequencies, damping and mode shapes of a model, linearised about a state on its constraints.
 
     Parameters
     ----------
     model : Model, Scene, str or Path
         A model, a scene, or a scene's file.
     settings : RunSettings, optional
-        How to come to the state; the scene's own by default.
+        Settings of the run to the state; by default those of the scene.
     at : float, optional
-        The instant of the run whose state is taken, s; its start by default.
+        Time of the state, s; the start of the run by default.
     start_from : Solution, str, Path or SavedState, optional
         As for `stiffmbs.run`.
     **changes
@@ -127,14 +120,14 @@ def modes(
     Returns
     -------
     Modes
-        As many as degrees of freedom.
+        One mode per degree of freedom.
 
     Raises
     ------
     InputError, AssemblyError
         As for `stiffmbs.run`.
     SolverError
-        Where no motion leads to that instant, or a free motion has no mass.
+        If the run does not reach that time, or a free motion has no mass.
     """
     found = at_state(model, settings, at, start_from, **changes)
     system = found.dynamics.system

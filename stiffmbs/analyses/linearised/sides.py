@@ -104,15 +104,14 @@ def kink_at(found: AtState, state: StateMatrix, linear: Linearised, moves: Moves
 
 
 def _moving(state: StateMatrix, scale: np.ndarray, names: list[str]) -> list[str]:
-    """Return the largest velocity in each free velocity."""
+    """Return the name of the largest velocity in each free velocity."""
     free = state.velocities[:, state.n_poses : state.n_poses + state.degrees_of_freedom] / scale[:, None]
     return [names[int(k)] for k in np.argmax(np.abs(free), axis=0)]
 
 
 @dataclass(frozen=True)
 class _Side:
-    """Perturbed equations: forces and rates, their derivatives with respect to free variations, and the magnitudes of their
-    terms."""
+    """Perturbed equations: forces and rates, their derivatives by free variations, and the sizes of their terms."""
 
     linear: Linearised
     forces: np.ndarray

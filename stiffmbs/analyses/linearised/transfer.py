@@ -1,4 +1,4 @@
-"""A model about a state with named inputs and outputs: state space and frequency response."""
+"""Linearised model with named inputs and outputs: state space and frequency response."""
 
 from __future__ import annotations
 
@@ -25,17 +25,19 @@ from .inputs import ForceOnBody, Parameterised, force_on
 from .sides import kink_at
 
 PLACES = ("dx", "dy", "dz", "dm", "ax", "ay", "az", "psi", "theta", "phi", "q0", "q1", "q2", "q3")
-"""Measures of places and angles."""
+"""Measures of displacements and angles."""
 NO_RATE = 1e-6
-"""Change of a prescribed velocity for each unit of an input, m/s or rad/s, that counts as none."""
+"""Change of a prescribed velocity per unit of an input below which it counts as zero, m/s or rad/s."""
 STEP = float(np.cbrt(np.finfo(float).eps))
-"""Variation by which outputs are differentiated, relative to the mechanism's size, 1 rad or the largest force (central differences: Press
-et al., Numerical Recipes, 3rd ed., sec. 5.7)."""
+"""Perturbation for derivatives of outputs, relative to the mechanism's size, 1 rad or the largest force.
+
+Central differences: Press et al., Numerical Recipes, 3rd ed., sec. 5.7.
+"""
 
 
 @dataclass(frozen=True)
 class _About:
-    """A model linearised about a state, with what outputs are differentiated by."""
+    """Model linearised about a state, with the data to differentiate outputs."""
 
     found: AtState
     linear: Linearised
@@ -60,8 +62,8 @@ def transfer(
     model : Model, Scene, str or Path
         A model, a scene, or a scene's file.
     inputs : sequence of str, or mapping of str to callable
-        Forces and torques on bodies in ground axes, such as ``"chassis.fy"`` or ``"bar.end.fx"``; or any names, each with
-        the model as a function of the input, zero at the state: the height of a road, a steering angle.
+        Forces and torques on bodies in ground axes, such as ``"chassis.fy"`` or ``"bar.end.fx"``; or a mapping of any
+        names to the model as a function of the input, zero at the state: the height of a road, a steering angle.
     outputs : sequence of str
         Channels and requests.
     settings, at, start_from, **changes
@@ -70,7 +72,7 @@ def transfer(
     Raises
     ------
     InputError
-        When an input or output is unknown, or an output needs the rate of an input that moves a constraint.
+        If an input or output is unknown, or an output depends on the rate of an input that moves a constraint.
     SolverError, AssemblyError
         As for `stiffmbs.analyses.linearised.modes.modes`.
     """
@@ -105,7 +107,7 @@ def transfer(
 def _column(
     about: _About, name: str, given: Parameterised, outputs: Sequence[str], changes: Settings
 ) -> tuple[np.ndarray, np.ndarray]:
-    """What an input does to z' and to the outputs, by the models on both sides of the state."""
+    """Return the derivatives of z' and of the outputs by an input, from the models on both sides of the state."""
     system = about.found.dynamics.system
     of_force = isinstance(given, ForceOnBody)
     step = STEP * _largest_force(about) if of_force else STEP * max(1.0, system.size)
@@ -131,7 +133,7 @@ def _column(
 
 
 def _largest_force(about: _About) -> float:
-    """The largest applied force or reaction on a body at the state, at least 1 N or N m."""
+    """Return the largest applied force or reaction on a body at the state, at least 1 N or N m."""
     state = about.found.dynamics.state
     state.evaluate("motion", about.found.t)
     reactions = np.abs(state.matrix("motion", "J").T) @ np.abs(state.lam[: about.found.dynamics.system.n_c])
@@ -139,7 +141,7 @@ def _largest_force(about: _About) -> float:
 
 
 def _with_value(about: _About, name: str, given: Parameterised, value: float, changes: Settings) -> Dynamics:
-    """The model for a value of an input, at the state about which it is linearised."""
+    """Return the model for a value of an input, at the state of the linearisation."""
     job = prepare(given(value), **changes)
     system, state = job.dynamics.system, about.found.dynamics.state
     own = about.found.dynamics.system
@@ -157,8 +159,7 @@ def _with_value(about: _About, name: str, given: Parameterised, value: float, ch
 
 
 def _acting(about: _About, dynamics: Dynamics) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """What is left of the forces (f - J^T lam - M u'), the constraints of positions and of velocities, and the rates of
-    states, at the state."""
+    """Return the residuals f - J^T lam - M u', those of position and velocity constraints, and the rates of states."""
     state, system = dynamics.state, dynamics.system
     active = about.found.dynamics.system.active
     state.evaluate("motion", about.found.t)
@@ -171,7 +172,7 @@ def _acting(about: _About, dynamics: Dynamics) -> tuple[np.ndarray, np.ndarray, 
 def _channels(
     about: _About, dynamics: Dynamics, x: np.ndarray, v: np.ndarray, s: np.ndarray, outputs: Sequence[str]
 ) -> np.ndarray:
-    """Outputs at states that differ from that of the model, a row each; brought to the constraints."""
+    """Return the outputs at perturbed states, projected onto the constraints, one row each."""
     system, at = about.found.dynamics.system, about.found.dynamics.state
     own = about.linear.own_axes
     q = np.array([system.of_body.moved(at.q, own @ row) for row in x])
@@ -191,7 +192,7 @@ def _channels(
 
 
 def _differentiated(about: _About, outputs: Sequence[str]) -> np.ndarray:
-    """C: the outputs' derivatives by the state, central differences of what a run would report."""
+    """Return C, the derivatives of the outputs by the state, as central differences of reported channels."""
     state = about.state
     of_states = about.linear.algebraic.among_all(np.eye(len(state.matrix))[len(state.matrix) - state.n_states :])
     parts = state.poses, state.velocities, of_states
@@ -205,9 +206,10 @@ def _differentiated(about: _About, outputs: Sequence[str]) -> np.ndarray:
 
 
 def _refuse_rates(about: _About, name: str, outputs: Sequence[str]) -> None:
-    """Refuse outputs that feel at once how fast an input moves a constraint: no proper transfer function leads to them.
+    """Reject outputs that depend on the rate of an input that moves a constraint: their responses are improper.
 
-    Displacements do not; velocities are i w times these, accelerations and reactions feel the input's own acceleration.
+    Displacements do not; velocities are i w times these, and accelerations and reactions depend on the input's
+    acceleration.
     """
     system, data = about.found.dynamics.system, about.found.data
     rates = (*system.of_body.velocities, *system.of_body.accelerations)
@@ -222,5 +224,5 @@ def _refuse_rates(about: _About, name: str, outputs: Sequence[str]) -> None:
 
 
 def _felt(term: Term, data: ModelData) -> bool:
-    """Whether a term of a request is a velocity or acceleration, or what a joint does."""
+    """Return True if a term of a request is a velocity, an acceleration or a joint reaction."""
     return term.element in data.joints if term.element else term.function not in PLACES

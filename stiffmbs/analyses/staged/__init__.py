@@ -1,1 +1,1 @@
-"""Runs one after the other, each from the state in which the one before it ends."""
+"""Consecutive runs, each from the final state of the previous one."""

@@ -1,4 +1,4 @@
-"""Runs of scenes with stages: each starts from the state in which the one before it ends."""
+"""Runs of scenes with stages; each stage starts from the final state of the previous one."""
 
 from __future__ import annotations
 
@@ -97,13 +97,13 @@ def _solved(
 
 
 def _interval(scene: Scene, changes: dict[str, Any]) -> float | None:
-    """The time between the output points of a stage of its whole length."""
+    """Return the time between the output points of a stage of full length."""
     times = output_grid(changed(scene.run, changes)).times
     return None if times is None else float(times[1] - times[0])
 
 
 def _up_to(end: float, start: float) -> float:
-    """How long a stage is that ends at some time."""
+    """Return the duration of a stage that ends at a given time."""
     if not end > start:
         raise InputError(f"found its end at {end:g} s, expected a time after {start:g} s, where it starts")
     return end - start

@@ -1,7 +1,7 @@
-"""A run that ends, or goes on otherwise, where a request comes to a value.
+"""Runs that end or change where a request reaches a value.
 
-The whole time is solved once over the solver's own steps.  The first step in which a condition begins to hold is solved again, on
-finer and finer points, until straight lines between them give the instant; then the run is solved up to it.
+The whole time span is solved once, with the solver's own steps as output.  The first step in which a condition becomes
+true is solved again on finer points, until linear interpolation gives the instant.  Then the run is solved up to it.
 """
 
 from __future__ import annotations
@@ -20,26 +20,26 @@ from ...solve.trajectory import IN_DOUBT
 from ..given_inputs import Given
 
 POINTS, LEVELS = 33, 3
-"""Points in a step that is looked at again, and how often: the last ones are 1/32768 of it apart."""
+"""Points in a refined step, and number of refinements: the last points are 1/32768 of the step apart."""
 MOST = 500
-"""Times that conditions may begin to hold in one stage."""
+"""Number of times that conditions may become true in one stage."""
 SAME = 1e-9
-"""Part of a bound by which a value has to go back before it counts again, where nothing more is said."""
+"""Default part of a bound by which a value has to go back before its condition counts again."""
 Run = Callable[..., Solution]
 """`stiffmbs.analyses.run.run` of one scene: takes changes of settings, ``start_from`` and ``inputs``."""
 
 
 @dataclass(frozen=True)
 class Ended:
-    """What a stage has come to.
+    """Result of a stage.
 
     Attributes
     ----------
     solution : Solution
     by : str
-        The condition that ended it; empty where none did.
+        Condition that ended the stage; empty if none did.
     inputs : mapping of str to value
-        Those that conditions have set.
+        Inputs set by conditions.
     """
 
     solution: Solution
@@ -49,7 +49,7 @@ class Ended:
 
 @dataclass(frozen=True)
 class Margin:
-    """What is below zero before a condition holds: ``factor (value - bound) + near``, from a time on."""
+    """Margin, negative before a condition becomes true: ``factor (value - bound) + near``, from `armed` on."""
 
     channel: str
     factor: float
@@ -64,7 +64,7 @@ class Margin:
 
 @dataclass(frozen=True)
 class Crossing:
-    """Where a condition begins to hold: behind a row of a solution."""
+    """Time at which a condition becomes true, after the row `before` of a solution."""
 
     name: str
     before: int
@@ -78,24 +78,24 @@ def run_until(
     inputs: Mapping[str, Given] | None,
     **changes: Any,
 ) -> Ended:
-    """Solve up to where a condition ends the stage, or over the whole time.
+    """Solve up to the condition that ends the stage, or over the whole time.
 
     Parameters
     ----------
     run : callable
-        Solves the scene.
+        Function that solves the scene.
     conditions : mapping of str to Until
     interval : float or None
-        Between output points, s; None for the solver's own steps.
+        Time between output points, s; None for the solver's own steps.
     inputs : mapping, optional
-        Given to the run.
+        Inputs of the run.
     **changes
-        Of settings, and ``start_from``.
+        Changes of settings, and ``start_from``.
 
     Raises
     ------
     InputError
-        When a condition names no request, holds at the start, or begins to hold more than `MOST` times.
+        If a condition names no request, is true at the start, or becomes true more than `MOST` times.
     """
     given, ended_by = dict(inputs or {}), ""
     parts: list[Solution] = []
@@ -124,7 +124,7 @@ def run_until(
 def _up_to_the_first(
     run: Run, conditions: Mapping[str, Until], interval: float | None, fresh: bool, **changes: Any
 ) -> tuple[Solution, str, float]:
-    """The run up to the first condition, its name (empty for none), and how long is left."""
+    """Return the run up to the first condition, the name of the condition (empty for none), and the remaining time."""
     whole = run(**{**changes, "points": "steps", "output": None})
     margins = {name: _margin_of(name, condition, whole, fresh) for name, condition in conditions.items()}
     for name, margin in margins.items():
@@ -144,7 +144,7 @@ def _up_to_the_first(
         step = {"start": a, "duration": b - a, "points": POINTS, "output": None}
         fine = run(**{**changes, "start_from": found.state(at=a), **step})
         nearer = _first({name: margins[name]}, fine)
-        if nearer is None:  # it only comes true with the last digits of the longer run
+        if nearer is None:  # the condition is true only in the last digits of the longer run
             break
         found, crossing, end = fine, nearer, nearer.t
     solution = run(**{**changes, **grid, "duration": end - start})
@@ -162,7 +162,7 @@ def _channel(name: str, request: str, solution: Solution) -> np.ndarray:
 
 
 def _margin_of(name: str, condition: Until, whole: Solution, fresh: bool) -> Margin:
-    """The margin of a condition in a run; in one that goes on, from where the value has gone back far enough."""
+    """Return the margin of a condition in a run; in a continued run, from where the value has gone back far enough."""
     values = _channel(name, condition.request, whole)
     bound = next(b for b in (condition.at_least, condition.at_most, condition.equals) if b is not None)
     away = values - bound
@@ -181,7 +181,7 @@ def _margin_of(name: str, condition: Until, whole: Solution, fresh: bool) -> Mar
 
 
 def _first(margins: Mapping[str, Margin], solution: Solution) -> Crossing | None:
-    """The first condition that begins to hold, and where straight lines between the rows put it."""
+    """Return the first condition that becomes true, with its time by linear interpolation between the rows."""
     found = None
     for name, margin in margins.items():
         values = margin(solution)

@@ -1,1 +1,1 @@
-"""Commands on files of other programs."""
+"""Commands for files of other programs."""

@@ -72,7 +72,7 @@ def _pairs(mapped: tuple[str, ...]) -> dict[str, str]:
 
 
 def _lines(text: str) -> list[str]:
-    """The lines of a file, or what stands for one."""
+    """Return the lines of a file, or of a text with an assignment."""
     if "=" in text:
         return [text]
     try:

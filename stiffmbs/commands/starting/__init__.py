@@ -1,1 +1,1 @@
-"""Commands to begin with: examples, a first scene, what is installed."""
+"""Commands for a first use: examples, a first scene, installed versions."""

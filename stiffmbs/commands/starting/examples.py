@@ -25,7 +25,7 @@ def examples() -> None:
 @examples.command("list", short_help="List the examples.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line.")
 def list_all(as_json: bool) -> None:
-    """List the examples, each with what it is about."""
+    """List the examples, each with its subject."""
     with _refused():
         found = {name: first_words(path) for name, path in scene_files().items()}
         folder = examples_folder()
@@ -44,7 +44,7 @@ def list_all(as_json: bool) -> None:
 def copy(names: tuple[str, ...], folder: Path) -> None:
     """Copy the examples with these NAMEs, or all of them, with the files that they read.
 
-    No file that is there already is written over.
+    Existing files are not overwritten.
     """
     with _refused():
         scenes, source = set(scene_files().values()), examples_folder()
@@ -74,7 +74,7 @@ def run_one(context: click.Context, name: str, options: tuple[str, ...]) -> None
 
 @contextmanager
 def _refused() -> Iterator[None]:
-    """End the command with the sentence of a wrong input."""
+    """End the command with the message of an invalid input."""
     try:
         yield
     except InputError as error:

@@ -16,7 +16,7 @@ FIRST_SCENE = Path(__file__).with_name("first_scene.yaml")
 @click.command(short_help="Write a first scene, with comments.")
 @click.argument("file", type=click.Path(path_type=Path), default=Path("scene.yaml"))
 def init(file: Path) -> None:
-    """Write a first scene with comments to FILE, scene.yaml by default; no file that is there is written over."""
+    """Write a first scene with comments to FILE, scene.yaml by default; an existing file is not overwritten."""
     from ...results.files import write_text
 
     try:

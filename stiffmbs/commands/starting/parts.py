@@ -11,7 +11,7 @@ import click
 @click.argument("name", required=False)
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line.")
 def parts(name: str | None, as_json: bool) -> None:
-    """List the parts that come with the package, or print the definition of the part NAME, to change it as one's own.
+    """List the parts that come with the package, or print the definition of the part NAME as a template.
 
     Exit status: 0 done, 2 there is no such part.
     """

@@ -1,4 +1,4 @@
-"""The example scenes that are installed with the package."""
+"""Example scenes that are installed with the package."""
 
 from __future__ import annotations
 
@@ -7,16 +7,16 @@ from pathlib import Path
 from ...errors import InputError
 
 INSTALLED_IN = ("share", "stiffmbs", "examples")
-"""Where a wheel puts them, below the prefix of the Python that it is installed for."""
+"""Folder of the examples in an installed wheel, relative to the prefix of its Python."""
 
 
 def examples_folder() -> Path:
-    """The folder of the examples: that of the source tree the package is imported from, or the installed one.
+    """Return the folder of the examples, in the source tree from which the package is imported or installed.
 
     Raises
     ------
     InputError
-        When there is none.
+        If there is none.
     """
     from importlib.metadata import PackageNotFoundError, files
 
@@ -34,7 +34,7 @@ def examples_folder() -> Path:
 
 
 def scene_files() -> dict[str, Path]:
-    """The example scenes by name, in alphabetical order: those in the folder itself, and in its folders by theme."""
+    """Return the example scenes by name, in alphabetical order, from the folder itself and its folders by theme."""
     folder = examples_folder()
     return {
         path.stem: path
@@ -43,12 +43,12 @@ def scene_files() -> dict[str, Path]:
 
 
 def scene_file(name: str) -> Path:
-    """The file of an example, by its name with or without ``.yaml``.
+    """Return the file of an example, by its name with or without ``.yaml``.
 
     Raises
     ------
     InputError
-        When there is no such example.
+        If there is no such example.
     """
     found = scene_files()
     path = found.get(name.removesuffix(".yaml"))
@@ -58,7 +58,7 @@ def scene_file(name: str) -> Path:
 
 
 def first_words(path: Path) -> str:
-    """What the first comment of a scene says, up to its first full stop."""
+    """Return the first sentence of the first comment of a scene."""
     lines = path.read_text(encoding="utf-8").splitlines()
     comment = []
     for line in lines:

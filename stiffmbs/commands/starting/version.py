@@ -10,13 +10,13 @@ import click
 
 PACKAGE = "stiffmbs"
 LETTERS = f"{string.ascii_letters}{string.digits}-_."
-"""Of the name of a package, with which a requirement begins."""
+"""Characters of a package name, with which a requirement begins."""
 
 
 @click.command("version", short_help="Show the versions of stiffmbs and of what it depends on.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line.")
 def show_version(as_json: bool) -> None:
-    """Show the versions of stiffmbs, Python, and every package it depends on; add it to a report of a fault."""
+    """Show the versions of stiffmbs, Python, and every package it depends on, for bug reports."""
     found = {
         PACKAGE: installed(PACKAGE),
         "python": platform.python_version(),
@@ -31,7 +31,7 @@ def show_version(as_json: bool) -> None:
 
 
 def installed(package: str) -> str | None:
-    """The version of an installed package; None where there is none."""
+    """Return the version of an installed package, or None."""
     from importlib.metadata import PackageNotFoundError, version
 
     try:
@@ -41,7 +41,7 @@ def installed(package: str) -> str | None:
 
 
 def dependencies() -> list[str]:
-    """The packages that a plain run needs; those of the extras are left out."""
+    """Return the packages that a plain run needs, without those of the extras."""
     from importlib.metadata import requires
 
     plain = [text for text in requires(PACKAGE) or () if "extra ==" not in text]

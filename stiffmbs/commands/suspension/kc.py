@@ -30,8 +30,9 @@ def kc(
 ) -> None:  # fmt: skip
     """Sweep an axle of SCENE on a test rig by equilibria: toe, camber, track, loads, wheel rate, motion ratio.
 
-    Load cases with their default sizes: bump=50 and roll=30 (mm), steer=30 (mm of the rack), lateral=2, brake=2 and traction=2 (kN),
-    aligning=100 (N m).  The suspensions have a body upright with the markers spindle and patch, as shipped parts have.
+    Load cases with their default sizes: bump=50 and roll=30 (mm), steer=30 (mm of the rack), lateral=2,
+    lateral_parallel=2, brake=2 and traction=2 (kN), aligning=100 and aligning_parallel=100 (N m).  The suspensions have
+    a body upright with the markers spindle and patch, as shipped parts have.
 
     Exit status: 0 done, 1 no equilibrium was found or a file could not be written, 2 the input is wrong.
     """

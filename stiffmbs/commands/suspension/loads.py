@@ -19,9 +19,9 @@ from ..scene import CHANGES, in_file, refuse
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line instead of a table.")
 @CHANGES
 def loads(scene: str, cases: tuple[str, ...], as_json: bool, changes: list[tuple[str, str]]) -> None:
-    """Run SCENE in each load case, and print the largest force and torque of every bushing in its own axes, with time and case.
+    """Run SCENE in each load case, and print the largest force and torque of every bushing in its own axes.
 
-    --case kerb=choose.manoeuvre=bump --case fast=V=30,run.duration=5 runs two cases; without one SCENE runs as it is.
+    --case kerb=choose.manoeuvre=bump --case fast=V=30,run.duration=5 runs two cases; by default SCENE runs as it is.
 
     Exit status: 0 done, 1 a run stopped early, 2 the input is wrong.
     """

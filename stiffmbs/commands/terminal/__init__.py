@@ -1,1 +1,1 @@
-"""What a command tells on standard error while it is at work."""
+"""Messages of a command on standard error during its work."""

@@ -1,4 +1,4 @@
-"""What the package tells by Python's logging while a run goes on, for a line on a terminal."""
+"""Listener to the package's log records during a run, for a line on a terminal."""
 
 from __future__ import annotations
 
@@ -8,21 +8,21 @@ from collections.abc import Callable
 from .logging_options import LOGGER
 
 SLOW = "stiffmbs.compile"
-"""The package whose stages take seconds."""
+"""Package whose stages take seconds."""
 
 
 class Listener(logging.Handler):
-    """Hears of stages and steps between `begin` and `end`.
+    """Logging handler for stages and steps, active between `begin` and `end`.
 
     Parameters
     ----------
     tell : callable
-        Called with each stage, such as ``assembling``, and whether it is a slow one.
+        Called with each stage, such as ``assembling``, and True if it is slow.
 
     Attributes
     ----------
     step : str
-        Size and order of the last step, as words to follow the time; empty where none was told.
+        Size and order of the last step, as text after the time; empty if unknown.
     """
 
     def __init__(self, tell: Callable[[str, bool], None]) -> None:
@@ -31,18 +31,18 @@ class Listener(logging.Handler):
         self._level = logging.NOTSET
 
     def begin(self) -> None:
-        """Hear of everything from now on."""
+        """Start listening to all records."""
         self._level = LOGGER.level
         LOGGER.addHandler(self)
         LOGGER.setLevel(logging.DEBUG)
 
     def end(self) -> None:
-        """Hear of nothing any more."""
+        """Stop listening."""
         LOGGER.removeHandler(self)
         LOGGER.setLevel(self._level)
 
     def emit(self, record: logging.LogRecord) -> None:
-        """Take note of one record; warnings are told by others."""
+        """Process one record; warnings are printed by another handler."""
         size, order = getattr(record, "step", None), getattr(record, "order", None)
         if size is not None:
             self.step = f", step {size:.2g} s" + (f", order {order}" if order else "")

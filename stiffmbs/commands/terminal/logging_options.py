@@ -1,4 +1,4 @@
-"""The options ``-q`` and ``-v``, for what the package tells by Python's logging under the name ``stiffmbs``."""
+"""Options ``-q`` and ``-v``, for the package's log records under the name ``stiffmbs``."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ import click
 
 LOGGER = logging.getLogger("stiffmbs")
 QUIET = "stiffmbs.quiet"
-"""Key of a context under which commands find that they were asked to be quiet."""
+"""Key of a click context for a requested ``--quiet``."""
 LOUDNESS = (logging.WARNING, logging.INFO, logging.DEBUG)
-"""What is told without ``-v``, with one and with two."""
+"""Log levels without ``-v``, with one and with two."""
 
 
 class ToStandardError(logging.Handler):
-    """Writes records to what is standard error at the time."""
+    """Handler that writes records to the current standard error."""
 
     def emit(self, record: logging.LogRecord) -> None:
         """Write one record on a line."""
@@ -23,7 +23,7 @@ class ToStandardError(logging.Handler):
 
 
 def with_logging_options(command: click.Command) -> click.Command:
-    """Give a command, or all commands of a group, the options ``-q`` and ``-v``."""
+    """Add the options ``-q`` and ``-v`` to a command, or to all commands of a group."""
     if isinstance(command, click.Group):
         for own in command.commands.values():
             with_logging_options(own)
@@ -39,13 +39,13 @@ def with_logging_options(command: click.Command) -> click.Command:
 
 
 def is_quiet() -> bool:
-    """Whether the command that runs was asked to be quiet."""
+    """Return True if the running command was started with ``--quiet``."""
     context = click.get_current_context(silent=True)
     return context is not None and is_quiet_in(context)
 
 
 def is_quiet_in(context: click.Context) -> bool:
-    """Whether a command was asked to be quiet, or the one that called it."""
+    """Return True if a command, or the one that called it, was started with ``--quiet``."""
     return bool(context.meta.get(QUIET))
 
 
@@ -55,9 +55,9 @@ def _quieten(context: click.Context, _: click.Parameter, asked: bool) -> None:
 
 
 def _tell_more(context: click.Context, _: click.Parameter, count: int) -> None:
-    """Show records as loud as asked for until the command ends."""
+    """Print records of the requested levels until the command ends."""
     if not count and any(isinstance(handler, ToStandardError) for handler in LOGGER.handlers):
-        return  # as loud as the command that called this one
+        return  # same levels as in the calling command
     level = logging.ERROR if is_quiet_in(context) else LOUDNESS[min(count, 2)]
     handler, before = ToStandardError(level), LOGGER.level
     LOGGER.addHandler(handler)

@@ -1,4 +1,4 @@
-"""The line on a terminal for a run: what is done, how far it is, and how long it will take."""
+"""Progress line of a run on a terminal: stage, time reached, and time left."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from ...show.escaped import console
 
 
 def bar() -> Progress:
-    """A line that goes away in the end; a task in it has the fields ``reached`` and ``after``, what follows the time left."""
+    """Return a transient progress bar; tasks have the fields ``reached`` and ``after`` (text after the time left)."""
     return Progress(
         SpinnerColumn(),
         TextColumn("{task.description}", markup=False),

@@ -1,4 +1,4 @@
-"""A group of commands whose files are loaded when they are called."""
+"""Group of commands whose files are loaded on first use."""
 
 from __future__ import annotations
 
@@ -30,12 +30,12 @@ class Subcommands(Process):
         self.files = {name: module for section in self.sections.values() for name, module in section.items()}
 
     def list_commands(self, context: click.Context) -> list[str]:
-        """Names of all commands, in the order of the alphabet."""
+        """Return the names of all commands, in alphabetical order."""
         return sorted(self.files)
 
     def get_command(self, context: click.Context, name: str) -> click.Command | None:
-        """The command of a name; None where there is none."""
-        for wanted in [name] if name in self.files else self.files:  # all of them, to suggest one that is alike
+        """Return the command of a name, or None."""
+        for wanted in [name] if name in self.files else self.files:  # all commands, to suggest a similar one
             if wanted not in self.commands:
                 self.add_command(with_logging_options(self._loaded(wanted)), wanted)
         return super().get_command(context, name)

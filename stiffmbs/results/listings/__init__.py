@@ -1,1 +1,1 @@
-"""Listings of other programs, and how far results are from them."""
+"""Listings of other programs, and differences of results from them."""

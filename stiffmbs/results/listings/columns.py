@@ -1,4 +1,4 @@
-"""Columns over time of files of results: of this package, tables as text, and Adams' .res files in XML."""
+"""Columns over time of result files: files of this package, tables as text, and Adams' .res files in XML."""
 
 from __future__ import annotations
 
@@ -24,19 +24,20 @@ _WORDS = re.compile(r'"[^"]*"|[^\s,;"]+')
 
 
 def read_columns(path: str | Path) -> Columns:
-    """The columns of a file over time.
+    """Read the columns of a file over time.
 
     Parameters
     ----------
     path : str or Path
-        Results of this package (.npz, .csv, .nc), a table as text with time in its first column (.tab, .txt, .csv, .req, ...),
-        or a .res or .xml file of Adams.  A column of a table has its name in the header, where it has as many names as columns,
-        and its number: ``1`` is time, ``2`` the first after it.  A column of Adams' XML is called ``entity.component``.
+        Results of this package (.npz, .csv, .nc), a table as text with time in its first column (.tab, .txt, .csv,
+        .req, ...), or a .res or .xml file of Adams.  A column of a table has its number as a name, ``1`` for time, and
+        its name in the header if that has as many names as columns.  A column of Adams' XML is called
+        ``entity.component``.
 
     Raises
     ------
     InputError
-        When the file cannot be read or has no columns of numbers over time.
+        If the file cannot be read or has no columns of numbers over time.
     """
     file = Path(path)
     reader = _reader(file)
@@ -70,7 +71,7 @@ def _numeric(values: np.ndarray) -> bool:
 
 
 def _table(path: Path) -> Columns:
-    """The longest block of lines of as many numbers each, with the names in the line before it."""
+    """Return the longest block of lines with equally many numbers, with the names in a line before it."""
     lines = content_of(path).decode(errors="replace").splitlines()
     rows = [_numbers(line) for line in lines]
     first, last = _longest_block([len(row) for row in rows])
@@ -87,7 +88,7 @@ def _table(path: Path) -> Columns:
 
 
 def _heads(line: str) -> list[str]:
-    """The names of columns: parted by tabs or commas where there are any, else by blanks."""
+    """Return the names of columns, separated by tabs or commas if there are any, else by blanks."""
     for sign in ("\t", ","):
         if sign in line:
             return [part.strip() for part in line.strip("\r\n").split(sign)]
@@ -95,7 +96,7 @@ def _heads(line: str) -> list[str]:
 
 
 def _numbers(line: str) -> list[float]:
-    """The numbers of a line; none where it has anything else."""
+    """Return the numbers of a line, or none if it has other content."""
     parts = [part for part in _SPLIT.split(line.strip()) if part]
     try:
         return [float(part.replace("D", "E").replace("d", "e")) for part in parts]
@@ -104,7 +105,7 @@ def _numbers(line: str) -> list[float]:
 
 
 def _longest_block(widths: Sequence[int]) -> tuple[int, int]:
-    """The bounds of the longest run of lines with the same number of columns, two or more."""
+    """Return the bounds of the longest run of lines with the same number of columns, two or more."""
     best, start = (0, 0), 0
     for k in range(1, len(widths) + 1):
         if k == len(widths) or widths[k] != widths[start]:
@@ -115,7 +116,7 @@ def _longest_block(widths: Sequence[int]) -> tuple[int, int]:
 
 
 def _adams_xml(path: Path) -> Columns:
-    """Adams' .res in XML: a map of steps, which says what each number is called, and the numbers of each step."""
+    """Read Adams' .res in XML: a map that names the numbers of a step, and the steps."""
     names: dict[int, str] = {}
     rows: list[list[float]] = []
     for element in _elements(path):

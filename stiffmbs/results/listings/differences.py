@@ -1,4 +1,4 @@
-"""How far results are from a listing of another program."""
+"""Differences of results from a listing of another program."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from .columns import TIME, Columns, read_columns
 Listed: TypeAlias = Solution | str | Path | Mapping[str, np.ndarray]
 ROUNDING_OF_A_CHANNEL = 1e-9
 NOT_COMPARED = (TIME, "constraint.")
-"""Beginnings of channels that are the same in all runs, or noise."""
+"""Prefixes of channels that are equal in all runs, or noise."""
 SAME_TIME = 1e-9
-"""Part of the whole time by which two instants may differ and be one."""
+"""Difference up to which two times are equal, relative to the whole time."""
 
 
 @dataclass(frozen=True)
 class Difference:
-    """One channel beside one column.
+    """Difference between one channel and one column.
 
     Attributes
     ----------
@@ -32,10 +32,10 @@ class Difference:
     largest : float
         Largest magnitude of the difference, in the column's units.
     t : float
-        When it occurs, s.
+        Time of the largest difference, s.
     relative : float
-        The largest difference over the largest magnitude of the column; where that is zero, over that of the channel, and where both are
-        rounding beside the other components that are compared, over a billionth of these.
+        Largest difference over the largest magnitude of the column, or of the channel if the column is zero.  The
+        divisor is at least a billionth of the other compared components of the same element.
     """
 
     channel: str
@@ -45,7 +45,7 @@ class Difference:
     relative: float
 
     def as_dict(self) -> dict[str, str | float]:
-        """An entry of ``differences`` of ``stiffmbs diff --json``."""
+        """Return an entry of ``differences`` of ``stiffmbs diff --json``."""
         return asdict(self)
 
 
@@ -55,10 +55,10 @@ def differences(found: Listed, other: Listed, columns: Mapping[str, str] | None 
     Parameters
     ----------
     found, other : Solution, str, Path or mapping
-        A run, or the file of one, and what it is compared with; see `stiffmbs.results.listings.columns.read_columns`.  Between its own
+        A run or its file, and the listing; see `stiffmbs.results.listings.columns.read_columns`.  Between its own
         instants a run is interpolated by cubic splines.
     columns : mapping of str to str, optional
-        The column for each channel, with a factor where its units are others: ``{"PART_2.x": "5*0.001"}``.  Without it channels are
+        Column for each channel, with a factor for other units: ``{"PART_2.x": "5*0.001"}``.  By default channels are
         compared with the columns of the same names.
 
     Returns
@@ -68,7 +68,7 @@ def differences(found: Listed, other: Listed, columns: Mapping[str, str] | None 
     Raises
     ------
     InputError
-        When a channel or column is not there, or the times of the two have nothing in common.
+        If a channel or column is missing, or the two have no times in common.
     """
     own, listed = _columns(found), _columns(other)
     pairs = columns or {
@@ -107,7 +107,7 @@ def _columns(found: Listed) -> Columns:
 
 
 def _at(own: Columns, channel: str, t: np.ndarray) -> np.ndarray:
-    """A channel at other instants; where it has two values at one, the later."""
+    """Return a channel at other instants; of two values at one instant, the later one."""
     if channel not in own:
         raise InputError(f"found no channel '{channel}', expected one such as {_some(own)}")
     later = np.append(np.diff(own[TIME]) > 0, True)
@@ -122,7 +122,7 @@ def _at(own: Columns, channel: str, t: np.ndarray) -> np.ndarray:
 
 
 def _column(listed: Columns, text: str) -> np.ndarray:
-    """A column, times a factor where one is given."""
+    """Return a column, times a factor if one is given."""
     name, _, factor = text.rpartition("*") if text not in listed else (text, "", "")
     name, factor = (name, factor) if name else (text, "")
     if name not in listed:

@@ -1,4 +1,4 @@
-"""The work of a power that is known at output instants, and the steps of the solver between these."""
+"""Work of a power given at output instants, and numbers of solver steps between these."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from stiffmbs.compile.machine.native.access import compiled, shifted
 
 @compiled
 def _slope(t, power, k, count, apart):
-    """The derivative at an instant, by the parabola through it and its neighbours; at the ends by the line to the next one."""
+    """Return the derivative at an instant by a parabola through its neighbours, or by a line at the ends."""
     here, left, right = apart * k, apart * (k - 1), apart * (k + 1)
     if k == 0:
         return (power[right] - power[here]) / (t[right] - t[here])
@@ -20,7 +20,7 @@ def _slope(t, power, k, count, apart):
 
 @compiled
 def _gained(t, power, k, count, apart, within):
-    """The work between an instant and the next, by the trapezoidal rule with end corrections, which `within` receives."""
+    """Return the work up to the next instant by the trapezoidal rule with end corrections (`within`)."""
     here, right = apart * k, apart * (k + 1)
     h = t[right] - t[here]
     within[0] = 0.0
@@ -30,14 +30,13 @@ def _gained(t, power, k, count, apart, within):
 
 
 def work(count, t, power, total, within):
-    """The work since the first of `count` instants, and what the end corrections add in each interval; how far the work is from
-    that of every other instant."""
+    """Write the work and end corrections; return the largest difference from the work of every other instant."""
     total[0] = 0.0
     fewer = (count + 1) // 2
     coarse = 0.0
     largest = 0.0
     for k in range(count - 1):
-        if k % 2 == 1:  # its correction is overwritten below
+        if k % 2 == 1:  # this correction is overwritten below
             coarse += _gained(t, power, k // 2, fewer, 2, shifted(within, k))
         total[k + 1] = total[k] + _gained(t, power, k, count, 1, shifted(within, k))
         if k % 2 == 1:
@@ -46,7 +45,7 @@ def work(count, t, power, total, within):
 
 
 def steps_inside(count, t, n_steps, steps, inside):
-    """How many steps end inside each interval between `count` instants, its ends left out."""
+    """Write the number of steps that end strictly inside each interval between `count` instants."""
     before, until = 0, 0
     for k in range(count - 1):
         while before < n_steps and steps[before] <= t[k]:

@@ -1,1 +1,1 @@
-"""Mechanisms as pictures: first as data that knows no output (`scene_graph`), then for a view, a page or a film."""
+"""Drawings of mechanisms: as data independent of any output (`scene_graph`), then for a view, a page or a film."""

@@ -1,4 +1,4 @@
-"""Mechanisms in motion as files: .gif, .mp4, or a page .html."""
+"""Animations of mechanisms as files: .gif, .mp4, or a page .html."""
 
 from __future__ import annotations
 
@@ -30,12 +30,12 @@ FILMS: dict[str, Callable[..., None]] = {".gif": write_gif, ".mp4": write_mp4}
 
 
 def check_animation(path: Path) -> None:
-    """Refuse, before anything is solved, an animation that could not be written.
+    """Check that an animation can be written, before anything is solved.
 
     Raises
     ------
     InputError
-        For an unknown ending, a missing folder, or what is missing to write it.
+        If the suffix is unknown, or the folder or a program to write it is missing.
     """
     refuse_path("-o", path, (*FILMS, ".html"))
     if path.suffix == ".html":
@@ -47,7 +47,7 @@ def check_animation(path: Path) -> None:
 
 
 def check_pace(pace: Pace) -> None:
-    """Refuse a film that does not move on.
+    """Check that speed and picture rate are positive.
 
     Raises
     ------
@@ -59,7 +59,7 @@ def check_pace(pace: Pace) -> None:
 
 
 def traced(data: ModelData, names: Sequence[str]) -> list[Anchor]:
-    """The points that names of markers, such as ``coupler.tip``, or of bodies stand for.
+    """Return the points of named markers, such as ``coupler.tip``, or of bodies.
 
     Raises
     ------
@@ -81,24 +81,24 @@ def write_animation(
     path: Path, data: ModelData, runs: Mapping[str, Solution], view: str = "", pace: Pace = Pace(),  # noqa: B008
     shown: Shown = Shown(), traces: Sequence[str] = (),  # noqa: B008
 ) -> None:  # fmt: skip
-    """Write runs of a model in motion, drawn over each other; the file appears whole or not at all.
+    """Write an animation of runs of a model, drawn over each other; the file is complete or not written at all.
 
     Parameters
     ----------
     path : Path
-        .gif, .mp4 or .html.
+        Name in .gif, .mp4 or .html.
     data : ModelData
     runs : mapping of str to Solution
-        By what the legend calls them; the first one is drawn in full colors.
+        Runs by their names in the legend; the first one is drawn in full colors.
     view, pace, shown
-        Of a film; a page can be turned by hand.
+        Options of a film; a page can be rotated by hand.
     traces : sequence of str
         Markers or bodies whose paths are drawn.
 
     Raises
     ------
     InputError
-        When a run is of another model, or a marker is not known.
+        If a run belongs to another model, or a marker is unknown.
     """
     drawing = drawing_of(data)
     poses = {name: poses_of(data, run.time, run.channels) for name, run in runs.items()}
@@ -118,24 +118,24 @@ def animate(
     model: Any, path: str | Path, runs: Solution | Mapping[str, Solution] | None = None, view: str = "", speed: float = 1.0,
     rate: float = 25.0, names: bool = False, forces: bool = True, traces: Sequence[str] = (), **changes: Any,
 ) -> None:  # fmt: skip
-    """Show a model in motion, as a film or a page.
+    """Write an animation of a model, as a film or a page.
 
     Parameters
     ----------
     model : Model, Scene, str or Path
         A model, a scene, or a scene's file.
     path : str or Path
-        Where to write: .gif, .mp4, or .html for a page that needs no network.
+        Output file: .gif, .mp4, or .html for a page that needs no network.
     runs : Solution or mapping of str to Solution, optional
-        Runs of the model, drawn over each other by their names; the model is run without them.
+        Runs of the model, drawn over each other, by name; by default the model is run.
     view : str
         As for `stiffmbs.draw`.
     speed : float
-        Seconds of the model in one second of a film.
+        Seconds of the model per second of a film.
     rate : float
-        Pictures in one second of a film.
+        Pictures per second of a film.
     names, forces : bool
-        Whether a film shows names, and arrows for the forces of joints and force elements.
+        True if a film shows names, and arrows for the forces of joints and force elements.
     traces : sequence of str
         Markers, such as ``coupler.tip``, or bodies, whose paths are drawn.
     **changes

@@ -1,4 +1,4 @@
-"""A drawing with its poses as plain numbers, for pages and other programs."""
+"""Drawings with their poses as plain numbers, for pages and other programs."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ DIGITS = 6
 
 
 def drawing_json(drawing: Drawing) -> dict[str, Any]:
-    """The drawables: vertices and triangles, lines, stretched profiles, names, colors.
+    """Return the drawables: vertices and triangles, lines, stretched profiles, names, colors.
 
     Parameters
     ----------
@@ -24,7 +24,7 @@ def drawing_json(drawing: Drawing) -> dict[str, Any]:
     Returns
     -------
     dict
-        Lengths in metres, in the axes of bodies from their centres of mass; ready for `json.dumps`.
+        Lengths in metres, in the axes of bodies relative to their centres of mass; ready for `json.dumps`.
     """
     return {
         "name": drawing.name, "dimensions": drawing.dimensions, "size": drawing.size, "unit": drawing.unit, "bodies": list(drawing.bodies),
@@ -44,7 +44,7 @@ def drawing_json(drawing: Drawing) -> dict[str, Any]:
 
 
 def poses_json(poses: Poses) -> dict[str, Any]:
-    """Time, s; of each body x, y, z (m) and quaternion; of each element its force (N), one list an instant."""
+    """Return time, s; x, y, z (m) and quaternion of each body; force (N) of each element; one list per instant."""
     return {
         "time": poses.time.tolist(),
         "bodies": {
@@ -55,7 +55,7 @@ def poses_json(poses: Poses) -> dict[str, Any]:
 
 
 def _numbers(values: np.ndarray, size: float) -> list[Any]:
-    """Numbers to six digits of the mechanism's size."""
+    """Round numbers to six digits of the mechanism's size."""
     step = 10.0 ** (np.floor(np.log10(size)) - DIGITS)
     rounded: list[Any] = (np.round(np.asarray(values) / step) * step).tolist()
     return [[float(f"{x:.7g}") for x in row] if isinstance(row, list) else float(f"{row:.7g}") for row in rounded]

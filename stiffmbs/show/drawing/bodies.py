@@ -1,4 +1,4 @@
-"""The shapes of bodies: those that the scene gives, or one from the points that joints and forces act at."""
+"""Shapes of bodies: given by the scene, or derived from the points of joints and forces."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ from .scene_graph import Line, Part, Solid
 
 Shapes = tuple[tuple[Solid, ...], tuple[Line, ...]]
 SAME_POINT = 1e-3
-"""Of the mechanism's size: points that are closer count as one."""
+"""Distance below which points count as one, relative to the mechanism's size."""
 
 
 def given_shapes(name: str, body: Any, dimensions: int, size: float) -> list[Part]:
-    """The shapes that a body has in its scene.
+    """Return the shapes of a body in its scene.
 
     Raises
     ------
     InputError
-        When a mesh cannot be read.
+        If a mesh cannot be read.
     """
     origin = np.zeros(3) if dimensions == 2 else -np.array(body.center_of_mass)
     parts = []
@@ -48,7 +48,7 @@ def given_shapes(name: str, body: Any, dimensions: int, size: float) -> list[Par
 
 
 def _shape(shape: Any, dimensions: int, where: str, size: float) -> Shapes:
-    """A shape in its own axes."""
+    """Return a shape in its own axes."""
     match shape.type:
         case "polyline":
             points = np.zeros((len(shape.points), 3))
@@ -77,7 +77,7 @@ def _shape(shape: Any, dimensions: int, where: str, size: float) -> Shapes:
 
 
 MOST_FACES = 5_000
-"""Of a mesh whose edges are drawn."""
+"""Number of faces of a mesh from which on its edges are not drawn."""
 
 
 def _with_edges(solid: Solid) -> Shapes:
@@ -87,7 +87,7 @@ def _with_edges(solid: Solid) -> Shapes:
 def derived_shape(
     name: str, body: Any, dimensions: int, points: Sequence[np.ndarray], size: float, thick: float
 ) -> Part:
-    """A shape that tells where a body's points are: a bar, a plate or a hull; a block where there is one point alone."""
+    """Return a shape through a body's points: a bar, a plate or a hull; a block for a single point."""
     found = _distinct(points, SAME_POINT * size)
     if len(found) == 1 and np.linalg.norm(found[0]) > SAME_POINT * size:
         found = [found[0], _far_end(body, dimensions, found[0])]
@@ -109,14 +109,14 @@ def _distinct(points: Sequence[np.ndarray], near: float) -> list[np.ndarray]:
 
 
 def _far_end(body: Any, dimensions: int, point: np.ndarray) -> np.ndarray:
-    """The other end of a bar with one joint: as far beyond the centre of mass as its moment of inertia tells, L^2 = 12 I/m."""
+    """Return the other end of a bar with one joint: beyond the centre of mass, with the length from L^2 = 12 I/m."""
     moment = body.inertia if dimensions == 2 else max(body.principal_moments())
     reach = float(np.linalg.norm(point))
     return -point / reach * min(math.sqrt(3 * moment / body.mass), reach)
 
 
 def _block(body: Any, dimensions: int, size: float) -> Shapes:
-    """A block of the body's own moments of inertia, neither tiny nor larger than the mechanism."""
+    """Return a block with the body's moments of inertia, neither tiny nor larger than the mechanism."""
     low, high = 0.05 * size, 0.16 * size
     if dimensions == 2:
         radius = float(np.clip(math.sqrt(2 * body.inertia / body.mass), low / 2, high / 2))
@@ -133,7 +133,7 @@ def _block(body: Any, dimensions: int, size: float) -> Shapes:
 
 
 def _planar(points: np.ndarray, thick: float) -> Shapes:
-    """A bar or plate with round corners: the hull of circles about the points."""
+    """Return a bar or plate with round corners: the hull of circles about the points."""
     around = np.vstack([point + solids.circle(thick, corners=16)[:-1] for point in points])
     corners = around[_hull_in_plane(around[:, :2])]
     return (solids.flat(corners),), (solids.outline(corners),)
@@ -146,7 +146,7 @@ def _hull_in_plane(points: np.ndarray) -> np.ndarray:
 
 
 def _spatial(points: np.ndarray, thick: float) -> Shapes:
-    """A rod through points on a line; else the hull of small spheres about the points."""
+    """Return a rod through points on a line, or else the hull of small spheres about the points."""
     spread = points - points.mean(axis=0)
     _, widths, ways = np.linalg.svd(spread, full_matrices=False)
     if len(widths) < 2 or widths[1] < 0.5 * thick:

@@ -1,4 +1,4 @@
-"""The drawing of a model: shapes of its bodies and symbols of its elements, from its description alone."""
+"""Drawing of a model, from its description: shapes of its bodies and symbols of its elements."""
 
 from __future__ import annotations
 
@@ -21,29 +21,29 @@ from .poses import Poses, described_poses, placed
 from .scene_graph import Anchor, Drawing, Mark, Name, Part
 
 UNIT, CROWDED = 0.024, 10
-"""The unit of symbols over the mechanism's size, and the number of elements from which on symbols become smaller."""
+"""Unit of symbols relative to the mechanism's size, and number of elements above which symbols become smaller."""
 THICK = 5 / 6
-"""Half the thickness of bars over the unit."""
+"""Half the thickness of bars, in units of symbols."""
 FRONT = 2.0
-"""Units that symbols of the plane lie before bodies."""
+"""Distance of planar symbols in front of bodies, in units of symbols."""
 Joints = dict[str, tuple[Any, Site | None, Site | None]]
 
 
 def drawing_of(data: ModelData, marks: Mapping[str, Mark] | None = None, scale: float = 1.0) -> Drawing:
-    """The drawing of a model.
+    """Return the drawing of a model.
 
     Parameters
     ----------
     data : ModelData
     marks : mapping of str to Mark, optional
-        Joints of which there is something to say.
+        Joints to mark.
     scale : float
-        Of symbols, against their usual size.
+        Factor on the usual size of symbols.
 
     Raises
     ------
     InputError
-        When a mesh cannot be read.
+        If a mesh cannot be read.
     """
     poses = described_poses(data)
     sites = _Sites(data, poses)
@@ -80,26 +80,26 @@ def _elements(data: ModelData) -> Iterator[tuple[str, Element]]:
 
 
 def _is_reported_elsewhere(element: Element) -> bool:
-    """Whether an element is drawn at a joint's point, but acts on its body at large."""
+    """Return True if an element is drawn at a joint's point, but acts on its body as a whole."""
     return isinstance(element, Joint) and any(element.parts(JointName))
 
 
 class _Sites:
-    """The markers of a model as places on its bodies."""
+    """Markers of a model as places on its bodies."""
 
     def __init__(self, data: ModelData, poses: Poses) -> None:
         self.data, self.poses = data, poses
         self.used: dict[str, list[np.ndarray]] = {name: [] for name in (*data.bodies, GROUND)}
 
     def of(self, marker: MarkerReference) -> Site:
-        """Where a marker is on its body and in ground axes."""
+        """Return the place of a marker on its body and in ground axes."""
         point, axes = placed(self.data, marker)
         origin, turned = self.poses.pose(marker.body, 0)
         self.used[marker.body].append(point)
         return Site(marker.body, point, axes, origin + turned @ point, turned @ axes)
 
     def on_bodies(self) -> dict[str, list[np.ndarray]]:
-        """The points of each body: those that elements use, and the body's own markers."""
+        """Return the points of each body: those that elements use, and the body's own markers."""
         found = {}
         for name, body in self.data.bodies.items():
             own = [placed(self.data, MarkerReference(body=name, marker=marker))[0] for marker in body.markers]
@@ -107,7 +107,7 @@ class _Sites:
         return found
 
     def in_ground(self) -> np.ndarray:
-        """All points in ground axes, shape (n, 3)."""
+        """Return all points in ground axes, shape (n, 3)."""
         every = {**self.on_bodies(), GROUND: self.used[GROUND]}
         return np.array(
             [
@@ -124,7 +124,7 @@ def _apart(points: Iterable[np.ndarray], near: float) -> set[tuple[int, ...]]:
 
 
 def _size(data: ModelData, sites: _Sites, shaped: Mapping[str, list[Part]]) -> float:
-    """Diagonal of the box around all points and given shapes, m."""
+    """Return the diagonal of the box around all points and given shapes, m."""
     for _, element in _elements(data):
         for marker in element.markers():
             sites.of(marker[1])
@@ -134,7 +134,7 @@ def _size(data: ModelData, sites: _Sites, shaped: Mapping[str, list[Part]]) -> f
         points += [origin + solid.vertices @ turned.T for part in parts for solid in part.solids]
         points += [origin + line.points @ turned.T for part in parts for line in part.lines]
     for _, element in _elements(data):
-        radius = getattr(element, "radius", None)  # of a circle in contact
+        radius = getattr(element, "radius", None)  # radius of a circle in contact
         if isinstance(radius, float):
             points.append(points[0][:1] + radius * np.array([[1.0, 1, 0], [-1, -1, 0]]))
     every = np.vstack(points)
@@ -143,7 +143,7 @@ def _size(data: ModelData, sites: _Sites, shaped: Mapping[str, list[Part]]) -> f
 
 
 def _own_size(data: ModelData) -> float:
-    """Of bodies at one point: as large as their moments of inertia tell."""
+    """Return the size of bodies at one point, from their moments of inertia."""
     moments = [
         (body.inertia if data.dimensions == 2 else max(body.principal_moments())) / body.mass
         for body in data.bodies.values()
@@ -154,7 +154,7 @@ def _own_size(data: ModelData) -> float:
 def _drawn(
     name: str, element: Element, data: ModelData, sites: _Sites, size: float, colors: Mapping[str, str], unit: float
 ) -> Draft:
-    """The symbol of one element."""
+    """Return the symbol of one element."""
     joints: Joints = {
         other: (joint, *_ends(joint, data, sites)) for _, ref in element.parts(JointName) if (other := ref.joint)
         for joint in [data.joints[other]]
@@ -184,7 +184,7 @@ def _ends(element: Any, data: ModelData, sites: _Sites) -> tuple[Site | None, Si
 
 
 def _of_formula(element: Element, data: ModelData, sites: _Sites) -> Site | None:
-    """The centre of mass of the first body that an element's formulas name."""
+    """Return the centre of mass of the first body that an element's formulas name."""
     for _, formula in element.parts(Formula):
         for body in formula.bodies():
             if body != GROUND:
@@ -203,7 +203,7 @@ def _names(data: ModelData, drafts: Iterable[Draft]) -> Iterator[Name]:
 
 
 def _middle(draft: Draft) -> Anchor:
-    """A force's name stands halfway between its points, as the bodies are drawn first."""
+    """Return the place of a force's name: halfway between its points in the initial drawing."""
     assert draft.i is not None
     if draft.j is None or not draft.links:
         return draft.i.anchor

@@ -1,4 +1,4 @@
-"""What symbols are drawn with: places on bodies, and a sheet that takes shapes at them."""
+"""Tools of symbols: places on bodies, and a sheet that takes shapes at them."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ from .scene_graph import Anchor, Line, Link, Part, Role, Solid
 
 @dataclass(frozen=True, eq=False)
 class Site:
-    """A marker on its body.
+    """Marker on its body.
 
     Attributes
     ----------
     body : str
     point : ndarray, shape (3,)
-        From the body's centre of mass, m.
+        Position relative to the body's centre of mass, m.
     axes : ndarray, shape (3, 3)
         Columns are the marker's axes in the body's.
     in_ground : ndarray, shape (3,)
-        The point where the bodies are drawn first, in ground axes.
+        Position in the initial drawing, in ground axes.
     turned : ndarray, shape (3, 3)
-        The marker's axes there.
+        The marker's axes in the initial drawing.
     """
 
     body: str
@@ -45,43 +45,42 @@ class Site:
         return self.body == GROUND
 
     def at(self, shift: Sequence[float] | np.ndarray) -> Site:
-        """The site at another point of the marker's axes."""
+        """Return the site at another point, given in the marker's axes."""
         step = np.asarray(shift, dtype=float)
         point, in_ground = self.point + self.axes @ step, self.in_ground + self.turned @ step
         return Site(self.body, point, self.axes, in_ground, self.turned)
 
     def with_axes(self, axes: np.ndarray) -> Site:
-        """The site with other axes, whose columns are given in the marker's."""
+        """Return the site with other axes, whose columns are given in the marker's."""
         return Site(self.body, self.point, self.axes @ axes, self.in_ground, self.turned @ axes)
 
     def along_ground(self) -> Site:
-        """The site with the ground's axes, as the bodies are drawn first."""
+        """Return the site with the ground's axes in the initial drawing."""
         return self.with_axes(self.turned.T)
 
 
 @dataclass
 class Draft:
-    """A sheet for the symbols of one element.
+    """Sheet for the symbols of one element.
 
     Attributes
     ----------
     owner : str
-        The element's name.
     element : Element
     u : float
-        The unit of symbols, m.
+        Unit of symbols, m.
     size : float
-        Of the mechanism, m.
+        Size of the mechanism, m.
     i, j : Site or None
         The element's markers, or those of the joint that it refers to.
     joints : mapping
         All joints by name, with their sites.
     front : float
-        How far symbols of the plane lie before bodies, m; zero in space.
+        Distance of planar symbols in front of bodies, m; zero in space.
     down : ndarray, shape (3,)
-        Where the ground is below its supports.
+        Direction of the ground below its supports.
     colors : mapping of str to str
-        Of bodies.
+        Colors of bodies.
     """
 
     owner: str
@@ -109,9 +108,9 @@ class Draft:
         self.links.append(Link(self.owner, role, i.anchor, j.anchor, shapes, width, dashed))
 
     def grounded(self) -> Site | None:
-        """The marker that is on ground, if one is."""
+        """Return the marker on ground, if any."""
         return next((site for site in (self.i, self.j) if site is not None and site.on_ground), None)
 
     def joint_site(self, field_name: str) -> Site | None:
-        """Marker i of the joint that a field of the element names."""
+        """Return marker i of the joint that a field of the element names."""
         return self.joints.get(getattr(self.element, field_name).joint, (None, None, None))[1]

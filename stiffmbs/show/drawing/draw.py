@@ -1,4 +1,4 @@
-"""The drawing of a model as a file or a figure (pictures need matplotlib, the extra ``plot``)."""
+"""Drawing of a model as a file or a figure (pictures need matplotlib, the extra ``plot``)."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ ENDINGS = (".svg", ".png", ".pdf", ".json")
 
 
 def check_drawing(path: Path) -> None:
-    """Refuse, before anything is solved, a drawing that could not be written.
+    """Check that a drawing can be written, before anything is solved.
 
     Raises
     ------
     InputError
-        For an unknown ending, a missing folder, or a missing matplotlib.
+        If the suffix is unknown, or the folder or matplotlib is missing.
     """
     refuse_path("-o", path, ENDINGS)
     if path.suffix != ".json":
@@ -41,7 +41,7 @@ def check_drawing(path: Path) -> None:
 
 
 def need_matplotlib(what: str) -> None:
-    """Refuse a picture without matplotlib.
+    """Raise an error if matplotlib is missing.
 
     Raises
     ------
@@ -54,17 +54,17 @@ def need_matplotlib(what: str) -> None:
 def state_drawn(
     model: Any, at: float | None = None, described: bool = False, checked: bool = False, **changes: Any
 ) -> tuple[Drawing, Poses]:
-    """A model's drawing and its poses at one instant.
+    """Return a model's drawing and its poses at one instant.
 
     Parameters
     ----------
     model : Model, Scene, str or Path
     at : float, optional
-        s; the start of the run by default.
+        Time, s; the start of the run by default.
     described : bool
-        The bodies as they are described, before assembly; nothing is solved, so that there are no forces.
+        True for the bodies as described, before assembly; nothing is solved, so there are no forces.
     checked : bool
-        Mark joints with redundant equations, and those whose forces are not unique.
+        True to mark joints with redundant equations, and joints whose forces are not unique.
     **changes
         Fields of the settings to change.
 
@@ -82,7 +82,7 @@ def state_drawn(
 
 
 def write_drawing(path: Path, drawing: Drawing, poses: Poses, view: str, names: bool, forces: bool) -> None:
-    """Write a drawing; the file appears whole or not at all."""
+    """Write a drawing to a file, completely or not at all."""
     if path.suffix == ".json":
         text = json.dumps({"drawing": drawing_json(drawing), "poses": poses_json(poses)})
         written_whole(path, lambda part: part.write_text(text, encoding="utf-8"))
@@ -103,27 +103,27 @@ def draw(
     model : Model, Scene, str or Path
         A model, a scene, or a scene's file.
     path : str or Path, optional
-        Where to write the drawing: .svg, .png, .pdf, or .json for its shapes as numbers.
+        Output file: .svg, .png, .pdf, or .json for its shapes as numbers.
     at : float, optional
-        The instant of the run, s; its start by default.
+        Time of the run, s; its start by default.
     described : bool
-        The bodies as they are described, before assembly; nothing is solved, so that there are no forces.
+        True for the bodies as described, before assembly; nothing is solved, so there are no forces.
     checked : bool
-        Joints with redundant equations, and those whose forces are not unique, in colors of their own.
+        True to mark joints with redundant equations, and joints whose forces are not unique, by colors.
     view : str
-        ``front``, ``side``, ``top``, ``isometric``, a plane such as ``xz``, or ``AZIMUTH,ELEVATION`` in degrees; by default
-        along z in the plane and isometric in space.
+        ``front``, ``side``, ``top``, ``isometric``, a plane such as ``xz``, or ``AZIMUTH,ELEVATION`` in degrees; by
+        default along z in the plane and isometric in space.
     names : bool
-        Whether names are written.
+        True to write names.
     forces : bool
-        Whether the forces of joints and force elements are drawn as arrows, to scale.
+        True to draw the forces of joints and force elements as arrows, to scale.
     **changes
         Fields of the run's settings to change.
 
     Returns
     -------
     matplotlib.figure.Figure or None
-        Without a path one of pyplot's, so that ``pyplot.show()`` shows it.
+        Figure of pyplot, which ``pyplot.show()`` displays; None if a path is given.
 
     Raises
     ------
@@ -144,7 +144,7 @@ def draw(
 
 
 def summary(drawing: Drawing, poses: Poses) -> dict[str, Any]:
-    """What ``stiffmbs draw --json`` tells besides the file."""
+    """Return the content of ``stiffmbs draw --json`` in addition to the file."""
     owners = {part.owner for part in drawing.parts} | {link.owner for link in drawing.links}
     return {
         "bodies": len(drawing.bodies), "elements": len(owners - set(drawing.bodies)), "t": float(poses.time[0]),

@@ -1,4 +1,4 @@
-"""A mechanism in motion: pictures one after the other, as .gif (needs Pillow) or .mp4 (needs ffmpeg)."""
+"""Films of a mechanism in motion: sequences of pictures, as .gif (needs Pillow) or .mp4 (needs ffmpeg)."""
 
 from __future__ import annotations
 
@@ -25,31 +25,31 @@ MOST_FRAMES = 3_000
 FAINT = 0.4
 """Opacity of the bodies of other runs."""
 INCH = 90
-"""Dots of a film's picture."""
+"""Dots per inch of a film's pictures."""
 
 
 @dataclass(frozen=True)
 class Pace:
-    """How a film shows time.
+    """Time scale and picture rate of a film.
 
     Attributes
     ----------
     speed : float
-        Seconds of the model in one second of the film.
+        Seconds of the model per second of the film.
     rate : float
-        Pictures in one second of the film.
+        Pictures per second of the film.
     """
 
     speed: float = 1.0
     rate: float = 25.0
 
     def instants(self, start: float, end: float) -> np.ndarray:
-        """The instants of all pictures, s.
+        """Return the instants of all pictures, s.
 
         Raises
         ------
         InputError
-            For more pictures than anyone looks at.
+            If there are more than `MOST_FRAMES` pictures.
         """
         count = int((end - start) / self.speed * self.rate) + 1
         if count > MOST_FRAMES:
@@ -60,7 +60,7 @@ class Pace:
 
 
 def need_encoder(path: Path) -> None:
-    """Refuse, before anything is solved, a film that could not be written.
+    """Check that a film can be encoded, before anything is solved.
 
     Raises
     ------
@@ -86,13 +86,13 @@ def _ffmpeg() -> str | None:
 def pictures(
     drawing: Drawing, runs: Mapping[str, Poses], view: View, pace: Pace, shown: Shown, traces: Sequence[Anchor]
 ) -> Iterator[np.ndarray]:
-    """The pictures of a film, shape (height, width, 3), bytes.
+    """Yield the pictures of a film, shape (height, width, 3), bytes.
 
     Parameters
     ----------
     drawing : Drawing
     runs : mapping of str to Poses
-        Drawn over each other, by the names in the legend; the first one in full colors.
+        Runs drawn over each other, by their names in the legend; the first one in full colors.
     view : View
     pace : Pace
     shown : Shown
@@ -144,7 +144,7 @@ def _wide(low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _frame(axes: Any, drawing: Drawing, samples: Sequence[Poses], k: int, view: View, largest: float) -> list[Any]:
-    """One instant: the other runs faint in colors of their own, the first run over them."""
+    """Draw one instant: the other runs faint and in one color each, the first run over them."""
     artists = []
     for number in range(len(samples) - 1, 0, -1):
         artists += paint(
@@ -176,7 +176,7 @@ def _name_runs(axes: Any, drawing: Drawing, names: Sequence[str], largest: float
 
 
 def write_gif(path: Path, frames: Iterator[np.ndarray], rate: float) -> None:
-    """Write pictures as a film that repeats for ever; colors are those of all pictures together."""
+    """Write pictures as a film that repeats forever, with one palette for all pictures."""
     from PIL import Image
 
     images = [Image.fromarray(frame) for frame in frames]
@@ -198,7 +198,7 @@ def write_mp4(path: Path, frames: Iterator[np.ndarray], rate: float) -> None:
     Raises
     ------
     InputError
-        When ffmpeg cannot encode it.
+        If ffmpeg cannot encode them.
     """
     first = next(frames)
     height, width = first.shape[0] // 2 * 2, first.shape[1] // 2 * 2

@@ -1,4 +1,4 @@
-"""The body that a film or a page looks at, where a mechanism travels far: all of its path in one picture would show a dot."""
+"""Selection of a body for a film or page to follow, if a mechanism travels too far for a fixed view."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from .poses import Poses
 from .scene_graph import Drawing
 
 FAR = 3.0
-"""Way of the heaviest body, over the mechanism's size, from which on the picture goes with it."""
+"""Displacement of the heaviest body, relative to the mechanism's size, above which the view follows it."""
 
 
 def followed_body(drawing: Drawing, poses: Poses) -> str:
-    """The body that the picture goes with; empty where it stays."""
+    """Return the body that the view follows, or an empty string."""
     if drawing.heaviest not in poses.points:
         return ""
     way = way_of(drawing.heaviest, poses)
@@ -20,11 +20,11 @@ def followed_body(drawing: Drawing, poses: Poses) -> str:
 
 
 def way_of(body: str, poses: Poses) -> np.ndarray:
-    """How far a body is from its first place, shape (n, 3), m."""
+    """Return the displacement of a body from its first position, shape (n, 3), m."""
     return np.asarray(poses.points[body] - poses.points[body][0])
 
 
 def seen_from(body: str, poses: Poses) -> Poses:
-    """The poses as they are seen by someone who goes with a body without turning."""
+    """Return the poses relative to a body's displacement, without its rotation."""
     way = way_of(body, poses)
     return Poses(poses.time, {name: p - way for name, p in poses.points.items()}, poses.orientations, poses.forces)

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 ALONG = 0.9
-"""Cosine above which two directions count as one."""
+"""Cosine above which two directions count as parallel."""
 
 
 def rotation(p: np.ndarray) -> np.ndarray:
-    """The rotation matrices of unit quaternions, shape (..., 3, 3); their columns are the oriented axes."""
+    """Return the rotation matrices of unit quaternions, shape (..., 3, 3); their columns are the oriented axes."""
     w, x, y, z = np.moveaxis(np.asarray(p, dtype=float), -1, 0)
     rows = [
         [w * w + x * x - y * y - z * z, 2 * (x * y - w * z), 2 * (x * z + w * y)],
@@ -20,7 +20,7 @@ def rotation(p: np.ndarray) -> np.ndarray:
 
 
 def across(direction: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Two unit vectors at right angles to a direction and to each other; in the x-y plane the first lies in it."""
+    """Return two unit vectors normal to a direction and to each other; for a planar direction the first is planar."""
     d = direction / (np.linalg.norm(direction) or 1.0)
     up = np.array([0.0, 0.0, 1.0]) if abs(d[2]) < ALONG else np.array([1.0, 0.0, 0.0])
     first = np.cross(up, d)
@@ -30,6 +30,6 @@ def across(direction: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def axes_along(direction: np.ndarray) -> np.ndarray:
-    """Right-handed axes, the columns of a matrix, whose z has a direction."""
+    """Return right-handed axes, the columns of a matrix, whose z has a given direction."""
     first, second = across(direction)
     return np.column_stack([first, second, direction / (np.linalg.norm(direction) or 1.0)])

@@ -1,4 +1,4 @@
-"""What `stiffmbs check` says of joints, as marks of a drawing."""
+"""Marks of a drawing from the findings of `stiffmbs check` on joints."""
 
 from __future__ import annotations
 
@@ -8,6 +8,6 @@ from .scene_graph import Mark
 
 
 def marks_of(report: Report) -> dict[str, Mark]:
-    """Joints with redundant equations, and those whose forces are not unique."""
+    """Return joints with redundant equations, and joints whose forces are not unique."""
     marks: dict[str, Mark] = {owner_of(channel): "not unique" for channel in report.not_unique}
     return marks | {joint: "redundant" for joint, _ in report.redundant}

@@ -1,4 +1,4 @@
-"""Meshes from files: STL, of text or binary, and the vertices and faces of OBJ."""
+"""Reading of mesh files: STL, text or binary, and the vertices and faces of OBJ."""
 
 from __future__ import annotations
 
@@ -11,23 +11,23 @@ from ...errors import InputError
 from .scene_graph import Solid
 
 HEAD, FACET = 84, 50
-"""Bytes before the first facet of a binary STL, and of each."""
+"""Number of bytes before the first facet of a binary STL, and of each facet."""
 
 
 def read_mesh(path: Path, where: str) -> Solid:
-    """The mesh of a file, in the file's units.
+    """Read the mesh of a file, in the file's units.
 
     Parameters
     ----------
     path : Path
-        Ends in .stl or .obj.
+        Name in .stl or .obj.
     where : str
-        What messages call the shape.
+        Name of the shape in messages.
 
     Raises
     ------
     InputError
-        When it cannot be read.
+        If the file cannot be read.
     """
     try:
         data = content_of(path)

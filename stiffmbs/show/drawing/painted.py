@@ -1,4 +1,4 @@
-"""A drawing at an instant, seen from somewhere: polygons and lines of a plane, the farthest first."""
+"""Projection of a drawing at an instant: polygons and lines of a plane, the farthest first."""
 
 from __future__ import annotations
 
@@ -15,32 +15,32 @@ from .solids import face_normal
 from .view import View
 
 LIGHT = np.array([0.35, 0.5, 0.8])
-"""Where light comes from: to the right, up, towards the viewer."""
+"""Direction towards the light: to the right, up, towards the viewer."""
 SYMBOLS_BEFORE = 0.05
-"""Of the size: how far symbols are drawn before the bodies around them."""
+"""Distance of symbols in front of the bodies around them, relative to the size."""
 FOREMOST = 0.004
-"""Of the size: how far lines lie before faces at the same place."""
+"""Distance of lines in front of faces at the same place, relative to the size."""
 NEGLIGIBLE = 1e-9
-"""Of the weight of all bodies: a force below it is rounding."""
+"""Force that counts as rounding, relative to the weight of all bodies."""
 LONGEST_ARROW = 0.22
-"""The longest force arrow over the size."""
+"""Length of the longest force arrow, relative to the size."""
 HEAD = 1.25
-"""The longest head of an arrow over the unit of symbols."""
+"""Length of the longest arrow head, in units of symbols."""
 
 
 @dataclass(frozen=True, eq=False)
 class Patch:
-    """A polygon or line of the picture.
+    """Polygon or line of the picture.
 
     Attributes
     ----------
     points : ndarray, shape (n, 2)
     depth : float
-        Towards the viewer.
+        Coordinate towards the viewer.
     face, edge : str
         Colors; empty for none.
     width : float
-        Of its line.
+        Width of its line.
     dashed : bool
     opacity : float
     """
@@ -55,7 +55,7 @@ class Patch:
 
 
 def painted(drawing: Drawing, poses: Poses, k: int, view: View, longest: float = 0.0) -> list[Patch]:
-    """The picture at the k-th instant.
+    """Return the picture at the k-th instant.
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ def painted(drawing: Drawing, poses: Poses, k: int, view: View, longest: float =
     k : int
     view : View
     longest : float
-        The force, N, whose arrow is the longest; without one no arrows are drawn.
+        Force of the longest arrow, N; no arrows are drawn for 0.
     """
     found: list[Patch] = []
     for part in drawing.parts:
@@ -77,7 +77,7 @@ def painted(drawing: Drawing, poses: Poses, k: int, view: View, longest: float =
 
 
 def _edge(drawing: Drawing, owner: str, role: Role) -> tuple[str, float]:
-    """The color of lines, and how much wider they are."""
+    """Return the color of lines, and the factor on their width."""
     mark = drawing.marks.get(owner)
     return (MARKS[mark], 2.2) if mark else (EDGES[role], 1.0)
 
@@ -104,7 +104,7 @@ def _part(drawing: Drawing, part: Part, poses: Poses, k: int, view: View) -> Ite
 
 
 def _solid(seen: np.ndarray, solid: Solid, color: str, edge: tuple[str, float], flat: bool) -> Iterator[Patch]:
-    """The faces that are turned to the viewer, and the edges of these."""
+    """Yield the faces towards the viewer, and their edges."""
     light = LIGHT / np.linalg.norm(LIGHT)
     towards = np.zeros(len(solid.faces), dtype=bool)
     for number, corners in enumerate(solid.faces):
@@ -138,14 +138,14 @@ def _link(drawing: Drawing, link: Link, poses: Poses, k: int, view: View) -> Ite
 
 
 def stretched(profile: np.ndarray, start: np.ndarray, end: np.ndarray) -> np.ndarray:
-    """A profile from one point to another, shape (n, 3)."""
+    """Return a profile stretched from one point to another, shape (n, 3)."""
     way = end - start
     first, second = across(way)
     return start + profile[:, :1] * way + profile[:, 1:2] * first + profile[:, 2:3] * second
 
 
 def _loads(drawing: Drawing, poses: Poses, k: int, view: View, longest: float) -> Iterator[Patch]:
-    """Arrows of the forces on first bodies, whose tips are at the points that they act at where they push."""
+    """Yield arrows of the forces on first bodies, from their points of application."""
     for name, anchor in drawing.loads.items():
         if name not in poses.forces:
             continue
@@ -174,14 +174,14 @@ def _arrow(start: np.ndarray, way: np.ndarray, color: str, size: float, unit: fl
 
 
 def largest_force(drawing: Drawing, poses: Poses) -> float:
-    """The largest force of any element that is drawn, N; zero where there is none but rounding."""
+    """Return the largest force of any drawn element, N; zero if all are rounding."""
     sizes = [np.linalg.norm(poses.forces[name], axis=1) for name in drawing.loads if name in poses.forces]
     largest = max((float(np.nanmax(size)) for size in sizes if np.isfinite(size).any()), default=0.0)
     return largest if largest > NEGLIGIBLE * drawing.weight else 0.0
 
 
 def extent(drawing: Drawing, poses: Poses, view: View, longest: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
-    """The lower left and upper right corner of what is drawn over all instants; parameters as for `painted`."""
+    """Return the lower left and upper right corners of the drawing over all instants; parameters as for `painted`."""
     low, high = np.full(2, np.inf), np.full(2, -np.inf)
     for k in _rows(len(poses.time)):
         for patch in painted(drawing, poses, k, view, longest):

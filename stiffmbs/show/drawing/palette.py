@@ -1,4 +1,4 @@
-"""Colors that the colour-blind tell apart, and that differ in grey (Okabe and Ito, Color Universal Design, 2008)."""
+"""Colors that are distinct for colour-blind readers and in grey (Okabe and Ito, Color Universal Design, 2008)."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from .scene_graph import Mark, Role
 
 BODIES = ("#56b4e9", "#e6c229", "#2f9e8f", "#d48fb5", "#8fb339", "#c9733a", "#8da0cb", "#b7a57a")
-"""Of bodies in turn."""
+"""Colors of bodies, in turn."""
 ROLES: Mapping[Role, str] = {
     "body": "#56b4e9", "ground": "#8a8a8a", "joint": "#f2f2f2", "drive": "#7b3294", "force": "#00633c", "rubber": "#4d4d4d",
 }  # fmt: skip
@@ -20,11 +20,11 @@ PAPER = "#ffffff"
 
 
 def body_colors(bodies: Iterable[str]) -> dict[str, str]:
-    """A color for each body, in turn."""
+    """Return a color for each body, in turn."""
     return {body: BODIES[k % len(BODIES)] for k, body in enumerate(bodies)}
 
 
 def shaded(color: str, brightness: float) -> str:
-    """A color darker (below 1) or as it is (1)."""
+    """Return a color darkened by a factor below 1."""
     parts = (int(color[k : k + 2], 16) for k in (1, 3, 5))
     return "#" + "".join(f"{max(0, min(255, round(part * brightness))):02x}" for part in parts)

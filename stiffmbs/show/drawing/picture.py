@@ -1,4 +1,4 @@
-"""A drawing as a picture of matplotlib's: .svg, .png, .pdf."""
+"""Drawings as pictures of matplotlib: .svg, .png, .pdf."""
 
 from __future__ import annotations
 
@@ -19,23 +19,23 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure as Sheet
 
 WIDTH = 8.0
-"""Of a picture, inch."""
+"""Width of a picture, inch."""
 MOST_NAMES = 60
-"""With more, elements are not named."""
+"""Number of names above which elements are not named."""
 MANY_NAMES, SMALLEST = 15, 0.6
-"""Number from which on names are written smaller, and the smallest against the usual ones."""
+"""Number of names above which they are written smaller, and the smallest relative size."""
 MARK_WORDS = {"redundant": "redundant equations", "not unique": "force not unique"}
 
 
 @dataclass(frozen=True)
 class Shown:
-    """What a picture shows besides bodies and symbols.
+    """Options of a picture in addition to bodies and symbols.
 
     Attributes
     ----------
     names : bool
     forces : bool
-        Arrows for the forces of joints and force elements, to scale.
+        True for arrows of the forces of joints and force elements, to scale.
     """
 
     names: bool = True
@@ -43,7 +43,7 @@ class Shown:
 
 
 def picture(drawing: Drawing, poses: Poses, view: View, shown: Shown, on_screen: bool = False) -> Sheet:
-    """A sheet with the mechanism at the first instant; on the screen one of pyplot's."""
+    """Return a sheet with the mechanism at the first instant; on screen, a figure of pyplot."""
     largest = largest_force(drawing, poses.at(np.array([0]))) if shown.forces else 0.0
     low, high = framed(drawing, poses.at(np.array([0])), view, largest)
     sheet, axes = empty_sheet(low, high, on_screen)
@@ -57,7 +57,7 @@ def picture(drawing: Drawing, poses: Poses, view: View, shown: Shown, on_screen:
 
 
 def empty_sheet(low: np.ndarray, high: np.ndarray, on_screen: bool = False) -> tuple[Sheet, Any]:
-    """A sheet of the shape of what is drawn, with axes without ticks."""
+    """Return a sheet with the aspect ratio of the drawing, and its axes without ticks."""
     width, height = high - low
     size = (WIDTH, float(np.clip(WIDTH * height / width, 2.0, 9.0)) + 0.5)
     if on_screen:
@@ -74,7 +74,7 @@ def empty_sheet(low: np.ndarray, high: np.ndarray, on_screen: bool = False) -> t
 
 
 def framed(drawing: Drawing, poses: Poses, view: View, largest: float) -> tuple[np.ndarray, np.ndarray]:
-    """The corners of the picture, with a margin for names and arrows."""
+    """Return the corners of the picture, with a margin for names and arrows."""
     low, high = extent(drawing, poses, view, largest)
     margin = 0.08 * max(float(np.linalg.norm(high - low)), 1e-9)
     low, high = low - margin, high + margin
@@ -84,7 +84,7 @@ def framed(drawing: Drawing, poses: Poses, view: View, largest: float) -> tuple[
 
 
 def prepare(axes: Axes, low: np.ndarray, high: np.ndarray) -> None:
-    """Axes without ticks, one scale for both."""
+    """Remove the ticks of axes, and set one scale for both."""
     axes.set_xlim(low[0], high[0])
     axes.set_ylim(low[1], high[1])
     axes.set_aspect("equal")
@@ -92,7 +92,7 @@ def prepare(axes: Axes, low: np.ndarray, high: np.ndarray) -> None:
 
 
 def paint(axes: Axes, patches: Sequence[Patch], faint: float = 1.0) -> list[Any]:
-    """Put patches on axes; returns the artists, so that a film can take them away again."""
+    """Put patches on axes; return the artists, so that a film can remove them."""
     from matplotlib.collections import LineCollection, PolyCollection
 
     artists: list[Any] = []
@@ -122,7 +122,7 @@ def _faded(color: str, opacity: float) -> tuple[float, float, float, float]:
 
 
 def _runs(patches: Iterable[Patch]) -> Iterable[tuple[bool, list[Patch]]]:
-    """Patches in their order, neighbours of one sort together."""
+    """Yield groups of consecutive patches of one type."""
     run: list[Patch] = []
     for patch in patches:
         if run and bool(run[-1].face) != bool(patch.face):
@@ -134,7 +134,7 @@ def _runs(patches: Iterable[Patch]) -> Iterable[tuple[bool, list[Patch]]]:
 
 
 def write_names(axes: Axes, drawing: Drawing, poses: Poses, k: int, view: View) -> list[Any]:
-    """Names beside their points, where they cover each other least."""
+    """Write names next to their points, with the least overlap."""
     names = drawing.names if len(drawing.names) <= MOST_NAMES else [n for n in drawing.names if n.role == "body"]
     taken: list[np.ndarray] = []
     artists = []
@@ -158,7 +158,7 @@ def write_names(axes: Axes, drawing: Drawing, poses: Poses, k: int, view: View) 
 
 
 def _free_place(point: np.ndarray, box: np.ndarray, taken: Sequence[np.ndarray], unit: float) -> np.ndarray:
-    """Beside a point, with the least overlap of what is written already."""
+    """Return the place next to a point with the least overlap with the names written so far."""
     ways = [
         (1, 0.8),
         (-1, 0.8),
@@ -181,7 +181,7 @@ def _overlap(place: np.ndarray, box: np.ndarray, other: np.ndarray) -> float:
 
 
 def explain(axes: Axes, drawing: Drawing, largest: float) -> None:
-    """A line below the picture on the colors and arrows that are in it."""
+    """Add a legend below the picture for its colors and arrows."""
     from matplotlib.lines import Line2D
 
     entries = []

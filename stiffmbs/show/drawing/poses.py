@@ -1,4 +1,4 @@
-"""Where bodies are, and the forces that act, over time: as described, or of a run."""
+"""Poses of bodies, and acting forces, over time: as described, or of a run."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ class Poses:
     Attributes
     ----------
     time : ndarray, shape (n,)
-        s.
+        Times, s.
     points : mapping of str to ndarray, shape (n, 3)
         Centres of mass in ground axes, m.
     orientations : mapping of str to ndarray, shape (n, 4)
         Quaternions of the bodies' own axes.
     forces : mapping of str to ndarray, shape (n, 3)
-        Of joints and forces on their first bodies, in ground axes, N.
+        Forces of joints and force elements on their first bodies, in ground axes, N.
     """
 
     time: np.ndarray
@@ -41,13 +41,13 @@ class Poses:
     forces: Mapping[str, np.ndarray] = field(default_factory=dict)
 
     def pose(self, body: str, k: int) -> tuple[np.ndarray, np.ndarray]:
-        """A body's centre of mass and the matrix of its axes at the k-th instant; of ground, the origin."""
+        """Return a body's centre of mass and the matrix of its axes at the k-th instant; for ground, the origin."""
         if body == GROUND:
             return np.zeros(3), np.eye(3)
         return self.points[body][k], rotation(self.orientations[body][k])
 
     def at(self, rows: np.ndarray) -> Poses:
-        """The poses at some of the instants."""
+        """Return the poses at some of the instants."""
         pick = [
             {name: values[rows] for name, values in part.items()}
             for part in (self.points, self.orientations, self.forces)
@@ -55,7 +55,7 @@ class Poses:
         return Poses(self.time[rows], *pick)
 
     def resampled(self, time: np.ndarray) -> Poses:
-        """The poses at other instants, between those that are known: points and forces by straight lines, turns the shorter way."""
+        """Interpolate the poses at other instants: points and forces linearly, orientations by the shorter rotation."""
         known = np.isfinite(np.column_stack([self.time, *self.points.values()])).all(axis=1)
         rows = self.at(np.flatnonzero(known)) if not known.all() else self
         after = np.clip(np.searchsorted(rows.time, time, side="right"), 1, max(len(rows.time) - 1, 1))
@@ -82,7 +82,7 @@ class Poses:
         )
 
     def path(self, anchor: Anchor) -> np.ndarray:
-        """Where a point of a body is over time, in ground axes, shape (n, 3)."""
+        """Return the path of a point of a body, in ground axes, shape (n, 3)."""
         if anchor.body == GROUND:
             return np.tile(anchor.point, (len(self.time), 1))
         turned = rotation(self.orientations[anchor.body]) @ anchor.point
@@ -90,14 +90,14 @@ class Poses:
 
 
 def placed(data: ModelData, marker: MarkerReference) -> tuple[np.ndarray, np.ndarray]:
-    """Where a marker is on its body, from the centre of mass, and its axes, shape (3, 3), in the body's."""
+    """Return the position of a marker relative to the centre of mass, and its axes in the body's, shape (3, 3)."""
     family = import_module(f"stiffmbs.results.{'planar' if data.dimensions == 2 else 'spatial'}_motion")
     point, orientation = family.place(data, marker)
     return point, rotation(orientation)
 
 
 def described_poses(data: ModelData) -> Poses:
-    """The bodies as the scene describes them, before assembly."""
+    """Return the poses of the described bodies, before assembly."""
     points, orientations = {}, {}
     for name, body in data.bodies.items():
         if data.dimensions == 2:
@@ -110,7 +110,7 @@ def described_poses(data: ModelData) -> Poses:
 
 
 def poses_of(data: ModelData, time: np.ndarray, channels: Channels) -> Poses:
-    """The poses of a run, and the forces of all elements that report one.
+    """Return the poses of a run, and the forces of all elements that report one.
 
     Parameters
     ----------
@@ -121,7 +121,7 @@ def poses_of(data: ModelData, time: np.ndarray, channels: Channels) -> Poses:
     Raises
     ------
     InputError
-        When the run is of another model.
+        If the run belongs to another model.
     """
     points, orientations = {}, {}
     for name in data.bodies:
@@ -136,7 +136,7 @@ def poses_of(data: ModelData, time: np.ndarray, channels: Channels) -> Poses:
 
 
 def columns(channels: Channels, count: int, name: str, axes: Iterable[str]) -> np.ndarray:
-    """Channels of one owner side by side, with zeros for the third in the plane, shape (n, 3)."""
+    """Return channels of one owner as columns, with zeros for the third in the plane, shape (n, 3)."""
     found = np.zeros((count, 3))
     for k, axis in enumerate(axes):
         found[:, k] = _channel(channels, f"{name}.{axis}")

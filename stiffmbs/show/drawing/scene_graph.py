@@ -1,7 +1,7 @@
-"""What a drawing of a mechanism consists of: shapes on bodies, stretched symbols between them, names, loads.
+"""Scene graph of a mechanism: shapes on bodies, stretched symbols between them, names, loads.
 
-All of it is in space, the plane being its x-y plane, in metres and in the axes of bodies: the origin of each is its centre of
-mass.  A pose of every body (`stiffmbs.show.drawing.poses`) makes a picture of it.
+All of it is spatial, the plane being the x-y plane, in metres and in the axes of bodies with origins at the centres of
+mass.  The poses of all bodies (`stiffmbs.show.drawing.poses`) make a picture of it.
 """
 
 from __future__ import annotations
@@ -13,24 +13,24 @@ from typing import Literal
 import numpy as np
 
 Role = Literal["body", "ground", "joint", "drive", "force", "rubber"]
-"""What something drawn stands for; decides on its color."""
+"""Role of a drawn object; it determines the color."""
 Mark = Literal["redundant", "not unique"]
-"""What `stiffmbs check` says of a joint."""
+"""Findings of `stiffmbs check` on a joint."""
 
 
 @dataclass(frozen=True, eq=False)
 class Solid:
-    """A surface of flat faces.
+    """Surface of flat faces.
 
     Attributes
     ----------
     vertices : ndarray, shape (n, 3)
     faces : tuple of ndarray of int
-        The vertices of each face in turn, counterclockwise seen from outside.
+        Vertices of each face in order, counterclockwise as seen from outside.
     closed : bool
-        Whether it encloses a volume, so that faces that point away are hidden.
+        True if the surface encloses a volume, so that faces that point away are hidden.
     edges : ndarray of int, shape (m, 4)
-        Edges that are drawn: two vertices, and the two faces that meet there.
+        Edges to draw: two vertices, and the two adjacent faces.
     """
 
     vertices: np.ndarray
@@ -47,7 +47,7 @@ class Line:
     ----------
     points : ndarray, shape (n, 3)
     width : float
-        Relative to that of an ordinary line.
+        Width relative to an ordinary line.
     dashed : bool
     """
 
@@ -58,19 +58,19 @@ class Line:
 
 @dataclass(frozen=True, eq=False)
 class Part:
-    """What moves with a body: a shape of it, or a symbol.
+    """Shape or symbol that moves with a body.
 
     Attributes
     ----------
     owner : str
-        The body, joint or force that it is drawn for.
+        Body, joint or force that it represents.
     role : Role
     body : str
-        What it moves with; ``ground`` does not move.
+        Body that it moves with; ``ground`` does not move.
     solids, lines : tuples
-        In the body's axes from its centre of mass.
+        Shapes in the body's axes, relative to its centre of mass.
     color : str
-        Of its faces, ``#rrggbb``; that of its role where it is empty.
+        Color of its faces, ``#rrggbb``; empty for that of its role.
     """
 
     owner: str
@@ -83,7 +83,7 @@ class Part:
 
 @dataclass(frozen=True, eq=False)
 class Anchor:
-    """A point of a body, from its centre of mass, m."""
+    """Point of a body, relative to its centre of mass, m."""
 
     body: str
     point: np.ndarray
@@ -91,7 +91,7 @@ class Anchor:
 
 @dataclass(frozen=True, eq=False)
 class Link:
-    """A symbol that is stretched between two points, such as a spring.
+    """Symbol stretched between two points, such as a spring.
 
     Attributes
     ----------
@@ -99,9 +99,9 @@ class Link:
     role : Role
     i, j : Anchor
     profiles : tuple of ndarray, shape (n, 3)
-        Lines: the fraction of the way from i to j, and two distances across it, m.
+        Lines: the fraction of the distance from i to j, and two distances across it, m.
     width : float
-        Of the lines, relative to an ordinary one.
+        Width of the lines, relative to an ordinary one.
     dashed : bool
     """
 
@@ -116,7 +116,7 @@ class Link:
 
 @dataclass(frozen=True, eq=False)
 class Name:
-    """A name and the point that it stands at."""
+    """Name and its point."""
 
     text: str
     role: Role
@@ -125,7 +125,7 @@ class Name:
 
 @dataclass(frozen=True, eq=False)
 class Drawing:
-    """A mechanism as drawables.
+    """Drawables of a mechanism.
 
     Attributes
     ----------
@@ -133,21 +133,21 @@ class Drawing:
     dimensions : int
         2: drawn as seen along z.
     size : float
-        Of the mechanism, m, to which arrows are scaled.
+        Size of the mechanism, m; the scale of arrows.
     unit : float
-        To which symbols are scaled, m.
+        Unit of symbols, m.
     bodies : mapping of str to str
         Bodies with their colors.
     parts, links, names : tuples
     loads : mapping of str to Anchor
-        Where the force of each joint and force acts on its first body.
+        Point at which each joint and force acts on its first body.
     heaviest : str
-        The body with the largest mass; empty without bodies.
+        Body with the largest mass; empty without bodies.
     gravity : ndarray, shape (3,)
     weight : float
-        Of all bodies, N (at 1 m/s^2 without gravity).
+        Weight of all bodies, N (at 1 m/s^2 without gravity).
     marks : mapping of str to Mark
-        Joints of which there is something to say.
+        Joints to mark.
     """
 
     name: str

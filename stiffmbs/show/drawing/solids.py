@@ -10,38 +10,38 @@ import numpy as np
 from .scene_graph import Line, Solid
 
 ROUND = 24
-"""Corners of a circle."""
+"""Number of corners of a circle."""
 
 
 def circle(radius: float, start: float = 0.0, end: float = 2 * math.pi, corners: int = ROUND) -> np.ndarray:
-    """Points of an arc in the x-y plane, counterclockwise, both ends included, shape (corners + 1, 3)."""
+    """Return the points of an arc in the x-y plane, counterclockwise, both ends included, shape (corners + 1, 3)."""
     angles = np.linspace(start, end, corners + 1)
     return np.column_stack([radius * np.cos(angles), radius * np.sin(angles), np.zeros_like(angles)])
 
 
 def flat(points: np.ndarray) -> Solid:
-    """A filled outline."""
+    """Return a filled outline."""
     return Solid(np.asarray(points, dtype=float), (np.arange(len(points)),), closed=False)
 
 
 def outline(points: np.ndarray, width: float = 1.0) -> Line:
-    """A closed line."""
+    """Return a closed line."""
     return Line(np.vstack([points, points[:1]]), width)
 
 
 def disc(radius: float) -> Solid:
-    """A filled circle in the x-y plane."""
+    """Return a filled circle in the x-y plane."""
     return flat(circle(radius)[:-1])
 
 
 def rectangle(width: float, height: float) -> np.ndarray:
-    """The corners of a rectangle in the x-y plane about the origin, shape (4, 3)."""
+    """Return the corners of a rectangle in the x-y plane about the origin, shape (4, 3)."""
     x, y = width / 2, height / 2
     return np.array([[-x, -y, 0], [x, -y, 0], [x, y, 0], [-x, y, 0]])
 
 
 def prism(base: np.ndarray, low: float, high: float) -> Solid:
-    """What is over a convex outline of the x-y plane between two heights."""
+    """Return the prism over a convex outline of the x-y plane between two heights."""
     n = len(base)
     lift = np.array([0.0, 0.0, 1.0])
     around = [np.array([k, (k + 1) % n, n + (k + 1) % n, n + k]) for k in range(n)]
@@ -50,17 +50,17 @@ def prism(base: np.ndarray, low: float, high: float) -> Solid:
 
 
 def box(size: tuple[float, float, float]) -> Solid:
-    """A block about the origin."""
+    """Return a block about the origin."""
     return prism(rectangle(size[0], size[1]), -size[2] / 2, size[2] / 2)
 
 
 def cylinder(radius: float, length: float, corners: int = ROUND) -> Solid:
-    """A cylinder about z, its middle at the origin."""
+    """Return a cylinder about z, centred at the origin."""
     return prism(circle(radius, corners=corners)[:-1], -length / 2, length / 2)
 
 
 def sphere(radius: float, corners: int = 16) -> Solid:
-    """A ball about the origin."""
+    """Return a ball about the origin."""
     rings = corners // 2
     tilt = np.linspace(0, math.pi, rings + 1)[1:-1]
     turn = np.arange(corners) * 2 * math.pi / corners
@@ -84,7 +84,7 @@ def sphere(radius: float, corners: int = 16) -> Solid:
 
 
 def edged(solid: Solid, sharp: float = 0.8) -> Solid:
-    """A solid with its sharp edges: where the normals of two faces differ."""
+    """Return a solid with its sharp edges, at which the normals of two faces differ."""
     normals = [face_normal(solid.vertices[face]) for face in solid.faces]
     sides: dict[tuple[int, int], list[int]] = {}
     for k, face in enumerate(solid.faces):
@@ -98,14 +98,14 @@ def edged(solid: Solid, sharp: float = 0.8) -> Solid:
 
 
 def face_normal(points: np.ndarray) -> np.ndarray:
-    """The unit normal of a flat face by Newell's method; zero where it has none."""
+    """Return the unit normal of a flat face by Newell's method, or zero for a degenerate face."""
     across = np.cross(points, np.roll(points, -1, axis=0)).sum(axis=0)
     length = float(np.linalg.norm(across))
     return across / length if length > 0 else across
 
 
 def hull(points: np.ndarray) -> Solid:
-    """The smallest convex solid around points that do not lie in a plane."""
+    """Return the convex hull of points that do not lie in a plane."""
     from scipy.spatial import ConvexHull
 
     found = ConvexHull(points)
@@ -119,10 +119,10 @@ def hull(points: np.ndarray) -> Solid:
 
 
 def moved(solid: Solid, point: np.ndarray, axes: np.ndarray) -> Solid:
-    """A solid of a marker in the axes that the marker is given in."""
+    """Transform a solid from a marker's axes to the axes in which the marker is given."""
     return replace(solid, vertices=point + solid.vertices @ axes.T)
 
 
 def moved_line(line: Line, point: np.ndarray, axes: np.ndarray) -> Line:
-    """A line of a marker in the axes that the marker is given in."""
+    """Transform a line from a marker's axes to the axes in which the marker is given."""
     return Line(point + line.points @ axes.T, line.width, line.dashed)

@@ -1,4 +1,4 @@
-"""A model at the start of its run, or at a later instant, as poses with forces."""
+"""Poses and forces of a model at the start of its run, or at a later instant."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from .poses import Poses, poses_of
 def poses_at(
     model: Any, settings: RunSettings | None = None, at: float | None = None, **changes: Any
 ) -> tuple[ModelData, Poses]:
-    """What a model is, and where its bodies are at an instant, with the forces that act then.
+    """Return the data of a model, and its poses at an instant with the acting forces.
 
     Parameters
     ----------
     model : Model, Scene, str or Path
     settings : RunSettings, optional
     at : float, optional
-        s; the start of the run by default.
+        Time, s; the start of the run by default.
     **changes
         Fields of the settings to change.
 
@@ -32,7 +32,7 @@ def poses_at(
     InputError, AssemblyError
         As for `stiffmbs.run`.
     SolverError
-        Where no motion leads to that instant.
+        If the run does not reach that instant.
     """
     found = at_state(model, settings, at, **changes)
     state, time = found.dynamics.state, np.array([found.t])

@@ -1,4 +1,4 @@
-"""Flat faces as triangles, by cutting off ears (Meisters, American Math. Monthly 82, 1975, 648-651)."""
+"""Triangulation of flat faces by ear clipping (Meisters, American Math. Monthly 82, 1975, 648-651)."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from .solids import face_normal
 
 
 def triangles(solid: Solid) -> np.ndarray:
-    """The triangles of all faces, shape (m, 3), indices into the vertices."""
+    """Return the triangles of all faces, shape (m, 3), indices into the vertices."""
     found: list[tuple[int, int, int]] = []
     for face in solid.faces:
         points = solid.vertices[face]

@@ -1,4 +1,4 @@
-"""From where a mechanism is seen: parallel projection onto a plane."""
+"""Views of a mechanism: parallel projections onto a plane."""
 
 from __future__ import annotations
 
@@ -14,38 +14,38 @@ ISOMETRIC = math.degrees(math.asin(math.tan(math.radians(30))))
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """A parallel projection.
+    """Parallel projection.
 
     Attributes
     ----------
     axes : ndarray, shape (3, 3)
-        Rows: to the right, up, and towards the one who looks.
+        Rows: to the right, up, and towards the viewer.
     """
 
     axes: np.ndarray
 
     def seen(self, points: np.ndarray) -> np.ndarray:
-        """Points to the right, up and towards the viewer, shape (n, 3)."""
+        """Return points to the right, up and towards the viewer, shape (n, 3)."""
         return points @ self.axes.T
 
 
 def from_angles(azimuth: float, elevation: float, up: str = "z") -> View:
-    """The view from a direction.
+    """Return the view from a direction.
 
     Parameters
     ----------
     azimuth : float
-        Of the viewer about the upright axis, deg.
+        Angle of the viewer about the upright axis, deg.
     elevation : float
-        Above the horizontal, deg.
+        Angle above the horizontal, deg.
     up : {"y", "z"}
-        The upright axis.
+        Upright axis.
     """
     a, e = math.radians(azimuth), math.radians(elevation)
     right = np.array([-math.sin(a), math.cos(a), 0.0])
     towards = np.array([math.cos(e) * math.cos(a), math.cos(e) * math.sin(a), math.sin(e)])
     rows = np.array([right, np.cross(towards, right), towards])
-    return View(rows if up == "z" else rows[:, [1, 2, 0]])  # z, x, y in the places of x, y, z
+    return View(rows if up == "z" else rows[:, [1, 2, 0]])  # cyclic: z, x, y replace x, y, z
 
 
 NAMED = {
@@ -57,20 +57,20 @@ NAMED = {
     "xz": (np.array([1.0, 0, 0]), np.array([0, 0, 1.0])),
     "yz": (np.array([0, 1.0, 0]), np.array([0, 0, 1.0])),
 }
-"""What is to the right and what is up."""
+"""Directions to the right and up."""
 
 
 def view_named(text: str, dimensions: int, gravity: np.ndarray) -> View:
-    """The view that a text names.
+    """Return the view that a text names.
 
     Parameters
     ----------
     text : str
-        ``front``, ``back``, ``side``, ``top``, ``isometric``, a plane such as ``xz``, ``AZIMUTH,ELEVATION`` in degrees, or
-        empty: along z in the plane, isometric in space.
+        ``front``, ``back``, ``side``, ``top``, ``isometric``, a plane such as ``xz``, ``AZIMUTH,ELEVATION`` in degrees,
+        or empty: along z in the plane, isometric in space.
     dimensions : int
     gravity : ndarray, shape (3,)
-        Along y: y is the upright axis of views by angles.
+        If it is along y, y is the upright axis of views by angles.
 
     Raises
     ------
@@ -94,7 +94,7 @@ def view_named(text: str, dimensions: int, gravity: np.ndarray) -> View:
 
 
 def check_view(text: str) -> None:
-    """Refuse, before anything is solved, a text that names no view.
+    """Check that a text names a view, before anything is solved.
 
     Raises
     ------

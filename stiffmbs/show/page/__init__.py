@@ -1,1 +1,1 @@
-"""Pages with a mechanism that moves: the data they hold, and the scripts that show it."""
+"""Pages with a mechanism that moves: their data, and the scripts that show it."""

@@ -1,4 +1,4 @@
-"""What a page holds of runs: the drawing, poses, forces and channels, packed so that it stays small."""
+"""Compact page data of runs: the drawing, poses, forces and channels."""
 
 from __future__ import annotations
 
@@ -21,22 +21,22 @@ from ..drawing.scene_graph import Anchor, Drawing
 MOST_POSES = 1200
 POSES_A_SECOND = 60
 POSE_VALUES = 240_000
-"""Numbers of poses and forces of all runs together, at most."""
+"""Largest number of values of poses and forces of all runs together."""
 CHANNEL_VALUES = 450_000
-"""Numbers of channels, at most."""
+"""Largest number of values of channels."""
 MOST_INSTANTS = 2000
 LEVELS = 65535
 
 
 @dataclass
 class Packed:
-    """Numbers one after the other, 16 bits each: a column as differences of its steps between its least and greatest value."""
+    """Numbers packed to 16 bits: each column as differences of its levels between its least and greatest value."""
 
     columns: list[np.ndarray] = field(default_factory=list)
     length: int = 0
 
     def add(self, values: np.ndarray) -> dict[str, float]:
-        """Pack a column; returns where it is: its start, length, least value and step.  A value that is missing is the last level."""
+        """Pack a column; return its start, length, least value and step.  A missing value has the last level."""
         known = np.isfinite(values)
         low, high = (float(values[known].min()), float(values[known].max())) if known.any() else (0.0, 0.0)
         step = (high - low) / (LEVELS - 1)
@@ -47,13 +47,13 @@ class Packed:
         return {"start": start, "length": len(values), "low": low, "step": step}
 
     def text(self) -> str:
-        """All columns, compressed, as text."""
+        """Return all columns, compressed, as text."""
         content = np.concatenate(self.columns) if self.columns else np.zeros(0, dtype=np.uint16)
         return packed_text(content.astype("<u2").tobytes())
 
 
 def packed_text(content: bytes) -> str:
-    """Bytes, compressed, as text that is harmless in a page."""
+    """Return bytes, compressed, as text that is harmless in a page."""
     return base64.b64encode(gzip.compress(content, 9, mtime=0)).decode("ascii")
 
 
@@ -61,15 +61,15 @@ def page_data(
     drawing: Drawing, runs: Mapping[str, Poses], solution: Solution | None = None, shown: Sequence[str] = (),
     traces: Sequence[Anchor] = (),
 ) -> dict[str, str]:  # fmt: skip
-    """The two texts that a page holds: ``head``, JSON, and ``numbers``, both compressed.
+    """Return the two texts of a page: ``head``, JSON, and ``numbers``, both compressed.
 
     Parameters
     ----------
     drawing : Drawing
     runs : mapping of str to Poses
-        Drawn over each other, by the names in the legend; the first one in full colors.
+        Runs drawn over each other, by their names in the legend; the first one in full colors.
     solution : Solution, optional
-        Whose channels can be plotted.
+        Solution with the channels that can be plotted.
     shown : sequence of str
         Channels that are plotted first.
     traces : sequence of Anchor
@@ -91,7 +91,7 @@ def page_data(
 
 
 def _motion(poses: Poses, packed: Packed, most: int) -> dict[str, Any]:
-    """A run at equal steps of time, as many as a film needs."""
+    """Return a run at equal time steps, as many as a film needs."""
     start, end = float(poses.time[0]), float(poses.time[-1])
     count = int(np.clip((end - start) * POSES_A_SECOND, min(len(poses.time), most), most))
     sample = poses.resampled(np.linspace(start, end, max(count, 2)))
@@ -106,13 +106,13 @@ def _motion(poses: Poses, packed: Packed, most: int) -> dict[str, Any]:
 
 
 def _continuous(p: np.ndarray) -> np.ndarray:
-    """Quaternions with signs that do not jump from one instant to the next."""
+    """Return quaternions with signs that do not jump between instants."""
     turns = np.cumprod(np.concatenate([[1.0], np.where(np.sum(p[1:] * p[:-1], axis=1) < 0, -1.0, 1.0)]))
     return p * turns[:, None]
 
 
 def _channels(solution: Solution, packed: Packed, shown: Sequence[str]) -> dict[str, Any]:
-    """Every channel, at so many of the output instants that the page stays small."""
+    """Return every channel, at few enough output instants to keep the page small."""
     most = max(100, min(MOST_INSTANTS, CHANNEL_VALUES // max(len(solution.channels), 1)))
     rows = np.unique(np.linspace(0, len(solution.time) - 1, min(len(solution.time), most)).astype(int))
     return {

@@ -1,4 +1,4 @@
-"""A page with a mechanism in motion and nothing else (needs jinja2, the extra ``report``)."""
+"""Page with a moving mechanism only (needs jinja2, the extra ``report``)."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ if TYPE_CHECKING:
 
 
 def moving_page(title: str, data: dict[str, str]) -> str:
-    """The page as HTML; it needs no network.
+    """Return the page as HTML; it needs no network.
 
     Parameters
     ----------
     title : str
     data : mapping
-        Of `stiffmbs.show.page.data.page_data`.
+        Result of `stiffmbs.show.page.data.page_data`.
     """
     return rendered("moving.html", title=title or "Mechanism", **data, **page_parts())
 

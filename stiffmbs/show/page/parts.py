@@ -1,4 +1,4 @@
-"""The scripts and styles of pages, as text to put into them."""
+"""Scripts and styles of pages, as text."""
 
 from __future__ import annotations
 
@@ -8,5 +8,5 @@ NAMES = {"three": "three.min.js", "viewer": "viewer.js", "style": "viewer.css"}
 
 
 def page_parts() -> dict[str, str]:
-    """What a page with a moving mechanism holds besides its data."""
+    """Return the scripts and styles of a page with a moving mechanism."""
     return {name: files(__package__).joinpath(file).read_text(encoding="utf-8") for name, file in NAMES.items()}

@@ -1,1 +1,1 @@
-"""Models as FMUs, for programs that simulate several models together."""
+"""Models as FMUs (functional mock-up units) for co-simulation."""

@@ -44,29 +44,29 @@ def build_fmu(
 ) -> tuple[str, ...]:
     """Write an FMU for co-simulation, FMI 2.0: the scene's inputs, parameters, and channels as outputs.
 
-    The FMU needs this package in the Python of the program that runs it.  Inputs hold over a communication step, and each step
-    starts the integrator anew.
+    The FMU needs this package in the Python of the program that runs it.  Inputs are constant over a communication
+    step.
 
     Parameters
     ----------
     path : str or Path
         A scene's file, or an Adams/Solver dataset.
     output : str or Path
-        Ends in .fmu.
+        Name that ends in .fmu.
     outputs : sequence of str, optional
-        Channels; without any the requests of the scene, or all channels where it has none.
+        Channels; by default the requests of the scene, or all channels if it has none.
     changes : sequence of (path, text)
-        Values put in place of the file's.
+        Values that replace those of the file.
 
     Returns
     -------
     tuple of str
-        The names of the outputs.
+        Names of the outputs.
 
     Raises
     ------
     InputError
-        When the scene is wrong, has stages or files beside it, there is no such channel, or PythonFMU is missing.
+        If the scene is invalid, has stages or needs other files, there is no such channel, or PythonFMU is missing.
     """
     target = Path(output)
     if target.suffix != ENDING:
@@ -101,7 +101,7 @@ def model_name(path: str | Path) -> str:
 
 
 def _content(scene: Scene) -> str:
-    """The scene's file with all that it includes and changes of it."""
+    """Return the scene as text, with everything that its file includes."""
     written = scene.written
     if written is None:
         raise InputError("found a scene that was not read from a file, expected one of a file")
@@ -111,7 +111,7 @@ def _content(scene: Scene) -> str:
 
 
 def _about(scene: Scene, copied: Path, outputs: Sequence[str]) -> dict[str, Any]:
-    """What the variables of the FMU are, with their values at the start."""
+    """Return the variables of the FMU, with their start values."""
     from ... import __version__
 
     try:

@@ -1,4 +1,4 @@
-"""The model inside an FMU: a slave of PythonFMU that runs a scene between communication points.
+"""PythonFMU slave: runs a scene between communication points inside an FMU.
 
 It is imported by the FMU's script, in the Python of the program that runs the FMU.
 """
@@ -17,7 +17,7 @@ from ...errors import StiffmbsError
 from .stepping import CommunicationSteps
 
 ABOUT, SCENE = "model.json", "scene.yaml"
-"""Files of the FMU's resources: what its variables are, and the scene."""
+"""Files among the FMU's resources: its variables, and the scene."""
 
 
 def hold(names: dict[str, Any]) -> None:
@@ -33,7 +33,7 @@ def hold(names: dict[str, Any]) -> None:
 
 
 class SceneSlave(Fmi2Slave):  # type: ignore[misc]
-    """A scene whose inputs, parameters and channels are variables of the FMU."""
+    """FMU slave with the inputs, parameters and channels of a scene as variables."""
 
     def __init__(self, **kwargs: Any) -> None:
         super().__init__(**kwargs)
@@ -67,7 +67,7 @@ class SceneSlave(Fmi2Slave):  # type: ignore[misc]
         return root
 
     def _register(self, values: dict[str, float], causality: Any, variability: Any) -> None:
-        """Variables that another program sets."""
+        """Register variables that another program sets."""
         for name, value in values.items():
 
             def put(number: float, name: str = name) -> None:
@@ -94,7 +94,7 @@ class SceneSlave(Fmi2Slave):  # type: ignore[misc]
         return self._channels[name]
 
     def setup_experiment(self, start_time: float, stop_time: float | None, tolerance: float | None) -> None:
-        """Take the time at the start, and the tolerance where it is finer than the scene's."""
+        """Store the start time, and the tolerance, which is used if it is finer than the scene's."""
         self._start, self._tolerance = start_time, tolerance
         self._begun, self._channels = False, None
 
@@ -111,7 +111,7 @@ class SceneSlave(Fmi2Slave):  # type: ignore[misc]
             self._begun = True
 
     def do_step(self, current_time: float, step_size: float) -> bool:
-        """Run on to the next communication point; inputs hold over the step."""
+        """Advance to the next communication point; inputs are constant over the step."""
         self._channels = None
         try:
             self._steps.step(step_size, self._inputs)

@@ -1,4 +1,4 @@
-"""A scene that is run from one communication point to the next."""
+"""Runs of a scene from one communication point to the next."""
 
 from __future__ import annotations
 
@@ -12,17 +12,16 @@ from ..simulation import Simulation, simulation
 
 
 class CommunicationSteps:
-    """A run with inputs that hold from one communication point to the next: while they stay, the integrator keeps its history.
+    """Run with constant inputs between communication points; the integrator keeps its history while they do not change.
 
     Parameters
     ----------
     path : str or Path
-        The scene's file.
 
     Raises
     ------
     InputError
-        When the scene cannot be read, or has stages.
+        If the scene cannot be read, or has stages.
     """
 
     def __init__(self, path: str | Path) -> None:
@@ -35,7 +34,7 @@ class CommunicationSteps:
     def begin(
         self, start: float, parameters: Mapping[str, float], inputs: Mapping[str, float], tolerance: float | None
     ) -> None:
-        """Read the scene with other parameters and first values of inputs, and forget what was run."""
+        """Read the scene with other parameters and initial inputs, and discard the previous run."""
         given = [(f"parameters.{name}", repr(value)) for name, value in parameters.items()]
         given += [(f"inputs.{name}", repr(value)) for name, value in inputs.items()]
         settings = [("run.start", repr(start)), *([("run.rtol", repr(tolerance))] if tolerance else [])]
@@ -43,7 +42,7 @@ class CommunicationSteps:
         self._simulation = simulation(self.scene)
 
     def values(self, inputs: Mapping[str, float]) -> dict[str, float]:
-        """Every channel at present, under the inputs that are given.
+        """Return all channels at the current time, with the given inputs.
 
         Raises
         ------
@@ -55,12 +54,12 @@ class CommunicationSteps:
         return running.channels
 
     def step(self, length: float, inputs: Mapping[str, float]) -> None:
-        """Run on.
+        """Advance by a communication step.
 
         Raises
         ------
         SolverError
-            When the end is not reached.
+            If the end of the step is not reached.
         """
         self._running().step(length, inputs)
 
@@ -71,5 +70,5 @@ class CommunicationSteps:
 
 
 def parameters_of(scene: Scene) -> dict[str, float]:
-    """The parameters that are numbers, in SI."""
+    """Return the numeric parameters of a scene, SI units."""
     return {name: value for name, value in scene.parameters.items() if isinstance(value, float | int)}

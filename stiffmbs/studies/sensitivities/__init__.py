@@ -1,1 +1,1 @@
-"""Forward sensitivities: how outputs of a run change with parameters."""
+"""Forward sensitivities: derivatives of outputs of a run by parameters."""

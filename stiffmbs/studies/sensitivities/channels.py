@@ -1,4 +1,4 @@
-"""How channels change where the state changes: linear ones by their own rules, energies by the product rule, requests by differences."""
+"""Derivatives of channels: linear ones by their own rules, energies by the product rule, requests by differences."""
 
 from __future__ import annotations
 
@@ -22,17 +22,17 @@ from .set_up import SetUp
 def changed_channels(
     system: System, u: np.ndarray, numbers: Sequence[Numbers], changes: Sequence[Change], values: np.ndarray
 ) -> dict[str, np.ndarray]:
-    """How the channels of bodies, elements and energies change at some instants, each of shape (instants, directions).
+    """Return the derivatives of the channels of bodies, elements and energies, each of shape (instants, directions).
 
     Parameters
     ----------
     system : System
     u : ndarray, shape (instants, n_u)
     numbers : sequence of Numbers
-        Of the directions.
+        Numbers of the directions.
     changes : sequence of Change
     values : ndarray, shape (instants, directions, values)
-        How the output terms change.
+        Derivatives of the output terms.
     """
     of_body, channels = system.of_body, dict[str, np.ndarray]()
     shape = len(changes), len(numbers)
@@ -59,7 +59,7 @@ def changed_requests(
     job: Job, set_ups: Sequence[SetUp], rows: OutputRows, channels: Mapping[str, np.ndarray], slopes: Mapping[str, np.ndarray],
     moved_q: np.ndarray,
 ) -> dict[str, np.ndarray]:  # fmt: skip
-    """How requests change, by central differences of their formulas, shape (n, directions).
+    """Return the derivatives of requests, by central differences of their formulas, shape (n, directions).
 
     Parameters
     ----------
@@ -67,11 +67,11 @@ def changed_requests(
     set_ups : sequence of SetUp
     rows : OutputRows
     channels : mapping of str to ndarray
-        What formulas read, shape (n,).
+        Channels that formulas read, shape (n,).
     slopes : mapping of str to ndarray
-        How that changes, shape (n, directions).
+        Their derivatives, shape (n, directions).
     moved_q : ndarray, shape (n, directions, n_q)
-        How coordinates change, of which some count turns.
+        Derivatives of the coordinates, including revolution counters.
     """
     columns = []
     for k, set_up in enumerate(set_ups):

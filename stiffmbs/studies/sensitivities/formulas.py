@@ -1,4 +1,4 @@
-"""Derivatives of outputs, formulas of channels and of their peaks, integrals and the like, by the rules of differentiation."""
+"""Derivatives of outputs: formulas of channels and of their peaks, integrals and the like."""
 
 from __future__ import annotations
 
@@ -16,14 +16,16 @@ SELECTED = {
     "peak": lambda x: _largest(np.abs(x)), "max": lambda x: _largest(x), "min": lambda x: _largest(-x),
     "final": lambda x: np.array([len(x) - 1]), "first": lambda x: np.array([0]),
 }  # fmt: skip
-"""Reductions that select the value at one output time, or at several with the same value up to rounding.  The rate of the channel
-is zero at a peak, so the shift of the peak does not contribute to the derivative."""
+"""Reductions that select the value at one output time, or at several with equal values up to rounding.
+
+The rate of the channel is zero at a peak, so the shift of the peak does not contribute to the derivative.
+"""
 SAME, ALIKE = 1e-12, 1e-6
 """Relative differences below which values, and derivatives at output times with the same value, are equal."""
 ZERO = 1e-14
 """Magnitude, SI units, below which all values of a channel are rounding of zero."""
 WHOLE = ("rms", "mean", "integral")
-"""Reductions of all instants."""
+"""Reductions over all instants."""
 
 
 def _rounding(x: np.ndarray) -> float:
@@ -37,13 +39,13 @@ def _largest(x: np.ndarray) -> np.ndarray:
 
 
 def of_whole_time(text: str) -> bool:
-    """Whether an output needs channels at all instants."""
+    """Return True if an output needs channels at all instants."""
     return any(isinstance(node, ast.Name) and node.id in WHOLE for node in ast.walk(parsed(text)))
 
 
 @dataclass(frozen=True)
 class Dual:
-    """A value with its derivatives; of a series only those at the instants that count.
+    """Value with its derivatives; a series has them only at the required instants.
 
     Attributes
     ----------
@@ -56,12 +58,12 @@ class Dual:
 
 
 class Formula:
-    """An output of a run, its value and its derivatives.
+    """Output of a run with its value and derivatives.
 
     Parameters
     ----------
     text : str
-        As in `stiffmbs.sweep`.
+        Formula, as in `stiffmbs.sweep`.
     time : ndarray, shape (n,)
     channels : mapping of str to ndarray
     """
@@ -71,7 +73,7 @@ class Formula:
         self._tree = parsed(text).body
 
     def instants(self) -> np.ndarray:
-        """The numbers of the instants at which derivatives of channels are needed."""
+        """Return the indices of the instants at which derivatives of channels are needed."""
         wanted = np.zeros(len(self._time), dtype=bool)
         self._mark(self._tree, np.ones(len(self._time), dtype=bool), wanted)
         return np.flatnonzero(wanted)
@@ -103,7 +105,7 @@ class Formula:
         return np.broadcast_to(np.asarray(value, dtype=float), self._time.shape)
 
     def dual(self, slopes: Mapping[str, Any]) -> Dual:
-        """The value with its derivatives, from those of the channels, shape (n, directions)."""
+        """Return the value with its derivatives, from those of the channels, shape (n, directions)."""
         with np.errstate(all="ignore"):
             return self._dual(self._tree, slopes)
 
@@ -151,7 +153,7 @@ class Formula:
         Raises
         ------
         SolverError
-            When several output times have this value with different derivatives.
+            If several output times have this value with different derivatives.
         """
         k = SELECTED[name](series)
         slopes = slope[k] * (np.sign(series[k])[:, None] if name == "peak" else 1.0)
@@ -164,7 +166,7 @@ class Formula:
 
 
 def _times(factor: Any, slope: Any) -> Any:
-    """A slope times a number, or times a series instant by instant."""
+    """Multiply a slope by a number, or by a series instant by instant."""
     if np.ndim(slope) == 0:
         return slope * 0.0
     if np.ndim(factor) == 1:

@@ -1,4 +1,4 @@
-"""Derivatives of outputs by sought parameters, at points of the unit cube."""
+"""Derivatives of outputs by parameters within ranges, at points of the unit cube."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ from .sensitivities import DifferentiatedRun, differentiable
 
 
 class Gradients:
-    """Derivatives of outputs; what stays the same from point to point is read and compiled once.
+    """Derivatives of outputs; data common to all points is read and compiled once.
 
     Parameters
     ----------
     written : WrittenScene
     ranges : Sought
     texts : sequence of str
-        The outputs, formulas of channels.
+        Outputs, formulas of channels.
     settings : RunSettings
     times : ndarray, optional
-        Output instants in place of those of the settings.
+        Output instants that replace those of the settings.
     """
 
     def __init__(
@@ -38,7 +38,7 @@ class Gradients:
         self._job: Job | None = None
 
     def at(self, point: np.ndarray) -> list[np.ndarray]:
-        """For each output its derivatives by the point's coordinates, shape (parameters,) or (instants, parameters).
+        """Return the derivatives of each output by the coordinates of a point, shape (..., parameters).
 
         Raises
         ------

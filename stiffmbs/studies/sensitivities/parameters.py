@@ -1,4 +1,4 @@
-"""Parameters by name: their present values, and scenes with other ones."""
+"""Parameters by name: their current values, and scenes with other values."""
 
 from __future__ import annotations
 
@@ -18,26 +18,25 @@ from ...errors import InputError
 from ..case_solver import written_scene
 
 STEP = 1e-4
-"""Change of a parameter, relative to it, by which what a scene is set up with is differentiated; absolute, in SI units, where the
-parameter is zero.  Set-up is arithmetic, exact to rounding: central differences leave 1e-8 of it and mostly far less."""
+"""Step of a parameter for set-up differences, relative to it; absolute, SI units, for a zero parameter."""
 
 ALMOST_ZERO = 1e-300
 """Value that replaces a zero that would remove elements, such as zero gravity, which removes weights."""
 
 
 class Scenes:
-    """Scenes that differ by one value; what stays the same is validated once.
+    """Scenes that differ by one value; common data is validated once.
 
     Parameters
     ----------
     written : WrittenScene
     unchanged : Unchanged, optional
-        What has been validated before.
+        Data that has been validated before.
 
     Attributes
     ----------
     known : Scene
-        As it is written.
+        Scene as written.
     """
 
     def __init__(self, written: WrittenScene, unchanged: Unchanged | None = None) -> None:
@@ -48,23 +47,23 @@ class Scenes:
 
     @classmethod
     def of_model(cls, model: Any) -> Scenes:
-        """Of a model, a scene or a file; errors as for `written_scene`."""
+        """Return the scenes of a model, a scene or a file; errors as for `written_scene`."""
         data = data_of(model)
         if isinstance(data, Scene) and data.validated.scene is data and not (data.stages or data.at_start):
             return cls(written_scene(data), data.validated)
         return cls(written_scene(data))
 
     def at(self, changes: Sequence[tuple[str, Any]]) -> Scenes:
-        """Scenes that differ by one value from one with other values; errors as for `changed`."""
+        """Return scenes that differ by one value from a scene with other values; errors as for `changed`."""
         return Scenes(replace(self._written, changes=(*self._written.changes, *changes)), self._unchanged)
 
     def changed(self, changes: Sequence[tuple[str, Any]]) -> Scene:
-        """The scene with other values.
+        """Return the scene with other values.
 
         Raises
         ------
         InputError
-            When one does not fit.
+            If a value is invalid.
         """
         names, values = [path for path, _ in changes], [value for _, value in changes]
         if names and self._unchanged.scene is self.known:
@@ -82,7 +81,7 @@ class Scenes:
 
 
 class Parameter:
-    """One value of a scene: a parameter, or a path such as ``forces.spring.stiffness`` or ``bodies.bar.position.0``.
+    """Number in a scene: a parameter, or a path such as ``forces.spring.stiffness`` or ``bodies.bar.position.0``.
 
     Parameters
     ----------
@@ -93,12 +92,12 @@ class Parameter:
     ----------
     name : str
     value : float
-        As the scene has it, in SI units.
+        Value in the scene, SI units.
 
     Raises
     ------
     InputError
-        When the scene has no such value, or it is no number.
+        If the scene has no such value, or it is not a number.
     """
 
     def __init__(self, scenes: Scenes, name: str) -> None:
@@ -108,7 +107,7 @@ class Parameter:
 
     @property
     def step(self) -> float:
-        """By which set-up is differentiated."""
+        """Return the step for differences of the set-up."""
         return STEP * (abs(self.value) if abs(self.value) > ALMOST_ZERO else 1.0)
 
     def brings_gravity(self) -> bool:
@@ -122,12 +121,12 @@ class Parameter:
         return self._path, _replaced(self._whole, self._places, ALMOST_ZERO)
 
     def scene(self, value: float) -> Scene:
-        """The scene with another value.
+        """Return the scene with another value.
 
         Raises
         ------
         InputError
-            When it does not fit.
+            If the value is invalid.
         """
         return self._scenes.changed([(self._path, _replaced(self._whole, self._places, value))])
 
@@ -141,7 +140,7 @@ def with_weights(scenes: Scenes, names: Sequence[str]) -> Scenes:
 
 
 def _found(scene: Scene, name: str) -> tuple[str, tuple[int, ...], Any]:
-    """The path without indices behind it, those indices, and what stands there."""
+    """Return the path without trailing indices, these indices, and the object at the path."""
     parts = name.split(".")
     if name in scene.parameters:
         return name, (), scene.parameters[name]
@@ -172,7 +171,7 @@ def _is_number(found: Any) -> bool:
 
 
 def _next(at: Any, parts: Sequence[str], k: int, name: str) -> tuple[Any, int]:
-    """What stands under the next part of a path, or under several, as names may have dots; and where the path goes on."""
+    """Return the object under the next part of a path, or under several as names may have dots, and the next index."""
     for end in range(len(parts), k, -1):
         key = ".".join(parts[k:end])
         found = at.get(key) if isinstance(at, Mapping) else getattr(at, key, None)

@@ -1,4 +1,4 @@
-"""The front door: how outputs of a run change with parameters of its scene."""
+"""Sensitivity analysis: derivatives of outputs of a run by parameters of its scene."""
 
 from __future__ import annotations
 
@@ -28,33 +28,37 @@ from .parameters import Parameter, Scenes, with_weights
 from .set_up import SetUp, breakpoint_rates
 
 TIGHTER, TIGHTEST = 1e-6, 1e-12
-"""Part of the asked rtol with which the run is solved, and the least rtol.  A force in a stiff bushing hangs on a deflection that is a
-small part of a coordinate, and its derivative on the phase of a vibration: they are coarser than the motion."""
+"""Ratio of the run's rtol to the requested one, and the least rtol.
+
+Derivatives of forces in stiff bushings and of vibrations are less accurate than the motion.
+"""
 NUMBERS_OF_STEPS = (200, 1600, 12_800, 102_400)
-"""Steps that a run has at least.  The error control of a run does not see its variations: a motion at rest, or a steady one, takes
-steps of any length."""
+"""Least numbers of steps of a run.
+
+The error control does not see variations: a motion at rest, or a steady one, takes steps of any length.
+"""
 AGREED, NOISE = 5e-3, 1e-9
-"""Difference between the derivatives along two runs, relative to their size, up to which they are accepted; and relative to the output."""
+"""Accepted difference between the derivatives of two runs, relative to their size, and relative to the output."""
 AT_THE_LIMIT = 0.9
-"""Part of the longest allowed step from which on the error control is not what limits a step."""
+"""Part of the longest allowed step above which a step is not limited by the error control."""
 HELD = {"solver": "bdf", "formulation": "SI2", "presolve": False}
 """Settings of the run along which sensitivities are integrated."""
 
 
 @dataclass(frozen=True)
 class Sensitivity:
-    """An output and how it changes with parameters.
+    """Output and its derivatives by parameters.
 
     Attributes
     ----------
     of : str
-        The output, a formula of channels.
+        Output, a formula of channels.
     value : float or ndarray, shape (n,)
-        SI units; over the output instants where it is a channel.
+        SI units; over the output instants if it is a channel.
     to : dict of str to float or ndarray
-        The derivative by each parameter, SI units.
+        Derivative by each parameter, SI units.
     time : ndarray, shape (n,)
-        The output instants, s.
+        Output instants, s.
     """
 
     of: str
@@ -63,24 +67,26 @@ class Sensitivity:
     time: np.ndarray
 
     def as_dict(self, scene: str) -> dict[str, Any]:
-        """What ``stiffmbs sensitivities --json`` prints."""
+        """Return the content of ``stiffmbs sensitivities --json``."""
         to = {name: np.asarray(slope).tolist() for name, slope in self.to.items()}
         return {"scene": scene, "of": self.of, "value": np.asarray(self.value).tolist(), "to": to}
 
 
 def sensitivities(scene: Runnable, to: Sequence[str] | str, of: str, **settings: Any) -> Sensitivity:
-    """How an output of a run changes with parameters of its scene, by forward sensitivity analysis.
+    """Compute derivatives of an output of a run by parameters of its scene, by forward sensitivity analysis.
 
-    The equations of motion are differentiated exactly, and integrated along the steps of `bdf` with their own iteration matrices.
-    Jumps at breakpoints in time and at events are part of it.
+    The equations of motion are differentiated exactly, and integrated along the steps of `bdf` with their own iteration
+    matrices. Jumps at breakpoints in time and at events are included.
 
     Parameters
     ----------
     scene : str, Path, Scene or Model
     to : sequence of str
-        Parameters of the scene, or paths of numbers in it: ``"k_b"``, ``"bodies.bar.mass"``, ``"forces.spring.i.point.0"``.
+        Parameters of the scene, or paths of numbers in it: ``"k_b"``, ``"bodies.bar.mass"``,
+        ``"forces.spring.i.point.0"``.
     of : str
-        A formula of channels and of ``peak``, ``max``, ``min``, ``final``, ``first``, ``rms``, ``mean`` and ``integral`` of them.
+        A formula of channels and of ``peak``, ``max``, ``min``, ``final``, ``first``, ``rms``, ``mean`` and
+        ``integral`` of them.
     **settings
         Fields of the run's settings to change: ``duration=2.0, rtol=1e-9``.
 
@@ -91,21 +97,23 @@ def sensitivities(scene: Runnable, to: Sequence[str] | str, of: str, **settings:
     Raises
     ------
     InputError
-        When the scene, a parameter or the output is wrong, or a parameter changes the structure of the model.
+        If the scene, a parameter or the output is invalid, or a parameter changes the structure of the model.
     AssemblyError
-        When no consistent start is found.
+        If no consistent start is found.
     SolverError
-        When the run stops early, or the motion is not differentiable: an event function only touches zero.
+        If the run stops early, or the motion is not differentiable: an event function only touches zero.
 
     Notes
     -----
-    The error control sees the motion, not its variations.  Where it does not limit the steps (a motion at rest, or a steady one),
-    steps are shortened until the derivatives agree.  Vibrations that the motion does not excite are damped by `bdf` if more than about
+    The error control sees the motion, not its variations.  If it does not limit the steps (a motion at rest, or a
+    steady one), steps are shortened until the derivatives agree.  Vibrations that the motion does not excite are damped
+    by `bdf` if more than about
     1e4 of their periods are in the run.
 
     References
     ----------
-    Caracotsios and Stewart, Comput. Chem. Eng. 9 (1985) 359-365; Feehery, Tolsma and Barton, Appl. Numer. Math. 25 (1997) 41-54;
+    Caracotsios and Stewart, Comput. Chem. Eng. 9 (1985) 359-365; Feehery, Tolsma and Barton, Appl. Numer. Math. 25
+    (1997) 41-54;
     Galan, Feehery and Barton, Appl. Numer. Math. 31 (1999) 17-47.
 
     Examples
@@ -123,7 +131,7 @@ def sensitivities(scene: Runnable, to: Sequence[str] | str, of: str, **settings:
     for steps in NUMBERS_OF_STEPS:
         run = differentiated(scenes, names, asked, steps)
         found += run.sensitivities([output.text])
-        # at rest bdf stays at order 1, which damps vibrations of any frequency: two of three runs may agree by that alone
+        # at rest bdf stays at order 1, which damps all vibrations: two of three runs may agree for that reason alone
         if not run.at_the_limit or (len(found) > 2 and _agree(*found[-3:-1]) and _agree(*found[-2:])):
             return found[-1]
     raise SolverError(
@@ -145,9 +153,9 @@ def _agree(coarse: Sensitivity, fine: Sensitivity) -> bool:
 def differentiated(
     scenes: Scenes, names: Sequence[str], asked: RunSettings, fewest: int = NUMBERS_OF_STEPS[0]
 ) -> DifferentiatedRun:
-    """Run with a much tighter tolerance, or with the tolerance of the settings if that fails; errors as for `sensitivities`.
+    """Run with a much tighter tolerance, or with the requested one if that fails; errors as for `sensitivities`.
 
-    A run that stops because a force chatters is not repeated: no tolerance resolves chattering.  It has at least the `fewest` steps.
+    A run that stops because a force chatters is not repeated, as no tolerance resolves chattering.
     """
     scenes = with_weights(scenes, names)
     for rtol in (min(asked.rtol, max(TIGHTER * asked.rtol, TIGHTEST)), asked.rtol):
@@ -204,7 +212,7 @@ class DifferentiatedRun:
         self._jumping: list[tuple[str, int, np.ndarray]] = []
 
     def sensitivities(self, texts: Sequence[str]) -> list[Sensitivity]:
-        """Of formulas of channels; errors as for `stiffmbs.sensitivities`."""
+        """Return the sensitivities of formulas of channels; errors as for `stiffmbs.sensitivities`."""
         rows = self._rows
         channels = channels_of(self._job.data, self._job.dynamics.system, rows)
         outputs = outputs_of(tuple(texts))
@@ -227,7 +235,7 @@ class DifferentiatedRun:
         return Sensitivity(formula.text, _plain(dual.value), to, self._rows.t)
 
     def _refuse_jumps(self, formula: Formula, slopes: dict[str, np.ndarray]) -> None:
-        """Refuse a number that evaluates a channel at a discontinuity; a series has the value of the right side."""
+        """Reject a number that evaluates a channel at a discontinuity; a series has the value of the right side."""
         for name, k, moved in self._jumping:
             here = np.zeros((len(self._rows.t), 1), dtype=bool)
             here[k] = True
@@ -251,7 +259,7 @@ class DifferentiatedRun:
         return rows
 
     def _slopes(self, channels: dict[str, np.ndarray], instants: np.ndarray) -> dict[str, np.ndarray]:
-        """Derivatives of all channels, shape (n, directions); zero at instants that are not asked for."""
+        """Return the derivatives of all channels, shape (n, directions); zero at other than the given instants."""
         job, rows, count = self._job, self._rows, len(self._set_ups)
         along = AlongRun(job.dynamics, self._recorder, self._numbers, breakpoint_rates(self._set_ups))
         start_q, start_u = (np.array([set_up.start[k] for set_up in self._set_ups]) for k in range(2))

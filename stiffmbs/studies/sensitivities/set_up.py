@@ -1,7 +1,7 @@
-"""How what a run is set up with changes with a parameter: numbers of elements, masses, the start, breakpoints.
+"""Derivatives of the set-up of a run by a parameter: numbers of elements, masses, the start, breakpoints.
 
-The equations of motion are differentiated exactly; set-up is arithmetic in scenes, and an assembly that is exact to rounding, and is
-differentiated by central differences.
+The equations of motion are differentiated exactly.  The set-up is arithmetic and an assembly, both exact to rounding;
+it is differentiated by central differences.
 """
 
 from __future__ import annotations
@@ -27,24 +27,24 @@ from ...solve.variations.jumps import BreakpointRates
 from .parameters import Parameter
 
 HELD = ("dimensions", "gravity", "markers", "states", "inputs", "roads")
-"""Sections from which every element may follow."""
+"""Sections on which every element may depend."""
 SAME_TIME = 1e-9
-"""Part of a run by which a breakpoint may lie beside that of the same number."""
+"""Largest distance of corresponding breakpoints, as a part of the run."""
 
 
 class SetUp:
-    """What a job is set up with, by one parameter.
+    """Derivatives of the set-up of a job by one parameter.
 
     Parameters
     ----------
     job : Job
-        Of the scene as it is.
+        Job of the unchanged scene.
     parameter : Parameter
 
     Raises
     ------
     InputError
-        When the parameter changes the structure of the model, or neither a larger nor a smaller value fits.
+        If the parameter changes the structure of the model, or neither a larger nor a smaller value is valid.
     """
 
     def __init__(self, job: Job, parameter: Parameter) -> None:
@@ -53,7 +53,7 @@ class SetUp:
         self._quick = all(_same_bodies(job.data, scene) for scene in self.scenes)
 
     def _differences(self) -> tuple[list[Scene], list[float], list[float]]:
-        """Scenes with other values, by how much they differ, and the weights with which what they give makes the derivative."""
+        """Return scenes with other values, their shifts, and the weights of their results in the derivative."""
         value, step = self.parameter.value, self.parameter.step
         faults: list[InputError] = []
         for shifts, weights in (
@@ -69,7 +69,7 @@ class SetUp:
         raise InputError(f"to: found that '{self.parameter.name}' cannot be changed a little: {faults[0]}")
 
     def derivative(self, values: Sequence[Any]) -> np.ndarray:
-        """The derivative of what the scenes give, one of it each."""
+        """Return the derivative from the results of the scenes."""
         return np.asarray(sum(w * np.asarray(value) for w, value in zip(self._weights, values, strict=True)))
 
     @cached_property
@@ -92,7 +92,7 @@ class SetUp:
 
     @cached_property
     def numbers(self) -> Numbers:
-        """The derivatives of the system's numbers."""
+        """Return the derivatives of the system's numbers."""
         system = self._job.dynamics.system
         if self._quick:
             of_groups, mass = self._numbers_of_changed(), np.zeros(system.n_u)
@@ -108,7 +108,7 @@ class SetUp:
         return Numbers(tuple(map(np.ascontiguousarray, of_groups)), moved, mass)
 
     def _numbers_of_changed(self) -> list[np.ndarray]:
-        """Of the elements that are not those of the job's own scene, and of those that may refer to such a joint."""
+        """Return the derivatives for changed elements, and for elements that may refer to changed joints."""
         job, system = self._job, self._job.dynamics.system
         found = [np.zeros_like(group.numbers) for group in system.groups]
         joints = self._changed("joints")
@@ -131,7 +131,7 @@ class SetUp:
         ]
 
     def _place(self, name: str, scene: Any, element: Any) -> tuple[int, int, np.ndarray]:
-        """The group of an element, where its numbers begin there, and the numbers."""
+        """Return the group of an element, the index of its first number there, and its numbers."""
         kind, data = sorted_out(name, element.at_initial_pose(scene), scene)
         for g, group in enumerate(self._job.dynamics.system.groups):
             if name in group.names and group.kind == kind:
@@ -141,7 +141,7 @@ class SetUp:
         )
 
     def _keep_points_of_tables(self, g: int, numbers: np.ndarray) -> None:
-        """Put the points of tables, which must not move, among the derivatives (`stiffmbs.compile.directional.rules`)."""
+        """Copy the points of tables, which must not move, to the derivatives (`stiffmbs.compile.directional.rules`)."""
         group = self._job.dynamics.system.groups[g]
         if not any(_has_table(shape) for _, shape in group.kind.fields):
             return
@@ -159,17 +159,17 @@ class SetUp:
 
     @cached_property
     def start(self) -> tuple[np.ndarray, np.ndarray]:
-        """The derivatives of q and u at the start, shapes (n_q,), (n_u,)."""
+        """Return the derivatives of q and u at the start, shapes (n_q,), (n_u,)."""
         system, numbers = self._job.dynamics.system, self.numbers
         if self._quick and not self._start_follows(numbers):
             return np.zeros(system.n_q), np.zeros(system.n_u)
-        if self._described and not (system.n_c or system.n_counters or system.algebraic.any()):  # nothing moves it
+        if self._described and not (system.n_c or system.n_counters or system.algebraic.any()):  # no assembly
             return self.derivative([s.q for s in self._systems]), self.derivative([s.u for s in self._systems])
         starts = [self._started(scene, other) for scene, other in zip(self.scenes, self._systems, strict=True)]
         return self.derivative([start.q for start in starts]), self.derivative([start.u for start in starts])
 
     def _start_follows(self, numbers: Numbers) -> bool:
-        """Whether the start may change where bodies stay as they are described."""
+        """Return True if the start may change although the described bodies do not."""
         if not self._described:
             return True
         groups = self._job.dynamics.system.groups
@@ -177,7 +177,7 @@ class SetUp:
 
     @property
     def _described(self) -> bool:
-        """Whether a run starts as described, but for what brings it to the constraints."""
+        """Return True if a run starts as described, apart from the projection onto the constraints."""
         return bool(getattr(self._job.data, "start", "described") == "described")
 
     def _started(self, scene: Scene, system: System) -> Any:
@@ -197,7 +197,7 @@ class SetUp:
         Raises
         ------
         SolverError
-            When it is required, and other values have no such breakpoint.
+            If it is required, and other values have no such breakpoint.
         """
         known, *others = self._breakpoints
         place = int(np.flatnonzero(self._near(t))[0])
@@ -219,7 +219,7 @@ class SetUp:
 
 
 def breakpoint_rates(set_ups: Sequence[SetUp]) -> BreakpointRates:
-    """How the breakpoint next to some time moves with each parameter."""
+    """Return a function for the derivative of the breakpoint near a given time by each parameter."""
 
     def rates(t: float, needed: bool) -> np.ndarray | None:
         if not set_ups[0].has_breakpoint(t):
@@ -243,7 +243,7 @@ def _counterpart(known: np.ndarray, place: int, other: np.ndarray) -> float | No
 
 
 def _same_bodies(before: Any, after: Any) -> bool:
-    """Whether all but joints and forces is the same, so that elements can be looked at one by one."""
+    """Return True if all but joints and forces is equal, so that elements can be compared one by one."""
     if any(getattr(before, section, None) != getattr(after, section, None) for section in HELD):
         return False
     if list(before.bodies) != list(after.bodies) or list(before.forces) != list(after.forces):

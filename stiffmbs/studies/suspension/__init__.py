@@ -1,1 +1,1 @@
-"""Load cases of suspensions: kinematics and compliance on a test rig, and the loads of bushings in driving."""
+"""Load cases of suspensions: kinematics and compliance on a test rig, and road loads of bushings."""

@@ -1,7 +1,7 @@
 """Characteristics of an axle on its rig: toe, camber, track, wheel rate, motion ratio, from the poses of its bodies.
 
-Signs: travel is upwards; toe is above zero where wheels point inwards in front, camber where their tops lean outwards; lateral
-and longitudinal displacements are outwards and forward (ISO 8855 for travel and camber).
+Signs: travel is positive upwards, toe if the wheels point inwards at the front, camber if their tops lean outwards.
+Lateral and longitudinal displacements are positive outwards and forwards (ISO 8855 for travel and camber).
 """
 
 from __future__ import annotations
@@ -21,25 +21,24 @@ UNITS = {
     "travel": "mm", "toe": "deg", "camber": "deg", "lateral": "mm", "longitudinal": "mm", "load": "N",
     "wheel_rate": "N/mm", "motion_ratio": "",
 }  # fmt: skip
-"""What is told of each wheel."""
+"""Characteristics of each wheel, with their units."""
 
 
 def characteristics(
     model: ModelData, axle: Axle, channels: Mapping[str, np.ndarray], centre: int, lifted: bool
 ) -> dict[str, np.ndarray]:
-    """The characteristics of both wheels in one load case.
+    """Return the characteristics of both wheels in one load case.
 
     Parameters
     ----------
     model : ModelData
-        On the rig.
     axle : Axle
     channels : mapping of str to ndarray
-        Of the load case, instants in order.
+        Channels of the load case, instants in order.
     centre : int
-        The instant from which displacements count.
+        Index of the instant from which displacements count.
     lifted : bool
-        Whether the wheels are lifted, so that there are a wheel rate and a motion ratio.
+        True if the wheels are lifted, so that there are a wheel rate and a motion ratio.
 
     Returns
     -------
@@ -69,7 +68,7 @@ def characteristics(
 
 
 def springs_of(model: ModelData, suspension: str) -> list[tuple[str, LineSpring[Marker]]]:
-    """The springs between points of a suspension, by their names within it; of a rigid axle's, by those of a side."""
+    """Return the springs between points of a suspension, by name; for a rigid axle, those of a side."""
     return [
         (name.removeprefix(suspension)[1:], force)
         for name, force in model.forces.items()
@@ -78,18 +77,18 @@ def springs_of(model: ModelData, suspension: str) -> list[tuple[str, LineSpring[
 
 
 def point(model: ModelData, channels: Mapping[str, np.ndarray], marker: Marker) -> np.ndarray:
-    """Where a marker is over time, in ground axes, m, shape (n, 3)."""
+    """Return the position of a marker over time, in ground axes, m, shape (n, 3)."""
     place = model.place(marker)
     if marker.body == GROUND:
         return np.broadcast_to(place.point, (len(next(iter(channels.values()))), 3))
     body = model.bodies[marker.body]
-    arm = np.subtract(place.point, body.center_of_mass)  # channels are those of the centre of mass
+    arm = np.subtract(place.point, body.center_of_mass)  # channels refer to the centre of mass
     centre = np.stack([channels[f"{marker.body}.{axis}"] for axis in "xyz"], axis=1)
     return np.asarray(centre + turned(channels, marker.body, arm))
 
 
 def direction(model: ModelData, channels: Mapping[str, np.ndarray], marker: Marker, axis: int) -> np.ndarray:
-    """The direction of an axis (0, 1, 2) of a marker over time, in ground axes, shape (n, 3)."""
+    """Return the direction of an axis (0, 1, 2) of a marker over time, in ground axes, shape (n, 3)."""
     from ...describe.spatial.orientation import matrix
 
     own = matrix(model.place(marker).orientation)[:, axis]
@@ -99,6 +98,6 @@ def direction(model: ModelData, channels: Mapping[str, np.ndarray], marker: Mark
 
 
 def turned(channels: Mapping[str, np.ndarray], body: str, vector: np.ndarray) -> np.ndarray:
-    """A vector of a body's own axes in ground axes over time, shape (n, 3)."""
+    """Transform a vector from a body's own axes to ground axes over time, shape (n, 3)."""
     quaternions = np.stack([channels[f"{body}.q{k}"] for k in range(4)], axis=1)
     return np.asarray(rotated(quaternions, np.broadcast_to(vector, (len(quaternions), 3))))

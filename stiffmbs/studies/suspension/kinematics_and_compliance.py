@@ -17,17 +17,17 @@ from .rig import INPUTS, SIDES, Axle, axle_of, design_height, on_rig
 
 @dataclass(frozen=True)
 class LoadCase:
-    """A sweep of the rig's inputs from minus to plus their amplitudes.
+    """Sweep of the rig's inputs from minus to plus their amplitudes.
 
     Attributes
     ----------
     name, swept : str
-        The case, and what its abscissa is called.
+        Names of the case and of its abscissa.
     unit : str
     scale : float
-        What the abscissa is in SI units.
+        SI value of one unit of the abscissa.
     inputs : mapping of str to float
-        What each input is for an abscissa of 1 in SI units.
+        Value of each input for an abscissa of 1 in SI units.
     """
 
     name: str
@@ -52,20 +52,20 @@ AMPLITUDES = {
     "bump": 50.0, "roll": 30.0, "steer": 30.0, "lateral": 2.0, "lateral_parallel": 2.0, "brake": 2.0, "traction": 2.0,
     "aligning": 100.0, "aligning_parallel": 100.0,
 }  # fmt: skip
-"""In the units of the cases."""
+"""Default amplitudes, in the units of the cases."""
 ONE_SIDED = ("roll", "steer", "lateral_parallel", "aligning_parallel")
-"""Cases in which the right wheel goes through what the left one does, the other way round."""
+"""Cases in which the right wheel follows the left one with opposite sign."""
 
 
 @dataclass(frozen=True)
 class Sweep:
-    """The curves of one load case.
+    """Curves of one load case.
 
     Attributes
     ----------
     case : LoadCase
     abscissa : ndarray, shape (n,)
-        In the unit of the case.
+        Values in the unit of the case.
     channels : dict of str to ndarray
         Characteristics of both wheels, as `stiffmbs.studies.suspension.characteristics` names them.
     """
@@ -75,7 +75,7 @@ class Sweep:
     channels: dict[str, np.ndarray]
 
     def slope(self, channel: str) -> float:
-        """The slope of a curve at the middle, by a parabola through three points; per unit of the case."""
+        """Return the slope of a curve at its middle, by a parabola through three points; per unit of the case."""
         middle = len(self.abscissa) // 2
         x, y = self.abscissa, self.channels[channel]
         return float((y[middle + 1] - y[middle - 1]) / (x[middle + 1] - x[middle - 1]))
@@ -83,15 +83,14 @@ class Sweep:
 
 @dataclass(frozen=True)
 class KinematicsAndCompliance:
-    """What the rig shows.
+    """Curves of all load cases of an axle.
 
     Attributes
     ----------
     name : str
-        Of the scene.
     axle : Axle
     sweeps : dict of str to Sweep
-        By load case.
+        Curves by load case.
     message : str
     """
 
@@ -101,8 +100,10 @@ class KinematicsAndCompliance:
     message: str = ""
 
     def asymmetry(self) -> float:
-        """The largest difference between left and right, relative to its curve or 1; the other way round where one side goes up
-        as the other goes down."""
+        """Return the largest difference between left and right, relative to the largest value of the curve or 1.
+
+        In the `ONE_SIDED` cases the order of the right curve is reversed.
+        """
         worst = 0.0
         for name, sweep in self.sweeps.items():
             order = slice(None, None, -1) if name in ONE_SIDED else slice(None)
@@ -112,7 +113,7 @@ class KinematicsAndCompliance:
         return worst
 
     def as_dict(self, scene: str) -> dict[str, Any]:
-        """The content of ``stiffmbs kc --json``."""
+        """Return the content of ``stiffmbs kc --json``."""
         cases = {
             name: {
                 "input": sweep.case.swept, "unit": sweep.case.unit, "values": sweep.abscissa.tolist(),
@@ -134,25 +135,25 @@ def kinematics_and_compliance(
     model: Runnable, axle: str = "front", points: int = 11, body: str | None = None, steering: str | None = None,
     **amplitudes: float,
 ) -> KinematicsAndCompliance:  # fmt: skip
-    """Sweep an axle on a test rig by equilibria: wheel travel, roll, steering, lateral and longitudinal forces, torques.
+    """Sweep an axle on a test rig by equilibria: wheel travel, roll, steering, and forces and torques on the wheels.
 
-    The body is clamped as described, pads hold the patches at their heights, and tyres, drivers and other axles are left out.
-    All sweeps begin at the heights of the scene as it is described.
+    The body is clamped as described, pads hold the patches at their heights, and tyres, drivers and other axles are
+    left out. All sweeps start at the heights of the described scene.
 
     Parameters
     ----------
     model : Scene, str or Path
-        With suspensions ``front.left`` and ``front.right``, each with a body ``upright`` that has the markers ``spindle`` and
-        ``patch``, or with a body ``front.axle`` that has those of both sides, as the parts that come with the package have.
+        Scene with suspensions ``front.left`` and ``front.right``, each with a body ``upright`` that has the markers
+        ``spindle`` and ``patch``, or with a body ``front.axle`` that has those of both sides, as in the shipped parts.
     axle : str
-        What stands before ``.left`` and ``.right``; empty for suspensions ``left`` and ``right``.
+        Prefix of ``.left`` and ``.right``; empty for suspensions ``left`` and ``right``.
     points : int
-        Of each curve, odd and at least 5.
+        Number of points of each curve, odd and at least 5.
     body, steering : str, optional
-        The body to clamp, where it is neither ``chassis`` nor the one that carries the axle, and the prismatic joint that
-        steers, where it is not the only ``guide``.
+        Body to clamp, by default ``chassis`` or the one that carries the axle.  Prismatic joint that steers, by default
+        the only ``guide``.
     **amplitudes
-        Of the load cases, such as ``bump=40`` (mm) or ``lateral=3`` (kN); 0 leaves a case out.
+        Amplitudes of the load cases, such as ``bump=40`` (mm) or ``lateral=3`` (kN); 0 omits a case.
 
     Returns
     -------
@@ -161,9 +162,9 @@ def kinematics_and_compliance(
     Raises
     ------
     InputError
-        For what the scene does not have, or an unknown case.
+        If the scene lacks a required part, or a case is unknown.
     SolverError
-        Where the axle has no equilibrium on the rig.
+        If the axle has no equilibrium on the rig.
     """
     if points < 5 or points % 2 == 0:
         raise InputError(f"points: found {points}, expected an odd number, 5 or more")
@@ -192,7 +193,7 @@ def kinematics_and_compliance(
 
 
 def _schedule(cases: list[LoadCase], sizes: dict[str, float], half: int) -> list[dict[str, float]]:
-    """The inputs of all instants: each case from the middle to plus its amplitude, back, and to minus its amplitude."""
+    """Return the inputs at all instants: each case from zero to plus its amplitude, back, and to minus it."""
     parts = [*np.linspace(0, 1, half + 1), 0.0, *np.linspace(-1 / half, -1, half)]
     return [
         {name: part * sizes[case.name] * case.scale * each for name, each in case.inputs.items()}

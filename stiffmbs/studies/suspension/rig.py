@@ -1,6 +1,6 @@
-"""The test rig of an axle: the body is clamped, pads hold the wheels' heights, and inputs push, turn and steer.
+"""Test rig of an axle: the body is clamped, pads hold the wheels' heights, and inputs push, turn and steer.
 
-What is on the rig besides are the parts of the axle alone: tyres, drivers and other axles are left out.
+The rig holds only the parts of the axle: tyres, drivers and other axles are left out.
 """
 
 from __future__ import annotations
@@ -27,26 +27,29 @@ from ...errors import InputError
 INPUTS = (
     "kc_left", "kc_right", "kc_rack", "kc_lateral", "kc_parallel", "kc_brake", "kc_traction", "kc_torque", "kc_turn"
 )  # fmt: skip
-"""Heights of the patches (m), travel of the rack (m), forces on each wheel (N; outwards, to the left, backwards, forwards), and
-torques on it (N m; inwards, to the left)."""
+"""Heights of the patches, travel of the rack (m), forces (N) and torques (N m) on each wheel.
+
+Forces are outwards, to the left, backwards and forwards; torques are inwards and to the left.
+"""
 SIDES = ("left", "right")
 
 
 @dataclass(frozen=True)
 class Axle:
-    """Which parts of a scene are an axle.
+    """Parts of a scene that form an axle.
 
     Attributes
     ----------
     left, right : str
-        Names of the suspensions, whose body ``upright`` has the markers ``spindle`` (centre of the wheel, its y axis the axle's)
-        and ``patch``.
+        Names of the suspensions, whose body ``upright`` has the markers ``spindle`` (centre of the wheel, with y along
+        its axis) and ``patch``.
     body : str
-        The body that carries them; ground where they stand on it.
+        Body that carries them; ground if they stand on it.
     steering : str or None
-        A prismatic joint whose travel steers.
+        Prismatic joint whose travel steers.
     rigid : str or None
-        The body of a rigid axle in place of uprights, with the markers ``left_spindle``, ``left_patch`` and those of the right.
+        Body of a rigid axle instead of uprights, with the markers ``left_spindle``, ``left_patch`` and those of the
+        right.
     """
 
     left: str
@@ -56,35 +59,35 @@ class Axle:
     rigid: str | None = None
 
     def carrier(self, side: str) -> str:
-        """The body that a wheel turns on."""
+        """Return the body on which a wheel rotates."""
         return self.rigid or f"{getattr(self, side)}.upright"
 
     def marker(self, side: str, name: str) -> str:
-        """The name of a marker on the carrier: ``spindle`` or ``patch`` of a side."""
+        """Return the name of a marker on the carrier: ``spindle`` or ``patch`` of a side."""
         return f"{side}_{name}" if self.rigid else name
 
     def at(self, side: str, name: str) -> Marker:
-        """That marker."""
+        """Return a marker on the carrier."""
         return Marker(body=self.carrier(side), marker=self.marker(side, name))
 
 
 def axle_of(model: ModelData, name: str, body: str | None = None, steering: str | None = None) -> Axle:
-    """The axle of a scene: the suspensions ``name.left`` and ``name.right``.
+    """Return the axle of a scene: the suspensions ``name.left`` and ``name.right``.
 
     Parameters
     ----------
     model : ModelData
     name : str
-        Such as ``front``; without it the suspensions are ``left`` and ``right``.
+        Name such as ``front``; if empty, the suspensions are ``left`` and ``right``.
     body : str, optional
-        The body to clamp: ``chassis`` where there is one, else the one to which most elements of the axle are attached.
+        Body to clamp; by default ``chassis``, or else the body to which most elements of the axle are attached.
     steering : str, optional
-        The prismatic joint that steers: the only one named ``guide``, if there is one.
+        Prismatic joint that steers; by default the only one named ``guide``, if any.
 
     Raises
     ------
     InputError
-        Where a suspension, its markers or what is named is not in the scene.
+        If a suspension, its markers or a named part is missing in the scene.
     """
     start = f"{name}." if name else ""
     body = body or ("chassis" if "chassis" in model.bodies else _carrying(model, start))
@@ -98,7 +101,7 @@ def axle_of(model: ModelData, name: str, body: str | None = None, steering: str 
 
 
 def _carrying(model: ModelData, start: str) -> str:
-    """The body to which most joints and forces of the suspensions are attached, besides their own bodies; ground without such."""
+    """Return the body, outside the suspensions, to which most of their elements are attached, or ground."""
     parts = tuple(f"{start}{side}" for side in SIDES) if not start else (start,)
     elements = [
         element
@@ -134,7 +137,7 @@ def _steering(model: ModelData, given: str | None) -> str | None:
 
 
 def on_rig(scene: ModelData, axle: Axle, tables: dict[str, Table]) -> ModelData:
-    """A model of an axle on its rig, whose inputs are tables of time."""
+    """Return the model of an axle on its rig, whose inputs are tables of time."""
 
     bodies = _bodies_of(scene, axle)
     model = Model(f"{scene.name}, {axle.left} and {axle.right} on a rig", scene.gravity)
@@ -157,7 +160,7 @@ def on_rig(scene: ModelData, axle: Axle, tables: dict[str, Table]) -> ModelData:
 
 
 def _hold_wheel(model: Any, axle: Axle, side: str) -> None:
-    """A pad under a wheel, and the forces and the torque on it; those of one wheel alone are mirrored on the right."""
+    """Add a pad, forces and a torque to a wheel; those of one wheel alone are mirrored on the right."""
 
     sign = "" if side == "left" else "-"
     patch, spindle = (f"{axle.carrier(side)}.{axle.marker(side, name)}" for name in ("patch", "spindle"))
@@ -176,7 +179,7 @@ def _at_rest(body: Any) -> Any:
 
 
 def _bodies_of(scene: ModelData, axle: Axle) -> set[str]:
-    """The bodies that hang together with the uprights otherwise than through the body that carries them."""
+    """Return the bodies connected to the uprights other than through the body that carries them."""
     ends = [set(_bodies_at(each)) - {axle.body, GROUND} for each in _elements(scene) if not _depends_on_more(each)]
     found: set[str] = set()
     grown = {axle.carrier(side) for side in SIDES}
@@ -197,7 +200,7 @@ def _bodies_at(element: Element) -> Iterator[str]:
 
 
 def _depends_on_more(element: Element) -> bool:
-    """Whether an element has a formula with states or inputs, of which the rig has none, or is a drive."""
+    """Return True if an element is a drive, or has a formula with states or inputs, which the rig lacks."""
     return isinstance(element, Drive) or any(formula.states for _, formula in element.parts(Formula))
 
 
@@ -208,5 +211,5 @@ def _stays(element: Element, bodies: set[str]) -> bool:
 
 
 def design_height(scene: ModelData, axle: Axle, side: str) -> float:
-    """The height of a patch as described, m."""
+    """Return the described height of a patch, m."""
     return scene.point(axle.at(side, "patch"))[2]

@@ -1,4 +1,4 @@
-"""Road loads: the forces and torques of all bushings in their own axes, with their peaks."""
+"""Road loads: forces and torques of all bushings in their own axes, with their peaks."""
 
 from __future__ import annotations
 
@@ -21,18 +21,18 @@ COMPONENTS = ("fx", "fy", "fz", "tx", "ty", "tz")
 
 @dataclass(frozen=True)
 class Peak:
-    """The largest magnitude of a component.
+    """Largest magnitude of a component.
 
     Attributes
     ----------
     component : str
         fx to tz, along the axes of the bushing's marker j.
     value : float
-        With its sign, N or N m.
+        Signed value, N or N m.
     time : float
-        When, s.
+        Time, s.
     case : str
-        In which load case.
+        Load case.
     """
 
     component: str
@@ -43,21 +43,21 @@ class Peak:
 
 @dataclass(frozen=True)
 class RoadLoads:
-    """The loads of bushings.
+    """Loads of bushings.
 
     Attributes
     ----------
     peaks : dict of str to tuple of Peak
-        Of each bushing the six components.
+        Peaks of the six components of each bushing.
     loads : dict of str to dict of str to ndarray
-        By case, then by channel such as ``arm.bush.fx``: over time, in the bushing's own axes.
+        Series by case and by channel such as ``arm.bush.fx``, in the bushing's own axes.
     """
 
     peaks: dict[str, tuple[Peak, ...]]
     loads: dict[str, dict[str, np.ndarray]]
 
     def as_dict(self) -> dict[str, Any]:
-        """The peaks for JSON: by bushing and component value, time and case."""
+        """Return the peaks for JSON: value, time and case by bushing and component."""
         return {
             name: {peak.component: {"value": peak.value, "time": peak.time, "case": peak.case} for peak in peaks}
             for name, peaks in self.peaks.items()
@@ -65,24 +65,24 @@ class RoadLoads:
 
 
 def road_loads(model: Runnable, cases: Mapping[str, Solution]) -> RoadLoads:
-    """The forces and torques of all bushings, along the axes of their markers j, in runs of a model.
+    """Return the forces and torques of all bushings, along the axes of their markers j, in runs of a model.
 
     Parameters
     ----------
     model : Model, Scene, str or Path
-        In space.
+        Spatial model.
     cases : mapping of str to Solution
-        Its runs by the names of load cases.
+        Runs of the model by the names of load cases.
 
     Returns
     -------
     RoadLoads
-        The forces are those on marker i's body, at its point.
+        Forces on marker i's body, at its point.
 
     Raises
     ------
     InputError
-        When there is no case, or a run is not of this model.
+        If there is no case, or a run does not belong to the model.
     """
     data = data_of(model)
     names = [name for name, force in data.forces.items() if isinstance(force, Elastic)]

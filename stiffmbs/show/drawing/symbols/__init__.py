@@ -1,1 +1,1 @@
-"""The symbols of joints and forces, by kind: a kind without one of its own has its family's."""
+"""Symbols of joints and forces, by kind; a kind without its own has that of its family."""

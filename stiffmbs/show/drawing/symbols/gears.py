@@ -1,4 +1,4 @@
-"""Gears and racks by their pitch lines, in the plane and in space."""
+"""Gears and racks by their pitch lines, planar and spatial."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from ..scene_graph import Line
 
 
 def gear(d: Draft) -> None:
-    """Pitch circles, each with a stroke that turns."""
+    """Pitch circles, each with a stroke that rotates."""
     one, two = d.joint_site("joint_1"), d.joint_site("joint_2")
     if one is None or two is None:
         return
@@ -27,7 +27,7 @@ def _wheel(d: Draft, site: Site, radius: float) -> None:
 
 
 def rack_and_pinion(d: Draft) -> None:
-    """The pitch circle of the pinion, and the rack."""
+    """Pitch circle of the pinion, and the rack."""
     pinion, rack = d.joint_site("pinion"), d.joint_site("rack")
     if pinion is not None:
         _wheel(d, pinion, abs(d.element.pitch_radius))

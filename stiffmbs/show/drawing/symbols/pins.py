@@ -1,4 +1,4 @@
-"""What symbols of space are made of: pins, balls, rails and plates."""
+"""Components of spatial symbols: pins, balls, rails and plates."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def ball(d: Draft, site: Site, radius: float = 0.6) -> None:
 
 
 def rail(d: Draft, half: float = 0.25) -> None:
-    """The line that i slides on, on j along its z."""
+    """Line on j along its z, on which i slides."""
     assert d.i is not None and d.j is not None
     start = float(d.j.turned[:, 2] @ (d.i.in_ground - d.j.in_ground))
     ends = np.array([[0, 0, start - half * d.size], [0, 0, start + half * d.size]])
@@ -32,7 +32,7 @@ def rail(d: Draft, half: float = 0.25) -> None:
 
 
 def plate(d: Draft, half: float = 3.0) -> None:
-    """The plane that i stays on: the x-y plane of j."""
+    """Plane on which i stays: the x-y plane of j."""
     assert d.j is not None
     square = solids.rectangle(2 * half * d.u, 2 * half * d.u)
     d.put(

@@ -1,4 +1,4 @@
-"""Symbols of the plane, as in textbooks on mechanisms."""
+"""Planar symbols, as in textbooks on mechanisms."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from .shared import (
 
 
 def _front(site: Site, d: Draft, layer: float = 1.0) -> Site:
-    """A site before the bodies, in layers: where pins are, or as far as a part of that."""
+    """Return a site in front of the bodies, by a multiple of the distance of pins."""
     return site.at((0, 0, layer * d.front))
 
 
@@ -39,7 +39,7 @@ def _pin(d: Draft, site: Site, radius: float = 0.5) -> None:
 
 
 def _support(d: Draft) -> None:
-    """The triangle on hatched ground under a pin."""
+    """Triangle on hatched ground under a pin."""
     site = d.grounded()
     if site is None:
         return
@@ -81,7 +81,7 @@ def prismatic(d: Draft) -> None:
 
 
 def _guides(d: Draft, half: float) -> None:
-    """Lines on both sides along the axis of j, where i is; hatched outside on ground."""
+    """Lines on both sides along the axis of j at the position of i; hatched outside on ground."""
     assert d.i is not None and d.j is not None
     start = float(d.j.turned[:, 0] @ (d.i.in_ground - d.j.in_ground))
     length = 0.3 * d.size
@@ -153,7 +153,7 @@ def _is_straight(d: Draft) -> bool:
 
 
 def spring_damper(d: Draft) -> None:
-    """A zigzag, and a dashpot beside it."""
+    """A zigzag, and a dashpot next to it."""
     if d.i is None or d.j is None:
         return
     _anchor(d, d.j if d.i.on_ground else d.i)
@@ -184,7 +184,7 @@ def bushing(d: Draft) -> None:
 
 
 def contact(d: Draft) -> None:
-    """The circle about i, and the line or circle that it meets."""
+    """Circle about i, and the line or circle that it touches."""
     e = d.element
     if d.i is None or d.j is None:
         return

@@ -1,4 +1,4 @@
-"""Profiles of stretched symbols: the fraction of the way, and two distances across it, m."""
+"""Profiles of stretched symbols: the fraction of the distance, and two distances across it, m."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ TURNS = 6
 
 
 def zigzag(width: float, shift: float = 0.0) -> list[tuple[float, float, float]]:
-    """A spring of the plane."""
+    """A planar spring."""
     teeth = [(0.2 + 0.6 * (k + 0.5) / (2 * TURNS), shift + width * (-1) ** k, 0.0) for k in range(2 * TURNS)]
     return [(0, shift, 0), (0.2, shift, 0), *teeth, (0.8, shift, 0), (1, shift, 0)]
 
 
 def coil(radius: float, shift: float = 0.0) -> list[tuple[float, float, float]]:
-    """A spring of space."""
+    """A spatial spring."""
     turns = np.linspace(0, TURNS, TURNS * 14 + 1)
     around = [
         (0.15 + 0.7 * t / TURNS, shift + radius * np.cos(2 * np.pi * t), radius * np.sin(2 * np.pi * t)) for t in turns
@@ -24,7 +24,7 @@ def coil(radius: float, shift: float = 0.0) -> list[tuple[float, float, float]]:
 
 
 def damper(width: float, shift: float = 0.0) -> list[list[tuple[float, float, float]]]:
-    """A dashpot: a cup, open to j, and a piston in it."""
+    """A dashpot: a cup, open towards j, and a piston in it."""
     a, b = shift - width, shift + width
     return [
         [(0, shift, 0), (0.38, shift, 0)],
@@ -35,7 +35,7 @@ def damper(width: float, shift: float = 0.0) -> list[list[tuple[float, float, fl
 
 
 def bar(width: float) -> list[list[tuple[float, float, float]]]:
-    """A rod: two lines side by side, closed at both ends."""
+    """A rod: two parallel lines, closed at both ends."""
     return [[(0, -width, 0), (1, -width, 0), (1, width, 0), (0, width, 0), (0, -width, 0)]]
 
 

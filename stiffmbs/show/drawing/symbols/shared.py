@@ -1,4 +1,4 @@
-"""Symbols that are the same in the plane and in space."""
+"""Symbols shared by planar and spatial drawings."""
 
 from __future__ import annotations
 
@@ -19,27 +19,27 @@ from . import profiles
 
 TURN = 2 * math.pi
 FAR_OFF = 0.1
-"""Distance of a torque's marker from its body's centre of mass, over the mechanism's size, from which it says nothing."""
+"""Distance of a torque's marker from the centre of mass, relative to the mechanism, above which it is ignored."""
 
 
 def ground(d: Draft) -> None:
-    """The hatched line, or plate, under a point of the ground."""
+    """Hatched line, or plate, under a point of the ground."""
     site = d.grounded()
     if site is not None:
         d.put(upright(d, site).at((0, 0.0, 0)), "ground", *hatched(d.u, 1.1, 0.0))
 
 
 def upright(d: Draft, site: Site) -> Site:
-    """The site with axes whose -y points down."""
+    """Return the site with axes whose -y points down."""
     up = -d.down
     x = np.cross(up, [0.0, 0.0, 1.0])
-    if np.linalg.norm(x) < 0.5:  # up is z: the plate stands across the x axis
+    if np.linalg.norm(x) < 0.5:  # up is z: the plate is perpendicular to the x axis
         x = np.array([1.0, 0.0, 0.0])
     return site.along_ground().with_axes(np.column_stack([x, up, np.cross(x, up)]))
 
 
 def hatched(u: float, half: float, height: float) -> list[Line]:
-    """A line along x with hatching below it, half its width given in units."""
+    """Return a line along x with hatching below it; half its width is given in units."""
     strokes = np.arange(-half, half + 1e-9, 0.4) * u
     low = height - 0.45 * u
     line = Line(np.array([[-half * u, height, 0], [half * u, height, 0]]), 1.4)
@@ -47,7 +47,7 @@ def hatched(u: float, half: float, height: float) -> list[Line]:
 
 
 def arc_arrow(radius: float, start: float, end: float, head: float) -> list[Line]:
-    """An arc in the x-y plane with a head at its end."""
+    """Return an arc in the x-y plane with a head at its end."""
     tip = radius * np.array([math.cos(end), math.sin(end), 0.0])
     back = np.array([math.sin(end), -math.cos(end), 0.0]) * head
     out = np.array([math.cos(end), math.sin(end), 0.0]) * head * 0.6
@@ -58,7 +58,7 @@ def arc_arrow(radius: float, start: float, end: float, head: float) -> list[Line
 
 
 def arrow(direction: np.ndarray, length: float, head: float) -> list[Line]:
-    """An arrow from the origin."""
+    """Return an arrow from the origin."""
     axes = axes_along(direction)
     tip = axes[:, 2] * length
     wings = [tip - axes[:, 2] * head + axes[:, 0] * side * head * 0.6 for side in (1, -1)]
@@ -66,7 +66,7 @@ def arrow(direction: np.ndarray, length: float, head: float) -> list[Line]:
 
 
 def components(values: Any) -> np.ndarray | None:
-    """The direction of a constant force, shape (3,); None where it is none, or is zero."""
+    """Return the direction of a constant force, shape (3,), or None if it is not constant or zero."""
     try:
         numbers = [formula_value(v, t=0.0) if isinstance(v, Formula) else float(v) for v in values]
     except (FormulaError, KeyError, TypeError, ValueError):
@@ -76,7 +76,7 @@ def components(values: Any) -> np.ndarray | None:
 
 
 def force(d: Draft) -> None:
-    """An arrow at the point, in the direction that the force has where that is constant."""
+    """Arrow at the point, in the direction of the force if that is constant."""
     if d.i is None:
         return
     direction = components(d.element.force)
@@ -88,7 +88,7 @@ def force(d: Draft) -> None:
 
 
 def torque(d: Draft) -> None:
-    """An arrow around the point, or around the centre of mass of a body that is far from it: a torque has no point."""
+    """Arrow around the point, or around the centre of mass if far away: a torque has no point of application."""
     if d.i is not None:
         away = np.linalg.norm(d.i.point) > FAR_OFF * d.size
         d.put(
@@ -115,14 +115,14 @@ def spiral(d: Draft) -> None:
 
 
 def coupling(d: Draft) -> None:
-    """A dashed line between two joints that are tied to each other."""
+    """A dashed line between two coupled joints."""
     one, other = d.joint_site("joint_1"), d.joint_site("joint_2")
     if one is not None and other is not None:
         d.stretch(one, other, "drive", profiles.STRAIGHT, dashed=True)
 
 
 def rubbing(d: Draft) -> None:
-    """Short strokes where surfaces slide."""
+    """Short strokes at sliding surfaces."""
     if d.i is not None:
         strokes = (
             Line(np.array([[x - 0.2, -1.5, 0], [x + 0.2, -1.1, 0]]) * d.u, 1.2) for x in (-0.8, -0.4, 0.0, 0.4, 0.8)
@@ -131,7 +131,7 @@ def rubbing(d: Draft) -> None:
 
 
 def any_joint(d: Draft) -> None:
-    """A diamond where the joint reports its reaction."""
+    """Diamond at the point of the joint's reaction."""
     if d.i is not None:
         d.put(
             d.i,
@@ -144,7 +144,7 @@ def any_joint(d: Draft) -> None:
 
 
 def any_force(d: Draft) -> None:
-    """A dashed line between the markers, or a diamond at the only one."""
+    """A dashed line between the markers, or a diamond at a single marker."""
     if d.i is not None and d.j is not None and np.linalg.norm(d.i.in_ground - d.j.in_ground) > d.u:
         d.stretch(d.i, d.j, "force", *profiles.arrows(0.5 * d.u), dashed=True)
     elif d.i is not None:
@@ -152,7 +152,7 @@ def any_force(d: Draft) -> None:
 
 
 def curve(d: Draft) -> None:
-    """The curve that a point stays on, in the axes of marker j."""
+    """Curve on which a point stays, in the axes of marker j."""
     if d.j is None:
         return
     points = _along_y(d) if d.element.y is not None else _around(d)

@@ -1,4 +1,4 @@
-"""Symbols of space: pins, balls, blocks and coils, along the axes of their markers."""
+"""Spatial symbols: pins, balls, blocks and coils, along the axes of their markers."""
 
 from __future__ import annotations
 
@@ -126,7 +126,7 @@ def fixed(d: Draft) -> None:
 
 
 def directions(d: Draft) -> None:
-    """The axes whose directions are tied, without the points."""
+    """Axes with constrained directions, without their points."""
     for site in (d.i, d.j):
         if site is not None:
             d.put(site, "drive", *arrow(np.array([0.0, 0.0, 1.0]), 2.2 * d.u, 0.6 * d.u))

@@ -1,4 +1,4 @@
-"""Symbols of force elements of space."""
+"""Symbols of spatial force elements."""
 
 from __future__ import annotations
 
@@ -40,14 +40,14 @@ def beam(d: Draft) -> None:
 
 
 def elastic(d: Draft) -> None:
-    """A dashed line between the markers with springs of all directions."""
+    """A dashed line between the markers, with springs in all directions."""
     if d.i is not None and d.j is not None:
         d.stretch(d.j, d.i, "force", profiles.STRAIGHT, width=1.5, dashed=True)
         shape(d, d.j, solids.cylinder(0.6 * d.u, 0.8 * d.u, 16), DARK)
 
 
 def contact(d: Draft) -> None:
-    """The ball about i, and the plane or ball that it meets."""
+    """Ball about i, and the plane or ball that it touches."""
     e = d.element
     if d.i is None or d.j is None:
         return
