@@ -454,3 +454,10 @@ run: {duration: 1 s, rtol: 1e-9}
     double, product = (sensitivities(scene, ["F", "m"], f"final({name})") for name in ("double", "product"))
     assert double.to == pytest.approx({"F": 2 / 4, "m": -2 * 3 / 8}, rel=1e-7)
     assert product.to == pytest.approx({"F": 0.5 + 3 / 4 + 3 / 4, "m": -9 / 8}, rel=1e-7)
+
+
+@pytest.mark.parametrize("of", [["final(a.x)", "final(a.y)"], ("final(a.x)",), 3])
+def test_an_output_that_is_no_text_is_refused(of):
+    scene = stiffmbs.read_scene("{bodies: {a: {mass: 1, inertia: 1}}}")
+    with pytest.raises(stiffmbs.InputError, match="of: found .*, expected the text of one formula"):
+        sensitivities(scene, "bodies.a.mass", of)

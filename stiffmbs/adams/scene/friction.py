@@ -1,7 +1,7 @@
 """Joint friction as formula forces and torques.  MSC Adams/Solver, FRICTION statement.
 
 The normal force follows from the joint reaction. The friction coefficient is a STEP5 function of the sliding speed: it
-rises from zero to the static coefficient at the stiction velocity, then falls to the dynamic coefficient. Joints creep
+rises from zero to the static coefficient at the stiction velocity, then falls to the dynamic coefficient. Joints slide slowly
 below the stiction velocity; Adams' MAX_STICTION_DEFORMATION has no counterpart.
 """
 

@@ -124,6 +124,8 @@ def sensitivities(scene: Runnable, to: Sequence[str] | str, of: str, **settings:
     names = [to] if isinstance(to, str) else list(to)
     if not names or len(set(names)) < len(names):
         raise InputError(f"to: found {', '.join(names) or 'no parameter'}, expected one parameter or more, each once")
+    if not isinstance(of, str):
+        raise InputError(f"of: found {of!r}, expected the text of one formula such as 'peak(bushing.fx)'")
     (output,) = outputs_of(of)
     scenes = Scenes.of_model(scene)
     asked = changed(scenes.known.run, settings)

@@ -93,7 +93,7 @@ def reach(m, n):
 def support(m, n, h):
     """Compute h[0] = h(n), its gradient h[1:4], and its second derivatives h[4:10]: xx, yy, zz, xy, xz, yz.
 
-    With s = |G n| and w = G n/s the gradient is G^T w, and the second derivative Q^T Q/s with Q = G - w (G^T w)^T.
+    With s = |G n| and w = G n/s the gradient is G^T w; the second derivative is Q^T Q/s with Q = G - w (G^T w)^T.
     """
     w = room(3)
     for k in range(10):
