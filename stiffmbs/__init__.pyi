@@ -89,7 +89,7 @@ __version__: str
 ground: str
 
 class AppliedForce(_AppliedForce):
-    """A force at a point of a body: constant, or a formula of time and of anything measured."""
+    """Force at a point of a body: constant, or a formula of time and of any measured quantity."""
     def __init__(
         self,
         *,
@@ -101,13 +101,13 @@ class AppliedForce(_AppliedForce):
     ) -> None: ...
 
 class AppliedTorque(_AppliedTorque):
-    """A torque on a body: constant, or a formula of time and of anything measured."""
+    """Torque on a body: constant, or a formula of time and of any measured quantity."""
     def __init__(
         self, *, i: given.Marker, j: given.Marker | None = ..., torque: given.Law, type: Literal["torque"] = ...
     ) -> None: ...
 
 class Bushing(_Bushing):
-    """Force and torque between two markers that are held together elastically."""
+    """Elastic force and torque between two markers."""
     def __init__(
         self,
         *,
@@ -124,7 +124,7 @@ class Bushing(_Bushing):
     ) -> None: ...
 
 class ConstraintEquation(_ConstraintEquation):
-    """Formulas of body coordinates and time that stay zero: ``cart.y - 0.1*sin(cart.x)``."""
+    """Formulas of body coordinates and time that remain zero: ``cart.y - 0.1*sin(cart.x)``."""
     def __init__(
         self,
         *,
@@ -135,7 +135,7 @@ class ConstraintEquation(_ConstraintEquation):
     ) -> None: ...
 
 class Contact(_Contact):
-    """A point or circle about marker i that presses on a line or circle of marker j, with friction."""
+    """Contact of a point or circle about marker i with a line or circle of marker j, with friction."""
     def __init__(
         self,
         *,
@@ -155,7 +155,7 @@ class Contact(_Contact):
     ) -> None: ...
 
 class Coupler(_Coupler):
-    """Ties two joint coordinates by a straight line: s_1 - scale s_2 - offset = 0."""
+    """Linear relation between two joint coordinates: s_1 - scale s_2 - offset = 0."""
     def __init__(
         self,
         *,
@@ -167,13 +167,13 @@ class Coupler(_Coupler):
     ) -> None: ...
 
 class Distance(_Distance):
-    """Rod: a point of body i and a point of body j keep their distance, (d . d - L^2)/(2 L) = 0."""
+    """Rod with constant distance between a point of body i and a point of body j, (d . d - L^2)/(2 L) = 0."""
     def __init__(
         self, *, i: given.Marker, j: given.Marker, length: given.Number, type: Literal["distance"] = ...
     ) -> None: ...
 
 class Drive(_Drive):
-    """A motor that moves a joint's coordinate, or a formula of body coordinates, as a function of time, or of states, prescribes."""
+    """Motor that prescribes a joint's coordinate, or a formula of body coordinates, as a function of time or of states."""
     def __init__(
         self,
         *,
@@ -187,11 +187,11 @@ class Drive(_Drive):
     ) -> None: ...
 
 class Fixed(_Fixed):
-    """Weld: two markers coincide in place and direction."""
+    """Weld: two markers coincide in position and direction."""
     def __init__(self, *, i: given.Marker, j: given.Marker, type: Literal["fixed"] = ...) -> None: ...
 
 class Gear(_Gear):
-    """Two wheels in mesh, each pinned to one carrier: theta_1 + ratio theta_2 - offset = 0."""
+    """Gear pair with both wheels on one carrier: theta_1 + ratio theta_2 - offset = 0."""
     def __init__(
         self,
         *,
@@ -203,7 +203,7 @@ class Gear(_Gear):
     ) -> None: ...
 
 class JointFriction(_JointFriction):
-    """Dry friction in a revolute or prismatic joint, pressed by the joint's own reaction."""
+    """Dry friction in a revolute or prismatic joint, loaded by the joint's reaction."""
     def __init__(
         self,
         *,
@@ -218,13 +218,13 @@ class JointFriction(_JointFriction):
     ) -> None: ...
 
 class LineForce(_LineForce):
-    """A force between two points along the line through them: constant, or a formula of anything measured."""
+    """Force along the line between two points: constant, or a formula of any measured quantity."""
     def __init__(
         self, *, i: given.Marker, j: given.Marker, force: given.Law, type: Literal["line_force"] = ...
     ) -> None: ...
 
 class PointOnCurve(_PointOnCurve):
-    """Point-follower: the point of marker i stays on a curve fixed to marker j."""
+    """Point follower: the point of marker i remains on a curve fixed to marker j."""
     def __init__(
         self,
         *,
@@ -236,15 +236,15 @@ class PointOnCurve(_PointOnCurve):
     ) -> None: ...
 
 class PointOnLine(_PointOnLine):
-    """Pin in a slot: the point of marker i stays on the line through marker j along j's axis, d . n_j = 0."""
+    """Pin in a slot: the point of marker i remains on the line through marker j along j's axis, d . n_j = 0."""
     def __init__(self, *, i: given.Marker, j: given.Marker, type: Literal["point_on_line"] = ...) -> None: ...
 
 class Prismatic(_Prismatic):
-    """Slider: marker i stays on the line through marker j along j's axis and keeps j's direction."""
+    """Slider: marker i remains on the line through marker j along j's axis, and keeps j's direction."""
     def __init__(self, *, i: given.Marker, j: given.Marker, type: Literal["prismatic"] = ...) -> None: ...
 
 class PythonForce(_PythonForce):
-    """A force and a torque that a Python function gives, for laws that no formula can express."""
+    """Force and torque by a Python function, for laws that no formula can express."""
     def __init__(
         self,
         *,
@@ -256,7 +256,7 @@ class PythonForce(_PythonForce):
     ) -> None: ...
 
 class RackAndPinion(_RackAndPinion):
-    """A wheel that rolls on a toothed bar, both carried by one housing: s - R theta - offset = 0."""
+    """Pinion that rolls on a rack, both on one housing: s - R theta - offset = 0."""
     def __init__(
         self,
         *,
@@ -272,7 +272,7 @@ class Revolute(_Revolute):
     def __init__(self, *, i: given.Marker, j: given.Marker, type: Literal["revolute"] = ...) -> None: ...
 
 class SpringDamper(_SpringDamper):
-    """Line spring and damper, linear or by curves, along the line between two points."""
+    """Spring and damper along the line between two points, linear or nonlinear."""
     def __init__(
         self,
         *,
@@ -288,7 +288,7 @@ class SpringDamper(_SpringDamper):
     ) -> None: ...
 
 class TorsionSpring(_TorsionSpring):
-    """Rotational spring and damper, linear or by curves, on the angle of marker i against marker j."""
+    """Rotational spring and damper on the angle of marker i relative to marker j, linear or nonlinear."""
     def __init__(
         self,
         *,
@@ -304,7 +304,7 @@ class TorsionSpring(_TorsionSpring):
     ) -> None: ...
 
 class VelocityEquation(_VelocityEquation):
-    """Formulas linear in velocities that stay zero, J(q) u - b(q, t) = 0, and need not be the rate of anything."""
+    """Formulas linear in velocities that remain zero, J(q) u - b(q, t) = 0, also nonholonomic ones."""
     def __init__(
         self,
         *,

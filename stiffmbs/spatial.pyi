@@ -60,7 +60,7 @@ from .describe.spatial.model import Model as Model
 from .jobs.in_space import in_space as in_space
 
 class AppliedForce(_AppliedForce):
-    """A force at a point of a body: constant, or a formula of time and of anything measured."""
+    """Force at a point of a body: constant, or a formula of time and of any measured quantity."""
     def __init__(
         self,
         *,
@@ -73,7 +73,7 @@ class AppliedForce(_AppliedForce):
     ) -> None: ...
 
 class AppliedTorque(_AppliedTorque):
-    """A torque on a body: constant, or a formula of time and of anything measured."""
+    """Torque on a body: constant, or a formula of time and of any measured quantity."""
     def __init__(
         self,
         *,
@@ -86,7 +86,7 @@ class AppliedTorque(_AppliedTorque):
     ) -> None: ...
 
 class Beam(_Beam):
-    """A massless straight beam of uniform cross section along the x axis of marker j, from j to i."""
+    """Massless straight beam of uniform cross section along the x axis of marker j, from j to i."""
     def __init__(
         self,
         *,
@@ -107,7 +107,7 @@ class Beam(_Beam):
     ) -> None: ...
 
 class BoxPlaneImpact(_BoxPlaneImpact):
-    """A solid box that presses on a plane with its eight corners."""
+    """Contact of the eight corners of a solid box with a plane."""
     def __init__(
         self,
         *,
@@ -128,7 +128,7 @@ class BoxPlaneImpact(_BoxPlaneImpact):
     ) -> None: ...
 
 class Brake(_Brake):
-    """A brake between a wheel and its upright, or the car's body, that slides at its torque and holds at a standstill."""
+    """Brake between a wheel and its upright, or the car's body, which slips at its torque and holds at rest."""
     def __init__(
         self,
         *,
@@ -142,7 +142,7 @@ class Brake(_Brake):
     ) -> None: ...
 
 class Bushing(_Bushing):
-    """Force and torque between two markers that are held together elastically in all six components."""
+    """Elastic force and torque between two markers in all six components."""
     def __init__(
         self,
         *,
@@ -162,7 +162,7 @@ class Bushing(_Bushing):
     ) -> None: ...
 
 class ConstantVelocity(_ConstantVelocity):
-    """Homokinetic joint of two shafts: two points coincide, and both shafts turn about their axes z at one rate."""
+    """Constant velocity joint: two points coincide, and both shafts rotate about their z axes at the same rate."""
     def __init__(
         self,
         *,
@@ -173,7 +173,7 @@ class ConstantVelocity(_ConstantVelocity):
     ) -> None: ...
 
 class ConstraintEquation(_ConstraintEquation):
-    """Formulas of body coordinates and time that stay zero: ``cart.y - 0.1*sin(cart.x)``."""
+    """Formulas of body coordinates and time that remain zero: ``cart.y - 0.1*sin(cart.x)``."""
     def __init__(
         self,
         *,
@@ -184,7 +184,7 @@ class ConstraintEquation(_ConstraintEquation):
     ) -> None: ...
 
 class Coupler(_Coupler):
-    """Ties two joint coordinates by a straight line: s_1 - scale s_2 - offset = 0."""
+    """Linear relation between two joint coordinates: s_1 - scale s_2 - offset = 0."""
     def __init__(
         self,
         *,
@@ -196,7 +196,7 @@ class Coupler(_Coupler):
     ) -> None: ...
 
 class CylinderPlaneImpact(_CylinderPlaneImpact):
-    """A solid cylinder that presses on a plane with the lowest point of the rim of each end."""
+    """Contact of a solid cylinder with a plane at the lowest point of the rim of each end."""
     def __init__(
         self,
         *,
@@ -216,17 +216,17 @@ class CylinderPlaneImpact(_CylinderPlaneImpact):
     ) -> None: ...
 
 class Cylindrical(_Cylindrical):
-    """Sleeve on a shaft: marker i stays on the z axis of marker j, parallel to it, and may slide and turn."""
+    """Sleeve on a shaft: marker i remains on the z axis of marker j, parallel to it, and can slide and rotate."""
     def __init__(self, *, i: given.Marker, j: given.Marker, type: Literal["cylindrical"] = ...) -> None: ...
 
 class Distance(_Distance):
-    """Rod: a point of body i and a point of body j keep their distance, (d . d - L^2)/(2 L) = 0."""
+    """Rod with constant distance between a point of body i and a point of body j, (d . d - L^2)/(2 L) = 0."""
     def __init__(
         self, *, i: given.Marker, j: given.Marker, length: given.Number, type: Literal["distance"] = ...
     ) -> None: ...
 
 class Drive(_Drive):
-    """A motor that moves a joint's coordinate, or a formula of body coordinates, as a function of time, or of states, prescribes."""
+    """Motor that prescribes a joint's coordinate, or a formula of body coordinates, as a function of time or of states."""
     def __init__(
         self,
         *,
@@ -240,7 +240,7 @@ class Drive(_Drive):
     ) -> None: ...
 
 class EllipsoidPlaneImpact(_EllipsoidPlaneImpact):
-    """A solid ellipsoid that presses on a plane with its lowest point."""
+    """Contact of a solid ellipsoid with a plane at its lowest point."""
     def __init__(
         self,
         *,
@@ -261,7 +261,7 @@ class EllipsoidPlaneImpact(_EllipsoidPlaneImpact):
     ) -> None: ...
 
 class FialaTyre(_FialaTyre):
-    """Fiala's tyre: slip stiffnesses, and a friction that falls with the whole slip."""
+    """Fiala tyre: constant slip stiffnesses, and a friction coefficient that decreases with the total slip."""
     def __init__(
         self,
         *,
@@ -283,7 +283,7 @@ class FialaTyre(_FialaTyre):
     ) -> None: ...
 
 class FieldForce(_FieldForce):
-    """Linear elastic connection of two markers that are apart: preload - K (s - s0) - C (v, w)."""
+    """Linear elastic connection of two separate markers: preload - K (s - s0) - C (v, w)."""
     def __init__(
         self,
         *,
@@ -297,11 +297,11 @@ class FieldForce(_FieldForce):
     ) -> None: ...
 
 class Fixed(_Fixed):
-    """Weld: two markers coincide in place and orientation."""
+    """Weld: two markers coincide in position and orientation."""
     def __init__(self, *, i: given.Marker, j: given.Marker, type: Literal["fixed"] = ...) -> None: ...
 
 class Gear(_Gear):
-    """Two wheels in mesh, each pinned to one carrier: theta_1 + ratio theta_2 - offset = 0."""
+    """Gear pair with both wheels on one carrier: theta_1 + ratio theta_2 - offset = 0."""
     def __init__(
         self,
         *,
@@ -313,7 +313,7 @@ class Gear(_Gear):
     ) -> None: ...
 
 class JointFriction(_JointFriction):
-    """Dry friction in a revolute, cylindrical, prismatic or spherical joint, pressed by the joint's own reaction."""
+    """Dry friction in a revolute, cylindrical, prismatic or spherical joint, loaded by the joint's reaction."""
     def __init__(
         self,
         *,
@@ -330,13 +330,13 @@ class JointFriction(_JointFriction):
     ) -> None: ...
 
 class LineForce(_LineForce):
-    """A force between two points of space along the line through them: constant, or a formula of anything measured."""
+    """Force along the line between two points in space: constant, or a formula of any measured quantity."""
     def __init__(
         self, *, i: given.Marker, j: given.Marker, force: given.Law, type: Literal["line_force"] = ...
     ) -> None: ...
 
 class MagicFormulaTyre(_MagicFormulaTyre):
-    """Pacejka's Magic Formula in the form of MF-Tyre 5.2 and PAC2002, with the coefficients of a property file (.tir)."""
+    """Magic Formula tyre (Pacejka) of MF-Tyre 5.2 and PAC2002, with the coefficients of a property file (.tir)."""
     def __init__(
         self,
         *,
@@ -352,23 +352,23 @@ class MagicFormulaTyre(_MagicFormulaTyre):
     ) -> None: ...
 
 class Orientation(_Orientation):
-    """Two markers keep the same axes, wherever their points are."""
+    """Joint that keeps the axes of two markers parallel, at any positions."""
     def __init__(self, *, i: given.Marker, j: given.Marker, type: Literal["orientation"] = ...) -> None: ...
 
 class Parallel(_Parallel):
-    """The axes z of two markers stay parallel, wherever their points are."""
+    """Joint that keeps the z axes of two markers parallel or opposite, at any positions."""
     def __init__(self, *, i: given.Marker, j: given.Marker, type: Literal["parallel"] = ...) -> None: ...
 
 class Perpendicular(_Perpendicular):
-    """The axes z of two markers stay at right angles, wherever their points are."""
+    """Joint that keeps the z axes of two markers perpendicular, at any positions."""
     def __init__(self, *, i: given.Marker, j: given.Marker, type: Literal["perpendicular"] = ...) -> None: ...
 
 class Planar(_Planar):
-    """A body that slides and turns on a plane: the point of marker i stays in the xy plane of marker j, their z parallel."""
+    """Sliding and rotation in a plane: the point of marker i remains in the xy plane of marker j, with parallel z axes."""
     def __init__(self, *, i: given.Marker, j: given.Marker, type: Literal["planar"] = ...) -> None: ...
 
 class PointOnCurve(_PointOnCurve):
-    """Point-follower: the point of marker i stays on a curve in the xy plane of marker j, in any orientation."""
+    """Point follower: the point of marker i remains on a curve in the axes of marker j, in any orientation."""
     def __init__(
         self,
         *,
@@ -382,19 +382,19 @@ class PointOnCurve(_PointOnCurve):
     ) -> None: ...
 
 class PointOnLine(_PointOnLine):
-    """Bead on a wire: the point of marker i stays on the z axis of marker j, in any orientation."""
+    """Bead on a wire: the point of marker i remains on the z axis of marker j, in any orientation."""
     def __init__(self, *, i: given.Marker, j: given.Marker, type: Literal["point_on_line"] = ...) -> None: ...
 
 class PointOnPlane(_PointOnPlane):
-    """A tip on a floor: the point of marker i stays in the xy plane of marker j, in any orientation."""
+    """Point on a plane: the point of marker i remains in the xy plane of marker j, in any orientation."""
     def __init__(self, *, i: given.Marker, j: given.Marker, type: Literal["point_on_plane"] = ...) -> None: ...
 
 class Prismatic(_Prismatic):
-    """Slider: marker i stays on the z axis of marker j and keeps j's orientation."""
+    """Slider: marker i remains on the z axis of marker j and keeps j's orientation."""
     def __init__(self, *, i: given.Marker, j: given.Marker, type: Literal["prismatic"] = ...) -> None: ...
 
 class PythonForce(_PythonForce):
-    """A force and a torque that a Python function gives, for laws that no formula can express."""
+    """Force and torque by a Python function, for laws that no formula can express."""
     def __init__(
         self,
         *,
@@ -406,7 +406,7 @@ class PythonForce(_PythonForce):
     ) -> None: ...
 
 class RackAndPinion(_RackAndPinion):
-    """A wheel that rolls on a toothed bar, both carried by one housing: s - R theta - offset = 0."""
+    """Pinion that rolls on a rack, both on one housing: s - R theta - offset = 0."""
     def __init__(
         self,
         *,
@@ -418,17 +418,17 @@ class RackAndPinion(_RackAndPinion):
     ) -> None: ...
 
 class Revolute(_Revolute):
-    """Hinge: two points coincide and the axes z of both markers are one."""
+    """Hinge: two points coincide, with the z axes of both markers parallel."""
     def __init__(self, *, i: given.Marker, j: given.Marker, type: Literal["revolute"] = ...) -> None: ...
 
 class RevoluteSpherical(_RevoluteSpherical):
-    """Rod without mass, hinged at marker j and ending in a ball at marker i."""
+    """Massless rod with a hinge at marker j and a ball at marker i."""
     def __init__(
         self, *, i: given.Marker, j: given.Marker, length: given.Number, type: Literal["revolute_spherical"] = ...
     ) -> None: ...
 
 class Screw(_Screw):
-    """Nut on a spindle: marker i stays on the z axis of marker j, parallel to it, and a turn carries it on by the pitch."""
+    """Nut on a spindle: marker i remains on the z axis of marker j, parallel to it, and advances by the pitch per turn."""
     def __init__(
         self,
         *,
@@ -440,7 +440,7 @@ class Screw(_Screw):
     ) -> None: ...
 
 class SolidImpact(_SolidImpact):
-    """Two ellipsoids, boxes or cylinders that press on each other at one point."""
+    """Contact of two ellipsoids, boxes or cylinders at one point."""
     def __init__(
         self,
         *,
@@ -462,7 +462,7 @@ class SolidImpact(_SolidImpact):
     ) -> None: ...
 
 class SphereBoxImpact(_SphereBoxImpact):
-    """A sphere about marker i that presses on a face, an edge or a corner of a solid box."""
+    """Contact of a sphere about marker i with a face, an edge or a corner of a solid box."""
     def __init__(
         self,
         *,
@@ -484,7 +484,7 @@ class SphereBoxImpact(_SphereBoxImpact):
     ) -> None: ...
 
 class SphereContact(_SphereContact):
-    """A sphere or point about marker i that presses on a plane, on a sphere, or on a hollow sphere from within."""
+    """Contact of a sphere or point about marker i with a plane, a sphere, or the inside of a hollow sphere."""
     def __init__(
         self,
         *,
@@ -504,7 +504,7 @@ class SphereContact(_SphereContact):
     ) -> None: ...
 
 class SphereCylinderImpact(_SphereCylinderImpact):
-    """A sphere about marker i that presses on the mantle, an end or an edge of a solid cylinder."""
+    """Contact of a sphere about marker i with the lateral surface, an end or an edge of a solid cylinder."""
     def __init__(
         self,
         *,
@@ -525,7 +525,7 @@ class SphereCylinderImpact(_SphereCylinderImpact):
     ) -> None: ...
 
 class SphereSphereImpact(_SphereSphereImpact):
-    """A sphere about marker i that presses on a sphere about marker j."""
+    """Contact of a sphere about marker i with a sphere about marker j."""
     def __init__(
         self,
         *,
@@ -549,7 +549,7 @@ class Spherical(_Spherical):
     def __init__(self, *, i: given.Marker, j: given.Marker, type: Literal["spherical"] = ...) -> None: ...
 
 class SpringDamper(_SpringDamper):
-    """Line spring and damper, linear or by curves, along the line between two points of space."""
+    """Spring and damper along the line between two points in space, linear or nonlinear."""
     def __init__(
         self,
         *,
@@ -565,7 +565,7 @@ class SpringDamper(_SpringDamper):
     ) -> None: ...
 
 class TangentToCurve(_TangentToCurve):
-    """Follower with a direction: the point of marker i stays on a curve, its x axis along the tangent there."""
+    """Follower with a direction: the point of marker i remains on a curve, with its x axis along the tangent."""
     def __init__(
         self,
         *,
@@ -577,7 +577,7 @@ class TangentToCurve(_TangentToCurve):
     ) -> None: ...
 
 class Thread(_Thread):
-    """Ties how far marker i is along the z axis of marker j to its angle about it: s - pitch theta/(2 pi) - offset = 0."""
+    """Relation of displacement along the z axis of marker j to the angle about it: s - pitch theta/(2 pi) - offset = 0."""
     def __init__(
         self,
         *,
@@ -589,7 +589,7 @@ class Thread(_Thread):
     ) -> None: ...
 
 class TorsionSpring(_TorsionSpring):
-    """Rotational spring and damper, linear or by curves, about the axis z that two markers have in common."""
+    """Rotational spring and damper about the common z axis of two markers, linear or nonlinear."""
     def __init__(
         self,
         *,
@@ -605,11 +605,11 @@ class TorsionSpring(_TorsionSpring):
     ) -> None: ...
 
 class Universal(_Universal):
-    """Cardan joint: two points coincide, and the axes z of both markers, the arms of its cross, are at right angles."""
+    """Cardan joint: two points coincide, and the z axes of both markers, the arms of its cross, are perpendicular."""
     def __init__(self, *, i: given.Marker, j: given.Marker, type: Literal["universal"] = ...) -> None: ...
 
 class VelocityEquation(_VelocityEquation):
-    """Formulas linear in velocities that stay zero, J(q) u - b(q, t) = 0, and need not be the rate of anything."""
+    """Formulas linear in velocities that remain zero, J(q) u - b(q, t) = 0, also nonholonomic ones."""
     def __init__(
         self,
         *,
@@ -620,7 +620,7 @@ class VelocityEquation(_VelocityEquation):
     ) -> None: ...
 
 class VerticalTyre(_VerticalTyre):
-    """A spring and damper between a wheel and a road, which lifts off; it transmits no force along the road."""
+    """Spring and damper between a wheel and a road, with lift-off and without forces along the road."""
     def __init__(
         self,
         *,
@@ -635,7 +635,7 @@ class VerticalTyre(_VerticalTyre):
     ) -> None: ...
 
 class WheelTorque(_WheelTorque):
-    """A torque on a wheel about its axle: constant, or a formula of time and of anything measured."""
+    """Torque on a wheel about its axle: constant, or a formula of time and of any measured quantity."""
     def __init__(
         self, *, i: given.Marker, j: given.Marker, torque: given.Law, type: Literal["wheel_torque"] = ...
     ) -> None: ...

@@ -1,1 +1,1 @@
-"""Describing a mechanism: bodies, markers, joints, forces and scenes.  Knows no numerics."""
+"""Description of a mechanism: bodies, markers, joints, forces and scenes. Contains no numerical methods."""

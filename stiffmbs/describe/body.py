@@ -20,7 +20,7 @@ from .units import si
 
 
 class Body(Described):
-    """A planar rigid body: coordinates x, y of its centre of mass and its angle phi.
+    """Planar rigid body with the coordinates x, y of its centre of mass and its angle phi.
 
     Parameters
     ----------
@@ -29,13 +29,13 @@ class Body(Described):
     inertia : float
         About the centre of mass, kg m^2, greater than zero.
     position, angle : floats
-        Where the centre of mass is and how the body is turned at the start (moved by assembly if joints ask), m, rad.
+        Position of the centre of mass (m) and angle (rad) at the start; assembly changes them if joints require it.
     velocity, omega : floats
         At the start, m/s, rad/s.
     markers : mapping of str to Placement
         Named points and directions on the body.
     geometry : mappings, optional
-        What drawings show of the body; derived from its markers and joints without it.
+        Shapes shown in drawings; by default derived from the markers and joints of the body.
     """
 
     mass: si.PositiveMass = Field(description="mass, kg")
@@ -71,55 +71,55 @@ class Body(Described):
         return markers
 
     def coordinates(self) -> tuple[float, ...]:
-        """x, y (m) of the centre of mass and the angle phi (rad) at the start."""
+        """Return x, y (m) of the centre of mass and the angle phi (rad) at the start."""
         return (*self.position, self.angle)
 
     def rates(self) -> tuple[float, ...]:
-        """The rates of `coordinates` at the start, m/s and rad/s."""
+        """Return the rates of `coordinates` at the start, m/s and rad/s."""
         return (*self.velocity, self.omega)
 
     def open_rates(self) -> tuple[bool, ...]:
-        """Which of `rates` are not given: none."""
+        """Return for each of `rates` whether it is left open: never in the plane."""
         return False, False, False
 
     def masses(self) -> tuple[float, ...]:
-        """Diagonal of the body's mass matrix, kg, kg and kg m^2."""
+        """Return the diagonal of the body's mass matrix, kg, kg and kg m^2."""
         return self.mass, self.mass, self.inertia
 
 
 class BodyHandle(Handle):
-    """A body of a model of the plane, as `Model.add` returns it (`stiffmbs.describe.building.handle.Handle`).
+    """Reference to a body of a planar model, returned by `Model.add` (`stiffmbs.describe.building.handle.Handle`).
 
     Attributes
     ----------
     name : str
-        Of the body.
+        Name of the body.
     x, y, angle, vx, vy, omega : SymPy symbol
-        What formulas read of the body.
+        Coordinates and velocities of the body, for formulas.
     mass, inertia and other fields of the body
-        As they stand in the model; setting them changes it.
+        Values in the model; assignment changes the model.
     """
 
     names = PLANE
     fields = Body.model_fields
 
     def at(self, xi: given.Number, eta: given.Number, angle: given.Number = 0.0) -> Marker:
-        """The marker at a point of the body's own axes, m, turned by `angle`, rad."""
+        """Return the marker at a point given in the body's axes, m, rotated by `angle`, rad."""
         return Marker(body=self.name, point=(xi, eta), angle=angle)
 
 
 @dataclass(frozen=True)
 class BodyNumbers:
-    """What bodies bring into a system, body after body.
+    """Initial values and masses of all bodies, concatenated.
 
     Attributes
     ----------
     coordinates, rates : tuples of float
-        At the start, as described.
+        Described values at the start.
     open_rates : tuple of bool
-        Which rates are not given.
+        True for each rate that is not given.
     masses : tuple of float
-        The diagonal of the mass matrix.
+        Diagonal of the mass matrix.
     """
 
     coordinates: tuple[float, ...]
@@ -129,7 +129,7 @@ class BodyNumbers:
 
 
 def body_numbers(bodies: Iterable[Any]) -> BodyNumbers:
-    """The numbers of some bodies."""
+    """Return the concatenated numbers of the given bodies."""
     coordinates: list[float] = []
     rates: list[float] = []
     open_rates: list[bool] = []
@@ -143,7 +143,7 @@ def body_numbers(bodies: Iterable[Any]) -> BodyNumbers:
 
 
 def check_names(names: Iterable[object], what: str) -> None:
-    """Refuse names that could not stand in a formula or a channel."""
+    """Refuse names that are not valid in formulas and channels."""
     for name in names:
         if not isinstance(name, str) or not re.match(DOTTED_PATTERN, name):
             shown = "no name" if name in (None, "") else f"the name {written(name)}"

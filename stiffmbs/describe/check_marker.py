@@ -1,4 +1,4 @@
-"""Whether the marker that a name stands for is there."""
+"""Check of references to markers."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from .marker import GROUND, MarkerReference
 
 
 def check_marker(where: str, marker: MarkerReference, bodies: Mapping[str, Any], on_ground: Mapping[str, Any]) -> None:
-    """Refuse a marker on an unknown body, or of a name that its body does not know."""
+    """Refuse a marker on an unknown body, or a marker name that its body does not have."""
     if marker.body != GROUND and marker.body not in bodies:
         raise ValueError(f"{where}: found the unknown body '{marker.body}', expected {listed(bodies)}")
     own = on_ground if marker.body == GROUND else bodies[marker.body].markers
@@ -18,6 +18,6 @@ def check_marker(where: str, marker: MarkerReference, bodies: Mapping[str, Any],
 
 
 def listed(bodies: Mapping[str, Any]) -> str:
-    """The names of bodies in a sentence."""
+    """Return the names of bodies as a list for a message."""
     names = list(bodies)
     return ", ".join([*names[:8], *(["..."] if len(names) > 8 else []), GROUND])

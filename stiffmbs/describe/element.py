@@ -1,9 +1,8 @@
-"""What a joint and a force are: fields with units, and their equations in SymPy, written once.
+"""Base classes of joints and forces: fields with units, and equations in SymPy, written once.
 
 An element's equations are static functions of `e`, the element with its markers as symbolic frames
-(`stiffmbs.compile.symbolic.planar_frames.Frame`, in space `stiffmbs.compile.symbolic.spatial_frames.SpatialFrame`) and its numbers as
-symbols.  Jacobians, velocity and acceleration terms, reactions and kernels are all derived from them, so an element is its
-fields, its equations and their names.
+(`stiffmbs.compile.symbolic.planar_frames.Frame`, in space `stiffmbs.compile.symbolic.spatial_frames.SpatialFrame`) and
+its numbers as symbols. Jacobians, velocity and acceleration terms, reactions and kernels are derived from them.
 """
 
 from __future__ import annotations
@@ -26,9 +25,9 @@ if TYPE_CHECKING:
     from .model_data import ModelData
 
 Symbolic = Any
-"""The element as its equations see it (`stiffmbs.compile.symbolic.element.SymbolicElement`): a frame for a marker, a symbol for a number, an expression for a formula, a
-function for a formula or table of a variable, a symbolic element for a joint that is referred to; ``e.t`` for time,
-``e.rate(expression)`` for a total time derivative, ``e.frames`` for the bodies."""
+"""Element as its equations see it (`stiffmbs.compile.symbolic.element.SymbolicElement`). Markers are frames, numbers
+symbols, and formulas expressions. Formulas and tables of a variable are functions, and referenced joints are symbolic
+elements. Also ``e.t`` for time, ``e.rate(expression)`` for a total time derivative, and ``e.frames`` for the bodies."""
 
 
 IN_EQUATIONS = frozenset(
@@ -116,40 +115,41 @@ def _reserved(element: type[Described], base: type[Described]) -> str:
 
 
 class Component(Described):
-    """Base of what an element is made of besides numbers, with fields and equations of its own, such as a road.
+    """Base of structured fields of an element, such as a road, with fields and equations of their own.
 
-    Its equations are static functions whose first argument is the component with symbols for its fields.
+    The equations are static functions whose first argument is the component with symbols for its fields.
     """
 
     def in_equations(self) -> Mapping[str, Any]:
-        """What its equations see: its fields, or what is made of them."""
+        """Return the values that its equations see: its fields, or values derived from them."""
         return {name: getattr(self, name) for name in type(self).model_fields}
 
     def notes(self) -> Iterator[str]:
-        """What a user should know of it."""
+        """Yield notes about the component for the user."""
         yield from ()
 
 
 class Element(Described):
-    """Base of joints and forces.  A subclass is all that a new kind takes: in its own file in `joints` or `forces`, or a user's own.
+    """Base of joints and forces; a subclass in `joints`, `forces` or user code defines a new kind.
 
     Attributes
     ----------
     kind : str
-        What scenes call it, as its `type`.
+        Name of the kind in scenes, its `type`.
     dimensions : tuple of int
-        In which models it can stand, 2 for the plane and 3 for space; () for those that its markers are of.
+        Models in which it is available: 2 for the plane, 3 for space; () for the dimension of its markers.
     forms : tuple of mappings of str to Any
-        The fields that make the forms in which it is mostly used, where those that have no default are not enough: these are
-        compiled ahead (``stiffmbs cache warm``) and tested.
+        Fields of the most common variants, where fields without a default are not enough. These variants are compiled
+        in advance (``stiffmbs cache warm``) and tested.
     reflected : mapping of str to str, optional
-        How fields change in the mirror image of a part; those that it does not name stay.  Each marker's axes X become
-        S X S (`stiffmbs.describe.parts.planar_frame.PlanarFrame`).  None: the element cannot be mirrored.  For a number, a
-        law or components along the axes: ``vector``, ``rotations``, ``components`` (of force, then of torque), ``matrix``,
-        ``angle`` (about the last axis), ``pitch`` (along z for each turn), ``x``, ``about x``; names of fields that name joints: as
-        the product of their coordinates.  For a marker: its axis whose direction matters, such as ``z``.
+        Transformation of fields in the mirror image of a part; fields that are not listed stay. Each marker's axes X
+        become S X S (`stiffmbs.describe.parts.planar_frame.PlanarFrame`). None: the element cannot be mirrored. For a
+        number, a law or components along the axes: ``vector``, ``rotations``, ``components`` (of force, then of
+        torque), ``matrix``, ``angle`` (about the last axis), ``pitch`` (along z for each turn), ``x``, ``about x``.
+        Names of fields that name joints: as the product of their coordinates. For a marker: the axis whose direction
+        matters, such as ``z``.
     symbol : str
-        The kind whose symbol drawings show; its own by default, and a diamond or a dashed line where there is none.
+        Kind whose symbol drawings show; by default its own, or a diamond or a dashed line if there is none.
     """
 
     kind: ClassVar[str] = ""
@@ -171,7 +171,6 @@ class Element(Described):
     @model_validator(mode="before")
     @classmethod
     def _of_its_kind(cls, found: Any) -> Any:
-        """Let the type be the class's kind."""
         return typed(cls.kind, found)
 
     @classmethod
@@ -183,7 +182,7 @@ class Element(Described):
         return schema
 
     def parts(self, part: builtins.type) -> Iterator[tuple[str, Any]]:
-        """The element's markers, formulas, or joint names: every value of a type, by field name, in order."""
+        """Yield the fields of a type, such as markers, formulas or joint names, with field names, in order."""
         fields = vars(self)  # getattr asks pydantic for each
         for name in type(self).__pydantic_fields__:
             value = fields[name]
@@ -193,75 +192,76 @@ class Element(Described):
                 yield name, value
 
     def markers(self) -> Iterator[tuple[str, MarkerReference]]:
-        """The element's markers by field name, the first body's first; those in its formulas after its own."""
+        """Yield the element's markers by field name, the first body's first, then the markers in its formulas."""
         yield from self.parts(MarkerReference)
         for name, formula in self.parts(Formula):
             for _, markers in formula.measures():
                 yield from ((name, marker) for marker in markers)
 
     def equation_names(self) -> tuple[str, ...]:
-        """The names of the element's constraint equations; none for a force."""
+        """Return the names of the element's constraint equations; none for a force."""
         return ()
 
     def validation_errors(self, joints: Mapping[str, Joint]) -> Iterator[tuple[str, str]]:
-        """A field and what is wrong with the joint that it refers to, "found ..., expected ..."; nothing where all fit."""
+        """Yield each field whose joint does not fit, with the reason, "found ..., expected ..."."""
         yield from ()
 
     def invalid_placement(self, pose: InitialPose) -> Iterator[str]:
-        """Why the element cannot act at the initial pose."""
+        """Yield reasons why the element cannot act at the initial pose."""
         yield from ()
 
     def in_space(self, angles: Any) -> dict[str, Any]:
-        """The element as a scene in space writes it, in the x-y plane; of a class of the plane.
+        """Return the fields of the equivalent spatial element in the x-y plane, for a planar element.
 
-        By default the kind of the same name in space, with fields that mean the same.
+        By default that is the spatial kind of the same name, with fields of the same meaning.
 
         Parameters
         ----------
         angles : Angles
-            Of the planar model (`stiffmbs.describe.spatial.embedding.angles`).
+            Angles of the planar model (`stiffmbs.describe.spatial.embedding.angles`).
 
         Raises
         ------
         InputError
-            When there is none.
+            If there is no equivalent.
         """
         from .spatial.embedding.fields import namesake
 
         return namesake(self, angles)
 
     def spins_with(self) -> dict[str, str]:
-        """The markers whose bodies may spin without a change of the equations, by field, and what spinning asks of each.
+        """Return the markers whose bodies may spin without changing the equations, by field, with the conditions.
 
-        ``x``, ``y`` or ``z``: the marker's point is on the spin axis, which lies along this axis of the marker.  ``point``: its
-        point is on the spin axis.  ``body``: nothing.  A body with a marker that is not among them keeps its spin in its
-        quaternion (`stiffmbs.presolve.spinning_bodies`).
+        ``x``, ``y`` or ``z``: the marker's point is on the spin axis, which is parallel to this axis of the marker.
+        ``point``: its point is on the spin axis. ``body``: no condition. A body with any other marker keeps its spin in
+        its quaternion (`stiffmbs.presolve.spinning_bodies`).
         """
         return {}
 
     def at_initial_pose(self, model: ModelData) -> Self:
-        """The element with what it leaves open taken from the bodies' described poses."""
+        """Return the element with open values taken from the described poses of the bodies."""
         return self
 
 
 class Joint(Element):
-    """A constraint between bodies.
+    """Constraint between bodies.
 
     Attributes
     ----------
     equations : tuple of str
-        The names of the equations that `position`, then `velocity`, return; used in reports.
+        Names of the equations that `position`, then `velocity`, return; used in reports.
     coordinates : tuple of str
-        The names of its coordinates, for drives and couplers: ``angle``, ``displacement``.  A joint has a static
-        function of `e` by the name of each.
+        Names of its coordinates, for drives and couplers: ``angle``, ``displacement``. The joint has a static function
+        of `e` with each of these names.
     transmits : tuple of str
-        In space what it transmits: forces ``fx fy fz`` along the axes of marker j, and torques ``tx ty tz`` about them at the
-        point of marker i.  What does not lie along one of them, as the torque of a universal joint, is left out.  A joint that
-        states it is advised in place of one that transmits more than is needed.
+        Reaction components in space: forces ``fx fy fz`` along the axes of marker j, and torques ``tx ty tz`` about
+        them at the point of marker i. Components along other directions, such as the torque of a universal joint, are
+        omitted. Redundancy advice proposes such joints in place of joints that transmit more than necessary.
     elastic : str
-        The kind of force that holds the same elastically.
+        Kind of the compliant force that can replace the joint.
     keeps_in_plane : bool
-        Of a planar joint with two markers whether its namesake in space keeps a body in the plane of the other one.
+        True if the spatial joint of the same kind keeps one body in the plane of the other (planar joints with two
+        markers).
     """
 
     equations: ClassVar[tuple[str, ...]] = ()
@@ -272,25 +272,25 @@ class Joint(Element):
 
     @staticmethod
     def position(e: Symbolic) -> Any:
-        """The constraint equations C(q, t) = 0, one expression for each name in `equations`."""
+        """Return the constraint equations C(q, t) = 0, one expression for each name in `equations`."""
         return ()
 
     @staticmethod
     def velocity(e: Symbolic) -> Any:
-        """Equations linear in u that have no position form, such as a prescribed rate."""
+        """Return the constraint equations linear in u without a position form, such as a prescribed rate."""
         return ()
 
     @staticmethod
     def point(e: Symbolic) -> Any:
-        """The joint's point, about which its torque is reported."""
+        """Return the reference point of the joint's reaction torque."""
         return e.i.point
 
     @staticmethod
     def loads(e: Symbolic) -> Loads:
-        """What presses its surfaces, from its multipliers ``e.lam``; a joint that states it can have friction.
+        """Return the loads on the joint's surfaces, from its multipliers ``e.lam``; they are required for friction.
 
-        With the coordinate ``angle`` it rubs as a pin, with ``displacement`` as a guide, with both as a sleeve, and in space
-        without coordinates as a ball.
+        The joint friction is that of a pin with the coordinate ``angle``, of a guide with ``displacement``, and of a
+        sleeve with both. A spatial joint without coordinates has the friction of a ball joint.
         """
         raise NotImplementedError
 
@@ -299,29 +299,29 @@ class Joint(Element):
 
 
 class Force(Element):
-    """An applied force: efforts on coordinates or on rates, by virtual power.
+    """Applied force: efforts on coordinates or on rates, by virtual power.
 
-    The generalised force is the sum of effort times the derivative of its coordinate: a spring is its tension on
-    its length, a force at a point is its components on the point's coordinates.  A force that acts on a rate that
-    belongs to no coordinate, as a torque in space on an angular velocity, has `powers` in place of `efforts`.
+    The generalised force is the sum of effort times the derivative of its coordinate. For a spring this is the tension
+    on its length; for a force at a point, its components on the point's coordinates. A force on the rate of no
+    coordinate, such as a torque in space on an angular velocity, defines `powers` in place of `efforts`.
 
     Attributes
     ----------
     channels : tuple of str
-        Names of what `measured` returns, reported as channels of the element.
+        Names of the values that `measured` returns, reported as channels of the element.
     may_keep_energy : bool
-        Whether there are numbers with which it keeps energy; they are looked for in its equations.
+        Whether the force is conservative for some values of its fields; its equations are tested for them.
     turns : bool
-        Whether it stands for a body's turning in space, and the body's kinematics, p' = Z(p) w, belong to it.
+        Whether it represents the rotation of a body in space and contains the body's kinematics, p' = Z(p) w.
     beyond : str
-        What is wrong where one of its `limits` is passed: "found ..., expected ...".
+        Message if one of its `limits` is exceeded: "found ..., expected ...".
     doubtful : float
-        Value of its limits below which the motion is doubtful; none where the limits alone tell.
+        Value of its limits below which the motion is doubtful; -inf if only the limits themselves matter.
     doubt : str
-        What is doubtful there, after the element's name.
+        Description of the doubt, after the element's name.
 
-    A force may have states of its own, values with x' = rate, zero at the start: `own_states` names them, `rates` has their rates,
-    and its equations see them as ``e.own``.
+    A force can have states of its own, with x' = rate and initial value zero: `own_states` returns their names, `rates`
+    their rates, and the equations see them as ``e.own``.
     """
 
     channels: ClassVar[tuple[str, ...]] = ()
@@ -336,45 +336,45 @@ class Force(Element):
         return {}
 
     def own_states(self) -> tuple[str, ...]:
-        """The names of its own states; channels have them behind the element's name."""
+        """Return the names of its own states; channels prefix them with the element's name."""
         return ()
 
     @classmethod
     def rates(cls, e: Symbolic) -> Any:
-        """The rates of its own states, per second, in their order."""
+        """Return the rates of its own states, per second, in their order."""
         return ()
 
     @staticmethod
     def efforts(e: Symbolic) -> list[tuple[Any, Any]]:
-        """Pairs of an effort and the coordinate that it does work on."""
+        """Return pairs of an effort and the coordinate on which it does work."""
         raise NotImplementedError
 
     @classmethod
     def powers(cls, e: Symbolic) -> list[tuple[Any, Any]]:
-        """Pairs of an effort and the rate that it has its power with, the rate being linear in velocities."""
+        """Return pairs of an effort and its conjugate rate, which is linear in the velocities."""
         return [(effort, e.rate(coordinate)) for effort, coordinate in cls.efforts(e)]
 
     @staticmethod
     def potential(e: Symbolic) -> Any:
-        """Potential energy, J; zero for a force that has none."""
+        """Return the potential energy, J; zero for a force without one."""
         return 0
 
     @classmethod
     def measured(cls, e: Symbolic) -> Any:
-        """What is reported of the force besides its wrench, one expression for each name in `channels`."""
+        """Return the reported values in addition to the wrench, one expression for each name in `channels`."""
         return ()
 
     @staticmethod
     def event_functions(e: Symbolic) -> Any:
-        """Expressions that change their sign where the force has a breakpoint in the state, such as a gap."""
+        """Return expressions that change sign at the state-dependent breakpoints of the force, such as a gap."""
         return ()
 
     @classmethod
     def limits(cls, e: Symbolic) -> Any:
-        """Expressions above zero for as long as the force's law holds; where one is not, the run stops."""
+        """Return expressions that are positive within the valid range of the force law; otherwise the run stops."""
         return ()
 
     @staticmethod
     def point(e: Symbolic) -> Any:
-        """The point on the first body about which the force's torque is reported."""
+        """Return the point on the first body that is the reference of the force's torque."""
         return e.i.point

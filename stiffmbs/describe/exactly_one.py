@@ -1,15 +1,15 @@
-"""The check that one of two fields is given, and not both."""
+"""Check that exactly one of two fields is given."""
 
 from __future__ import annotations
 
 
 def exactly_one(first: tuple[str, object], second: tuple[str, object]) -> None:
-    """Refuse two fields, each with its name and value, of which both or neither are given.
+    """Refuse a pair of fields, each with name and value, if both or neither are given.
 
     Raises
     ------
     ValueError
-        In the words of all errors of input.
+        With the message of an input error.
     """
     names = f"'{first[0]}' and '{second[0]}'"
     given = sum(value is not None for _, value in (first, second))

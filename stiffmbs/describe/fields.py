@@ -1,7 +1,7 @@
-"""Field types of the description: SI numbers that may be written with units, and the base of everything described.
+"""Field types of the description: SI numbers that accept units, and the base class of all descriptions.
 
-A field's type carries its dimension, unit and bounds, so that the schema, the reference pages and the error
-messages all come from the one place where an element names its fields.
+A field's type carries its dimension, unit and bounds. The schema, the reference pages and the error messages are
+derived from it.
 """
 
 from __future__ import annotations
@@ -33,11 +33,11 @@ from .units.units import DIMENSIONS, Quantity, one
 
 NAME_PATTERN = r"^[A-Za-z_][A-Za-z0-9_]*$"
 DOTTED_PATTERN = r"^[A-Za-z_][A-Za-z0-9_]*(\.[A-Za-z_][A-Za-z0-9_]*)*$"
-"""Of what may stand in a part: ``front.left.arm``."""
+"""Pattern of names that may include the names of parts: ``front.left.arm``."""
 
 
 class _SignatureWhenAsked:
-    """The signature of a class that is built when it is used: being asked for it is a use."""
+    """Signature of a class whose model is built on first use; reading the signature counts as a use."""
 
     def __get__(self, instance: object, described: Any) -> Any:
         described.model_rebuild()
@@ -48,7 +48,7 @@ class _SignatureWhenAsked:
 
 
 class _OneSentence(type(BaseModel)):  # type: ignore[misc]
-    """Makes a direct construction, and a class that cannot be made, fail with the package's own error."""
+    """Metaclass that reports errors of construction and of class definition as `InputError`."""
 
     def __new__(mcs, name: str, *arguments: Any, **options: Any) -> Any:
         try:
@@ -68,7 +68,7 @@ class _OneSentence(type(BaseModel)):  # type: ignore[misc]
             return super().__call__(**fields)
         except PydanticError as error:
             raise InputError(f"{cls.__name__}: {sentence(error)}") from None
-        except PydanticUserError as error:  # a type that was not known where the class was made
+        except PydanticUserError as error:  # a type that was unknown when the class was defined
             raise InputError(f"{cls.__name__}: {_first_line(error)}") from error
 
 
@@ -81,22 +81,22 @@ if TYPE_CHECKING:
 else:
 
     class _Base(BaseModel, metaclass=_OneSentence):
-        """A model whose construction fails in one sentence."""
+        """Model whose construction errors are single sentences."""
 
 
 class Described(_Base):
-    """Base of all descriptions: frozen, no unknown keys, and errors of one sentence.
+    """Base of all descriptions: immutable, without unknown keys, with errors of one sentence.
 
     Raises
     ------
     InputError
-        When a field is missing, unknown, of the wrong type or out of its bounds.
+        If a field is missing, unknown, of the wrong type or out of its bounds.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid", arbitrary_types_allowed=True, defer_build=True)
 
     def __repr_args__(self) -> Iterator[tuple[str, Any]]:
-        """The fields that do not have their defaults, for ``repr``."""
+        """Yield the fields that differ from their defaults, for ``repr``."""
         for name, field in type(self).model_fields.items():
             value = getattr(self, name)
             if name != "type" and value != field.get_default(call_default_factory=True):
@@ -115,7 +115,7 @@ class Described(_Base):
     @model_validator(mode="before")
     @classmethod
     def _arrays_as_lists(cls, found: Any) -> Any:
-        """NumPy's arrays and numbers as Python's, so that no field has to know both."""
+        """Convert NumPy arrays and numbers to Python objects."""
         if not isinstance(found, dict):
             return found
         return {key: value.tolist() if hasattr(value, "tolist") else value for key, value in found.items()}
@@ -123,22 +123,21 @@ class Described(_Base):
 
 @cache
 def _keys(described: type[Described]) -> tuple[str, ...]:
-    """The keys that the fields of a class have in scenes."""
     return tuple(field.alias or name for name, field in described.model_fields.items())
 
 
 @dataclass(frozen=True)
 class Measured:
-    """Marks a field as a finite number of a dimension: ``mass: Annotated[float, Measured("mass", above=0)]``.
+    """Marker of a field as a finite number of a dimension: ``mass: Annotated[float, Measured("mass", above=0)]``.
 
-    Written in SI units, or as text with units that converts to them.
+    Values are in SI units or text with units.
 
     Parameters
     ----------
     dimension : str
         One of `stiffmbs.describe.units.units.DIMENSIONS`.
     above, at_least, at_most, other_than : float, optional
-        Bounds, and a number that is none of them, in SI units.
+        Bounds, and an excluded value, in SI units.
     """
 
     dimension: str
@@ -148,7 +147,7 @@ class Measured:
     other_than: float | None = None
 
     def read(self, found: object, info: ValidationInfo) -> Any:
-        """The SI value of what stands in the scene, or what follows it through other values (`stiffmbs.describe.files.followed`)."""
+        """Return the SI value of an entry, or its trace if it is followed (`stiffmbs.describe.files.followed`)."""
         context = info.context or {}
         record = context.get(FOLLOWED)
         if record is not None and record.follows(found):
@@ -156,12 +155,12 @@ class Measured:
         return self.si_value(found, context.get("parameters"))
 
     def si_value(self, found: object, parameters: Mapping[str, Quantity] | None) -> float:
-        """The SI value of what stands in the scene.
+        """Return the SI value of an entry of a scene.
 
         Raises
         ------
         FormulaError
-            When it is no number of the dimension, or out of its bounds.
+            If it is not a number of the dimension, or out of its bounds.
         """
         value = in_si(found, self.dimension, parameters)
         unit = DIMENSIONS[self.dimension][1].removeprefix("1").removeprefix("SI units")
@@ -191,7 +190,7 @@ class Measured:
 
 
 def sentence(error: PydanticError) -> str:
-    """The first fault of a validation as one sentence: where, what was found, what was expected."""
+    """Return the first fault of a validation as one sentence: location, found, expected."""
     faults = error.errors(include_url=False)
     fault = faults[0]
     where = location(fault["loc"])
@@ -201,7 +200,7 @@ def sentence(error: PydanticError) -> str:
 
 
 def location(parts: tuple[Any, ...]) -> str:
-    """A fault's place as it is written with ``--set``: ``bodies.cart.mass``, without the branches that validation adds."""
+    """Return the path of a fault in the form of ``--set``: ``bodies.cart.mass``, without the branches of unions."""
     named = [str(part) for part in parts]
     while named and ("[" in named[-1] or named[-1] in ("int", "float", "str")):
         named.pop()  # the branch of a union
@@ -231,12 +230,12 @@ def _reason(fault: Any) -> str:
 
 
 def typed(kind: str, found: Any) -> Any:
-    """An entry as it was found, its type filled in.
+    """Return an entry with its type filled in.
 
     Raises
     ------
     ValueError
-        When it has another type than this kind.
+        If it has another type than this kind.
     """
     if not isinstance(found, dict):
         return found

@@ -1,4 +1,4 @@
-"""The plot that a scene asks for."""
+"""Plots that a scene requests."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from .fields import Described
 
 
 class Figure(Described):
-    """Which channels to plot against which, as ``stiffmbs run SCENE --figure FILE`` draws it.
+    """Plot of channels, drawn by ``stiffmbs run SCENE --figure FILE``.
 
     Parameters
     ----------
@@ -20,7 +20,7 @@ class Figure(Described):
     z : str
         A channel: the figure is then a path in space, of one `y` over `x`.
     equal : bool
-        Whether all axes have one scale, as for paths.
+        Whether all axes have the same scale, as for paths.
     """
 
     title: str = Field("", description="shown above the plot")

@@ -1,4 +1,4 @@
-"""What may be given for a field of each type: numbers as such or as text with units, bodies by name or by their handles."""
+"""Types accepted by constructors in Python: numbers also as text with units, bodies also as handles."""
 
 from __future__ import annotations
 
@@ -17,24 +17,24 @@ if TYPE_CHECKING:
     from .tyres import coefficients
 
 Number: TypeAlias = "float | np.number[Any] | str"
-"""In SI units, or text with a unit: ``0.3``, ``"300 mm"``."""
+"""Number in SI units, or text with a unit: ``0.3``, ``"300 mm"``."""
 Numbers: TypeAlias = "Sequence[Number | None] | np.ndarray"
 Matrix: TypeAlias = "Sequence[Number | Sequence[Number | None] | np.ndarray | None] | np.ndarray"
-"""By rows, or by its diagonal where the field allows it."""
+"""Matrix by rows, or by its diagonal if the field allows it."""
 Law: TypeAlias = "float | np.number[Any] | str"
-"""A formula, or a number."""
+"""Formula or number."""
 Laws: TypeAlias = "Law | Sequence[Law]"
 Curve: TypeAlias = "Law | Table | Mapping[str, Any]"
-"""A formula of one variable, or a table."""
+"""Formula of one variable, or table."""
 Function: TypeAlias = "Callable[..., Any] | PythonFunction"
 Marker: TypeAlias = "str | Handle | MarkerReference | Mapping[str, Any]"
-"""A body or a marker of it by name, a body's handle, or a marker given on the spot."""
+"""Name of a body or of a marker, handle of a body, or explicit marker."""
 Road: TypeAlias = "road.Road | Mapping[str, Any]"
-"""As made in Python, or its type and fields."""
+"""Road made in Python, or its type and fields."""
 TyreProperties: TypeAlias = "coefficients.TyreProperties | str | Path | Mapping[str, Any]"
-"""A property file, or its coefficients."""
+"""Property file, or its coefficients."""
 Markers: TypeAlias = "Mapping[str, Any]"
 """Named points on a body."""
 Geometry: TypeAlias = "Mapping[str, Any] | Sequence[Mapping[str, Any]]"
-"""Shapes of a body, each with its ``type``; one may stand alone."""
+"""Shapes of a body, each with its ``type``; a single one needs no list."""
 Orientation: TypeAlias = "Sequence[Any] | np.ndarray | Mapping[str, Any]"

@@ -1,4 +1,4 @@
-"""Elements with the numbers of the bodies' described poses in place of symbols: mechanisms at the initial pose."""
+"""Numerical evaluation of elements at the described poses of the bodies."""
 
 from __future__ import annotations
 
@@ -18,12 +18,13 @@ if TYPE_CHECKING:
     from .model_data import ModelData
 
 SAME_POINT = 1e-13
-"""Of the mechanism's size, or of the coordinates where they are larger: what two ways to one point may differ by."""
+"""Rounding tolerance for coincident points, relative to the mechanism's size or to the coordinates if they are
+larger."""
 
 
 @dataclass(frozen=True)
 class InitialPose:
-    """A model as described, for all its elements that look whether they can stand in it.
+    """Model at its described pose, for checks of the placement of elements.
 
     Attributes
     ----------
@@ -33,19 +34,19 @@ class InitialPose:
     model: ModelData
 
     def at_one_place(self, i: MarkerReference, j: MarkerReference) -> bool:
-        """Whether two markers are at one point at the start, to rounding: the line through them has no direction."""
+        """Return True if two markers coincide at the start, to rounding, so the line through them has no direction."""
         a, b = self.model.point(i), self.model.point(j)
         return math.dist(a, b) <= SAME_POINT * max(self._size, *map(abs, (*a, *b)))
 
     @cached_property
     def _size(self) -> float:
-        """Worked out once, as it looks at all markers."""
+        """Size of the model, cached because it requires all markers."""
         return self.model.size()
 
 
 @dataclass(frozen=True)
 class InitialMarker:
-    """A marker with numbers, in ground axes: what `stiffmbs.compile.symbolic.planar_frames.Frame` is with symbols.
+    """Marker with numbers in ground axes: numerical form of `stiffmbs.compile.symbolic.planar_frames.Frame`.
 
     Attributes
     ----------
@@ -65,12 +66,12 @@ class InitialMarker:
 
     @property
     def normal(self) -> np.ndarray:
-        """Unit vector across the marker's axis, a quarter turn ahead of it."""
+        """Unit vector perpendicular to the marker's axis, a quarter turn counter-clockwise."""
         return np.array([-math.sin(self.angle), math.cos(self.angle)])
 
 
 def initial_element(element: Element, model: ModelData) -> Any:
-    """The element as its equations see it, for markers, numbers and joints that it refers to."""
+    """Return the element as its equations see it, with numbers for markers, fields and referenced joints."""
     fields = {name: _drawn(getattr(element, name), model) for name in type(element).model_fields}
     return SimpleNamespace(**fields, angle=math.atan2)
 

@@ -1,4 +1,4 @@
-"""How elements and formulas refer to joints: by name, or by the name of one of a joint's coordinates."""
+"""References to joints and their coordinates by name."""
 
 from __future__ import annotations
 
@@ -12,20 +12,20 @@ if TYPE_CHECKING:
     from .element import Joint
 
 COORDINATES = ("angle", "displacement")
-"""What the coordinates of joints are called."""
+"""Names of the coordinates of joints."""
 
 
 class JointName(str):
-    """The name of a joint of the model, or of one of its coordinates (``sleeve.angle``), in a field of another element."""
+    """Name of a joint of the model, or of one of its coordinates (``sleeve.angle``), in a field of another element."""
 
     @property
     def joint(self) -> str:
-        """The joint's name."""
+        """Name of the joint."""
         owner, _, last = self.rpartition(".")
         return owner if owner and last in COORDINATES else str(self)
 
     def coordinate_of(self, joint: Joint) -> str | None:
-        """Which of the joint's coordinates is meant; None where it has no such one, or there is a choice."""
+        """Return the coordinate of the joint that is meant; None if it does not exist or is ambiguous."""
         name = self[len(self.joint) + 1 :]
         if name:
             return name if name in joint.coordinates else None

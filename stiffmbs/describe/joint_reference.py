@@ -1,4 +1,4 @@
-"""Whether a joint has the coordinate that an element refers to."""
+"""Check of references to joint coordinates."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from .joint_name import JointName
 def unfit_joints(
     element: Element, joints: Mapping[str, Joint], wanted: Mapping[str, str] | None = None
 ) -> Iterator[tuple[str, str]]:
-    """The fields whose joint has no such coordinate, or not the one that `wanted` names for the field; and why.
+    """Yield the fields whose joint lacks a coordinate, or has another one than `wanted`, with the reason.
 
     Parameters
     ----------
     element : Element
         With fields that name joints.
     joints : mapping of str to Joint
-        The model's joints.
+        Joints of the model.
     wanted : mapping of str to str, optional
         ``angle`` or ``displacement`` by field.
     """
@@ -36,4 +36,4 @@ SORTS = {
     "angle": "a revolute joint, or another one's angle",
     "displacement": "a prismatic joint, or another one's displacement",
 }
-"""Joints with a coordinate, or with a certain one, in words."""
+"""Joints with a coordinate, or with a certain one, for messages."""

@@ -1,6 +1,6 @@
-"""The kinds of joints and forces that models and scenes know: those of this package, and users' own.
+"""Kinds of joints and forces, of this package and of users.
 
-A user's own class is registered, or installed with its package under the entry point group `stiffmbs.elements`.
+User classes are registered, or installed with a package under the entry point group `stiffmbs.elements`.
 """
 
 from __future__ import annotations
@@ -24,12 +24,12 @@ from .own_elements import REGISTRY, check_class, dimensions_of
 
 
 class Kinds(Mapping[str, type[Any]]):
-    """The joints, or the forces, of the plane or of space, by kind; the file of a shipped one is loaded when it is asked for.
+    """Planar or spatial joints or forces by kind; files of the package are imported on demand.
 
     Parameters
     ----------
     package : module
-        Whose files hold the shipped ones.
+        Package that contains the shipped kinds.
     base : type
         `Joint` or `Force`.
     dimensions : int
@@ -44,12 +44,12 @@ class Kinds(Mapping[str, type[Any]]):
 
     @cached_property
     def shipped(self) -> dict[str, type[Any]]:
-        """Those of this package.
+        """Kinds of this package.
 
         Raises
         ------
         InputError
-            When two classes have one kind.
+            If two classes have the same kind.
         """
         found: dict[str, type[Any]] = {}
         for file in self._files:
@@ -59,7 +59,7 @@ class Kinds(Mapping[str, type[Any]]):
         return found
 
     def _in_file(self, file: str) -> dict[str, type[Any]]:
-        """The element classes that a file defines or holds, by kind."""
+        """Return the element classes in the namespace of a file, by kind."""
         if file not in self._loaded:
             members = vars(importlib.import_module(f"{self._package}.{file}")).values()
             self._loaded[file] = {member.kind: member for member in members if self._is_kind(member)}
@@ -71,11 +71,11 @@ class Kinds(Mapping[str, type[Any]]):
         )
 
     def is_shipped(self, element: type[Element]) -> bool:
-        """Whether a class is defined in this package's own files."""
+        """Return True for a class that is defined in this package."""
         return element.__module__.startswith(f"{self._package}.")
 
     def own(self) -> dict[str, type[Any]]:
-        """Those from outside of this package."""
+        """Return the kinds of users and other packages."""
         return REGISTRY.kinds(self.base, self.dimensions)
 
     def __getitem__(self, kind: str) -> type[Any]:
@@ -85,17 +85,17 @@ class Kinds(Mapping[str, type[Any]]):
         return self.own()[kind]
 
     def _likely_first(self, kind: str) -> Iterator[str]:
-        """All files in such an order that few are loaded: loaded ones, the one named as the kind, those that write its name."""
+        """Yield all files: imported ones, the one named as the kind, those that contain its name, others."""
         yield from tuple(self._loaded)
         if kind in self._files:
             yield kind
         yield from sorted(self._files, key=lambda file: self._search_rank(file, kind))
 
     def _search_rank(self, file: str, kind: str) -> int:
-        """0 for a file that writes the kind's name in quotes, 1 for one that writes it otherwise, 2 for one that does not."""
+        """Return 0 for a file that contains the kind's name in quotes, 1 without quotes, 2 for other files."""
         try:
             text = (self._folder / f"{file}.py").read_text(encoding="utf-8")
-        except OSError:  # installed without its source
+        except OSError:  # installed without source
             return 0
         return next((k for k, name in enumerate((f'"{kind}"', kind)) if name in text), 2)
 
@@ -106,24 +106,24 @@ class Kinds(Mapping[str, type[Any]]):
         return sum(1 for _ in self)
 
     def fits(self, element: Element) -> bool:
-        """Whether an element is one of these, or a user's own that could be registered among them."""
+        """Return True if an element is one of these kinds, or a user element of this category."""
         return isinstance(element, self.base) and self.dimensions in dimensions_of(type(element))
 
 
 def _is_generic(element: type[Element]) -> bool:
-    """Whether the class is for markers of any family, or one such with its marker: those of the plane and of space are subclasses."""
+    """Return True for a generic class of any markers, or one with its marker; only subclasses are kinds."""
     generic = element.__pydantic_generic_metadata__
     return bool(generic["parameters"] or generic["origin"])
 
 
 @dataclass(frozen=True)
 class _OneOf:
-    """Marks a field that takes an element of any of some kinds, told apart by its ``type``."""
+    """Marker of a field that takes an element of some kinds, selected by its ``type``."""
 
     kinds: Kinds
 
     def read(self, found: object, info: ValidationInfo) -> Any:
-        """The element that stands in the scene."""
+        """Return the element given in the scene."""
         if isinstance(found, Element):
             if not self.kinds.is_shipped(type(found)):
                 check_class(type(found))
@@ -154,5 +154,5 @@ class _OneOf:
 
 
 def any_of(kinds: Kinds) -> Any:
-    """The type of a field that takes an element of any of some kinds."""
+    """Return the type of a field that takes an element of some kinds."""
     return Annotated[Any, _OneOf(kinds)]

@@ -1,4 +1,4 @@
-"""What presses a joint's surfaces: the parts of its reaction, from its multipliers."""
+"""Loads on a joint's surfaces, from its multipliers."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from typing import Any
 
 @dataclass(frozen=True)
 class Loads:
-    """Magnitudes of a joint's reaction on the body of marker i, the force at i's point.
+    """Magnitudes of a joint's reaction on the body of marker i, with the force at i's point.
 
     Attributes
     ----------
     across, thrust : Expr
-        Force across the axis of the joint's coordinate (z of j in space) and along it, N.
+        Force normal to the axis of the joint's coordinate (z of j in space) and along it, N.
     bending, torsion : Expr
-        Moment across the axis and about it, N m.
+        Moment normal to the axis and about it, N m.
     """
 
     across: Any = 0

@@ -1,6 +1,6 @@
-"""A marker: a point and a direction fixed on a body (Adams' word), or on ground.
+"""Markers (Adams: MARKER): points and directions fixed on a body or on ground.
 
-What a marker of the plane and one of space have in common is that they name a body; where they sit on it is their own.
+Planar and spatial markers share the reference to a body; their placements differ.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ _REFERENCE = {"type": "string", "description": "a body ('cart'), a marker of a b
 
 
 class Placement(Described):
-    """Where a named marker sits on its body."""
+    """Position and direction of a named marker on its body."""
 
     point: tuple[si.Length, si.Length] = Field(
         (0.0, 0.0), description="position in the body's own axes, from its centre of mass, m"
@@ -39,19 +39,19 @@ class Placement(Described):
         def __init__(self, *, point: given.Numbers = (0.0, 0.0), angle: given.Number = 0.0) -> None: ...
 
     def numbers(self) -> tuple[float, ...]:
-        """What a kernel takes: the point, the angle, its cosine and its sine."""
+        """Return the inputs of kernels: the point, the angle, its cosine and its sine."""
         return (*self.point, self.angle, math.cos(self.angle), math.sin(self.angle))
 
 
 class MarkerReference(Described):
-    """A body, or a marker that a body names: ``cart``, ``bar.end``, ``ground``.
+    """Body, or named marker of a body: ``cart``, ``bar.end``, ``ground``.
 
     Parameters
     ----------
     body : str
         The body, or ``"ground"``.
     marker : str, optional
-        A marker that the body names.
+        Name of a marker of the body.
 
     Attributes
     ----------
@@ -75,7 +75,7 @@ class MarkerReference(Described):
         if isinstance(found, str):
             mount, _, named = found.partition(".")
             if mount in names.mounts:
-                return {"body": mount, "marker": named or None}  # placed with the part
+                return {"body": mount, "marker": named or None}  # resolved with the part
             body, marker = names.body_and_marker(found)
             return {"body": body, "marker": marker or None}
         if isinstance(found, dict) and isinstance(found.get("body"), str) and found["body"] not in names.mounts:
@@ -95,31 +95,31 @@ class MarkerReference(Described):
         return {"anyOf": [_REFERENCE, handler(core_schema)]}
 
     def placement(self) -> Any:
-        """Where it sits on its body as given on the spot; None where it isn't."""
+        """Return the explicit placement on the body; None for a reference by name."""
         return None
 
     @property
     def label(self) -> str:
-        """What messages call it: ``body.marker``, or the body alone."""
+        """Name in messages: ``body.marker``, or the body alone."""
         return f"{self.body}.{self.marker}" if self.marker else self.body
 
 
 class Marker(MarkerReference):
-    """A marker used by an element: of a body by name, or given on the spot.
+    """Marker used by an element: a named marker of a body, or an explicit one.
 
-    Written as ``cart`` (the centre of mass), ``bar.end`` (a marker that the body names), ``ground``, or
-    ``{body: bar, point: [-300 mm, 0], angle: 90 deg}``.
+    Written as ``cart`` (the centre of mass), ``bar.end`` (a named marker of the body), ``ground``, or ``{body: bar,
+    point: [-300 mm, 0], angle: 90 deg}``.
 
     Parameters
     ----------
     body : str
         The body, or ``"ground"``.
     marker : str, optional
-        A marker that the body names; excludes `point` and `angle`.
+        Name of a marker of the body; excludes `point` and `angle`.
     point : tuple of float
-        Position in the body's own axes, from its centre of mass, m.
+        Position in the body's axes, from its centre of mass, m.
     angle : float
-        Direction of the marker's axis against the body's, rad.
+        Direction of the marker's axis relative to the body's, rad.
     """
 
     dimensions: ClassVar[int | None] = 2
@@ -139,27 +139,27 @@ class Marker(MarkerReference):
         ) -> None: ...
 
     def placement(self) -> Placement:
-        """Where it sits on its body, as given on the spot."""
+        """Return the explicit placement on the body."""
         return Placement.model_construct(point=self.point, angle=self.angle)  # checked already
 
 
 class Carries(Protocol):
-    """What knows where markers sit: a model, or one whose bodies are merged."""
+    """Model that provides the placement of markers, also with merged bodies."""
 
     def carried(self, marker: Any) -> tuple[str, Any]:
-        """The body that carries a marker, and where it sits on it."""
+        """Return the body that carries a marker, and the placement on it."""
 
 
 class PlacedMarkers(dict[MarkerReference, tuple[str, tuple[float, ...]]]):
-    """For each marker the body that carries it, and the numbers that kernels take for its place.
+    """Body and kernel inputs of the placement of each marker.
 
-    A marker that was not listed, such as a body's own axes in a formula, is added when it is asked for.
+    A marker that was not listed, such as a body's axes in a formula, is added on access.
 
     Parameters
     ----------
     model : Carries
     elements : iterable of Element
-        Whose markers are listed from the start.
+        Elements whose markers are listed from the start.
     """
 
     def __init__(self, model: Carries, elements: Iterable[Element] = ()) -> None:
@@ -176,9 +176,9 @@ class PlacedMarkers(dict[MarkerReference, tuple[str, tuple[float, ...]]]):
 
 
 def same_turn(model: ModelData, i: Marker, j: Marker) -> Marker:
-    """Return marker i with its angle reduced by the whole turns between the drawn markers i and j.
+    """Return marker i with its angle reduced by the full turns between the initial markers i and j.
 
-    An equation between both angles then holds for the bodies as drawn.
+    An equation between both angles then holds in the described poses.
     """
     turns = round((model.initial_marker(i).angle - model.initial_marker(j).angle) / math.tau)
     if not turns:
@@ -188,7 +188,7 @@ def same_turn(model: ModelData, i: Marker, j: Marker) -> Marker:
 
 
 class InOneTurn:
-    """Base of planar joints that constrain the angles of their markers, in the turn in which they are drawn."""
+    """Base of planar joints that constrain the angles of their markers, within the turn of the described poses."""
 
     def at_initial_pose(self, model: ModelData) -> Any:
         """Return the joint with the angle of marker i in the same turn as that of marker j."""

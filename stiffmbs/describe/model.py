@@ -1,4 +1,4 @@
-"""The model in the plane: its kinds of joints and forces, and what it holds by name."""
+"""Planar model: its kinds of joints and forces, and its named content."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ AnyForce: Any = any_of(FORCES)
 
 
 class PlanarData(ModelData):
-    """What a model in the plane holds."""
+    """Content of a planar model."""
 
     origin = Placement()
     output_names = OF_PLANE
@@ -50,11 +50,11 @@ class PlanarData(ModelData):
     )
 
     def inertial(self, bodies: Mapping[str, Body]) -> Iterable[tuple[str, Force]]:
-        """The bodies' weights."""
+        """Return the weights of the bodies."""
         return weights(bodies, self.gravity)
 
     def initial_marker(self, marker: MarkerReference) -> InitialMarker:
-        """A marker with numbers, in ground axes, at the initial pose."""
+        """Return a marker with numbers, in ground axes, at the initial pose."""
         placed = self.place(marker)
         if marker.body == GROUND:
             return InitialMarker(np.array(placed.point), placed.angle)
@@ -63,12 +63,12 @@ class PlanarData(ModelData):
         return InitialMarker(np.array([x + c * xi - s * eta, y + s * xi + c * eta]), phi + placed.angle)
 
     def carried(self, marker: MarkerReference) -> tuple[str, Placement]:
-        """The body that carries a marker, and where it sits on it."""
+        """Return the body that carries a marker, and the placement on it."""
         return marker.body, self.place(marker)
 
 
 class Model(RunnableModel[PlanarData, Body, BodyHandle]):
-    """A model built in Python, piece by piece.
+    """Planar model built in Python.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""What a model of either family, plane or space, holds: bodies, joints and forces by name, checked as a whole."""
+"""Content of a planar or spatial model: named bodies, joints and forces, validated as a whole."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ RESERVED = (GROUND, "energy", "constraint", "time", TIME, UNIT)
 
 
 class ModelData(Described):
-    """What a model holds, as it stands in a scene; checked as a whole.
+    """Content of a model as in a scene, validated as a whole.
 
     Parameters
     ----------
@@ -58,13 +58,14 @@ class ModelData(Described):
     markers : mapping of str to Placement
         Named points of ground, ``ground.name``.
     bodies, states, joints, forces, requests : mappings by name
-        Names are shared by all, as channels are named after them.  A request is a formula, or several by name.
+        Names are unique across these sections, because channels are named after them. A request is one formula, or
+        several by name.
     """
 
     origin: ClassVar[Any]
-    """Where a marker sits that is a body itself."""
+    """Placement of a marker that is a body itself."""
     output_names: ClassVar[OutputNames]
-    """What requests may name."""
+    """Names available in requests."""
 
     name: str = Field("", description="shown in summaries")
     dimensions: int
@@ -85,7 +86,6 @@ class ModelData(Described):
         return f"<{type(self).__name__} {contents(self)}>"
 
     def _repr_html_(self) -> str:
-        """What a notebook shows."""
         from ..show.html import model_html
 
         return model_html(self)
@@ -138,51 +138,51 @@ class ModelData(Described):
         return self
 
     def check_elements(self, placed: Mapping[str, Element]) -> None:
-        """Refuse joints and forces, by their paths, that name what the model does not have, or that cannot stand where they do."""
+        """Refuse joints and forces with unknown references, or that cannot act at the initial pose."""
         known = self.bodies, self.joints, self.markers, NAMES[self.dimensions], self.names_in_formulas()
         for where, element in placed.items():
             check_element(where, element, *known)
         pose = InitialPose(self)
-        for where, element in placed.items():  # which looks at all bodies and markers that elements name
+        for where, element in placed.items():  # requires valid references in all elements
             for reason in element.invalid_placement(pose):
                 raise ValueError(f"{where}: {reason}")
 
     def check_requests(self) -> None:
-        """Refuse requests that name what the model does not have, or themselves, and units that do not fit."""
+        """Refuse requests with unknown or circular references, and units that do not fit."""
         outputs = self.outputs()
         for channel, output in outputs.items():
             check_output(f"requests.{channel}", output, self, self.output_names, outputs)
         dimensions(outputs)
 
     def outputs(self) -> dict[str, Output]:
-        """The requests by channel: a name, or ``name.component``."""
+        """Return the requests by channel: a name, or ``name.component``."""
         return dict(by_channel(self.requests)) if self.requests else {}
 
     def angle_counters(self) -> Iterator[tuple[str, AngleCounter]]:
-        """What counts the turns of angles in requests where positions tell them up to whole turns, by the angles' text."""
+        """Yield counters of full turns of angles in requests, by the angles' text, if positions do not define them."""
         yield from ()
 
     @abstractmethod
     def inertial(self, bodies: Mapping[str, Any]) -> Iterable[tuple[str, Force]]:
-        """The forces that bodies have by themselves, such as their weights, with the bodies' names."""
+        """Return the forces of the bodies themselves, such as weights, with the bodies' names."""
 
     @abstractmethod
     def initial_marker(self, marker: MarkerReference) -> Any:
-        """A marker with numbers, in ground axes, at the initial pose."""
+        """Return a marker with numbers, in ground axes, at the initial pose."""
 
     @abstractmethod
     def carried(self, marker: MarkerReference) -> tuple[str, Any]:
-        """The body that carries a marker, and where it sits on it, from the centre of mass in the solver's axes."""
+        """Return the body that carries a marker, and the placement from its centre of mass in the solver's axes."""
 
     def elements(self) -> Iterator[tuple[str, Element]]:
-        """Every joint, force, counter of turns and weight with its name (a weight has its body's)."""
+        """Yield every joint, force, counter, state equation and weight with its name (for a weight, its body's)."""
         yield from self.elements_at_initial_pose()
         yield from self.angle_counters()
         yield from self.state_equations()
         yield from self.inertial(self.bodies)
 
     def state_equations(self) -> Iterator[tuple[str, Element]]:
-        """The rates of the states, by the names of the states, and the outputs of their equations."""
+        """Yield the rates of the states by their names, and the outputs of their equations."""
         for name, state in self.states.items():
             for full, value in state.values(name):
                 yield full, FormulaOfRate.model_construct(state=StateName(full), formula=value.rate)
@@ -190,22 +190,22 @@ class ModelData(Described):
             yield full, Reported.model_construct(formula=formula)
 
     def state_outputs(self) -> dict[str, Formula]:
-        """Formulas that others use by a name, as the output of a transfer function, by full name."""
+        """Return named formulas for use in other formulas, such as the output of a transfer function, by full name."""
         of_states = {full: formula for name, state in self.states.items() for full, formula in state.outputs(name)}
         return of_states | dict(formulas_of_inputs(self.inputs)) if self.inputs else of_states
 
     def names_in_formulas(self) -> set[str]:
-        """The names of states, outputs and inputs that formulas may use."""
+        """Return the names of states, outputs and inputs available in formulas."""
         return names_in_formulas(self.states) | set(self.inputs)
 
     def state_values(self) -> dict[str, StateValue]:
-        """What is solved for beside the bodies, by full name."""
+        """Return the unknowns in addition to those of the bodies, by full name."""
         of_model = {full: value for name, state in self.states.items() for full, value in state.values(name)}
         of_forces = (own_state(name, own) for name, force in self.forces.items() for own in force.own_states())
         return of_model | dict.fromkeys(of_forces, StateValue(None, 0.0, 1.0))
 
     def elements_at_initial_pose(self) -> Iterator[tuple[str, Element]]:
-        """Joints and forces with their names; what they leave open is taken from the described poses."""
+        """Yield joints and forces with their names, with undefined fields taken from the described poses."""
         for name, element in (*self.joints.items(), *self.forces.items()):
             yield name, element.at_initial_pose(self)
 
@@ -215,7 +215,7 @@ class ModelData(Described):
         return joint.at_initial_pose(self)
 
     def size(self) -> float:
-        """Diagonal of the box around all bodies and markers at the start, m; 1 where it is a single point."""
+        """Return the diagonal of the bounding box of all bodies and markers at the start, m; 1 for a single point."""
         points = [body.coordinates()[: self.dimensions] for body in self.bodies.values()]
         elements = (*self.joints.values(), *self.forces.values())
         markers = dict.fromkeys(marker for element in elements for _, marker in element.markers())
@@ -224,15 +224,15 @@ class ModelData(Described):
         return math.hypot(*widths) or 1.0
 
     def spin_axes(self) -> Mapping[str, str]:
-        """None: as described, every quaternion follows its body's angular velocity."""
+        """Return no spin axes: in a described model every quaternion follows its body's angular velocity."""
         return {}
 
     def point(self, marker: MarkerReference) -> tuple[float, ...]:
-        """Where a marker is in ground axes at the start, m."""
+        """Return the position of a marker in ground axes at the start, m."""
         return tuple(float(x) for x in self.initial_marker(marker).point)
 
     def place(self, marker: Any) -> Any:
-        """Where a marker sits on its body, in the body's own axes."""
+        """Return the placement of a marker in the axes of its body."""
         if marker.marker is None:
             return marker.placement() or self.origin
         own = self.markers if marker.body == GROUND else self.bodies[marker.body].markers
@@ -240,7 +240,7 @@ class ModelData(Described):
 
 
 def contents(model: Any) -> str:
-    """What a model, a scene or what is built in Python holds, in a few words."""
+    """Return a summary of the content of a model or scene."""
     parts = []
     for section, one in (
         ("bodies", "body"),
@@ -263,7 +263,7 @@ def check_element(
     names: FormulaNames,
     states: Collection[str],
 ) -> None:
-    """Refuse an element that names an unknown body, marker, joint or coordinate, or that joins a body to itself."""
+    """Refuse an element with an unknown body, marker, joint or coordinate, or between a body and itself."""
     for field, marker in element.markers():
         check_marker(f"{where}.{field}", marker, bodies, on_ground)
     for field, joint in element.parts(JointName):

@@ -1,4 +1,4 @@
-"""Models as the text of scene files."""
+"""Text of a scene file from a model."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ SECTIONS = ("markers", "bodies", "states", "inputs", "joints", "forces", "reques
 
 
 def model_text(data: ModelData) -> str:
-    """The text of a scene file that holds a model; what formulas read of parameters and tables is written with it.
+    """Return the text of a scene file of a model, with the parameters and tables that its formulas use.
 
     Raises
     ------
     InputError
-        When two formulas have other values for a parameter, or other tables of one name.
+        If two formulas have different values of a parameter, or different tables of the same name.
     """
     parts = {name: _written(getattr(data, name)) for name in (*PLAIN, *SECTIONS)}
     formulas = list(_formulas([getattr(data, section) for section in SECTIONS]))
@@ -41,7 +41,7 @@ def model_text(data: ModelData) -> str:
 
 
 def _written(value: Any) -> Any:
-    """A value as a scene file writes it."""
+    """Return a value in the form of a scene file."""
     match value:
         case MarkerReference():
             return _marker(value)
@@ -67,7 +67,7 @@ def _written(value: Any) -> Any:
 
 
 def _formula(formula: Any) -> str | float:
-    """A formula's text, with the scene's variables in their places; or the number that it was given as."""
+    """Return a formula's text with the scene's variables substituted, or its number."""
     text = str(formula.text)
     try:
         return float(text) if repr(float(text)) == text else text
@@ -85,7 +85,7 @@ def _marker(found: MarkerReference) -> Any:
 
 
 def _formulas(value: Any) -> Iterator[Any]:
-    """The formulas in a value, however deep: those of elements, and of requests in space."""
+    """Yield the formulas in a value, also nested ones."""
     if hasattr(value, "expanded"):
         yield value
     elif isinstance(value, Described):
@@ -97,7 +97,7 @@ def _formulas(value: Any) -> Iterator[Any]:
 
 
 def _quantity(value: float, known: Known) -> float | str:
-    """A number of a table, with its unit where the table has one."""
+    """Return a number of a table, with a unit if the table has one."""
     return in_text(Quantity(value, known.exponents)) if known.stated else value
 
 

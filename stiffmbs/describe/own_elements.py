@@ -1,4 +1,4 @@
-"""Users' own classes of joints and forces: what a class must have, and the registry by which scenes know it."""
+"""User classes of joints and forces: requirements and registry."""
 
 from __future__ import annotations
 
@@ -14,23 +14,23 @@ from .marker import MarkerReference
 from .samples import types_in
 
 GROUP = "stiffmbs.elements"
-"""The entry point group under which a package offers its elements."""
+"""Entry point group of packages with elements."""
 
 
 class Registry:
-    """The classes that scenes know besides those of this package; those of installed packages are read when first needed."""
+    """Registered classes of users; those of installed packages are loaded on first use."""
 
     def __init__(self) -> None:
         self._classes: dict[tuple[type, int, str], type[Element]] = {}
         self._installed_are_read = False
 
     def add(self, element: type[Element]) -> None:
-        """Add a class; one of the same name and module, as of a cell that is run again, is replaced.
+        """Add a class; a class of the same name and module, such as of a notebook cell run again, is replaced.
 
         Raises
         ------
         InputError
-            When the kind is taken.
+            If the kind is taken.
         """
         for key in _keys(element):
             known = self._classes.get(key, element)
@@ -42,12 +42,12 @@ class Registry:
         self._classes |= dict.fromkeys(_keys(element), element)
 
     def remove(self, element: type[Element]) -> None:
-        """Take a class out again."""
+        """Remove a class."""
         for key in _keys(element):
             self._classes.pop(key, None)
 
     def kinds(self, base: type[Element], dimensions: int) -> dict[str, type[Any]]:
-        """The joints, or the forces, of the plane or of space, by kind."""
+        """Return the planar or spatial joints or forces by kind."""
         if not self._installed_are_read:
             for element in _installed():
                 register(element)
@@ -58,18 +58,18 @@ class Registry:
 
 
 REGISTRY = Registry()
-"""Of this process."""
+"""Registry of this process."""
 
 
 def register(element: type[Any]) -> type[Any]:
-    """Make a class of joints or forces known to scenes, by its `kind`; serves as a decorator.
+    """Register a class of joints or forces for scenes under its `kind`; usable as a decorator.
 
-    A model built in Python takes elements of a class that is not registered, too.
+    Models built in Python accept elements of unregistered classes, too.
 
     Parameters
     ----------
     element : type
-        A subclass of `stiffmbs.Joint` or `stiffmbs.Force`.
+        Subclass of `stiffmbs.Joint` or `stiffmbs.Force`.
 
     Returns
     -------
@@ -79,7 +79,7 @@ def register(element: type[Any]) -> type[Any]:
     Raises
     ------
     InputError
-        When something is missing in the class, or its kind is taken; names the class.
+        If the class is incomplete, or its kind is taken; the message names the class.
 
     Examples
     --------
@@ -105,12 +105,12 @@ def register(element: type[Any]) -> type[Any]:
 
 
 def check_class(element: object) -> None:
-    """Refuse a class that is no joint or force, or lacks what every one has.
+    """Refuse a class that is not a joint or force, or is incomplete.
 
     Raises
     ------
     InputError
-        Names the class.
+        The message names the class.
     """
     for reason in _lacks(element):
         raise InputError(f"{getattr(element, '__name__', repr(element))}: {reason}")
@@ -139,11 +139,11 @@ def _lacks(element: Any) -> Iterator[str]:
 
 
 STATIC = ("position", "velocity", "point", "loads", "efforts", "powers", "potential", "event_functions", "limits")
-"""Functions of e alone."""
+"""Functions whose only argument is e."""
 
 
 def _not_static(element: type[Element]) -> Iterator[str]:
-    """Functions written as methods of an object, which there is none of when equations are derived."""
+    """Yield functions defined as instance methods; equations are derived without an instance."""
     for name in STATIC:
         found = inspect.getattr_static(element, name, None)
         if inspect.isfunction(found) and len(inspect.signature(found).parameters) != 1:
@@ -155,7 +155,7 @@ def _is_inherited(element: type[Element], name: str) -> bool:
 
 
 def dimensions_of(element: type[Element]) -> tuple[int, ...]:
-    """In which models elements of a class can stand, 2 for the plane and 3 for space: those of its markers."""
+    """Return the dimensions of the models of a class, 2 for the plane and 3 for space: those of its markers."""
     if element.dimensions:
         return element.dimensions
     found = {
@@ -176,7 +176,7 @@ def _base(element: type[Element]) -> type[Element]:
 
 
 def _shipped(dimensions: int, element: type[Element]) -> Any:
-    """The kinds of this package among which a class would be."""
+    """Return the kinds of this package in the category of a class."""
     from importlib import import_module
 
     family = import_module(".model" if dimensions == 2 else ".spatial.model", __package__)
@@ -184,7 +184,6 @@ def _shipped(dimensions: int, element: type[Element]) -> Any:
 
 
 def _installed() -> Iterator[type[Element]]:
-    """The classes that installed packages offer."""
     from importlib.metadata import entry_points
 
     for point in entry_points(group=GROUP):

@@ -14,16 +14,16 @@ Way = Literal["differences", "complex_step"]
 
 
 class PythonFunction:
-    """A Python function that a force calls while a model is solved.
+    """Python function that a force calls during the solution.
 
     Parameters
     ----------
     function : callable
-        Takes an array of numbers and returns a number, or as many as the force wants.  It must give the same for the same
-        numbers: it is called at trial states too, and not in the order of time.
+        Takes an array of numbers and returns a number, or as many as the force requires. It must be deterministic,
+        because it is also called at trial states, in any order of time.
     derivatives : {"differences", "complex_step"}
-        How its derivatives are computed: by central differences, or exact to rounding by a step along the imaginary axis,
-        for which it must take complex numbers and be analytic (without ``abs`` and comparisons).
+        Computation of its derivatives: by central differences, or exact to rounding by a complex step. The latter
+        requires that it accepts complex numbers and is analytic (without ``abs`` and comparisons).
     """
 
     def __init__(self, function: Callable[..., Any], derivatives: Way = "differences") -> None:
@@ -31,7 +31,7 @@ class PythonFunction:
 
     @property
     def name(self) -> str:
-        """What messages call it."""
+        """Name of the function in messages."""
         return getattr(self.function, "__qualname__", type(self.function).__qualname__)
 
     def __repr__(self) -> str:
@@ -39,7 +39,7 @@ class PythonFunction:
 
     @classmethod
     def read(cls, found: object) -> PythonFunction:
-        """A function as a field has it."""
+        """Return a function as the value of a field."""
         if isinstance(found, PythonFunction):
             return found
         if not callable(found):

@@ -1,4 +1,4 @@
-"""Reading of scenes: from the text of a file to what is valid, or one sentence with the line of a fault."""
+"""Reading of scenes: from the text of a file to a valid scene, or a message with the line of a fault."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def read_scene(
     Raises
     ------
     InputError
-        When it is no valid scene; names the line and the path in it.
+        If it is not a valid scene; the message contains the line and the path.
     """
     with recorded() as files:
         found, line = read_including(text, source, file)
@@ -100,14 +100,14 @@ def made_scene(
     folder : Path, optional
         Folder of meshes and property files; the working folder by default.
     unchanged : Unchanged, optional
-        Parts that have been validated before.  The scene then does not keep its source.
+        Parts that have been validated before. The scene then does not keep its source.
     files : mapping of str to str
         Digests of the files from which the mapping was read.
 
     Raises
     ------
     InputError
-        When the scene is not valid.
+        If the scene is not valid.
     """
     kept = None if unchanged else WrittenScene(copy.deepcopy(found), tuple(changes), source, folder, dict(files))
     with recorded() as read:
@@ -127,7 +127,6 @@ def _made_scene(
     unchanged: Unchanged | None,
     scene_as_written: WrittenScene | None,
 ) -> Scene:
-    """Return the scene; parameters and errors as for `made_scene`."""
     known = unchanged or Unchanged()
     found, chosen, changes = _chosen(unshared(found), changes, source)
     parts = found.get("parts")
@@ -160,7 +159,7 @@ def _made_scene(
 def _chosen(
     found: dict[str, Any], changes: Sequence[tuple[str, Any]], source: str
 ) -> tuple[dict[str, Any], dict[str, Any], Sequence[tuple[str, Any]]]:
-    """A scene with the sections that it chooses among its options, what parts need to know of it, and the other changes."""
+    """Return a scene with its chosen options merged, the choices for parts, and the other changes."""
     words = {path: value for path, value in changes if path.startswith(f"{CHOOSE}.")}
     for path, word in words.items():
         set_value(found, path, word)
@@ -174,7 +173,7 @@ def _chosen(
 
 
 def _stage_scenes(scene: Scene, source: str) -> tuple[Scene, ...]:
-    """The scene of each stage; errors as for `made_scene`."""
+    """Return the scene of each stage; errors as for `made_scene`."""
     if scene.written is None:
         raise InputError(f"{source}: found stages, expected a scene of one run")
     try:
@@ -188,7 +187,7 @@ def _stage_scenes(scene: Scene, source: str) -> tuple[Scene, ...]:
 
 
 def _held_at_start(scene: Scene, source: str) -> Scene:
-    """The scene with what holds at its start alone; errors as for `made_scene`."""
+    """Return the scene with its initial conditions of joints; errors as for `made_scene`."""
     if scene.written is None:
         raise InputError(f"{source}: found at_start, expected a scene that starts as described")
     held = with_held(scene.written)
@@ -196,7 +195,7 @@ def _held_at_start(scene: Scene, source: str) -> Scene:
 
 
 def _keep_one_grid(found: dict[str, Any], changed: set[str]) -> None:
-    """Let the one of ``run.output`` and ``run.points`` that is changed take the place of the other."""
+    """Remove one of ``run.output`` and ``run.points`` if only the other one is changed."""
     run, grids = found.get("run"), ("output", "points")
     chosen = [name for name in grids if f"run.{name}" in changed]
     if isinstance(run, dict) and len(chosen) == 1:
@@ -208,7 +207,7 @@ def _keep_one_grid(found: dict[str, Any], changed: set[str]) -> None:
 def _place(
     fault: tuple[Any, ...], changes: Sequence[tuple[str, Any]], line_of: Callable[[tuple[Any, ...]], int | str | None]
 ) -> str:
-    """Where a fault is, for a sentence that goes on with its path: in what was changed, or in a line."""
+    """Return the location of a fault, as the beginning of a message: a change, or a line."""
     for path, _ in changes:
         keys = tuple(path.split("."))
         if keys in (fault[: len(keys)], fault[1:] if fault[:1] == ("parameters",) else ()):
@@ -218,7 +217,7 @@ def _place(
 
 
 class _Located(Exception):
-    """An error with the path of keys at which it occurred."""
+    """Error with the path of keys at which it occurred."""
 
     def __init__(self, message: str, path: tuple[Any, ...]) -> None:
         super().__init__(message)
@@ -262,7 +261,7 @@ def _validated(
 
 
 def _family(raw: dict[str, Any]) -> type[Scene]:
-    """The class of scenes of as many dimensions as the scene says; of two where it says nothing."""
+    """Return the class of scenes of the given dimension; planar by default."""
     found = raw.get("dimensions", 2)
     if found not in (2, 3):
         raise _Located(f"dimensions: found {written(found)}, expected 2 or 3", ("dimensions",))
@@ -270,7 +269,7 @@ def _family(raw: dict[str, Any]) -> type[Scene]:
 
 
 def _right_in_space(raw: dict[str, Any], context: dict[str, Any]) -> bool:
-    """Whether a scene that is wrong in the plane would be right in space."""
+    """Return True if a scene that is invalid in the plane is valid in space."""
     try:
         scene_class(3).model_validate(raw, context=context)
     except PydanticError:

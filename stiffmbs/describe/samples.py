@@ -1,4 +1,4 @@
-"""An element of any class, its fields filled by their types: for compiling ahead, and for tests of all kinds."""
+"""Sample elements of any class, for compilation in advance and for tests of all kinds."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ from .marker import MarkerReference
 
 
 class Samples:
-    """Makes elements for a model.
+    """Generator of sample elements for a model.
 
     Parameters
     ----------
     marker : callable
-        The marker, or its body's name, for the k-th field that takes one.
+        Returns the marker, or the name of its body, for the k-th marker field.
     joints : mapping of str to Joint
-        The model's, for fields that name one.
+        Joints of the model, for fields that name one.
 
     Attributes
     ----------
     optional : bool
-        Whether fields that have a default are filled too.
+        Whether fields with a default are filled, too.
     """
 
     optional = False
@@ -38,27 +38,27 @@ class Samples:
         self.marker, self.joints = marker, joints
 
     def number(self, mark: Measured) -> float:
-        """A number within the bounds of a field."""
+        """Return a number within the bounds of a field."""
         return max(1.0, mark.at_least or 0.0)
 
     def formula(self, mark: FormulaOf, kind: type[Element]) -> str:
-        """A formula that a field may hold."""
+        """Return a valid formula for a field."""
         return "1"
 
     def made(self, kind: type[Element], form: Mapping[str, Any], left_out: frozenset[str] = frozenset()) -> Element:
-        """An element of a class.
+        """Return an element of a class.
 
         Parameters
         ----------
         form : mapping of str to Any
-            Fields that are given.
+            Given fields.
         left_out : set of str
-            Fields that are not to be filled.
+            Fields that are not filled.
 
         Raises
         ------
         InputError
-            When no choice of joints fits the class.
+            If no choice of joints fits the class.
         """
         fields, names, bodies = dict(form), [], itertools.count()
         for attribute, field in kind.model_fields.items():
@@ -73,7 +73,7 @@ class Samples:
         return self._joined(kind, fields, names)
 
     def _value(self, field: FieldInfo, kind: type[Element]) -> Any:
-        """The value of a field of numbers or formulas; None for other types."""
+        """Return the value of a field of numbers or formulas; None for other types."""
         several = get_origin(field.annotation) is tuple
         count = sum(part is not Ellipsis for part in get_args(field.annotation)) if several else 1
         formulas = [mark for mark in marks_of(field) if isinstance(mark, FormulaOf)]
@@ -86,7 +86,6 @@ class Samples:
         return None
 
     def _joined(self, kind: type[Element], fields: dict[str, Any], names: list[str]) -> Element:
-        """An element that names joints which fit it."""
         for chosen in itertools.permutations(self.joints, len(names)):
             element = kind(**fields, **dict(zip(names, chosen, strict=True)))
             if not any(True for _ in element.validation_errors(self.joints)):
@@ -95,7 +94,7 @@ class Samples:
 
 
 def types_in(annotation: Any) -> Iterator[Any]:
-    """A type and all types that it is made of."""
+    """Yield a type and all types that it contains."""
     yield annotation
     for inner in get_args(annotation):
         yield from types_in(inner)
@@ -106,6 +105,6 @@ def _takes_marker(types: list[Any]) -> bool:
 
 
 def marks_of(field: FieldInfo) -> list[Any]:
-    """The marks of a field, wherever in its type they stand."""
+    """Return the markers of a field's type, at any depth."""
     inside = [mark for part in types_in(field.annotation) for mark in getattr(part, "__metadata__", ())]
     return [*field.metadata, *inside]

@@ -1,4 +1,4 @@
-"""Scenes: the file form of a model with the way to run it."""
+"""Scenes: models with run settings, as in files."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from .units.units import Quantity, in_text
 
 
 class Scene(ModelData):
-    """A model and its run settings, as read from a file."""
+    """Model and its run settings, as read from a file."""
 
     parameters: dict[str, float | str] = Field(default_factory=dict, description="names for use in formulas")
     tables: dict[str, Table] = Field(default_factory=dict, description="curves that formulas call by name: curve(t)")
@@ -52,7 +52,7 @@ class Scene(ModelData):
     _held_at_start: Scene | None = PrivateAttr(default=None)
 
     def check_requests(self) -> None:
-        """The same for variables, whose formulas are read as those of requests."""
+        """Refuse invalid requests, and invalid variables, which are read as requests."""
         super().check_requests()
         outputs = self.outputs()
         requests = dimensions(outputs)
@@ -64,22 +64,22 @@ class Scene(ModelData):
                 raise ValueError(f"variables.{name}: {error}") from None
 
     def written_parameters(self) -> dict[str, float | str]:
-        """The parameters as a scene writes them, with their units."""
+        """Return the parameters with their units, as in a scene."""
         return {name: in_text(self._quantities.get(name, Quantity(value))) for name, value in self.parameters.items()}  # type: ignore[arg-type]
 
     @property
     def stage_scenes(self) -> tuple[Scene, ...]:
-        """The scene of each stage, in their order."""
+        """Scenes of the stages, in order."""
         return self._stage_scenes
 
     @property
     def held_at_start(self) -> Scene | None:
-        """The scene with the joints and drives that hold at the start alone; None without any."""
+        """Scene with its initial conditions of joints; None without any."""
         return self._held_at_start
 
     @property
     def whole_duration(self) -> float:
-        """How long all of it runs, s."""
+        """Total duration of all stages, s."""
         if not self.stages:
             return self.run.duration
         time = 0.0
@@ -90,17 +90,17 @@ class Scene(ModelData):
 
     @property
     def written(self) -> WrittenScene | None:
-        """What the scene was read from, to read it again with other values; None where it was made in another way."""
+        """Source of the scene, for reading it with other values; None if it was not read."""
         return self._written
 
     @property
     def validated(self) -> Unchanged:
-        """What need not be validated again where it is read with other values; that of another scene in a changed copy."""
+        """Validated entries for reading with other values; a changed copy has those of the original scene."""
         return self._validated
 
 
 def notes_of(model: ModelData) -> tuple[str, ...]:
-    """The notes of a scene, and what there is to say of the roads and tyres of a model."""
+    """Return the notes of a scene, and of the roads and tyres of a model."""
     told: dict[str, list[str]] = {}
     for name, element in model.forces.items():
         for component in _components(element):
@@ -111,7 +111,6 @@ def notes_of(model: ModelData) -> tuple[str, ...]:
 
 
 def _components(element: Force) -> Iterator[Component]:
-    """What a force is made of besides numbers."""
     for value in vars(element).values():
         if isinstance(value, Component):
             yield value
@@ -120,7 +119,7 @@ def _components(element: Force) -> Iterator[Component]:
 
 
 class PlanarScene(PlanarData, Scene):
-    """A scene in the plane."""
+    """Scene in the plane."""
 
     variables: dict[str, Annotated[Output, OutputField(OF_PLANE)]] = Field(
         default_factory=dict, description="formulas by name, which other formulas use"
@@ -128,7 +127,7 @@ class PlanarScene(PlanarData, Scene):
 
 
 def scene_class(dimensions: int) -> type[Scene]:
-    """The class of scenes of 2 or 3 dimensions; that of space is loaded where a scene needs it."""
+    """Return the class of planar or spatial scenes; the latter is imported on demand."""
     if dimensions == 2:
         return PlanarScene
     from .spatial.scene import SpatialScene

@@ -1,4 +1,4 @@
-"""The JSON schema of scene files."""
+"""JSON schema of scene files."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from .scene import PlanarScene
 
 
 def scene_schema() -> dict[str, Any]:
-    """The JSON schema of scene files, of the plane and of space.
+    """Return the JSON schema of planar and spatial scene files.
 
     Returns
     -------
     dict
-        For editors, as ``stiffmbs schema`` prints it.
+        For editors; ``stiffmbs schema`` prints it.
     """
     from pydantic.json_schema import models_json_schema
 
@@ -45,7 +45,7 @@ def scene_schema() -> dict[str, Any]:
 
 
 def _add_parts(definitions: dict[str, Any], scene: dict[str, Any], use: dict[str, Any]) -> None:
-    """Let a scene have ``include``, ``parts`` and ``use``; bodies may then stand elsewhere."""
+    """Add ``include``, ``parts`` and ``use`` to the schema of a scene, which then does not require bodies."""
     whole = definitions[scene["$ref"].rpartition("/")[2]]
     name = {"type": "string"}
     include = {

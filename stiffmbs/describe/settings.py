@@ -1,4 +1,4 @@
-"""How a scene is to be run."""
+"""Settings of runs."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from .given import Number
 from .units import si
 
 MOST_OUTPUTS = 10_000_000
-"""Output times of a run; a body and a joint take 2 GB at so many, in a temporary file."""
+"""Largest number of output times of a run."""
 FEWEST_APART, ROUNDINGS_APART = 1000, 2e-14
-"""Stretches of time that a run must be able to tell apart, and how long each must be, relative to the times themselves."""
+"""Smallest number of distinguishable time intervals of a run, and their smallest length relative to the time itself."""
 SHORTEST = 1e-100
-"""Shortest duration, s: products of shorter steps underflow."""
+"""Shortest duration, s; products of shorter steps underflow."""
 UNCOUNTED = 1e300
 
 
 class Settings(TypedDict, total=False):
-    """The fields of `RunSettings` for type checkers, as `run` takes them by keyword."""
+    """Fields of `RunSettings` for type checkers, as keyword arguments of `run`."""
 
     duration: Number
     start: Number
@@ -55,33 +55,34 @@ class RunSettings(Described):
     output : float, optional
         Spacing of the output points, s; without it (and without `points`) a thousandth of the duration.
     points : int or "steps", optional
-        Number of output points, evenly spaced, ends included; or the solver's own steps.
+        Number of output points, evenly spaced, ends included; or the solver's internal steps.
     solver : str
         ``bdf`` (SUNDIALS IDA), ``projected`` (explicit, with projection onto the constraints), ``kinematic`` (for
-        scenes whose drives fix every coordinate), or ``auto`` (projected, and bdf where and while the scene is stiff).
+        scenes whose drives fix every coordinate), or ``auto`` (projected, and bdf while the scene is stiff).
     formulation : str
-        Of the residual that ``bdf`` integrates (`stiffmbs.solve.formulations`).
+        Formulation of the residual that ``bdf`` integrates (`stiffmbs.solve.formulations`).
     stabilisation : float
-        Of the formulation ``index1``: rate at which violations decay, 1/s; 0 shows its drift.
+        For the formulation ``index1``: decay rate of constraint violations, 1/s; 0 shows its drift.
     scheme : str, optional
-        Of ``projected``: ``euler_cromer`` and ``rk4`` take fixed steps, ``dopri5`` and ``dop853`` choose them.  Without it
-        ``dop853``, but ``euler_cromer`` where a step is given.
+        For ``projected``: ``euler_cromer`` and ``rk4`` have fixed steps, ``dopri5`` and ``dop853`` adaptive steps. The
+        default is ``dop853``, or ``euler_cromer`` if a step is given.
     rtol, atol : floats
-        Error tolerances of ``bdf`` and the adaptive schemes; atol (m, rad, m/s, rad/s) is rtol unless given, times
+        Error tolerances of ``bdf`` and the adaptive schemes. The default of atol (m, rad, m/s, rad/s) is rtol, times
         the size of a mechanism that is smaller than 1 m.
     step : float
-        Step of the fixed schemes, s; shorter where it does not divide the time between output points.
+        Step of the fixed schemes, s; reduced if it does not divide the time between output points.
     projection : bool
         Whether ``projected`` returns to the constraints after each step.
     max_step : float
         Largest step of ``bdf`` and the adaptive schemes, s; 0 for none.
     max_order : int, optional
-        Highest order of the formulas of ``bdf``, 1 to 5.  Without it 5, and 2 for a while where orders 3 to 5 creep along a stiff, little
-        damped vibration (`stiffmbs.solve.error_control.stability_limit`); with it the order is never held down.
+        Highest order of the formulas of ``bdf``, 1 to 5. The default is 5, reduced temporarily to 2 if orders 3 to 5
+        require very small steps for a stiff, lightly damped vibration (`stiffmbs.solve.error_control.stability_limit`).
+        A given order is never reduced.
     presolve : bool
-        Whether the solver is given a smaller problem with the same results where the model allows it.
+        Whether the model is reduced to a smaller problem with the same results, if possible.
     drop_first : tuple of str
-        Joints whose equations are dropped first where the scene has redundant ones.
+        Joints whose equations are dropped first if the scene has redundant ones.
     """
 
     duration: si.PositiveTime = Field(10.0, description="s")
@@ -139,7 +140,7 @@ class RunSettings(Described):
 
     @model_validator(mode="after")
     def _told_apart(self) -> RunSettings:
-        """Two output points must differ by more than the rounding of the time itself."""
+        """Refuse output points whose spacing is below the rounding error of the time."""
         if self.duration < SHORTEST:
             raise ValueError(f"duration: found {self.duration:.3g} s, expected {SHORTEST:.0e} s or more")
         count = self.points - 1 if isinstance(self.points, int) else FEWEST_APART
@@ -154,24 +155,26 @@ class RunSettings(Described):
 
 
 class SteadyMotion(Described):
-    """All bodies move as one rigid body: along a straight line, or on circles about one axis, at constant speed.
+    """Motion of all bodies as one rigid body: along a straight line, or on circles about one axis, at constant speed.
 
     Adams calls such an equilibrium quasi-static.
 
     Parameters
     ----------
     velocity : tuple of float
-        Of every point beside that of the rotation, in ground axes, m/s: as many numbers as dimensions; none for zero.
+        Velocity of every point in addition to the rotation, in ground axes, m/s: one number for each dimension; empty
+        for zero.
     rotation : float or tuple of float
-        Angular velocity, rad/s: in the plane a number; in space a vector in ground axes, or a number for one against
-        gravity.
+        Angular velocity, rad/s: a number in the plane; in space a vector in ground axes, or a number for a rotation
+        about the direction opposite to gravity.
     about : tuple of float
-        A point of the axis of the rotation, m; the origin where none is given.
+        Point on the axis of rotation, m; by default the origin.
     rolling : tuple of str
-        Bodies that spin beside that about their axis of symmetry: as rolling constraints ask, or as forces do that depend on
-        the spin, as a tyre's; else as they are described.
+        Bodies with an additional spin about their axis of symmetry. Rolling constraints determine it, or forces that
+        depend on the spin, such as a tyre's; otherwise it is as described.
     speed : str
-        ``found`` where forces tell it, as drag and a driver's traction do: the velocity is then a first guess along its line.
+        ``found`` if forces determine it, such as drag and a driver's traction; the velocity is then an initial guess
+        along its line.
     """
 
     velocity: tuple[si.Velocity, ...] = Field((), description="of every point, in ground axes, m/s")
@@ -191,19 +194,19 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 def _as_written(settings: type) -> list[tuple[str, str]]:
-    """Fields of a typed dictionary with their types as text."""
+    """Return the fields of a typed dictionary with their types as text."""
     return [(name, kind.__forward_arg__) for name, kind in settings.__annotations__.items()]
 
 
 class _AsItIs:
-    """The default of a setting in a signature: what the scene, or the settings that are given, have."""
+    """Default of a setting in a signature: the value of the scene or of the given settings."""
 
     def __repr__(self) -> str:
         return "..."
 
 
 def takes_settings(function: Function) -> Function:
-    """Let a function that takes the settings by keyword show them in its signature, for ``help`` and for completion."""
+    """Add the settings to the signature of a function that takes them by keyword, for ``help`` and completion."""
     signature = inspect.signature(function)
     own = [parameter for parameter in signature.parameters.values() if parameter.kind is not parameter.VAR_KEYWORD]
     settings = [

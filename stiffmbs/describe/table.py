@@ -1,4 +1,4 @@
-"""Functions given by points."""
+"""Functions defined by points."""
 
 from __future__ import annotations
 
@@ -19,7 +19,8 @@ from .units.units import Quantity, named_unit
 class Table(Described):
     """Function through points, by default a monotone piecewise cubic with continuous slope (PCHIP).
 
-    Outside its points a table is extrapolated with the slope of its end (zero for ``clamped``); a periodic table repeats.
+    Outside its points a table is extrapolated with the slope of its end (zero for ``clamped``); a periodic table
+    repeats.
 
     Parameters
     ----------
@@ -28,13 +29,13 @@ class Table(Described):
     spline : bool
         Cubic spline: continuous curvature, but it may overshoot its points (Adams: CUBSPL).
     ends : str
-        End condition of a cubic spline, which it selects: ``natural`` (zero curvature, the default of a spline), ``clamped`` (zero
-        slope), ``not-a-knot``, ``periodic`` (equal first and last value; also for linear interpolation).
+        End condition, which selects a cubic spline: ``natural`` (zero curvature, the default of a spline), ``clamped``
+        (zero slope), ``not-a-knot``, ``periodic`` (equal first and last value; also for linear interpolation).
     lines : bool
         Linear interpolation; the points are breakpoints.
     akima : bool
-        Akima's interpolation, which may overshoot unevenly spaced points (Adams: AKISPL).
-        Akima, A new method of interpolation and smooth curve fitting, J. ACM 17 (1970) 589-602.
+        Akima's interpolation, which may overshoot unevenly spaced points (Adams: AKISPL). Akima, A new method of
+        interpolation and smooth curve fitting, J. ACM 17 (1970) 589-602.
     """
 
     table: tuple[tuple[si.Anything, si.Anything], ...] = Field(min_length=2, description="pairs of argument and value")
@@ -69,7 +70,7 @@ class Table(Described):
 
     @property
     def dimensions(self) -> tuple[Known, Known]:
-        """Of argument and value, as far as units stand in the table."""
+        """Dimensions of argument and value, as far as the table has units."""
         return self._argument, self._value
 
     @model_validator(mode="wrap")
@@ -107,7 +108,7 @@ class Table(Described):
 
 
 def _of_column(column: Iterable[object], parameters: Mapping[str, Quantity]) -> Known:
-    """The dimension of a table's arguments or values, unknown where they are plain numbers."""
+    """Return the dimension of a table's arguments or values, unknown for plain numbers."""
     found = [quantity(entry, parameters) for entry in column if isinstance(entry, str)]
     known = [each for each in map(known_of, found) if each.stated]
     for other in known[1:]:

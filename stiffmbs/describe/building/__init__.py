@@ -1,1 +1,1 @@
-"""Models that are built in Python, piece by piece."""
+"""Models built in Python."""

@@ -1,4 +1,4 @@
-"""Handles: what stands for a body of a model that is built in Python."""
+"""Handles: references to the bodies of a model that is built in Python."""
 
 from __future__ import annotations
 
@@ -13,15 +13,16 @@ if TYPE_CHECKING:
 
 
 class Handle:
-    """A body of a model, as `Model.add` returns it; wherever a body's name may stand, its handle may.
+    """Reference to a body of a model, returned by `Model.add`; accepted wherever a body's name is.
 
-    What formulas read of a body (``bar.x``, ``bar.omega``) is a SymPy symbol, for `ConstraintEquation` and requests; its
-    other fields (``bar.mass``) are those of the body in the model, and setting them changes the model.
+    The coordinates and velocities that formulas use (``bar.x``, ``bar.omega``) are SymPy symbols, for
+    `ConstraintEquation` and requests. The other fields (``bar.mass``) are those of the body in the model; assigning to
+    them changes the model.
 
     Attributes
     ----------
     name : str
-        Of the body.
+        Name of the body.
     """
 
     names: ClassVar[FormulaNames]
@@ -33,12 +34,12 @@ class Handle:
 
     @property
     def body(self) -> Any:
-        """The body as it stands in the model.
+        """Current body in the model.
 
         Raises
         ------
         InputError
-            When it was removed.
+            If the body was removed.
         """
         try:
             return vars(self)["_model"].bodies[self.name]
@@ -75,7 +76,7 @@ class Handle:
 
     @classmethod
     def _own(cls) -> tuple[str, ...]:
-        """The fields that may be read and set."""
+        """Return the names of the fields that can be read and set."""
         return tuple(name for name in cls.fields if name not in cls._symbols())
 
     def __dir__(self) -> list[str]:

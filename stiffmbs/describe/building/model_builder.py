@@ -1,4 +1,4 @@
-"""Models built in Python, piece by piece: what those of the plane and those of space have in common."""
+"""Base class of planar and spatial models built in Python."""
 
 from __future__ import annotations
 
@@ -44,12 +44,12 @@ class ModelBuilder(Sections[Data, Body, BodyHandle]):
         Returns
         -------
         BodyHandle or None
-            For a body what stands for it in markers and formulas, and changes it.
+            For a body, its handle, for use in markers and formulas and to change the body.
 
         Raises
         ------
         InputError
-            When the name is taken, reserved or no identifier, or the part names an unknown body.
+            If the name is taken, reserved or not an identifier, or the part names an unknown body.
         """
         section = self._section_for(name, part)
         self._check_name(name)
@@ -64,24 +64,25 @@ class ModelBuilder(Sections[Data, Body, BodyHandle]):
     def replace(self, name: str | BodyHandle, part: Joint | Force) -> None: ...
 
     def replace(self, name: str | BodyHandle, part: Any) -> BodyHandle | None:
-        """Put another body, joint or force in the place of one, under its name.
+        """Replace a body, a joint or a force, keeping its name.
 
         Parameters
         ----------
         name : str or BodyHandle
-            Of the part that goes.
+            Name of the part that is replaced.
         part : Body, Joint or Force
-            A body for a body, a joint for a joint, a force for a force.
+            Replacement of the same category: a body for a body, a joint for a joint, a force for a force.
 
         Returns
         -------
         BodyHandle or None
-            As `add` does; handles that there are already stand for the new body too.
+            As for `add`; existing handles refer to the new body.
 
         Raises
         ------
         InputError
-            When there is no such part, the new one names an unknown body, or others name what the new one does not have.
+            If there is no such part, the new one names an unknown body, or others refer to something that the new one
+            lacks.
         """
         name = str(name)
         section = self._found(name)
@@ -97,12 +98,12 @@ class ModelBuilder(Sections[Data, Body, BodyHandle]):
         return self._handle(name)
 
     def remove(self, name: str | BodyHandle) -> None:
-        """Take a body, a joint, a force, a request, or a marker of ground (``"ground.pivot"``) out of the model.
+        """Remove a body, a joint, a force, a request, or a marker of ground (``"ground.pivot"``) from the model.
 
         Raises
         ------
         InputError
-            When there is no such part, or others name it.
+            If there is no such part, or others refer to it.
         """
         name = str(name)
         section = self._found(name)
@@ -112,18 +113,18 @@ class ModelBuilder(Sections[Data, Body, BodyHandle]):
         return self.handle_type(name, self) if name in self.bodies else None
 
     def mark(self, name: str, marker: Any) -> None:
-        """Give a marker on ground a name, for references and formulas: ``ground.name``.
+        """Name a marker on ground, for references and formulas: ``ground.name``.
 
         Parameters
         ----------
         name : str
         marker : Marker
-            On ``ground``, with its point and direction given on the spot.
+            On ``ground``, with an explicit point and direction.
 
         Raises
         ------
         InputError
-            When the name is taken or no identifier, or the marker is not given on the spot on ground.
+            If the name is taken or not an identifier, or the marker is not an explicit marker on ground.
         """
         self._check_spelling(name, "marker")
         if name in self.markers:
@@ -134,19 +135,19 @@ class ModelBuilder(Sections[Data, Body, BodyHandle]):
         self.markers[name] = placement
 
     def add_input(self, name: str, value: Any) -> None:
-        """Add an input: a value by a name that formulas use, and that each run may be given anew.
+        """Add an input: a named value for formulas, which every run can set.
 
         Parameters
         ----------
         name : str
             Letters, digits and ``_``; no other part has it.
         value : float, str or Table
-            A number, also as text with a unit, or a table of time.
+            A number, text with a unit, or a table of time.
 
         Raises
         ------
         InputError
-            When the name is taken, or the value is none of these.
+            If the name is taken, or the value is none of these.
         """
         self._check_name(name)
         try:
@@ -155,15 +156,15 @@ class ModelBuilder(Sections[Data, Body, BodyHandle]):
             raise InputError(f"inputs.{name}: {sentence(error)}") from None
 
     def request(self, name: str, formula: Law | Mapping[str, Law]) -> None:
-        """Report a formula of anything that a run knows as a channel of the given name, or several as ``name.component``.
+        """Report a formula as a channel of the given name, or several formulas as ``name.component``.
 
         Parameters
         ----------
         name : str
-            Of the channel.
+            Name of the channel.
         formula : str, float or mapping of str to these
-            In SI units, such as ``"0.6*abs(bar.omega)"`` or ``"fx(hinge) + tip_speed"``, of parts and requests that have been
-            added; several by the names of their components.
+            In SI units, such as ``"0.6*abs(bar.omega)"`` or ``"fx(hinge) + tip_speed"``, of existing parts and
+            requests; several by the names of their components.
 
         Raises
         ------
@@ -186,7 +187,7 @@ class ModelBuilder(Sections[Data, Body, BodyHandle]):
         self.requests[name] = read
 
     def to_scene(self) -> str:
-        """The text of a scene file that holds the model: `stiffmbs.read_scene` makes the same model of it.
+        """Return the text of a scene file from which `stiffmbs.read_scene` makes the same model.
 
         Raises
         ------

@@ -1,4 +1,4 @@
-"""What can be done with a model: each method is the package's function of that name."""
+"""Analyses of a model as methods; each calls the function of the package with its name."""
 
 from __future__ import annotations
 
@@ -23,10 +23,9 @@ if TYPE_CHECKING:
 
 
 class RunnableModel(ModelBuilder[Data, Body, BodyHandle]):
-    """A model that can be solved, examined and drawn."""
+    """Model that can be solved, analysed and drawn."""
 
     def _repr_html_(self) -> str:
-        """What a notebook shows."""
         from ...show.html import model_html
 
         return model_html(self)
@@ -53,7 +52,7 @@ class RunnableModel(ModelBuilder[Data, Body, BodyHandle]):
         start_from: StartFrom | None = None,
         **changes: Unpack[Settings],
     ) -> Solution:
-        """Solve the model, and again to see what its results are worth; parameters, result and errors are those of `stiffmbs.verify`."""
+        """Solve the model and estimate errors; parameters, result and errors are those of `stiffmbs.verify`."""
         from ...verification.verify import verify
 
         return verify(self, settings, watch, start_from, **changes)
@@ -66,7 +65,7 @@ class RunnableModel(ModelBuilder[Data, Body, BodyHandle]):
         motion: SteadyMotion | None = None,
         **changes: Unpack[Settings],
     ) -> EquilibriumFound:
-        """The pose at rest, or in steady motion, in which all forces balance; parameters, result and errors are those of `stiffmbs.equilibrium`."""
+        """Find an equilibrium or a steady motion; parameters, result and errors are those of `stiffmbs.equilibrium`."""
         from ...analyses.equilibrium import equilibrium
 
         return equilibrium(self, settings, start_from, motion, **changes)
@@ -78,7 +77,7 @@ class RunnableModel(ModelBuilder[Data, Body, BodyHandle]):
         settings: RunSettings | None = None,
         **changes: Unpack[Settings],
     ) -> Simulation:
-        """The model to be solved step by step; parameters, result and errors are those of `stiffmbs.simulation`."""
+        """Prepare a step-by-step solution; parameters, result and errors are those of `stiffmbs.simulation`."""
         from ...studies.simulation import simulation
 
         return simulation(self, inputs, settings, **changes)
@@ -91,14 +90,14 @@ class RunnableModel(ModelBuilder[Data, Body, BodyHandle]):
         start_from: StartFrom | None = None,
         **changes: Unpack[Settings],
     ) -> Modes:
-        """Natural frequencies, damping and shapes; parameters, result and errors are those of `stiffmbs.modes`."""
+        """Return frequencies, damping and mode shapes; parameters, result and errors are those of `stiffmbs.modes`."""
         from ...analyses.linearised.modes import modes
 
         return modes(self, settings, at, start_from, **changes)
 
     @takes_settings
     def check(self, settings: RunSettings | None = None, **changes: Unpack[Settings]) -> Report:
-        """Examine the model: degrees of freedom, redundancy; parameters, result and errors are those of `stiffmbs.check`."""
+        """Check degrees of freedom and redundancy; parameters, result and errors are those of `stiffmbs.check`."""
         from ...analyses.check import check
 
         return check(self, settings, **changes)
@@ -107,7 +106,7 @@ class RunnableModel(ModelBuilder[Data, Body, BodyHandle]):
         self, path: str | Path | None = None, at: float | None = None, described: bool = False, checked: bool = False,
         view: str = "", names: bool = True, forces: bool = True,
     ) -> Sheet | None:  # fmt: skip
-        """Draw the model at an instant; parameters, result and errors are those of `stiffmbs.draw`."""
+        """Draw the model at a given time; parameters, result and errors are those of `stiffmbs.draw`."""
         from ...show.drawing.draw import draw
 
         return draw(self, path, at, described, checked, view, names, forces)

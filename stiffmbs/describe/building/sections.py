@@ -1,4 +1,4 @@
-"""The sections of a model that is built, and what is checked before a part enters or leaves them."""
+"""Sections of a model built in Python, and the checks when a part is added or removed."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ BodyHandle = TypeVar("BodyHandle", bound=Handle)
 
 
 class Sections(Generic[Data, Body, BodyHandle]):
-    """The parts of a model by section and name.
+    """Parts of a model by section and name.
 
     Attributes
     ----------
     data_type, body_type, handle_type : types
-        The class of what is built, of its bodies, and of what stands for a body that has been added.
+        Classes of the model data, of its bodies, and of the handles of bodies.
     kinds : Kinds, Kinds
-        The joints and the forces of the family, by kind.
+        Joints and forces of the family, by kind.
     """
 
     data_type: type[Data]
@@ -57,14 +57,12 @@ class Sections(Generic[Data, Body, BodyHandle]):
         return self.bodies, self.states, self.inputs, self.joints, self.forces, self.requests
 
     def _found(self, name: str) -> dict[str, Any]:
-        """The section that holds a part."""
         for section in (self.markers,) if name.startswith(f"{GROUND}.") else self._sections():
             if key_of(name) in section:
                 return section
         raise InputError(f"{name}: found no part of that name, expected one of {self!r}")
 
     def _section_for(self, name: str, part: Any) -> dict[str, Any]:
-        """The section that a part belongs to."""
         if isinstance(part, self.body_type):
             return self.bodies
         if isinstance(part, StateEntry):
@@ -79,7 +77,7 @@ class Sections(Generic[Data, Body, BodyHandle]):
         return self.joints if isinstance(part, Joint) else self.forces
 
     def _changed(self, name: str, section: dict[str, Any], change: Callable[[], object]) -> None:
-        """Change a section, unless other parts then name what is no longer there."""
+        """Change a section; restore it if other parts then refer to missing ones."""
         before = dict(section)
         change()
         try:
@@ -142,16 +140,16 @@ class Sections(Generic[Data, Body, BodyHandle]):
         return {section: getattr(self, section) for section in sections}
 
     def data(self) -> Data:
-        """The model as it would stand in a scene.
+        """Return the model as the data of a scene.
 
         Raises
         ------
         InputError
-            When the model has no body.
+            If the model has no body.
         """
         return self.data_type(**self._content())
 
 
 def key_of(name: str) -> str:
-    """The name in its section: that of a marker of ground is without its owner."""
+    """Return the key of a name in its section: the prefix ``ground.`` is removed."""
     return name.removeprefix(f"{GROUND}.")

@@ -1,1 +1,1 @@
-"""Text files, YAML, and what stands in a scene before it is validated."""
+"""Text files, YAML, and the content of a scene before validation."""

@@ -1,7 +1,7 @@
 """Scene text before validation: parameters, repeated entries and values set from outside.
 
-A repeated entry stands for many: ``link{k}: {for: k in 1..N, mass: 1, position: [(k - 0.5)*L, 0]}``.  For each k,
-``{...}`` in its name and its text is replaced by its value (``"link{k-1}"``), and so is k itself in its formulas.
+A repeated entry stands for many: ``link{k}: {for: k in 1..N, mass: 1, position: [(k - 0.5)*L, 0]}``. For each k,
+``{...}`` in its name and text is replaced by its value (``"link{k-1}"``), and k itself is replaced in its formulas.
 """
 
 from __future__ import annotations
@@ -30,12 +30,12 @@ _BRACES = re.compile(r"\{([^{}]*)\}")
 
 
 def set_value(scene: dict[str, Any], path: str, value: Any) -> None:
-    """Put a value at a path such as ``bodies.cart.mass``, ``run.rtol`` or a parameter's bare name.
+    """Set the value at a path such as ``bodies.cart.mass``, ``run.rtol`` or the bare name of a parameter.
 
     Raises
     ------
     InputError
-        When the path leads through something that has no keys.
+        If the path passes through a value that has no keys.
     """
     if path in (scene.get("parameters") or {}):
         path = f"parameters.{path}"
@@ -57,7 +57,7 @@ def set_value(scene: dict[str, Any], path: str, value: Any) -> None:
 
 
 def unshared(found: Any) -> Any:
-    """A copy in which what aliases of YAML stand for is there several times, so that a change of one changes no other."""
+    """Return a deep copy in which YAML aliases are independent copies."""
     match found:
         case dict():
             return {key: unshared(value) for key, value in found.items()}
@@ -67,7 +67,7 @@ def unshared(found: Any) -> Any:
 
 
 def _keys(place: Any, path: str) -> list[str]:
-    """The keys of a path; what a mapping has under a name with dots is one key."""
+    """Return the keys of a path; a key of a mapping may contain dots."""
     keys: list[str] = []
     rest: str | None = path
     while rest is not None:
@@ -82,7 +82,7 @@ def _keys(place: Any, path: str) -> list[str]:
 def refuse_unused_parameters(
     scene: dict[str, Any], changes: Sequence[tuple[str, Any]], sections: Collection[str]
 ) -> None:
-    """Refuse a change that adds a parameter which no other change uses: a misspelt name would have no effect.
+    """Refuse a change that adds a parameter which no other change uses; a misspelt name would have no effect.
 
     Parameters
     ----------
@@ -94,12 +94,12 @@ def refuse_unused_parameters(
     Raises
     ------
     InputError
-        When there is no such parameter; names the parameters of the scene.
+        If there is no such parameter; lists the parameters of the scene.
     """
     known = scene.get("parameters") or {}
     added = {
         path.partition(".")[2] for path, _ in changes if path.startswith("parameters.")
-    }  # and may be changed again
+    }  # which other changes may modify
     for path, _ in changes:
         section, _, name = path.partition(".")
         if not name and not {path} & {*known, *added, *scene, *sections}:
@@ -116,18 +116,18 @@ def refuse_unused_parameters(
 
 
 def read_parameters(found: Any, replaced: Mapping[str, Quantity] | None = None) -> dict[str, Quantity]:
-    """The scene's own names; one may use those above it.
+    """Read the parameters of a scene; each may use the ones above it.
 
     Parameters
     ----------
     found : mapping of str to number or text
     replaced : mapping of str to Quantity, optional
-        What some of them were before they were set from outside: a plain number takes the SI unit of what it replaces.
+        Original values of parameters set from outside: a plain number takes the SI unit of the value that it replaces.
 
     Raises
     ------
     InputError
-        When a name is no identifier or is a unit's, or a value is no number.
+        If a name is not an identifier or is the name of a unit, or a value is not a number.
     """
     parameters: dict[str, Quantity] = {}
     if found is None:
@@ -146,7 +146,7 @@ def read_parameters(found: Any, replaced: Mapping[str, Quantity] | None = None) 
 def read_parameter(
     name: str, value: Any, above: Mapping[str, Quantity], replaced: Mapping[str, Quantity] | None = None
 ) -> Quantity:
-    """One parameter, with those above it; errors as for `read_parameters`."""
+    """Read one parameter, given the ones above it; errors as for `read_parameters`."""
     try:
         found = quantity(value, above) if isinstance(value, str) else Quantity(in_si(value, "number"))
     except FormulaError as error:
@@ -157,7 +157,7 @@ def read_parameter(
 
 
 def replaced_parameters(scene: dict[str, Any], changes: Sequence[tuple[str, Any]]) -> dict[str, Quantity]:
-    """The parameters that changes replace, as the scene has them; none where it cannot be read."""
+    """Return the original values of the parameters that changes replace; none if they cannot be read."""
     changed = {path.removeprefix("parameters.") for path, _ in changes}
     try:
         return {name: value for name, value in read_parameters(scene.get("parameters")).items() if name in changed}
@@ -166,12 +166,12 @@ def replaced_parameters(scene: dict[str, Any], changes: Sequence[tuple[str, Any]
 
 
 def read_tables(found: Any, parameters: Mapping[str, Quantity]) -> dict[str, Table]:
-    """The scene's tables, which its formulas may call as functions.
+    """Read the tables of a scene, which its formulas can call as functions.
 
     Raises
     ------
     InputError
-        When a name is no identifier or has a meaning in formulas, or a table cannot be read.
+        If a name is not an identifier or has a meaning in formulas, or a table cannot be read.
     """
     if found is None:
         return {}
@@ -191,12 +191,12 @@ def read_tables(found: Any, parameters: Mapping[str, Quantity]) -> dict[str, Tab
 
 
 def repeat_entries(section: str, entries: Any, parameters: Mapping[str, Quantity]) -> Any:
-    """Replace each entry that has a ``for`` by the entries that it stands for.
+    """Replace each entry with a ``for`` by the entries that it generates.
 
     Raises
     ------
     InputError
-        When the loop cannot be read or two of its entries have the same name.
+        If the loop cannot be read, or two entries have the same name.
     """
     if not isinstance(entries, dict):
         return entries
@@ -238,7 +238,7 @@ def _loop(where: str, text: Any, parameters: Mapping[str, Quantity]) -> tuple[st
 
 
 def _filled(where: str, value: Any, names: Mapping[str, Quantity], variable: str = "") -> Any:
-    """A value with ``{...}``, and a loop's variable where it stands alone, replaced by numbers."""
+    """Return a value with ``{...}`` and the loop variable replaced by numbers."""
     if isinstance(value, dict):
         return {key: _filled(where, item, names, variable) for key, item in value.items()}
     if isinstance(value, list):

@@ -64,7 +64,7 @@ def content_of(path: str | Path, largest: int = LARGEST) -> bytes:
     Raises
     ------
     OSError
-        When it cannot be read, is not a regular file, or is larger.
+        If it cannot be read, is not a regular file, or is larger.
     ValueError
         For an invalid file name.
     """
@@ -73,7 +73,7 @@ def content_of(path: str | Path, largest: int = LARGEST) -> bytes:
     with os.fdopen(handle, "rb") as file:
         _check(os.fstat(handle), path, largest)
         content = file.read(largest + 1)
-    if len(content) > largest:  # it has grown, or has no size
+    if len(content) > largest:  # the file has grown, or has no size
         raise _too_large(path, len(content), largest)
     record({str(path): hashlib.sha256(content).hexdigest()})
     return content

@@ -1,4 +1,4 @@
-"""The folder of the cache for files that were read before."""
+"""Cache folder of file contents that were read before."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ from functools import cache
 from ...cache.entries import Folder, tag_of
 
 FORMAT = "1"
-"""Changed whenever YAML is read in another way."""
+"""Version of the entries; increase it when the reading of YAML changes."""
 MOST_FILES, MOST_BYTES = 1000, 50_000_000
-"""That are kept."""
+"""Limits on the number of entries and on their total size in bytes."""
 
 
 @cache
 def folder_of_files() -> Folder:
-    """The entries that this version of the package and of the reader of YAML make."""
+    """Return the folder for this version of the package and of the YAML reader."""
     from importlib.metadata import version
 
     from ... import __version__
@@ -23,6 +23,6 @@ def folder_of_files() -> Folder:
 
 
 def keep(name: str, content: bytes) -> None:
-    """Keep an entry; where there are many, those that were written first go."""
+    """Write an entry, and remove the oldest entries beyond the limits."""
     folder_of_files().write(name, content)
     folder_of_files().keep_newest(MOST_FILES, MOST_BYTES)

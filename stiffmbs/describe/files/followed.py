@@ -1,9 +1,9 @@
-"""Numbers of a scene that are followed through reading and checking, so that other values need neither again.
+"""Trace of scene numbers through validation, for re-evaluation with other values without validating again.
 
-An element is made once with `Followed` in place of the numbers that are varied.  What is computed from these is written down
-step by step, and so is the outcome of every comparison.  With other values the steps are repeated; where all comparisons come
-out alike, reading the element anew would have gone the same way.  What cannot be followed, such as a number given to NumPy, is
-refused.
+An element is validated once with `Followed` objects in place of the numbers that vary. Every operation on them and the
+outcome of every comparison are recorded. For other values the operations are repeated; if all comparisons have the same
+outcome, the validation would have taken the same path. Operations that cannot be traced, such as conversion by NumPy,
+are refused.
 """
 
 from __future__ import annotations
@@ -18,40 +18,40 @@ from ..units.units import Quantity
 from .unchanged import names_in
 
 FOLLOWED = "followed"
-"""The key of a `Record` in the context of a validation."""
+"""Key of a `Record` in the validation context."""
 Parameters = Mapping[str, Quantity]
 Step = Callable[[list[float], Sequence[Any], Parameters], float]
-"""A number from those before it, the values of a case and its parameters."""
+"""Function that returns a number from the numbers before it, the values of a case and its parameters."""
 
 
 class NotFollowed(Exception):
-    """A number was used in a way that cannot be repeated with others."""
+    """Use of a number that cannot be traced."""
 
 
 class Reader(Protocol):
-    """A field that holds a number."""
+    """Field that holds a number."""
 
     def si_value(self, found: object, parameters: Parameters | None) -> float:
-        """Of what stands in the scene."""
+        """Return the SI value of an entry of a scene."""
 
 
 @dataclass(frozen=True)
 class Given:
-    """Stands in a scene for a number that is varied.
+    """Placeholder in a scene for a number that varies.
 
     Attributes
     ----------
     variation : int
-        Which of the values of a case it is, or is in.
+        Index of the value, or of the vector or matrix that contains it, in the values of a case.
     index : tuple of int
-        Of the number in a vector or matrix.
+        Index of the number in a vector or matrix.
     """
 
     variation: int
     index: tuple[int, ...] = ()
 
     def of(self, values: Sequence[Any]) -> Any:
-        """The number in the values of a case."""
+        """Return the number from the values of a case."""
         found = values[self.variation]
         for k in self.index:
             found = found[k]
@@ -59,16 +59,16 @@ class Given:
 
 
 class Record:
-    """What is computed from the values of a case, and how comparisons came out.
+    """Trace of the operations and comparisons on the values of a case.
 
     Parameters
     ----------
     changed : collection of str
-        The parameters that have other values in other cases.
+        Parameters that have other values in other cases.
     values : sequence
-        Those of a case.
+        Values of a case.
     parameters : mapping of str to Quantity
-        Of that case.
+        Parameters of that case.
     """
 
     def __init__(self, changed: Collection[str], values: Sequence[Any], parameters: Parameters) -> None:
@@ -80,26 +80,26 @@ class Record:
         self._closed = False
 
     def close(self) -> None:
-        """Write nothing down any more: whoever still computes or compares with the numbers is refused."""
+        """End the trace: later operations and comparisons are refused."""
         self._closed = True
 
     def follows(self, found: object) -> bool:
-        """Whether what stands in the scene has another value in other cases."""
+        """Return True if an entry has another value in other cases."""
         return isinstance(found, Given) or (isinstance(found, str) and not self._changed.isdisjoint(names_in(found)))
 
     def read(self, reader: Reader, found: Any) -> Followed:
-        """The number that a field holds; what stands there several times is read once."""
+        """Return the traced number of a field; repeated entries are read once."""
         key = reader, found
         if key not in self._read:
             self._read[key] = self._put(partial(_read, reader, found))
         return self._read[key]
 
     def computed(self, function: Callable[..., float], *operands: Any) -> Followed:
-        """What a function of followed and plain numbers gives."""
+        """Return the traced result of a function of traced and plain numbers."""
         return self._put(partial(_applied, function, tuple(map(self._place, operands))))
 
     def compared(self, function: Callable[..., Any], left: Any, right: Any) -> bool:
-        """How a comparison comes out."""
+        """Return the outcome of a comparison, and record it."""
         self._refuse_when_closed()
         places = self._place(left), self._place(right)
         outcome = bool(function(*(self._known[place] for place in places)))
@@ -107,12 +107,12 @@ class Record:
         return outcome
 
     def numbers(self, values: Sequence[Any], parameters: Parameters) -> list[float] | None:
-        """All numbers by `Followed.place`, with the values of another case; None where a comparison comes out otherwise.
+        """Return all numbers by `Followed.place`, for the values of another case; None if a comparison differs.
 
         Raises
         ------
         ValueError, ArithmeticError
-            Where a value cannot be read.
+            If a value cannot be read.
         """
         known: list[float] = []
         for step in self._steps:
@@ -153,12 +153,12 @@ def _constant(number: float, known: list[float], values: Sequence[Any], paramete
 
 
 class Followed:
-    """A number that is followed: it computes and compares as a number does, and can do nothing else.
+    """Traced number: supports arithmetic and comparison, and nothing else.
 
     Attributes
     ----------
     place : int
-        Among the numbers of its record.
+        Index among the numbers of its record.
     """
 
     __hash__ = None  # type: ignore[assignment]

@@ -1,4 +1,4 @@
-"""Scenes with joints and drives that hold at the start alone: initial conditions of joints."""
+"""Merge the joints and drives that hold only at the start (``at_start``) into the joints of a scene."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ AT_START = "at_start"
 
 
 def with_held(scene: WrittenScene) -> WrittenScene:
-    """The scene with those joints among its own.
+    """Return the scene with the initial-condition joints among its own.
 
     Raises
     ------
     InputError
-        When one of them has the name of a joint that always holds.
+        If one of them has the name of a permanent joint.
     """
     content = dict(scene.content)
     held, joints = content.pop(AT_START), dict(content.get("joints") or {})

@@ -1,4 +1,4 @@
-"""Scenes that include other files: ``include: suspension.yaml``, at the top of a scene or of one of its parts."""
+"""Inclusion of other files: ``include: suspension.yaml``, at the top of a scene or of one of its parts."""
 
 from __future__ import annotations
 
@@ -15,25 +15,25 @@ from .yaml_text import line_and_depth, line_of
 
 INCLUDE, PARTS = "include", "parts"
 MOST_FILES = 100
-"""That a scene may include, a file counted each time."""
+"""Largest number of included files; repeated inclusions count."""
 LARGEST = 20_000_000
-"""Bytes of a file that is included."""
+"""Largest size of an included file, bytes."""
 
 
 @dataclass
 class Sources:
-    """The texts that a scene comes from.
+    """Texts of a scene.
 
     Attributes
     ----------
     texts : list of (str, str, tuple of str)
-        Each text with what messages call it, and the path of keys in the scene at which its content stands.
+        Name in messages, text, and path of keys in the scene at which its content is inserted.
     """
 
     texts: list[tuple[str, str, tuple[str, ...]]] = field(default_factory=list)
 
     def line(self, path: tuple[Any, ...]) -> str | None:
-        """The line in which what a path leads to stands, with its file where that is not the scene's own."""
+        """Return the line of the deepest known key of a path, with the file if it is an included one."""
         deepest, line = 0, None
         for k, (source, text, above) in enumerate(self.texts):
             if path[: len(above)] != above:
@@ -83,7 +83,7 @@ class _Including:
     def whole(
         self, found: dict[str, Any], source: str, folder: Path, within: tuple[Path, ...], path: tuple[str, ...]
     ) -> dict[str, Any]:
-        """A mapping with all that it includes itself, and that its parts include."""
+        """Return a mapping with its includes and those of its parts resolved."""
         found = self._opened(found, source, folder, within, path)
         parts = found.get(PARTS)
         if isinstance(parts, dict):
@@ -125,7 +125,7 @@ class _Including:
 
 
 def _check_file(file: Path, where: str) -> None:
-    """Refuse what is no file of ordinary size: a device may have no end."""
+    """Refuse anything except a regular file of moderate size; reading a device may not end."""
     try:
         if not file.is_file():
             raise InputError(f"{where}: found no such file '{quoted(str(file))}', expected a YAML file")
@@ -147,7 +147,7 @@ def _listed(found: Any, where: str) -> list[str]:
 def _add(
     merged: dict[str, Any], found: dict[str, Any], source: str, owners: dict[tuple[Any, ...], str], where: str
 ) -> None:
-    """Put one file's sections with those of others; a name may stand in one of them alone."""
+    """Merge the sections of a file; a name may occur in one file only."""
     for section, value in found.items():
         if not (isinstance(value, dict) and isinstance(merged.get(section, {}), dict)):
             _own((section,), merged, section, value, source, owners, where)
@@ -161,7 +161,7 @@ def _own(
     path: tuple[Any, ...], place: dict[str, Any], name: Any, value: Any, source: str,
     owners: dict[tuple[Any, ...], str], where: str,
 ) -> None:  # fmt: skip
-    if name in place and not (len(path) == 1 and place[name] == value):  # two files may both say dimensions: 3
+    if name in place and not (len(path) == 1 and place[name] == value):  # equal values may be repeated
         first = owners.get(path, "another file")
         raise InputError(f"{where}: found '{'.'.join(map(str, path))}' in {first} and in {source}, expected it in one")
     place[name] = value
@@ -169,7 +169,7 @@ def _own(
 
 
 def _place(sources: Sources, source: str, path: tuple[str, ...]) -> str:
-    """Where a key of a source stands, for a sentence that goes on with its path."""
+    """Return the file and line of a key, as the beginning of a message."""
     text, above = next(((text, above) for name, text, above in reversed(sources.texts) if name == source), ("", ()))
     line = line_of(text, path[len(above) :])
     return f"{source}, line {line}, " if line else f"{source}, "

@@ -1,6 +1,6 @@
-"""Long YAML texts read by libyaml, in a tenth of the time that Python takes, where that gives the same.
+"""Fast reading of long YAML texts by libyaml, if its result is certain to agree with YAML 1.2.
 
-libyaml says what stands where in a text.  What words and numbers stand for is as ruamel.yaml has it, by YAML 1.2.
+libyaml provides the structure; ruamel.yaml resolves the scalars by YAML 1.2.
 """
 
 from __future__ import annotations
@@ -27,26 +27,26 @@ from yaml import (
 from .yaml_content import MOST_NESTED
 
 COMPARED = (0, 2, 5)
-"""The version of libyaml that was seen to read what Python reads; it has been the latest since 2020."""
+"""Version of libyaml whose results were compared with those of ruamel.yaml."""
 _READ_OTHERWISE = re.compile(
     r"[^\n -\[\]-~\xa0-\ud7ff]|^(?:%|---|\.\.\.)|&(?![\w-]+[ \n])|(?<!\w):(?![ \n])|(?<![^ \n,\[{])\?", re.MULTILINE
 )
-"""What libyaml may read otherwise: tabs, backslashes, rare characters, directives, marks of documents, anchors with other signs, colons
-between signs, and signs of names that are no plain text."""
+"""Text that libyaml may read differently: tabs, backslashes, rare characters, directives, document marks, anchors with
+punctuation, colons within words, and ``?`` within words."""
 _BLOCKS = frozenset("|>")
 _PLAIN_BLOCK = re.compile(r"[|>][-+]?\n *[^ \n#]")
-"""How text over several lines begins that is read alike."""
+"""Beginnings of block scalars that both libraries read alike."""
 MERGE = "<<"
 _BEHIND_ALIAS = frozenset(" \n,]}")
-"""What ends the name of an alias for every reader."""
+"""Characters that end the name of an alias in every reader."""
 
 
 class NotSureError(Exception):
-    """libyaml may read the text otherwise than YAML 1.2 has it, or there is a fault in it."""
+    """Text that libyaml may read differently from YAML 1.2, or with an error."""
 
 
 def read_by_libyaml(text: str) -> Any:
-    """What stands in a text, as `stiffmbs.describe.files.yaml_text.read_yaml` has it.
+    """Read a YAML text, with the result of `stiffmbs.describe.files.yaml_text.read_yaml`.
 
     Parameters
     ----------
@@ -55,9 +55,9 @@ def read_by_libyaml(text: str) -> Any:
     Raises
     ------
     NotSureError
-        For a text that is to be read by Python, which also tells faults; for all of them where libyaml is not installed.
+        If the text must be read in Python, which also reports faults, or if this version of libyaml is not installed.
     """
-    text = text.replace("\r\n", "\n")  # YAML has no difference between them
+    text = text.replace("\r\n", "\n")  # equivalent in YAML
     if not yaml.__with_libyaml__ or yaml._yaml.get_version() != COMPARED or _READ_OTHERWISE.search(text):
         raise NotSureError
     try:
@@ -67,7 +67,7 @@ def read_by_libyaml(text: str) -> Any:
 
 
 class _Content:
-    """What a stream of events stands for."""
+    """Content of a stream of YAML events."""
 
     def __init__(self, events: Iterator[Any], text: str) -> None:
         self._events, self._text = events, text
@@ -75,7 +75,7 @@ class _Content:
         self._anchored: dict[str, Any] = {}
 
     def whole(self) -> Any:
-        """What the one document holds."""
+        """Return the content of the single document."""
         self._expect(StreamStartEvent)
         self._expect(DocumentStartEvent)
         found = self._value(next(self._events), 0)
@@ -138,7 +138,7 @@ class _Content:
 
 
 def _reader_of_plain() -> Callable[[str], Any]:
-    """What gives the value of text that stands without quotes."""
+    """Return a function for the values of unquoted scalars."""
     ruamel = YAML(typ="safe", pure=True)
     text_itself = ruamel.resolver.resolve(ScalarNode, "", (False, True))
 
@@ -149,7 +149,7 @@ def _reader_of_plain() -> Callable[[str], Any]:
             return text
         try:
             return ruamel.constructor.construct_document(ScalarNode(tag, text))
-        except Exception as error:  # dates and whole numbers that are none raise whatever Python does
+        except Exception as error:  # invalid dates and integers raise various Python errors
             raise NotSureError from error
 
     return value

@@ -1,7 +1,6 @@
-"""Scenes that differ by values which stand in forces alone: these are read anew, and nothing else.
+"""Scenes that differ only in values used by forces: only these forces are read again.
 
-Reading a whole scene costs more than solving a small one.  A value that a formula of a body, a joint, a table or a run
-setting names is left to `stiffmbs.describe.reading.made_scene`, and so is whatever does not fit, which says why.
+`stiffmbs.describe.reading.made_scene` reads the whole scene if other sections use a changed value, and reports errors.
 """
 
 from __future__ import annotations
@@ -26,7 +25,7 @@ from .written_scene import WrittenScene
 
 PARAMETERS, FORCES = "parameters", "forces"
 NOT_AS_WRITTEN = ("use", "stages", OPTIONS, CHOOSE)
-"""Sections with which the entries of a scene are not those of its file."""
+"""Sections that make the entries of a scene differ from those of its file."""
 
 
 class OtherForces:
@@ -36,9 +35,9 @@ class OtherForces:
     ----------
     written : WrittenScene
     names : sequence of str
-        What is varied, as `stiffmbs.load_scene` changes it.
+        Paths of the varied values, as for `stiffmbs.load_scene`.
     unchanged : Unchanged
-        With a scene of the same content that was read with some values of them.
+        Record of a scene of the same content that was already validated.
     """
 
     def __init__(self, written: WrittenScene, names: Sequence[str], unchanged: Unchanged) -> None:
@@ -51,14 +50,13 @@ class OtherForces:
         self._formulas = dict(self._read_before())
 
     def _read_before(self) -> Iterator[tuple[tuple[str, tuple[str, ...], bool], Formula]]:
-        """The formulas of the forces that the values stand in."""
         scene = self._unchanged.scene
         for name in self.affected if scene else ():
             for _, formula in scene.forces[name].parts(Formula):  # type: ignore[union-attr]
                 yield (formula.text, formula.variables, formula.velocities), formula
 
     def _found(self, written: WrittenScene) -> frozenset[str] | None:
-        """The forces that the values stand in; None where they stand elsewhere too."""
+        """Return the forces that use the values; None if other elements use them too."""
         content, parameters = self._content, self._content.get(PARAMETERS) or {}
         if any(content.get(section) for section in NOT_AS_WRITTEN) or any(isinstance(v, str) for _, v in written.changes):  # fmt: skip
             return None
@@ -88,7 +86,7 @@ class OtherForces:
         return found if as_written else None
 
     def scene(self, values: Sequence[Any]) -> Scene | None:
-        """The scene with such values; None where it must be read as a whole."""
+        """Return the scene with the given values; None if it must be read as a whole."""
         before = self._unchanged.scene
         if self._affected is None or before is None or any(isinstance(value, str) for value in values):
             return None
@@ -108,7 +106,7 @@ class OtherForces:
         return scene
 
     def followed(self, values: Sequence[Any]) -> tuple[Record, Scene] | None:
-        """The scene with numbers that are followed in the forces that such values stand in; None where they cannot be."""
+        """Return the scene with traced numbers in the affected forces; None if they cannot be traced."""
         before = self._unchanged.scene
         if self._affected is None or before is None:
             return None
@@ -120,22 +118,22 @@ class OtherForces:
             forces = self._forces(given, {**self._unchanged.context, PARAMETERS: others, FOLLOWED: record})
             scene = before.model_copy(update={FORCES: {**before.forces, **forces}})
             scene.check_elements({f"{FORCES}.{name}": force for name, force in forces.items()})
-        except Exception:  # an element's code that such a number does not suit raises whatever Python does
+        except Exception:  # the code of an element may raise any error for a traced number
             return None
         return record, scene
 
     @property
     def affected(self) -> Collection[str]:
-        """The forces that the values stand in."""
+        """Forces that use the values."""
         return self._affected or ()
 
     def parameters(self, values: Sequence[Any]) -> dict[str, Quantity]:
-        """The scene's parameters with such values.
+        """Return the scene's parameters with the given values.
 
         Raises
         ------
         InputError
-            When one cannot be read.
+            If one cannot be read.
         """
         content = self._content.get(PARAMETERS) or {}
         given = {name.removeprefix(f"{PARAMETERS}."): value for name, value in zip(self._names, values, strict=True)}
@@ -146,7 +144,6 @@ class OtherForces:
         return found
 
     def _forces(self, values: Sequence[Any], context: Mapping[str, Any]) -> dict[str, Force]:
-        """The forces that such values stand in."""
         assert self._unchanged.scene is not None and self._affected is not None
         content = {FORCES: {name: unshared(self._content[FORCES][name]) for name in self._affected}}
         for name, value in zip(self._names, values, strict=True):
@@ -160,23 +157,23 @@ class OtherForces:
 
 
 def _given(variation: int, value: Any, index: tuple[int, ...] = ()) -> Any:
-    """What stands in a scene for a value that is varied."""
+    """Return the placeholders for a value that varies."""
     if isinstance(value, list | tuple):
         return [_given(variation, part, (*index, k)) for k, part in enumerate(value)]
     return Given(variation, index)
 
 
 def _following(parameters: Mapping[str, Any], changed: set[str]) -> set[str]:
-    """The parameters whose formulas name changed ones, directly or through others."""
+    """Return the parameters whose formulas depend on changed ones, directly or indirectly."""
     found = set(changed)
-    for name, value in parameters.items():  # one may use those above it alone
+    for name, value in parameters.items():  # each may use only earlier ones
         if name not in found and names_in({"": value}) & found:
             found.add(name)
     return found
 
 
 def _texts(entry: Any) -> str:
-    """All texts of an entry in one."""
+    """Return all texts of an entry, concatenated."""
     match entry:
         case str():
             return entry

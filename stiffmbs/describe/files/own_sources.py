@@ -1,7 +1,8 @@
 """Digests of the user's Python code that the elements of a scene use.
 
-The source file of each function and class belongs to the files of the scene.  The loaded code has a separate digest, because the file
-may have been edited since.  User functions and classes that the code names are followed, as are values in closures and modules.
+The source file of each function and class belongs to the files of the scene. The loaded code has a separate digest,
+because the file may have been edited since. User functions and classes that the code names are followed, as are values
+in closures and modules.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ PLAIN = (int, float, complex, str, bytes, bool, type(None))
 
 
 def own_sources(scene: Scene) -> dict[str, str]:
-    """Return the digests of the code of user-defined elements by file; empty for a scene with elements of the package only."""
+    """Return the digests of the code of user-defined elements by file; empty if all elements are of the package."""
     kinds = {type(element) for section in (scene.joints, scene.forces) for element in section.values()}
     own = {kind for kind in kinds if kind.__module__.partition(".")[0] != PACKAGE}
     return digests_of_code(own) if own else {}
@@ -121,7 +122,6 @@ class _Walk:
 
 @functools.cache
 def _installed() -> tuple[Path, ...]:
-    """Return the folders of Python's standard library and of installed packages."""
     return tuple({Path(sysconfig.get_paths()[name]) for name in ("stdlib", "platstdlib", "purelib", "platlib")})
 
 

@@ -1,13 +1,13 @@
-"""Values as sentences quote them."""
+"""Quotation of values in messages."""
 
 from __future__ import annotations
 
 MOST_QUOTED = 80
-"""Characters of a quotation; what is longer is cut in its middle."""
+"""Largest length of a quotation; longer text is shortened in the middle."""
 
 
 def quoted(found: object) -> str:
-    """A text, or another value as Python writes it, short enough for a sentence.
+    """Return a text, or the `repr` of another value, shortened for a message.
 
     Examples
     --------
@@ -20,10 +20,10 @@ def quoted(found: object) -> str:
 
 
 def written(found: object) -> str:
-    """A value as Python writes it, text between quotation marks, short enough for a sentence."""
+    """Return the `repr` of a value, shortened for a message."""
     try:
         return _shortened(repr(found))
-    except (ValueError, RecursionError):  # a whole number of more than 4300 digits, or one nested too deep
+    except (ValueError, RecursionError):  # an integer of more than 4300 digits, or too deep nesting
         return f"a large {type(found).__name__}"
 
 

@@ -1,6 +1,6 @@
-"""YAML files that were read before: their content is kept on disk, as reading it takes longer than much else of a short run.
+"""Disk cache of the content of YAML files.
 
-There is one entry for a file, which a change of the file replaces.  Where there are many, those that were written first go.
+Each file has one entry, which is replaced when the file changes. The oldest entries are removed beyond the limits.
 """
 
 from __future__ import annotations
@@ -15,28 +15,28 @@ from .folder import folder_of_files, keep
 from .yaml_text import read_yaml
 
 FILE = "file"
-"""How the names of the entries begin."""
+"""Prefix of the names of the entries."""
 LARGEST = 1_000_000
-"""Characters of what is kept of a file: aliases can stand for much."""
+"""Largest number of characters of an entry; aliases can expand a text."""
 
 
 def read_yaml_file(text: str, source: str, file: Path | None) -> Any:
-    """What stands in the text of a file; see `read_yaml`.
+    """Read the text of a YAML file, or its content from the cache; see `read_yaml`.
 
     Parameters
     ----------
     text : str
     source : str
-        What messages call it.
+        Name of the text in messages.
     file : Path or None
-        Nothing is kept of a text that is of no file.
+        File of the text; without one, nothing is cached.
     """
     if file is None:
         return read_yaml(text, source)
     name, version = f"{FILE}-{digest(str(file.resolve()))}", digest(text)
     stored = folder_of_files().read(name)
     if stored is not None and stored.startswith(version.encode()):
-        with suppress(ValueError):  # of an entry that something else has written
+        with suppress(ValueError):  # an entry not written by this package
             return json.loads(stored[len(version) :])
     found = read_yaml(text, source)
     if _is_plain(found) and len(content := json.dumps(found)) <= LARGEST:
@@ -45,7 +45,7 @@ def read_yaml_file(text: str, source: str, file: Path | None) -> Any:
 
 
 def _is_plain(found: Any) -> bool:
-    """Whether JSON gives back exactly what was found: not so for dates, sets, and names that are numbers."""
+    """Return True if JSON preserves a value exactly, unlike dates, sets, and keys that are numbers."""
     if type(found) is dict:
         return all(type(name) is str for name in found) and all(map(_is_plain, found.values()))
     if type(found) is list:

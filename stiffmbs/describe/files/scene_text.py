@@ -1,4 +1,4 @@
-"""Scenes as the text of scene files."""
+"""Text of scene files."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ WIDTH = 140
 
 
 def scene_text(found: dict[str, Any]) -> str:
-    """The text of a scene file that holds a mapping; innermost lists and mappings stand in one line."""
+    """Return a mapping as the text of a scene file; innermost lists and mappings are in flow style."""
     from ruamel.yaml import YAML
 
     yaml, out = YAML(), StringIO()

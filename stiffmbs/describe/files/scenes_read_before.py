@@ -1,7 +1,7 @@
-"""Scenes that were read before: a scene is kept on disk as it is once valid, as reading it takes longer than much else of a short run.
+"""Disk cache of validated scenes.
 
-There is one entry for a file and the changes of it.  It is used for the same text alone, where every other file that was read for it
-is the same, and so is what reads it: the files of `stiffmbs.describe`, Python, pydantic and NumPy.
+There is one entry for a file and its changes. It is valid for the same text if all other files read for it are
+unchanged, and so are the files of `stiffmbs.describe`, Python, pydantic and NumPy.
 """
 
 from __future__ import annotations
@@ -27,23 +27,23 @@ if TYPE_CHECKING:
     from ..scene import Scene
 
 SCENE = "scene"
-"""How the names of the entries begin."""
+"""Prefix of the names of the entries."""
 MOST_ELEMENTS, LARGEST = 5000, 5_000_000
-"""Bodies, joints and forces of a scene that is kept, and bytes of its entry."""
+"""Largest number of bodies, joints and forces of a cached scene, and largest size of its entry, bytes."""
 OF_SCENES = frozenset(("stiffmbs", "ast", "builtins", "collections", "numpy", "pathlib"))
-"""Packages whose classes a scene may hold to be kept; others, such as a user's own elements, may change at any time."""
+"""Packages whose classes a cached scene may contain; code of other packages, such as user elements, may change."""
 
 
 def read_scene_file(text: str, changes: Sequence[tuple[str, Any]], source: str, file: Path) -> Scene:
-    """Read a scene; see `stiffmbs.describe.reading.read_scene`, whose errors are told as there.
+    """Read a scene, or its cached form; results and errors are those of `stiffmbs.describe.reading.read_scene`.
 
     Parameters
     ----------
     text : str
-        Of the file.
+        Text of the file.
     changes : sequence of (path, text)
     source : str
-        What messages call it.
+        Name of the scene in messages.
     file : Path
     """
     with uncollected():
@@ -55,7 +55,7 @@ def read_scene_file(text: str, changes: Sequence[tuple[str, Any]], source: str, 
 
 
 def _read(text: str, changes: Sequence[tuple[str, Any]], source: str, file: Path, name: str) -> Scene:
-    """Read a scene, and keep it under a name; nothing is kept without one."""
+    """Read a scene, and cache it if a name is given."""
     from ..reading import read_scene
 
     with recorded() as others:
@@ -68,7 +68,7 @@ def _read(text: str, changes: Sequence[tuple[str, Any]], source: str, file: Path
 
 
 def _scene_in(stored: bytes, text: str) -> Scene | None:
-    """The scene of an entry; None where anything that it was read from is no longer the same."""
+    """Return the scene of an entry; None if anything that it was read from has changed."""
     from ..scene import Scene
 
     head, _, content = stored.partition(b"\n")
@@ -78,15 +78,14 @@ def _scene_in(stored: bytes, text: str) -> Scene | None:
             return None
         if any(digest_of_file(file) != found for file, found in others.items()):
             return None
-        scene = pickle.loads(content)  # it bears the user's code
-    except Exception:  # of a class that is no longer found, or of what is no scene: pickles raise whatever Python does
+        scene = pickle.loads(content)  # may contain user code
+    except Exception:  # of a missing class or a damaged entry: unpickling may raise any error
         return None
     return scene if isinstance(scene, Scene) else None
 
 
 @cache
 def _reader() -> str:
-    """A digest of what reads scenes."""
     import numpy
     import pydantic
 
@@ -96,7 +95,7 @@ def _reader() -> str:
 
 
 def _pickled(scene: Scene) -> bytes | None:
-    """A scene as bytes; None for one that holds anything of other packages."""
+    """Return a scene as bytes; None if it contains objects of other packages."""
     content = io.BytesIO()
     try:
         _Pickler(content, pickle.HIGHEST_PROTOCOL).dump(scene)
@@ -106,10 +105,10 @@ def _pickled(scene: Scene) -> bytes | None:
 
 
 class _Pickler(pickle.Pickler):
-    """Keeps what was validated with a scene, and refuses classes and functions of other packages."""
+    """Pickler for scenes, which refuses classes and functions of other packages."""
 
     def reducer_override(self, found: Any) -> Any:
-        """Refuse classes and functions of other packages, and keep unchanged values."""
+        """Refuse classes and functions of other packages, and pickle `Unchanged` with its content."""
         if isinstance(found, type | FunctionType) and found.__module__.partition(".")[0] not in OF_SCENES:
             raise pickle.PicklingError(f"found {found!r}, expected what is of this package")
         if isinstance(found, Unchanged):

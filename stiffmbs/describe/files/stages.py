@@ -1,4 +1,4 @@
-"""Scenes that are run in stages, each with other joints, forces or numbers, one after the other."""
+"""Scenes run in consecutive stages, each with other joints, forces or numbers."""
 
 from __future__ import annotations
 
@@ -15,27 +15,27 @@ from .until import Until
 from .written_scene import WrittenScene
 
 OWN_SETTINGS = ("duration", "output", "points", "start")
-"""Of ``run``, which each stage has for itself."""
+"""Settings of ``run`` that each stage has for itself."""
 GRIDS = ("output", "points")
 
 
 class Stage(Described):
-    """One of the runs of a scene, which starts where the one before it ends.
+    """Stage of a scene, which starts where the previous one ends.
 
     Parameters
     ----------
     analysis : str
-        ``dynamic`` over time, or ``static``: the equilibrium found from where the stage starts, at that time; with a duration
-        one at each output time.
+        ``dynamic`` over time, or ``static``: the equilibrium found from the state at the start of the stage, at that
+        time; with a duration, one at each output time.
     change : mapping
-        What is other than in the stage before (in the scene, for the first), as a merge patch (RFC 7386): mappings are
-        merged, null takes an entry away, anything else takes the place of what was there.
+        Changes from the previous stage (from the scene, for the first), as a merge patch (RFC 7386): mappings are
+        merged, null removes an entry, anything else replaces the old value.
     run : mapping
-        Settings of this stage beside those of the scene.
+        Settings of this stage, in addition to those of the scene.
     end : float, optional
-        When it ends, s, whenever it starts; in place of a duration.
+        End time, s, independent of the start; in place of a duration.
     until : mapping of str to Until
-        Conditions that end it earlier, by name.
+        Conditions that end the stage earlier, by name.
     """
 
     analysis: Literal["dynamic", "static"] = Field("dynamic", description="over time, or the equilibrium at its start")
@@ -46,7 +46,7 @@ class Stage(Described):
 
     @property
     def over_time(self) -> bool:
-        """Whether it takes any time."""
+        """True for a stage with a time interval."""
         return self.analysis == "dynamic" or "duration" in self.run or self.end is not None
 
     @model_validator(mode="after")
@@ -59,12 +59,12 @@ class Stage(Described):
 
 
 def written_stages(scene: WrittenScene, stages: Sequence[Stage]) -> list[WrittenScene]:
-    """What each stage is, written as a scene of its own.
+    """Return each stage as a scene of its own.
 
     Raises
     ------
     InputError
-        When a setting is changed from outside that each stage has for itself.
+        If a change from outside concerns a setting that each stage has for itself.
     """
     for path, _ in scene.changes if len(stages) > 1 else ():
         if path.partition(".")[0] == "run" and path.partition(".")[2] in OWN_SETTINGS:
@@ -86,7 +86,7 @@ def written_stages(scene: WrittenScene, stages: Sequence[Stage]) -> list[Written
 
 
 def merged(old: Any, change: Any) -> Any:
-    """Something as a merge patch changes it (RFC 7386)."""
+    """Apply a merge patch (RFC 7386)."""
     if not isinstance(change, Mapping):
         return change
     found = dict(old) if isinstance(old, Mapping) else {}
@@ -99,7 +99,7 @@ def merged(old: Any, change: Any) -> Any:
 
 
 def merge_patch(old: Mapping[str, Any], new: Mapping[str, Any]) -> dict[str, Any]:
-    """The patch that makes one mapping of another; see `merged`."""
+    """Return the patch that converts one mapping to another; see `merged`."""
     patch: dict[str, Any] = {name: None for name in old if name not in new}
     for name, value in new.items():
         before = old.get(name)
@@ -112,7 +112,7 @@ def merge_patch(old: Mapping[str, Any], new: Mapping[str, Any]) -> dict[str, Any
 
 
 def _of_stage(changes: Sequence[tuple[str, Any]], content: Mapping[str, Any]) -> tuple[tuple[str, Any], ...]:
-    """The changes from outside without those of joints, forces and requests that a stage does not have."""
+    """Return the changes from outside, without those of joints, forces and requests that a stage does not have."""
 
     def is_there(path: str) -> bool:
         section, _, name = path.partition(".")

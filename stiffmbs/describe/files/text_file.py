@@ -1,4 +1,4 @@
-"""What stands in a text file: its encoding, and its lines."""
+"""Text files: encoding and lines."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .files_read import LARGEST, content_of
 from .quoted import quoted
 
 STANDARD_INPUT = "-"
-"""What a file is called whose text is read from standard input."""
+"""File name that denotes standard input."""
 _MARKS = (
     (codecs.BOM_UTF8, "utf-8-sig"),
     (codecs.BOM_UTF32_LE, "utf-32"),
@@ -20,13 +20,13 @@ _MARKS = (
     (codecs.BOM_UTF16_LE, "utf-16"),
     (codecs.BOM_UTF16_BE, "utf-16"),
 )
-"""Byte order marks; that of UTF-32 begins as that of UTF-16."""
+"""Byte order marks; UTF-32 comes before UTF-16, as its mark begins with that of UTF-16."""
 _PADDING = "\0\x1a"
-"""What older systems fill the end of a file with."""
+"""Padding at the end of files of older systems."""
 
 
 def source_name(path: str | Path) -> str:
-    """What messages call a file."""
+    """Return the name of a file in messages."""
     return "standard input" if str(path) == STANDARD_INPUT else str(path)
 
 
@@ -44,7 +44,7 @@ def file_text(path: str | Path, otherwise: str = "", zero: str = "") -> str:
     Raises
     ------
     InputError
-        When the file cannot be read, is not a regular file, is larger than `LARGEST`, or is not text.
+        If the file cannot be read, is not a regular file, is larger than `LARGEST`, or is not text.
     """
     source = source_name(path)
     if str(path) == STANDARD_INPUT and sys.stdin is None:
@@ -53,7 +53,7 @@ def file_text(path: str | Path, otherwise: str = "", zero: str = "") -> str:
         content = _standard_input() if str(path) == STANDARD_INPUT else content_of(path)
     except FileNotFoundError:
         raise InputError(f"{source}: found no such file, expected a scene") from None
-    except (OSError, ValueError) as error:  # a name may hold what no file system takes
+    except (OSError, ValueError) as error:  # a name may contain characters that no file system accepts
         reason = getattr(error, "strerror", None) or error
         raise InputError(f"{quoted(source)}: the file cannot be read ({reason})") from None
     return decoded(content, source, otherwise, zero)
@@ -67,7 +67,7 @@ def _standard_input() -> bytes:
 
 
 def decoded(content: bytes, source: str, otherwise: str = "", zero: str = "") -> str:
-    """The text of bytes: UTF-8, UTF-16 or UTF-32 by their mark, UTF-16 without one by its zero bytes; errors as `file_text`."""
+    """Decode bytes as UTF-8, UTF-16 or UTF-32 by their mark, or as UTF-16 by zero bytes; errors as `file_text`."""
     encoding = next((name for mark, name in _MARKS if content.startswith(mark)), None) or _unmarked(content)
     try:
         text = content.decode(encoding)
@@ -80,7 +80,7 @@ def decoded(content: bytes, source: str, otherwise: str = "", zero: str = "") ->
 
 
 def checked(text: str, source: str, zero: str = "") -> str:
-    """A text without a byte order mark and what pads its end; refused where zero bytes stand in it, which no text has."""
+    """Return a text without byte order mark and padding; refuse zero bytes unless `zero` replaces them."""
     text = text.removeprefix("\ufeff").rstrip(_PADDING)
     if "\0" in text and zero:
         return text.replace("\0", zero)
@@ -91,7 +91,7 @@ def checked(text: str, source: str, zero: str = "") -> str:
 
 
 def _unmarked(content: bytes) -> str:
-    """UTF-16 where one of the first two signs, which are ASCII in what is read here, has its zero byte; else UTF-8."""
+    """Return UTF-16 if one of the first two bytes is zero, as for ASCII characters, otherwise UTF-8."""
     first = content[:4]
     if first[1:2] == b"\0" and first[:1] != b"\0":
         return "utf-16-le"
@@ -99,6 +99,6 @@ def _unmarked(content: bytes) -> str:
 
 
 def lines(text: str) -> list[str]:
-    """The lines of a text, which CR and LF end alone (`str.splitlines` takes form feeds, U+0085 and U+2028 for ends too)."""
+    """Split a text at CR and LF only; `str.splitlines` also splits at form feeds, U+0085 and U+2028."""
     found = re.split(r"\r\n|\r|\n", text)
     return found[:-1] if not found[-1] else found

@@ -1,6 +1,6 @@
-"""Entries of a scene that stay as they are when it is read again with other values.
+"""Entries of a scene that are reused when it is read again with other values.
 
-An entry is the same where its text is the same and names nothing whose value has changed.
+An entry is unchanged if its text is the same and uses no name whose value has changed.
 """
 
 from __future__ import annotations
@@ -14,19 +14,19 @@ if TYPE_CHECKING:
     from ..scene import Scene
 
 REUSED = ("bodies", "joints", "forces")
-"""Sections whose entries may be given as what they are once validated."""
+"""Sections whose validated entries can be reused."""
 _NAME = re.compile(r"[A-Za-z_]\w*")
 
 
 class Unchanged:
-    """What was validated in the scene that was read first.
+    """Validated entries of the first reading of a scene.
 
     Attributes
     ----------
     scene : Scene or None
-        None before any was read.
+        None before the first reading.
     context : mapping
-        What its entries were validated with.
+        Validation context of its entries.
     """
 
     def __init__(self) -> None:
@@ -35,24 +35,23 @@ class Unchanged:
         self._raw: Mapping[str, Any] = {}
 
     def __eq__(self, other: object) -> bool:
-        """Scenes are equal whatever is kept of their reading."""
+        """Treat all records as equal, so that the comparison of scenes ignores them."""
         return isinstance(other, Unchanged)
 
     __hash__ = None  # type: ignore[assignment]
 
     def __reduce__(self) -> tuple[type[Unchanged], tuple[()]]:
-        """Copies hold nothing, as their scene is another object."""
+        """Copy as an empty record, because the scene of a copy is another object."""
         return Unchanged, ()
 
     def keep(self, raw: Mapping[str, Any], context: Mapping[str, Any], scene: Scene) -> None:
-        """Remember a scene with its entries before they were validated; only the first one is."""
+        """Record a scene with its entries before validation; only the first call has an effect."""
         if self.scene is not None:
             return
         self.scene, self._raw, self.context = scene, raw, context
 
     @cached_property
     def _names(self) -> dict[tuple[str, str], frozenset[str]]:
-        """The words of each entry."""
         return {
             (section, name): names_in(entry)
             for section in (*REUSED, "variables")
@@ -60,7 +59,7 @@ class Unchanged:
         }
 
     def put_into(self, raw: Mapping[str, Any], context: Mapping[str, Any]) -> dict[str, Any]:
-        """The entries of another reading, those that have stayed the same as what they are once validated."""
+        """Return the entries of another reading, with unchanged ones in validated form."""
         scene = self.scene
         if scene is None or context["names"] != self.context["names"] or raw.get("dimensions") != self._raw.get("dimensions"):  # fmt: skip
             return dict(raw)
@@ -82,7 +81,7 @@ class Unchanged:
         return isinstance(entry, dict) and bool(entry == before)
 
     def _changed_names(self, raw: Mapping[str, Any], context: Mapping[str, Any]) -> set[str]:
-        """Parameters, tables, roads and variables that have other values, or whose variables have."""
+        """Return the changed parameters, tables, roads and variables, and the variables that depend on them."""
         changed: set[str] = set()
         for kind in ("parameters", "tables", "roads"):
             new, old = context[kind], self.context[kind]
@@ -97,12 +96,12 @@ class Unchanged:
 
 
 def names_in(entry: Any) -> frozenset[str]:
-    """The words in the texts of an entry."""
+    """Return the words in the texts of an entry."""
     return frozenset(_names(entry))
 
 
 def _names(entry: Any) -> Iterator[str]:
-    """Every word in the texts of an entry."""
+    """Yield every word in the texts of an entry."""
     match entry:
         case str():
             yield from _NAME.findall(entry)

@@ -1,4 +1,4 @@
-"""Conditions that end a stage before its time, or change how it goes on: a request that comes to a value."""
+"""Conditions on the value of a request that end a stage or change its course."""
 
 from __future__ import annotations
 
@@ -14,22 +14,23 @@ BOUNDS = ("at_least", "at_most", "equals")
 
 
 class Until(Described):
-    """A condition that ends a stage, or changes how it goes on (Adams: SENSOR).
+    """Condition that ends a stage or changes its course (Adams: SENSOR).
 
     Parameters
     ----------
     request : str
-        Whose value is watched, over the solver's own steps.
+        Request whose value is monitored over the solver's internal steps.
     at_least, at_most, equals : float
-        One of them: where the value comes to be that much or more, that much or less, or comes to it from either side.
+        Exactly one: the condition is met when the value rises to it, falls to it, or reaches it from either side.
     within : float
-        How near to `equals` a value must come that turns round before it; how far a value must go back before it counts again.
+        Tolerance for an extremum of the value that does not quite reach `equals`, and hysteresis: the distance by which
+        the value must move back before the condition can be met again.
     then : str
-        ``next`` goes on with the stage after it, ``stop`` ends all stages, ``on`` goes on with this stage.
+        ``next`` continues with the next stage, ``stop`` ends all stages, ``on`` continues this stage.
     output : float, optional
-        Time between output points from there on, s; with ``on``.
+        Time between output points from then on, s; with ``on``.
     sets : mapping of str to str
-        Inputs that have the value from there on which a request has there.
+        Inputs that are set to the value that a request has at that time.
     """
 
     request: str = Field(description="name of the request that is watched")

@@ -1,4 +1,4 @@
-"""The section `variables` of a scene: formulas by name."""
+"""Section `variables` of a scene: formulas by name."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ from .quoted import written
 def read_variables(
     found: Any, parameters: Mapping[str, Quantity], tables: Collection[str], states: Any = None, inputs: Any = None
 ) -> dict[str, ast.expr]:
-    """The trees of a scene's variables, by name; `states` and `inputs` are the scene's sections of these names.
+    """Return the syntax trees of a scene's variables by name; `states` and `inputs` are sections of the scene.
 
     Raises
     ------
     InputError
-        When a name is no identifier or has a meaning already, or a formula cannot be read.
+        If a name is not an identifier or already has a meaning, or a formula cannot be read.
     """
     if found is None:
         return {}

@@ -1,4 +1,4 @@
-"""What a scene was read from, so that it can be read again with other values."""
+"""Source of a scene, from which it can be read again with other values."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any
 
 @dataclass(frozen=True)
 class WrittenScene:
-    """Content of a scene file, and its changes.  It is ignored when scenes are compared.
+    """Content of a scene file, and its changes; comparisons of scenes ignore it.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""Bounds on what a YAML text may stand for: a text of 1 kB can, by aliases, stand for more than fits into any memory."""
+"""Bounds on the content of a YAML text; by aliases a text of 1 kB can expand beyond any memory."""
 
 from __future__ import annotations
 
@@ -10,21 +10,21 @@ from ...errors import InputError
 from .quoted import quoted
 
 MOST_NESTED = 40
-"""Levels of mappings and lists; a scene has six."""
+"""Largest number of nested mappings and lists; a scene has six levels."""
 MOST_BY_ALIASES = 1_000_000
-"""Values that aliases may stand for, beyond those that are written."""
+"""Largest number of values from expanded aliases, in addition to written ones."""
 LARGEST_INTEGER = 10**308
 _NO_TEXT = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f\ud800-\udfff]")
-"""What steers a terminal, and halves of surrogate pairs, which no file can hold."""
+"""Control characters, and halves of surrogate pairs, which no file can contain."""
 
 
 class _Refused(Exception):
-    """What is wrong with a value: "found ..., expected ..."."""
+    """Fault of a value: "found ..., expected ..."."""
 
 
 @dataclass(frozen=True)
 class _Extent:
-    """How many values a value holds, each alias counted as what it stands for, and how deep they are nested."""
+    """Number of nested values, with aliases expanded, and depth of nesting."""
 
     values: int
     depth: int
@@ -32,13 +32,13 @@ class _Extent:
 
 @dataclass
 class _Walk:
-    """Looks at each value once, however many aliases stand for it."""
+    """Traversal that visits each value once, however many aliases refer to it."""
 
     extents: dict[int, _Extent | None] = field(default_factory=dict)
     written: int = 0
 
     def extent(self, found: Any, level: int) -> _Extent:
-        """The extent of a value at a level."""
+        """Return the extent of a value at a level."""
         if not isinstance(found, dict | list | tuple | set | frozenset):
             _check_scalar(found)
             self.written += 1
@@ -65,20 +65,19 @@ class _Walk:
 
 
 def check_content(found: Any, source: str) -> None:
-    """Refuse what no scene holds and no code could walk through.
+    """Refuse content that is too large or too deeply nested for a scene.
 
     Parameters
     ----------
     found : mapping, list, number or text
-        As YAML is read.
+        Content of a YAML text.
     source : str
-        What messages call it.
+        Name of the text in messages.
 
     Raises
     ------
     InputError
-        For aliases within themselves or without end, deep nesting, whole numbers beyond 1e308, and characters that no text
-        has.
+        For recursive or too many aliases, deep nesting, integers beyond 1e308, and control characters.
     """
     walk = _Walk()
     try:

@@ -1,4 +1,4 @@
-"""Reading YAML: its content, and the lines that parts of it stand in."""
+"""Reading of YAML texts, and line numbers of their parts."""
 
 from __future__ import annotations
 
@@ -12,26 +12,26 @@ from .quoted import quoted
 from .yaml_content import check_content
 
 _DECIMAL = re.compile(r"-?(0|[1-9][0-9]{0,14})(\.[0-9]{1,15})?")
-"""Numbers that are read alike by YAML and Python."""
+"""Numbers that YAML and Python read alike."""
 LONG = 8000
-"""Characters of a text, from which on it pays to load libyaml."""
+"""Length of a text, in characters, from which libyaml is used."""
 _OTHER_ENDS = re.compile("[\x85\u2028\u2029]")
-"""What ended a line in YAML 1.1; since 1.2 that is LF and CR alone."""
+"""Line ends of YAML 1.1 that YAML 1.2 does not have; it has only LF and CR."""
 
 
 def read_yaml(text: str, source: str) -> Any:
-    """What stands in a text, as mappings, lists, numbers and text.
+    """Return the content of a text as mappings, lists, numbers and text.
 
     Parameters
     ----------
     text : str
     source : str
-        What messages call it.
+        Name of the text in messages.
 
     Raises
     ------
     InputError
-        When it is not YAML, holds a name twice, or is too large to be a scene; names the line.
+        If it is not YAML, contains a key twice, or is too large to be a scene; the message contains the line.
     """
     if _DECIMAL.fullmatch(text):
         return float(text) if "." in text else int(text)
@@ -41,7 +41,6 @@ def read_yaml(text: str, source: str) -> Any:
 
 
 def _content(text: str, source: str) -> Any:
-    """What stands in a text; errors as for `read_yaml`."""
     if len(text) >= LONG:
         from .libyaml import NotSureError, read_by_libyaml
 
@@ -61,12 +60,12 @@ def _read_by_python(text: str, source: str) -> Any:
         raise InputError(f"{source}{line}: {_reason(error)}") from None
     except RecursionError:
         raise InputError(f"{source}: found values nested too deep, expected a scene") from None
-    except Exception as error:  # a value that doesn't fit its tag (!!bool abc) raises whatever Python does
+    except Exception as error:  # a value that does not match its tag (!!bool abc) may raise any error
         raise InputError(f"{source}: {_unlocated(error)}") from None
 
 
 def _unlocated(error: Exception) -> str:
-    """What is wrong where the reader doesn't say in which line."""
+    """Return the reason of a fault for which the reader gives no line."""
     if "digits" in str(error):
         return "found a whole number of more than 4300 digits, expected a smaller one"
     return f"found text that is not YAML, or a value that does not fit its tag ({quoted(_first_line(error))})"
@@ -89,17 +88,17 @@ def _reason(error: Any) -> str:
 
 
 def line_of(text: str, path: tuple[Any, ...]) -> int | None:
-    """The line of the deepest key of `path` that the file holds."""
+    """Return the line of the deepest key of `path` in a text."""
     return line_and_depth(text, path)[0]
 
 
 def line_and_depth(text: str, path: tuple[Any, ...]) -> tuple[int | None, int]:
-    """The line of the deepest key of `path` that the file holds, and how many of its keys that are."""
+    """Return the line of the deepest key of `path` in a text, and the number of keys found."""
     from ruamel.yaml import YAML
 
     try:
         place: Any = YAML().load(StringIO(_with_plain_ends(text)))
-    except Exception:  # what `read_yaml` takes, this reader, which keeps lines, may not
+    except Exception:  # this reader, which keeps lines, refuses some texts that `read_yaml` accepts
         return None, 0
     line, depth = None, 0
     for depth, key in enumerate(path):
@@ -116,7 +115,7 @@ def line_and_depth(text: str, path: tuple[Any, ...]) -> tuple[int | None, int]:
 
 
 def _line_in(marks: Any, key: Any) -> int | None:
-    """The line of a key; None for one that is merged in from elsewhere."""
+    """Return the line of a key; None for a merged key."""
     try:
         return int(marks.key(key)[0]) + 1
     except (KeyError, TypeError):

@@ -1,4 +1,4 @@
-"""Friction in a joint, pressed by the joint's own reaction: what its kinds in the plane and in space share."""
+"""Base of planar and spatial joint friction, with normal forces from the joint's reaction."""
 
 from __future__ import annotations
 
@@ -13,15 +13,14 @@ from ..units import si
 from .friction import Friction
 
 PIN, GUIDE, SLEEVE, BALL = ("angle",), ("displacement",), ("displacement", "angle"), ()
-"""Sorts of joints, by their coordinates."""
+"""Categories of joints, by their coordinates."""
 
 
 class AnyJointFriction(Friction):
-    """Base of the frictions in joints of the plane and of space (it has no kind: scenes name its subclasses).
+    """Base of planar and spatial joint friction; scenes use its subclasses.
 
-    The multipliers that the pressure is made of are those of the same instant, friction included.
-
-    A joint is of a sort by its coordinates: a pin, guide, sleeve or ball.
+    The normal force follows from the multipliers at the same time, which include the effect of friction. The
+    coordinates of the joint determine its friction surface: a pin, guide, sleeve or ball.
     """
 
     joint: JointReference = Field(description="the joint")
@@ -41,12 +40,12 @@ class AnyJointFriction(Friction):
 
     @classmethod
     def known(cls) -> Mapping[str, Any]:
-        """The joints of its family, by kind."""
+        """Return the joints of its family, by kind."""
         raise NotImplementedError
 
     @classmethod
     def rubbing(cls, *sorts: tuple[str, ...]) -> list[str]:
-        """The kinds of joints that can have friction, or those of them of some sorts."""
+        """Return the kinds of joints that can have friction, optionally of some categories only."""
         return [
             kind
             for kind, joint in cls.known().items()

@@ -13,7 +13,7 @@ from ..marker import Marker
 
 
 def force_at(fx: Any, fy: Any, i: Any, j: Any = None) -> list[tuple[Any, Any]]:
-    """The efforts of a force on the body of i at i's point; with j the opposite one on j's body at the same point."""
+    """Return the efforts of a force at i's point on i's body, and of the opposite force on j's body at that point."""
     if j is None:
         return [(fx, i.point[0]), (fy, i.point[1])]
     d = i.point - j.point
@@ -21,13 +21,13 @@ def force_at(fx: Any, fy: Any, i: Any, j: Any = None) -> list[tuple[Any, Any]]:
 
 
 class AppliedForce(Force):
-    """A force at a point of a body: constant, or a formula of time and of anything measured.
+    """Force at a point of a body: constant, or a formula of time and of any measured quantity.
 
-    Its components are along the ground's axes, or with ``axes: body`` along those of marker i, turning with it.
-    Bodies that a formula merely measures take no force.  With `j` a second body takes the opposite force at the
-    same point of space (Adams' JFLOAT marker), so that momentum and angular momentum of both are kept.
+    Its components are along the ground axes, or with ``axes: body`` along the axes of marker i. Bodies that a formula
+    only measures receive no force. With `j` a second body receives the opposite force at the same point of space
+    (Adams: JFLOAT marker), so linear and angular momentum are conserved.
 
-    A constant force on one body in ground axes has a potential, others have none.
+    A constant force on one body in ground axes has a potential, other forces have none.
 
     Examples
     --------
@@ -35,7 +35,7 @@ class AppliedForce(Force):
 
         {type: force, i: ball, force: ["-rho*cd*area/2*vm(ball)*vx(ball)", "-rho*cd*area/2*vm(ball)*vy(ball)"]}
 
-    Together with `AppliedTorque` this is Adams' GFORCE in the plane.
+    Together with `AppliedTorque` this is the planar form of GFORCE in Adams.
     """
 
     kind: ClassVar[str] = "force"
@@ -49,7 +49,7 @@ class AppliedForce(Force):
 
     @staticmethod
     def efforts(e: Symbolic) -> list[tuple[Any, Any]]:
-        """The components on the point's coordinates in ground axes, or relative to j along j's axes."""
+        """Return the components on the point's coordinates in ground axes, or relative to j along j's axes."""
         along, across = e.force
         fx, fy = along * e.i.axis + across * e.i.normal if e.axes == "body" else (along, across)
         return force_at(fx, fy, e.i, e.j)
@@ -67,11 +67,10 @@ class AppliedForce(Force):
 
 
 class AppliedTorque(Force):
-    """A torque on a body: constant, or a formula of time and of anything measured.
+    """Torque on a body: constant, or a formula of time and of any measured quantity.
 
-    With `j` a second body takes the opposite torque.  A constant torque has a potential, others have none.
-
-    This is Adams' rotational SFORCE in the plane.
+    With `j` a second body receives the opposite torque. A constant torque has a potential, other torques have none.
+    This is the planar form of the rotational SFORCE in Adams.
     """
 
     kind: ClassVar[str] = "torque"
@@ -92,7 +91,7 @@ class AppliedTorque(Force):
 
     @staticmethod
     def angle(e: Symbolic) -> Any:
-        """The angle on which the torque does work."""
+        """Return the angle on which the torque does work."""
         return e.i.angle - (e.j.angle if e.j is not None else 0)
 
     def in_space(self, angles: Any) -> dict[str, Any]:

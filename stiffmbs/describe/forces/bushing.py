@@ -1,4 +1,4 @@
-"""Bushing: springs and dampers in two directions and in rotation."""
+"""Bushing: stiffness and damping in two directions and in rotation."""
 
 from __future__ import annotations
 
@@ -31,26 +31,26 @@ Damping = Annotated[
     ],
     _AS_WRITTEN,
 ]
-"""Three by three numbers; None where directions are not coupled, so that nothing is computed for them."""
+"""Symmetric 3 x 3 matrix; None for uncoupled directions, for which nothing is computed."""
 
 NONE = (0.0, 0.0, 0.0)
 
 
 class Bushing(Force):
-    """Force and torque between two markers that are held together elastically.
+    """Elastic force and torque between two markers.
 
-    The deformation s = (x, y, angle) of marker i against marker j is measured along the axes of j, and the force
-    is preload - K s - C s' - law(s): on i at its point, as the powers of the three deformations demand, and
-    opposite on j at the same point of space, so that momentum and angular momentum of both bodies are kept.
+    The deformation s = (x, y, angle) of marker i relative to marker j is measured along the axes of j. The force is
+    preload - K s - C s' - law(s), conjugate to the three deformations. It acts on i at its point, and the opposite
+    force acts on j at the same point of space, so linear and angular momentum are conserved.
 
-    With ``axes: ground`` x and y are the ground's, and the force acts at each body's own marker: as the two points
-    lie apart by the deformation, angular momentum is then kept only where the force is along the line between them.
+    With ``axes: ground`` x and y are the ground axes, and the force acts at each body's own marker. Angular momentum is
+    then conserved only if the force is along the line between the two points.
 
-    Stiffness and damping are three numbers (x, y, angle), or a symmetric matrix that couples the directions.
-    A law that is a table or a polynomial in s has a potential; with any other formula the element counts none, and
-    energy.total is not kept.
+    Stiffness and damping are three numbers (x, y, angle), or a symmetric matrix that couples the directions. A law that
+    is a table or a polynomial in s has a potential. With any other formula the element has none, and energy.total is
+    not conserved.
 
-    The equations are those of Adams' BUSHING and FIELD statements in the plane.
+    The equations are the planar form of the BUSHING and FIELD statements of Adams.
     """
 
     kind: ClassVar[str] = "bushing"
@@ -92,14 +92,14 @@ class Bushing(Force):
 
     @staticmethod
     def deformation(e: Symbolic) -> tuple[Any, Any, Any]:
-        """x, y and angle of marker i against marker j."""
+        """Return x, y and angle of marker i relative to marker j."""
         d = e.i.point - e.j.point
         x, y = d if e.axes == "ground" else (d.dot(e.j.axis), d.dot(e.j.normal))
         return x, y, e.i.angle - e.j.angle
 
     @staticmethod
     def efforts(e: Symbolic) -> list[tuple[Any, Any]]:
-        """preload - K s - C s' - law(s) on each deformation."""
+        """Return preload - K s - C s' - law(s) for each deformation."""
         s = Bushing.deformation(e)
         elastic, viscous = product(e.stiffness, s), product(e.damping, [e.rate(part) for part in s])
         laws = [law(part) if law is not None else 0 for law, part in zip(_laws(e), s, strict=True)]
@@ -107,7 +107,7 @@ class Bushing(Force):
 
     @staticmethod
     def potential(e: Symbolic) -> Any:
-        """1/2 s^T K s - preload . s and the integrals of the laws; zero where one has no simple integral."""
+        """Return 1/2 s^T K s - preload . s plus integrals of laws; zero if one has no closed-form integral."""
         s = Bushing.deformation(e)
         elastic = product(e.stiffness, s)
         of_laws = [e.integral(law, part) for law, part in zip(_laws(e), s, strict=True) if law is not None]

@@ -15,19 +15,19 @@ from .friction import Friction
 
 
 class Contact(ContactLaw):
-    """A point or circle about marker i that presses on a line or circle of marker j, with friction.
+    """Contact of a point or circle about marker i with a line or circle of marker j, with friction.
 
-    Where the gap is closed by delta = -gap > 0 the surfaces repel each other with
-    N = k delta^n (1 + chi delta'), never below zero, and rub with mu(v) N, v being the sliding speed at the point
-    of contact.  The force is the same and opposite on both bodies there.
+    With the penetration delta = -gap > 0 the normal force is N = k delta^n (1 + chi delta'), not negative. The friction
+    force is mu(v) N, with the sliding speed v at the contact point. Equal and opposite forces act on both bodies there.
 
     Surfaces of j: ``line``, the axis of j, solid on the side away from j's normal; ``circle``, solid inside
     `surface_radius`; ``hole``, solid outside of it.
 
-    Without friction and dissipation the element keeps energy: it has the potential k delta^(n+1)/(n+1).  For a
-    coefficient of restitution e at an impact speed v, near e = 1, chi = 3 (1 - e) / (2 v) (Hunt and Crossley,
-    J. Appl. Mech. 42, 1975, 440-445) or 3 (1 - e^2) / (4 v) (Lankarani and Nikravesh, J. Mech. Des. 112, 1990,
-    369-376); for any e, chi = 8 (1 - e) / (5 e v) (Flores and others, Multibody Syst. Dyn. 25, 2011, 357-375).
+    Without friction and dissipation the element is conservative, with the potential k delta^(n+1)/(n+1).
+
+    For a coefficient of restitution e at an impact speed v, near e = 1, chi = 3 (1 - e) / (2 v) (Hunt and Crossley, J.
+    Appl. Mech. 42, 1975, 440-445) or 3 (1 - e^2) / (4 v) (Lankarani and Nikravesh, J. Mech. Des. 112, 1990, 369-376).
+    For any e, chi = 8 (1 - e) / (5 e v) (Flores and others, Multibody Syst. Dyn. 25, 2011, 357-375).
     """
 
     kind: ClassVar[str] = "contact"
@@ -52,7 +52,7 @@ class Contact(ContactLaw):
 
     @staticmethod
     def efforts(e: Symbolic) -> list[tuple[Any, Any]]:
-        """N on the gap, and -mu(v) N on the sliding of the point of contact."""
+        """Return N on the gap, and -mu(v) N on the sliding displacement at the contact point."""
         pressure = Contact.pressure(e)
         pairs = [(pressure, Contact.gap(e))]
         if e.friction is None:
@@ -64,7 +64,7 @@ class Contact(ContactLaw):
 
     @staticmethod
     def sliding(e: Symbolic) -> list[tuple[Any, Any]]:
-        """Weights and coordinates: the sum of weight times rate is the sliding speed at the point of contact.
+        """Return weights and coordinates: the sum of weight times rate is the sliding speed at the contact point.
 
         That point is `radius` from i and the rest of the distance from j, both along the normal.
         """

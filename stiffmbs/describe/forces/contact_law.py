@@ -1,4 +1,4 @@
-"""The law by which surfaces in contact repel each other, shared by the contacts of the plane and of space."""
+"""Normal force of planar and spatial contacts."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from .friction import Friction
 
 
 class ContactLaw(Friction):
-    """Base of contacts (it has no kind: scenes name its subclasses).
+    """Base of contacts; scenes use its subclasses.
 
-    Where the gap is closed by delta = -gap > 0 the surfaces repel each other with N = k delta^n (1 + chi delta'), never
-    below zero.  Without friction and dissipation this has the potential k delta^(n+1)/(n+1).
+    With the penetration delta = -gap > 0 the normal force is N = k delta^n (1 + chi delta'), not negative. Without
+    friction and dissipation it has the potential k delta^(n+1)/(n+1).
 
-    Surfaces of j are flat, round and solid inside of `surface_radius`, or round and solid outside of it; `surfaces` has their
-    names, and `about` that of what is round about i.
+    The surface of j is flat, round and solid inside `surface_radius`, or round and solid outside of it. `surfaces`
+    contains the names of these three, and `about` the name of the round surface of i.
     """
 
     surfaces: ClassVar[tuple[str, str, str]]
@@ -28,7 +28,7 @@ class ContactLaw(Friction):
     exponent: Annotated[float, Measured("number", at_least=1)] = Field(1.5, description="n; 1.5 for Hertz's contact")
     dissipation: Annotated[float, Measured("value", at_least=0)] = Field(0.0, description="chi, s/m")
 
-    if TYPE_CHECKING:  # fields of the subclasses, which say what is round
+    if TYPE_CHECKING:  # fields of the subclasses
         radius: float
         surface: str
         surface_radius: float
@@ -52,17 +52,17 @@ class ContactLaw(Friction):
 
     @classmethod
     def outward(cls, e: Symbolic) -> int:
-        """1 where a round surface is solid inside, -1 where it is outside, 0 for a flat one."""
+        """Return 1 for a round surface that is solid inside, -1 for one that is solid outside, 0 for a flat one."""
         return (0, 1, -1)[cls.surfaces.index(e.surface)]
 
     @staticmethod
     def out_of(e: Symbolic) -> Any:
-        """The direction of marker j out of its flat surface."""
+        """Return the outward normal of marker j's flat surface."""
         raise NotImplementedError
 
     @classmethod
     def gap(cls, e: Symbolic) -> Any:
-        """Distance of the surfaces, m; below zero where they overlap."""
+        """Return the distance of the surfaces, m; negative for a penetration."""
         outward = cls.outward(e)
         if not outward:
             return (e.i.point - e.j.point).dot(cls.out_of(e)) - e.radius
@@ -70,7 +70,7 @@ class ContactLaw(Friction):
 
     @classmethod
     def pressure(cls, e: Symbolic) -> Any:
-        """The normal force N, zero without contact."""
+        """Return the normal force N, zero without contact."""
         from sympy import And, Piecewise
 
         gap = e.named(cls.gap(e))
@@ -86,7 +86,7 @@ class ContactLaw(Friction):
 
     @classmethod
     def event_functions(cls, e: Symbolic) -> Any:
-        """Above zero where the surfaces push: dissipation may end the push while they still overlap."""
+        """Return an expression that is positive while N > 0; dissipation can end N before the surfaces separate."""
         from sympy import Min
 
         gap = e.named(cls.gap(e))

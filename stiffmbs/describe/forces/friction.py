@@ -1,4 +1,4 @@
-"""Dry friction: the coefficient over the sliding speed, shared by all forces that rub."""
+"""Dry friction: the friction coefficient as a function of the sliding speed."""
 
 from __future__ import annotations
 
@@ -10,26 +10,26 @@ from ..element import Force, Symbolic
 from ..units import si
 
 TINY = 1e-24
-"""N^2 or N^2 m^2, added under the root of a reaction, so that its derivative exists where the reaction vanishes."""
+"""Offset under the root of a reaction's magnitude, N^2 or N^2 m^2, for a finite derivative at zero."""
 AT_REST = 1e-6
-"""Part of the smoothed speed that is added to a sliding speed in the same way."""
+"""Offset of a sliding speed in the same way, relative to the smoothed speed."""
 
 
 def magnitude(*parts: Any, tiny: Any = TINY) -> Any:
-    """Of a vector by its components, with a derivative where it vanishes."""
+    """Return the magnitude of a vector, with a finite derivative at zero."""
     from sympy import sqrt
 
     return sqrt(sum(part**2 for part in parts) + tiny)
 
 
 class Friction(Force):
-    """Base of forces with dry friction: Coulomb's law with Stribeck's falling branch, smoothed where sliding turns round.
+    """Base of forces with dry friction: Coulomb's law with the Stribeck effect, smoothed at zero speed.
 
-    mu(v) = (mu_d + (mu_s - mu_d) exp(-(v/v_stribeck)^2)) tanh(v/v_smooth).  Nothing sticks for good: below v_smooth
-    friction is viscous, and what should stick creeps.
+    mu(v) = (mu_d + (mu_s - mu_d) exp(-(v/v_stribeck)^2)) tanh(v/v_smooth). There is no true stiction: below v_smooth
+    friction is viscous, and a sticking contact creeps.
 
-    Andersson, Soderberg, Bjorklund, Friction models for sliding dry, boundary and mixed lubricated contacts,
-    Tribology International 40 (2007) 580-587.
+    Andersson, Soderberg, Bjorklund, Friction models for sliding dry, boundary and mixed lubricated contacts, Tribology
+    International 40 (2007) 580-587.
     """
 
     friction: si.NumberOrZero | None = Field(None, description="mu_d, coefficient of friction when sliding fast")
@@ -43,13 +43,13 @@ class Friction(Force):
 
     @classmethod
     def per_speed(cls, e: Symbolic, *sliding: Any) -> Any:
-        """mu over the speed, for a sliding velocity of several components: what turns it into the friction, finite at rest."""
+        """Return mu / speed, finite at rest, for a sliding velocity of several components."""
         speed = e.named(magnitude(*sliding, tiny=(AT_REST * e.smooth_velocity) ** 2))
         return cls.coefficient(e, speed) / speed
 
     @staticmethod
     def coefficient(e: Symbolic, v: Any) -> Any:
-        """mu at a sliding speed, with its sign."""
+        """Return mu at a sliding speed, with the sign of the speed."""
         from sympy import exp, tanh
 
         peak = e.static_friction - e.friction if e.static_friction is not None else 0

@@ -1,4 +1,4 @@
-"""Friction in a joint of the plane."""
+"""Friction in a planar joint."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from .friction import Friction
 
 
 class JointFriction(AnyJointFriction):
-    """Dry friction in a revolute or prismatic joint, pressed by the joint's own reaction.
+    """Dry friction in a revolute or prismatic joint, loaded by the joint's reaction.
 
-    A pin of radius R is pressed by N = sqrt(lam_x^2 + lam_y^2), its surface slides at v = R angle', and the torque
-    -mu(v) N R brakes the joint's angle.  A slider is pressed by ``N = |lam_normal| + |lam_angle| / (length/2)``, the
-    moment being taken at the ends of a guide of a given length (not counted without one), and the force -mu(v) N
-    brakes its displacement.  The multipliers of the joint are those of the same instant, friction included.
+    For a pin of radius R the normal force is N = sqrt(lam_x^2 + lam_y^2). The sliding speed is v = R angle', and the
+    torque -mu(v) N R acts on the joint's angle. For a slider N = ``|lam_normal| + |lam_angle| / (length/2)``, and the
+    force -mu(v) N acts on its displacement. The moment is supported at the ends of a guide of the given length; without
+    a length it is neglected. The multipliers are those of the same time, which include the effect of friction.
 
     Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), sec. 6.5; Adams' FRICTION statement.
     """
@@ -38,7 +38,7 @@ class JointFriction(AnyJointFriction):
 
     @classmethod
     def efforts(cls, e: Symbolic) -> list[tuple[Any, Any]]:
-        """-mu(v) N, times R at a pin, on the joint's coordinate."""
+        """Return -mu(v) N, times R for a pin, on the joint's coordinate."""
         coordinate = e.joint.coordinate
         arm = e.radius if e.joint.coordinates == PIN else 1
         v = arm * e.rate(coordinate)
@@ -46,6 +46,6 @@ class JointFriction(AnyJointFriction):
 
     @classmethod
     def pressure(cls, e: Symbolic) -> Any:
-        """N, the force that presses the rubbing surfaces."""
+        """Return the normal force N on the sliding surfaces."""
         load = e.joint.loads
         return load.across + (load.bending / (e.length / 2) if e.length is not None else 0)

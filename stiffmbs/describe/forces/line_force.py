@@ -1,4 +1,4 @@
-"""A force by formula along the line between two points, in the plane and in space alike."""
+"""Force along the line between two points, in the plane and in space."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ M = TypeVar("M", bound=MarkerReference)
 
 
 class ForceAlongLine(Force, Generic[M]):
-    """The force between points of any markers: those of the plane and of space are made of it."""
+    """Base of the planar and the spatial line force."""
 
     kind: ClassVar[str] = "line_force"
     reflected: ClassVar[dict[str, str] | None] = {}
@@ -30,7 +30,7 @@ class ForceAlongLine(Force, Generic[M]):
     )
 
     def invalid_placement(self, pose: InitialPose) -> Iterator[str]:
-        """Points at one place give the force no direction."""
+        """Yield an error for coincident points, between which the force has no direction."""
         if pose.at_one_place(self.i, self.j):
             yield "found both of its points at one place, where its force has no direction, expected them apart"
 
@@ -39,7 +39,7 @@ class ForceAlongLine(Force, Generic[M]):
 
     @staticmethod
     def efforts(e: Symbolic) -> list[tuple[Any, Any]]:
-        """The force on the distance of the points."""
+        """Return the force on the distance of the points."""
         return [(e.force, e.distance(e.i.point, e.j.point))]
 
     @staticmethod
@@ -48,10 +48,10 @@ class ForceAlongLine(Force, Generic[M]):
 
 
 class LineForce(ForceAlongLine[Marker]):
-    """A force between two points along the line through them: constant, or a formula of anything measured.
+    """Force along the line between two points: constant, or a formula of any measured quantity.
 
-    Above zero it pushes the points apart, as Adams' translational SFORCE does.  A constant force has a potential,
-    others have none.
+    A positive force pushes the points apart, as in Adams' translational SFORCE. A constant force has a potential, other
+    forces have none.
 
     Examples
     --------

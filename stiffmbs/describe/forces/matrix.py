@@ -1,4 +1,4 @@
-"""Matrices of stiffness and damping as fields: written whole or by their diagonal, symmetric, sparse in the equations."""
+"""Symmetric stiffness and damping matrices as fields, given in full or by their diagonal."""
 
 from __future__ import annotations
 
@@ -7,19 +7,19 @@ from typing import Any
 
 
 def from_diagonal(found: Any) -> Any:
-    """The rows that a list of numbers stands for as a diagonal: None where directions are not coupled."""
+    """Return the rows of a diagonal matrix, with None for uncoupled directions; other values are unchanged."""
     if not isinstance(found, list | tuple) or any(isinstance(part, list | tuple) for part in found):
         return found
     return tuple(tuple(part if k == row else None for k in range(len(found))) for row, part in enumerate(found))
 
 
 def check_symmetric(matrix: Any) -> Any:
-    """The matrix itself.
+    """Return the matrix if it is symmetric.
 
     Raises
     ------
     ValueError
-        Where an entry differs from its namesake across the diagonal.
+        If two entries across the diagonal differ.
     """
     for row, column in itertools.combinations(range(len(matrix)), 2):
         one, other = matrix[row][column] or 0.0, matrix[column][row] or 0.0
@@ -32,5 +32,5 @@ def check_symmetric(matrix: Any) -> Any:
 
 
 def product(matrix: Any, vector: Any) -> list[Any]:
-    """Matrix times vector, without the entries that are None: nothing is computed for them."""
+    """Return matrix times vector, skipping entries that are None."""
     return [sum(k * part for k, part in zip(row, vector, strict=True) if k is not None) for row in matrix]

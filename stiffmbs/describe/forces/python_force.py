@@ -1,4 +1,4 @@
-"""A force and a torque by a Python function: its fields are the same in the plane and in space."""
+"""Force and torque by a Python function, with fields common to the plane and space."""
 
 from __future__ import annotations
 
@@ -18,12 +18,11 @@ M = TypeVar("M", bound=MarkerReference)
 
 
 def _example(x: Any) -> Any:
-    """Of one number."""
     return [x[0] ** 2, math.sin(x[0]), math.cos(x[0])]
 
 
 class ForceOfFunction(Force, Generic[M]):
-    """Fields of the forces by a Python function in the plane and in space, which are made of it."""
+    """Base of the planar and the spatial force by a Python function."""
 
     kind: ClassVar[str] = "python_force"
 
@@ -34,15 +33,15 @@ class ForceOfFunction(Force, Generic[M]):
 
 
 class PythonForce(ForceOfFunction[Marker]):
-    """A force and a torque that a Python function gives, for laws that no formula can express.
+    """Force and torque by a Python function, for laws that no formula can express.
 
-    The function takes an array of what the formulas `of` measure, in SI units, and returns three numbers: the force along
-    the ground's x and y (N) and the torque (N m) on body i at marker i.  With `j` a second body takes the opposite at the
-    same point of space.
+    The function takes an array of the values of the formulas `of`, in SI units, and returns three numbers. They are the
+    force along the ground's x and y (N) and the torque (N m) on body i at marker i. With `j` a second body receives the
+    opposite load at the same point of space.
 
-    Only a model built in Python can have it.  Each call takes some microseconds, and the derivatives for the Jacobian are
-    by central differences, or by a complex step (`stiffmbs.PythonFunction`).  It must give the same for the same numbers.
-    Its breakpoints are not located, and it has no potential.  An exception ends the run, which keeps what was computed.
+    It is available only in models built in Python. Derivatives for the Jacobian are by central differences, or by a
+    complex step (`stiffmbs.PythonFunction`). The function must be deterministic. Its breakpoints are not located, and
+    it has no potential. An exception ends the run, which keeps the results so far.
 
     Examples
     --------
@@ -54,7 +53,7 @@ class PythonForce(ForceOfFunction[Marker]):
 
         model.add("drag", PythonForce(i="ball", of=("ball.vx", "ball.vy"), function=drag))
 
-    Together with `AppliedForce` and `AppliedTorque` this is what Adams' GFOSUB is for.
+    Together with `AppliedForce` and `AppliedTorque` this corresponds to Adams' GFOSUB.
     """
 
     forms: ClassVar[tuple[Mapping[str, Any], ...]] = ({"of": ("a.vx",), "function": _example},)

@@ -1,4 +1,4 @@
-"""Spring-damper between two points, in the plane and in space alike."""
+"""Spring-damper between two points, in the plane and in space."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ M = TypeVar("M", bound=MarkerReference)
 
 
 class LineSpring(Spring, Generic[M]):
-    """The spring-damper between points of any markers: those of the plane and of space are made of it."""
+    """Base of the planar and the spatial spring-damper."""
 
     kind: ClassVar[str] = "spring_damper"
     reflected: ClassVar[dict[str, str] | None] = {}
@@ -39,7 +39,7 @@ class LineSpring(Spring, Generic[M]):
     damper_law: ForceOfRate | None = Field(None, description="tension added over v = L' (m/s), N")
 
     def invalid_placement(self, pose: InitialPose) -> Iterator[str]:
-        """Points at one place give the spring's force no direction."""
+        """Yield an error for coincident points, between which the force has no direction."""
         if (self.free_length or self.preload) and pose.at_one_place(self.i, self.j):
             yield (
                 "found both of its points at one place, where its force has no direction, expected them apart or "
@@ -61,14 +61,14 @@ class LineSpring(Spring, Generic[M]):
 
 
 class SpringDamper(LineSpring[Marker]):
-    """Line spring and damper, linear or by curves, along the line between two points.
+    """Spring and damper along the line between two points, linear or nonlinear.
 
-    With the deflection s = L - L0 and its rate v = L' the tension is
-    k s + spring_law(s) + c v + damper_law(v) + preload; tension pulls the points together.
+    With the deflection s = L - L0 and its rate v = L' the tension is k s + spring_law(s) + c v + damper_law(v) +
+    preload; tension pulls the points together.
 
-    A damping below zero is allowed (it feeds energy in); the points must not coincide while the spring has a
-    free length.  A spring law that is a table or a polynomial in s has a potential; with any other formula the
-    element counts none, and energy.total is not kept.
+    Negative damping is allowed; it adds energy. The points must not coincide if the spring has a free length. A spring
+    law that is a table or a polynomial in s has a potential. With any other formula the element has none, and
+    energy.total is not conserved.
 
     Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), sec. 6.2 (TSDA).
     """

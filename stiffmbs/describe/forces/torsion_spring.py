@@ -1,4 +1,4 @@
-"""Torsion spring-damper: its fields and its law on an angle are the same in the plane and in space."""
+"""Torsion spring-damper, with fields and law common to the plane and space."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ M = TypeVar("M", bound=MarkerReference)
 
 
 class AngleSpring(Spring, Generic[M]):
-    """Fields and law of the torsion springs of the plane and of space, which are made of it."""
+    """Base of the planar and the spatial torsion spring."""
 
     kind: ClassVar[str] = "torsion_spring"
     reflected: ClassVar[dict[str, str] | None] = {
@@ -41,7 +41,7 @@ class AngleSpring(Spring, Generic[M]):
 
     @staticmethod
     def angle(e: Symbolic) -> Any:
-        """Of marker i against marker j, whole turns counted."""
+        """Return the angle of marker i relative to marker j, with full revolutions."""
         raise NotImplementedError
 
     @classmethod
@@ -56,13 +56,13 @@ class AngleSpring(Spring, Generic[M]):
 
 
 class TorsionSpring(AngleSpring[Marker]):
-    """Rotational spring and damper, linear or by curves, on the angle of marker i against marker j.
+    """Rotational spring and damper on the angle of marker i relative to marker j, linear or nonlinear.
 
-    With the deflection s = angle - free_angle and its rate v the moment
-    k s + spring_law(s) + c v + damper_law(v) + preload turns i back towards j, and j as much the other way.
+    With the deflection s = angle - free_angle and its rate v the restoring moment on i is k s + spring_law(s) + c v +
+    damper_law(v) + preload. The opposite moment acts on j.
 
-    Angles are counted over whole turns.  A spring law that is a table or a polynomial in s has a potential; with
-    any other formula the element counts none, and energy.total is not kept.
+    Full revolutions of the angle are counted. A spring law that is a table or a polynomial in s has a potential. With
+    any other formula the element has none, and energy.total is not conserved.
 
     Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), sec. 6.2 (RSDA).
     """

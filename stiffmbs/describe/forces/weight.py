@@ -11,9 +11,9 @@ from ..units import si
 
 
 class Weight(Force):
-    """The model's gravity on one body; made by the model, not written in scenes (hence without a kind).
+    """Gravity force on one body; created by the model, not in scenes, hence without a kind.
 
-    It acts at the centre of mass of the body that carries `i`, wherever `i` sits on it: no angle has a part in it.
+    It acts at the centre of mass of the body of `i`, independent of the marker's position.
     """
 
     kind: ClassVar[str] = ""
@@ -35,7 +35,7 @@ class Weight(Force):
 
 
 def weights(bodies: Mapping[str, Any], gravity: tuple[float, ...]) -> Iterator[tuple[str, Weight]]:
-    """The weights of bodies, of the plane or of space, by the bodies' names, if there is gravity."""
+    """Yield the weights of planar or spatial bodies with the bodies' names; none without gravity."""
     for name, body in bodies.items() if any(gravity) else ():
         marker = MarkerReference.model_construct(body=name)
         yield name, Weight.model_construct(i=marker, mass=body.mass, gravity=gravity)  # checked already

@@ -1,1 +1,1 @@
-"""Formulas in scenes: their text, functions and names, fields that hold them, and their values."""
+"""Formulas in scenes: text, functions, names, fields and values."""

@@ -1,4 +1,4 @@
-"""The dimension of a formula, from those of what it is made of."""
+"""Dimension of a formula, derived from the dimensions of its parts."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .functions import FUNCTIONS
 from .text import OF_NUMBERS, FormulaError, evaluate
 
 Named = Callable[[str], Quantity | Known]
-"""From a name, such as ``L``, ``unit.kg`` or ``cart.x``, to its value, or to what is known of its dimension."""
+"""Function from a name, such as ``L``, ``unit.kg`` or ``cart.x``, to its value or known dimension."""
 
 Columns = tuple[Known, Known]
 NONE: Mapping[str, Any] = {}
@@ -21,7 +21,7 @@ NONE: Mapping[str, Any] = {}
 def dimension_of(
     tree: ast.expr, named: Named, measures: Mapping[str, Known] = NONE, tables: Mapping[str, Columns] = NONE
 ) -> Known:
-    """The dimension of a checked tree.
+    """Return the dimension of a checked syntax tree.
 
     Parameters
     ----------
@@ -29,14 +29,14 @@ def dimension_of(
         From `stiffmbs.describe.formula.text.parse`.
     named : callable
     measures : mapping of str to Known
-        What is called with markers.
+        Functions of markers.
     tables : mapping of str to (Known, Known)
-        Of the arguments and values of tables.
+        Dimensions of the arguments and values of tables.
 
     Raises
     ------
     FormulaError
-        For a sum of different dimensions, and for a function of one that it does not take.
+        For a sum of different dimensions, and for an argument of the wrong dimension.
     """
 
     def of(node: ast.expr) -> Known:
@@ -72,7 +72,7 @@ def _known(found: Quantity | Known) -> Known:
 
 
 def _value(node: ast.expr, named: Named) -> float | None:
-    """The value of an exponent; None for one that is not constant."""
+    """Return the value of an exponent; None if it is not constant."""
 
     def value(name: str) -> float:
         found = named(name)
@@ -88,7 +88,7 @@ def _value(node: ast.expr, named: Named) -> float | None:
 
 
 def check_dimension(what: str, found: Known, dimension: str) -> None:
-    """Refuse a value with a unit that does not fit; `what` it is, for the message.
+    """Refuse a value with a unit of the wrong dimension; the message calls it `what`.
 
     Raises
     ------

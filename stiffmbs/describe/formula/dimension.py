@@ -1,7 +1,8 @@
-"""The dimension of a part of a formula, as far as it is known, and the rules of arithmetic for it.
+"""Dimensional analysis of formulas.
 
-Time, coordinates and measures have a dimension.  A plain number may have any: in ``-100*cart.x`` it is a stiffness.  Beside
-a unit it has none, as in fields: ``2*3 kg`` is a mass, and so is ``2*k`` if the scene's k is one.
+Time, coordinates and measures have a dimension. A plain number can have any: in ``-100*cart.x`` it is a stiffness. In
+products with units it is dimensionless, as in fields: ``2*3 kg`` is a mass, and so is ``2*k`` if the parameter k is
+one.
 """
 
 from __future__ import annotations
@@ -14,21 +15,21 @@ from ..units.units import DIMENSIONS, NUMBER, Dimension, Quantity, named_unit
 from .text import FormulaError, as_written
 
 SAME_EXPONENT = 1e-9
-"""What exponents may differ by: 1/3 + 2/3 is 1."""
+"""Tolerance of exponents, as 1/3 + 2/3 must equal 1."""
 
 
 @dataclass(frozen=True)
 class Known:
-    """What is known of a part's dimension.
+    """Known dimension of a part of a formula.
 
     Attributes
     ----------
     exponents : tuple of float, or None
-        Of kg, m and s, plain numbers being taken as pure numbers; None where they tell nothing.
+        Exponents of kg, m and s, with plain numbers as dimensionless; None if unknown.
     stated : bool
-        Whether a unit stands in the part.
+        True if the part contains a unit.
     plain : bool
-        Whether a plain number stands in it.
+        True if it contains a plain number.
     """
 
     exponents: Dimension | None
@@ -37,43 +38,43 @@ class Known:
 
     @property
     def fits_all(self) -> bool:
-        """Whether the part may have any dimension, as a plain number in it has one that nobody wrote."""
+        """True if the part can have any dimension, because it is unknown or contains a plain number and no unit."""
         return self.exponents is None or (self.plain and not self.stated)
 
     def agrees_with(self, other: Known) -> bool:
-        """Whether the part, if a unit stands in it, has another part's dimension, as far as that is known."""
+        """Return False if the part contains a unit and contradicts the known dimension of another part."""
         if not self.stated or self.exponents is None or other.exponents is None:
             return True
         return other.fits_all or same(self.exponents, other.exponents)
 
     def is_of(self, dimension: str) -> bool:
-        """The same for a dimension of `DIMENSIONS`."""
+        """Return False if the part contains a unit and contradicts a dimension of `DIMENSIONS`."""
         return self.agrees_with(measured_in(dimension))
 
 
 UNKNOWN = Known(None)
 PLAIN = Known(NUMBER, plain=True)
 Part = tuple[Known, ast.expr]
-"""What is known of a part of a formula, and the part, for messages."""
+"""Dimension of a part of a formula, and its tree, for messages."""
 
 
 def same(a: Dimension, b: Dimension) -> bool:
-    """Whether two dimensions are one."""
+    """Return True if two dimensions are equal."""
     return all(abs(x - y) <= SAME_EXPONENT for x, y in zip(a, b, strict=True))
 
 
 def measured_in(dimension: str) -> Known:
-    """Of time, a coordinate or a measure."""
+    """Return the dimension of time, a coordinate or a measure."""
     return Known(DIMENSIONS[dimension][0])
 
 
 def known_of(quantity: Quantity) -> Known:
-    """Of a number, a parameter or a unit."""
+    """Return the dimension of a number, a parameter or a unit."""
     return PLAIN if quantity.dimension is None else Known(quantity.dimension, stated=True)
 
 
 def product(a: Known, b: Known, sign: int = 1) -> Known:
-    """Of a product, or with sign -1 of a quotient."""
+    """Return the dimension of a product, or with sign -1 of a quotient."""
     if a.exponents is None or b.exponents is None:
         return UNKNOWN
     (kg, m, s), (x, y, z) = a.exponents, b.exponents
@@ -81,12 +82,12 @@ def product(a: Known, b: Known, sign: int = 1) -> Known:
 
 
 def power(base: Known, exponent: Part, value: float | None) -> Known:
-    """Of a power; `value` is the exponent's where that is a number.
+    """Return the dimension of a power; `value` is the constant exponent, or None.
 
     Raises
     ------
     FormulaError
-        When the exponent has a unit, or changes and the base has one.
+        If the exponent has a unit, or is variable and the base has one.
     """
     plain_number(exponent)
     if base.exponents is None or same(base.exponents, NUMBER):
@@ -102,12 +103,12 @@ def power(base: Known, exponent: Part, value: float | None) -> Known:
 
 
 def alike(parts: Sequence[Part], where: ast.expr) -> Known:
-    """Of parts that must have one dimension, such as the terms of a sum.
+    """Return the common dimension of parts that must agree, such as the terms of a sum.
 
     Raises
     ------
     FormulaError
-        When they have not; `where` is what they stand in.
+        If the dimensions differ; the message quotes `where`.
     """
     (found, _), *others = parts
     for other, _ in others:
@@ -131,13 +132,14 @@ def _joined(a: Known, b: Known, where: ast.expr) -> Known:
 
 
 def plain_number(part: Part) -> Known:
-    """Of the result of a function such as ``sin``, whose argument is a plain number or an angle; t and coordinates in SI
-    units will do.
+    """Return the dimension of a function such as ``sin``, whose argument is a plain number or an angle.
+
+    Time and coordinates in SI units are accepted as arguments.
 
     Raises
     ------
     FormulaError
-        When the argument has a unit.
+        If the argument has a unit.
     """
     known, node = part
     if known.stated and known.exponents is not None and not same(known.exponents, NUMBER):
@@ -148,40 +150,40 @@ def plain_number(part: Part) -> Known:
 
 
 def of_numbers(parts: Sequence[Part], where: ast.expr) -> Known:
-    """A plain number from plain numbers or angles."""
+    """Return a plain number, for arguments that are plain numbers or angles."""
     for part in parts:
         plain_number(part)
     return PLAIN
 
 
 def of_first(parts: Sequence[Part], where: ast.expr) -> Known:
-    """The dimension of the argument."""
+    """Return the dimension of the first argument."""
     return parts[0][0]
 
 
 def of_root(parts: Sequence[Part], where: ast.expr) -> Known:
-    """The square root of the argument's."""
+    """Return the square root of the argument's dimension."""
     return power(parts[0][0], (PLAIN, where), 0.5)
 
 
 def of_angle(parts: Sequence[Part], where: ast.expr) -> Known:
-    """An angle from lengths, or from anything alike."""
+    """Return an angle, for arguments of equal dimension."""
     found = alike(parts, where)
     return Known(PLAIN.exponents, found.stated, found.fits_all)
 
 
 def plain_always(parts: Sequence[Part], where: ast.expr) -> Known:
-    """A plain number from anything."""
+    """Return a plain number, for any arguments."""
     return PLAIN
 
 
 def of_step(parts: Sequence[Part], where: ast.expr) -> Known:
-    """STEP(x, x0, h0, x1, h1): x0 and x1 are like x; h0 like h1."""
+    """Return the dimension of STEP(x, x0, h0, x1, h1); x0 and x1 must agree with x, and h0 with h1."""
     x, x0, h0, x1, h1 = parts
     alike((x, x0, x1), where)
     return alike((h0, h1), where)
 
 
 def of_branch(parts: Sequence[Part], where: ast.expr) -> Known:
-    """That of the three values that one is chosen of."""
+    """Return the common dimension of the three alternatives."""
     return alike(parts[1:], where)

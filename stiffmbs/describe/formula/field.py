@@ -1,4 +1,4 @@
-"""Formulas and tables as fields of elements: of time, of coordinates, of measures between markers, of a variable."""
+"""Formulas and tables as fields of elements."""
 
 from __future__ import annotations
 
@@ -29,17 +29,16 @@ from .text import UNIT, FormulaError, parse
 from .variables import with_variables
 
 READ_BEFORE = "formulas"
-"""The key in the context of a validation of formulas by their texts, variables and whether they may hold velocities: those that were
-read with the same names."""
+"""Key in the validation context: formulas read before with the same names, by text, variables and use of velocities."""
 
 
 def formula_text(found: Any, expected: str = "a formula") -> str:
-    """The text of a formula that is given as text, as a number, or as an expression of SymPy.
+    """Return the text of a formula given as text, as a number, or as a SymPy expression.
 
     Raises
     ------
     FormulaError
-        For anything else.
+        For any other value.
     """
     if isinstance(found, Real) and not isinstance(found, bool):
         return repr(as_float(found))
@@ -53,7 +52,7 @@ def formula_text(found: Any, expected: str = "a formula") -> str:
 
 
 def _without_meaning(text: str, own: Container[str]) -> Iterator[str]:
-    """The names in a formula that are neither its own nor constants, units or time."""
+    """Yield the names in a formula that are neither its own nor constants, units or time."""
     for node in reading_order(parse(text)):
         match node:
             case ast.Name(name) if name != TIME and not any(name in known for known in (own, UNITS, CONSTANTS)):
@@ -64,19 +63,19 @@ def _without_meaning(text: str, own: Container[str]) -> Iterator[str]:
 
 @dataclass(frozen=True)
 class FormulaOf:
-    """Marks a field as a formula: ``Annotated[Formula, FormulaOf(("s",), ("length",), "force", time=False)]``.
+    """Marker of a formula field: ``Annotated[Formula, FormulaOf(("s",), ("length",), "force", time=False)]``.
 
     Parameters
     ----------
     variables : tuple of str
-        Names with a meaning of the field's own.
+        Names defined by the field.
     measured_in : tuple of str
         Their dimensions, of `stiffmbs.describe.units.units.DIMENSIONS`.
     dimension : str
-        That of the value; `ANY` where every one will do.
+        Dimension of the value; `ANY` if unrestricted.
     time, coordinates, velocities, table, states : bool
-        Whether t, body coordinates and measures, and their rates may occur, a table may stand in its place, and states may
-        occur where coordinates may not.
+        Permission of t, of body coordinates and measures, of their rates, of a table in place of the formula, and of
+        states without coordinates.
     """
 
     variables: tuple[str, ...] = ()
@@ -89,7 +88,7 @@ class FormulaOf:
     states: bool = False
 
     def read(self, found: Any, info: ValidationInfo) -> Formula | Table:
-        """The checked formula or table of what stands in the scene."""
+        """Return the checked formula or table of an entry of a scene."""
         if isinstance(found, Formula):
             self._check(found)
             return found
@@ -100,9 +99,7 @@ class FormulaOf:
         context = info.context or {}
         parameters, tables, variables = (context.get(key) or {} for key in ("parameters", "tables", "variables"))
         names = names_of(info)
-        if info.context is None and (
-            self.coordinates or self.states
-        ):  # built in Python, where the model that it will belong to is not known
+        if info.context is None and (self.coordinates or self.states):  # built in Python, before it belongs to a model
             names = Names(states=dict.fromkeys(_without_meaning(formula_text(found), self.variables), UNKNOWN))
         known = context.get(READ_BEFORE)
         before = known.get((found, self.variables, self.velocities)) if known and isinstance(found, str) else None
@@ -114,7 +111,7 @@ class FormulaOf:
         return formula
 
     def _with_parameters(self, before: Formula, parameters: Mapping[str, Quantity], names: Names) -> Formula:
-        """The formula that the same text gives with other parameters."""
+        """Return the formula of the same text with other parameters."""
         used = dict(self.quantities(before.text, before.tree, parameters, before.states))
         return replace(
             before,
@@ -151,18 +148,17 @@ class FormulaOf:
         )  # fmt: skip
 
     def _listed(self) -> tuple[str, ...]:
-        """Measures and reactions that may be called."""
         return (*MEASURES, *(REACTIONS if self.velocities else ())) if self.coordinates else ()
 
     def quantities(
         self, text: str, tree: ast.expr, known: Mapping[str, Quantity], states: Collection[str] = ()
     ) -> Iterator[tuple[str, Quantity]]:
-        """The parameters, units and constants in a tree, in which other names may be states.
+        """Yield the parameters, units and constants in a tree; `states` are other valid names.
 
         Raises
         ------
         FormulaError
-            For a name without a meaning, or with two.
+            For an unknown or ambiguous name.
         """
         for node in reading_order(tree):
             match node:
@@ -177,7 +173,7 @@ class FormulaOf:
         self, name: str, text: str, tree: ast.expr, known: Mapping[str, Quantity], states: Collection[str]
     ) -> Quantity:
         stated = not self.variables or any(map(is_unit, ast.walk(tree)))
-        units = UNITS if stated else {}  # a lone s in a law of v would be a second
+        units = UNITS if stated else {}  # otherwise s in a law of v would mean seconds
         if name in known or name in units or name in CONSTANTS:
             return of_name(name, text, tree, known, units)
         meanings = [*self.variables, *(["t"] if self.time else [])]
@@ -194,8 +190,9 @@ class FormulaOf:
         tables: Mapping[str, Table],
         terms: Mapping[str, Known] | None = None,
     ) -> Known:
-        """The dimension of a formula's value, as `stiffmbs.describe.formula.measured.dimension_within`; `terms` are other
-        names in the tree.
+        """Return the dimension of a formula's value, as `stiffmbs.describe.formula.measured.dimension_within`.
+
+        `terms` are other names in the tree.
         """
         own = dict(zip(self.variables, map(measured_in, self.measured_in), strict=False))
         columns = {name: table.dimensions for name, table in tables.items()}
@@ -232,19 +229,19 @@ class FormulaOf:
 
 
 OfTime = Annotated[Formula | Table, FormulaOf(table=True)]
-"""A formula or a table of time."""
+"""Formula or table of time."""
 OfTimeAndStates = Annotated[Formula | Table, FormulaOf(table=True, states=True)]
-"""The same with states in it."""
+"""Formula or table of time and of states."""
 OfPosition = Annotated[Formula, FormulaOf(coordinates=True)]
-"""A formula of coordinates and time."""
+"""Formula of coordinates and time."""
 OfMotion = Annotated[Formula, FormulaOf(coordinates=True, velocities=True)]
-"""A formula of coordinates, velocities and time."""
+"""Formula of coordinates, velocities and time."""
 ForceOfMotion = Annotated[Formula, FormulaOf(dimension="force", coordinates=True, velocities=True)]
 TorqueOfMotion = Annotated[Formula, FormulaOf(dimension="torque", coordinates=True, velocities=True)]
-"""The same for a force, and for a torque."""
+"""Force or torque as a formula of coordinates, velocities and time."""
 ForceOfDeflection = Annotated[Formula | Table, FormulaOf(("s",), ("length",), "force", time=False, table=True)]
 TorqueOfDeflection = Annotated[Formula | Table, FormulaOf(("s",), ("angle",), "torque", time=False, table=True)]
-"""A formula or a table of a deflection s."""
+"""Force or torque as a formula or a table of a deflection s."""
 ForceOfRate = Annotated[Formula | Table, FormulaOf(("v",), ("velocity",), "force", time=False, table=True)]
 TorqueOfRate = Annotated[Formula | Table, FormulaOf(("v",), ("angular velocity",), "torque", time=False, table=True)]
-"""A formula or a table of a rate v."""
+"""Force or torque as a formula or a table of a rate v."""

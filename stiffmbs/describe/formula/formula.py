@@ -1,4 +1,4 @@
-"""Checked formulas: what they use, and in which order."""
+"""Checked formulas and the quantities that they use."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from .nodes import TIME, is_measure, is_reaction, joint_of, measured_markers, re
 from .text import UNIT, as_written
 
 USED = "used"
-"""Under which a formula keeps what its tree uses."""
+"""Key of the used quantities in `Formula.kept`."""
 
 
 @dataclass(frozen=True)
 class Used:
-    """What a tree uses of a model, in reading order.
+    """Model quantities used by a tree, in reading order.
 
     Attributes
     ----------
@@ -28,7 +28,7 @@ class Used:
     measures : tuple of (function, markers)
     reactions : tuple of (component, joint)
     time : bool
-        Whether it uses time.
+        True if it uses time.
     """
 
     coordinates: tuple[tuple[str, str], ...]
@@ -38,12 +38,12 @@ class Used:
 
 
 def used_by(tree: ast.expr) -> Used:
-    """What a tree uses of a model.
+    """Return the model quantities used by a tree.
 
     Raises
     ------
     FormulaError
-        When a measure or a reaction has other arguments than markers, or a joint.
+        If the arguments of a measure are not markers, or the argument of a reaction is not one joint.
     """
     nodes = list(reading_order(tree))
     attributes = [node for node in nodes if isinstance(node, ast.Attribute)]
@@ -57,32 +57,32 @@ def used_by(tree: ast.expr) -> Used:
 
 @dataclass(frozen=True, eq=False)
 class Formula:
-    """A checked formula.
+    """Checked formula.
 
     Attributes
     ----------
     text : str
-        As written.
+        Formula in the scene.
     tree : ast.expr
         Its syntax tree (`stiffmbs.describe.formula.text.parse`).
     variables : tuple of str
-        Names that the field gives a meaning to (``s`` and ``v`` of a spring's law).
+        Names defined by the field (``s`` and ``v`` of a spring's law).
     values : dict of str to float
-        The scene's parameters, units and constants that it uses, in SI units.
+        Values of its parameters, units and constants, in SI units.
     velocities : bool
-        Whether it may hold velocities.
+        Whether velocities are permitted.
     tables : mapping of str to Table
-        The scene's tables that it calls as functions.
+        Tables of the scene that it calls as functions.
     dimension : Known
-        Of its value.
+        Dimension of its value.
     parameters : mapping of str to Quantity
-        The scene's parameters among `values`, with their dimensions.
+        Parameters of the scene among `values`, with their dimensions.
     among_variables : bool
-        Whether the scene has variables, which stand in the tree in the places of their names.
+        Whether the scene has variables, which are substituted in the tree.
     states : tuple of str
-        The states of the model that it uses, by their full names.
+        Full names of the states that it uses.
     kept : dict
-        What is worked out of the tree once, by what it is; shared with formulas that differ by values alone.
+        Cached results derived from the tree; shared with formulas that differ only in values.
     """
 
     text: str
@@ -98,25 +98,25 @@ class Formula:
     kept: dict[Any, Any] = field(default_factory=dict)
 
     def coordinates(self) -> Iterator[tuple[str, str]]:
-        """The (body, coordinate) pairs that it uses, in reading order."""
+        """Yield the (body, coordinate) pairs that it uses, in reading order."""
         yield from self._used.coordinates
 
     def measures(self) -> Iterator[tuple[str, tuple[MarkerReference, ...]]]:
-        """The measures that it uses with their markers, in reading order."""
+        """Yield the measures that it uses with their markers, in reading order."""
         yield from self._used.measures
 
     def reactions(self) -> Iterator[tuple[str, str]]:
-        """The components of reactions that it uses, with their joints, in reading order."""
+        """Yield the components of reactions that it uses with their joints, in reading order."""
         yield from self._used.reactions
 
     @property
     def expanded(self) -> str:
-        """The text with the scene's variables in their places; empty where the scene has none."""
+        """Text with the scene's variables substituted; empty if the scene has none."""
         return as_written(self.tree) if self.among_variables else ""
 
     @property
     def uses_time(self) -> bool:
-        """Whether it uses time itself; the tables that it calls aside."""
+        """True if it uses time directly, not only in tables."""
         return self._used.time
 
     @property
@@ -127,7 +127,7 @@ class Formula:
         return used
 
     def bodies(self) -> Iterator[str]:
-        """The bodies that it names, some more than once."""
+        """Yield the bodies that it names, possibly repeated."""
         for body, _ in self.coordinates():
             yield body
         for _, markers in self.measures():
@@ -140,7 +140,6 @@ class Formula:
 
     @property
     def _told(self) -> str:
-        """What the tree says, with variables in their places."""
         return ast.unparse(self.tree)
 
     def __hash__(self) -> int:
@@ -151,6 +150,6 @@ class Formula:
 
 
 def called_tables(tree: ast.expr, tables: Mapping[str, Table]) -> dict[str, Table]:
-    """The tables that a formula calls, by name."""
+    """Return the tables that a formula calls, by name."""
     called = (node.func.id for node in reading_order(tree) if isinstance(node, ast.Call))  # type: ignore[attr-defined]
     return {name: tables[name] for name in called if name in tables}

@@ -1,4 +1,4 @@
-"""Formulas with their bodies, markers and joints by full names: within a part ``arm.x`` is ``front.left.arm.x``."""
+"""Full names of bodies, markers and joints in formulas: within a part ``arm.x`` becomes ``front.left.arm.x``."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from .text import UNIT, as_written
 
 
 def with_full_names(tree: ast.expr, names: Names, takers: Container[str]) -> ast.expr:
-    """A formula's tree in which an owner is one name, with dots or without: of a coordinate the body, of a marker its body.
+    """Return a formula's tree with full names; the body of a coordinate or marker is a single node, also with dots.
 
     Parameters
     ----------
@@ -18,13 +18,13 @@ def with_full_names(tree: ast.expr, names: Names, takers: Container[str]) -> ast
         From `stiffmbs.describe.formula.text.parse`.
     names : Names
     takers : container of str
-        The functions whose arguments are names: of markers, joints or forces.
+        Functions whose arguments are names of markers, joints or forces.
     """
     return _FullNames(names, takers).visit(tree) if names.dotted else tree
 
 
 def text_in_full(text: str, tree: ast.expr, names: Names) -> str:
-    """What messages call a formula of a tree that has full names; as it is written outside of parts."""
+    """Return the text of a formula for messages, with full names if it is within a part."""
     return as_written(tree) if names.local else text
 
 

@@ -1,7 +1,7 @@
-"""The functions that formulas may call, one entry each: what every part of the program knows of them.
+"""Functions available in formulas, with all their properties in one entry each.
 
-A new function is one entry here, and nothing else for one of SymPy's functions of one number, such as ``asinh``: SymPy
-differentiates it, kernels call it by its name in C's library, and its interval form follows from its derivative.
+For a SymPy function of one argument, such as ``asinh``, an entry suffices: SymPy differentiates it, kernels call the C
+function of that name, and its interval form follows from its derivative.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from .text import FormulaError, real_power
 
 @dataclass(frozen=True)
 class Takes:
-    """How many arguments a function takes: `least`, or from there on as many as one likes."""
+    """Number of arguments of a function: exactly `least`, or `least` or more."""
 
     least: int
     or_more: bool = False
@@ -37,12 +37,12 @@ class Takes:
 ONE = Takes(1)
 OF_TABLE = ONE
 Breakpoints = tuple[tuple[int, int | None], ...]
-"""The arguments whose difference passes zero at a function's breakpoints; None for zero itself."""
+"""Pairs of arguments whose difference is zero at a breakpoint of the function; None for zero itself."""
 EACH: Breakpoints = ((0, -1),)
-"""Where the first argument, or the one chosen before, passes each of the others."""
+"""Breakpoints where the first argument, or the one selected before, equals each of the others."""
 EVERYWHERE = (-math.inf, math.inf)
 Rule = Callable[[Sequence[Part], ast.expr], Known]
-"""From the dimensions of a function's arguments, and the call for messages, to that of its value."""
+"""Function from the dimensions of the arguments, and the call for messages, to the dimension of the value."""
 
 
 @dataclass(frozen=True)
@@ -58,8 +58,9 @@ class FormulaFunction:
     array : callable
         Evaluates NumPy arrays.
     symbolic : str
-        Its counterpart in equations and kernels: ``sympy.sin``, which has the same name in the C library, or a class or function
-        of `stiffmbs.compile.symbolic.nonsmooth`.  Empty for a discontinuous function, which only formulas for output may call.
+        Its counterpart in equations and kernels: ``sympy.sin``, which has the same name in the C library, or a class or
+        function of `stiffmbs.compile.symbolic.nonsmooth`. Empty for a discontinuous function, which only formulas for
+        output may call.
     enclosure : str
         Its interval form in `stiffmbs.compile.inputs.enclosed_functions`; empty if it follows from the derivative.
     derivative : str
@@ -70,7 +71,7 @@ class FormulaFunction:
     poles : bool
         True if it is unbounded within its domain.
     zones : str
-        Its zones in `stiffmbs.compile.law_zones`, which resolve narrow features.
+        Its intervals in `stiffmbs.compile.law_zones`, which resolve narrow features.
     turns : bool
         True if it is periodic in its argument.
     in_numbers : bool
@@ -93,29 +94,29 @@ class FormulaFunction:
 
     @property
     def in_c(self) -> bool:
-        """Whether kernels call it by the name that it has in C's library."""
+        """True if kernels call it by its name in the C library."""
         return self.symbolic.startswith("sympy.")
 
 
 def step_value(x: Any, x0: Any, h0: Any, x1: Any, h1: Any) -> Any:
-    """Adams' STEP, of numbers or arrays: from h0 at x0 to h1 at x1 by a cubic that is flat at both ends."""
+    """Return Adams' STEP for numbers or arrays: from h0 at x0 to h1 at x1 by a cubic with zero slope at both ends."""
     z = np.clip((x - x0) / (x1 - x0), 0.0, 1.0)
     return h0 + (h1 - h0) * z**2 * (3 - 2 * z)
 
 
 def step5_value(x: Any, x0: Any, h0: Any, x1: Any, h1: Any) -> Any:
-    """Adams' STEP5, of numbers or arrays: from h0 at x0 to h1 at x1 by a quintic without slope and curvature at both ends."""
+    """Return Adams' STEP5 for numbers or arrays: a quintic with zero slope and curvature at both ends."""
     z = np.clip((x - x0) / (x1 - x0), 0.0, 1.0)
     return h0 + (h1 - h0) * z**3 * (10 - 15 * z + 6 * z * z)
 
 
 def branch_value(x: Any, below: Any, at: Any, above: Any) -> Any:
-    """One of three, of numbers or arrays, by the sign of the first (Adams' IF)."""
+    """Return one of three values, numbers or arrays, by the sign of the first argument (Adams' IF)."""
     return np.select([np.less(x, 0), np.greater(x, 0)], [below, above], at)
 
 
 def rounded(x: Any) -> Any:
-    """To the nearest whole number, halves away from zero as Fortran's ANINT takes them."""
+    """Round to the nearest integer, halves away from zero, as Fortran's ANINT."""
     return np.copysign(np.floor(np.abs(x) + 0.5), x)
 
 
@@ -132,7 +133,7 @@ def _sign(x: Any) -> Any:
 
 
 def _smooth(value: Callable[[float], float], array: Callable[..., Any], **others: Any) -> FormulaFunction:
-    """A function of a plain number or an angle."""
+    """Return the entry of a smooth function of a plain number or an angle."""
     name = value.__name__
     enclosure = "" if "derivative" in others else name
     return FormulaFunction(
@@ -189,8 +190,8 @@ FUNCTIONS: dict[str, FormulaFunction] = {
     "floor": FormulaFunction(ONE, of_numbers, math.floor, np.floor),
     "ceil": FormulaFunction(ONE, of_numbers, math.ceil, np.ceil),
 }  # fmt: skip
-"""``step(x, x0, h0, x1, h1)`` goes from h0 to h1 by a cubic, ``step5`` by a quintic; ``branch(x, below, at, above)`` is the
-second, third or fourth for an x below, at or above zero; ``mod`` has the sign of its first argument."""
+"""``step(x, x0, h0, x1, h1)`` goes from h0 to h1 by a cubic, ``step5`` by a quintic. ``branch(x, below, at, above)`` is
+the second, third or fourth argument for x below, at or above zero; ``mod`` has the sign of its first argument."""
 IN_NUMBERS = {name: function for name, function in FUNCTIONS.items() if function.in_numbers}
 IN_FORMULAS = {name: function for name, function in FUNCTIONS.items() if function.symbolic}
 
@@ -203,7 +204,7 @@ def check_functions(
     measures: Collection[str] = (),
     listed: Collection[str] = (),
 ) -> None:
-    """Refuse calls of unknown functions, with a list of those that are expected, and calls with too few or too many arguments.
+    """Refuse calls of unknown functions, and calls with a wrong number of arguments.
 
     Parameters
     ----------
@@ -212,9 +213,9 @@ def check_functions(
     tables : collection of str
         Tables that may be called.
     measures : collection of str
-        What is called with markers, which are counted elsewhere.
+        Functions of markers, whose arguments are checked elsewhere.
     listed : collection of str
-        Measures and the like in the list of what is expected.
+        Names of measures that the message lists.
 
     Raises
     ------

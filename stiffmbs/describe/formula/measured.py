@@ -1,4 +1,4 @@
-"""What dimensions have the things that formulas call by name: t, coordinates of bodies, measures between markers."""
+"""Dimensions of named quantities in formulas: time, coordinates of bodies, measures between markers."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ _COORDINATES = {
     "acceleration": "ax ay az", "angular acceleration": "alpha wdx wdy wdz",
     "force": "fx fy fz", "torque": "tx ty tz torque",
 }  # fmt: skip
-"""Of bodies, and the channels of joints and forces that requests may read."""
+"""Coordinates of bodies, and channels of joints and forces for requests."""
 _OF_TYRES = {
     "force": "longitudinal lateral load", "torque": "overturning rolling aligning", "number": "slip",
     "angle": "slip_angle camber", "length": "deflection deflection_x deflection_y",
 }  # fmt: skip
-"""The further channels of tyres."""
+"""Additional channels of tyres."""
 _MEASURES = {
     "length": "dx dy dz dm", "angle": "ax ay az psi theta phi", "number": "q0 q1 q2 q3", "velocity": "vx vy vz vm vr",
     "angular velocity": "wx wy wz wm", "acceleration": "accx accy accz accm",
     "angular acceleration": "wdtx wdty wdtz wdtm", "force": "fx fy fz fm", "torque": "tx ty tz tm",
 }  # fmt: skip
-"""Between markers, and what joints and forces do."""
+"""Measures between markers, and components of joints and forces."""
 
 
 def _by_name(dimensions: dict[str, str]) -> dict[str, Known]:
@@ -48,41 +48,41 @@ TIME = measured_in("time")
 
 
 def of_coordinate(name: str) -> Known:
-    """The dimension of ``body.name``."""
+    """Return the dimension of ``body.name``."""
     owner, _, coordinate = name.rpartition(".")
     return COORDINATES.get(coordinate, UNKNOWN) if owner else UNKNOWN
 
 
 def unit_of_coordinate(name: str) -> str:
-    """The unit of ``body.name``; empty for a number, and for what is no coordinate."""
+    """Return the unit of ``body.name``; empty for a dimensionless number or an unknown name."""
     owner, _, coordinate = name.rpartition(".")
     return _UNITS.get(coordinate, "") if owner else ""
 
 
 def unit_of_measure(function: str) -> str:
-    """The unit of a measure between markers, or of what a joint or force does."""
+    """Return the unit of a measure between markers, or of a component of a joint or force."""
     return _MEASURE_UNITS[function]
 
 
 def dimension_within(
     tree: ast.expr, used: Mapping[str, Quantity], own: Mapping[str, Known], tables: Mapping[str, Columns]
 ) -> Known:
-    """The dimension of a formula's value.
+    """Return the dimension of a formula's value.
 
     Parameters
     ----------
     tree : ast.expr
     used : mapping of str to Quantity
-        The parameters, units and constants in it.
+        Parameters, units and constants in it.
     own : mapping of str to Known
-        Names with a meaning of the formula's own.
+        Names defined by the formula's field.
     tables : mapping of str to (Known, Known)
-        Of arguments and values of the tables that it calls.
+        Dimensions of the arguments and values of the tables that it calls.
 
     Raises
     ------
     FormulaError
-        When a unit stands in it and dimensions do not fit; without any it is in SI units as it stands.
+        If it contains a unit and its dimensions do not fit. Without a unit it is taken to be in SI units.
     """
     names: dict[str, Quantity | Known] = {"t": TIME, **own, **used}
     try:

@@ -1,4 +1,4 @@
-"""What formulas may call a body's coordinates, and the measures between markers: in the plane, and in space."""
+"""Names of body coordinates and of measures between markers, in planar and spatial models."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class FormulaNames:
-    """The names of one family of models.
+    """Names of one family of models.
 
     Attributes
     ----------
     family : str
-        ``the plane`` or ``space``, for sentences.
+        ``the plane`` or ``space``, for messages.
     positions, velocities : tuples of str
-        Of a body: ``cart.x``, ``cart.vx``.
+        Coordinates and velocities of a body: ``cart.x``, ``cart.vx``.
     position_measures, velocity_measures : tuples of str
-        Between two markers: ``dx(bar.end, ground)``.
+        Measures between two markers: ``dx(bar.end, ground)``.
     along_axes : tuple of str
-        The measures that may have a third marker, whose axes they are taken along.
+        Measures that accept a third marker, along whose axes they are resolved.
     """
 
     family: str
@@ -34,7 +34,7 @@ class FormulaNames:
     along_axes: tuple[str, ...]
 
     def validation_errors(self, formula: Formula) -> Iterator[str]:
-        """Why a formula has no meaning in the family: names of the other one, velocities where positions are wanted."""
+        """Yield faults of a formula: names of the other family, and velocities in formulas of positions."""
         of_body = self.positions + (self.velocities if formula.velocities else ())
         for body, coordinate in formula.coordinates():
             if coordinate not in of_body:
@@ -69,20 +69,20 @@ SPACE = FormulaNames(
     along_axes=("dx", "dy", "dz", "vx", "vy", "vz", "wx", "wy", "wz"),
 )
 NAMES = {2: PLANE, 3: SPACE}
-"""By the dimensions of the model."""
+"""Names by the dimension of the model."""
 REACTIONS = ("fx", "fy", "fz", "tx", "ty", "tz")
-"""Components of what a joint does to its first body, along ground axes: ``fy(guide)``; of both families."""
+"""Components of a joint's reaction on its first body, along ground axes: ``fy(guide)``; in both families."""
 IN_THE_PLANE = ("fx", "fy", "tz")
-"""Those of a joint in the plane."""
+"""Components of a reaction in the plane."""
 COORDINATES = frozenset(name for names in NAMES.values() for name in (*names.positions, *names.velocities))
-"""Of bodies, in both families."""
+"""Coordinates and velocities of bodies in both families."""
 VELOCITIES = tuple(
     dict.fromkeys(name for names in NAMES.values() for name in (*names.velocities, *names.velocity_measures))
 )
-"""Of both families, of bodies and between markers."""
+"""Velocities of bodies and between markers in both families."""
 MEASURES = tuple(
     dict.fromkeys(
         name for names in NAMES.values() for name in (*names.position_measures, *names.velocity_measures)
     )
 )  # fmt: skip
-"""Of both families: what a formula calls by such a name is a measure."""
+"""Measures of both families; a call of such a name is a measure."""

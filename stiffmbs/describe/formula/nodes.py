@@ -1,4 +1,4 @@
-"""The nodes of a formula's tree: in which order they are read, and which of them stand for measures and reactions."""
+"""Nodes of a formula's tree: reading order, measures and reactions."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from .text import FormulaError
 
 TIME = "t"
 TAKERS = (*MEASURES, *REACTIONS)
-"""What is called with names: of markers, of joints."""
+"""Functions whose arguments are names of markers or joints."""
 
 
 def reading_order(tree: ast.expr) -> Iterator[ast.expr]:
-    """All nodes, but neither the owner's name in ``cart.x``, nor a function's name, nor a measure's markers and a reaction's joint."""
+    """Yield all nodes in reading order, except functions' names, coordinates' owners, and markers and joints."""
     ahead = [tree]
     while ahead:
         node = ahead.pop()
@@ -25,7 +25,7 @@ def reading_order(tree: ast.expr) -> Iterator[ast.expr]:
 
 
 def parts_of(node: ast.expr) -> list[ast.expr]:
-    """What `reading_order` has next below a node."""
+    """Return the child nodes that `reading_order` visits."""
     match node:
         case ast.Attribute() | ast.Name() | ast.Constant():
             return []
@@ -37,22 +37,22 @@ def parts_of(node: ast.expr) -> list[ast.expr]:
 
 
 def is_measure(node: ast.AST) -> bool:
-    """Whether a node is a measure between markers such as ``dm(bar.end, ground)``."""
+    """Return True for a measure between markers, such as ``dm(bar.end, ground)``."""
     return isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in MEASURES
 
 
 def is_reaction(node: ast.AST) -> bool:
-    """Whether a node is a component of a joint's reaction such as ``fy(guide)``."""
+    """Return True for a component of a joint's reaction, such as ``fy(guide)``."""
     return isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in REACTIONS
 
 
 def is_named(node: ast.AST) -> bool:
-    """Whether a node is a measure or a reaction, whose arguments are names."""
+    """Return True for a measure or a reaction, whose arguments are names."""
     return is_measure(node) or is_reaction(node)
 
 
 def joint_of(node: ast.AST) -> str:
-    """The joint of a reaction, by its full name."""
+    """Return the full name of the joint of a reaction."""
     assert isinstance(node, ast.Call)
     match node.args:
         case [ast.Name(joint)]:
@@ -63,9 +63,7 @@ def joint_of(node: ast.AST) -> str:
 
 
 def measured_markers(node: ast.AST) -> tuple[MarkerReference, ...]:
-    """The markers of a measure: two references to bodies or their markers, ground where one is left out, and perhaps a
-    third one, whose axes the measure is taken along.
-    """
+    """Return the markers of a measure: i, j (ground by default), and optionally the marker of the axes."""
     assert isinstance(node, ast.Call)
     markers = []
     for argument in node.args:
@@ -83,5 +81,5 @@ def measured_markers(node: ast.AST) -> tuple[MarkerReference, ...]:
 
 @lru_cache(10_000)
 def _reference(body: str, marker: str | None = None) -> MarkerReference:
-    """A marker by name; long formulas name the same ones again and again."""
+    """Return a marker by name, cached because long formulas repeat names."""
     return MarkerReference(body=body, marker=marker)

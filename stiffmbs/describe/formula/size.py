@@ -1,4 +1,4 @@
-"""How large a formula may be: the number of its parts, and how many are within each other."""
+"""Bounds on the size of a formula: number of parts and depth of nesting."""
 
 from __future__ import annotations
 
@@ -9,36 +9,35 @@ from collections.abc import Callable, Iterator, Sequence
 from ..files.quoted import quoted
 
 MOST_PARTS = 2000
-"""Numbers, names and operations in a formula, with the variables in it."""
+"""Largest number of numbers, names and operations in a formula, with its variables."""
 DEEPEST = 60
-"""Operations and functions within each other, after long sums and products have been balanced."""
+"""Largest depth of nested operations and functions, after long sums and products have been balanced."""
 CHAINS: dict[type[ast.operator], tuple[type[ast.operator], type[ast.operator]]] = {
     ast.Add: (ast.Add, ast.Sub), ast.Sub: (ast.Add, ast.Sub), ast.Mult: (ast.Mult, ast.Div), ast.Div: (ast.Mult, ast.Div),
 }  # fmt: skip
-"""Operators that stand in one chain, and the two that it consists of."""
+"""Direct and inverse operator of the chain that an operator belongs to."""
 
 
 class FormulaError(ValueError):
-    """A formula that cannot be read or evaluated; the message is the rest of a sentence that starts with where."""
+    """Formula that cannot be read or evaluated; the message follows the location of the formula."""
 
 
 def parts(tree: ast.expr) -> int:
-    """How many numbers, names and operations a formula has."""
+    """Return the number of numbers, names and operations in a formula."""
     return sum(map(len, _levels(tree)))
 
 
 def depth(tree: ast.expr) -> int:
-    """How many parts of a formula are within each other."""
+    """Return the depth of nesting of a formula."""
     return sum(1 for _ in _levels(tree)) - 1
 
 
 def within(tree: ast.expr) -> Iterator[ast.expr]:
-    """The parts of a formula, the outer ones before those within them."""
+    """Yield the parts of a formula, outer ones first."""
     return itertools.chain.from_iterable(_levels(tree))
 
 
 def _levels(tree: ast.expr) -> Iterator[list[ast.expr]]:
-    """The parts of a formula, from the outermost inwards."""
     level = [tree]
     while level:
         yield level
@@ -57,15 +56,15 @@ def _children(node: ast.expr) -> list[ast.expr]:
 
 
 def check_size(tree: ast.expr, text: Callable[[], str], inserted: Sequence[ast.expr] = ()) -> None:
-    """Refuse a formula of too many parts, or with too many within each other.
+    """Refuse a formula with too many parts or too deep nesting.
 
     Parameters
     ----------
     tree : ast.expr
     text : callable
-        What messages call it, made when there is one.
+        Returns the text of the formula for a message.
     inserted : sequence of ast.expr
-        What is to be put into it.
+        Trees that will be inserted into it.
 
     Raises
     ------
@@ -84,7 +83,7 @@ def check_size(tree: ast.expr, text: Callable[[], str], inserted: Sequence[ast.e
 
 
 def balanced(tree: ast.expr) -> ast.expr:
-    """A formula that is too deep with its sums and products halved again and again, so that many terms are not deep."""
+    """Return the formula with its sums and products as balanced trees if it is too deep."""
     return _halved(tree) if depth(tree) > DEEPEST else tree
 
 
@@ -102,7 +101,7 @@ def _halved(node: ast.expr) -> ast.expr:
 
 
 def _chain(node: ast.expr) -> list[tuple[bool, ast.expr]]:
-    """The terms of a sum, or the factors of a product, in order, and whether each is taken away, or divided by."""
+    """Return the terms of a sum or factors of a product, in order; True marks subtracted terms and divisors."""
     assert isinstance(node, ast.BinOp)
     direct, inverse = CHAINS[type(node.op)]
     found: list[tuple[bool, ast.expr]] = []
@@ -113,7 +112,7 @@ def _chain(node: ast.expr) -> list[tuple[bool, ast.expr]]:
 
 
 def _tree(terms: list[tuple[bool, ast.expr]], direct: type[ast.operator], inverse: type[ast.operator]) -> ast.expr:
-    """Terms, the first of which is not inverted, as a tree of little depth."""
+    """Return a balanced tree of terms; the first is not inverted."""
     if len(terms) == 1:
         return terms[0][1]
     first, second = terms[: len(terms) // 2], terms[len(terms) // 2 :]

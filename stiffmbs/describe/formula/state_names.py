@@ -1,4 +1,4 @@
-"""States in formulas: a name such as ``lag`` or ``front.left.lag`` that stands alone as one name."""
+"""Names of states in formulas, such as ``lag`` or ``front.left.lag``."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from .text import UNIT
 
 
 def with_states(tree: ast.expr, names: Names, own: Container[str], takers: Container[str]) -> ast.expr:
-    """A formula's tree in which each state is one name, with dots or without.
+    """Return a formula's tree in which each state is a single name, also with dots.
 
     Parameters
     ----------
@@ -18,9 +18,9 @@ def with_states(tree: ast.expr, names: Names, own: Container[str], takers: Conta
         From `stiffmbs.describe.formula.full_names.with_full_names`.
     names : Names
     own : container of str
-        Names with a meaning of the formula's own.
+        Names defined by the formula's field.
     takers : container of str
-        The functions whose arguments are names of markers, joints or forces.
+        Functions whose arguments are names of markers, joints or forces.
     """
     return _States(names, own, takers).visit(tree) if names.states else tree
 

@@ -1,9 +1,9 @@
-"""Arithmetic in scenes: text to a syntax tree with a closed list of nodes, and its evaluation.
+"""Arithmetic in scenes: parsing of text to a checked syntax tree, and its evaluation.
 
-Nothing in a formula can run code: the tree is made by ``ast.parse``, every node is checked against a closed list,
-and names are looked up in the tables that the caller gives.  A number followed by a unit binds tightly
-(``10 N/5 mm`` is 2 N/mm), a power belongs to the unit (``2 mm^2``).  A name that follows a value without an
-operator is looked up as ``unit.name``, so that a parameter N and the newton can live in one scene.
+A formula cannot run code. The tree is made by ``ast.parse``, every node is checked against a closed list, and names are
+looked up in tables of the caller. A number followed by a unit binds tightly (``10 N/5 mm`` is 2 N/mm), and a power
+belongs to the unit (``2 mm^2``). A name that follows a value without an operator is looked up as ``unit.name``, so a
+scene can have a parameter N and the unit newton.
 """
 
 from __future__ import annotations
@@ -21,22 +21,22 @@ from .size import DEEPEST, MOST_PARTS, FormulaError, balanced, check_size
 
 UNIT = "unit"
 _NUMBER_AND_NAME = re.compile(r"(?<![\w.])((?>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?))(?=[A-Za-z_])")
-"""A number that runs into a name, as in ``20deg``, which tokenizers since Python 3.12 refuse."""
+"""Number directly followed by a name, as in ``20deg``, which tokenizers since Python 3.12 refuse."""
 _NAMES_AND_NUMBERS = re.compile(
     r"(?>[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*|(?<![\w.])(?>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(?![\w.])|[-+*/(), ])*+",
     re.ASCII,
 )
-"""A formula that Python spells alike."""
+"""Formula with the same spelling in Python."""
 _WITHOUT_OPERATOR = re.compile(r"[\w.)] +[A-Za-z_]|\)[A-Za-z_]")
-"""A name behind a value, as in ``5 N m``."""
+"""Name after a value, as in ``5 N m``."""
 _OWNER_OF_OWNER = re.compile(r"\.\s*\w+[\s)]*\.")
-"""Where two dots of a dotted name may be, as in ``front.left.x``."""
+"""Possible second dot of a dotted name, as in ``front.left.x``."""
 LONGEST_TEXT = 50 * MOST_PARTS
-"""Characters of a formula, which bound the time that it takes to see how many parts it has."""
+"""Largest number of characters of a formula, which bounds the time to count its parts."""
 LARGEST_LITERAL = 1e300
 
 UNIT_BY_KEYWORD = {"in": "inch"}
-"""Units whose names Python keeps to itself."""
+"""Units whose names are keywords of Python."""
 
 BINARY: dict[type[ast.operator], Callable[[Any, Any], Any]] = {
     ast.Add: operator.add,
@@ -59,14 +59,14 @@ def parse(text: str) -> ast.expr:
     Raises
     ------
     FormulaError
-        When the text is no formula or holds anything but arithmetic, names, ``name.name`` and calls by name.
+        If the text is not a formula, or has other parts than arithmetic, names, ``name.name`` and calls by name.
     """
     if len(text) > LONGEST_TEXT:
         raise FormulaError(f"found a formula of {len(text)} characters, expected at most {LONGEST_TEXT}")
     try:
         spelt = _python_spelling(text)
         tree = ast.parse(spelt, mode="eval").body
-        if len(text) > DEEPEST:  # shorter ones are within the bounds
+        if len(text) > DEEPEST:  # shorter ones cannot exceed the bounds
             tree = balanced(tree)
             check_size(tree, lambda: text)
     except FormulaError:
@@ -87,10 +87,9 @@ def _first_owner(node: ast.expr) -> ast.expr:
 
 
 class _Owners(ast.NodeTransformer):
-    """Makes one name of all but the last of ``front.left.arm.x``, so that an owner is a name, with dots or without."""
+    """Merge the owner of ``front.left.arm.x`` into one name with dots."""
 
     def visit_Attribute(self, node: ast.Attribute) -> ast.AST:
-        """A dotted name as one name."""
         words, owner = [], node.value
         while isinstance(owner, ast.Attribute):
             words.append(owner.attr)
@@ -107,12 +106,12 @@ def _python_spelling(text: str) -> str:
         return powers
     spaced = _NUMBER_AND_NAME.sub(r"\1 ", powers)
     read = tokenize.generate_tokens(io.StringIO(spaced).readline)
-    tokens = [token.string for token in read if token.string.strip()]  # a formula may go over lines, indented or not
+    tokens = [token.string for token in read if token.string.strip()]  # a formula may span lines
     words: list[str] = []
     k = 0
     while k < len(tokens):
         if _is_number(tokens[k]) and k + 1 < len(tokens) and tokens[k + 1].isidentifier():
-            if words and words[-1].isidentifier():  # the bracket would make a call of it
+            if words and words[-1].isidentifier():  # a parenthesis would make it a call
                 raise SyntaxError
             words += ["(", tokens[k]]
             k += 1
@@ -135,9 +134,9 @@ def _is_number(token: str) -> bool:
 
 
 def _factor_length(tokens: list[str], at: int) -> int:
-    """How many tokens the unit at `at` takes with its power: ``mm``, ``mm ** 2``, ``s ** - 1``, ``m ** ( 1 / 2 )``.
+    """Return the number of tokens of the unit at `at` with its power: ``mm``, ``mm ** 2``, ``m ** ( 1 / 2 )``.
 
-    Powers bind from the right, as everywhere: ``m ** 2 ** 2`` is ``m ** 4``.
+    Powers are right-associative: ``m ** 2 ** 2`` is ``m ** 4``.
     """
     end = at + 1
     while tokens[end : end + 1] == ["**"]:
@@ -149,7 +148,7 @@ def _factor_length(tokens: list[str], at: int) -> int:
 
 
 def _closing(tokens: list[str], at: int) -> int:
-    """The place behind the parenthesis that closes the one at `at`."""
+    """Return the position after the parenthesis that closes the one at `at`."""
     depth = 0
     for end in range(at, len(tokens)):
         depth += (tokens[end] == "(") - (tokens[end] == ")")
@@ -187,12 +186,12 @@ def _check(node: ast.AST, text: str) -> None:
 
 
 def real_power(base: float, exponent: float) -> float:
-    """A power of numbers.
+    """Return a power of real numbers.
 
     Raises
     ------
     FormulaError
-        When it is not real.
+        If it is not real.
     """
     value = base**exponent
     if isinstance(value, complex):
@@ -201,7 +200,7 @@ def real_power(base: float, exponent: float) -> float:
 
 
 OF_NUMBERS = BINARY | {ast.Pow: real_power}
-"""The operators of real numbers."""
+"""Operators for real numbers."""
 
 
 def evaluate(
@@ -218,13 +217,13 @@ def evaluate(
     tree : ast.expr
         From `parse`.
     names : callable
-        Gives the value of a name such as ``L`` or ``cart.x``; raises `FormulaError` for an unknown one.
+        Returns the value of a name such as ``L`` or ``cart.x``; raises `FormulaError` for an unknown one.
     functions : mapping
-        The functions that may be called, by name.
+        Available functions, by name.
     number : callable
-        Turns a literal into a value of the algebra.
+        Converts a literal to a value of the algebra.
     binary : mapping
-        The operators.
+        Operators of the algebra.
     """
 
     def of(node: ast.expr) -> Any:
@@ -255,6 +254,6 @@ def evaluate(
 
 
 def as_written(node: ast.expr) -> str:
-    """A part of a formula for messages, spelt as in scenes: ``3 kg`` and ``x^2``."""
+    """Return a part of a formula in the notation of scenes, for messages: ``3 kg`` and ``x^2``."""
     text = re.sub(rf" \* {UNIT}\.", " ", ast.unparse(node))
     return text.replace(f"{UNIT}.", "").replace(" ** ", "^").replace("**", "^")

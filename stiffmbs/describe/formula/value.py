@@ -1,4 +1,4 @@
-"""The number that a formula gives, without SymPy."""
+"""Numerical value of a formula, without SymPy."""
 
 from __future__ import annotations
 
@@ -11,20 +11,20 @@ from .text import OF_NUMBERS, FormulaError, evaluate
 
 
 def formula_value(formula: Formula, node: ast.expr | None = None, **variables: float) -> float:
-    """The value of a formula, or of one node of it, that holds neither coordinates nor measures.
+    """Return the value of a formula without coordinates and measures, or of one of its nodes.
 
     Parameters
     ----------
     formula : Formula
     node : ast.expr, optional
-        The part to evaluate; the whole formula by default.
+        Part to evaluate; the whole formula by default.
     **variables
-        Values of time (``t``) and of the formula's variables, where it uses them.
+        Values of time (``t``) and of the formula's variables, as far as it uses them.
 
     Raises
     ------
     FormulaError
-        When it divides by zero, overflows, or has no real value.
+        If it divides by zero, overflows, or has no real value.
     """
 
     def names(name: str) -> float:

@@ -1,6 +1,6 @@
-"""Variables of a scene: formulas by name, which other formulas use (Adams: VARIABLE).
+"""Variables of a scene: named formulas for use in other formulas (Adams: VARIABLE).
 
-Where a name stands, its formula is put in its place, so that a variable means the same wherever it is used.
+A name is replaced by its formula, so a variable has the same meaning wherever it is used.
 """
 
 from __future__ import annotations
@@ -16,21 +16,21 @@ from .text import UNIT, FormulaError, as_written, parse
 
 
 def with_variables(tree: ast.expr, variables: Mapping[str, ast.expr], own: Collection[str] = ()) -> ast.expr:
-    """A formula with the variables that it names put in their places.
+    """Return a formula with its variables substituted.
 
     Parameters
     ----------
     tree : ast.expr
-        Is left as it is.
+        Not modified.
     variables : mapping of str to ast.expr
         From `resolved`.
     own : collection of str
-        Names with a meaning of the formula's own, such as s in the law of a spring.
+        Names defined by the formula's field, such as s in the law of a spring.
 
     Raises
     ------
     FormulaError
-        When it becomes too large, or a variable uses a parameter that has one of the own names.
+        If the result is too large, or a variable uses a parameter with one of the own names.
     """
     named = [name for name in _names(tree) if name in variables and name not in own] if variables else []
     if not named:
@@ -49,7 +49,7 @@ def with_variables(tree: ast.expr, variables: Mapping[str, ast.expr], own: Colle
 
 
 def resolved(formulas: Mapping[str, str | float], known: Collection[str]) -> dict[str, ast.expr]:
-    """The trees of variables, each with the others that it uses in it.
+    """Return the trees of variables, with the variables in them substituted.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ def resolved(formulas: Mapping[str, str | float], known: Collection[str]) -> dic
     Raises
     ------
     FormulaError
-        When one cannot be read, becomes too large, or depends on itself; begins with its name.
+        If one cannot be read, becomes too large, or depends on itself; the message begins with its name.
     """
     trees: dict[str, ast.expr] = {}
 
@@ -90,9 +90,10 @@ def resolved(formulas: Mapping[str, str | float], known: Collection[str]) -> dic
 def meant_within(
     variables: Mapping[str, ast.expr], inside: Mapping[str, Quantity], outside: Mapping[str, Quantity]
 ) -> dict[str, ast.expr]:
-    """The variables that mean within a part what they mean outside of it.
+    """Return the variables that have the same meaning within a part as outside.
 
-    A parameter of the part hides a variable of its name, and all variables that use an outer parameter of its name.
+    A parameter of the part hides a variable of the same name, and all variables that use an outer parameter of that
+    name with another value.
     """
     hidden = {name for name, value in inside.items() if outside.get(name) != value}
     return {name: tree for name, tree in variables.items() if name not in inside and hidden.isdisjoint(_names(tree))}
@@ -107,7 +108,7 @@ def _check_names(tree: ast.expr, variables: Collection[str], known: Collection[s
 
 
 def _names(node: ast.AST) -> list[str]:
-    """The names that stand alone in a formula, as often as they do: neither owners of coordinates nor markers."""
+    """Return all undotted names in a formula, with repetitions, without markers."""
     match node:
         case ast.Name(name):
             return [name]
@@ -121,7 +122,7 @@ def _names(node: ast.AST) -> list[str]:
 
 
 def _in_place(node: ast.expr, variables: Mapping[str, ast.expr], own: Collection[str] = ()) -> ast.expr:
-    """A copy of a formula with variables in the places of their names; no node stands in two places, as others change them there."""
+    """Return a copy of a formula with variables substituted; every node is new, because trees are modified in place."""
     match node:
         case ast.Name(name) if name in variables and name not in own:
             return _in_place(variables[name], {})
@@ -142,7 +143,7 @@ def _in_place(node: ast.expr, variables: Mapping[str, ast.expr], own: Collection
 
 
 class _Alone(ast.NodeTransformer):
-    """Visits the names that stand alone."""
+    """Visitor of undotted names."""
 
     def visit_Attribute(self, node: ast.Attribute) -> ast.expr:
         return node
@@ -154,7 +155,7 @@ class _Alone(ast.NodeTransformer):
 
 
 class _UnitsMarked(_Alone):
-    """Writes units that stand alone, as m in ``N/m``, as those after a number: in a law of s, s is no second."""
+    """Mark units without a number, as m in ``N/m``, as units; otherwise s in a law of s would be ambiguous."""
 
     def __init__(self, known: Collection[str], variables: Collection[str]) -> None:
         self._known = {*known, *variables}

@@ -1,1 +1,1 @@
-"""The shapes of bodies, for drawings; no equation depends on them."""
+"""Shapes of bodies for drawings; they do not affect the equations."""

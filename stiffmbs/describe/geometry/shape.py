@@ -1,4 +1,4 @@
-"""What the shapes of the plane and of space have in common."""
+"""Base of planar and spatial shapes."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ from ..units import si
 
 COLOR = r"^#[0-9a-fA-F]{6}$"
 ENDINGS = (".stl", ".obj")
-"""Of mesh files that can be drawn."""
+"""Suffixes of supported mesh files."""
 
 
 class Shape(Described):
-    """A shape of a body, in the body's own axes.
+    """Shape of a body, in the body's axes.
 
     Attributes
     ----------
     type : str
-        What scenes call it.
+        Name of the kind in scenes.
     """
 
     type: str
@@ -40,12 +40,12 @@ class Shape(Described):
         return color
 
     def placed(self, frame: Any) -> Any:
-        """The shape of a mirrored part's body; `frame` is the mirror in the body's own axes."""
+        """Return the shape of a mirrored part's body; `frame` is the mirror in the body's axes."""
         return frame.placed(self)
 
 
 class PolylineShape(Shape):
-    """Base of the polylines of the plane and of space."""
+    """Base of planar and spatial polylines."""
 
     type: Literal["polyline"] = "polyline"
     points: tuple[Any, ...]
@@ -56,13 +56,13 @@ class PolylineShape(Shape):
 
 
 class OneFor:
-    """Marks a list for which one entry alone may stand, as many times as the list is long; once where that is open."""
+    """Marker of a list field that also accepts a single entry, which is repeated to the length of the list, or once."""
 
     def __init__(self, times: int | None = None) -> None:
         self.times = times
 
     def listed(self, found: Any) -> Any:
-        """What stands in the scene as a list."""
+        """Return an entry of a scene as a list."""
         return found if isinstance(found, list | tuple) else (found,) * (self.times or 1)
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> Any:
@@ -77,7 +77,7 @@ Scale = Annotated[tuple[si.NumberNotZero, si.NumberNotZero, si.NumberNotZero], O
 
 
 class MeshShape(Shape):
-    """Base of the meshes of the plane and of space."""
+    """Base of planar and spatial meshes."""
 
     type: Literal["mesh"] = "mesh"
     file: str = Field(description="a file .stl or .obj, from the folder of the scene on")
@@ -103,7 +103,7 @@ class MeshShape(Shape):
 
 
 class OneOfShapes:
-    """Marks a field that takes a shape, told apart by its ``type``.
+    """Marker of a field that takes a shape, selected by its ``type``.
 
     Parameters
     ----------
@@ -114,7 +114,7 @@ class OneOfShapes:
         self.kinds = {kind.model_fields["type"].default: kind for kind in kinds}
 
     def read(self, found: Any, info: ValidationInfo) -> Any:
-        """The shape that stands in the scene."""
+        """Return the shape given in the scene."""
         if isinstance(found, tuple(self.kinds.values())):
             return found
         if not isinstance(found, dict):

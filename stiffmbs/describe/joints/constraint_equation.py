@@ -1,4 +1,4 @@
-"""A constraint given by the user as a formula."""
+"""Constraint by a formula of the user."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from .user_constraint import ONE_OR_MORE, UserConstraint
 
 
 class ConstraintEquation(UserConstraint):
-    """Formulas of body coordinates and time that stay zero: ``cart.y - 0.1*sin(cart.x)``.
+    """Formulas of body coordinates and time that remain zero: ``cart.y - 0.1*sin(cart.x)``.
 
-    The equations are named ``zero[0] zero[1] ...`` in reports.  The reaction is reported on the body of marker `i`, about
-    its point; without one on the first body that the formulas name, about its centre of mass.
+    The equations are named ``zero[0] zero[1] ...`` in reports. The reaction is reported on the body of marker `i`,
+    about its point. Without `i` it is reported on the first body that the formulas name, about its centre of mass.
 
     This is Adams' GCON of positions.
     """

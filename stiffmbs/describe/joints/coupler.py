@@ -14,14 +14,13 @@ from .relation import Relation
 
 
 class Coupler(Relation):
-    """Ties two joint coordinates by a straight line: s_1 - scale s_2 - offset = 0.
+    """Linear relation between two joint coordinates: s_1 - scale s_2 - offset = 0.
 
     A coordinate is the angle of a revolute joint, or the displacement of a prismatic or point-on-line joint, of marker
-    i against marker j: belts, screws, winches, hydraulic links.  The equation is that of
-    Adams' COUPLER of two joints.
+    i relative to marker j. Examples are belts, screws, winches, hydraulic links. This is Adams' COUPLER of two joints.
 
-    The reaction is the generalised force on the first body of joint 1: a torque on an angle, a force along the axis
-    of a displacement.
+    The reaction is the generalised force on the first body of joint 1: a torque on an angle, a force along the axis of
+    a displacement.
     """
 
     kind: ClassVar[str] = "coupler"

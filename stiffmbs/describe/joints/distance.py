@@ -1,4 +1,4 @@
-"""Distance joint: a rigid rod without mass, in the plane and in space alike."""
+"""Distance joint: a rigid massless rod, in the plane and in space."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ M = TypeVar("M", bound=MarkerReference)
 
 
 class Rod(Joint, Generic[M]):
-    """The rod between points of any markers: those of the plane and of space are made of it."""
+    """Base of the planar and the spatial distance joint."""
 
     kind: ClassVar[str] = "distance"
     reflected: ClassVar[dict[str, str] | None] = {}
@@ -34,11 +34,11 @@ class Rod(Joint, Generic[M]):
 
 
 class Distance(Rod[Marker]):
-    """Rod: a point of body i and a point of body j keep their distance, (d . d - L^2)/(2 L) = 0.
+    """Rod with constant distance between a point of body i and a point of body j, (d . d - L^2)/(2 L) = 0.
 
-    Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), eq. 3.3.7, divided by 2 L: the multiplier
-    is then the tension of the rod in N, and the equation stays smooth at every distance.  For a distance of zero the
-    points coincide: that is a revolute joint.
+    Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), eq. 3.3.7, divided by 2 L. The multiplier
+    is then the tension of the rod in N, and the equation is smooth at every distance. For coincident points use a
+    revolute joint.
 
     The reaction is a force along the rod, from point to point.
     """

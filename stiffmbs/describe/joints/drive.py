@@ -1,4 +1,4 @@
-"""Drive: a prescribed motion (Adams: motion)."""
+"""Drive: a prescribed motion (Adams: MOTION)."""
 
 from __future__ import annotations
 
@@ -23,26 +23,26 @@ from ..units.quantity import refuse_cycles
 from ..units.units import named_unit
 
 SORTS = {"angle": "angle", "displacement": "length", None: "value"}
-"""The dimensions of joint coordinates by name."""
+"""Dimensions of joint coordinates by name."""
 ANGULAR_VELOCITY = measured_in("angular velocity")
 
 
 class Drive(Joint):
-    """A motor that moves a joint's coordinate, or a formula of body coordinates, as a function of time, or of states, prescribes.
+    """Motor that prescribes a joint's coordinate, or a formula of body coordinates, as a function of time or of states.
 
-    With a position s(t): coordinate - s(t) = 0; with a velocity v(t): d(coordinate)/dt - v(t) = 0, an equation that has
-    no position form, so that the coordinate starts where it is drawn.  Both may follow states; the rate of one in a position must
-    not follow velocities.  Haug, Computer Aided Kinematics and Dynamics of
-    Mechanical Systems (1989), section 3.5.
+    With a position s(t): coordinate - s(t) = 0. With a velocity v(t): d(coordinate)/dt - v(t) = 0; this equation has no
+    position form, so the coordinate starts at its described value. Both may depend on states; the rate of a state in a
+    position must not depend on velocities. Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989),
+    section 3.5.
 
-    The reaction is what the motor does to its first body: ``motor.torque`` on an angle, ``motor.fx motor.fy`` along a
-    displacement.  That is the body of marker i of the joint; for a formula the body of the drive's own marker `i`, or
-    without one the first body that the formula names, whose centre of mass is then the torque's point.  As for every
+    The reaction is the action of the motor on its first body: ``motor.torque`` on an angle, ``motor.fx motor.fy`` along
+    a displacement. The first body is that of the joint's marker i, or for a formula that of the drive's own marker `i`.
+    Without `i` it is the first body that the formula names, and the torque's point is its centre of mass. As for every
     joint the reaction is -J^T lam: the torque on a driven angle is minus the multiplier.
 
-    Angles count whole turns, so that they may be driven over any number of them.  In space a drawing tells an angle up to
-    whole turns; it starts in the turn that is nearest to s(0).  A joint with two coordinates is named with the one to
-    drive, ``sleeve.angle``.
+    Full revolutions of angles are counted, so angles can be driven over any number of them. In space the initial pose
+    defines an angle up to full turns; it starts in the turn nearest to s(0). For a joint with two coordinates, name the
+    driven one: ``sleeve.angle``.
     """
 
     kind: ClassVar[str] = "drive"
@@ -95,7 +95,7 @@ class Drive(Joint):
         yield from unfit or self._of_another_dimension(joints)
 
     def _of_another_dimension(self, joints: Mapping[str, Joint]) -> Iterator[tuple[str, str]]:
-        """A prescribed motion in a unit that the driven coordinate, or its rate, does not have."""
+        """Yield the prescribed motion if its unit differs from that of the driven coordinate or of its rate."""
         driven = UNKNOWN if self.driven is None else self.driven.dimension
         if self.joint is not None:
             driven = measured_in(SORTS[self.joint.coordinate_of(joints[self.joint.joint])])
@@ -118,14 +118,14 @@ class Drive(Joint):
 
     @staticmethod
     def point(e: Symbolic) -> Any:
-        """The joint's point; without a joint that of marker i, or the first body's centre of mass."""
+        """Return the joint's point; without a joint that of marker i, or the first body's centre of mass."""
         if e.joint is not None:
             return e.joint.i.point
         return e.frames[0].origin if e.i is None else e.i.point
 
 
 def _unfit(field: str, law: Formula | Table, expected: Known) -> str:
-    """Why a law of time has not the expected dimension; empty where it has, or carries no unit."""
+    """Return why a law of time does not have the expected dimension; empty if it has, or contains no unit."""
     what = f"'{quoted(law.text)}', which is" if isinstance(law, Formula) else "the table's values"
     found = law.dimension if isinstance(law, Formula) else law.dimensions[1]
     if not found.agrees_with(expected):
@@ -145,5 +145,5 @@ def _driven(e: Symbolic) -> Any:
 
 
 def _at(law: Any, t: Any) -> Any:
-    """A law of time, which is a function if it is a table and an expression if it is a formula."""
+    """Return the value of a law of time, a function for a table and an expression for a formula."""
     return law(t) if isinstance(law, FunctionType) else law

@@ -11,9 +11,9 @@ from ..marker import InOneTurn, Marker
 
 
 class Fixed(InOneTurn, Joint):
-    """Weld: two markers coincide in place and direction.
+    """Weld: two markers coincide in position and direction.
 
-    The reaction is a force of any direction and a torque.  This is Adams' FIXED in the plane.
+    The reaction is a force of any direction and a torque. This is Adams' FIXED in the plane.
     """
 
     kind: ClassVar[str] = "fixed"

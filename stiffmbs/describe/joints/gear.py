@@ -13,15 +13,15 @@ from .relation import Relation
 
 
 class Gear(Relation):
-    """Two wheels in mesh, each pinned to one carrier: theta_1 + ratio theta_2 - offset = 0.
+    """Gear pair with both wheels on one carrier: theta_1 + ratio theta_2 - offset = 0.
 
-    theta are the coordinates of the two revolute joints, which have the wheels as marker i and the carrier (an arm, or
-    ground) as marker j.  `ratio` is teeth_2/teeth_1, or radius_2/radius_1: above zero for external teeth, where
-    the wheels turn against each other, below zero for a pinion in an internal gear.  Nikravesh, Computer-Aided
-    Analysis of Mechanical Systems (1988), section 4.2.3, in the angles instead of the arcs, so that full turns count.
+    theta_1 and theta_2 are the coordinates of two revolute joints, which have the wheels as marker i and the carrier
+    (an arm, or ground) as marker j. `ratio` is teeth_2/teeth_1, or radius_2/radius_1: positive for external teeth,
+    where the wheels turn in opposite directions, negative for a pinion in an internal gear. Nikravesh, Computer-Aided
+    Analysis of Mechanical Systems (1988), section 4.2.3, in angles instead of arcs, so full turns count.
 
-    The reaction is the torque that the mesh puts on wheel 1; the force between the teeth has no place in the equation,
-    so the pins carry none of it.
+    The reaction is the torque of the mesh on wheel 1. The force between the teeth is not in the equation, so the pins
+    do not carry it.
     """
 
     kind: ClassVar[str] = "gear"

@@ -1,4 +1,4 @@
-"""One equation that holds from the initial poses on."""
+"""Base of joints with one equation and an offset."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ if TYPE_CHECKING:
 
 
 class OffsetConstraint(Joint):
-    """Base of the joints with an `offset` in their one equation (it has no kind: scenes name its subclasses).
+    """Base of the joints with an `offset` in their single equation; scenes use its subclasses.
 
-    Without an `offset` the bodies are taken as they are drawn: the offset is then the number with which the equation
-    holds in the described poses, so that assembly moves nothing.
+    The default `offset` is the value for which the equation holds in the described poses, so assembly does not move the
+    bodies.
     """
 
     offset: si.Anything | None = None
 
     @staticmethod
     def relation(e: Symbolic) -> Any:
-        """What stays zero, with the offset taken from it."""
+        """Return the residual of the equation, including the offset."""
         raise NotImplementedError
 
     @classmethod

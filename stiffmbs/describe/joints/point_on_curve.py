@@ -1,4 +1,4 @@
-"""Point on a smooth curve in the axes of a marker: a curved slot, or a cam with a pointed follower."""
+"""Point on a smooth curve in the axes of a marker: a curved slot, or a cam with a point follower."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ from ..table import Table
 M = TypeVar("M", bound=MarkerReference)
 TURN = 2 * math.pi
 CLOSED = 1e-9
-"""Change in a full turn, over the largest radius, from which a cam counts as open; tells it from rounding."""
+"""Tolerance of the change over a full turn, relative to the largest radius, for a closed cam."""
 
 
 class Curve(Joint, Generic[M]):
-    """Fields of the points on curves of the plane and of space, which are made of it."""
+    """Base of the planar and the spatial point on a curve."""
 
     kind: ClassVar[str] = "point_on_curve"
     equations: ClassVar[tuple[str, ...]] = ("normal",)
@@ -56,20 +56,20 @@ class Curve(Joint, Generic[M]):
 
 
 class PointOnCurve(Curve[Marker]):
-    """Point-follower: the point of marker i stays on a curve fixed to marker j.
+    """Point follower: the point of marker i remains on a curve fixed to marker j.
 
-    In the axes of marker j the point is at (x, y), or at the distance rho in the direction theta (-pi .. pi).  The curve is a slot
-    ``y`` = Y(x), with y - Y(x) = 0, or a cam ``radius`` = R(theta), with rho - R(theta) = 0.  R has to repeat after
-    every turn, so that it does not matter where the arctangent jumps, nor how often the cam has turned.
-    Nikravesh, Computer-Aided Analysis of Mechanical Systems (1988), section 4.2.6.
+    In the axes of marker j the point is at (x, y), or at the distance rho in the direction theta (-pi .. pi). The curve
+    is a slot ``y`` = Y(x), with y - Y(x) = 0, or a cam ``radius`` = R(theta), with rho - R(theta) = 0. R must be
+    periodic over a turn, so the jump of the arctangent and the number of turns have no effect. Nikravesh,
+    Computer-Aided Analysis of Mechanical Systems (1988), section 4.2.6.
 
-    The curve should have no breakpoints.  The reaction is across the curve, without friction, and may pull: the point
-    cannot lift off.
+    The curve should be free of breakpoints. The reaction is normal to the curve, without friction, and bilateral: the
+    point cannot lift off.
     """
 
     @staticmethod
     def position(e: Symbolic) -> Any:
-        """y - Y(x) of a slot, rho - R(theta) of a cam, in the axes of marker j."""
+        """Return y - Y(x) of a slot, rho - R(theta) of a cam, in the axes of marker j."""
         d = e.i.point - e.j.point
         if e.y is not None:
             return [d.dot(e.j.normal) - e.y(d.dot(e.j.axis))]
@@ -79,12 +79,12 @@ class PointOnCurve(Curve[Marker]):
 
 
 def repeating(law: Formula | Table | None) -> Formula | Table | None:
-    """A law of the polar angle, which has to be the same a turn on.
+    """Return a law of the polar angle that is periodic over a turn.
 
     Raises
     ------
     ValueError
-        When it is not.
+        If it is not periodic.
     """
     match law:
         case Table(ends="periodic", table=((first, _), *_, (last, _))) if abs(last - first - TURN) <= 1e-9 * TURN:
@@ -100,7 +100,7 @@ def repeating(law: Formula | Table | None) -> Formula | Table | None:
 
 
 def _refuse_open(law: Formula) -> None:
-    """Refuse a formula of the polar angle that is another one turn on, or two turns back."""
+    """Refuse a formula of the polar angle that differs after one turn, or two turns back."""
     angles = np.linspace(-TURN, TURN, 50)
     values = [formula_value(law, angle=angle) for angle in angles]
     size = max(map(abs, values))

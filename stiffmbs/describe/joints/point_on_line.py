@@ -11,10 +11,10 @@ from ..marker import Marker
 
 
 class PointOnLine(Joint):
-    """Pin in a slot: the point of marker i stays on the line through marker j along j's axis, d . n_j = 0.
+    """Pin in a slot: the point of marker i remains on the line through marker j along j's axis, d . n_j = 0.
 
-    Body i may turn.  Nikravesh, Computer-Aided Analysis of Mechanical Systems (1988), section 4.2.1 (the first of the
-    two equations of a translational joint); the reaction is across the line, without friction.
+    Body i can rotate. Nikravesh, Computer-Aided Analysis of Mechanical Systems (1988), section 4.2.1 (the first of the
+    two equations of a translational joint). The reaction is normal to the line, without friction.
     """
 
     kind: ClassVar[str] = "point_on_line"
@@ -32,7 +32,7 @@ class PointOnLine(Joint):
 
     @staticmethod
     def displacement(e: Symbolic) -> Any:
-        """The displacement of the pin along the line, from marker j."""
+        """Return the displacement of the pin along the line, from marker j."""
         return (e.i.point - e.j.point).dot(e.j.axis)
 
     def in_space(self, angles: Any) -> dict[str, Any]:

@@ -13,9 +13,9 @@ from ..marker import InOneTurn, Marker
 
 
 class Prismatic(InOneTurn, Joint):
-    """Slider: marker i stays on the line through marker j along j's axis and keeps j's direction.
+    """Slider: marker i remains on the line through marker j along j's axis, and keeps j's direction.
 
-    The reaction is a force across the line and a torque; along the line it has no component.
+    The reaction is a force normal to the line and a torque.
 
     Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), eq. 3.3.13, with the angle itself in
     place of its sine.
@@ -37,7 +37,7 @@ class Prismatic(InOneTurn, Joint):
 
     @staticmethod
     def displacement(e: Symbolic) -> Any:
-        """The displacement of marker i along the axis of marker j."""
+        """Return the displacement of marker i along the axis of marker j."""
         return (e.i.point - e.j.point).dot(e.j.axis)
 
     @staticmethod

@@ -13,15 +13,14 @@ from .relation import Relation
 
 
 class RackAndPinion(Relation):
-    """A wheel that rolls on a toothed bar, both carried by one housing: s - R theta - offset = 0.
+    """Pinion that rolls on a rack, both on one housing: s - R theta - offset = 0.
 
     s is the coordinate of the rack's prismatic joint, theta that of the pinion's revolute joint; both joints have the
-    housing (or ground) as marker j.  With R above zero the rack goes forward along its axis as the pinion turns
-    counter-clockwise, as it does with the pinion on its left; a pinion on the right has R below zero.
-    Nikravesh, Computer-Aided Analysis of Mechanical Systems (1988), section 4.2.3.
+    housing (or ground) as marker j. With R > 0 a counter-clockwise rotation of the pinion moves the rack forward along
+    its axis, as with the pinion on its left; for a pinion on its right R < 0. Nikravesh, Computer-Aided Analysis of
+    Mechanical Systems (1988), section 4.2.3.
 
-    The reaction is the force of the teeth on the rack, along its axis; their force on the pinion appears as its moment
-    alone.
+    The reaction is the tooth force on the rack, along its axis; on the pinion only its moment acts.
     """
 
     kind: ClassVar[str] = "rack_and_pinion"

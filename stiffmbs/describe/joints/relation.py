@@ -1,4 +1,4 @@
-"""What gears, racks and couplers share: one linear equation between the coordinates of two joints."""
+"""Base of gears, racks and couplers: a linear equation between two joint coordinates."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from .offset_constraint import OffsetConstraint
 
 
 class Relation(OffsetConstraint):
-    """Base of the joints that tie two joint coordinates together (it has no kind: scenes name its subclasses).
+    """Base of the joints that relate two joint coordinates; scenes use its subclasses.
 
     Attributes
     ----------
     wanted : mapping of str to str
-        The coordinate, ``angle`` or ``displacement``, that a field has to name, where not every one will do.
+        Required coordinate, ``angle`` or ``displacement``, of a field, if not every coordinate is possible.
     carried : bool
         Whether both joints must have the same body, the carrier, as their marker j.
     """
@@ -26,7 +26,7 @@ class Relation(OffsetConstraint):
     carried: ClassVar[bool] = False
 
     def validation_errors(self, joints: Mapping[str, Joint]) -> Iterator[tuple[str, str]]:
-        """Joints without such a coordinate, one coordinate named twice, two joints without a common carrier."""
+        """Yield joints without the required coordinate, repeated coordinates, and joints without a common carrier."""
         yield from unfit_joints(self, joints, self.wanted)
         (_, first), (field, second) = self.parts(JointName)
         if (

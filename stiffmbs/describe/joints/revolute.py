@@ -15,7 +15,7 @@ from ..marker import Marker
 class Revolute(Joint):
     """Pin: a point of body i and a point of body j coincide.
 
-    The reaction is a force at the pin, of any direction; it has no torque.
+    The reaction is a force of any direction at the pin, without torque.
 
     Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), eq. 3.3.10.
     """
@@ -36,7 +36,7 @@ class Revolute(Joint):
 
     @staticmethod
     def angle(e: Symbolic) -> Any:
-        """The angle of marker i against marker j."""
+        """Return the angle of marker i relative to marker j."""
         return e.i.angle - e.j.angle
 
     @staticmethod

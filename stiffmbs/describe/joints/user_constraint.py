@@ -1,4 +1,4 @@
-"""What constraints that a user writes as formulas share."""
+"""Base of constraints by formulas of the user."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ ONE_OR_MORE = WithJsonSchema({"anyOf": [_FORMULA, {"type": "array", "items": _FO
 
 
 class UserConstraint(Joint):
-    """Base of the constraints whose field `zero` holds formulas (it has no kind: scenes name its subclasses).
+    """Base of the constraints whose field `zero` contains formulas; scenes use its subclasses.
 
-    The equations are named ``zero[0] zero[1] ...`` in reports.  The reaction is reported on the body of marker `i`, about
-    its point; without one on the first body that the formulas name, about its centre of mass.
+    The equations are named ``zero[0] zero[1] ...`` in reports. The reaction is reported on the body of marker `i`,
+    about its point. Without `i` it is reported on the first body that the formulas name, about its centre of mass.
     """
 
     i: MarkerReference | None = Field(None, description="marker of the body on which the reaction is reported")

@@ -1,4 +1,4 @@
-"""A constraint of velocities given by the user as a formula."""
+"""Velocity constraint by a formula of the user."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from .user_constraint import ONE_OR_MORE, UserConstraint
 
 
 class VelocityEquation(UserConstraint):
-    """Formulas linear in velocities that stay zero, J(q) u - b(q, t) = 0, and need not be the rate of anything.
+    """Formulas linear in velocities that remain zero, J(q) u - b(q, t) = 0, also nonholonomic ones.
 
-    A knife edge, ``sled.vy*cos(sled.angle) - sled.vx*sin(sled.angle)``, or a disc that rolls: constraints that are not
-    holonomic.  Positions are free, and start as they are drawn; velocities are made to fulfil the equations at the
-    start.  The equations are named ``zero[0] zero[1] ...`` in reports.
+    Examples are a knife edge, ``sled.vy*cos(sled.angle) - sled.vx*sin(sled.angle)``, and a rolling disc. Positions are
+    free and start as described; the velocities are made consistent with the equations at the start. The equations are
+    named ``zero[0] zero[1] ...`` in reports.
 
-    The reaction, -J^T lam, is reported on the body of marker `i`, about its point; without one on the first body that the
-    formulas name, about its centre of mass.
+    The reaction, -J^T lam, is reported on the body of marker `i`, about its point. Without `i` it is reported on the
+    first body that the formulas name, about its centre of mass.
 
     Neimark, Fufaev, Dynamics of Nonholonomic Systems (1972), chapter III.
     """

@@ -1,1 +1,1 @@
-"""Parts: what is written once and stands in a scene several times, placed and mirrored."""
+"""Parts: reusable definitions that scenes place and mirror."""

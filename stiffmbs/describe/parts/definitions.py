@@ -1,4 +1,4 @@
-"""The definitions of parts: those of a scene, and those that come with the package."""
+"""Definitions of parts in a scene and in the package."""
 
 from __future__ import annotations
 
@@ -20,37 +20,37 @@ from .use import Use
 from .vectors import Vectors, in_components, parameters_in_components
 
 NAMED = ("bodies", "states", "joints", "forces", "requests")
-"""What a part holds by names that formulas and other entries may use."""
+"""Sections of a part whose names formulas and other entries can use."""
 KEYS = ("parameters", "markers", *NAMED, "use", "mounts", OPTIONS)
 
 
 @dataclass(frozen=True)
 class Definitions:
-    """Reads definitions, and the entries that use them.
+    """Reader of definitions, and of the entries that use them.
 
     Attributes
     ----------
     parts : mapping
-        Those of the scene.
+        Definitions of the scene.
     kind : type of Use
-        Of the plane or of space.
+        For the plane or space.
     """
 
     parts: Any
     kind: type[Use]
 
     def written(self, part: str) -> Any:
-        """A definition as it is written: of the scene, or of those that come with the package."""
+        """Return a definition of the scene or of the package, as written."""
         own = self.parts if isinstance(self.parts, dict) else {}
         return own[part] if part in own else shipped_part(part)
 
     def choices(self, part: str) -> dict[str, dict[str, Any]]:
-        """The options of a definition."""
+        """Return the options of a definition."""
         found = self.written(part)
         return choices_of(found, f"parts.{part}.{OPTIONS}") if isinstance(found, dict) else {}
 
     def use(self, where: str, entry: Any, parameters: Mapping[str, Quantity]) -> tuple[Use, dict[str, Any]]:
-        """An entry of a ``use``, and the words that it chooses."""
+        """Return an entry of ``use``, and its chosen words."""
         if not isinstance(entry, dict):
             raise InputError(f"{where}: found {written(entry)}, expected a mapping with 'part'")
         choices = self.choices(entry["part"]) if isinstance(entry.get("part"), str) else {}
@@ -79,12 +79,12 @@ class Definitions:
         return use, words
 
     def of(self, part: str) -> dict[str, Any]:
-        """What is written of a part.
+        """Return a copy of the definition of a part.
 
         Raises
         ------
         InputError
-            When it is no mapping, or has unknown keys.
+            If it is not a mapping, or has unknown keys.
         """
         found = self.written(part)
         if not isinstance(found, dict):
@@ -99,7 +99,7 @@ class Definitions:
 
 
 def definition_in_components(definition: dict[str, Any], vectors: Vectors, where: str) -> dict[str, Any]:
-    """A definition with the components of vectors in place of these."""
+    """Return a definition with vectors replaced by their components."""
     try:
         parameters = parameters_in_components(definition.get("parameters"), vectors, f"{where}.parameters")
         rest = in_components({key: value for key, value in definition.items() if key != "parameters"}, vectors)

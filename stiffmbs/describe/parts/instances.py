@@ -1,4 +1,4 @@
-"""The instances of parts that a scene's ``use`` asks for, before their entries are validated."""
+"""Instances of parts requested by ``use``, before validation of their entries."""
 
 from __future__ import annotations
 
@@ -21,35 +21,35 @@ from .vectors import Vectors, parameters_in_components, vectors_of
 
 REPEATED = ("bodies", "states", "joints", "forces")
 MOST_NESTED = 10
-"""Parts within parts."""
+"""Largest number of nested parts."""
 MOST_INSTANCES = 10_000
 MOST_VALUES = 1_000_000
-"""Numbers, texts, lists and mappings in all instances together."""
+"""Largest number of numbers, texts, lists and mappings in all instances."""
 
 
 @dataclass(frozen=True)
 class Instance:
-    """A part in its place.
+    """Instance of a part.
 
     Attributes
     ----------
     name : str
-        In full, as ``front.left``.
+        Full name, such as ``front.left``.
     part : str
-        The name of its definition.
+        Name of its definition.
     use : Use
     sections : mapping
-        Markers, bodies, joints, forces and requests as they are written, repeated entries written out.
+        Markers, bodies, joints, forces and requests as written, with repeated entries expanded.
     parameters : mapping of str to Quantity
-        The scene's and its own.
+        Parameters of the scene and of the part.
     outer : Instance or None
-        The instance that it stands in.
+        Enclosing instance.
     inner : tuple of str
-        The names of instances that stand in it, as it calls them.
+        Local names of nested instances.
     mounts : mapping of str to str
-        Further bodies that it connects to: what it calls each, and the body where the part stands.
+        Further bodies that it connects to, by local name.
     words : mapping of str to str
-        The words that were chosen for it and for what stands in it, by choice.
+        Chosen words for it and for nested parts, by choice.
     """
 
     name: str
@@ -64,30 +64,30 @@ class Instance:
 
     @property
     def where(self) -> str:
-        """The path of its definition in the scene."""
+        """Path of its definition in the scene."""
         return f"parts.{self.part}"
 
     def names(self, section: str) -> Iterator[str]:
-        """The names in a section, in full."""
+        """Yield the full names in a section."""
         yield from (f"{self.name}.{name}" for name in self.sections.get(section) or {})
 
     def local(self) -> dict[str, str]:
-        """Its short names, and the full names that they stand for."""
+        """Return full names by local name."""
         named = [*self.inner, *(name for section in NAMED for name in self.sections.get(section) or {})]
         return {name: f"{self.name}.{name}" for name in named}
 
 
 @dataclass
 class Instances:
-    """Reads the instances of a scene, each before those that stand in it.
+    """Reader of the instances of a scene, in order from outer to inner.
 
     Attributes
     ----------
     definitions : Definitions
     changes : list of (path, value)
-        What is set in instances from outside; what is found is taken out of the list.
+        Values set in instances from outside; applied changes are removed from the list.
     words : mapping of str to str
-        What the scene chooses, by choice.
+        Choices of the scene.
     """
 
     definitions: Definitions
@@ -99,12 +99,12 @@ class Instances:
     def read(
         self, used: Any, parameters: Mapping[str, Quantity], outer: Instance | None = None, depth: int = 0
     ) -> None:
-        """Add the instances of a ``use`` and all that stand in them.
+        """Add the instances of ``use`` and all nested ones.
 
         Raises
         ------
         InputError
-            For a part that is not there, that uses itself, or that cannot be read.
+            For a part that does not exist, uses itself, or cannot be read.
         """
         where = f"{outer.where}.use" if outer else "use"
         if not isinstance(used, dict):
@@ -123,7 +123,7 @@ class Instances:
             )
 
     def refuse_unknown_choices(self, known: Iterable[str]) -> None:
-        """Refuse what the scene chooses where neither it nor any part in it has that choice."""
+        """Refuse choices of the scene that neither it nor any part in it has."""
         of_parts = {choice for one in self.found for choice in self.definitions.choices(one.part)}
         refuse_unknown_choices(self.words, of_parts | set(known))
 
@@ -163,7 +163,7 @@ class Instances:
             raise InputError(f"{where}: found parts of more than {MOST_VALUES} values in all, expected fewer")
 
     def _set(self, instance: str, definition: dict[str, Any]) -> None:
-        """Put what is set from outside in place of what the definition has."""
+        """Apply the changes from outside to a definition."""
         for change in list(self.changes):
             path, value = change
             section, _, rest = path.partition(".")
@@ -204,7 +204,7 @@ def _check_sections(part: str, sections: Mapping[str, Any], inner: Sequence[str]
 
 
 def _size(found: Any, most: int) -> int:
-    """How many values there are, aliases counted as what they stand for; no more than one above `most`."""
+    """Return the number of values with aliases expanded, limited to one above `most`."""
     count, waiting = 0, [found]
     while waiting and count <= most:
         value = waiting.pop()

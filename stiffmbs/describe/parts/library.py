@@ -1,4 +1,4 @@
-"""The parts that come with the package: one file each in ``shipped``, named as the part."""
+"""Parts of the package, in one file each in ``shipped``."""
 
 from __future__ import annotations
 
@@ -14,27 +14,27 @@ FOLDER = Path(__file__).with_name("shipped")
 
 @functools.cache
 def shipped_parts() -> tuple[str, ...]:
-    """The names of all parts that come with the package."""
+    """Return the names of all parts of the package."""
     return tuple(sorted(file.stem for file in FOLDER.glob("*.yaml")))
 
 
 def shipped_part(name: str) -> dict[str, Any] | None:
-    """The definition of a part that comes with the package, not to be changed; None for any other name."""
+    """Return the definition of a part of the package, read-only; None for any other name."""
     return _read(name) if name in shipped_parts() else None
 
 
 def shipped_text(name: str) -> str:
-    """The file of a part that comes with the package, as text."""
+    """Return the text of the file of a part of the package."""
     return (FOLDER / f"{name}.yaml").read_text(encoding="utf-8")
 
 
 def about(name: str) -> str:
-    """The first line of comment of a part that comes with the package: what it is."""
+    """Return the description of a part of the package, the comment in the first line of its file."""
     return shipped_text(name).partition("\n")[0].removeprefix("# ")
 
 
 def included_texts(name: str) -> tuple[str, ...]:
-    """The files that a part which comes with the package includes, as text."""
+    """Return the texts of the files that a part of the package includes."""
     found = read_yaml(shipped_text(name), f"{name}.yaml").get("include") or []
     names = [found] if isinstance(found, str) else found
     return tuple((FOLDER / each).read_text(encoding="utf-8") for each in names)

@@ -1,7 +1,7 @@
 """Elements of mirrored parts.
 
-An element says in `Element.reflected` how its fields change in a mirror image.  One that says nothing is refused: a wrong
-sign would be a wrong number.
+`Element.reflected` defines how the fields of an element change in a mirror image. Elements without it are refused,
+because a wrong sign would give wrong results.
 """
 
 from __future__ import annotations
@@ -22,23 +22,23 @@ from .mirrored_formula import MirroredNames, mirrored_law
 from .names import MOUNT
 
 ALONG_AXES = ("angle", "x", "y", "z", "about x", "about y", "about z")
-"""What `Element.reflected` says of laws."""
+"""Entries of `Element.reflected` that apply to laws."""
 
 
 @dataclass(frozen=True)
 class Mirror:
-    """What mirrors the elements of one instance of a part.
+    """Mirror image of the elements of one instance of a part.
 
     Attributes
     ----------
     name : str
-        Of the instance.
+        Name of the instance.
     frame
-        Of the part, in ground axes.
+        Frame of the part in ground axes.
     part
-        Its sections, validated, with their short names, as they are without the mirror.
+        Its validated sections, with local names, without mirroring.
     mounts : collection of str
-        What the part calls the bodies that it is placed on.
+        Local names of the bodies that it is mounted on.
     """
 
     name: str
@@ -47,17 +47,17 @@ class Mirror:
     mounts: Collection[str]
 
     def inside(self, marker: MarkerReference) -> bool:
-        """Whether a marker is on a body of the part, or on its mount as a marker of the part."""
+        """Return True if a marker is on a body of the part, or is a marker of the part on its mount."""
         own = f"{marker.marker}.".startswith(f"{self.name}.") if marker.marker else marker.body in self.mounts
         return own or f"{marker.body}.".startswith(f"{self.name}.")
 
     def mirrored(self, element: Element, where: str) -> Element:
-        """The mirror image of an element; its markers on `mount` are left to who places the part.
+        """Return the mirror image of an element; markers on `mount` are resolved when the part is placed.
 
         Raises
         ------
         InputError
-            For an element, or a formula, whose mirror image is not known.
+            If the mirror image of the element or of a formula is not defined.
         """
         if element.reflected is None:
             raise InputError(
@@ -73,12 +73,12 @@ class Mirror:
         return element.model_copy(update=changed)
 
     def mirrored_state(self, state: Any, where: str) -> Any:
-        """A state, or a system of such, that has the same value in the mirror image: its formulas see mirrored coordinates.
+        """Return a state or a system of states with mirrored coordinates in its formulas; its value is the same.
 
         Raises
         ------
         InputError
-            For a formula whose mirror image is not known.
+            If the mirror image of a formula is not defined.
         """
         changed = {}
         for name in type(state).model_fields:
@@ -98,11 +98,11 @@ class Mirror:
         return self._image(value, self._signs(element, way), way in ALONG_AXES)
 
     def _signs(self, element: Element, way: str) -> Any:
-        """The sign of a field, or those of its components."""
+        """Return the sign of a field, or the signs of its components."""
         if way == "same":
             return 1.0
         forces, along = self._axes(element)
-        rotations = self.frame.rotation_signs  # which `axes` of a bushing are not about
+        rotations = self.frame.rotation_signs  # independent of the `axes` of a bushing
         match way:
             case "vector":
                 return forces
@@ -124,7 +124,7 @@ class Mirror:
         return sign
 
     def _axes(self, element: Element) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """How forces and rotations change their signs along the axes that an element's components are along."""
+        """Return the signs of forces and of rotations along the axes of an element's components."""
         own = {name: getattr(element, name) for name in ("frame", "axes") if name in type(element).model_fields}
         frame = own.get("frame")
         in_ground = own.get("axes") == "ground" and frame is None
@@ -140,7 +140,6 @@ class Mirror:
         return marker.body in self.mounts or self.inside(marker)
 
     def _coordinate(self, joint: JointName | None) -> float:
-        """The sign of a joint's coordinate."""
         if joint is None:
             return 1.0
         own: Joint | None = self.part.joints.get(joint.joint.removeprefix(f"{self.name}."))
@@ -151,7 +150,7 @@ class Mirror:
         return float(self.frame.signs[0 if len(self.frame.signs) == 2 else 2])
 
     def _image(self, value: Any, signs: Any, law: bool) -> Any:
-        """A value with other signs; a law has that of its argument too."""
+        """Return a value with its signs applied; laws also change the sign of their argument."""
         match value:
             case tuple() if value and isinstance(value[0], tuple):
                 rows = zip(value, signs, strict=True)
@@ -170,7 +169,7 @@ class Mirror:
         return value
 
     def _marker(self, marker: MarkerReference, way: str) -> Any:
-        """A marker on the part's own bodies in its mirror image; `way` is the axis whose direction matters, if any."""
+        """Return the mirror image of a marker on the part; `way` is the axis whose direction matters, if any."""
         if way in ("x", "y", "z") and self._own(marker) and self.frame.signs["xyz".index(way)] < 0:
             marker = self.frame.half_turned(self._placed(marker), way)
         if marker.body in (*self.mounts, GROUND) or marker.marker is not None or not self.inside(marker):
@@ -178,7 +177,7 @@ class Mirror:
         return marker if marker.placement() is None else self.frame.mirror().placed(marker)
 
     def _placed(self, marker: MarkerReference) -> MarkerReference:
-        """A marker given on the spot that is where a named one is."""
+        """Return the explicit marker at the position of a named one."""
         if marker.marker is None:
             return marker
         named = self.part.markers if marker.body == MOUNT else self._body(marker).markers

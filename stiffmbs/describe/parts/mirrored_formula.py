@@ -20,32 +20,31 @@ Signs = tuple[float, ...]
 
 
 class MirroredNames(ast.NodeTransformer):
-    """Puts the mirror image of each coordinate and measure in its place: the same, or its negative.
+    """Replace each coordinate and measure by its mirror image: the same, or its negative.
 
     Parameters
     ----------
     frame
-        Of the part, in ground axes.
+        Frame of the part in ground axes.
     inside : callable
-        Whether a marker is of the part, or of what it is placed on.
+        Returns True if a marker belongs to the part or its mounts.
     """
 
     def __init__(self, frame: Any, inside: Callable[[MarkerReference], bool]) -> None:
         self.frame, self.inside = frame, inside
 
     def visit_Attribute(self, node: ast.Attribute) -> ast.AST:
-        """A coordinate of the mirror image, with its sign."""
         body = node.value.id  # type: ignore[attr-defined]
         if body == UNIT:
             return node
         if not self.inside(MarkerReference(body=body)):
             raise FormulaError(f"found '{body}', which is outside of a mirrored part, expected what is in it")
         match node.attr:
-            case "x" | "y" | "z" if self._of_ground(node)["xyz".index(node.attr)] > 0:  # the mirror is along it
+            case "x" | "y" | "z" if self._of_ground(node)["xyz".index(node.attr)] > 0:  # parallel to the mirror
                 return node
             case "vx" | "vy" | "vz":
                 return _signed(node, self._of_ground(node)["xyz".index(node.attr[1])])
-            case "wx" | "wy" | "wz":  # along the body's own axes
+            case "wx" | "wy" | "wz":  # along the body's axes
                 return _signed(node, self.frame.rotation_signs["xyz".index(node.attr[1])])
             case "omega":
                 return _signed(node, self.frame.handedness)
@@ -54,7 +53,6 @@ class MirroredNames(ast.NodeTransformer):
         )
 
     def visit_Call(self, node: ast.Call) -> ast.AST:
-        """A measure of the mirror image, with its sign."""
         if not is_measure(node):
             return ast.Call(node.func, [self.visit(argument) for argument in node.args], [])
         name: str = node.func.id  # type: ignore[attr-defined]
@@ -78,7 +76,7 @@ class MirroredNames(ast.NodeTransformer):
         return _signed(node, signs["xyz".index(name[1])])
 
     def _kept(self, node: ast.AST, name: str, axes: list[MarkerReference]) -> bool:
-        """Whether a position against ground is along the mirror, which does not change it."""
+        """Return True if mirroring does not change a position relative to ground."""
         return name in ("dx", "dy", "dz") and not axes and self._of_ground(node)["xyz".index(name[1])] > 0
 
     def _of_ground(self, node: ast.AST) -> Signs:
@@ -96,14 +94,14 @@ def _signed(node: ast.expr, sign: float) -> ast.expr:
 
 
 def mirrored_law(found: Formula | Table, names: MirroredNames, value: float, argument: float) -> Formula | Table:
-    """value * f(argument * x), with the mirror images of coordinates, of a formula or table f; states keep their values.
+    """Return value * f(argument * x) for a formula or table f, with mirrored coordinates; states keep their values.
 
     Parameters
     ----------
     found : Formula or Table
     names : MirroredNames
     value, argument : float
-        1 or -1; `argument` is that of the variables that the field gives a meaning to.
+        1 or -1; `argument` applies to the variables that the field defines.
     """
     if isinstance(found, Table):
         points = tuple((argument * x, value * y) for x, y in found.table)

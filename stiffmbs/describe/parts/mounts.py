@@ -1,7 +1,7 @@
-"""Further bodies that a part connects to, besides its mount: the rack of a tie rod, the arm under a strut.
+"""Further bodies that a part connects to, besides its mount: the rack of a tie rod, the arm of a strut.
 
-``mounts: {rack: mount}`` in a part says that it calls such a body ``rack``, and that it is the part's mount unless a use names
-another one: ``mounts: {rack: steering.rack}``.  A point on it is given in the part's frame.
+``mounts: {rack: mount}`` in a part defines the local name ``rack``, and the part's mount as the default body. A use can
+name another one: ``mounts: {rack: steering.rack}``. Points on it are in the part's frame.
 """
 
 from __future__ import annotations
@@ -15,20 +15,20 @@ from .use import Use
 
 
 def mounts_of(found: Any, use: Use, where: str) -> dict[str, str]:
-    """The bodies that stand for the further mounts of a part.
+    """Return the bodies of the further mounts of a part.
 
     Parameters
     ----------
     found : mapping of str to str
-        Of the definition.
+        Mounts of the definition.
     use : Use
     where : str
-        The path of the use.
+        Path of the use.
 
     Raises
     ------
     InputError
-        Where the use names one that the part does not have.
+        If the use names a mount that the part does not have.
     """
     mounts = {} if found is None else found
     if not isinstance(mounts, dict) or not all(isinstance(body, str) for body in mounts.values()):

@@ -1,4 +1,4 @@
-"""Names with dots, such as ``front.left.arm``: which part of ``front.left.arm.end`` is a body, and which its marker."""
+"""Dotted names, such as ``front.left.arm.end``, and their division into body and marker."""
 
 from __future__ import annotations
 
@@ -13,28 +13,28 @@ if TYPE_CHECKING:
 
 GROUND = "ground"
 MOUNT = "mount"
-"""What a part calls the body that it is placed on."""
+"""Local name of the body that a part is mounted on."""
 
 
 @dataclass(frozen=True)
 class Names:
-    """The names that text in a scene may use.
+    """Names available in the text of a scene.
 
     Attributes
     ----------
     bodies : frozenset of str
-        All bodies of the scene, by their full names.  None is the beginning of another (``front`` and ``front.arm``), so
-        that a text has one meaning.
+        Full names of all bodies of the scene. No name is a prefix of another (``front`` and ``front.arm``), so every
+        text is unambiguous.
     local : mapping of str to str
-        Within a part: its own short names, and the full names that they stand for.
+        Within a part: full names by local name.
     values : mapping of str to ast.expr
-        Within a part: its own parameters, as the numbers with units that stand in their places outside of it.
+        Within a part: its parameters, as numbers with units.
     states : mapping of str to Known
-        All states and inputs of the scene, by their full names, and what is known of their dimensions.
+        Known dimensions of all states and inputs of the scene, by full name.
     inputs : frozenset of str
-        The inputs among them, which formulas of time may use too.
+        Inputs among the states, which are available in formulas of time, too.
     mounts : frozenset of str
-        Within a part: what it calls the bodies that it is placed on.
+        Within a part: local names of the bodies that it is mounted on.
     """
 
     bodies: frozenset[str] = frozenset()
@@ -46,18 +46,18 @@ class Names:
 
     @cached_property
     def dotted(self) -> bool:
-        """Whether any name has a dot, or stands for another one."""
+        """True if any name has a dot or is local."""
         return bool(self.local) or any("." in name for name in self.bodies)
 
     def full(self, text: str) -> str:
-        """A text with the short name that it starts with in full: ``arm.end`` as ``front.left.arm.end``."""
+        """Return a text with its leading local name expanded: ``arm.end`` as ``front.left.arm.end``."""
         for beginning, rest in beginnings(text):
             if beginning in self.local:
                 return self.local[beginning] + rest
         return text
 
     def body_and_marker(self, text: str) -> tuple[str, str]:
-        """The body that a text names, and the marker, or an empty text for the body alone."""
+        """Return the body and the marker that a text names; the marker is empty for the body alone."""
         text = self.full(text)
         for beginning, rest in beginnings(text):
             if beginning in self.bodies or beginning == GROUND:
@@ -67,7 +67,7 @@ class Names:
 
 
 def beginnings(text: str) -> Iterator[tuple[str, str]]:
-    """Where a text with dots may be cut, its longest beginning first: ``a.b`` and nothing, ``a`` and ``.b``."""
+    """Yield the divisions of a dotted text, longest beginning first: ``a.b`` and nothing, ``a`` and ``.b``."""
     yield text, ""
     place = text.rfind(".")
     while place > 0:
@@ -76,11 +76,11 @@ def beginnings(text: str) -> Iterator[tuple[str, str]]:
 
 
 def names_of(info: Any) -> Names:
-    """The names that a validation was given; none where it was given none."""
+    """Return the names in a validation context; none by default."""
     found = (info.context or {}).get("names")
     return found if isinstance(found, Names) else Names()
 
 
 def owner_of(channel: str) -> str:
-    """The body or element of a channel: ``front.left.arm`` of ``front.left.arm.x``; a name without dots itself."""
+    """Return the owner of a channel: ``front.left.arm`` of ``front.left.arm.x``; a name without dots itself."""
     return channel.rpartition(".")[0] or channel

@@ -1,7 +1,7 @@
-"""Options: sections of a part, or of a scene, of which a word chooses one set.
+"""Options of a part or scene: alternative sets of sections, selected by a word.
 
-``options: {compliance: {bushing: {forces: ..}, rigid: {joints: ..}}}`` has the choice ``compliance``, whose words are
-``bushing`` and ``rigid``.  The first word is chosen unless another is named.
+``options: {compliance: {bushing: {forces: ..}, rigid: {joints: ..}}}`` defines the choice ``compliance`` with the words
+``bushing`` and ``rigid``. The first word is the default.
 """
 
 from __future__ import annotations
@@ -16,12 +16,12 @@ OPTIONS, CHOOSE = "options", "choose"
 
 
 def choices_of(found: Mapping[str, Any], where: str) -> dict[str, dict[str, Any]]:
-    """The options of a part or scene: for each choice its words, and the sections that each stands for.
+    """Return the options of a part or scene: for each choice its words with their sections.
 
     Raises
     ------
     InputError
-        When they are no mapping of choices to words to sections.
+        If they are not a mapping of choices to words to sections.
     """
     options = found.get(OPTIONS) or {}
     if not isinstance(options, dict):
@@ -38,20 +38,20 @@ def choices_of(found: Mapping[str, Any], where: str) -> dict[str, dict[str, Any]
 
 
 def with_chosen(found: dict[str, Any], words: Any, where: str) -> dict[str, Any]:
-    """A part or scene with the sections that words choose, and without its options.
+    """Return a part or scene with the chosen sections merged, without its options.
 
     Parameters
     ----------
     found : mapping
     words : mapping of str to str
-        By choice; those of choices that it does not have are for others.
+        Word by choice; unknown choices are ignored.
     where : str
-        The path of its options.
+        Path of its options.
 
     Raises
     ------
     InputError
-        When a word is unknown, or a name stands in what it chooses and elsewhere too.
+        If a word is unknown, or a chosen section defines a name that also exists elsewhere.
     """
     choices = choices_of(found, where)
     merged = {key: value for key, value in found.items() if key != OPTIONS}
@@ -65,12 +65,12 @@ def with_chosen(found: dict[str, Any], words: Any, where: str) -> dict[str, Any]
 
 
 def words_chosen(found: Any, where: str = CHOOSE) -> dict[str, Any]:
-    """What a scene chooses.
+    """Return the choices of a scene.
 
     Raises
     ------
     InputError
-        When it is no mapping of choices to words.
+        If they are not a mapping of choices to words.
     """
     if found is None:
         return {}
@@ -80,12 +80,12 @@ def words_chosen(found: Any, where: str = CHOOSE) -> dict[str, Any]:
 
 
 def refuse_unknown_choices(words: Mapping[str, Any], known: Collection[str]) -> None:
-    """Refuse a choice that neither the scene nor any of its parts has: misspelt, it would change nothing.
+    """Refuse choices that neither the scene nor any of its parts has; a misspelt choice would have no effect.
 
     Raises
     ------
     InputError
-        Names the choice and those that there are.
+        The message lists the known choices.
     """
     for choice in words:
         if choice not in known:

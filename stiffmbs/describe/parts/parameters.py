@@ -1,4 +1,4 @@
-"""The parameters of an instance of a part."""
+"""Parameters of an instance of a part."""
 
 from __future__ import annotations
 
@@ -15,23 +15,23 @@ from .use import Use
 
 
 def parameters_of(use: Use, where: str, found: Any, outside: Mapping[str, Quantity]) -> dict[str, Quantity]:
-    """The parameters of an instance: those outside, its own, and in their places those that its use gives.
+    """Return the parameters of an instance: outer ones, its own, and the values set by its use.
 
-    A plain number takes the SI unit of what it replaces.
+    A plain number takes the SI unit of the value that it replaces.
 
     Parameters
     ----------
     use : Use
     where : str
-        Its path in the scene.
+        Path of the use in the scene.
     found : mapping of str to number or text
-        Those of the definition.
+        Parameters of the definition.
     outside : mapping of str to Quantity
 
     Raises
     ------
     InputError
-        When one is unknown, has the name of something else, or is no number.
+        If one is unknown, has a reserved name, or is not a number.
     """
     own = {} if found is None else found
     if not isinstance(own, dict):
@@ -47,7 +47,7 @@ def parameters_of(use: Use, where: str, found: Any, outside: Mapping[str, Quanti
     for name, value in own.items():
         place = f"parts.{use.part}."
         try:
-            read_parameters({name: 0.0})  # whether it may be a parameter's name
+            read_parameters({name: 0.0})  # validate the name
             given, names = (use.parameters[name], outside) if name in use.parameters else (value, inside)
             place = f"{where}." if name in use.parameters else place
             value_here = _quantity(given, names)
@@ -66,7 +66,7 @@ def _quantity(given: Any, names: Mapping[str, Quantity]) -> Quantity:
 
 
 def _dimension(given: Any, names: Mapping[str, Quantity]) -> Any:
-    """The dimension of what is replaced; none where it cannot be read."""
+    """Return the dimension of the replaced value; None if it cannot be read."""
     try:
         return _quantity(given, names).dimension
     except FormulaError:

@@ -1,4 +1,4 @@
-"""A scene with its parts in their places: bodies, joints, forces and requests by full names."""
+"""Placement of the instances of parts in a scene, with full names."""
 
 from __future__ import annotations
 
@@ -36,23 +36,23 @@ SECTIONS = ("markers", *NAMED)
 def with_parts(
     raw: dict[str, Any], scene: type[Any], context: dict[str, Any], changes: Sequence[tuple[str, Any]]
 ) -> tuple[dict[str, Any], dict[str, Any]]:
-    """A scene with what its ``use`` stands for, and the context in which it is validated.
+    """Return a scene with its ``use`` expanded, and its validation context.
 
     Parameters
     ----------
     raw : mapping
-        The scene as it is written, repeated entries written out.
+        Scene as written, with repeated entries expanded.
     scene : type of Scene
-        Of the plane or of space.
+        For the plane or space.
     context : mapping
-        Of validation: parameters, tables, variables.
+        Validation context: parameters, tables, variables.
     changes : sequence of (path, value)
-        What is set in instances of parts.
+        Values set in instances of parts.
 
     Raises
     ------
     InputError
-        When a part cannot be read or placed.
+        If a part cannot be read or placed.
     """
     raw = {key: dict(value) if isinstance(value, dict) else value for key, value in raw.items()}
     parts, used = raw.pop("parts", None), raw.pop("use", None)
@@ -97,7 +97,7 @@ def _keys(found: Any) -> list[str]:
 
 
 def _frame_kind(scene: type[Any]) -> tuple[type[Any], type[Any]]:
-    """What a use is, and a part's frame, in a family of scenes."""
+    """Return the classes of a use and of a part's frame for planar or spatial scenes."""
     if scene.model_fields["dimensions"].default == 3:
         from ..spatial.part_frame import SpatialFrame, SpatialUse
 
@@ -110,13 +110,13 @@ def _frame_kind(scene: type[Any]) -> tuple[type[Any], type[Any]]:
 
 @functools.cache
 def _sections(scene: Any) -> Any:
-    """The sections of a part, validated as a scene's are."""
+    """Return the class that validates the sections of a part like those of a scene."""
     fields: dict[str, Any] = {name: (scene.model_fields[name].annotation, {}) for name in SECTIONS}
     return create_model("Part", __base__=Described, **fields)
 
 
 class _Values(Mapping[str, ast.expr]):
-    """Parameters as the numbers with units that stand in their places, each read when a formula has it."""
+    """Parameters as numbers with units, parsed on access."""
 
     def __init__(self, found: Mapping[str, Quantity]) -> None:
         self._found = found
@@ -137,10 +137,10 @@ class _Placed:
     scene: Any
     context: dict[str, Any]
     mounts: dict[str, tuple[str, Any]] = field(default_factory=dict)
-    """The body that each instance is placed on, and its frame in that body's axes."""
+    """Body that each instance is mounted on, and its frame in that body's axes."""
 
     def add(self, instance: Instance) -> None:
-        """Put all entries of an instance into the scene."""
+        """Add all entries of an instance to the scene."""
         on, frame = self._mount(instance)
         self.mounts[instance.name] = on, frame
         in_ground = self._pose(on).then(frame)
@@ -176,7 +176,7 @@ class _Placed:
             raise InputError(f"{instance.where}.{sentence(error)} (in {instance.name})") from None
 
     def _mount(self, instance: Instance) -> tuple[str, Any]:
-        """The body that an instance is placed on, and its frame in that body's axes."""
+        """Return the body that an instance is mounted on, and its frame in that body's axes."""
         own, outer = _frame_kind(self.scene)[1].of_use(instance.use), instance.outer
         on = instance.use.on
         if outer is None:
@@ -198,7 +198,7 @@ class _Placed:
         return body, frame.mirror().then(own)
 
     def _further_mounts(self, instance: Instance, in_ground: Any) -> dict[str, tuple[str, Any]]:
-        """The other bodies that an instance connects to, by what it calls them, and the part's frame in their axes."""
+        """Return the further bodies that an instance connects to by local name, and the part's frame in their axes."""
         inside = Names(local=instance.outer.local()) if instance.outer else Names()
         found = {}
         for name, given in instance.mounts.items():
@@ -212,7 +212,6 @@ class _Placed:
         return found
 
     def _named(self, given: str, instance: Instance, inside: Names) -> str:
-        """The full name of the body that a use gives for a further mount."""
         if given == MOUNT:
             return self.mounts[instance.name][0]
         if instance.outer and given in instance.outer.mounts:
@@ -225,7 +224,6 @@ class _Placed:
         return frame() if on == GROUND else frame.of_body(self._body(on))
 
     def _body(self, name: str) -> Any:
-        """A body that something is placed on, validated."""
         try:
             found = _sections(self.scene).model_validate(
                 {"bodies": {name: self.raw["bodies"][name]}}, context=self.context
@@ -249,7 +247,7 @@ class _Placed:
         entries[full] = value
 
     def _entries(self, section: str) -> dict[str, Any]:
-        """What the scene has in a section, to which parts add."""
+        """Return a section of the scene, to which parts add entries."""
         if self.raw.get(section) is None:
             self.raw[section] = {}
         entries: Any = self.raw[section]
@@ -259,7 +257,7 @@ class _Placed:
 
 
 def _on_mounts(element: Element, name: str, mounts: Mapping[str, tuple[str, Any]]) -> Element:
-    """An element of a part with its markers on what it calls its mounts on the bodies that these are."""
+    """Return an element of a part with its markers on local mounts moved to the mounted bodies."""
     moved = {}
     for field_name in type(element).model_fields:
         value = getattr(element, field_name)

@@ -1,4 +1,4 @@
-"""Where a scene says that a part is placed, and what is set in parts from outside."""
+"""Parts placed in the section ``parts``, and changes of instances from outside."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from .definitions import NAMED
 def placed_in_use(
     found: dict[str, Any], changes: Sequence[tuple[str, Any]]
 ) -> tuple[dict[str, Any], Sequence[tuple[str, Any]]]:
-    """A scene, and changes of it, with the entries of ``parts`` that place a part under ``use``.
+    """Return a scene and its changes, with the entries of ``parts`` that place a part moved to ``use``.
 
-    ``parts: {front: {use: axle}}`` says the same as ``use: {front: {part: axle}}``.
+    ``parts: {front: {use: axle}}`` is equivalent to ``use: {front: {part: axle}}``.
 
     Raises
     ------
     InputError
-        When a name stands in both.
+        If a name occurs in both sections.
     """
     parts = found.get("parts")
     entries = parts if isinstance(parts, dict) else {}
@@ -44,7 +44,7 @@ def placed_in_use(
 
 
 def as_written(message: str, parts: Any) -> str:
-    """A message about an entry of ``use`` with the path at which the scene's file has it: ``parts.left`` for ``use.left``."""
+    """Return a message with the path of an entry of ``use`` as in the file: ``parts.left`` for ``use.left``."""
     section, *names = message.partition(":")[0].split(".")
     placed = section == "use" and names and isinstance(parts, dict) and _is_placed(parts.get(names[0]))
     return f"parts{message.removeprefix('use')}" if placed else message
@@ -55,7 +55,7 @@ def _is_placed(entry: Any) -> bool:
 
 
 def set_in_instances(path: str, used: Any) -> bool:
-    """Whether a path leads to an entry of an instance, which is not written in the scene: ``bodies.front.left.arm.mass``."""
+    """Return True for the path of an entry of an instance of a part: ``bodies.front.left.arm.mass``."""
     section, _, rest = path.partition(".")
     if section not in (*NAMED, "markers") or not isinstance(used, dict):
         return False
@@ -63,5 +63,5 @@ def set_in_instances(path: str, used: Any) -> bool:
 
 
 def _any_number(name: str) -> str:
-    """A name of a repeated entry as a regular expression."""
+    """Return a regular expression for the name of a repeated entry."""
     return ".+?".join(re.escape(part) for part in re.split(r"\{[^{}]*\}", name))

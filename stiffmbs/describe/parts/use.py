@@ -1,4 +1,4 @@
-"""An entry of ``use``: where a part stands in a scene, and with which parameters."""
+"""Entries of ``use``: placement and parameters of a part."""
 
 from __future__ import annotations
 
@@ -11,18 +11,19 @@ from ..units import si
 
 
 class Use(Described):
-    """A part placed in a scene, or in another part.
+    """Part placed in a scene or in another part.
 
     Parameters
     ----------
     part : str
-        Which of ``parts``.
+        Name in ``parts``.
     on : str, optional
-        The body that it is placed on, its ``mount``: ground, and within a part that part's own mount, unless given.
+        Body that it is mounted on, its ``mount``. The default is ground, and within a part that part's mount.
     parameters : mapping
-        Values of the part's parameters that differ from its own; formulas of the parameters where the entry stands.
+        Values of the part's parameters that differ from its defaults; formulas use the parameters of the enclosing
+        scene or part.
     mounts : mapping
-        Bodies in place of those that the part connects to besides its mount.
+        Bodies of further mounts, in place of the defaults.
     """
 
     part: str = Field(description="which of the parts")
@@ -34,14 +35,14 @@ class Use(Described):
 
 
 class PlanarUse(Use):
-    """A part placed in the plane.
+    """Part placed in the plane.
 
     Parameters
     ----------
     position, angle
-        Of the part's frame in the axes of the body that it is placed on, from that body's centre of mass, m, rad.
+        Position (m) and angle (rad) of the part's frame in the axes of its mount, from that body's centre of mass.
     mirror : str, optional
-        The coordinate of the part's frame, x or y, that changes its sign.
+        Coordinate of the part's frame, x or y, that changes its sign.
     """
 
     position: tuple[si.Length, si.Length] = Field((0.0, 0.0), description="of the part's frame on its mount, m")

@@ -1,7 +1,7 @@
-"""Vectors among the parameters of a part, such as its hard points: ``lower_ball: [0.1 m, 0.7 m, -0.1 m]``.
+"""Vector parameters of a part, such as hard points: ``lower_ball: [0.1 m, 0.7 m, -0.1 m]``.
 
-A vector stands for its components, the parameters ``lower_ball_x``, ``lower_ball_y`` and ``lower_ball_z``.  A text that is a
-formula of vectors, ``(lower_front + lower_rear)/2``, stands for the list of its components.
+A vector defines its components, the parameters ``lower_ball_x``, ``lower_ball_y`` and ``lower_ball_z``. A formula of
+vectors, ``(lower_front + lower_rear)/2``, is replaced by the list of its components.
 """
 
 from __future__ import annotations
@@ -17,16 +17,16 @@ from ..formula.text import FormulaError, parse
 
 COMPONENTS = "xyz"
 Vectors = Mapping[str, int]
-"""The names of vectors, and how many components each has."""
+"""Number of components of vectors by name."""
 
 
 def vectors_of(parameters: Any, where: str) -> dict[str, int]:
-    """The vectors among parameters: lists of two or three numbers, and formulas of vectors above them.
+    """Return the vectors among parameters: lists of two or three numbers, and formulas of preceding vectors.
 
     Raises
     ------
     InputError
-        Where a formula multiplies vectors, or adds a number to one.
+        If a formula multiplies vectors, or adds a number to one.
     """
     vectors: dict[str, int] = {}
     for name, value in parameters.items() if isinstance(parameters, dict) else ():
@@ -40,12 +40,12 @@ def vectors_of(parameters: Any, where: str) -> dict[str, int]:
 
 
 def parameters_in_components(parameters: Any, vectors: Vectors, where: str) -> Any:
-    """Parameters with the components of vectors in place of these.
+    """Return parameters with vectors replaced by their components.
 
     Raises
     ------
     InputError
-        Where a vector is given something else, or a component stands there too.
+        If a vector has another value, or a component is also defined directly.
     """
     if not isinstance(parameters, dict):
         return parameters
@@ -66,12 +66,12 @@ def parameters_in_components(parameters: Any, vectors: Vectors, where: str) -> A
 
 
 def in_components(found: Any, vectors: Vectors) -> Any:
-    """What stands in a part, each text that is a formula of vectors as the list of its components.
+    """Return content of a part with each formula of vectors replaced by the list of its components.
 
     Raises
     ------
     FormulaError
-        Where a formula multiplies vectors, or adds a number to one.
+        If a formula multiplies vectors, or adds a number to one.
     """
     if not vectors:
         return found
@@ -97,12 +97,12 @@ def _components(text: str, vectors: Vectors) -> Any:
 
 
 def _any_of(names: Vectors) -> re.Pattern[str]:
-    """Any of the names where it stands alone: no part of a longer name, and no function."""
+    """Return a pattern of the names as whole words that are not functions."""
     return re.compile(rf"(?<![\w.])(?:{'|'.join(map(re.escape, names))})(?![\w.]|\s*\()")
 
 
 class _Ranks:
-    """Whether a formula is a vector (True) or a number (False)."""
+    """Classification of a formula as a vector (True) or a number (False)."""
 
     def __init__(self, vectors: set[str]) -> None:
         self.vectors = vectors

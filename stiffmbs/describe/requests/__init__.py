@@ -1,1 +1,1 @@
-"""Requests: formulas that are reported, evaluated after the run from its channels."""
+"""Requests: reported formulas, evaluated after the run from its channels."""

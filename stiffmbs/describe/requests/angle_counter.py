@@ -1,4 +1,4 @@
-"""A counter of an angle's whole turns, for requests."""
+"""Counter of the full turns of an angle, for requests."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from ..formula.field import OfPosition
 from ..parts.names import Names
 
 COUNTERS = 256
-"""Counters that are kept: a run asks for those of its model several times."""
+"""Size of the cache of counters; a run requires those of its model several times."""
 
 
 class AngleCounter(Element):
-    """Has the integration count the turns of an angle in space, ``az(i, j)``, that a request asks for; made by the model."""
+    """Request for the integration to count the turns of a spatial angle, ``az(i, j)``; created by the model."""
 
     kind: ClassVar[str] = ""
 
@@ -23,5 +23,5 @@ class AngleCounter(Element):
 
 @lru_cache(maxsize=COUNTERS)
 def counter_of(angle: str, bodies: frozenset[str]) -> AngleCounter:
-    """The counter of an angle between markers of these bodies, by the angle's text."""
+    """Return the counter of an angle between markers of these bodies, by the angle's text."""
     return AngleCounter.model_validate({"counted": angle}, context={"names": Names(bodies)})

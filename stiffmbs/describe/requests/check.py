@@ -1,4 +1,4 @@
-"""What a model has to have for its requests."""
+"""Validation of requests against a model."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .output import Output, channel
 
 
 def by_channel(requests: Mapping[str, Output | Mapping[str, Output]]) -> Iterator[tuple[str, Output]]:
-    """Requests by channel: a name, or ``name.component``."""
+    """Yield requests by channel: a name, or ``name.component``."""
     for name, found in requests.items():
         if isinstance(found, Output):
             yield name, found
@@ -25,7 +25,7 @@ def by_channel(requests: Mapping[str, Output | Mapping[str, Output]]) -> Iterato
 
 
 class ByChannel(Mapping[str, Output]):
-    """The same as a mapping that looks at a request when it is asked for."""
+    """Mapping of requests by channel, evaluated on access."""
 
     def __init__(self, requests: Mapping[str, Output | Mapping[str, Output]]) -> None:
         self._requests = requests
@@ -47,7 +47,7 @@ class ByChannel(Mapping[str, Output]):
 
 
 def ends(element: str, model: Any) -> tuple[Any, Any]:
-    """The markers i and j of a joint or force, of a drive those of the joint that it drives; None where it has none."""
+    """Return the markers i and j of a joint or force, or None; for a drive those of its joint."""
     acting: Any = ChainMap(model.joints, model.forces)[element]
     for _, joint in acting.parts(JointName):
         acting = model.joints[joint.joint]
@@ -61,11 +61,11 @@ def check_output(where: str, output: Output, model: Any, names: OutputNames, oth
     Parameters
     ----------
     where : str
-        In the scene, for messages.
+        Path in the scene, for messages.
     output : Output
     model : ModelData or ModelBuilder
     names : OutputNames
-        Of the model's family.
+        Names of the model's family.
     others : mapping of str to Output
         All requests, by channel.
     """
@@ -101,7 +101,7 @@ def check_output(where: str, output: Output, model: Any, names: OutputNames, oth
 
 
 def channels_of_states(model: Any) -> set[str]:
-    """What is reported of the model's states: their values and rates."""
+    """Return the channels of the model's states: values, outputs and rates."""
     values = {full: value for name, state in model.states.items() for full, value in state.values(name)}
     outputs = {full for name, state in model.states.items() for full, _ in state.outputs(name)} | set(model.inputs)
     rates = {f"{name}.rate" for name, value in values.items() if not value.algebraic}
@@ -109,7 +109,7 @@ def channels_of_states(model: Any) -> set[str]:
 
 
 def _of(owner: str, model: Any, names: OutputNames) -> tuple[str, ...]:
-    """The channels of a body, of a joint or force, or of the whole."""
+    """Return the channels of a body, of a joint or force, or of the whole model."""
     if owner in model.bodies:
         return names.of_bodies
     if owner in model.forces:
@@ -119,7 +119,6 @@ def _of(owner: str, model: Any, names: OutputNames) -> tuple[str, ...]:
 
 
 def _is_known(owner: str, acting: Mapping[str, Any], model: Any, others: Mapping[str, Output]) -> bool:
-    """Whether something has channels whose names begin with a name."""
     return (
         owner in acting
         or owner in model.bodies
@@ -143,7 +142,7 @@ def _check_request(where: str, name: str, output: Output, others: Mapping[str, O
 
 
 def _check_meanings(where: str, output: Output, others: Mapping[str, Output]) -> None:
-    """Refuse a name that a request has, and something else too."""
+    """Refuse the name of a request that is also a parameter, unit or constant."""
     for used in output.quantities:
         name = used.removeprefix(f"{UNIT}.")
         if name in others:

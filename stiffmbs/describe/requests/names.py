@@ -1,7 +1,7 @@
-"""What the formulas of requests may name: in the plane, and in space.
+"""Names available in requests, in the plane and in space.
 
-Besides the measures of other formulas (`stiffmbs.describe.formula.names`) requests know accelerations and angles, what joints
-and forces do, and every channel.
+In addition to the measures of other formulas (`stiffmbs.describe.formula.names`), requests can use accelerations,
+angles, components of joints and forces, and every channel.
 """
 
 from __future__ import annotations
@@ -11,24 +11,24 @@ from dataclasses import dataclass
 from ..formula.names import PLANE, SPACE, FormulaNames
 
 OF_RUN = {"energy": ("kinetic", "potential", "total"), "constraint": ("position", "velocity")}
-"""The channels of the whole."""
+"""Channels of the whole model."""
 
 
 @dataclass(frozen=True)
 class OutputNames:
-    """The names of one family of models.
+    """Names of one family of models.
 
     Attributes
     ----------
     measures : tuple of str
-        Between two markers, as in Adams.
+        Measures between two markers, as in Adams.
     along_axes : tuple of str
-        The measures that may have a third marker, whose axes they are taken along.
+        Measures that accept a third marker, along whose axes they are resolved.
     actions : tuple of str
-        Force and torque of a joint or force on its first body, or on its second (``hinge.j``), along ground axes or those of
-        a marker: ``fx(hinge)``, ``tz(hinge.j, bar.end)``; fm and tm are their sizes.
+        Force and torque of a joint or force on its first body, or on its second (``hinge.j``), along ground axes or
+        those of a marker: ``fx(hinge)``, ``tz(hinge.j, bar.end)``; fm and tm are magnitudes.
     of_bodies, of_elements : tuples of str
-        The channels of a body, and of a joint or force: ``bar.ax``, ``hinge.fx``.
+        Channels of a body, and of a joint or force: ``bar.ax``, ``hinge.fx``.
     """
 
     measures: tuple[str, ...]
@@ -65,4 +65,4 @@ OF_SPACE = _names(
     "ax ay az wdx wdy wdz",
     "fx fy fz tx ty tz",
 )
-"""psi, theta and phi are body-fixed turns about z, x and z."""
+"""psi, theta and phi are body-fixed rotations about z, x and z."""

@@ -1,4 +1,4 @@
-"""Requests that name other requests: the order in which they are evaluated, their dimensions and units."""
+"""Dependences between requests: order of evaluation, dimensions and units."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ from .names import OF_RUN
 from .output import Output, Term, channel, placeholder
 
 ALIKE: dict[Rule, slice] = {of_first: slice(1), alike: slice(None), of_step: slice(2, 5, 2), of_branch: slice(1, 4)}
-"""The arguments that a function's value is in the unit of, by the rule for its dimension."""
+"""Arguments whose unit the value of a function has, by the rule for its dimension."""
 ANGLES = ("asin", "acos", "atan", "atan2")
-"""Functions whose value is in rad."""
+"""Functions with values in rad."""
 _ANYTHING = FormulaOf(coordinates=True, velocities=True)
 _ENERGIES = {f"energy.{name}": measured_in("torque") for name in OF_RUN["energy"]}
 
 
 def in_order(outputs: Mapping[str, Output]) -> tuple[str, ...]:
-    """The channels of requests, each behind those that it names.
+    """Return the channels of requests in order of dependence.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ def in_order(outputs: Mapping[str, Output]) -> tuple[str, ...]:
     try:
         return tuple(TopologicalSorter(named).static_order())
     except CycleError as error:
-        circle = error.args[1][::-1]  # each names the one behind it
+        circle = error.args[1][::-1]  # each depends on the next
         raise ValueError(
             f"requests.{circle[0]}: found a request that depends on itself ({' -> '.join(circle)}), expected one that does not"
         ) from None
@@ -51,7 +51,7 @@ def _channel(parts: tuple[str, str]) -> str:
 
 
 def with_named(channels: Iterable[str], requests: Mapping[str, Output]) -> dict[str, Output]:
-    """Some requests, by channel, and those that they name, themselves or through others."""
+    """Return some requests by channel, with those that they depend on."""
     found: dict[str, Output] = {}
     ahead = list(channels)
     while ahead:
@@ -63,12 +63,12 @@ def with_named(channels: Iterable[str], requests: Mapping[str, Output]) -> dict[
 
 
 def dimensions(outputs: Mapping[str, Output]) -> dict[str, Known]:
-    """What is known of the dimension of each request, by channel.
+    """Return the known dimension of each request, by channel.
 
     Raises
     ------
     ValueError
-        For requests that depend on themselves, and for one in which a unit stands and dimensions do not fit.
+        For circular requests, and for a request that contains a unit and inconsistent dimensions.
     """
     found: dict[str, Known] = {}
     for name in in_order(outputs):
@@ -80,7 +80,7 @@ def dimensions(outputs: Mapping[str, Output]) -> dict[str, Known]:
 
 
 def dimension(output: Output, requests: Mapping[str, Known]) -> Known:
-    """The dimension of one formula, from those of the requests that it names.
+    """Return the dimension of a formula, given those of the requests that it names.
 
     Raises
     ------
@@ -91,7 +91,7 @@ def dimension(output: Output, requests: Mapping[str, Known]) -> Known:
 
 
 def reading(outputs: Mapping[str, Output], channels: Container[str], measured_so: Callable[[Term], bool]) -> set[str]:
-    """The requests that read some channels or terms, themselves or through others."""
+    """Return the requests that depend on some channels or terms."""
     found: set[str] = set()
     for name in in_order(outputs):
         read = {channel(*parts) for parts in outputs[name].channels()}
@@ -101,7 +101,7 @@ def reading(outputs: Mapping[str, Output], channels: Container[str], measured_so
 
 
 def units(outputs: Mapping[str, Output]) -> dict[str, str]:
-    """The SI unit of each request, by channel; empty for plain numbers, and where nothing tells it."""
+    """Return the SI unit of each request, by channel; empty for plain numbers and unknown units."""
     known, found = dimensions(outputs), dict.fromkeys(_ENERGIES, "J")
     for name in in_order(outputs):
         output = outputs[name]
@@ -111,7 +111,7 @@ def units(outputs: Mapping[str, Output]) -> dict[str, str]:
 
 
 def _unit(tree: ast.expr, known: Known, named: Mapping[str, str]) -> str:
-    """The unit of a formula: that of its parts where sums and the like keep it, as rad, else that of its dimension."""
+    """Return the unit of a formula: that of its parts if it is preserved, such as rad, else that of its dimension."""
     if known.exponents is None:
         return ""
 
@@ -125,7 +125,7 @@ def _unit(tree: ast.expr, known: Known, named: Mapping[str, str]) -> str:
 
 
 def _kept(tree: ast.expr, of_name: Callable[[str], str]) -> Iterator[str]:
-    """The units of the parts that a formula has the unit of."""
+    """Yield the units of the parts that determine a formula's unit."""
     match tree:
         case ast.Name(name):
             yield of_name(name)

@@ -1,7 +1,7 @@
-"""Requests: formulas that are only reported, of everything that a run knows (Adams: REQUEST).
+"""Requests: formulas that are only reported (Adams: REQUEST).
 
-They are evaluated after the run, from its channels, so that none of them is compiled.  How they are read is in
-`stiffmbs.describe.requests.output_field`, what they may name in `stiffmbs.describe.requests.names`.
+They are evaluated after the run, from its channels, so they are not compiled. `stiffmbs.describe.requests.output_field`
+reads them; `stiffmbs.describe.requests.names` contains the available names.
 """
 
 from __future__ import annotations
@@ -18,23 +18,23 @@ from ..table import Table
 from ..units.units import Quantity
 
 CONTINUOUS_ANGLES = ("ax", "ay", "az")
-"""The angles that count whole turns."""
+"""Angles with full revolutions."""
 
 
 @dataclass(frozen=True)
 class Term:
-    """A measure or an action in a formula.
+    """Measure or action in a formula.
 
     Attributes
     ----------
     function : str
-        One of the measures or actions of `stiffmbs.describe.requests.names.OutputNames`.
+        Measure or action of `stiffmbs.describe.requests.names.OutputNames`.
     element : str
-        Of an action: the joint or force.
+        Joint or force of an action.
     on_second : bool
-        Whether what it does to its second body is meant.
+        True for the action on the second body.
     markers : tuple of MarkerReference
-        Of a measure i and j, and the marker whose axes it is along, if any; of an action that marker alone, if any.
+        For a measure i and j, and optionally the marker of the axes; for an action at most the latter.
     """
 
     function: str
@@ -43,35 +43,35 @@ class Term:
     markers: tuple[MarkerReference, ...]
 
     def __str__(self) -> str:
-        """As in a formula: ``az(bar.end, ground)``."""
+        """Return the term as in a formula: ``az(bar.end, ground)``."""
         element = [f"{self.element}.j" if self.on_second else self.element] if self.element else []
         return f"{self.function}({', '.join([*element, *(marker.label for marker in self.markers)])})"
 
 
 def placeholder(k: int) -> str:
-    """The name in a formula's tree that stands for its k-th term: none that could be written, as it has a space in it."""
+    """Return the name of the k-th term in a formula's tree; its space prevents conflicts with names in scenes."""
     return f"term {k}"
 
 
 @dataclass(frozen=True, eq=False)
 class Output:
-    """A checked formula of a request.
+    """Checked formula of a request.
 
     Attributes
     ----------
     text : str
-        As written.
+        Formula in the scene.
     tree : ast.expr
-        Its tree with the names of `placeholder` in place of `terms`.
+        Its tree, with the names of `placeholder` in place of `terms`.
     terms : tuple of Term
     quantities : mapping of str to Quantity
-        The scene's parameters, units and constants that it uses.
+        Parameters, units and constants that it uses.
     tables : mapping of str to Table
-        The scene's tables that it calls.
+        Tables of the scene that it calls.
     parameters : mapping of str to Quantity
-        The scene's parameters among `quantities`.
+        Parameters of the scene among `quantities`.
     expanded : str
-        The text with the scene's variables in their places; empty where the scene has none.
+        Text with the scene's variables substituted; empty if the scene has none.
     """
 
     text: str
@@ -83,12 +83,12 @@ class Output:
     expanded: str = ""
 
     def written_tree(self) -> ast.expr:
-        """Its tree with the terms in their places."""
+        """Return its tree with the placeholders replaced by the terms."""
         terms = {placeholder(k): str(term) for k, term in enumerate(self.terms)}
         return _InPlace(terms).visit(copy.deepcopy(self.tree))  # type: ignore[no-any-return]
 
     def channels(self) -> Iterator[tuple[str, str]]:
-        """The channels that it reads, as (owner, component); other requests without components as (owner, "")."""
+        """Yield the channels that it reads, as (owner, component); requests without components as (owner, "")."""
         places = {placeholder(k) for k in range(len(self.terms))}
         owners = {id(node.value) for node in ast.walk(self.tree) if isinstance(node, ast.Attribute)}
         called = {id(node.func) for node in ast.walk(self.tree) if isinstance(node, ast.Call)}
@@ -116,8 +116,6 @@ class Output:
 
 
 class _InPlace(ast.NodeTransformer):
-    """Puts terms in the places of their names."""
-
     def __init__(self, terms: Mapping[str, str]) -> None:
         self._terms = terms
 
@@ -126,5 +124,5 @@ class _InPlace(ast.NodeTransformer):
 
 
 def channel(owner: str, component: str) -> str:
-    """The name of a channel."""
+    """Return the name of a channel."""
     return f"{owner}.{component}" if component else owner

@@ -1,4 +1,4 @@
-"""The requests of a model as a field: text to checked formulas."""
+"""Fields for requests: from text to checked formulas."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ from .output import Output, Term, placeholder
 
 
 class _Terms(ast.NodeTransformer):
-    """Takes measures and actions out of a tree."""
+    """Replace measures and actions in a tree by placeholders, and collect them."""
 
     def __init__(self, names: OutputNames) -> None:
         self._names = names
         self.found: list[Term] = []
 
     def visit_Call(self, node: ast.Call) -> ast.AST:
-        """A placeholder for a measure or an action; other functions stay."""
+        """Return a placeholder for a measure or an action; other functions stay."""
         name = node.func.id  # type: ignore[attr-defined]
         if name in self._names.measures:
             term = self._measure(name, node)
@@ -71,7 +71,7 @@ def _marker(node: ast.expr) -> MarkerReference:
 
 
 def _element_and_end(node: ast.expr) -> tuple[str, str]:
-    """A joint or force, and which of its ends is meant, if any."""
+    """Return a joint or force, and which of its ends is meant, if any."""
     owner, name = _owner_and_name(node)
     return (f"{owner}.{name}", "") if name not in ("", "i", "j") else (owner, name)
 
@@ -87,12 +87,12 @@ def _owner_and_name(node: ast.expr) -> tuple[str, str]:
 
 @dataclass(frozen=True)
 class OutputField:
-    """Marks a field as the formula of a request in a family of models."""
+    """Marker of a field for the formula of a request in a family of models."""
 
     names: OutputNames
 
     def read(self, found: Any, context: Mapping[str, Any]) -> Any:
-        """The checked formula of what stands in the scene, with its parameters and tables.
+        """Return the checked formula of an entry, with its parameters and tables.
 
         Raises
         ------
@@ -136,7 +136,7 @@ class OutputField:
 
 
 def _others(tree: ast.expr, parameters: Mapping[str, Quantity]) -> Iterator[str]:
-    """The names that stand alone and are neither parameters, units, constants nor time: terms, and other requests."""
+    """Yield the undotted names that are not parameters, units, constants or time: terms and other requests."""
     for node in reading_order(tree):
         match node:
             case ast.Name(name) if name != TIME and not any(name in known for known in (parameters, UNITS, CONSTANTS)):
@@ -147,10 +147,10 @@ _NAMES = FormulaOf(coordinates=True, velocities=True)
 
 
 class RequestField(OutputField):
-    """Marks a field as the formula of a request, or formulas by the names of their components."""
+    """Marker of a field for the formula of a request, or for several by component."""
 
     def read(self, found: Any, context: Mapping[str, Any]) -> Any:
-        """One formula, or several by name."""
+        """Return one formula, or several by name."""
         if not isinstance(found, Mapping):
             return super().read(found, context)
         if not found:
@@ -171,4 +171,4 @@ class RequestField(OutputField):
 
 PlanarRequest = Annotated[Output | dict[str, Output], RequestField(OF_PLANE)]
 SpatialRequest = Annotated[Output | dict[str, Output], RequestField(OF_SPACE)]
-"""A formula of anything that a run knows, or several by name."""
+"""Formula for a request, or several by name."""

@@ -1,4 +1,4 @@
-"""A bump in a road."""
+"""Cosine bump in a road."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class CosineBump(Road):
-    """A level road with one bump: crest (1 - cos(2 pi (x - start)/length))/2."""
+    """Level road with one bump: crest (1 - cos(2 pi (x - start)/length))/2."""
 
     kind: ClassVar[str] = "cosine_bump"
 
@@ -33,7 +33,7 @@ class CosineBump(Road):
         return self.start, self.start + self.length
 
     def profile_heights(self, x: np.ndarray) -> np.ndarray:
-        """The heights, m, at places x, m."""
+        """Return the heights, m, at positions x, m."""
         from numpy import cos, pi
 
         return self.crest * (1 - cos(2 * pi * ramp_at(x, self.start, self.length))) / 2

@@ -1,4 +1,4 @@
-"""A road by a curved regular grid."""
+"""Road by a curved regular grid (OpenCRG)."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ if TYPE_CHECKING:
     import numpy as np
 
 MOST_SECTIONS, MOST_HEIGHTS = 32, 400_000
-"""Long sections, and heights on all of them, that the equations may have."""
+"""Largest number of long sections, and of heights on all of them, in the equations."""
 STRAIGHT = 1e-9
-"""m, up to which a reference line may depart from a straight one."""
+"""Largest departure of a straight reference line from its direction, m."""
 LEVEL = 3
-"""Points before and behind the road that keep it level there."""
+"""Number of points before and after the road that keep it level there."""
 
 
 class _CrgField:
@@ -57,11 +57,11 @@ AnyCrg = Annotated[CrgGrid, _CrgField()]
 
 
 class CrgRoad(Road):
-    """A road by an OpenCRG file (.crg): heights along a straight or curved reference line, with its slope and banking.
+    """Road by an OpenCRG file (.crg): heights along a straight or curved reference line, with slope and banking.
 
-    The height is interpolated by monotone cubics (PCHIP) along each long section, and linearly between two sections; it is constant
-    beyond the road.  If the file has more long sections than `sections`, that number of equally spaced ones is used, and a note
-    says so.  The line may turn by up to 80 deg from its mean direction.
+    The height is interpolated by monotone cubics (PCHIP) along each long section, and linearly between two sections; it
+    is constant beyond the road. If the file has more long sections than `sections`, that number of equally spaced ones
+    is used, and a note reports it. The line may turn by up to 80 deg from its mean direction.
 
     ASAM OpenCRG 1.2, user manual.
     """
@@ -92,14 +92,13 @@ class CrgRoad(Road):
 
     @property
     def _columns(self) -> np.ndarray:
-        """The long sections that are used."""
         import numpy as np
 
         count = len(self.file.v)
         return np.unique(np.round(np.linspace(0, count - 1, min(count, self.sections))).astype(int))
 
     def _at_its_place(self) -> tuple[np.ndarray, np.ndarray, float]:
-        """x and y of the reference line, m, and the level that heights are above, m."""
+        """Return x and y of the reference line, m, and the reference level of heights, m."""
         import numpy as np
 
         x, y = self.file.x, self.file.y
@@ -110,7 +109,7 @@ class CrgRoad(Road):
         return c * x + s * y, c * y - s * x, self.file.level
 
     def _reference_line(self) -> ReferenceLine | None:
-        """The reference line where it is curved."""
+        """Return the reference line if it is curved."""
         import numpy as np
 
         x, y, _ = self._at_its_place()
@@ -121,7 +120,6 @@ class CrgRoad(Road):
         return reference_line(self.file.u, x, y, self.file.v, self.file.path)
 
     def _direction(self) -> tuple[float, float]:
-        """Of the first stretch of the reference line."""
         import math
 
         heading = 0.0 if self.placed == "origin" else self.file.heading
@@ -137,7 +135,7 @@ class CrgRoad(Road):
         return float(self.file.u[0]), float(self.file.u[-1])
 
     def in_equations(self) -> dict[str, Any]:
-        """The tables of its long sections, rolled over by a disc with `filter_radius`, and where its reference line lies."""
+        """Return the tables of its long sections, filtered with `filter_radius`, and its reference line."""
         x, y, level = self._at_its_place()
         columns = self._columns
         tables = tuple(
@@ -155,7 +153,7 @@ class CrgRoad(Road):
 
     @staticmethod
     def place(r: Symbolic, e: Symbolic, x: Any, y: Any) -> tuple[Any, Any]:
-        """u and v of the point."""
+        """Return u and v of the point."""
         if r.guess is not None:
             return nearest(r, e, x, y)
         (c, s), (x0, y0, u0) = r.direction, r.start
@@ -167,7 +165,7 @@ class CrgRoad(Road):
 
 
 def _section(u: np.ndarray, heights: np.ndarray) -> Table:
-    """The heights of a long section, which stay beyond its ends."""
+    """Return the heights of a long section, constant beyond its ends."""
     import numpy as np
 
     beside = (u[1] - u[0]) * np.arange(1, LEVEL + 1)

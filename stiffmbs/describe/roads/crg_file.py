@@ -1,7 +1,7 @@
 """Files of curved regular grids (OpenCRG, .crg): a header in text, then heights as text or as binary numbers.
 
-ASAM OpenCRG 1.2, user manual.  Blocks of the header begin with ``$NAME`` and end with ``$``; a line ``$$$$`` ends the header.
-A record of the data is one cross-section: the channels that ``$KD_DEFINITION`` lists, in their order.
+ASAM OpenCRG 1.2, user manual. Blocks of the header begin with ``$NAME`` and end with ``$``; a line ``$$$$`` ends the
+header. A record of the data is one cross-section: the channels that ``$KD_DEFINITION`` lists, in their order.
 """
 
 from __future__ import annotations
@@ -16,9 +16,9 @@ from ..files.quoted import quoted
 from ..files.requested import Fields
 
 WIDTH = 72
-"""Characters of a line of the header that count."""
+"""Number of significant characters in a header line."""
 REFUSED = {"ROAD_CRG_FILE": "a reference to another file", "ROAD_CRG_MODS": "modifiers"}
-"""Blocks that change what the file says, and what they hold."""
+"""Unsupported blocks that change the meaning of the file, with descriptions."""
 TEXTS = ("CT",)
 """Comment blocks."""
 OF_NO_EFFECT = {f"REFERENCE_LINE_OFFSET_{axis}": 0.0 for axis in ("X", "Y", "Z", "PHI")}
@@ -27,7 +27,7 @@ OF_NO_EFFECT = {f"REFERENCE_LINE_OFFSET_{axis}": 0.0 for axis in ("X", "Y", "Z",
 
 @dataclass(frozen=True)
 class Entry:
-    """A line of a block, without its comment."""
+    """Line of a block, without its comment."""
 
     line: int
     text: str
@@ -69,7 +69,7 @@ def read_header(content: bytes, path: Path) -> CrgHeader:
     Raises
     ------
     InputError
-        When it is none; names the line.
+        If it is not a valid header; the message contains the line.
     """
     source = str(path)
     found, line, end = _blocks(content, source)
@@ -97,7 +97,7 @@ def read_header(content: bytes, path: Path) -> CrgHeader:
 
 
 def _blocks(content: bytes, source: str) -> tuple[dict[str, list[Entry]], int, int]:
-    """The blocks, the last line of the header, and the first byte behind it."""
+    """Return the blocks, the last line of the header, and the offset of the first byte after it."""
     blocks: dict[str, list[Entry]] = {}
     name, at, number = "", 0, 0
     while at < len(content):
@@ -133,7 +133,7 @@ def _numbers(block: list[Entry], source: str) -> Iterator[tuple[str, float]]:
 
 
 def _u(definition: list[Entry], start: tuple[float, float], source: str) -> tuple[float, float]:
-    """Start and increment of the reference line, as ``U: reference line u,m,0.0,0.01`` says where it stands."""
+    """Return start and increment of the reference line, from ``U: reference line u,m,0.0,0.01`` if present."""
     for entry in definition:
         parts = [part.strip() for part in entry.text[2:].split(",")]
         if entry.text.startswith("U:") and parts[:2] == ["reference line u", "m"]:

@@ -1,4 +1,4 @@
-"""Curved regular grids: the reference line in the plane, and the heights beside it."""
+"""Curved regular grids: reference line in the plane, and heights relative to it."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ if TYPE_CHECKING:
     import numpy as np
 
 UNITS = {"phi": "rad", "slope": "m/m", "banking": "m/m"}
-"""Of the channels of the reference line."""
+"""Units of the channels of the reference line."""
 FROM_THE_DATA = (
     "REFERENCE_LINE_END_U", "REFERENCE_LINE_END_X", "REFERENCE_LINE_END_Y", "REFERENCE_LINE_END_Z", "REFERENCE_LINE_END_PHI",
     "REFERENCE_LINE_END_S", "REFERENCE_LINE_END_B", "LONG_SECTION_V_LEFT",
 )  # fmt: skip
 """Numbers of ``$ROAD_CRG`` that are redundant with the data."""
 SAME_HEADING = 1e-3
-"""rad, between a heading that is given and the one from start to end."""
+"""Tolerance of a given heading compared with the direction from start to end, rad."""
 SAME_AT_END = {"S": 1e-3, "B": 1e-3, "Z": 1e-2}
-"""Between slope, banking, and level (m), as the header states them at the end and as they are there."""
+"""Tolerances of slope, banking, and level (m) at the end, between the header and the data."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,13 +67,13 @@ class CrgGrid:
 def read_crg(path: Path) -> CrgGrid:
     """Read an OpenCRG file.
 
-    A record's heading and slope are those of the stretch from the record before to this one, as in OpenCRG's own library.  The
-    banking is that at the record.
+    A record's heading and slope apply to the interval before it, as in OpenCRG's library; its banking applies at the
+    record.
 
     Raises
     ------
     InputError
-        When it cannot be read; names the line.
+        If it cannot be read; the message contains the line.
     """
     import numpy as np
 
@@ -114,7 +114,7 @@ def read_crg(path: Path) -> CrgGrid:
 
 
 def _remarks(header: CrgHeader, path: Path) -> Iterator[str]:
-    """Return one sentence for each field of a file that is not used."""
+    """Yield one sentence for each field of a file that is not used."""
     if header.blocks.get("ROAD_CRG_OPTS"):
         yield f"the options of {path} are not used: the height is constant beyond the road"
     header.numbers.request(*FROM_THE_DATA)
@@ -125,7 +125,7 @@ def _remarks(header: CrgHeader, path: Path) -> Iterator[str]:
 
 
 def _heading(numbers: Mapping[str, float], path: Path) -> float:
-    """Of a straight reference line, rad: as it is given, or from its start to its end where that is."""
+    """Return the heading of a straight reference line, rad: the given one, or the direction from start to end."""
     start, end = ([numbers.get(f"REFERENCE_LINE_{which}_{axis}") for axis in "XY"] for which in ("START", "END"))
     given = numbers.get("REFERENCE_LINE_START_PHI")
     if None in end:
@@ -140,7 +140,7 @@ def _heading(numbers: Mapping[str, float], path: Path) -> float:
 
 
 def _check_end(numbers: Mapping[str, float], found: dict[str, float], path: Path) -> None:
-    """Refuse a header that states another end than slope and banking lead to: heights would be wrong along the whole road."""
+    """Refuse a header whose end contradicts slope and banking; all heights would be wrong."""
     for letter, value in found.items():
         stated = numbers.get(f"REFERENCE_LINE_END_{letter}")
         if stated is not None and not abs(stated - value) <= SAME_AT_END[letter]:
@@ -151,14 +151,14 @@ def _check_end(numbers: Mapping[str, float], found: dict[str, float], path: Path
 
 
 def _summed(steps: np.ndarray) -> np.ndarray:
-    """The sums of all steps but the first, which leads to no record."""
+    """Return the cumulative sums of all steps except the first, which precedes the first record."""
     import numpy as np
 
     return np.concatenate([[0.0], np.cumsum(steps[1:])])
 
 
 def _sorted_channels(header: CrgHeader, path: Path) -> tuple[dict[str, int], list[tuple[int, Entry]]]:
-    """Columns of the reference line's channels, by name, and those of the long sections."""
+    """Return the columns of the reference line's channels by name, and those of the long sections."""
     line: dict[str, int] = {}
     sections: list[tuple[int, Entry]] = []
     for column, entry in enumerate(header.channels):
@@ -177,7 +177,7 @@ def _sorted_channels(header: CrgHeader, path: Path) -> tuple[dict[str, int], lis
 
 
 def _positions(header: CrgHeader, sections: list[tuple[int, Entry]], path: Path) -> np.ndarray:
-    """v of the long sections: each states its own, or they are numbered and equally far apart."""
+    """Return v of the long sections, which are given individually, or equally spaced."""
     import numpy as np
 
     placed = [entry.text.startswith("at v =") for _, entry in sections]

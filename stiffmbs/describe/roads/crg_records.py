@@ -1,4 +1,4 @@
-"""The records of a file of a curved regular grid: text of fixed width, or binary numbers, most significant byte first."""
+"""Records of an OpenCRG file: text of fixed width, or big-endian binary numbers."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ if TYPE_CHECKING:
     import numpy as np
 
 COLUMNS = 80
-"""Characters of a line of data, and bytes of which binary data are a multiple."""
+"""Characters of a line of data, and block size of binary data, bytes."""
 CHARACTERS = {"LRFI": 10, "LDFI": 20}
 FROM_BEFORE = ("reference line phi", "reference line slope")
-"""Channels of what is between a record and the one before: the first record has none."""
+"""Channels that apply to the interval before a record, and are undefined in the first record."""
 BINARY = {"KRBI": ">f4", "KDBI": ">f8"}
 
 
 def read_records(content: bytes, header: CrgHeader, path: Path) -> np.ndarray:
-    """The channels' values, a row for each cross-section.
+    """Read the values of the channels, shape (cross-sections, channels).
 
     Raises
     ------
     InputError
-        When they are not what the header says, or one is no finite number; names the line, in binary data the cross-section.
+        If they contradict the header, or one is not finite; the message contains the line or the cross-section.
     """
     import numpy as np
 
@@ -59,7 +59,7 @@ def _name(header: CrgHeader, column: int) -> str:
 
 
 def _binary(data: bytes, header: CrgHeader) -> np.ndarray:
-    """Binary records; NaN fill the last 80 bytes."""
+    """Return binary records; NaN fill the last 80 bytes."""
     import numpy as np
 
     kind = np.dtype(BINARY[header.layout])
@@ -97,7 +97,7 @@ def _text(data: bytes, header: CrgHeader, source: str) -> np.ndarray:
 
 
 def _value(text: str, where: str, header: CrgHeader, column: int) -> float:
-    """A number; NaN for one that is marked as missing."""
+    """Return a number; NaN for one that is marked as missing."""
     if set(text) & set("*") or text.strip().lower() == "nan":
         return float("nan")
     try:

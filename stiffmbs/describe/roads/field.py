@@ -1,4 +1,4 @@
-"""Roads as fields of elements: by name, as a mapping, or as made in Python; and the section of a scene that names them."""
+"""Roads as fields of elements, by name or by value, and the section of a scene that names them."""
 
 from __future__ import annotations
 
@@ -30,18 +30,18 @@ ROADS: Mapping[str, str] = MappingProxyType(
         "iso8608": "iso8608:Iso8608Road",
     }
 )
-"""The kinds of roads: the file and the class of each, which is loaded where a scene has one."""
+"""File and class of each kind of road, imported on demand."""
 
 
 def kind_of_road(kind: str) -> type[Road]:
-    """The class of a kind of roads."""
+    """Return the class of a kind of road."""
     file, _, name = ROADS[kind].partition(":")
     road: type[Road] = getattr(import_module(f".{file}", __package__), name)
     return road
 
 
 def read_road(found: object, context: Mapping[str, Any] | None) -> Road:
-    """The road that a field has."""
+    """Return the road of a field."""
     if isinstance(found, Road):
         return found
     if isinstance(found, str):
@@ -78,12 +78,12 @@ AnyRoad = Annotated[Road, _RoadField()]
 
 
 def read_roads(found: Any, context: Mapping[str, Any]) -> dict[str, Road]:
-    """The scene's roads, which its tyres call by name.
+    """Read the roads of a scene, which its tyres use by name.
 
     Raises
     ------
     InputError
-        When a name is no identifier, or a road cannot be read.
+        If a name is not an identifier, or a road cannot be read.
     """
     if found is None:
         return {}

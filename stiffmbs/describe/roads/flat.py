@@ -1,4 +1,4 @@
-"""A level road."""
+"""Level road."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .road import Road
 
 
 class FlatRoad(Road):
-    """A level road."""
+    """Level road."""
 
     kind: ClassVar[str] = "flat"
     level: ClassVar[bool] = True

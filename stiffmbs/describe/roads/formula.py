@@ -1,4 +1,4 @@
-"""A road by formula."""
+"""Road by a formula."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ Height = Annotated[Formula, FormulaOf(*OF_PLACE, "length", time=False)]
 
 
 class FormulaRoad(Road):
-    """A road whose height is a formula of x and y.  Breakpoints of its functions are located as events.
+    """Road with a formula of x and y for its height; breakpoints of its functions are located as events.
 
-    With `filter_radius` the formula is of x alone, and the filter is for the stretch between `first` and `last`.
+    With `filter_radius` the formula is of x alone, and the filter applies between `first` and `last`.
     """
 
     kind: ClassVar[str] = "formula"
@@ -47,7 +47,7 @@ class FormulaRoad(Road):
         return None if self.first is None or self.last is None else (self.first, self.last)
 
     def profile_heights(self, x: np.ndarray) -> np.ndarray:
-        """The heights, m, that the formula gives at places x, m."""
+        """Return the heights, m, of the formula at positions x, m."""
         from numpy import broadcast_to
 
         from ..formula.functions import IN_FORMULAS

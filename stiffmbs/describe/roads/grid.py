@@ -1,4 +1,4 @@
-"""A road by a file of heights on a grid."""
+"""Road by a file of heights on a grid."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from .rolling_filter import through_filter
 class GridRoad(Road):
     """Road with heights on a grid in a file: the first row has y, each further row has x and the heights there, in m.
 
-    The height is interpolated by monotone cubics (PCHIP) along each line, and linearly between two lines.  It is constant beyond the
-    first and the last line, and extrapolated with the end slopes beyond both ends.
+    The height is interpolated by monotone cubics (PCHIP) along each line, and linearly between two lines. It is
+    constant beyond the first and the last line, and extrapolated with the end slopes beyond both ends.
     """
 
     kind: ClassVar[str] = "grid"
@@ -28,7 +28,7 @@ class GridRoad(Road):
         return points[0][0], points[-1][0]
 
     def in_equations(self) -> dict[str, Any]:
-        """Its tables along x, rolled over by a disc with `filter_radius`, and where they lie."""
+        """Return its tables along x, filtered with `filter_radius`, and their positions y."""
         tables = tuple(through_filter(table, self.filter_radius) for table in self.file.tables)
         return {"friction": self.friction, "lines": tables, "across": self.file.across}
 
@@ -38,7 +38,7 @@ class GridRoad(Road):
 
 
 def between_lines(r: Symbolic, x: Any, y: Any) -> Any:
-    """The height of a road with tables `lines` at places `across`: the first line's, and what each further one adds."""
+    """Return the height of a road with tables `lines` at positions `across`, interpolated linearly between them."""
     heights = [line(x) for line in r.lines]
     height = heights[0]
     for k in range(1, len(heights)):

@@ -20,12 +20,12 @@ from ..files.text_file import file_text, lines
 from ..table import Table
 
 MOST_LINES = 32
-"""Lines along the road in a file: each is a table of its own in the equations."""
+"""Largest number of lines along the road; each is a table in the equations."""
 
 
 @dataclass(frozen=True)
 class Grid:
-    """Heights over x, m, a table for each y, m; increasing."""
+    """Heights over x, m: one table for each y, m, in increasing order."""
 
     across: tuple[float, ...]
     tables: tuple[Table, ...]
@@ -34,13 +34,14 @@ class Grid:
 def read_grid(path: Path) -> Grid:
     """Read a file of heights.
 
-    Its first row of numbers has the positions y across the road, each further row a position x along it and the heights there,
-    all in m, with blanks, commas or semicolons between; the rest of a line behind # is a comment.
+    The first row of numbers has the positions y across the road, each further row a position x along it and the heights
+    there.
+    All are in m, separated by blanks, commas or semicolons; text after # is a comment.
 
     Raises
     ------
     InputError
-        When it cannot be read; names the line.
+        If it cannot be read; the message contains the line.
     """
     rows = list(_rows(file_text(path), str(path)))
     if len(rows) < 3:

@@ -1,4 +1,4 @@
-"""A random road after ISO 8608."""
+"""Random road after ISO 8608."""
 
 from __future__ import annotations
 
@@ -20,25 +20,27 @@ if TYPE_CHECKING:
 
 CLASSES = "ABCDEFGH"
 SMOOTHEST = 16e-6
-"""Gd(n0) of class A, m^3; each class has four times that of the one before (geometric means of ISO 8608, table C.1)."""
+"""Gd(n0) of class A, m^3; each further class has four times the value (geometric means of ISO 8608, table C.1)."""
 REFERENCE = 0.1
-"""n0, the wavenumber to which classes refer, 1/m."""
+"""Reference wavenumber n0, 1/m."""
 POINTS = 4
-"""Of a table for the shortest wave: a cubic spline is then within 1 % of its amplitude."""
+"""Table points for the shortest wave; the amplitude of a cubic spline is then within 1 %."""
 
 
 class Iso8608Road(Road):
-    """A random road of a class of ISO 8608, the same for the same seed, with tracks for left and right wheels.
+    """Random road of a class of ISO 8608, reproducible by its seed, with tracks for left and right wheels.
 
-    The displacement power spectral density of each track is Gd(n) = Gd(n0) (n/n0)^-2, n0 = 0.1/m, with the class's geometric
-    mean Gd(n0) = 16e-6 m^3 for A, four times more for each further class.  It is a sum of waves of random phase whose
-    lengths are whole fractions of `length`, after which it repeats, down to `shortest`.  Left and right are at
-    y = track/2 and -track/2; between them the height goes over by a cubic, and beyond it stays.
+    The displacement power spectral density of each track is Gd(n) = Gd(n0) (n/n0)^-2, n0 = 0.1/m. The class's geometric
+    mean is Gd(n0) = 16e-6 m^3 for A, and four times more for each further class. It is a sum of waves of random phase,
+    with wavelengths from `longest` down to `shortest`. Each wavelength is `length` divided by an integer, so the road
+    repeats after `length`. Left and right are at y = track/2 and -track/2. Between them the height is interpolated by a
+    cubic, and beyond them it is constant.
 
-    With ``coherence: isotropic`` both are tracks of one surface with the same spectrum in all directions: their coherence is
-    (2 pi n track) K1(2 pi n track), near 1 for long waves and near 0 for those shorter than the track.
+    With ``coherence: isotropic`` both tracks belong to one surface with the same spectrum in all directions. Their
+    coherence is (2 pi n track) K1(2 pi n track), near 1 for long waves and near 0 for waves shorter than the track.
 
-    ISO 8608:2016; Robson, Road surface description and vehicle response, Int. J. Vehicle Design 1 (1979) 25-35 (isotropy).
+    ISO 8608:2016; Robson, Road surface description and vehicle response, Int. J. Vehicle Design 1 (1979) 25-35
+    (isotropy).
     """
 
     kind: ClassVar[str] = "iso8608"
@@ -70,7 +72,7 @@ class Iso8608Road(Road):
         return 0.0, self.length
 
     def in_equations(self) -> dict[str, Any]:
-        """The tables of its left and right track, rolled over by a disc with `filter_radius`."""
+        """Return the tables of its left and right track, filtered with `filter_radius`."""
         left, right = _tables(
             CLASSES.index(self.roughness),
             self.seed,
@@ -86,7 +88,7 @@ class Iso8608Road(Road):
 
     @staticmethod
     def height(r: Symbolic, x: Any, y: Any) -> Any:
-        """Cosines of each track, which rise from the start."""
+        """Return the height of the tracks, blended in after the start."""
         from .road import ramp
 
         height = two_tracks(r, x, y)
@@ -100,7 +102,6 @@ class Iso8608Road(Road):
 def _tables(
     roughness: int, seed: int, track: float, length: float, longest: float, shortest: float, coherence: str
 ) -> tuple[Table, Table]:
-    """Tables of the left and the right track."""
     import numpy as np
 
     first, last = max(1, math.ceil(length / longest)), math.floor(length / shortest)
@@ -118,7 +119,7 @@ def _tables(
 
 
 def _coherence(coherence: str, x: np.ndarray) -> np.ndarray:
-    """Cross over power spectral density of the tracks."""
+    """Return the ratio of cross to auto power spectral density of the tracks."""
     import numpy as np
 
     if coherence == "isotropic":
@@ -129,7 +130,7 @@ def _coherence(coherence: str, x: np.ndarray) -> np.ndarray:
 
 
 def _table(waves: np.ndarray, k: np.ndarray, count: int, length: float) -> Table:
-    """The sum of the real parts of waves of k periods each, at points."""
+    """Return the sum of the real parts of waves of k periods each, at equally spaced points."""
     import numpy as np
 
     spectrum = np.zeros(count // 2 + 1, dtype=complex)

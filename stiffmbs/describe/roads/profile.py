@@ -1,4 +1,4 @@
-"""A road by tables."""
+"""Road by tables."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from .rolling_filter import through_filter
 
 
 class TableRoad(Road):
-    """A road whose height is a table over x, or two: for the tracks of left and right wheels.
+    """Road with a table over x for its height, or two tables for the tracks of left and right wheels.
 
-    Between the tracks, which lie at y = track/2 and -track/2, the height goes over from one to the other by a cubic with flat
-    ends; beyond them it is that of the nearer track.
+    Between the tracks, at y = track/2 and -track/2, the height is interpolated by a cubic with zero slope at both ends;
+    beyond them it is that of the nearer track.
     """
 
     kind: ClassVar[str] = "table"
@@ -30,7 +30,6 @@ class TableRoad(Road):
     @field_validator("profile", "left", "right", mode="before")
     @classmethod
     def _by_name(cls, found: Any, info: ValidationInfo) -> Any:
-        """A table of the scene by its name."""
         if not isinstance(found, str):
             return found
         tables = (info.context or {}).get("tables") or {}
@@ -50,7 +49,7 @@ class TableRoad(Road):
         return min(table[0][0] for table in tables), max(table[-1][0] for table in tables)
 
     def in_equations(self) -> dict[str, Any]:
-        """Its tables, rolled over by a disc with `filter_radius`."""
+        """Return its tables, filtered with `filter_radius`."""
         own = dict(Component.in_equations(self))
         radius = own.pop("filter_radius")
         filtered = {name: own[name] and through_filter(own[name], radius) for name in ("profile", "left", "right")}
@@ -62,7 +61,7 @@ class TableRoad(Road):
 
 
 def two_tracks(r: Symbolic, x: Any, y: Any) -> Any:
-    """The height of a road with tables `left` and `right`, a `track` apart."""
+    """Return the height of a road with tables `left` and `right`, a `track` apart."""
     from sympy import Rational
 
     s = clipped(y / r.track + Rational(1, 2))

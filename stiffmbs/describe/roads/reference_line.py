@@ -1,7 +1,8 @@
-"""The reference line of a curved road, and the nearest of its points, by cubic splines.
+"""Reference line of a curved road as cubic splines, and its nearest point.
 
-The point u of the line R(u) that is nearest to a point P has (P - R).R' = 0.  Newton's method solves this; it starts from a table
-of u over the position along the line's mean direction.  Before the run the method is tried on the whole road.
+The point u of the line R(u) that is nearest to a point P satisfies (P - R).R' = 0. Newton's method solves this, from an
+initial guess in a table of u over the position along the line's mean direction. Its convergence on the whole road is
+tested before the run.
 """
 
 from __future__ import annotations
@@ -17,20 +18,20 @@ if TYPE_CHECKING:
     import numpy as np
 
 FROZEN, FOLLOWED = 4, 2
-"""Newton's steps to the point, and further ones, whose derivatives are those of the nearest point up to the third."""
+"""Newton iterations without derivatives, and further iterations, which make derivatives exact up to the third order."""
 CLOSE = 1e-6
-"""m, from the line's points to the spline through some of them."""
+"""Largest distance of the line's points from the spline through some of them, m."""
 CONVERGED = 1e-9
-"""m, that the point may lack along the line after all of Newton's steps but the last."""
+"""Largest error along the line before the last Newton iteration, m."""
 WIDEST = 1.4
-"""Angle, rad, between the line and its mean direction, up to which u is a function of the position along that direction."""
+"""Largest angle between the line and its mean direction, rad, so that u is a function of the position along it."""
 BESIDE = 11
-"""Places across the road at which the method is tried."""
+"""Number of positions across the road at which convergence is tested."""
 
 
 @dataclass(frozen=True, eq=False)
 class ReferenceLine:
-    """A curved line.
+    """Curved reference line.
 
     Attributes
     ----------
@@ -48,12 +49,12 @@ class ReferenceLine:
     guess: Table
 
     def in_equations(self) -> dict[str, Any]:
-        """As fields of a road."""
+        """Return the line as fields of a road."""
         return {"line_x": self.x, "line_y": self.y, "direction": self.direction, "guess": self.guess}
 
 
 def reference_line(u: np.ndarray, x: np.ndarray, y: np.ndarray, v: np.ndarray, source: str) -> ReferenceLine:
-    """The line through points.
+    """Return the line through points.
 
     Parameters
     ----------
@@ -67,7 +68,7 @@ def reference_line(u: np.ndarray, x: np.ndarray, y: np.ndarray, v: np.ndarray, s
     Raises
     ------
     InputError
-        When the line turns too far from its mean direction, or bends more sharply than the road is wide.
+        If the line turns too far from its mean direction, or the road is wider than a radius of curvature.
     """
     import numpy as np
 
@@ -98,7 +99,7 @@ def _table(arguments: np.ndarray, values: np.ndarray) -> Table:
 
 
 def _chosen(u: np.ndarray, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """The fewest equally distant points whose spline is close to all."""
+    """Return the fewest equidistant points whose spline is close to all points."""
     import numpy as np
 
     stride = 2 ** int(np.log2(max(len(u) // 4, 1)))
@@ -118,7 +119,7 @@ def _spline(arguments: np.ndarray, values: np.ndarray) -> Any:
 
 
 def _try_it(line: ReferenceLine, u: np.ndarray, v: np.ndarray, source: str) -> None:
-    """See whether Newton's method finds the points of the line on the whole road."""
+    """Refuse a road on which Newton's method does not converge everywhere."""
     import numpy as np
 
     x, y = (_spline(*np.array(table.table).T) for table in (line.x, line.y))
@@ -147,7 +148,7 @@ def _try_it(line: ReferenceLine, u: np.ndarray, v: np.ndarray, source: str) -> N
 
 
 def nearest(r: Symbolic, e: Symbolic, x: Any, y: Any) -> tuple[Any, Any]:
-    """u and v of a point, m; r has the fields of `ReferenceLine.in_equations`."""
+    """Return u and v of a point, m; r has the fields of `ReferenceLine.in_equations`."""
     from sympy import Symbol, sqrt
 
     u = e.named(r.guess(x * r.direction[0] + y * r.direction[1]))
@@ -163,7 +164,6 @@ def nearest(r: Symbolic, e: Symbolic, x: Any, y: Any) -> tuple[Any, Any]:
 
 
 def _at(r: Symbolic, e: Symbolic, u: Any) -> list[tuple[Any, Any]]:
-    """The line at u, and its first and second derivative there."""
     from sympy import Dummy
 
     s = Dummy("s", real=True)

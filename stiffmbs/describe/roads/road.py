@@ -1,4 +1,4 @@
-"""What a road is: its height, and how much friction there is."""
+"""Base of roads: height and friction factor."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ if TYPE_CHECKING:
     import numpy as np
 
 OF_PLACE = ("x", "y"), ("length", "length")
-"""The variables of a road's formulas: along and across, m."""
+"""Variables of a road's formulas with dimensions: along and across, m."""
 Factor = Annotated[Formula, FormulaOf(*OF_PLACE, "number", time=False)]
 
 
 class Road(Component):
-    """Base of roads.  A subclass is its fields and its `height`.
+    """Base of roads; a subclass consists of its fields and its `height`.
 
     Attributes
     ----------
     kind : str
-        What scenes call it, as its `type`.
+        Name of the kind in scenes, its `type`.
     level : bool
-        Whether its height is the same everywhere.
+        Whether its height is constant.
     """
 
     kind: ClassVar[str] = ""
@@ -46,7 +46,6 @@ class Road(Component):
     @model_validator(mode="before")
     @classmethod
     def _of_its_kind(cls, found: Any) -> Any:
-        """Let the type be the class's kind."""
         return typed(cls.kind, found)
 
     @model_validator(mode="after")
@@ -58,15 +57,15 @@ class Road(Component):
         return self
 
     def extent(self) -> tuple[float, float] | None:
-        """The stretch of x, m, outside which the road goes on straight, for the rolling-radius filter; None: no such one."""
+        """Return the interval of x, m, outside which the road is straight, for the rolling-radius filter, or None."""
         return None
 
     def profile_heights(self, x: np.ndarray) -> np.ndarray:
-        """Its heights, m, at places x, m, the same for all y, for the rolling-radius filter."""
+        """Return the heights, m, at positions x, m, for the rolling-radius filter; they are independent of y."""
         raise NotImplementedError
 
     def in_equations(self) -> dict[str, Any]:
-        """Its fields, and with `filter_radius` the table ``rolled`` of the heights that a disc rolls on."""
+        """Return its fields, and with `filter_radius` the table ``rolled`` of filtered heights."""
         own = dict(super().in_equations())
         radius, extent = own.pop("filter_radius"), self.extent()
         if radius is None or extent is None:
@@ -77,54 +76,56 @@ class Road(Component):
 
     @staticmethod
     def height(r: Symbolic, x: Any, y: Any) -> Any:
-        """The height of the road at x along and y across, m."""
+        """Return the height of the road at x along and y across, m."""
         raise NotImplementedError
 
     @staticmethod
     def place(r: Symbolic, e: Symbolic, x: Any, y: Any) -> tuple[Any, Any]:
-        """How far along and across the road a point is, m; e is the element that is on the road."""
+        """Return the position of a point along and across the road, m; e is the element on the road."""
         return x, y
 
     @staticmethod
     def surface(r: Symbolic, x: Any, y: Any) -> Any:
-        """The height that a wheel sees there, m: through the filter where the road has one."""
+        """Return the height for a wheel, m, filtered if the road has a filter."""
         return r.height(x, y) if r.rolled is None else r.rolled(x)
 
     @staticmethod
     def factor(r: Symbolic, x: Any, y: Any) -> Any:
-        """The factor on friction there."""
+        """Return the factor on friction."""
         return 1 if r.friction is None else r.friction(x, y)
 
 
 def ramp_at(x: np.ndarray, start: float, length: float) -> np.ndarray:
-    """`ramp` of numbers."""
+    """Evaluate `ramp` for numbers."""
     return ((x - start) / length).clip(0.0, 1.0)
 
 
 def ramp(x: Any, start: Any, length: Any) -> Any:
-    """From 0 at the start to 1 a length behind it, straight in between."""
+    """Return a linear ramp from 0 at `start` to 1 at `start` + `length`, constant outside."""
     import sympy
 
     return sympy.Min(sympy.Max((x - start) / length, 0), 1)
 
 
 def clipped(s: Any) -> Any:
-    """A number between 0 and 1, else the nearer of them, without events: for what has no slope there."""
+    """Return s limited to 0 .. 1 without events, for functions with zero slope at the limits."""
     from sympy import Rational
 
     return (magnitude(s) - magnitude(s - 1) + 1) * Rational(1, 2)
 
 
 def above_zero(x: Any) -> Any:
-    """The greater of a number and zero, without an event where it turns round; the number has a name where it is a small sum
-    of large parts, or rounding would be that of the parts."""
+    """Return max(x, 0) without an event at zero.
+
+    Name x before if it is a small sum of large terms, because rounding errors would be those of the terms.
+    """
     from sympy import Rational
 
     return (x + magnitude(x)) * Rational(1, 2)
 
 
 def magnitude(x: Any) -> Any:
-    """The absolute value, without an event where it turns round."""
+    """Return the absolute value without an event at zero."""
     from sympy import Float, sqrt
 
     return sqrt(x**2 + Float("1e-60"))

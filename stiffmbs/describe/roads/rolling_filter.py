@@ -1,8 +1,9 @@
-"""The rolling-radius filter: the heights that a disc rolls on.
+"""Rolling-radius filter: effective road heights for a rigid disc.
 
-A rigid disc of radius R on a profile h has its centre at the height max over s of h(x + s) + sqrt(R^2 - s^2); R less is the height
-that a tyre with a single point of contact sees.  What is narrower than the disc is bridged, and a step rises as a circle.
-Captain, Boghani, Wormley, Analytical tire models for dynamic vehicle simulation, Vehicle System Dynamics 8 (1979) 1-32.
+A rigid disc of radius R on a profile h has its centre at the height max over s of h(x + s) + sqrt(R^2 - s^2). That
+height minus R is the road height for a tyre with a single contact point. The disc bridges narrow gaps, and a step
+becomes a circular arc. Captain, Boghani, Wormley, Analytical tire models for dynamic vehicle simulation, Vehicle System
+Dynamics 8 (1979) 1-32.
 """
 
 from __future__ import annotations
@@ -18,28 +19,28 @@ if TYPE_CHECKING:
     import numpy as np
 
 FINE, COARSE = 50, 20
-"""Points on a radius, and the fewest on a long road: the heights are then exact to R/20000 and R/3200."""
+"""Points per radius, and the fewest on a long road; the errors are then at most R/20000 and R/3200."""
 BETWEEN = 8
-"""Parts of a step in which the profile of a short road is looked at, which its edges need."""
+"""Subdivisions of a step at which the profile of a short road is sampled, for its edges."""
 MOST = 40000
-"""Points of a profile."""
+"""Largest number of points of a profile."""
 BESIDE = 1.5
-"""Radii beside a profile from which on the disc doesn't touch it, and is on the straight road."""
+"""Distance from a profile, in radii, at which the disc no longer touches it."""
 
 
 def through_filter(table: Table, radius: float | None) -> Table:
-    """The heights that a disc of a radius rolls on; the profile itself without one."""
+    """Return the filtered heights for a disc of the given radius; the profile itself without one."""
     return table if radius is None else rolled(table, radius)
 
 
 @lru_cache(maxsize=64)
 def rolled(table: Table, radius: float) -> Table:
-    """The heights over x that a disc rolls on.
+    """Return the filtered heights over x.
 
     Raises
     ------
     InputError
-        When the profile is longer than 2000 radii.
+        If the profile is longer than 2000 radii.
     """
     import numpy as np
 
@@ -52,7 +53,7 @@ def rolled(table: Table, radius: float) -> Table:
 
 
 def rolled_profile(heights: Callable[[np.ndarray], np.ndarray], extent: tuple[float, float], radius: float) -> Table:
-    """The same of a profile given by a function, which goes on level beside its extent; errors as `rolled`."""
+    """Return the filtered heights of a profile given by a function, level outside its extent; errors as `rolled`."""
     beside = BESIDE * radius
     x, centre = _centres(heights, (extent[0] - beside, extent[1] + beside), radius)
     return _table(x, centre - radius, periodic=False)
@@ -66,7 +67,7 @@ def _table(x: np.ndarray, heights: np.ndarray, periodic: bool) -> Table:
 def _centres(
     heights: Callable[[np.ndarray], np.ndarray], extent: tuple[float, float], radius: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Places along an extent, and the height of the disc's centre there."""
+    """Return positions along an extent, and the height of the disc's centre there."""
     import numpy as np
     from scipy.ndimage import grey_dilation
 
@@ -89,7 +90,7 @@ def _centres(
 
 
 def _take_in(centre: np.ndarray, x: np.ndarray, points: np.ndarray, radius: float) -> None:
-    """Raise the centre of the disc where a point of the table touches it, as between samples the edge of a kerb does."""
+    """Raise the centre of the disc where it touches a point of the table between samples."""
     import numpy as np
 
     ends = np.searchsorted(x, points[:, :1] + np.array([-radius, radius]))
@@ -98,7 +99,7 @@ def _take_in(centre: np.ndarray, x: np.ndarray, points: np.ndarray, radius: floa
 
 
 def heights_of(table: Table, x: np.ndarray) -> np.ndarray:
-    """The profile, which goes on straight or repeats as in the equations."""
+    """Return the heights of the profile, with the extrapolation or periodicity of the equations."""
     import numpy as np
     from scipy.interpolate import Akima1DInterpolator, CubicSpline, PchipInterpolator
 

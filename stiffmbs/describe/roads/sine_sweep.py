@@ -1,4 +1,4 @@
-"""Waves of growing or falling frequency in a road."""
+"""Sine sweep in a road."""
 
 from __future__ import annotations
 
@@ -15,10 +15,11 @@ if TYPE_CHECKING:
 
 
 class SineSweep(Road):
-    """A level road with sine waves whose wavelength changes along them.
+    """Level road with sine waves of varying wavelength.
 
-    With s = (x - start)/length between 0 and 1 the height is amplitude sin(2 pi length (n0 s + (n1 - n0) s^2/2)), with the
-    wavenumbers n0 = 1/first_wavelength at the start and n1 = 1/last_wavelength at the end.  Behind it the height stays.
+    With s = (x - start)/length between 0 and 1 the height is amplitude sin(2 pi length (n0 s + (n1 - n0) s^2/2)). The
+    wavenumbers are n0 = 1/first_wavelength at the start and n1 = 1/last_wavelength at the end. After it the height is
+    constant.
     """
 
     kind: ClassVar[str] = "sine_sweep"
@@ -31,7 +32,7 @@ class SineSweep(Road):
 
     @staticmethod
     def height(r: Symbolic, x: Any, y: Any) -> Any:
-        """A sine whose wavelength changes along x."""
+        """Return the height of the sine sweep."""
         from sympy import Rational, pi, sin
 
         s = ramp(x, r.start, r.length)
@@ -42,7 +43,7 @@ class SineSweep(Road):
         return self.start, self.start + self.length
 
     def profile_heights(self, x: np.ndarray) -> np.ndarray:
-        """The heights, m, of the sweep at places x, m."""
+        """Return the heights, m, of the sweep at positions x, m."""
         from numpy import pi, sin
 
         s = ramp_at(x, self.start, self.length)

@@ -1,4 +1,4 @@
-"""A step in a road."""
+"""Step in a road."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class StepRoad(Road):
-    """A level road that rises, or falls, over a short length by a cubic with flat ends: a kerb, a pothole's edge."""
+    """Level road with a rise or fall by a cubic with zero slope at both ends: a kerb, a pothole's edge."""
 
     kind: ClassVar[str] = "step"
 
@@ -32,6 +32,6 @@ class StepRoad(Road):
         return self.start, self.start + self.length
 
     def profile_heights(self, x: np.ndarray) -> np.ndarray:
-        """The heights, m, at places x, m."""
+        """Return the heights, m, at positions x, m."""
         s = ramp_at(x, self.start, self.length)
         return self.rise * s**2 * (3 - 2 * s)

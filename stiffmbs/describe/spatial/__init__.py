@@ -1,1 +1,1 @@
-"""Describing mechanisms in space: what differs from the plane, in files of the same names."""
+"""Description of spatial mechanisms; files have the names of their planar counterparts."""

@@ -1,4 +1,4 @@
-"""What torques about a wheel's axle share."""
+"""Base of torques about a wheel's axle."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .marker import Marker
 
 
 class AxleForce(Force):
-    """Base of torques about a wheel's axle (it has no kind): on marker i's body about its y axis, and the opposite on j's."""
+    """Base of torques on i's body about i's y axis, and the opposite on j's body; scenes use its subclasses."""
 
     i: Marker = Field(description="marker on the wheel, its y axis along the axle, to the left of the heading")
     j: Marker = Field(
@@ -23,5 +23,5 @@ class AxleForce(Force):
 
     @staticmethod
     def spin(e: Symbolic) -> Any:
-        """Angular velocity of the wheel against the other body about its axle, rad/s; above zero when it rolls forward."""
+        """Return the angular velocity of the wheel relative to j's body about its axle, rad/s; positive forward."""
         return e.named((e.i.omega - e.j.omega).dot(e.i.y))

@@ -1,4 +1,4 @@
-"""Rigid bodies in space."""
+"""Spatial rigid bodies."""
 
 from __future__ import annotations
 
@@ -22,36 +22,37 @@ from .orientation import IDENTITY, Orientation, Quaternion, conjugate, from_matr
 Row = tuple[si.Inertia, si.Inertia, si.Inertia]
 Inertia = Annotated[tuple[Row, Row, Row], WithJsonSchema({"type": "array", "minItems": 3, "maxItems": 3})]
 MOMENT_ROUNDING = 1e-9
-"""Part of the largest moment by which written moments may miss symmetry and the triangle inequality."""
+"""Tolerance of symmetry and of the triangle inequality, relative to the largest moment."""
 
 
 class Body(Described):
-    """A rigid body in space, with an origin and axes of its own that everything on it is given in.
+    """Spatial rigid body, with its own origin and axes for everything on it.
 
     Parameters
     ----------
     mass : float
         kg, greater than zero.
     inertia : 3 floats or 3x3 floats
-        About the centre of mass in the body's own axes, kg m^2: Ixx, Iyy, Izz, or the symmetric tensor by rows (its
-        entries off the diagonal are minus the products of inertia).
+        About the centre of mass in the body's axes, kg m^2: Ixx, Iyy, Izz, or the symmetric tensor by rows (its
+        off-diagonal entries are minus the products of inertia).
     center_of_mass : tuple of float
-        In the body's own axes from its origin, m.
+        In the body's axes from its origin, m.
     position, orientation
-        Where the body's origin is and how its axes are turned at the start (moved by assembly if joints ask).
+        Position of the body's origin (m) and orientation of its axes at the start; assembly changes them if joints
+        require it.
     velocity : tuple of float
-        Of the centre of mass at the start in ground axes, m/s.
+        Velocity of the centre of mass at the start in ground axes, m/s.
     omega : tuple of float
-        Angular velocity at the start in the body's own axes, rad/s.
+        Angular velocity at the start in the body's axes, rad/s.
     open : tuple of str
-        Which of ``velocity`` and ``omega`` are not prescribed: they follow, through joints and drives, from those that
-        are; where these leave a choice, the value written stands.
+        Which of ``velocity`` and ``omega`` are not prescribed. Joints and drives determine them from the others; if
+        they remain undetermined, the given value is used.
     any_moments : bool
-        Whether the principal moments may break the triangle inequality, as those of no distribution of mass do.
+        Whether the principal moments may violate the triangle inequality, which no mass distribution does.
     markers : mapping of str to Placement
-        Named points and orientations on the body, in its own axes from its origin.
+        Named points and orientations on the body, in its axes from its origin.
     geometry : mappings, optional
-        What drawings show of the body; derived from its markers and joints without it.
+        Shapes shown in drawings; by default derived from the markers and joints of the body.
     """
 
     mass: si.PositiveMass = Field(description="mass, kg")
@@ -101,7 +102,7 @@ class Body(Described):
     @field_validator("inertia", mode="before")
     @classmethod
     def _diagonal(cls, found: Any) -> Any:
-        """Three moments stand for a tensor without products of inertia."""
+        """Return the tensor of three moments without products of inertia."""
         if not isinstance(found, list | tuple) or any(np.ndim(part) for part in found):
             return found
         if len(found) != 3:
@@ -136,11 +137,11 @@ class Body(Described):
         return markers
 
     def principal_axes(self) -> Quaternion:
-        """Orientation of the principal axes in the body's own axes; the own axes where the tensor is diagonal."""
+        """Return the orientation of the principal axes in the body's axes; the body's axes for a diagonal tensor."""
         return self._principal()[1]
 
     def principal_moments(self) -> tuple[float, float, float]:
-        """Moments of inertia about the principal axes, kg m^2."""
+        """Return the moments of inertia about the principal axes, kg m^2."""
         return self._principal()[0]
 
     def _principal(self) -> tuple[tuple[float, float, float], Quaternion]:
@@ -152,41 +153,41 @@ class Body(Described):
         return (float(moments[0]), float(moments[1]), float(moments[2])), from_matrix(axes)
 
     def coordinates(self) -> tuple[float, ...]:
-        """Centre of mass (m) and quaternion of the principal axes at the start, in ground axes."""
+        """Return the centre of mass (m) and the quaternion of the principal axes at the start, in ground axes."""
         centre = np.array(self.position) + rotated(self.orientation, self.center_of_mass)
         return (*(float(x) for x in centre), *product(self.orientation, self.principal_axes()))
 
     def rates(self) -> tuple[float, ...]:
-        """Velocity of the centre of mass in ground axes, m/s, and angular velocity in the principal axes, rad/s."""
+        """Return the velocity of the centre of mass in ground axes, m/s, and omega in the principal axes, rad/s."""
         omega = rotated(conjugate(self.principal_axes()), self.omega)
         return (*self.velocity, *(float(x) for x in omega))
 
     def open_rates(self) -> tuple[bool, ...]:
-        """Which of `rates` are not given."""
+        """Return for each of `rates` whether it is not prescribed."""
         return (*("velocity" in self.open,) * 3, *("omega" in self.open,) * 3)
 
     def masses(self) -> tuple[float, ...]:
-        """Diagonal of the body's mass matrix in the rates: the mass three times, kg, and the principal moments, kg m^2."""
+        """Return the diagonal of the mass matrix: three times the mass, kg, and the principal moments, kg m^2."""
         return self.mass, self.mass, self.mass, *self.principal_moments()
 
     def carried(self, placed: Placement) -> Placement:
-        """A placement on the body, seen from its centre of mass in its principal axes."""
+        """Return a placement on the body relative to its centre of mass and principal axes."""
         turned = conjugate(self.principal_axes())
         x, y, z = rotated(turned, np.array(placed.point) - np.array(self.center_of_mass))
         return Placement(point=(float(x), float(y), float(z)), orientation=product(turned, placed.orientation))
 
 
 class BodyHandle(Handle):
-    """A body of a model in space, as `Model.add` returns it (`stiffmbs.describe.building.handle.Handle`).
+    """Reference to a body of a spatial model, returned by `Model.add` (`stiffmbs.describe.building.handle.Handle`).
 
     Attributes
     ----------
     name : str
-        Of the body.
+        Name of the body.
     x, y, z, q0, q1, q2, q3, vx, vy, vz, wx, wy, wz : SymPy symbol
-        What formulas read of the body.
+        Coordinates and velocities of the body, for formulas.
     mass, inertia and other fields of the body
-        As they stand in the model; setting them changes it.
+        Values in the model; assignment changes the model.
     """
 
     names = SPACE
@@ -195,5 +196,5 @@ class BodyHandle(Handle):
     def at(
         self, x: given.Number, y: given.Number, z: given.Number, orientation: given.Orientation = IDENTITY
     ) -> Marker:
-        """The marker at a point of the body's own axes, m, with an orientation against them."""
+        """Return the marker at a point given in the body's axes, m, with an orientation relative to them."""
         return Marker(body=self.name, point=(x, y, z), orientation=orientation)

@@ -1,7 +1,8 @@
 """Contact of a wheel's rim with the road at large tyre deflections.
 
-The rim is a cylinder of the tyre's width W.  With the penetration d at mid-width and the camber gamma, the penetration across the
-width is d + y tan(gamma).  The force is that of a curve at the mean penetration.  It acts at the centre of the penetrated area.  MSC Adams/Tire, PAC2002, wheel bottoming.
+The rim is a cylinder of the tyre's width W. With the penetration d at mid-width and the camber gamma, the penetration
+across the width is d + y tan(gamma). The force is that of a curve at the mean penetration. It acts at the centre of the
+penetrated area. MSC Adams/Tire, PAC2002, wheel bottoming.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from ..element import Symbolic
 from ..roads.road import above_zero, magnitude
 
 NO_WIDTH = "1e-30"
-"""m, added to the half difference of penetrations in a divisor."""
+"""Offset of divisors that contain half the difference of penetrations, m."""
 
 
 def bottomed(e: Symbolic, rim: Any, depth: Any, camber: Any) -> tuple[Any, Any]:

@@ -1,7 +1,7 @@
-"""Whether markers are drawn near enough to how a joint holds them.
+"""Checks that markers are initially near the intended solution of a joint's equations.
 
-The equations of axes are bilinear, and have other solutions too.  Newton's method finds the nearest one of sin(a) = 0
-from less than 66.8 degrees off, where tan(a) = 2 a.
+The equations of axes are bilinear and have several solutions. Newton's method converges to the nearest solution of
+sin(a) = 0 from less than 66.8 degrees, where tan(a) = 2 a.
 """
 
 from __future__ import annotations
@@ -15,16 +15,16 @@ from ..model_data import ModelData
 from .marker import Marker
 
 FARTHEST = 60.0
-"""deg; of frames this is also halfway to the next orientation (a third of a turn, x to y to z) that fulfils the same
-equations."""
+"""Largest initial angle, deg. For frames it is also half the angle to the next orientation (a third of a turn, x to y
+to z) that satisfies the same equations."""
 ANGLE_ROUNDING = 1e-6
-"""deg, that rounding takes of an angle between written axes."""
+"""Rounding tolerance of an angle between axes, deg."""
 HALF_TURNS = tuple(np.diag(signs) for signs in ((1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1)))
-"""None, and those about x, y and z."""
+"""Identity, and half turns about x, y and z."""
 
 
 def initially_apart(model: ModelData, i: Marker, j: Marker) -> Iterator[str]:
-    """Why a joint that keeps the axes z of two markers parallel or opposite cannot be assembled from the initial poses."""
+    """Yield an error if z axes are too far from parallel or opposite for a joint that keeps them so."""
     angle = _between_axes(model, i, j)
     if min(angle, 180 - angle) >= FARTHEST - ANGLE_ROUNDING:
         yield (
@@ -34,7 +34,7 @@ def initially_apart(model: ModelData, i: Marker, j: Marker) -> Iterator[str]:
 
 
 def initially_without_axis(model: ModelData, i: Marker, j: Marker) -> Iterator[str]:
-    """Why a force about the axis z that two markers have in common has none where these are drawn."""
+    """Yield an error if z axes are too far from parallel or opposite for a force about their common axis."""
     angle = _between_axes(model, i, j)
     if min(angle, 180 - angle) >= FARTHEST - ANGLE_ROUNDING:
         yield (
@@ -44,7 +44,7 @@ def initially_without_axis(model: ModelData, i: Marker, j: Marker) -> Iterator[s
 
 
 def initially_aligned(model: ModelData, i: Marker, j: Marker) -> Iterator[str]:
-    """Why a joint that keeps the axes z of two markers at right angles cannot be assembled from the initial poses."""
+    """Yield an error if z axes are too far from perpendicular for a joint that keeps them so."""
     angle = _between_axes(model, i, j)
     if abs(angle - 90) >= FARTHEST - ANGLE_ROUNDING:
         yield (
@@ -54,7 +54,7 @@ def initially_aligned(model: ModelData, i: Marker, j: Marker) -> Iterator[str]:
 
 
 def initially_rotated(model: ModelData, i: Marker, j: Marker) -> Iterator[str]:
-    """Why a joint that keeps all axes of two markers parallel cannot be assembled from the initial poses."""
+    """Yield an error if the axes of two markers are too far from parallel for a joint that keeps them so."""
     angle = _angle(_between_frames(model, i, j))
     if angle >= FARTHEST - ANGLE_ROUNDING:
         yield (
@@ -64,9 +64,9 @@ def initially_rotated(model: ModelData, i: Marker, j: Marker) -> Iterator[str]:
 
 
 def initially_twisted(model: ModelData, i: Marker, j: Marker, opposite: bool) -> Iterator[str]:
-    """Why a joint that lets two shafts bend but not twist, or twist by half a turn, cannot be assembled.
+    """Yield an error if shafts are too far from zero or half a turn of twist for a joint that constrains the twist.
 
-    The twist is that about the axes z, which are one where the shafts are in line, in one sense or the other.
+    The twist is about the z axes, which coincide if the shafts are in line; `opposite` reverses one of them.
     """
     turned = _between_frames(model, i, j)
     across, along = (
@@ -83,7 +83,7 @@ def initially_twisted(model: ModelData, i: Marker, j: Marker, opposite: bool) ->
 
 
 def initially_askew(model: ModelData, i: Marker, j: Marker) -> Iterator[str]:
-    """Why a joint that keeps each axis of a marker parallel or opposite to its namesake cannot be assembled."""
+    """Yield an error if axes are too far from pairwise parallel or opposite for a joint that keeps them so."""
     turned = _between_frames(model, i, j)
     if min(_angle(turned @ half) for half in HALF_TURNS) >= FARTHEST - ANGLE_ROUNDING:
         yield (
@@ -93,17 +93,15 @@ def initially_askew(model: ModelData, i: Marker, j: Marker) -> Iterator[str]:
 
 
 def _between_axes(model: ModelData, i: Marker, j: Marker) -> float:
-    """The angle between the axes z at the initial pose, deg."""
     a, b = model.initial_marker(i), model.initial_marker(j)
     return math.degrees(math.acos(np.clip(a.z @ b.z, -1, 1)))
 
 
 def _between_frames(model: ModelData, i: Marker, j: Marker) -> np.ndarray:
-    """The rotation matrix from marker j to marker i at the initial pose."""
+    """Return the rotation matrix from marker j to marker i at the initial pose."""
     a, b = model.initial_marker(i), model.initial_marker(j)
     return b.axes.T @ a.axes
 
 
 def _angle(rotation: np.ndarray) -> float:
-    """The angle of a rotation, deg."""
     return math.degrees(math.acos(np.clip((np.trace(rotation) - 1) / 2, -1, 1)))

@@ -1,7 +1,7 @@
-"""Where a wheel meets a road, and how it slips there.
+"""Contact point of a wheel with a road, and slip at this point.
 
-The point of contact lies in the wheel's plane, below its centre: on the line through the centre that is perpendicular to
-the spin axis and to the wheel's heading on the road (Pacejka, Tire and Vehicle Dynamics, 2012, sec. 2.2 and 9.2).
+The contact point is in the wheel's plane below its centre. It is on the line through the centre that is perpendicular
+to the spin axis and to the wheel's heading (Pacejka, Tire and Vehicle Dynamics, 2012, sec. 2.2 and 9.2).
 """
 
 from __future__ import annotations
@@ -16,24 +16,25 @@ from .wrench import velocity
 
 @dataclass(frozen=True)
 class ContactPoint:
-    """A wheel on a road, in ground axes.
+    """Contact of a wheel with a road, in ground axes.
 
     Attributes
     ----------
     point : Matrix
-        Of contact, m.
+        Contact point, m.
     forward, left, normal : Matrix
-        Unit vectors of the ISO axes at the contact: heading of the wheel in the road, across it, out of the road.
+        Unit vectors of the ISO axes at the contact: the wheel's heading in the road plane, across it, normal to the
+        road.
     radius : Expr
-        From the wheel's centre to the point of contact, m.
+        Loaded radius, from the wheel's centre to the contact point, m.
     camber : Expr
-        Angle of the wheel's plane to the road's normal, rad; above zero the top leans to the right.
+        Angle of the wheel's plane to the road normal, rad; positive if the top leans to the right.
     vx, vy, vz : Expr
-        Velocity of the point of contact, which doesn't turn with the wheel, along the axes, m/s.
+        Velocity of the contact point, which does not rotate with the wheel, along these axes, m/s.
     spin : Expr
-        Angular velocity of the wheel about its axis, rad/s; above zero when it rolls forward.
+        Angular velocity of the wheel about its axis, rad/s; positive rolling forward.
     friction : Expr
-        The road's factor.
+        Friction factor of the road.
     """
 
     point: Any
@@ -50,7 +51,7 @@ class ContactPoint:
 
 
 def contact_point(e: Symbolic) -> ContactPoint:
-    """Where the wheel of marker i, whose y axis is its spin axis, meets the road of j."""
+    """Return the contact of the wheel of marker i, whose y axis is its spin axis, with the road of j."""
     from sympy import asin
 
     centre, axis = e.named(e.i.point), e.named(e.i.y)
@@ -71,8 +72,7 @@ def contact_point(e: Symbolic) -> ContactPoint:
 
 
 def _surface(e: Symbolic, point: Any) -> tuple[Any, Any, Any, Any]:
-    """Below or above a point: how far along and across the road it is, the point's distance from the road's tangent plane there,
-    and its normal."""
+    """Return a point's coordinates along and across the road, its distance from the tangent plane, and the normal."""
     from sympy import Matrix, sqrt
 
     local = point if e.j is None else Matrix([(point - e.j.point).dot(axis) for axis in e.j.axes])
@@ -91,7 +91,7 @@ def _surface(e: Symbolic, point: Any) -> tuple[Any, Any, Any, Any]:
 
 
 def _heading(e: Symbolic, axis: Any, n: Any) -> tuple[Any, Any]:
-    """The wheel's heading in the road, and the direction in its plane away from the road."""
+    """Return the wheel's heading in the road plane, and the direction in the wheel's plane away from the road."""
     from sympy import sqrt
 
     across = e.named(axis.cross(n))
@@ -100,7 +100,7 @@ def _heading(e: Symbolic, axis: Any, n: Any) -> tuple[Any, Any]:
 
 
 def _motion(e: Symbolic, centre: Any, axis: Any, arm: Any) -> tuple[Any, Any]:
-    """The spin, and the velocity of the point of contact, both against the road."""
+    """Return the spin, and the velocity of the contact point, both relative to the road."""
     omega, v = e.named(e.i.omega), e.rate(e.i.point)
     if e.j is not None:
         omega = e.named(omega - e.j.omega)
@@ -110,10 +110,10 @@ def _motion(e: Symbolic, centre: Any, axis: Any, arm: Any) -> tuple[Any, Any]:
 
 
 def slips(e: Symbolic, contact: ContactPoint, sliding: Any, slow: Any) -> tuple[Any, Any, Any]:
-    """Longitudinal slip, tangent of the slip angle, and the speed that they refer to, in the steady state.
+    """Return the steady-state longitudinal slip, the tangent of the slip angle, and their reference speed.
 
-    kappa = -Vsx/V and tan(alpha) = Vy/V, with the sliding velocity Vsx = Vx - Re Omega and V = abs(Vx), below the speed `slow`
-    (slow^2 + Vx^2)/(2 slow): smooth through a standstill.
+    kappa = -Vsx/V and tan(alpha) = Vy/V, with the sliding velocity Vsx = Vx - Re Omega and V = abs(Vx). Below the speed
+    `slow` V = (slow^2 + Vx^2)/(2 slow), which is smooth at zero speed.
     """
     forward = magnitude(contact.vx)
     missing = above_zero(e.named(slow - forward))

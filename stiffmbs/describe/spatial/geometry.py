@@ -1,4 +1,4 @@
-"""Shapes of bodies in space."""
+"""Shapes of spatial bodies."""
 
 from __future__ import annotations
 
@@ -13,27 +13,27 @@ from .orientation import IDENTITY, Orientation
 
 
 class Polyline(PolylineShape):
-    """A line from point to point."""
+    """Polyline."""
 
     points: tuple[Point, ...] = Field(min_length=2, description="in the body's own axes from its origin, m")
 
 
 class Placed(Shape):
-    """Base of the shapes that have a place and an orientation."""
+    """Base of the shapes with a position and an orientation."""
 
     point: Point = Field(ORIGIN, description="its middle (of a mesh the origin) in the body's own axes, m")
     orientation: Orientation = Field(IDENTITY, description="of its axes against the body's")
 
 
 class Box(Placed):
-    """A block."""
+    """Cuboid."""
 
     type: Literal["box"] = "box"
     size: tuple[si.PositiveLength, si.PositiveLength, si.PositiveLength] = Field(description="along its x, y and z, m")
 
 
 class Cylinder(Placed):
-    """A cylinder about its z."""
+    """Cylinder about its z axis."""
 
     type: Literal["cylinder"] = "cylinder"
     radius: si.PositiveLength = Field(description="m")
@@ -41,7 +41,7 @@ class Cylinder(Placed):
 
 
 class Sphere(Placed):
-    """A ball."""
+    """Sphere."""
 
     type: Literal["sphere"] = "sphere"
     radius: si.PositiveLength = Field(description="m")
@@ -53,4 +53,4 @@ class Mesh(MeshShape, Placed):
 
 SHAPES = (Polyline, Box, Cylinder, Sphere, Mesh)
 SpatialGeometry = Annotated[tuple[Annotated[Any, OneOfShapes(*SHAPES)], ...], OneFor()]
-"""The shapes of a body, one after the other; one may stand alone."""
+"""Shapes of a body; a single one needs no list."""

@@ -1,4 +1,4 @@
-"""Contact of solids by Adams' IMPACT, with Coulomb friction by its smooth curve, shared by the pairs of shapes."""
+"""Base of contacts by Adams' IMPACT function, with smoothed Coulomb friction."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ from .marker import Marker
 from .wrench import Pairs, velocity
 
 SLOW = 1e-6
-"""Part of the stiction velocity that keeps the direction of sliding from being undefined at rest."""
+"""Offset of the sliding speed relative to the stiction velocity, for a defined direction at rest."""
 
 
 @dataclass(frozen=True)
 class Touch:
-    """Where two solids may touch, in ground axes.
+    """Possible contact of two solids, in ground axes.
 
     Attributes
     ----------
     gap : Expr
-        Distance of the surfaces, m; below zero where they overlap.
+        Distance of the surfaces, m; negative for a penetration.
     point : Matrix
-        Of contact, m.
+        Contact point, m.
     normal : Matrix
         Unit vector towards the solid of marker i.
     """
@@ -37,11 +37,12 @@ class Touch:
 
 
 class Impact(Force):
-    """Base of contacts by IMPACT (it has no kind: scenes name its subclasses, which say where solids touch).
+    """Base of contacts by IMPACT; scenes use its subclasses, which define the contact points.
 
-    Where the gap g is below zero the solids repel each other with N = max(0, k (-g)^e - c g' step(g, -d, 1, 0, 0)).  They rub with
-    mu(v) N against the sliding velocity v at the point of contact.  mu goes from 0 to mu_s at the stiction velocity and on to mu_d
-    at the friction velocity, each by a cubic.  Without damping and friction there is the potential k (-g)^(e+1)/(e+1).
+    For a gap g < 0 the normal force is N = max(0, k (-g)^e - c g' step(g, -d, 1, 0, 0)). The friction force is mu(v) N,
+    opposite to the sliding velocity v at the contact point. mu rises from 0 to mu_s at the stiction velocity, and
+    changes to mu_d at the friction velocity, each by a cubic. Without damping and friction there is the potential k
+    (-g)^(e+1)/(e+1).
 
     MSC Adams/Solver, CONTACT statement and IMPACT function.
     """
@@ -67,12 +68,12 @@ class Impact(Force):
 
     @classmethod
     def touches(cls, e: Symbolic) -> list[Touch]:
-        """All places where the solids may touch, each with a force of its own."""
+        """Return all possible contacts, each with its own force."""
         raise NotImplementedError
 
     @classmethod
     def powers(cls, e: Symbolic) -> Pairs:
-        """Each force on the relative velocity of the points in contact."""
+        """Return each force on the relative velocity of the points in contact."""
         pairs: Pairs = []
         for touch in cls.touches(e):
             n, point = e.named(touch.normal), e.named(touch.point)
@@ -88,7 +89,7 @@ class Impact(Force):
 
     @classmethod
     def potential(cls, e: Symbolic) -> Any:
-        """k (-g)^(e+1)/(e+1) for each place where the solids overlap."""
+        """Return the sum of k (-g)^(e+1)/(e+1) over all penetrations."""
         from sympy import Piecewise
 
         power = e.exponent + 1
@@ -97,7 +98,7 @@ class Impact(Force):
 
     @classmethod
     def event_functions(cls, e: Symbolic) -> Any:
-        """Each gap, and what is above zero where the solids push: damping may end the push, and let it begin again, while they overlap."""
+        """Return each gap, and an expression that is positive while N > 0; damping can interrupt N."""
         from sympy import Max, Min
 
         found = []
@@ -116,12 +117,11 @@ def _pressure(e: Symbolic, gap: Any, rate: Any) -> Any:
 
 
 def _push(e: Symbolic, depth: Any, rate: Any) -> Any:
-    """The force at a depth of overlap, N, below zero where the solids part faster than they push."""
+    """Return the force at a penetration, N; negative if damping exceeds the elastic force."""
     return e.stiffness * depth**e.exponent - e.damping * rate * _rising(depth / e.depth)
 
 
 def _per_speed(e: Symbolic, sliding: Any) -> Any:
-    """mu over the sliding speed."""
     from sympy import sqrt
 
     speed = e.named(sqrt(sliding.dot(sliding) + (SLOW * e.stiction_velocity) ** 2))
@@ -131,7 +131,7 @@ def _per_speed(e: Symbolic, sliding: Any) -> Any:
 
 
 def _rising(x: Any) -> Any:
-    """Adams' STEP from 0 at 0 to 1 at 1."""
+    """Return Adams' STEP from 0 at 0 to 1 at 1."""
     from sympy import Max, Min
 
     z = Min(Max(x, 0), 1)
@@ -139,7 +139,7 @@ def _rising(x: Any) -> Any:
 
 
 def seen_from(point: Any, marker: Any) -> Any:
-    """The components of a point along the axes of a marker, from its own point."""
+    """Return the components of a point relative to a marker, along its axes."""
     from sympy import Matrix
 
     return Matrix([(point - marker.point).dot(axis) for axis in (marker.x, marker.y, marker.z)])

@@ -1,4 +1,4 @@
-"""Markers in space with the numbers of the bodies' described poses in place of symbols."""
+"""Spatial markers with numbers at the described poses."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 @dataclass(frozen=True)
 class InitialMarker:
-    """A marker with numbers, in ground axes.
+    """Marker with numbers, in ground axes.
 
     Attributes
     ----------

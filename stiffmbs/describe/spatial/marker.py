@@ -1,4 +1,4 @@
-"""A marker in space: a point and an orientation fixed on a body, or on ground."""
+"""Spatial markers: points and orientations fixed on a body or on ground."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ ORIGIN = (0.0, 0.0, 0.0)
 
 
 class Placement(Described):
-    """Where a named marker sits on its body."""
+    """Position and orientation of a named marker on its body."""
 
     point: Point = Field(ORIGIN, description="position in the body's own axes, from its origin, m")
     orientation: Orientation = Field(IDENTITY, description="of the marker's axes against the body's")
@@ -30,14 +30,14 @@ class Placement(Described):
         def __init__(self, *, point: given.Numbers = ORIGIN, orientation: given.Orientation = IDENTITY) -> None: ...
 
     def numbers(self) -> tuple[float, ...]:
-        """What a kernel takes: the point, the rotation matrix row by row, and the quaternion."""
+        """Return the inputs of kernels: the point, the rotation matrix by rows, and the quaternion."""
         return (*self.point, *(float(part) for part in matrix(self.orientation).ravel()), *self.orientation)
 
 
 class Marker(MarkerReference):
-    """A marker used by an element: of a body by name, or given on the spot.
+    """Marker used by an element: a named marker of a body, or an explicit one.
 
-    Written as ``cart`` (the body's origin with its own axes), ``bar.end`` (a marker that the body names), ``ground``, or
+    Written as ``cart`` (the body's origin with its axes), ``bar.end`` (a named marker of the body), ``ground``, or
     ``{body: bar, point: [-300 mm, 0, 0], orientation: {z: [1, 0, 0]}}``.
 
     Parameters
@@ -45,11 +45,11 @@ class Marker(MarkerReference):
     body : str
         The body, or ``"ground"``.
     marker : str, optional
-        A marker that the body names; excludes `point` and `orientation`.
+        Name of a marker of the body; excludes `point` and `orientation`.
     point : tuple of float
-        Position in the body's own axes, from its origin, m.
+        Position in the body's axes, from its origin, m.
     orientation : Orientation
-        Of the marker's axes against the body's.  The axis of a joint is z.
+        Orientation of the marker's axes relative to the body's. The axis of a joint is z.
     """
 
     dimensions: ClassVar[int | None] = 3
@@ -69,5 +69,5 @@ class Marker(MarkerReference):
         ) -> None: ...
 
     def placement(self) -> Placement:
-        """Where it sits on its body, as given on the spot."""
+        """Return the explicit placement on the body."""
         return Placement.model_construct(point=self.point, orientation=self.orientation)  # checked already

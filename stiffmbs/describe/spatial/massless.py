@@ -1,8 +1,4 @@
-"""What stands for a body's mass or inertia where another program takes none: so slight that nothing else feels it.
-
-A scene's bodies have both.  A link without mass in a chain changes reactions by some 1e-8
-(`tests/adams/trials/test_adams_trial_parts.py`).
-"""
+"""Negligible masses and moments of inertia for bodies of other programs without them; bodies of scenes require both."""
 
 from __future__ import annotations
 
@@ -14,26 +10,27 @@ BEYOND = (
     "found numbers too large to compute with, expected lengths, masses and moments of inertia below 1e100 in SI units"
 )
 MASSLESS = 1e-8
-"""Of the lightest mass, and of that at the mechanism's reach; with a tenth of it reactions feel rounding."""
+"""Mass relative to the lightest one, and moment relative to its moment at the mechanism's reach; smaller values
+increase the rounding errors of reactions."""
 NO_MOMENT = 1e-12
-"""Of the largest principal moment: what rounding leaves of none."""
+"""Rounding tolerance of a zero moment, relative to the largest principal moment."""
 
 
 def massless_moment(least: float, places: Iterable[np.ndarray]) -> float:
-    """A moment of inertia that is none beside that of the lightest mass at the far end of all places, kg m^2."""
+    """Return a moment of inertia that is negligible next to the lightest mass at the mechanism's reach, kg m^2."""
     points = np.array([np.zeros(3), *places])
     reach = float(np.linalg.norm(np.ptp(points, axis=0))) or 1.0
     return MASSLESS * least * reach**2
 
 
 def lacks_inertia(tensor: np.ndarray) -> bool:
-    """Whether a body has no moment of inertia about some axis."""
+    """Return True if a body has no moment of inertia about some axis."""
     moments = np.linalg.eigvalsh(tensor)
     return bool(np.any(np.abs(moments) <= NO_MOMENT * moments[-1]))
 
 
 def filled(tensor: np.ndarray, moment: float) -> np.ndarray:
-    """A tensor of inertia whose principal moments are the given one where they were nothing."""
+    """Return an inertia tensor with the given moment in place of zero principal moments."""
     moments, axes = np.linalg.eigh(tensor)
     whole: np.ndarray = (axes * np.where(np.abs(moments) <= NO_MOMENT * moments[-1], moment, moments)) @ axes.T
     return whole

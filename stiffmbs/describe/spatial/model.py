@@ -1,4 +1,4 @@
-"""The model in space: its kinds of joints and forces, and what it holds by name."""
+"""Spatial model: its kinds of joints and forces, and its named content."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ AnyForce: Any = any_of(FORCES)
 
 
 class SpatialData(ModelData):
-    """What a model in space holds."""
+    """Content of a spatial model."""
 
     origin = Placement()
     output_names = OF_SPACE
@@ -54,7 +54,7 @@ class SpatialData(ModelData):
     )
 
     def angle_counters(self) -> Iterator[tuple[str, AngleCounter]]:
-        """Of the angles az(i, j) in requests: only the integration sees every turn, however far apart output points are."""
+        """Yield counters for the angles az(i, j) in requests; only the integration can count their turns reliably."""
         angles = (
             term for output in self.outputs().values() for term in output.terms if term.function in CONTINUOUS_ANGLES
         )
@@ -62,12 +62,12 @@ class SpatialData(ModelData):
             yield str(term), counter_of(str(term), frozenset(self.bodies))
 
     def inertial(self, bodies: Mapping[str, Body]) -> Iterable[tuple[str, Force]]:
-        """The bodies' weights and the gyroscopic torques of their turning."""
+        """Yield the weights and gyroscopic torques of the bodies."""
         yield from weights(bodies, self.gravity)
         yield from turnings(bodies)
 
     def initial_marker(self, marker: MarkerReference) -> InitialMarker:
-        """A marker with numbers, in ground axes, at the initial pose."""
+        """Return a marker with numbers, in ground axes, at the initial pose."""
         placed = self.place(marker)
         if marker.body == GROUND:
             return InitialMarker(np.array(placed.point), matrix(placed.orientation))
@@ -76,13 +76,13 @@ class SpatialData(ModelData):
         return InitialMarker(point, matrix(product(body.orientation, placed.orientation)))
 
     def carried(self, marker: MarkerReference) -> tuple[str, Placement]:
-        """The body that carries a marker, and where it sits on it, from the centre of mass in the principal axes."""
+        """Return the body that carries a marker, and the placement from its centre of mass in the principal axes."""
         placed = self.place(marker)
         return marker.body, placed if marker.body == GROUND else self.bodies[marker.body].carried(placed)
 
 
 class Model(RunnableModel[SpatialData, Body, BodyHandle]):
-    """A model in space built in Python, piece by piece.
+    """Spatial model built in Python.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Which of its two quaternions a marker has, so that two markers are drawn less than half a turn apart."""
+"""Sign of a marker's quaternion for a relative rotation of less than half a turn."""
 
 from __future__ import annotations
 
@@ -14,10 +14,9 @@ if TYPE_CHECKING:
 
 
 def nearest(model: ModelData, i: Marker, j: Marker) -> Marker:
-    """Marker i, as a point and that of the two quaternions of its orientation which is nearer to that of marker j.
+    """Return marker i with the sign of its quaternion that is nearer to the quaternion of marker j.
 
-    Bodies in motion keep to the quaternion that they are described with, so that a rotation of one against the other
-    goes on past half a turn.
+    The quaternions of bodies are continuous during motion, so a relative rotation can continue beyond half a turn.
     """
     if _product(_quaternion(model, i), _quaternion(model, j)) >= 0:
         return i

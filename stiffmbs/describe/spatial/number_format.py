@@ -1,4 +1,4 @@
-"""Numbers as a scene writes them."""
+"""Number format of scenes."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from .orientation import from_matrix
 
 
 def plain(value: float) -> float | int:
-    """A Python number: whole where it is, and no minus before a zero."""
+    """Return a Python number: an int if it is whole, without negative zero."""
     value = float(value)
     return int(value) if value.is_integer() and abs(value) < 1e15 else value
 
 
 def vector(values: Iterable[float]) -> list[float | int]:
-    """A list of such numbers."""
+    """Return a list of such numbers."""
     return [plain(value) for value in values]
 
 
 def quaternion(axes: np.ndarray) -> list[float | int]:
-    """The orientation whose axes stand in the columns of a matrix, as w, x, y, z."""
+    """Return the orientation whose axes are the columns of a matrix, as w, x, y, z."""
     return vector(from_matrix(axes))

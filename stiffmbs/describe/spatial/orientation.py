@@ -1,8 +1,8 @@
-"""Orientations in space: unit quaternions, and what may stand for one in a scene.
+"""Orientations in space: unit quaternions, and their equivalents in scenes.
 
-A quaternion p = (w, x, y, z) turns a vector of the oriented axes into the axes that they are given in, v = A(p) v'; p and
--p are the same orientation.  Conventions of Shoemake (SIGGRAPH 1985); Nikravesh, Computer-Aided Analysis of
-Mechanical Systems (1988), chapter 6, calls them Euler parameters.
+A quaternion p = (w, x, y, z) transforms a vector from the oriented axes to the reference axes, v = A(p) v'; p and -p
+are the same orientation. Conventions of Shoemake (SIGGRAPH 1985); Nikravesh, Computer-Aided Analysis of Mechanical
+Systems (1988), chapter 6, calls them Euler parameters.
 """
 
 from __future__ import annotations
@@ -24,13 +24,14 @@ Quaternion = tuple[float, float, float, float]
 IDENTITY: Quaternion = (1.0, 0.0, 0.0, 0.0)
 AXES = "xyz"
 ROUGH = 1e-3
-"""How far what is written may be from a unit quaternion or a rotation matrix: four digits are enough, a slip is not."""
+"""Tolerance of a given unit quaternion or rotation matrix, for values written with four digits."""
 UNIT = 1e-15
-"""How far rounding alone leaves a unit quaternion from length 1; such a one is kept as it is, so that it can be written and read."""
+"""Tolerance of the length of a unit quaternion that is not normalised again, so that written quaternions are read
+exactly."""
 
 
 def matrix(p: Sequence[float]) -> np.ndarray:
-    """The rotation matrix A(p) of a unit quaternion, shape (3, 3); its columns are the oriented axes."""
+    """Return the rotation matrix A(p) of a unit quaternion, shape (3, 3); its columns are the oriented axes."""
     w, x, y, z = p
     return np.array([
         [w * w + x * x - y * y - z * z, 2 * (x * y - w * z), 2 * (x * z + w * y)],
@@ -40,7 +41,7 @@ def matrix(p: Sequence[float]) -> np.ndarray:
 
 
 def product(p: Sequence[float], q: Sequence[float]) -> Quaternion:
-    """The orientation q given in the axes of p: A(pq) = A(p) A(q)."""
+    """Return the orientation q given in the axes of p: A(pq) = A(p) A(q)."""
     (a, b, c, d), (w, x, y, z) = p, q
     return (
         a * w - b * x - c * y - d * z,
@@ -51,21 +52,21 @@ def product(p: Sequence[float], q: Sequence[float]) -> Quaternion:
 
 
 def conjugate(p: Sequence[float]) -> Quaternion:
-    """The turn back: A(p)^T."""
+    """Return the inverse rotation, A(p)^T."""
     w, x, y, z = p
     return w, -x, -y, -z
 
 
 def rotated(p: Sequence[float], v: Sequence[float]) -> np.ndarray:
-    """A vector of the oriented axes in the axes that they are given in, A(p) v, shape (3,)."""
+    """Transform a vector from the oriented axes to the reference axes, A(p) v, shape (3,)."""
     return matrix(p) @ np.asarray(v, dtype=float)
 
 
 def from_matrix(A: np.ndarray) -> Quaternion:
-    """The quaternion of a rotation matrix, its largest component above zero.
+    """Return the quaternion of a rotation matrix, with its largest component positive.
 
-    Shepperd, Quaternion from rotation matrix, J. Guidance and Control 1 (1978) 223-224: of the four products p_k p
-    the one with the largest p_k.
+    Shepperd, Quaternion from rotation matrix, J. Guidance and Control 1 (1978) 223-224: of the four products p_k p the
+    one with the largest p_k.
     """
     products = np.array([
         [1 + A[0, 0] + A[1, 1] + A[2, 2], A[2, 1] - A[1, 2], A[0, 2] - A[2, 0], A[1, 0] - A[0, 1]],
@@ -77,17 +78,17 @@ def from_matrix(A: np.ndarray) -> Quaternion:
 
 
 def about(axis: int, angle: float) -> Quaternion:
-    """A turn about one of the axes x, y, z (0, 1, 2), rad."""
+    """Return a rotation about one of the axes x, y, z (0, 1, 2), rad."""
     p = [math.cos(angle / 2), 0.0, 0.0, 0.0]
     p[1 + axis] = math.sin(angle / 2)
     return p[0], p[1], p[2], p[3]
 
 
 class OrientationField:
-    """Marks a field as an orientation: a quaternion, a matrix, Euler angles, or one or two axes."""
+    """Marker of a field for an orientation: a quaternion, a matrix, Euler angles, or one or two axes."""
 
     def read(self, found: Any, info: ValidationInfo) -> Quaternion:
-        """The unit quaternion of what stands in the scene."""
+        """Return the unit quaternion of an entry of a scene."""
         parameters = (info.context or {}).get("parameters")
         match found:
             case {"euler": sequence, "angles": angles, **others} if not others:
@@ -128,7 +129,7 @@ class OrientationField:
 
 
 Orientation = Annotated[Quaternion, OrientationField()]
-"""A unit quaternion (w, x, y, z), given as such or by a matrix, by body-fixed Euler angles, or by axes."""
+"""Unit quaternion (w, x, y, z), given directly or by a matrix, by body-fixed Euler angles, or by axes."""
 
 
 def _listed(found: Any, count: int) -> Any:
@@ -160,7 +161,7 @@ def _from_rows(rows: list[list[float]]) -> Quaternion:
 
 
 def _from_euler(sequence: Any, angles: list[float]) -> Quaternion:
-    """Turns one after the other, each about an axis as it has been turned so far (body-fixed, intrinsic)."""
+    """Return the orientation of consecutive rotations about rotated axes (body-fixed, intrinsic)."""
     fits = isinstance(sequence, str) and len(sequence) == 3 and set(sequence) <= set(AXES)
     if not fits or sequence[0] == sequence[1] or sequence[1] == sequence[2]:
         raise FormulaError(
@@ -185,14 +186,14 @@ def _from_axes(axes: dict[str, np.ndarray]) -> Quaternion:
 
 
 def _shortest(k: int, a: np.ndarray) -> Quaternion:
-    """The shortest turn of the k-th axis into the unit direction a."""
+    """Return the shortest rotation of the k-th axis to the unit vector a."""
     e = np.eye(3)[k]
     half = np.array([1 + e @ a, *np.cross(e, a)])
     return _unit(half) if np.linalg.norm(half) > 1e-8 else about((k + 1) % 3, math.pi)
 
 
 def _from_two(first: str, a: np.ndarray, second: str, b: np.ndarray) -> Quaternion:
-    """The axes of which the first has the direction a exactly, and the second lies in the plane of a and b."""
+    """Return the orientation whose first axis is a, and whose second axis is in the plane of a and b."""
     across = b - (b @ a) * a
     if np.linalg.norm(across) < ROUGH:
         raise FormulaError(f"found the axes {first} and {second} in one direction, expected two that differ")

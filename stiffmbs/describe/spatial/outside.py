@@ -5,18 +5,18 @@ from __future__ import annotations
 from typing import Any
 
 LEAST_DISTANCE = 1e-9
-"""m, added to distances in quadrature, so that their derivatives exist at zero."""
+"""Offset of distances in quadrature, m, for finite derivatives at zero."""
 
 
 def above(x: Any) -> Any:
-    """What a coordinate exceeds zero by."""
+    """Return max(x, 0)."""
     from sympy import Max
 
     return Max(x, 0)
 
 
 def length(*parts: Any) -> Any:
-    """Of a vector by its components, with a derivative where it vanishes."""
+    """Return the length of a vector, with a finite derivative at zero."""
     from sympy import sqrt
 
     return sqrt(sum(part**2 for part in parts) + LEAST_DISTANCE**2)

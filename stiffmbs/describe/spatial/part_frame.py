@@ -1,4 +1,4 @@
-"""Frames of parts in space: where a part stands, and how it is mirrored."""
+"""Frames of spatial parts: placement and mirroring."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ from .marker import ORIGIN, Point
 from .orientation import AXES, IDENTITY, Orientation, Quaternion, about, conjugate, matrix, product, rotated
 
 STRAIGHT = 1e-12
-"""Entries of a rotation matrix below which axes are at right angles."""
+"""Largest off-diagonal entry of the mirror in ground axes that is parallel to them."""
 
 
 class SpatialUse(Use):
-    """A part placed in space.
+    """Part placed in space.
 
     Parameters
     ----------
     position, orientation
-        Of the part's frame in the axes of the body that it is placed on, from that body's origin, m.
+        Position (m) and orientation of the part's frame in the axes of its mount, from that body's origin.
     mirror : str, optional
-        The coordinate of the part's frame, x, y or z, that changes its sign.
+        Coordinate of the part's frame, x, y or z, that changes its sign.
     """
 
     position: Point = Field(ORIGIN, description="of the part's frame on its mount, m")
@@ -38,19 +38,19 @@ class SpatialUse(Use):
 
 @dataclass(frozen=True)
 class SpatialFrame:
-    """Takes a point x of a part to p + A S x: S changes signs of coordinates, A rotates.
+    """Transformation of a point x of a part to p + A S x: S changes signs of coordinates, A rotates.
 
-    Each frame X within a mirrored part, of a body or a marker, becomes S X S, so that it stays right-handed.  Along all of
-    these axes the k-th component of a force changes its sign as S_kk, and that of a torque or rotation as det S S_kk.
+    Each frame X within a mirrored part, of a body or a marker, becomes S X S and remains right-handed. Along all of
+    these axes the k-th component of a force changes its sign by S_kk, and that of a torque or rotation by det S S_kk.
 
     Attributes
     ----------
     point : triple of float
         p, m.
     orientation : quaternion
-        Of A.
+        Orientation of A.
     signs : triple of float
-        The diagonal of S.
+        Diagonal of S.
     """
 
     point: tuple[float, ...] = ORIGIN
@@ -59,69 +59,69 @@ class SpatialFrame:
 
     @classmethod
     def of_use(cls, use: Any) -> Self:
-        """Where a use places its part, and how it mirrors it."""
+        """Return the placement and mirroring of a use."""
         assert isinstance(use, SpatialUse)
         return cls(use.position, use.orientation, tuple(-1.0 if use.mirror == axis else 1.0 for axis in AXES))
 
     @classmethod
     def of_body(cls, body: Any) -> Self:
-        """A body's own axes, in ground axes."""
+        """Return the frame of a body in ground axes."""
         return cls(body.position, body.orientation)
 
     @property
     def handedness(self) -> float:
-        """det S: 1, or -1 for a mirror image."""
+        """Determinant of S: 1, or -1 for a mirror image."""
         return math.prod(self.signs)
 
     @property
     def rotation_signs(self) -> tuple[float, ...]:
-        """How rotations about the axes change their signs."""
+        """Signs of rotations about the axes."""
         return tuple(self.handedness * sign for sign in self.signs)
 
     def mirror(self) -> Self:
-        """The mirror alone, which is what points and axes on a mirrored body undergo in that body's own axes."""
+        """Return the mirror alone, which applies to points and axes in the axes of a mirrored body."""
         return type(self)(signs=self.signs)
 
     def inverse(self) -> Self:
-        """What takes points outside back into this frame, which must not be mirrored."""
+        """Return the inverse transformation; the frame must not be mirrored."""
         back = conjugate(self.orientation)
         return type(self)(tuple(-float(part) for part in rotated(back, self.point)), back)
 
     def then(self, inner: SpatialFrame) -> Self:
-        """The frame within this one of a part within the part."""
+        """Return the frame of a nested part."""
         signs = tuple(a * b for a, b in zip(self.signs, inner.signs, strict=True))
         return type(self)(self.to_outside(inner.point), self.oriented(inner.orientation), signs)
 
     def to_outside(self, x: tuple[float, ...]) -> tuple[float, ...]:
-        """A point of the part outside of it."""
+        """Transform a point of the part to the outer axes."""
         return tuple(p + d for p, d in zip(self.point, self.turned(x), strict=True))
 
     def turned(self, v: tuple[float, ...]) -> tuple[float, ...]:
-        """A vector of the part outside of it."""
+        """Transform a vector of the part to the outer axes."""
         mirrored = tuple(sign * part for sign, part in zip(self.signs, v, strict=True))
         if self.orientation == IDENTITY:
             return mirrored
         return tuple(float(part) for part in rotated(self.orientation, mirrored))
 
     def oriented(self, p: Quaternion) -> Quaternion:
-        """An orientation in the part outside of it."""
+        """Transform an orientation in the part to the outer axes."""
         return product(self.orientation, (p[0], *self._as_rotation(p[1:])))
 
     def _as_rotation(self, v: tuple[float, ...]) -> Any:
         return tuple(sign * part for sign, part in zip(self.rotation_signs, v, strict=True))
 
     def placed(self, marker: Any) -> Any:
-        """A marker, or a placement, in the axes outside."""
+        """Return a marker or a placement in the outer axes."""
         update = {"point": self.to_outside(marker.point), "orientation": self.oriented(marker.orientation)}
         return marker.model_copy(update=update)
 
     def half_turned(self, marker: Any, axis: str) -> Any:
-        """A marker with an axis the other way round, turned about the next one."""
+        """Return a marker with an axis reversed, rotated about the next one."""
         turn = about((AXES.index(axis) + 1) % 3, math.pi)
         return marker.model_copy(update={"orientation": product(marker.orientation, turn)})
 
     def placed_body(self, body: Body) -> Body:
-        """A body of the part as a body of the ground that this frame stands on."""
+        """Return a body of the part in ground axes."""
         own = self.mirror()
         inertia = np.outer(self.signs, self.signs) * np.array(body.inertia)
         return body.model_copy(
@@ -138,7 +138,7 @@ class SpatialFrame:
         )
 
     def ground_signs(self) -> tuple[float, ...] | None:
-        """How components along the ground's axes change their signs; None where the mirror is oblique to them."""
+        """Return the signs of components along ground axes; None if the mirror is oblique to them."""
         A = matrix(self.orientation)
         whole = A @ np.diag(self.signs) @ A.T
         straight = np.max(np.abs(whole - np.diag(np.diag(whole)))) < STRAIGHT

@@ -1,8 +1,9 @@
-"""Slips that follow the motion of a wheel by relaxation lengths, as the contact patch of a tyre is deflected on the way.
+"""Transient slips of a tyre by relaxation lengths.
 
-With the sliding velocity Vsx = Vx - Re Omega and Vy along and across the wheel's heading, the deflections x and y of the patch
-have x' = -Vsx - Vx x/sigma_x and y' = Vy - Vx y/sigma_y, and the slips are x/sigma_x and atan(y/sigma_y): at speed those of the
-steady state with a lag of the first order, at rest a spring.  Pacejka, Tire and Vehicle Dynamics (2006), sec. 8.5 and 8.6.
+The deflections x and y of the contact patch satisfy x' = -Vsx - abs(Vx) x/sigma_x and y' = Vy - abs(Vx) y/sigma_y. The
+sliding velocity is Vsx = Vx - Re Omega along the wheel's heading and Vy across it. The slips are x/sigma_x and
+atan(y/sigma_y): a first-order lag of the steady state at speed, and a spring at rest. Pacejka, Tire and Vehicle
+Dynamics (2006), sec. 8.5 and 8.6.
 """
 
 from __future__ import annotations
@@ -15,19 +16,19 @@ from ..roads.road import above_zero, magnitude
 from .contact_point import ContactPoint
 
 DEFLECTIONS = ("deflection_x", "deflection_y")
-"""The states of a tyre with relaxation lengths, m."""
+"""States of a tyre with relaxation lengths, m."""
 LEAST_RELAXATION_LENGTH = 0.01
-"""m, the least relaxation length: where a wheel lifts off they would be zero."""
+"""Smallest relaxation length, m; otherwise it would be zero at lift-off."""
 RENEWED = 2
-"""Where a wheel slides at a standstill its patch is renewed each 1/2 relaxation length, so that slips there end at 1/2; by
-rolling alone a blocked wheel would be deflected ever further."""
+"""Decay of the deflections of a sliding wheel at rest, per relaxation length, which limits its slips to 1/2. Otherwise
+the deflection of a locked wheel would grow without bound."""
 DAMPING = 0.02
-"""s, by which a tyre at rest is a damper beside a spring, as the tread's rubber is; its part is gone at the speed `slow`."""
+"""Damping time of a tyre at rest, s, for the damping of the tread rubber; it vanishes at the speed `slow`."""
 
 
 @dataclass(frozen=True)
 class Lagged:
-    """Slip, tangent of the slip angle, and the rates of the deflections."""
+    """Slip, tangent of the slip angle, and rates of the deflections."""
 
     slip: Any
     tangent: Any
@@ -35,7 +36,7 @@ class Lagged:
 
 
 def lagged(e: Symbolic, contact: ContactPoint, sliding: Any, lengths: tuple[Any, Any]) -> Lagged:
-    """The slips of a tyre whose own states are the deflections.
+    """Return the slips of a tyre whose own states are the deflections.
 
     Parameters
     ----------

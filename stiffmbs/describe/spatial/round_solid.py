@@ -1,8 +1,10 @@
-"""Ellipsoids, boxes and cylinders as Minkowski sums of ellipsoids, whose surfaces have one normal and one point for each other.
+"""Ellipsoids, boxes and cylinders as Minkowski sums of ellipsoids, which makes their surfaces smooth and strictly
+convex.
 
-The support function of the sum of ellipsoids with matrices M about one middle is h(n) = sum sqrt(n^T M n), and h'(n) is the point
-of the surface with the normal n.  A box is the sum of three thin ellipsoids along its axes, a cylinder that of a thin one along
-its axis and a flat one across.  Schneider, Convex Bodies: The Brunn-Minkowski Theory (2014), sec. 1.7 and 3.5.
+The support function of the sum of concentric ellipsoids with matrices M is h(n) = sum sqrt(n^T M n). Its gradient h'(n)
+is the surface point with the normal n. A box is the sum of three thin ellipsoids along its axes. A cylinder is that of
+a thin one along its axis and a flat one normal to it. Schneider, Convex Bodies: The Brunn-Minkowski Theory (2014), sec.
+1.7 and 3.5.
 """
 
 from __future__ import annotations
@@ -14,30 +16,30 @@ from ..element import Symbolic
 
 Shape = Literal["ellipsoid", "box", "cylinder"]
 ROUNDING = 1e-4
-"""Radius of the edges of boxes and cylinders as a part of half their least size."""
+"""Edge radius of boxes and cylinders relative to half their smallest size."""
 
 
 @dataclass(frozen=True)
 class RoundSolid:
-    """A solid about a middle, with its axes.
+    """Solid about its centre, in its axes.
 
     Attributes
     ----------
     ellipsoids : list of lists of three expressions
         Squares of their semi-axes, m^2.
     least : expression
-        Half of the least size, m.
+        Half the smallest size, m.
     """
 
     ellipsoids: list[list[Any]]
     least: Any
 
     def support(self, n: Any) -> Any:
-        """How far the solid reaches from its middle along a unit vector, which is given along its axes."""
+        """Return the support function for a unit vector along its axes."""
         return sum(_reach(squares, n) for squares in self.ellipsoids)
 
     def point(self, e: Symbolic, n: Any) -> Any:
-        """The point of its surface where n is normal, from its middle, along its axes."""
+        """Return the surface point with the normal n, from its centre, along its axes."""
         from sympy import Matrix
 
         reaches = [e.named(_reach(squares, n)) for squares in self.ellipsoids]
@@ -47,7 +49,7 @@ class RoundSolid:
 
 
 def round_solid(e: Symbolic, shape: Shape, size: Any) -> RoundSolid:
-    """A solid of whole sizes along its axes; the axis of a cylinder is z."""
+    """Return a solid with the given full sizes along its axes; the axis of a cylinder is z."""
     from sympy import Min
 
     halves = [e.named(whole / 2) for whole in size]

@@ -14,7 +14,7 @@ from .model import SpatialData
 
 
 class SpatialScene(SpatialData, Scene):
-    """A scene in space."""
+    """Scene in space."""
 
     variables: dict[str, Annotated[Output, OutputField(OF_SPACE)]] = Field(
         default_factory=dict, description="formulas by name, which other formulas use"

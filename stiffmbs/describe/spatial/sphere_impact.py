@@ -1,4 +1,4 @@
-"""Contact of a sphere with a solid that its centre stays outside of, shared by the shapes of that solid."""
+"""Base of contacts of a sphere with a solid."""
 
 from __future__ import annotations
 
@@ -15,9 +15,10 @@ from .outside import length
 
 
 class SphereImpact(Impact):
-    """Base of contacts of a sphere about marker i with a solid about marker j (it has no kind: scenes name its subclasses).
+    """Base of contacts of a sphere about marker i with a solid about marker j; scenes use its subclasses.
 
-    The point of contact is the one of the solid nearest to the sphere's centre.  The run stops where the centre enters the solid.
+    The contact point is the point of the solid nearest to the sphere's centre. The run stops when the centre enters the
+    solid.
     """
 
     beyond: ClassVar[str] = (
@@ -33,12 +34,12 @@ class SphereImpact(Impact):
 
     @classmethod
     def way(cls, e: Symbolic) -> Any:
-        """From the nearest point of the solid to the sphere's centre, along the axes of j."""
+        """Return the vector from the nearest point of the solid to the sphere's centre, along the axes of j."""
         raise NotImplementedError
 
     @classmethod
     def touches(cls, e: Symbolic) -> list[Touch]:
-        """One at the nearest point."""
+        """Return the contact at the nearest point."""
         way = cls.way(e)
         distance = e.named(length(*way))
         x, y, z = (part / distance for part in way)
@@ -47,5 +48,5 @@ class SphereImpact(Impact):
 
     @classmethod
     def limits(cls, e: Symbolic) -> Any:
-        """A thousandth of the radius before the centre enters the solid."""
+        """Return the distance of the centre from the solid, less a thousandth of the radius."""
         return (length(*cls.way(e)) - e.radius / 1000,)

@@ -1,4 +1,4 @@
-"""The angle of a body's spin, where its quaternion doesn't follow that."""
+"""Spin angle of a body whose quaternion excludes the spin."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from ..states.equation import StateEquation
 
 
 class SpinAngle(StateEquation):
-    """The angle, rad, that a body is turned by about a principal axis besides what its quaternion tells; made by the presolve."""
+    """Angle, rad, of a body's spin about a principal axis, which its quaternion excludes; created by the presolve."""
 
     kind: ClassVar[str] = ""
 

@@ -1,4 +1,4 @@
-"""What tyres share: the contact of a wheel with a road, its load, and the wrench of a law on the wheel."""
+"""Base of tyres: contact of a wheel with a road, load, and wrench on the wheel."""
 
 from __future__ import annotations
 
@@ -24,24 +24,24 @@ CHANNELS = (
 
 @dataclass(frozen=True)
 class Rolling:
-    """What the law of a tyre depends on, a symbol each.
+    """Arguments of the force law of a tyre, one symbol each.
 
     Attributes
     ----------
     load : Symbol
-        Normal force of the road on the tyre, N, zero or above.
+        Normal force of the road on the tyre, N, zero or positive.
     slip : Symbol
-        kappa, above zero when driving.
+        kappa, positive when driving.
     slip_angle : Symbol
-        alpha, rad; above zero the tyre moves to its left, and its lateral force is below zero.
+        alpha, rad; positive if the tyre moves to its left, with a negative lateral force.
     camber : Symbol
-        gamma, rad; above zero the top leans to the right.
+        gamma, rad; positive if the top leans to the right.
     speed : Symbol
-        abs(Vx), m/s, that slips refer to: never zero.
+        abs(Vx), m/s, the reference speed of slips: never zero.
     direction : Symbol
-        Vx over `speed`: 1 forward, -1 backward, in between near a standstill.
+        Vx over `speed`: 1 forward, -1 backward, with a smooth transition near zero speed.
     friction : Symbol
-        The road's factor.
+        Friction factor of the road.
     """
 
     load: Any
@@ -55,8 +55,7 @@ class Rolling:
 
 @dataclass(frozen=True)
 class _Touch:
-    """A tyre on a road: the contact, the radial deflection (m), the load (N), slip, tangent of the slip angle, the speed that
-    these refer to (m/s), and the rates of the tyre's own states."""
+    """Contact, radial deflection (m), load (N), slip, tangent of slip angle, reference speed (m/s), state rates."""
 
     contact: ContactPoint
     deflection: Any
@@ -68,13 +67,14 @@ class _Touch:
 
 
 class Tyre(Force):
-    """Base of tyres in space (it has no kind).  A subclass is its fields, its `law`, and perhaps how it carries its load.
+    """Base of tyres in space; a subclass defines its fields, its `law`, and optionally its load.
 
-    Marker i is the centre of the wheel on the body that spins, its y axis the spin axis, to the left of its heading.  The road
-    meets the wheel in one point (`stiffmbs.describe.spatial.contact_point`).  Channels, besides the wrench on the wheel, are
-    those of the ISO axes at that point, x forward, y to the left, z out of the road: the forces ``longitudinal``, ``lateral``
-    and ``load`` (N), the torques ``overturning``, ``rolling`` and ``aligning`` (N m), ``slip``, ``slip_angle`` and ``camber``
-    (rad), and ``deflection`` (m).  The elastic energy of a tyre is not counted in energy.total.
+    Marker i is the centre of the wheel on the spinning body, its y axis the spin axis, to the left of its heading. The
+    road meets the wheel in one point (`stiffmbs.describe.spatial.contact_point`). The wrench on the wheel is reported.
+    Further channels are resolved in the ISO axes at that point, x forward, y to the left, z out of the road. They are
+    the forces ``longitudinal``, ``lateral`` and ``load`` (N), the torques ``overturning``, ``rolling`` and ``aligning``
+    (N m), ``slip``, ``slip_angle`` and ``camber`` (rad), and ``deflection`` (m). energy.total does not include the
+    elastic energy of a tyre.
     """
 
     channels: ClassVar[tuple[str, ...]] = CHANNELS
@@ -97,39 +97,38 @@ class Tyre(Force):
 
     @staticmethod
     def law(e: Symbolic, rolling: Rolling) -> tuple[Any, Any, Any, Any, Any]:
-        """Fx, Fy, Mx, My, Mz on the tyre at the point of contact, along the ISO axes, N and N m."""
+        """Return Fx, Fy, Mx, My, Mz on the tyre at the contact point, along the ISO axes, N and N m."""
         raise NotImplementedError
 
     @classmethod
     def relaxation_lengths(cls, e: Symbolic, load: Any, camber: Any) -> tuple[Any, Any]:
-        """Longitudinal and lateral relaxation length, m, of a tyre that has `own_states`, `DEFLECTIONS`."""
+        """Return the longitudinal and lateral relaxation length, m, of a tyre with the `own_states` `DEFLECTIONS`."""
         raise NotImplementedError
 
     @staticmethod
     def unloaded_radius(e: Symbolic) -> Any:
-        """Radius without load, m."""
+        """Return the unloaded radius, m."""
         return e.radius
 
     @staticmethod
     def carried(e: Symbolic, deflection: Any, rate: Any) -> Any:
-        """The load at a deflection above zero, N; it is never taken below zero."""
+        """Return the load at a positive deflection, N; negative values are replaced by zero."""
         return e.stiffness * deflection + e.damping * rate
 
     @staticmethod
     def rim_contact(e: Symbolic, deflection: Any, camber: Any) -> tuple[Any, Any] | None:
-        """Return the normal force of the rim on the road, N, and its overturning torque, N m, or None for a tyre without rim contact."""
+        """Return the rim's normal force on the road, N, and its overturning torque, N m, or None."""
         return None
 
     @classmethod
     def rolling_radius(cls, e: Symbolic, deflection: Any) -> Any:
-        """Effective rolling radius, m: with a third of the deflection below the unloaded one."""
+        """Return the effective rolling radius, m: the unloaded radius less a third of the deflection."""
         from sympy import Rational
 
         return cls.unloaded_radius(e) - deflection * Rational(1, 3)
 
     @classmethod
     def _touching(cls, e: Symbolic) -> _Touch:
-        """How the tyre touches the road, and how it slips there."""
         from sympy import Max, Piecewise
 
         contact = contact_point(e)
@@ -145,7 +144,7 @@ class Tyre(Force):
 
     @classmethod
     def _acting(cls, e: Symbolic) -> tuple[Any, Rolling, Any, Any]:
-        """Return the contact, the arguments of the law, the deflection, and the forces Fx, Fy, N and torques including the rim."""
+        """Return the contact, the arguments of the law, the deflection, and forces and torques with the rim."""
         from sympy import atan
 
         touch = cls._touching(e)
@@ -161,12 +160,12 @@ class Tyre(Force):
 
     @classmethod
     def rates(cls, e: Symbolic) -> Any:
-        """Of the deflections along the road of a tyre with relaxation lengths."""
+        """Return the rates of the contact patch deflections of a tyre with relaxation lengths."""
         return cls._touching(e).rates
 
     @classmethod
     def powers(cls, e: Symbolic) -> Pairs:
-        """The wrench at the point of contact on the wheel, and the opposite on the road's body."""
+        """Return the wrench at the contact point on the wheel, and the opposite on the road's body."""
         contact, _, _, (fx, fy, normal, mx, my, mz) = cls._acting(e)
         axes = contact.forward, contact.left, contact.normal
         force = e.named(_along(axes, (fx, fy, normal)))
@@ -178,7 +177,7 @@ class Tyre(Force):
 
     @classmethod
     def measured(cls, e: Symbolic) -> list[Any]:
-        """In the order of `channels`."""
+        """Return the values of `channels`, in order."""
         _, rolling, deflection, (fx, fy, normal, mx, my, mz) = cls._acting(e)
         return [
             fx, fy, normal, mx, my, mz, rolling.slip, rolling.slip_angle, rolling.camber, deflection,

@@ -1,1 +1,1 @@
-"""States of the user's own: values that differential equations or algebraic equations determine beside the motion."""
+"""User-defined states: solutions of differential or algebraic equations in addition to the motion."""

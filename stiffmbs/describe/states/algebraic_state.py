@@ -1,4 +1,4 @@
-"""An algebraic state: a value that an equation without rates determines at every instant (Adams: VARIABLE, implicit)."""
+"""Algebraic state: solution of an algebraic equation at every time (Adams: VARIABLE, implicit)."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from .state import Scale, StateValue
 
 
 class AlgebraicState(Described):
-    """A value x with zero(x) = 0 at every instant; any formula may use it by its name.
+    """Variable x with zero(x) = 0 at every time; formulas use it by its name.
 
     Examples
     --------
-    The pressure behind a valve, whose flow is that of a piston of area A with a leak::
+    The pressure upstream of a valve, whose flow is that of a piston of area A with a leak::
 
         states: {p: {zero: "p/(c + abs(p))^0.5 + leak*p - A*piston.vx", start: 100 kPa}}
         forces: {push: {type: force, i: piston, force: ["-A*p", 0]}}
@@ -43,13 +43,13 @@ class AlgebraicState(Described):
         def __init__(self, *, zero: Law, start: Number = 0.0, scale: Number = 1.0) -> None: ...
 
     def formulas(self) -> Iterator[tuple[str, Formula]]:
-        """Its formulas by field."""
+        """Yield its formulas by field."""
         yield "zero", self.zero
 
     def values(self, name: str) -> Iterator[tuple[str, StateValue]]:
-        """What is solved for, by full name."""
+        """Yield its unknowns by full name."""
         yield name, StateValue(self.zero, float(self.start), float(self.scale), algebraic=True)
 
     def outputs(self, name: str) -> Iterator[tuple[str, Formula]]:
-        """Formulas that are known by a name: none."""
+        """Yield no outputs."""
         yield from ()

@@ -1,4 +1,4 @@
-"""Numbers of any dimension that remember the unit which they were written with."""
+"""Numbers of any dimension with the unit in which they were given."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ from ..units.units import ANY, Quantity
 
 
 class Amount(float):
-    """A finite number in SI units, and what is known of its dimension.
+    """Finite number in SI units, with its known dimension.
 
     Attributes
     ----------
     known : Known
-        A number without a unit may have any dimension.
+        A number without a unit can have any dimension.
     """
 
     known: Known = PLAIN
 
     @classmethod
     def read(cls, found: Any, info: ValidationInfo) -> Amount:
-        """The number that stands in the scene, or is given in Python."""
+        """Return the number given in a scene or in Python."""
         if isinstance(found, Amount):
             return found
         parameters = (info.context or {}).get("parameters")
@@ -38,11 +38,11 @@ class Amount(float):
 
     @property
     def dimension(self) -> Known:
-        """What formulas know of it: nothing where no unit was written."""
+        """Dimension for formulas; unknown without a unit."""
         return self.known if self.known.stated else UNKNOWN
 
     def written(self) -> Quantity:
-        """As a quantity with the unit that it had."""
+        """Return a quantity with the original unit."""
         return Quantity(float(self), self.known.exponents if self.known.stated else None)
 
     @classmethod
@@ -55,7 +55,7 @@ class Amount(float):
 
 
 def positive(amount: Amount) -> Amount:
-    """Refuse a number that is zero or less.
+    """Return a positive number, refuse others.
 
     Raises
     ------

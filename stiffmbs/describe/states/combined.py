@@ -1,4 +1,4 @@
-"""Weighted sums of formulas and states as formulas."""
+"""Weighted sums of formulas and states."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ from ..formula.formula import Formula
 from ..table import Table
 
 Weighted = tuple[float, Formula | str]
-"""A number, and the formula or state that it multiplies."""
+"""Weight, and the formula or state that it multiplies."""
 
 
 def combined(parts: Sequence[Weighted], *formulas: Formula) -> Formula:
-    """The sum of weights times formulas and states.
+    """Return a weighted sum of formulas and states.
 
     Parameters
     ----------
     parts : sequence of (float, Formula or str)
     *formulas : Formula
-        Those among the parts, and others whose parameters are kept with it.
+        Formulas among the parts, and others whose parameters the sum keeps.
     """
     kept = [(weight, part) for weight, part in parts if weight]
     terms = [_times(weight, ast.Name(part) if isinstance(part, str) else part.tree) for weight, part in kept]

@@ -1,4 +1,4 @@
-"""What states bring into the equations of a model; made by the model from its section `states`."""
+"""Equations of states, created by the model from its section `states`."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from .name import StateName
 
 
 class StateEquation(Element):
-    """The equation of a state: what its rate is, or what is zero for an algebraic one."""
+    """Equation of a state: its rate, or the residual of an algebraic state."""
 
     kind: ClassVar[str] = ""
 
@@ -18,12 +18,12 @@ class StateEquation(Element):
 
     @staticmethod
     def rate(e: Symbolic) -> Any:
-        """x' of the state x, or what is zero in place of it."""
+        """Return x' of the state x, or the residual of an algebraic state."""
         raise NotImplementedError
 
 
 class FormulaOfRate(StateEquation):
-    """The equation of a state by a formula: x' = formula, or 0 = formula of an algebraic one."""
+    """Equation of a state by a formula: x' = formula, or 0 = formula for an algebraic state."""
 
     formula: OfMotion
 
@@ -33,7 +33,7 @@ class FormulaOfRate(StateEquation):
 
 
 class Reported(Element):
-    """A formula that is reported under the name of its element, as the output of a transfer function is."""
+    """Formula reported under the name of its element, such as the output of a transfer function."""
 
     kind: ClassVar[str] = ""
 

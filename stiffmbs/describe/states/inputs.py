@@ -1,4 +1,4 @@
-"""Inputs: values by name that another program gives a model, and that its formulas use."""
+"""Inputs: named values for formulas, set by another program."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ TABLE = "values"
 
 
 class _InputField:
-    """Marks a field as the value of an input: a number, or a table of time."""
+    """Marker of a field for the value of an input: a number, or a table of time."""
 
     @staticmethod
     def read(found: Any, info: ValidationInfo) -> Amount | Table:
-        """The value that stands in the scene."""
+        """Return the value given in the scene."""
         if isinstance(found, Table):
             return found
         return (
@@ -46,7 +46,7 @@ InputValue = Annotated[Any, _InputField]
 
 
 def formulas_of_inputs(inputs: Mapping[str, Amount | Table]) -> Iterator[tuple[str, Formula]]:
-    """What formulas have in the places of inputs."""
+    """Yield the formulas that replace the inputs."""
     for name, value in inputs.items():
         if isinstance(value, Table):
             tree: ast.expr = ast.Call(ast.Name(TABLE), [ast.Name(TIME)], [])
@@ -56,7 +56,7 @@ def formulas_of_inputs(inputs: Mapping[str, Amount | Table]) -> Iterator[tuple[s
 
 
 def dimension_of_input(value: Any, parameters: Any) -> Known:
-    """What the value of an input tells of its dimension, before it is validated."""
+    """Return the known dimension of an input before its validation."""
     try:
         return known_of(quantity(value, parameters)) if isinstance(value, str) else UNKNOWN
     except FormulaError:

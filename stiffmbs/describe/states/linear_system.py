@@ -1,4 +1,4 @@
-"""Linear systems between formulas: transfer functions and state space (Adams: TFSISO, LSE)."""
+"""Linear systems with formulas as inputs: transfer functions and state space (Adams: TFSISO, LSE)."""
 
 from __future__ import annotations
 
@@ -23,9 +23,10 @@ Matrix = tuple[Row, ...]
 
 
 class TransferFunction(Described):
-    """The output y of G(s) = numerator(s)/denominator(s), whose input is a formula; known by its name.
+    """Output y of G(s) = numerator(s)/denominator(s) with a formula as input; formulas use y by the name of the entry.
 
-    Its n states are those of the observer canonical form (Kailath, *Linear Systems*, 1980, sec. 2.1), zero at the start.
+    Its n states are those of the observer canonical form (Kailath, *Linear Systems*, 1980, sec. 2.1), zero at the
+    start.
 
     Examples
     --------
@@ -62,7 +63,7 @@ class TransferFunction(Described):
 
     @property
     def _monic(self) -> tuple[list[float], list[float], float]:
-        """The denominator's coefficients behind the first, which is one; those of the strictly proper part; what goes through."""
+        """Monic denominator after its first coefficient, numerator of the strictly proper part, and feedthrough."""
         bottom = _trimmed(self.denominator)
         top = _trimmed(self.numerator)
         b = [x / bottom[0] for x in [0.0] * (len(bottom) - len(top)) + top]
@@ -75,11 +76,11 @@ class TransferFunction(Described):
         return names if through or not a else [name, *names[1:]]
 
     def formulas(self) -> Iterator[tuple[str, Formula]]:
-        """Its formulas by field."""
+        """Yield its formulas by field."""
         yield "input", self.input
 
     def values(self, name: str) -> Iterator[tuple[str, StateValue]]:
-        """What is solved for, by full name: x_k' = -a_k x_1 + x_(k+1) + b_k u."""
+        """Yield its unknowns by full name: x_k' = -a_k x_1 + x_(k+1) + b_k u."""
         a, b, _ = self._monic
         states = self._states(name)
         for k, full in enumerate(states):
@@ -88,7 +89,7 @@ class TransferFunction(Described):
             yield full, StateValue(combined(parts, self.input), 0.0, 1.0)
 
     def outputs(self, name: str) -> Iterator[tuple[str, Formula]]:
-        """y = x_1 + d u, where it is not x_1 itself."""
+        """Yield y = x_1 + d u, unless it is x_1 itself."""
         a, _, through = self._monic
         if through or not a:
             first: list[Weighted] = [(1.0, self._states(name)[0])] if a else []
@@ -96,14 +97,15 @@ class TransferFunction(Described):
 
 
 class LinearSystem(Described):
-    """x' = A x + B u, y = C x + D u with formulas u; its outputs are known by its name, or by names behind it.
+    """State space x' = A x + B u, y = C x + D u with formulas u; outputs are used by its name, or as ``name.output``.
 
     Examples
     --------
     With two outputs, ``actuator.force`` and ``actuator.flow``::
 
         states:
-          actuator: {a: [[-5, 1], [0, -2]], b: [[0], [1]], c: [[1, 0], [0, 1]], input: [cart.vx], outputs: [force, flow]}
+          actuator: {a: [[-5, 1], [0, -2]], b: [[0], [1]], c: [[1, 0], [0, 1]], input: [cart.vx], outputs: [force,
+          flow]}
 
     This is Adams' LSE.
     """
@@ -147,18 +149,18 @@ class LinearSystem(Described):
         return self
 
     def formulas(self) -> Iterator[tuple[str, Formula]]:
-        """Its formulas by field."""
+        """Yield its formulas by field."""
         for k, formula in enumerate(self.input):
             yield f"input.{k}", formula
 
     def values(self, name: str) -> Iterator[tuple[str, StateValue]]:
-        """What is solved for, by full name."""
+        """Yield its unknowns by full name."""
         start = self.start or (0.0,) * len(self.a)
         for k, (of_states, of_inputs) in enumerate(zip(self.a, self.b, strict=True)):
             yield f"{name}.x{k + 1}", StateValue(self._row(name, of_states, of_inputs), start[k], 1.0)
 
     def outputs(self, name: str) -> Iterator[tuple[str, Formula]]:
-        """The rows of y."""
+        """Yield the rows of y."""
         nothing = (0.0,) * len(self.input)
         names = [f"{name}.{output}" for output in self.outputs_] or [name]
         for k, full in enumerate(names):
@@ -170,16 +172,17 @@ class LinearSystem(Described):
 
 
 class PID(Described):
-    """A controller: kp e + ki (integral of e) + kd (derivative of e, filtered), with e = setpoint - input; known by its name.
+    """Controller kp e + ki (integral of e) + kd (filtered derivative of e) with e = setpoint - input, used by name.
 
-    The derivative is that of e behind a low-pass of first order, kd s/(filter s + 1).  Integral and filter are zero at the start.
+    The derivative is that of e with a first-order low-pass, kd s/(filter s + 1). Integral and filter are zero at the
+    start.
 
     Examples
     --------
     ::
 
-        states: {motor: {pid: {input: cart.x, setpoint: 0.4 m, kp: 50, ki: 30, kd: 12, filter: 1 ms}}}
-        forces: {push: {type: force, i: cart, force: [motor, 0]}}
+        states: {motor: {pid: {input: cart.x, setpoint: 0.4 m, kp: 50, ki: 30, kd: 12, filter: 1 ms}}} forces: {push:
+        {type: force, i: cart, force: [motor, 0]}}
     """
 
     input: OfMotion = Field(description="what is controlled: a formula of time, coordinates, velocities and states")
@@ -203,19 +206,19 @@ class PID(Described):
         return self
 
     def formulas(self) -> Iterator[tuple[str, Formula]]:
-        """Its formulas by field."""
+        """Yield its formulas by field."""
         yield "input", self.input
         if self.setpoint is not None:
             yield "setpoint", self.setpoint
 
     def _sum(self, gain: float, *others: Weighted) -> Formula:
-        """gain times the error, and others."""
+        """Return gain times the error, plus other terms."""
         error: list[Weighted] = [(-gain, self.input)]
         error += [(gain, self.setpoint)] if self.setpoint is not None else []
         return combined([*error, *others], *(formula for _, formula in self.formulas()))
 
     def values(self, name: str) -> Iterator[tuple[str, StateValue]]:
-        """What is solved for, by full name: the integral, and the filtered error."""
+        """Yield its unknowns by full name: the integral, and the filtered error."""
         if self.ki:
             yield f"{name}.integral", StateValue(self._sum(1.0), 0.0, 1.0)
         if self.kd and self.filter is not None:
@@ -223,7 +226,7 @@ class PID(Described):
             yield f"{name}.filtered", StateValue(self._sum(rate, (-rate, f"{name}.filtered")), 0.0, 1.0)
 
     def outputs(self, name: str) -> Iterator[tuple[str, Formula]]:
-        """What it asks for."""
+        """Yield the control output."""
         derivative = self.kd / self.filter if self.kd and self.filter is not None else 0.0
         others: list[Weighted] = [(self.ki, f"{name}.integral")] if self.ki else []
         others += [(-derivative, f"{name}.filtered")] if derivative else []
@@ -234,6 +237,5 @@ StateEntry = State | AlgebraicState | TransferFunction | LinearSystem | PID
 
 
 def _trimmed(coefficients: Sequence[float]) -> list[float]:
-    """Without zeros in front."""
     first = next((k for k, x in enumerate(coefficients) if x), len(coefficients))
     return list(coefficients[first:])

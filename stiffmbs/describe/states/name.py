@@ -1,4 +1,4 @@
-"""The name of a state in a field of an element."""
+"""Name of a state in a field of an element."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ from typing import Any
 
 
 def own_state(element: str, state: str) -> str:
-    """The full name of an element's own state."""
+    """Return the full name of an element's own state."""
     return f"{element}.{state}"
 
 
 class StateName(str):
-    """The full name of a state."""
+    """Full name of a state."""
 
     @classmethod
     def __get_pydantic_core_schema__(cls, source: Any, handler: Any) -> Any:

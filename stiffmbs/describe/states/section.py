@@ -1,4 +1,4 @@
-"""The section `states` of a model: which kinds of entries it takes, and what they have to fit."""
+"""Section `states` of a model: kinds of entries and their validation."""
 
 from __future__ import annotations
 
@@ -25,15 +25,15 @@ from .state import State, dimension_of_state
 KINDS: dict[str, type[StateEntry]] = {
     "rate": State, "zero": AlgebraicState, "numerator": TransferFunction, "denominator": TransferFunction, "a": LinearSystem, "pid": PID,
 }  # fmt: skip
-"""The kinds of entries, by a key that only they have."""
+"""Kinds of entries by a key that only they have."""
 
 
 class _Entry:
-    """Marks a field as an entry of the section, told apart by its keys."""
+    """Marker of a field for an entry of the section, with its kind selected by its keys."""
 
     @staticmethod
     def read(found: Any, info: ValidationInfo) -> StateEntry:
-        """The entry that stands in the scene."""
+        """Return the entry given in the scene."""
         if isinstance(found, StateEntry):
             return found
         if not isinstance(found, dict):
@@ -66,7 +66,7 @@ AnyState = Annotated[Any, _Entry]
 
 
 def dimensions_of_entry(name: str, entry: Any, parameters: Any) -> dict[str, Known]:
-    """The names that an entry of a scene gives to formulas, and what it tells of their dimensions, before it is validated."""
+    """Return the names that an entry defines for formulas, with their known dimensions, before its validation."""
     outputs = entry.get("outputs") if isinstance(entry, dict) else getattr(entry, "outputs_", None)
     if isinstance(outputs, list | tuple) and outputs:
         return {f"{name}.{output}": UNKNOWN for output in outputs}
@@ -74,13 +74,13 @@ def dimensions_of_entry(name: str, entry: Any, parameters: Any) -> dict[str, Kno
 
 
 def names_in_formulas(states: Mapping[str, StateEntry]) -> set[str]:
-    """The names by which formulas may use entries: those of states that are the output themselves, and of other outputs."""
+    """Return the names of states and outputs in formulas."""
     found = {full for name, state in states.items() for full, _ in state.outputs(name)}
     return found | {name for name, state in states.items() if any(full == name for full, _ in state.values(name))}
 
 
 def refuse_algebraic_loops(outputs: Mapping[str, Formula]) -> None:
-    """Refuse outputs that depend on themselves at once.
+    """Refuse outputs in algebraic loops.
 
     Raises
     ------
@@ -97,15 +97,15 @@ def refuse_algebraic_loops(outputs: Mapping[str, Formula]) -> None:
 
 
 def refuse_other_meanings(where: str, states: Iterable[str], known: Mapping[str, Collection[str]]) -> None:
-    """Refuse states whose names stand for something else in a scene's formulas.
+    """Refuse states whose names have another meaning in a scene's formulas.
 
     Parameters
     ----------
     where : str
-        In the scene, for messages.
+        Path in the scene, for messages.
     states : iterable of str
     known : mapping of str to collection of str
-        What else formulas name, by section.
+        Other names in formulas, by section.
 
     Raises
     ------
@@ -125,12 +125,12 @@ def check_states(
     names: FormulaNames,
     known: Collection[str] | None,
 ) -> None:
-    """Refuse states whose names have a meaning already, and formulas of what the model does not have.
+    """Refuse states whose names already have a meaning, and formulas with unknown references.
 
     Parameters
     ----------
     known : collection of str or None
-        All states of the model; None while others may still be added.
+        All states of the model; None while others can still be added.
 
     Raises
     ------
@@ -155,7 +155,7 @@ def check_states(
 
 
 def check_reactions(where: str, formula: Formula, joints: Mapping[str, Any]) -> None:
-    """Refuse a formula of reactions of joints that the model does not have, or that are not between two markers."""
+    """Refuse a formula of reactions of unknown joints, or of joints that are not between two markers."""
     for name, joint in formula.reactions():
         if joint not in joints:
             raise ValueError(
@@ -168,7 +168,7 @@ def check_reactions(where: str, formula: Formula, joints: Mapping[str, Any]) -> 
 
 
 def check_states_of(where: str, formula: Formula, states: Collection[str]) -> None:
-    """Refuse a formula of states that the model does not have."""
+    """Refuse a formula with unknown states."""
     for state in formula.states:
         if state not in states:
             raise ValueError(

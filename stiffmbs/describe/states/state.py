@@ -1,4 +1,4 @@
-"""A state of the user's own: a value that a differential equation determines (Adams: DIFF)."""
+"""User-defined state: solution of a differential equation (Adams: DIFF)."""
 
 from __future__ import annotations
 
@@ -21,18 +21,18 @@ Scale = Annotated[Amount, AfterValidator(positive)]
 
 @dataclass(frozen=True)
 class StateValue:
-    """One number that is solved for beside the motion.
+    """Scalar unknown in addition to the motion.
 
     Attributes
     ----------
     rate : Formula or None
-        Of its rate of change; of an algebraic state what is zero in place of it.  None where an element has it.
+        Its rate of change, or the residual of an algebraic state; None if an element defines it.
     start : float
-        Initial value, SI units; of an algebraic state where it is sought from.
+        Initial value, SI units; for an algebraic state the initial guess.
     scale : float
-        A size of it that matters: its absolute tolerance is that of an angle times this.
+        Characteristic size: its absolute tolerance is that of an angle times this.
     algebraic : bool
-        Whether it has no rate: 0 = formula.
+        Whether its equation is 0 = formula, without a rate.
     """
 
     rate: Formula | None
@@ -42,7 +42,7 @@ class StateValue:
 
 
 class State(Described):
-    """A value x with x' = rate, from x = start on; any formula may use it by its name.
+    """Variable x with x' = rate and the initial value start; formulas use it by its name.
 
     Examples
     --------
@@ -76,20 +76,20 @@ class State(Described):
         return self
 
     def formulas(self) -> Iterator[tuple[str, Formula]]:
-        """Its formulas by field."""
+        """Yield its formulas by field."""
         yield "rate", self.rate
 
     def values(self, name: str) -> Iterator[tuple[str, StateValue]]:
-        """What is solved for, by full name."""
+        """Yield its unknowns by full name."""
         yield name, StateValue(self.rate, float(self.start), float(self.scale))
 
     def outputs(self, name: str) -> Iterator[tuple[str, Formula]]:
-        """Formulas that are known by a name, as the output of a transfer function is."""
+        """Yield no outputs; other kinds of entries have named ones, such as a transfer function."""
         yield from ()
 
 
 def dimension_of_state(entry: Any, parameters: Any) -> Known:
-    """What a state's entry in a scene tells of its dimension, before it is validated; nothing where it cannot be read."""
+    """Return the known dimension of a state before its validation; unknown if its start cannot be read."""
     from ..formula.dimension import UNKNOWN, known_of
     from ..formula.text import FormulaError
     from ..units.quantity import quantity

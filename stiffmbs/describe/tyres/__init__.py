@@ -1,1 +1,1 @@
-"""The Magic Formula and files of tyre properties."""
+"""Magic Formula, and files of tyre properties."""

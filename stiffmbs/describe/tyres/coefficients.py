@@ -1,4 +1,4 @@
-"""The coefficients of a Magic Formula tyre: from a property file, or by name."""
+"""Coefficients of a Magic Formula tyre, from a property file or by name."""
 
 from __future__ import annotations
 
@@ -36,16 +36,16 @@ if TYPE_CHECKING:
 
 NUMBERS = (*COEFFICIENTS, *SCALES, *DIMENSIONS)
 UNLIMITED = 1e12
-"""N, the largest load where a file has no FZMAX."""
+"""Largest load of a file without FZMAX, N."""
 DEFAULTS = {
     **dict.fromkeys(COEFFICIENTS, 0.0), **dict.fromkeys(SCALES, 1.0), "VERTICAL_DAMPING": 0.0, "BREFF": 0.0, "DREFF": 0.0,
     "FREFF": 1 / 3, "LONGVL": 16.7, "FZMAX": UNLIMITED, "PTY2": 1.0,
 }  # fmt: skip
-"""FREFF: a rolling radius of the unloaded one less a third of the deflection."""
+"""Default values; FREFF gives the unloaded radius less a third of the deflection as rolling radius."""
 WITH_LENGTHS = 10
-"""What USE_MODE is greater by where slips lag by relaxation lengths."""
+"""Increment of USE_MODE for transient slips by relaxation lengths."""
 MODES = frozenset((*range(5), *range(10, 15)))
-"""USE_MODE without its sign."""
+"""Values of USE_MODE without sign."""
 FITTYPES = (5, 6, 50, 52)
 """FITTYP of MF-Tyre 5.x."""
 SIDES = ("left", "right", "symmetric")
@@ -66,7 +66,7 @@ class TyreProperties(Component):
     Parameters
     ----------
     coefficients : mapping of str to float
-        Those that are left out are 0, scale factors 1.
+        Omitted coefficients are 0, omitted scale factors 1.
     """
 
     coefficients: dict[str, float] = Field(description="by name, SI units")
@@ -109,22 +109,22 @@ class TyreProperties(Component):
 
     @property
     def is_combined(self) -> bool:
-        """Whether there are weights of combined slip."""
+        """True if there are weights of combined slip."""
         return any(self.coefficients.get(name, 0.0) for name in COMBINED)
 
     @property
     def has_lengths(self) -> bool:
-        """Whether there are relaxation lengths."""
+        """True if there are relaxation lengths."""
         return any(self.coefficients.get(name, 0.0) for name in ("PTX1", "PTY1"))
 
     @property
     def is_transient(self) -> bool:
-        """Whether slips are to lag by relaxation lengths: as USE_MODE says, and without it where there are lengths."""
+        """True for slips with relaxation lengths, by USE_MODE, or by default if there are lengths."""
         return self.has_lengths and (self.use_mode is None or abs(self.use_mode) > WITH_LENGTHS)
 
     @property
     def is_mirrored(self) -> bool:
-        """Whether USE_MODE is below zero."""
+        """True if USE_MODE is negative."""
         return self.use_mode is not None and self.use_mode < 0
 
     def in_equations(self) -> dict[str, Any]:
@@ -153,20 +153,20 @@ class TyreProperties(Component):
         speed: Any = None,
         friction: Any = 1.0,
     ) -> dict[str, np.ndarray]:
-        """Forces and torques of steady slip, rolling forward, in ISO axes at the point of contact.
+        """Return forces and torques of steady slip, rolling forward, in ISO axes at the contact point.
 
         Parameters
         ----------
         load : array_like
-            N, above zero.
+            N, positive.
         slip : array_like
-            kappa, above zero when driving.
+            kappa, positive when driving.
         slip_angle, camber : array_like
-            rad; a slip angle above zero gives a lateral force below zero, camber above zero leans the top to the right.
+            rad; a positive slip angle gives a negative lateral force, with positive camber the top leans to the right.
         speed : array_like, optional
             m/s, for the rolling resistance; LONGVL of the file by default.
         friction : array_like
-            Factor of the road.
+            Friction factor of the road.
 
         Returns
         -------
@@ -186,7 +186,7 @@ class TyreProperties(Component):
         Raises
         ------
         InputError
-            When it cannot be read; names the line.
+            If it cannot be read; the message contains the line.
         """
         return _of_file(read_property_file(Path(path)))
 
@@ -241,7 +241,7 @@ def _where(file: PropertyFile, name: str) -> str:
 
 
 def _ranges(file: PropertyFile) -> Iterator[tuple[str, tuple[float, float]]]:
-    """Return the valid ranges of the file by channel; a missing limit is infinite."""
+    """Yield the valid ranges of the file by channel; a missing limit is infinite."""
     for channel, (least, most, dimension) in RANGES.items():
         ends = [file.number(name, dimension) if file.entry(name) else None for name in (least, most)]
         if ends != [None, None]:
@@ -276,7 +276,6 @@ def _bottoming(file: PropertyFile) -> Bottoming | None:
 
 
 def _mode(file: PropertyFile) -> int | None:
-    """USE_MODE, if there is one."""
     if not file.entry("USE_MODE", "MODEL"):
         return None
     mode = file.number("USE_MODE", home="MODEL")
@@ -289,7 +288,6 @@ def _mode(file: PropertyFile) -> int | None:
 
 
 def _side(file: PropertyFile) -> Any:
-    """TYRESIDE, in small letters."""
     side = file.text("TYRESIDE").lower()
     if side and side not in SIDES:
         raise InputError(

@@ -1,9 +1,9 @@
-"""The Magic Formula, MF-Tyre 5.2 and PAC2002: forces and torques of steady slip.
+"""Magic Formula, MF-Tyre 5.2 and PAC2002: forces and torques of steady slip.
 
-Written once, for symbols and for numbers: `p` has the coefficients by name, `f` names what occurs more than once.
+The equations accept symbols and numbers: `p` has the coefficients by name, `f` names common subexpressions.
 
-Pacejka, Tire and Vehicle Dynamics (2006), sec. 4.3.2, with slip angle and camber as angles, and the nominal load FNOMIN where
-its text has the adapted one, as MF-Tyre 5.2 and MSC Adams/Tire (PAC2002) have it.
+Pacejka, Tire and Vehicle Dynamics (2006), sec. 4.3.2, with slip angle and camber as angles, and the nominal load FNOMIN
+in place of the adapted one, as in MF-Tyre 5.2 and MSC Adams/Tire (PAC2002).
 """
 
 from __future__ import annotations
@@ -18,18 +18,17 @@ from ..roads.road import above_zero, magnitude
 
 Name = Callable[[Any], Any]
 LEAST_LOAD = Float("1e-12")
-"""N, beside loads that are divided by: in the air nothing is divided by zero, and on the road it is below rounding."""
+"""Offset of loads in divisors, N, for a tyre without contact; it is below rounding for a tyre on the road."""
 
 
 COMBINED_MODE = "4"
 OF_MODES = {"0": (), "1": (0, 3), "2": (1, 2, 4), "3": (0, 1, 2, 3, 4)}
-"""Which of Fx, Fy, Mx, My, Mz the last digit of USE_MODE asks for, where slips are not combined."""
+"""Components of Fx, Fy, Mx, My, Mz by the last digit of USE_MODE, without combined slip."""
 
 
 @dataclass(frozen=True)
 class Slip:
-    """A state of slip: load (N), kappa, alpha and gamma (rad), the speed over the reference speed, its sign (in between near a
-    standstill), and the road's factor on friction."""
+    """State of slip: load (N), kappa, alpha, gamma (rad), relative speed, direction, road friction factor."""
 
     load: Expr
     kappa: Expr
@@ -41,13 +40,13 @@ class Slip:
 
     @property
     def moving(self) -> Expr:
-        """1 where the wheel moves, 0 at rest: ply steer, conicity and camber thrust are of a rolling tyre."""
+        """Factor of ply steer, conicity and camber thrust: 1 for a moving wheel, 0 at rest."""
         return self.direction**2
 
 
 @dataclass(frozen=True)
 class Curve:
-    """D sin(C atan(B x - E (B x - atan(B x)))) + Sv of one direction, and what other equations use of it."""
+    """Force D sin(C atan(B x - E (B x - atan(B x)))) + Sv in one direction, with its terms for other equations."""
 
     force: Expr
     stiffness: Expr
@@ -59,22 +58,22 @@ class Curve:
 
 
 def magic(b: Any, x: Any, c: Any, curvature: Any) -> Any:
-    """The argument of sine or cosine: C atan(B x - E (B x - atan(B x)))."""
+    """Return the argument of sine or cosine: C atan(B x - E (B x - atan(B x)))."""
     return c * atan(b * x - curvature * (b * x - atan(b * x)))
 
 
 def sign(x: Any) -> Any:
-    """Its sign, 0 at zero."""
+    """Return the sign of a number, 0 at zero."""
     return x / magnitude(x)
 
 
 def at_most_one(x: Any) -> Any:
-    """The lesser of a number and 1."""
+    """Return min(x, 1)."""
     return 1 - above_zero(1 - x)
 
 
 def longitudinal(p: Any, s: Slip, dfz: Any, f: Name) -> Curve:
-    """Pure longitudinal slip."""
+    """Return the force of pure longitudinal slip."""
     gamma = s.gamma * p.LGAX
     shift = f((p.PHX1 + p.PHX2 * dfz) * p.LHX * s.moving)
     kappa = f(s.kappa + shift)
@@ -89,7 +88,7 @@ def longitudinal(p: Any, s: Slip, dfz: Any, f: Name) -> Curve:
 
 
 def lateral(p: Any, s: Slip, dfz: Any, f: Name) -> Curve:
-    """Pure side slip."""
+    """Return the force of pure lateral slip."""
     gamma = f(s.gamma * p.LGAY)
     shift = f(((p.PHY1 + p.PHY2 * dfz) * p.LHY + p.PHY3 * gamma) * s.moving)
     alpha = f(s.alpha + shift)
@@ -107,12 +106,12 @@ def lateral(p: Any, s: Slip, dfz: Any, f: Name) -> Curve:
 
 
 def weight(b: Any, slip: Any, shift: Any, c: Any, curvature: Any, f: Name) -> Any:
-    """A weight of combined slip: 1 where the slip is zero."""
+    """Return a weight of combined slip, 1 for zero slip."""
     return f(cos(magic(b, f(slip + shift), c, curvature)) / cos(magic(b, shift, c, curvature)))
 
 
 def combined(p: Any, s: Slip, x: Curve, y: Curve, dfz: Any, f: Name) -> tuple[Any, Any, Any]:
-    """Fx, Fy, and the lateral force that longitudinal slip induces."""
+    """Return Fx, Fy, and the lateral force induced by longitudinal slip."""
     over_alpha = f(p.RBX1 * cos(atan(p.RBX2 * s.kappa)) * p.LXAL)
     E = at_most_one(p.REX1 + p.REX2 * dfz)
     fx = f(x.force * weight(over_alpha, s.alpha, p.RHX1, p.RCX1, f(E), f))
@@ -125,7 +124,7 @@ def combined(p: Any, s: Slip, x: Curve, y: Curve, dfz: Any, f: Name) -> tuple[An
 
 
 def aligning(p: Any, s: Slip, x: Curve, y: Curve, forces: tuple[Any, Any, Any], dfz: Any, f: Name) -> Any:
-    """The aligning torque: of the pneumatic trail, the residual one, and that of Fx on its arm."""
+    """Return the aligning torque: pneumatic trail, residual torque, and the arm of Fx."""
     fx, fy, induced = forces
     gamma, R = f(s.gamma * p.LGAZ), p.UNLOADED_RADIUS
     stiffer = p.LKY / p.LMUY
@@ -140,7 +139,7 @@ def aligning(p: Any, s: Slip, x: Curve, y: Curve, forces: tuple[Any, Any, Any], 
         )
     )
     driving = f((x.stiffness / (y.stiffness + sign(y.stiffness) * LEAST_LOAD + LEAST_LOAD**2) * s.kappa) ** 2)
-    straight = cos(s.alpha) * s.direction  # in reverse the trail is on the other side
+    straight = cos(s.alpha) * s.direction  # reversed trail when rolling backward
     trail = f(D * cos(magic(B, f(equivalent(of_trail, driving)), p.QCZ1, E)) * straight)
     residual_load = (p.QDZ6 + p.QDZ7 * dfz) * p.LRES + (p.QDZ8 + p.QDZ9 * dfz) * gamma
     residual_most = f(s.load * residual_load * R * p.LMUY * s.friction)
@@ -151,18 +150,20 @@ def aligning(p: Any, s: Slip, x: Curve, y: Curve, forces: tuple[Any, Any, Any], 
 
 
 def equivalent(alpha: Any, driving: Any) -> Any:
-    """A slip angle that stands for both slips, without the sign of the slip angle: trail and residual torque are even in it,
-    and with the sign it would jump."""
+    """Return the magnitude of the equivalent slip angle of both slips.
+
+    Trail and residual torque are even functions of it, and its sign would cause a discontinuity.
+    """
     return atan(sqrt(tan(alpha) ** 2 + driving + Float("1e-60")))
 
 
 def wrench(p: Any, s: Slip, f: Name, is_combined: bool = True) -> tuple[Any, Any, Any, Any, Any]:
-    """Fx, Fy, Mx, My, Mz at the point of contact.
+    """Return Fx, Fy, Mx, My, Mz at the contact point.
 
     Parameters
     ----------
     is_combined : bool
-        Whether the coefficients have the weights of combined slip; without them Fx and Fy are held on the friction ellipse.
+        Whether there are weights of combined slip; without them Fx and Fy are limited by the friction ellipse.
     """
     dfz = increment(p, s.load, f)
     x, y = longitudinal(p, s, dfz, f), lateral(p, s, dfz, f)
@@ -171,7 +172,7 @@ def wrench(p: Any, s: Slip, f: Name, is_combined: bool = True) -> tuple[Any, Any
 
 
 def uncombined(p: Any, s: Slip, f: Name) -> tuple[Any, Any, Any, Any, Any]:
-    """The same of each slip by itself: Fx and My by the longitudinal one, Fy, Mx and Mz by the slip angle."""
+    """Return Fx, Fy, Mx, My, Mz of separate slips: Fx, My by the longitudinal, the others by the slip angle."""
     dfz, none = increment(p, s.load, f), Rational(0)
     x, y = longitudinal(p, s, dfz, f), lateral(p, s, dfz, f)
     mx, my = torques(p, s, x.force, y.force, f)
@@ -179,7 +180,7 @@ def uncombined(p: Any, s: Slip, f: Name) -> tuple[Any, Any, Any, Any, Any]:
 
 
 def of_mode(mode: str, p: Any, s: Slip, f: Name, is_combined: bool) -> tuple[Any, Any, Any, Any, Any]:
-    """The forces and torques that the last digit of USE_MODE asks for; the others are zero."""
+    """Return the forces and torques selected by the last digit of USE_MODE, with zero for the others."""
     if mode == COMBINED_MODE:
         return wrench(p, s, f, is_combined)
     fx, fy, mx, my, mz = uncombined(p, s, f)
@@ -187,7 +188,7 @@ def of_mode(mode: str, p: Any, s: Slip, f: Name, is_combined: bool) -> tuple[Any
 
 
 def relaxation_lengths(p: Any, load: Any, gamma: Any, f: Name) -> tuple[Any, Any]:
-    """Longitudinal and lateral relaxation length, m, by the equations of MF-Tyre 5.2."""
+    """Return the longitudinal and lateral relaxation length, m, by the equations of MF-Tyre 5.2."""
     dfz, R = increment(p, load, f), p.UNLOADED_RADIUS
     along = load * (p.PTX1 + p.PTX2 * dfz) * exp(-p.PTX3 * dfz) * R / p.FNOMIN * p.LSGKP
     by_load = sin(2 * atan(load / (p.PTY2 * p.FNOMIN * p.LFZO)))
@@ -195,13 +196,13 @@ def relaxation_lengths(p: Any, load: Any, gamma: Any, f: Name) -> tuple[Any, Any
 
 
 def increment(p: Any, load: Any, f: Name) -> Any:
-    """dfz, the load over the nominal one, less 1."""
+    """Return dfz, the relative deviation from the nominal load."""
     nominal = p.FNOMIN * p.LFZO
     return f((load - nominal) / nominal)
 
 
 def torques(p: Any, s: Slip, fx: Any, fy: Any, f: Name) -> tuple[Any, Any]:
-    """The overturning and the rolling torque."""
+    """Return the overturning and the rolling resistance torque."""
     R = p.UNLOADED_RADIUS
     mx = R * s.load * (p.QSX1 * p.LVMX + (-p.QSX2 * s.gamma + p.QSX3 * fy / p.FNOMIN) * p.LMX)
     resistance = p.QSY1 + p.QSY2 * fx / p.FNOMIN + p.QSY3 * s.speed + p.QSY4 * s.speed**4
@@ -209,7 +210,7 @@ def torques(p: Any, s: Slip, fx: Any, fy: Any, f: Name) -> tuple[Any, Any]:
 
 
 def on_ellipse(s: Slip, x: Curve, y: Curve, f: Name) -> tuple[Any, Any, Any]:
-    """Fx and Fy of pure slips, both less where together they are beyond the ellipse of mu_x N and mu_y N."""
+    """Return Fx and Fy of pure slips, scaled down to the ellipse of mu_x N and mu_y N if they exceed it."""
     most_x, most_y = x.mu * s.load + LEAST_LOAD, y.mu * s.load + LEAST_LOAD
     beyond = f(sqrt((x.force / most_x) ** 2 + (y.force / most_y) ** 2 + Float("1e-60")))
     less = f(1 / (1 + above_zero(beyond - 1)))

@@ -1,4 +1,4 @@
-"""The names of property files of PAC2002 and MF-Tyre 5.2."""
+"""Keys of property files of PAC2002 and MF-Tyre 5.2."""
 
 from __future__ import annotations
 
@@ -18,20 +18,20 @@ COEFFICIENTS = _words(
     PTX1 PTX2 PTX3 PTY1 PTY2 SSZ1 SSZ2 SSZ3 SSZ4 QSX1 QSX2 QSX3 QSY1 QSY2 QSY3 QSY4
     """
 )
-"""Zero where a file has none."""
+"""Coefficients, zero by default."""
 SCALES = _words(
     """
     LFZO LCX LMUX LEX LKX LHX LVX LGAX LCY LMUY LEY LKY LHY LVY LGAY LTR LRES LGAZ LXAL LYKA LVYKA LS LMX LVMX LMY LSGKP LSGAL
     """
 )
-"""One where a file has none."""
+"""Scale factors, one by default."""
 COMBINED = ("RBX1", "RCX1", "RBY1", "RCY1")
-"""Without these combined slip has no weights."""
+"""Coefficients without which there is no weight of combined slip."""
 DIMENSIONS = {
     "FNOMIN": "force", "UNLOADED_RADIUS": "length", "VERTICAL_STIFFNESS": "stiffness", "VERTICAL_DAMPING": "damping",
     "BREFF": "", "DREFF": "", "FREFF": "", "LONGVL": "velocity", "FZMAX": "force",
 }  # fmt: skip
-"""Other numbers that are used, and what they measure."""
+"""Other numbers that are used, with their dimensions."""
 REQUIRED = ("FNOMIN", "UNLOADED_RADIUS", "VERTICAL_STIFFNESS", "PCX1", "PDX1", "PKX1", "PCY1", "PDY1", "PKY1", "PKY2")
 LATER = _words(
     """
@@ -83,4 +83,4 @@ SAMPLE = {
     "QDZ1": 0.1, "QSX3": 0.1, "QSY1": 0.01, "PHY1": 0.01, "PVX1": 0.02, "RVY1": 0.1, "RVY4": 1.0, "RVY5": 2.0, "RVY6": 1.0,
     "SSZ2": 0.1, "QDZ6": 0.1, "QBZ10": 1.0,
 }  # fmt: skip
-"""A tyre of unit size, for models that are compiled ahead."""
+"""Tyre of unit size, for compilation in advance."""

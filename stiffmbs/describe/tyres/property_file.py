@@ -1,4 +1,4 @@
-"""Files of tyre properties (.tir), as Adams/Tire and MF-Tyre have them: sections of keys and values, with units."""
+"""Files of tyre properties (.tir) of Adams/Tire and MF-Tyre: sections of keys and values, with units."""
 
 from __future__ import annotations
 
@@ -23,19 +23,19 @@ UNITS: Mapping[str, Mapping[str, float]] = {
     "MASS": {"kg": 1.0, "kilogram": 1.0, "gram": 1e-3, "tonne": 1e3, "pound_mass": 0.45359237, "slug": 14.593902937206},
     "TIME": {"second": 1.0, "seconds": 1.0, "sec": 1.0, "s": 1.0, "millisecond": 1e-3, "minute": 60.0, "hour": 3600.0},
 }  # fmt: skip
-"""What the units of a file are in SI units; as Adams/Tire spells them, in any case."""
+"""Units of a file in SI units, by their names in Adams/Tire, case-insensitive."""
 POWERS = {
     "": {}, "length": {"LENGTH": 1}, "force": {"FORCE": 1}, "angle": {"ANGLE": 1}, "stiffness": {"FORCE": 1, "LENGTH": -1},
     "damping": {"FORCE": 1, "TIME": 1, "LENGTH": -1}, "velocity": {"LENGTH": 1, "TIME": -1},
 }  # fmt: skip
-"""Of what units a dimension is made."""
+"""Powers of the units in a dimension."""
 _KEY = re.compile(r"^\s*([A-Za-z_]\w*)\s*=\s*(.*)$")
 _QUOTED = re.compile(r"^'([^']*)'|^\"([^\"]*)\"")
 
 
 @dataclass(frozen=True)
 class Entry:
-    """The value of a key: text without quotes and comment, its line, and the section that it stands in."""
+    """Value of a key: text without quotes and comment, line, and section."""
 
     text: str
     line: int
@@ -83,7 +83,7 @@ class PropertyFile:
         Raises
         ------
         InputError
-            When sections to which the key does not belong give it different values.
+            If sections to which the key does not belong give it different values.
         """
         having = [section for section in self.sections.values() if section.has(key)]
         own = [section for section in having if section.kind == f"[{home}]"]
@@ -109,7 +109,7 @@ class PropertyFile:
         Raises
         ------
         InputError
-            When the value is missing or not a number.
+            If the value is missing or not a number.
         """
         entry = self.entry(key, home)
         if entry is None:
@@ -145,13 +145,13 @@ def read_property_file(path: Path) -> PropertyFile:
     Raises
     ------
     InputError
-        When it cannot be read, or a line is neither a section, a key with a value, a row of numbers nor a comment.
+        If it cannot be read, or a line is neither a section, a key with a value, a row of numbers nor a comment.
     """
     return parse_properties(file_text(path, otherwise="latin-1"), str(path))
 
 
 def parse_properties(text: str, source: str) -> PropertyFile:
-    """The same for its text."""
+    """Return the properties in the text of a file; errors as for `read_property_file`."""
     sections: dict[str, dict[str, Entry]] = {}
     rows: dict[str, tuple[int, list[tuple[float, ...]]]] = {}
     section = ""
@@ -179,7 +179,7 @@ def parse_properties(text: str, source: str) -> PropertyFile:
     tables = {f"[{name}]": Rows(line, tuple(numbers)) for name, (line, numbers) in rows.items()}
     found = {name: Fields(f"[{name}]", "", own, DEFAULT_VALUES) for name, own in sections.items()}
     if "UNITS" in found:
-        found["UNITS"].request(*UNITS)  # also of dimensions that no entry has
+        found["UNITS"].request(*UNITS)  # including unused dimensions
     return PropertyFile(source, found, Fields("table", "", tables))
 
 

@@ -1,4 +1,4 @@
-"""The Magic Formula in numbers: forces and torques of a tyre at given loads and slips, without a model."""
+"""Numerical evaluation of the Magic Formula at given loads and slips, without a model."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from typing import Any
 import numpy as np
 
 CHOICES = ("is_combined", "mode", "is_mirrored", "side", "deflection_load", "bottoming")
-"""What is no number among the properties; of these forces and torques without a model see `is_combined`."""
+"""Properties that are not numbers; `is_combined` is the only one with an effect here."""
 OUTPUTS = ("longitudinal", "lateral", "overturning", "rolling", "aligning")
 
 
 def steady_wrench(
     numbers: Mapping[str, Any], load: Any, slip: Any, slip_angle: Any, camber: Any, speed: Any, friction: Any
 ) -> dict[str, np.ndarray]:
-    """Forces and torques by the names of a tyre's channels; arguments may be arrays that broadcast."""
+    """Return forces and torques by the names of a tyre's channels; arguments may be arrays that broadcast."""
     values = {name: value for name, value in numbers.items() if name not in CHOICES}
     states = [np.asarray(x, dtype=float) for x in (np.minimum(load, values["FZMAX"]), slip, slip_angle, camber)]
     function = _function(tuple(values), bool(numbers["is_combined"]))

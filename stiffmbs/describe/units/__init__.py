@@ -1,1 +1,1 @@
-"""Dimensions, units, and numbers that carry them."""
+"""Dimensions, units, and numbers with units."""

@@ -1,4 +1,4 @@
-"""Reading numbers with units: ``125 mm``, ``20 deg``, ``0.6/2``, all turned to SI with their dimension checked."""
+"""Reading of numbers with units: ``125 mm``, ``20 deg``, ``0.6/2``, converted to SI with a check of the dimension."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from ..formula.text import OF_NUMBERS, UNIT, FormulaError, evaluate, parse
 from .units import ANY, CONSTANTS, DIMENSIONS, UNITS, Quantity, in_units, one
 
 TEXTS = 4096
-"""Whose trees are kept."""
+"""Number of cached texts."""
 LARGEST = 1e100
-"""In SI units; products of three such numbers overflow."""
+"""Largest number, in SI units; products of three such numbers do not overflow."""
 
 
 class _Parsed(NamedTuple):
-    """The tree of a text, which is not to be changed, all its names, and whether values of these decide about its dimension."""
+    """Tree of a text (read-only), all its names, and True if the dimension depends on values of these."""
 
     tree: ast.expr
     names: tuple[str, ...]
@@ -31,7 +31,7 @@ class _Parsed(NamedTuple):
 
 @lru_cache(maxsize=TEXTS)
 def _parsed(text: str) -> _Parsed:
-    """A text, which is read once: studies read the same ones again and again."""
+    """Parse a text, cached because studies read the same texts repeatedly."""
     tree = parse(text)
     nodes = list(ast.walk(tree))
     if any(isinstance(node, ast.Call) for node in nodes):
@@ -45,7 +45,7 @@ def _parsed(text: str) -> _Parsed:
 
 @lru_cache(maxsize=TEXTS)
 def _dimension(text: str, parameters: tuple[tuple[str, Any], ...]) -> Known:
-    """The dimension of a text in which these parameters stand, whose dimensions are given."""
+    """Return the dimension of a text with parameters of the given dimensions."""
     known = {name: Quantity(1.0, dimension) for name, dimension in parameters}
     tree = _parsed(text).tree
     return dimension_of(tree, _named(text, tree, known))
@@ -56,14 +56,12 @@ def _dimension_with(text: str, known: Mapping[str, Quantity]) -> Known:
     if not parsed.by_value:
         try:
             return _dimension(text, tuple((name, known[name].dimension) for name in parsed.names if name in known))
-        except FormulaError:  # is told below, with all parameters
+        except FormulaError:  # reported below, with all parameters
             pass
     return dimension_of(parsed.tree, _named(text, parsed.tree, known))
 
 
 def _named(text: str, tree: ast.expr, known: Mapping[str, Quantity]) -> Callable[[str], Quantity]:
-    """From a name in a text to what it stands for."""
-
     def named(name: str) -> Quantity:
         owner, _, last = name.rpartition(".")
         if owner == UNIT:
@@ -83,7 +81,7 @@ def quantity(text: str, parameters: Mapping[str, Quantity] | None = None) -> Qua
     text : str
         Such as ``"125 mm"``, ``"0.6/2"``, ``"2*sin(20 deg)"``.
     parameters : mapping, optional
-        The scene's own names.
+        Parameters of the scene.
 
     Raises
     ------
@@ -107,19 +105,19 @@ def quantity(text: str, parameters: Mapping[str, Quantity] | None = None) -> Qua
 
 
 def is_unit(node: ast.AST) -> bool:
-    """Whether a part of a formula is a name after a number."""
+    """Return True for a unit, a name after a number in a formula."""
     return isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == UNIT
 
 
 def of_name(
     name: str, text: str, tree: ast.expr, parameters: Mapping[str, Quantity], units: Mapping[str, Quantity] = UNITS
 ) -> Quantity:
-    """What a name that stands alone means in a formula: a parameter, a unit or a constant.
+    """Return the meaning of an undotted name in a formula: a parameter, a unit or a constant.
 
     Raises
     ------
     FormulaError
-        For a name without a meaning, and for a parameter that could be meant for a unit.
+        For an unknown name, and for a parameter that could also be a unit.
     """
     if name in parameters and name in UNITS and any(map(is_unit, ast.walk(tree))):
         raise FormulaError(
@@ -134,7 +132,7 @@ def of_name(
 
 
 VALUES: dict[str, Callable[..., float]] = {name: function.value for name, function in FUNCTIONS.items()}
-"""Of the functions, of plain numbers."""
+"""Functions of plain numbers."""
 
 
 def refuse_cycles(text: str, tree: ast.expr) -> None:
@@ -151,7 +149,7 @@ def refuse_cycles(text: str, tree: ast.expr) -> None:
 
 
 def in_si(found: object, dimension: str, parameters: Mapping[str, Quantity] | None = None) -> float:
-    """Turn what stands in a scene (a number or text) into a finite SI value of the named dimension."""
+    """Convert an entry of a scene (a number or text) to a finite SI value of the named dimension."""
     expected, unit = DIMENSIONS[dimension]
     if isinstance(found, str):
         result = quantity(found, parameters)
@@ -171,7 +169,7 @@ def in_si(found: object, dimension: str, parameters: Mapping[str, Quantity] | No
 
 
 def as_float(found: Any) -> float:
-    """A number in floating point; errors as `in_si`, for a whole number beyond 1e308."""
+    """Convert to floating point; errors as `in_si`, for an integer beyond 1e308."""
     try:
         return float(found)
     except OverflowError:
@@ -179,7 +177,7 @@ def as_float(found: Any) -> float:
 
 
 def _of_ordinary_size(value: float, dimension: str) -> float:
-    """The value, if its square and its products with others are still numbers."""
+    """Return the value, or refuse it if products of it could overflow."""
     if abs(value) > LARGEST:
         raise FormulaError(
             f"found {value:g}, expected {one(dimension)} below {LARGEST:g} {DIMENSIONS[dimension][1]}".rstrip()

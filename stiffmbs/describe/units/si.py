@@ -1,4 +1,4 @@
-"""The types of measured fields: ``si.Length`` is a finite number in metres, or text with a unit of length."""
+"""Types of fields with dimensions: ``si.Length`` is a finite number in metres, or text with a unit of length."""
 
 from __future__ import annotations
 

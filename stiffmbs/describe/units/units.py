@@ -1,4 +1,4 @@
-"""Dimensions, units, and numbers that carry a dimension through arithmetic."""
+"""Dimensions, units, and numbers with a dimension."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ DIMENSIONS: dict[str, tuple[Dimension, str]] = {
 
 @dataclass(frozen=True)
 class Quantity:
-    """A value in SI units and its dimension; a plain number (`dimension` None) fits every dimension."""
+    """Value in SI units with its dimension; a plain number (`dimension` None) fits every dimension."""
 
     value: float
     dimension: Dimension | None = None
@@ -69,25 +69,25 @@ def _units() -> dict[str, Quantity]:
 
 
 POUND, G0 = 0.45359237, 9.80665
-"""kg, and standard gravity, m/s^2."""
+"""Pound in kg, and standard gravity, m/s^2."""
 UNITS = _units()
 NONE = "no unit"
 CONSTANTS = {"pi": Quantity(math.pi)}
 
 
 def one(dimension: str) -> str:
-    """A value of a dimension in a sentence: ``a length``, ``an angle``."""
+    """Return a value of a dimension for a message: ``a length``, ``an angle``."""
     return f"{'an' if dimension[0] in 'aeio' else 'a'} {dimension}"
 
 
 def in_units(dimension: Dimension) -> str:
-    """A dimension as powers of SI units, for sentences: ``kg m^2``."""
+    """Return a dimension as powers of SI units, for messages: ``kg m^2``."""
     powers = [(name, power) for name, power in zip(("kg", "m", "s"), dimension, strict=True) if power]
     return " ".join(name if power == 1 else f"{name}^{power:g}" for name, power in powers) or NONE
 
 
 def named_unit(dimension: Dimension) -> str:
-    """A dimension by the unit that has a name, for sentences: ``N m``; else as `in_units`."""
+    """Return the named unit of a dimension for messages: ``N m``; otherwise as `in_units`."""
     if any(dimension):
         for known, unit in DIMENSIONS.values():
             if known == dimension and "/rad" not in unit:
@@ -96,7 +96,7 @@ def named_unit(dimension: Dimension) -> str:
 
 
 def in_text(quantity: Quantity) -> float | str:
-    """A quantity as a scene writes it, in SI units: its number, or text with its unit."""
+    """Return a quantity in the form of a scene, in SI units: its number, or text with its unit."""
     if quantity.dimension is None:
         return quantity.value
     return f"{quantity.value!r} {in_units(quantity.dimension) if any(quantity.dimension) else 'rad'}"

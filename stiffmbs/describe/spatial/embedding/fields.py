@@ -1,4 +1,4 @@
-"""Elements of the plane as scenes in space write them, field by field."""
+"""Fields of planar elements in the form of spatial scenes."""
 
 from __future__ import annotations
 
@@ -22,16 +22,16 @@ from .markers import Written, point, turned
 
 
 def same(element: Element, angles: Angles, **others: Any) -> Written:
-    """The namesake in space, whose fields mean the same.
+    """Return the spatial element of the same kind, with fields of the same meaning.
 
     Parameters
     ----------
     element : Element
-        Of the plane.
+        Planar element.
     angles : Angles
-        Of its model.
+        Angles of its model.
     **others
-        Fields that are written otherwise; None for those that are not written.
+        Fields with other values; None for omitted ones.
     """
     written: Written = {"type": element.kind}
     for name, field in type(element).model_fields.items():
@@ -42,12 +42,12 @@ def same(element: Element, angles: Angles, **others: Any) -> Written:
 
 
 def namesake(element: Element, angles: Angles) -> Written:
-    """The namesake in space.
+    """Return the spatial element of the same kind.
 
     Raises
     ------
     InputError
-        When there is none.
+        If there is none.
     """
     kinds = JOINTS if isinstance(element, Joint) else FORCES
     if element.kind not in kinds:
@@ -58,7 +58,7 @@ def namesake(element: Element, angles: Angles) -> Written:
 
 
 def plain(value: Any, angles: Angles) -> Any:
-    """A field's value as it is written."""
+    """Return a field's value as written."""
     match value:
         case Marker():
             return marker(value)
@@ -78,20 +78,20 @@ def plain(value: Any, angles: Angles) -> Any:
 
 
 def fields(described: Described, angles: Angles) -> Written:
-    """The fields that do not have their defaults, as they are written."""
+    """Return the fields that differ from their defaults, as written."""
     if isinstance(described, PID):
         return {"pid": {name: plain(value, angles) for name, value in described.__repr_args__()}}
     return {name: plain(value, angles) for name, value in described.__repr_args__()}
 
 
 def marker(found: Marker) -> str | Written:
-    """A marker whose x and y are its planar counterpart's axis and normal."""
+    """Return a marker whose x and y are the axis and normal of its planar counterpart."""
     if found.marker is not None or not (any(found.point) or found.angle):
         return found.label
     return {"body": found.body, **point(found.point), **turned(found.angle)}
 
 
 def oriented(found: Marker, angles: Angles, orientation: Any) -> Written:
-    """A marker with the orientation that a function makes of its planar angle."""
+    """Return a marker with an orientation that is a function of its planar angle."""
     placed = angles.data.place(found)
     return {"body": found.body, **point(placed.point), **orientation(placed.angle)}

@@ -1,4 +1,4 @@
-"""Forces of the plane in space, kind by kind."""
+"""Planar forces in space."""
 
 from __future__ import annotations
 
@@ -12,22 +12,22 @@ from .fields import oriented, plain, same
 from .markers import Written, across, turned
 
 PLANE = (0, 1, 5)
-"""Of six components those in the plane: along x, along y, about z."""
+"""Indices of the in-plane components: along x, along y, about z."""
 SURFACES = {"circle": "sphere", "hole": "hollow"}
 
 
 def force(element: Any, angles: Angles) -> Written:
-    """Without a component along the normal."""
+    """Return a force without a component along the normal."""
     return same(element, angles, force=[*plain(element.force, angles), 0])
 
 
 def torque(element: Any, angles: Angles) -> Written:
-    """About the normal alone."""
+    """Return a torque about the normal."""
     return same(element, angles, torque=[0, 0, plain(element.torque, angles)])
 
 
 def torsion_spring(element: Any, angles: Angles) -> Written:
-    """Its angle counted from where it is drawn, where that is far from zero."""
+    """Return a torsion spring, with a large initial angle subtracted from its marker and free angle."""
     initial = angles.initial(element.i, element.j)
     if abs(initial) <= QUARTER:
         return same(element, angles)
@@ -36,7 +36,7 @@ def torsion_spring(element: Any, angles: Angles) -> Written:
 
 
 def bushing(element: Any, angles: Angles) -> Written:
-    """Six components, of which three have neither stiffness nor damping."""
+    """Return a bushing of six components, three of them without stiffness and damping."""
     initial = angles.initial(element.i, element.j)
     if (element.stiffness[2][2] or element.law_angle is not None) and abs(initial) >= math.pi:
         raise InputError(
@@ -55,13 +55,12 @@ def bushing(element: Any, angles: Angles) -> Written:
 
 
 def _six(three: Any, nothing: Any) -> list[Any]:
-    """Components in the plane among all six."""
     values = dict(zip(PLANE, three, strict=True))
     return [values.get(k, nothing) for k in range(6)]
 
 
 def _six_by_six(three: Any) -> list[Any] | None:
-    """A matrix, by its diagonal if that is all; None for one of zeros alone."""
+    """Return a matrix, by its diagonal if it is diagonal; None if it is zero."""
     rows = [[part or None for part in row] for row in three]
     if not any(part for row in rows for part in row):
         return None
@@ -72,7 +71,7 @@ def _six_by_six(three: Any) -> list[Any] | None:
 
 
 def contact(element: Any, angles: Angles) -> Written:
-    """A circle as a sphere: in the plane they press and slide alike."""
+    """Return a sphere in place of a circle; their contacts in the plane are equivalent."""
     if element.surface == "line":
         plane = oriented(element.j, angles, across)
         written = same(element, angles, surface=None, surface_radius=None, j=plane)
@@ -82,7 +81,7 @@ def contact(element: Any, angles: Angles) -> Written:
 
 
 def python_force(element: Any, angles: Angles) -> Written:
-    """The function's three numbers among six."""
+    """Return a force whose function returns six components."""
     planar = element.function
 
     def function(x: Any) -> list[Any]:

@@ -1,4 +1,4 @@
-"""Formulas of the plane in the names of space."""
+"""Planar formulas with spatial names."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ from .angles import Angles
 
 
 def formula(found: Formula, angles: Angles) -> str | float:
-    """What a scene in space writes for a formula: its number, its text, or the text with other names."""
+    """Return a formula of a spatial scene: its number, its text, or the text with other names."""
     return _written(found.text, found.tree, angles)
 
 
 def request(found: Output | Mapping[str, Output], angles: Angles) -> Any:
-    """The same for a request, of its formulas by the names of their components."""
+    """Return a request of a spatial scene, with formulas by component."""
     if isinstance(found, Output):
         names = Names(frozenset(angles.data.bodies))
         tree = with_full_names(found.written_tree(), names, (*OF_PLANE.measures, *OF_PLANE.actions))
@@ -42,15 +42,13 @@ def _written(text: str, tree: ast.expr, angles: Angles) -> str | float:
 
 
 class _Renamed(ast.NodeTransformer):
-    """Puts measures in the place of ``bar.angle``, ``bar.omega``, ``bar.alpha`` and ``az(a, b)``, and ``hinge.tz`` in that of
-    ``hinge.torque``; all others have the same names."""
+    """Replace ``bar.angle``, ``bar.omega``, ``bar.alpha`` and ``az(a, b)`` by measures, and ``torque`` by ``tz``."""
 
     def __init__(self, angles: Angles) -> None:
         self._angles = angles
         self.any = False
 
     def visit_Attribute(self, node: ast.Attribute) -> ast.AST:
-        """A coordinate of the plane as one in space."""
         owner, data = node.value.id, self._angles.data  # type: ignore[attr-defined]
         if owner in data.requests or owner == UNIT:
             return node
@@ -66,7 +64,6 @@ class _Renamed(ast.NodeTransformer):
         return node
 
     def visit_Call(self, node: ast.Call) -> ast.AST:
-        """A measure of the plane as one in space."""
         called = node.func.id  # type: ignore[attr-defined]
         if called not in (*OF_PLANE.measures, *OF_PLANE.actions):
             return ast.Call(node.func, [self.visit(argument) for argument in node.args], [])

@@ -1,4 +1,4 @@
-"""Shapes of the plane in space: as deep as half of their smaller width, the plane in the middle."""
+"""Planar shapes in space: their depth is half their smaller width, centred on the plane."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from .markers import Written, point, turned
 
 
 def shape(found: Shape) -> Written:
-    """A shape as a scene in space writes it."""
+    """Return a shape in the form of a spatial scene."""
     written: Written = {"type": found.type}
     if found.color is not None:
         written["color"] = found.color

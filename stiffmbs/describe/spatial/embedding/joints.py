@@ -1,4 +1,4 @@
-"""Joints of the plane in space, kind by kind."""
+"""Planar joints in space."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .markers import Written, along
 
 
 def prismatic(joint: Any, angles: Angles) -> Written:
-    """Along z of markers that are turned; the one in space would keep a half turn that it is drawn with."""
+    """Return a joint along z of rotated markers, which would keep a half turn between the markers if drawn so."""
     apart = math.degrees(abs(math.remainder(angles.initial(joint.i, joint.j), TURN)))
     if apart >= FARTHEST:
         raise InputError(f"found its markers drawn {apart:.4g} degrees apart, expected less than {FARTHEST:g} in space")
@@ -24,12 +24,12 @@ def prismatic(joint: Any, angles: Angles) -> Written:
 
 
 def point_on_line(joint: Any, angles: Angles) -> Written:
-    """Along z of markers that are turned."""
+    """Return a joint along z of rotated markers."""
     return same(joint, angles, i=oriented(joint.i, angles, along), j=oriented(joint.j, angles, along))
 
 
 def relation(joint: Relation, angles: Angles) -> Written:
-    """Of coordinates that are known up to whole turns where they are angles."""
+    """Return a relation whose offset is corrected for coordinates that are measured differently in space."""
     if joint.offset is None:
         return same(joint, angles)
     data = angles.data

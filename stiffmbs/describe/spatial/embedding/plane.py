@@ -1,4 +1,4 @@
-"""What keeps the bodies in the plane: joints that do so, and for those without one a joint that does nothing else."""
+"""Constraints that keep bodies in the plane: their joints, or additional planar joints."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from ...model import PlanarData
 
 
 def loose(data: PlanarData) -> Iterator[str]:
-    """One body of each group of bodies that hold each other in a plane, but not in that of the ground."""
+    """Yield one body of each group that is connected in a common plane, but not to the ground's plane."""
     independent_of = {body: body for body in (GROUND, *data.bodies)}
     for joint in data.joints.values():
         if joint.keeps_in_plane:

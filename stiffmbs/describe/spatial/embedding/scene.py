@@ -1,4 +1,4 @@
-"""A planar model, or scene, as a scene in space."""
+"""Conversion of a planar model or scene to a spatial scene."""
 
 from __future__ import annotations
 
@@ -23,18 +23,18 @@ from .plane import loose
 ORDER = (
     "name", "dimensions", "parameters", "tables", "variables", "gravity", "markers", "bodies", "states", "inputs", "joints", "forces", "requests", "figure", "start", "run", "notes",
 )  # fmt: skip
-"""Of the sections in the file."""
+"""Order of sections in the file."""
 CHANNELS = {"omega": "wz", "alpha": "wdz", "torque": "tz"}
-"""What channels of the plane are called in space, where they have other names."""
+"""Spatial names of planar channels, if different."""
 
 
 def scene_in_space(data: PlanarData) -> Written:
-    """The scene in space that a planar model is, in the x-y plane of the ground, element by element.
+    """Return the spatial scene of a planar model in the x-y plane of the ground.
 
     Raises
     ------
     InputError
-        For an element that has no counterpart in space; names it.
+        For an element without a spatial counterpart; the message names it.
     """
     angles = Angles(data)
     joints = _elements("joints", data.joints, angles)
@@ -73,7 +73,7 @@ def _start(start: str | SteadyMotion) -> str | Written | None:
 
 
 def _body(name: str, body: Body, angles: Angles) -> Written:
-    """With moments of inertia like a ball's: the two others do nothing in the plane."""
+    """Return a body with three equal moments of inertia; two of them have no effect in the plane."""
     parts: Written = {
         "mass": body.mass,
         "inertia": [body.inertia] * 3,
@@ -106,14 +106,13 @@ def _elements(
 
 
 def _free(name: str, data: ModelData) -> str:
-    """A name that no part of the model has."""
     while name in {*data.bodies, *data.states, *data.inputs, *data.joints, *data.forces, *data.requests}:
         name += "_"
     return name
 
 
 def _figure(data: Scene, requests: Written, angles: Angles) -> Written | None:
-    """The scene's figure; angles of bodies that it shows, which are no channels of space, are put among the requests."""
+    """Return the scene's figure; shown angles of bodies, which are not channels in space, are added to the requests."""
     if data.figure is None:
         return None
     figure = data.figure
@@ -129,7 +128,7 @@ def _figure(data: Scene, requests: Written, angles: Angles) -> Written | None:
 
 
 def _channel(name: str) -> str:
-    """The channel of space that tells what one of the plane does."""
+    """Return the spatial channel that corresponds to a planar one."""
     owner, _, channel = name.rpartition(".")
     if channel == "angle":
         return f"{owner}_angle"

@@ -1,1 +1,1 @@
-"""Applied forces in space, one kind per file."""
+"""Spatial applied forces, one kind per file."""

@@ -1,4 +1,4 @@
-"""Applied force and torque in space, constant or by formula."""
+"""Spatial applied force and torque, constant or by formula."""
 
 from __future__ import annotations
 
@@ -14,10 +14,11 @@ from ..wrench import Pairs, along_axes, force_at, torque_on
 
 
 class Applied(Force):
-    """Base of applied forces and torques (it has no kind): on marker i's body, and the opposite on marker j's.
+    """Base of spatial applied forces and torques; scenes use its subclasses.
 
-    Three components are along the axes of the ground, of marker i (``axes: body``), or of any marker (`frame`), and
-    turn with these.  Bodies that a formula merely measures, or that carry `frame`, take no force.
+    They act on marker i's body, and the opposite on marker j's. The components are along the axes of the ground, of
+    marker i (``axes: body``), or of any marker (`frame`). Bodies that a formula only measures, or that carry `frame`,
+    receive no force.
     """
 
     i: Marker = Field(description="marker of the body on which it acts")
@@ -33,7 +34,7 @@ class Applied(Force):
 
     @staticmethod
     def vector(e: Symbolic, components: Any) -> Any:
-        """Components along the element's axes as a vector in ground axes."""
+        """Return components along the element's axes as a vector in ground axes."""
         from sympy import Matrix
 
         marker = e.i if e.axes == "body" else e.frame
@@ -41,12 +42,12 @@ class Applied(Force):
 
 
 class AppliedForce(Applied):
-    """A force at a point of a body: constant, or a formula of time and of anything measured.
+    """Force at a point of a body: constant, or a formula of time and of any measured quantity.
 
-    With `j` a second body takes the opposite force at the same point of space (Adams' JFLOAT marker), so that momentum
-    and angular momentum of both are kept.
+    With `j` a second body receives the opposite force at the same point of space (Adams: JFLOAT marker), so linear and
+    angular momentum are conserved.
 
-    A constant force on one body in ground axes has a potential, others have none.
+    A constant force on one body in ground axes has a potential, other forces have none.
 
     This is Adams' VFORCE, together with `AppliedTorque` its GFORCE, and with ``frame: j`` its SFORCE of one body
     (ACTIONONLY); `LineForce` is its SFORCE between two.
@@ -65,12 +66,12 @@ class AppliedForce(Applied):
 
     @classmethod
     def powers(cls, e: Symbolic) -> Pairs:
-        """The force on the velocity of i's point, relative to j's body there."""
+        """Return the force on the velocity of i's point, relative to j's body there."""
         return force_at(e, cls.vector(e, e.force), e.i, e.j)
 
     @staticmethod
     def potential(e: Symbolic) -> Any:
-        """Minus the work of the force from the origin on."""
+        """Return minus the work of the force from the origin."""
         in_ground = e.axes == "ground" and e.frame is None
         if e.j is not None or not in_ground or not all(e.is_constant(component) for component in e.force):
             return 0
@@ -78,10 +79,10 @@ class AppliedForce(Applied):
 
 
 class AppliedTorque(Applied):
-    """A torque on a body: constant, or a formula of time and of anything measured.
+    """Torque on a body: constant, or a formula of time and of any measured quantity.
 
-    With `j` a second body takes the opposite torque.  A torque in space has no potential, constant or not: the work of
-    two turns depends on their order.
+    With `j` a second body receives the opposite torque. A torque in space has no potential, because the work of two
+    rotations depends on their order.
 
     This is Adams' VTORQUE; with ``frame: j`` and only the last component its rotational SFORCE.
     """
@@ -99,5 +100,5 @@ class AppliedTorque(Applied):
 
     @classmethod
     def powers(cls, e: Symbolic) -> Pairs:
-        """The torque on the angular velocity of i's body, relative to j's."""
+        """Return the torque on the angular velocity of i's body, relative to j's."""
         return torque_on(cls.vector(e, e.torque), e.i, e.j)

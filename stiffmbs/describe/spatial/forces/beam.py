@@ -18,12 +18,12 @@ SecondMoment = Annotated[float, Measured("second moment of area", above=0)]
 
 
 class Beam(Elastic):
-    """A massless straight beam of uniform cross section along the x axis of marker j, from j to i.
+    """Massless straight beam of uniform cross section along the x axis of marker j, from j to i.
 
-    Without load i is at (length, 0, 0) in the axes of j, its own axes parallel to them.  The deformation s against that,
-    of place and rotation vector, gives the force -K s - C (v, w) of Timoshenko's linear theory, in j's axes; how it
-    acts is as for the `bushing`.  The whole may move and turn as far as it likes; what is assumed small is the
-    deformation, and a beam that bends far is a chain of several.
+    Without load i is at (length, 0, 0) in the axes of j, with parallel axes. The deformation s relative to this pose
+    consists of displacement and rotation vector. The force of Timoshenko's linear theory is -K s - C (v, w), in j's
+    axes; it acts as for the `bushing`. Only the deformation must be small; for large deflections use a chain of several
+    beams.
 
     With P = 12 E Izz asy/(G A L^2) for bending in the plane of x and y, and 12 E Iyy asz/(G A L^2) in that of x and z::
 
@@ -61,7 +61,7 @@ class Beam(Elastic):
 
     @staticmethod
     def stiffness(e: Symbolic) -> Any:
-        """K, six rows."""
+        """Return K, six rows."""
         E, G, A, L = e.young, e.shear_modulus, e.area, e.length
         along, twist = E * A / L, G * e.torsion / L
         y, yc, c = _bending(E * e.izz, L, 12 * E * e.izz * e.asy / (G * A * L**2))
@@ -74,18 +74,18 @@ class Beam(Elastic):
 
     @staticmethod
     def strain(e: Symbolic) -> list[Any]:
-        """What marker i has moved and turned from where it is without load."""
+        """Return the displacement and rotation of marker i from its unloaded pose."""
         along, *others = Beam.deformation(e)
         return [along - e.length, *others]
 
     @classmethod
     def elastic(cls, e: Symbolic) -> list[Any]:
-        """-K s."""
+        """Return -K s."""
         return pull_back(cls.stiffness(e), cls.strain(e), NO_ROW)
 
     @classmethod
     def viscosity(cls, e: Symbolic) -> Any:
-        """C, given or by its ratio to K."""
+        """Return C, given directly or by its ratio to K."""
         if e.damping_ratio is None:
             return e.damping
         return [[part if part is None else e.damping_ratio * part for part in row] for row in cls.stiffness(e)]
@@ -96,6 +96,6 @@ class Beam(Elastic):
 
 
 def _bending(rigidity: Any, length: Any, shear: Any) -> tuple[Any, Any, Any]:
-    """Force over deflection, force over angle, and moment over angle of a beam's end."""
+    """Return force over deflection, force over angle, and moment over angle at a beam's end."""
     stiff = rigidity / (1 + shear)
     return 12 * stiff / length**3, 6 * stiff / length**2, (4 + shear) * stiff / length

@@ -15,9 +15,9 @@ from ..marker import Marker
 
 
 class BoxPlaneImpact(Impact):
-    """A solid box that presses on a plane with its eight corners.
+    """Contact of the eight corners of a solid box with a plane.
 
-    The law is that of `Impact` at each corner: N = max(0, k (-g)^e - c g' step(g, -d, 1, 0, 0)), and mu(v) N.
+    The force law is that of `Impact` at each corner: N = max(0, k (-g)^e - c g' step(g, -d, 1, 0, 0)), and mu(v) N.
     """
 
     kind: ClassVar[str] = "box_plane_impact"
@@ -31,7 +31,7 @@ class BoxPlaneImpact(Impact):
 
     @classmethod
     def touches(cls, e: Symbolic) -> list[Touch]:
-        """One at each corner."""
+        """Return the contact at each corner."""
         halves = [e.named(size * axis / 2) for size, axis in ((e.x, e.i.x), (e.y, e.i.y), (e.z, e.i.z))]
         middle, n = e.i.point - e.j.point, e.j.z
         found = []

@@ -1,4 +1,4 @@
-"""A brake that holds a wheel at a standstill."""
+"""Brake that holds a wheel at rest."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from ..wrench import Pairs
 
 
 class Brake(AxleForce):
-    """A brake between a wheel and its upright, or the car's body, that slides at its torque and holds at a standstill.
+    """Brake between a wheel and its upright, or the car's body, which slips at its torque and holds at rest.
 
-    The torque on the wheel is -C (z + T z'), with the largest torque C, which may be a formula and is never taken below zero.  The part z of
-    it follows the spin w by z' = (w - abs(w) z)/(a + abs(w) L): Dahl's friction, which at rest is a spring of stiffness C/a, and does not
-    creep.  Sliding, z is 1 or -1.  The damping by T fades as 1/(1 + (T w/a)^2), so that the torque never exceeds C.  The lag L keeps
-    the brake of a fast wheel from being stiff.
+    The torque on the wheel is -C (z + T z'), with the largest torque C, a number or a formula, limited to zero from
+    below. The state z follows the spin w by Dahl's friction, z' = (w - abs(w) z)/(a + abs(w) L). At rest this is a
+    spring of stiffness C/a that does not slip; when slipping, z is 1 or -1. The damping by T decreases as 1/(1 + (T w/a)^2),
+    so the torque never exceeds C. The lag L avoids stiffness at high speed.
 
     Dahl, Solid friction damping of mechanical vibrations, AIAA Journal 14 (1976) 1675-1682.
     """
@@ -43,7 +43,7 @@ class Brake(AxleForce):
 
     @classmethod
     def _of_spin(cls, e: Symbolic) -> tuple[Any, Any]:
-        """The rate of z, and the braking torque."""
+        """Return the rate of z, and the braking torque."""
         (z,), w = e.own, cls.spin(e)
         speed = magnitude(w)
         rate = e.named((w - speed * z) / (e.windup + speed * e.lag))
@@ -60,5 +60,5 @@ class Brake(AxleForce):
 
     @classmethod
     def measured(cls, e: Symbolic) -> Any:
-        """The torque that slows the wheel."""
+        """Return the braking torque."""
         return [cls._of_spin(e)[1]]

@@ -1,4 +1,4 @@
-"""Bushing in space: springs and dampers in three directions and three rotations."""
+"""Spatial bushing: stiffness and damping in three directions and three rotations."""
 
 from __future__ import annotations
 
@@ -13,24 +13,25 @@ from .elastic import NO_ROW, Connection, Preload, pull_back, stored
 
 
 class Bushing(Connection):
-    """Force and torque between two markers that are held together elastically in all six components.
+    """Elastic force and torque between two markers in all six components.
 
-    The deformation s = (x, y, z, and the rotation vector) of marker i against marker j is measured along the axes of j.
-    The elastic force is preload - K s - law(s) as the powers of the six deformations demand, so that energy is kept at
-    any angle; for a rotation about one axis this is the moment about it, up to three quarters of a turn, where the run
-    stops.  Without stiffness about one axis i turns about that over any number of turns, and its tilt against j is
-    resisted.  Damping is -C times the velocity and angular velocity of i against j's body, in j's axes.  It acts on i at
-    its point, and opposite on j at the same point of space, so that momentum and angular momentum are kept.
+    The deformation s = (x, y, z, and the rotation vector) of marker i relative to marker j is measured along the axes
+    of j. The elastic force is preload - K s - law(s), conjugate to the six deformations, so energy is conserved at any
+    angle. For a rotation about one axis this is the moment about it, up to three quarters of a turn, where the run
+    stops. Without stiffness about exactly one axis i can rotate about it without limit, and the stiffness acts on its
+    tilt relative to j. Damping is -C times the velocity and angular velocity of i relative to j's body, in j's axes. It
+    acts on i at its point, and the opposite on j at the same point of space, so linear and angular momentum are
+    conserved.
 
-    With ``axes: ground`` x, y and z are the ground's, and the force acts at each body's own marker; moments and rotations
-    are along j's axes all the same.  As the two points lie apart by the deformation, angular momentum is then kept only
-    where the force is along the line between them.
+    With ``axes: ground`` x, y and z are the ground axes, and the force acts at each body's own marker; moments and
+    rotations are still along j's axes. Angular momentum is then conserved only if the force is along the line between
+    the two points.
 
     Stiffness and damping are six numbers, two symmetric 3x3 matrices (of forces, of moments), or a symmetric 6x6
-    matrix.  A law that is a table or a polynomial in s has a potential; with any other formula the element counts none,
-    and energy.total is not kept.
+    matrix. A law that is a table or a polynomial in s has a potential. With any other formula the element has none, and
+    energy.total is not conserved.
 
-    MSC Adams/Solver, BUSHING statement, whose small angles a, b, c are the rotation vector's to first order.
+    MSC Adams/Solver, BUSHING statement, whose small angles a, b, c equal the rotation vector to first order.
     """
 
     kind: ClassVar[str] = "bushing"
@@ -85,14 +86,14 @@ class Bushing(Connection):
 
     @classmethod
     def elastic(cls, e: Symbolic) -> list[Any]:
-        """preload - K s - law(s)."""
+        """Return preload - K s - law(s)."""
         s = cls.deformation(e)
         linear = pull_back(e.stiffness, s, e.preload)
         return [f - (law(x) if law is not None else 0) for f, law, x in zip(linear, _laws(e), s, strict=True)]
 
     @classmethod
     def potential(cls, e: Symbolic) -> Any:
-        """1/2 s^T K s - preload . s and the integrals of the laws; zero where one has no simple integral."""
+        """Return 1/2 s^T K s - preload . s plus integrals of laws; zero if one has no closed-form integral."""
         s = cls.deformation(e)
         of_laws = [e.integral(law, part) for law, part in zip(_laws(e), s, strict=True) if law is not None]
         return 0 if None in of_laws else stored(e.stiffness, s, e.preload) + sum(of_laws)

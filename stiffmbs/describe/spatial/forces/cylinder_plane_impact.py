@@ -13,13 +13,13 @@ from ..impact import Impact, Touch
 from ..marker import Marker
 
 UPRIGHT = 1e-6
-"""Sine of the angle between axis and normal at which the lowest point of an end's rim is no longer told from its middle."""
+"""Sine of the angle between axis and normal below which the contact point moves from an end's rim to its centre."""
 
 
 class CylinderPlaneImpact(Impact):
-    """A solid cylinder that presses on a plane with the lowest point of the rim of each end.
+    """Contact of a solid cylinder with a plane at the lowest point of the rim of each end.
 
-    Lying on its mantle it touches with both ends; standing upright with the middle of the lower end.  The law is that of
+    A lying cylinder touches with both ends, an upright one with the centre of the lower end. The force law is that of
     `Impact` at each of the two points: N = max(0, k (-g)^e - c g' step(g, -d, 1, 0, 0)), and mu(v) N.
     """
 
@@ -33,7 +33,7 @@ class CylinderPlaneImpact(Impact):
 
     @classmethod
     def touches(cls, e: Symbolic) -> list[Touch]:
-        """One at the lowest point of each end's rim: half the axis, and a radius along the steepest way down."""
+        """Return the contact at the lowest point of each end's rim."""
         from sympy import sqrt
 
         n, axis = e.j.z, e.i.z

@@ -14,9 +14,9 @@ from ..marker import Marker
 
 
 class EllipsoidPlaneImpact(Impact):
-    """A solid ellipsoid that presses on a plane with its lowest point.
+    """Contact of a solid ellipsoid with a plane at its lowest point.
 
-    The law is that of `Impact`: N = max(0, k (-g)^e - c g' step(g, -d, 1, 0, 0)), and mu(v) N.
+    The force law is that of `Impact`: N = max(0, k (-g)^e - c g' step(g, -d, 1, 0, 0)), and mu(v) N.
     """
 
     kind: ClassVar[str] = "ellipsoid_plane_impact"
@@ -30,9 +30,10 @@ class EllipsoidPlaneImpact(Impact):
 
     @classmethod
     def touches(cls, e: Symbolic) -> list[Touch]:
-        """One at the lowest point, at which the surface's normal is that of the plane.
+        """Return the contact at the lowest point, where the surface normal is that of the plane.
 
-        With the semi-axes as the columns of A, it lies A A^T n / |A^T n| below the middle, and |A^T n| is how far the plane may come.
+        With the semi-axes as the columns of A, it is A A^T n / |A^T n| below the centre. The centre's distance from the
+        plane at contact is |A^T n|.
         """
         from sympy import sqrt
 

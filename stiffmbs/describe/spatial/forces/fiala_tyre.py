@@ -1,4 +1,4 @@
-"""Fiala's tyre."""
+"""Fiala tyre."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from ..relaxation import DEFLECTIONS
 from ..tyre import Rolling, Tyre
 
 TINY = 1e-30
-"""Beside forces, so that nothing is divided by zero in the air."""
+"""Offset of forces in divisors, for a wheel without contact."""
 
 
 class FialaTyre(Tyre):
-    """Fiala's tyre: slip stiffnesses, and a friction that falls with the whole slip.
+    """Fiala tyre: constant slip stiffnesses, and a friction coefficient that decreases with the total slip.
 
     With S = min(1, sqrt(kappa^2 + tan(alpha)^2)) and U = mu_static + (mu_sliding - mu_static) S, on a load N:
 
@@ -26,8 +26,9 @@ class FialaTyre(Tyre):
     - Fy = -U N (1 - H^3) sign(alpha), H = max(0, 1 - C_alpha abs(tan(alpha))/(3 U N));
     - Mz = U N width (1 - H) H^3 sign(alpha) forward, and My = -rolling_resistance N forward.
 
-    forward is 1, in reverse -1, at rest 0.  Slips may lag by relaxation lengths.  Camber gives no force.  Fiala, Seitenkräfte am rollenden Luftreifen, VDI-Zeitschrift 96 (1954) 973-979; MSC Adams/Tire,
-    Fiala tire model.
+    forward is 1, in reverse -1, at rest 0. Relaxation lengths give a lag of the slips. Camber has no effect on the
+    forces. Fiala, Seitenkräfte am rollenden Luftreifen, VDI-Zeitschrift 96 (1954) 973-979; MSC Adams/Tire, Fiala tire
+    model.
     """
 
     kind: ClassVar[str] = "fiala_tyre"
@@ -57,7 +58,7 @@ class FialaTyre(Tyre):
 
     @staticmethod
     def law(e: Symbolic, rolling: Rolling) -> tuple[Any, Any, Any, Any, Any]:
-        """Forces and moments by Fiala's formulas."""
+        """Return forces and moments by Fiala's formulas."""
         from sympy import Float, Rational, sqrt, tan
 
         across, slip = e.named(tan(rolling.slip_angle)), rolling.slip
@@ -77,5 +78,5 @@ class FialaTyre(Tyre):
 
 
 def larger(e: Symbolic, x: Any, least: Any) -> Any:
-    """The size of a number, or the least where it is below; around zero smooth, and without rounding."""
+    """Return the absolute value of a number, at least `least`; smooth at zero, and without rounding."""
     return e.named(least + above_zero(e.named(magnitude(x) - least)))

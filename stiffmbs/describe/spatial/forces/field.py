@@ -1,4 +1,4 @@
-"""Field: linear force and torque of six components, each on all six deformations (Adams: FIELD)."""
+"""Field: linear force and torque of six components, each depending on all six deformations (Adams: FIELD)."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from .elastic import NO_ROW, Connection, Preload, pull_back, stored
 
 
 class FieldForce(Connection):
-    """Linear elastic connection of two markers that are apart: preload - K (s - s0) - C (v, w).
+    """Linear elastic connection of two separate markers: preload - K (s - s0) - C (v, w).
 
-    s is the place of marker i in the axes of j and its rotation vector against these, s0 that without force.  How it
-    acts, and what a full turn means to it, is as for the `bushing`; this one has an offset and no curves.
+    s is the position of marker i in the axes of j and its rotation vector relative to them, s0 its value without force.
+    Its action and its behaviour at large rotations are those of the `bushing`; it has an offset and no curves.
 
-    MSC Adams/Solver, FIELD statement, whose small angles are the rotation vector's to first order.
+    MSC Adams/Solver, FIELD statement, whose small angles equal the rotation vector to first order.
     """
 
     kind: ClassVar[str] = "field"
@@ -40,13 +40,13 @@ class FieldForce(Connection):
 
     @staticmethod
     def strain(e: Symbolic) -> list[Any]:
-        """s - s0."""
+        """Return s - s0."""
         free = e.free if e.free is not None else (0,) * 6
         return [x - x0 for x, x0 in zip(FieldForce.deformation(e), free, strict=True)]
 
     @classmethod
     def elastic(cls, e: Symbolic) -> list[Any]:
-        """preload - K (s - s0)."""
+        """Return preload - K (s - s0)."""
         return pull_back(e.stiffness, cls.strain(e), e.preload)
 
     @staticmethod

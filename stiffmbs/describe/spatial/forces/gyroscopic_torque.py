@@ -1,4 +1,4 @@
-"""Turning: what a body's rotation in space adds to its equations of motion."""
+"""Rotation of spatial bodies: gyroscopic torques and kinematics."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from ..body import Body
 
 
 class GyroscopicTorque(Force):
-    """The gyroscopic torque -n x (I w) in a body's principal axes; made by the model (hence without a kind).
+    """Gyroscopic torque -n x (I w) in a body's principal axes; created by the model, hence without a kind.
 
-    n = w is what the body's quaternion follows.  Euler's equations of motion, I w' + w x (I w) = T; Haug, Computer Aided
-    Kinematics and Dynamics of Mechanical Systems (1989), eq. 11.1.11.  Where the quaternion doesn't follow the body's spin
-    (`stiffmbs.presolve.spinning_bodies`), n is the part of w across that, as in Euler's modified equations; Meirovitch, Methods
-    of Analytical Dynamics (1970), sec. 4.6.  The power is zero.
+    The body's quaternion follows n = w. Euler's equations of motion, I w' + w x (I w) = T; Haug, Computer Aided
+    Kinematics and Dynamics of Mechanical Systems (1989), eq. 11.1.11. If the quaternion does not follow the body's spin
+    (`stiffmbs.presolve.spinning_bodies`), n is the component of w normal to the spin axis, as in Euler's modified
+    equations; Meirovitch, Methods of Analytical Dynamics (1970), sec. 4.6. The power is zero.
 
-    The body's kinematics, p' = Z(p) n, belong to this element too.
+    The body's kinematics, p' = Z(p) n, belong to this element, too.
     """
 
     kind: ClassVar[str] = ""
@@ -33,13 +33,13 @@ class GyroscopicTorque(Force):
 
     @classmethod
     def powers(cls, e: Symbolic) -> list[tuple[Any, Any]]:
-        """The three torques on the body's own angular velocities."""
+        """Return the three torques on the body's angular velocities."""
         (a, b, c), (p, q, r) = e.moments, e.i.body.u[3:6]
         x, y, z = e.i.body.followed
         return [(z * b * q - y * c * r, p), (x * c * r - z * a * p, q), (y * a * p - x * b * q, r)]
 
 
 def turnings(bodies: Mapping[str, Body]) -> Iterator[tuple[str, GyroscopicTorque]]:
-    """The gyroscopic torques of bodies by the bodies' names."""
+    """Yield the gyroscopic torques of bodies by the bodies' names."""
     for name, body in bodies.items():
         yield name, GyroscopicTorque(i=MarkerReference(body=name), moments=body.principal_moments())

@@ -1,4 +1,4 @@
-"""Friction in a joint in space."""
+"""Friction in a spatial joint."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from ..wrench import Pairs, velocity
 
 
 class JointFriction(AnyJointFriction):
-    """Dry friction in a revolute, cylindrical, prismatic or spherical joint, pressed by the joint's own reaction.
+    """Dry friction in a revolute, cylindrical, prismatic or spherical joint, loaded by the joint's reaction.
 
-    The reaction is a force at i's point, of which F is the part across the axis z and T the thrust along it, and a
-    moment, M across the axis and D about it; both from the multipliers of the same instant, friction included.
+    The reaction at i's point has the forces F normal to the z axis and T (thrust) along it. Its moments are M normal to
+    the axis and D about it. They follow from the multipliers at the same time, which include the effect of friction.
 
-    - A pin of radius R (``revolute``) slides at R w, w being the angular velocity about the axis, under N = F + M/(length/2)
-      (the moment being taken at the ends of a bearing of a given length, not counted without one), and the torque
-      -mu N R brakes it.  A collar at `thrust_radius` slides under T; without that the thrust does not rub.
-    - A sleeve (``cylindrical``) does so both around and along: the friction mu N is against the velocity of the surface,
-      (R w, v), at its magnitude; without a radius it is along the axis alone.
-    - A guide (``prismatic``) slides under N = F + M/(length/2) + D/torsion_radius, the last where that is given.
-    - A ball of radius R (``spherical``) is braked by a torque mu F R against its angular velocity.
+    - Pin of radius R (``revolute``): N = F + M/(length/2), the sliding speed is R w with the angular velocity w about
+      the axis, and the torque -mu N R acts on it. The moment is supported at the ends of a bearing of the given length;
+      without a length it is neglected. A collar at `thrust_radius` slides under T; without it T has no effect.
+    - Sleeve (``cylindrical``): as a pin, but the friction mu N is opposite to the velocity of the surface, (R w, v);
+      without a radius it acts along the axis only.
+    - Guide (``prismatic``): N = F + M/(length/2) + D/torsion_radius, the last term if the radius is given.
+    - Ball of radius R (``spherical``): a torque mu F R opposite to its angular velocity.
 
     Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), sec. 6.5; Adams' FRICTION statement.
     """
@@ -63,7 +63,7 @@ class JointFriction(AnyJointFriction):
 
     @classmethod
     def powers(cls, e: Symbolic) -> Pairs:
-        """Braking forces and torques on the rates of sliding."""
+        """Return friction forces and torques on the sliding rates."""
         i, j, R, load = e.joint.i, e.joint.j, e.radius, e.joint.loads
         w = e.named(i.omega - j.omega)
         if e.joint.coordinates == BALL:

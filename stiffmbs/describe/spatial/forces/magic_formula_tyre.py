@@ -1,4 +1,4 @@
-"""The Magic Formula tyre."""
+"""Magic Formula tyre."""
 
 from __future__ import annotations
 
@@ -19,15 +19,17 @@ from ..tyre import Rolling, Tyre
 
 
 class MagicFormulaTyre(Tyre):
-    """Pacejka's Magic Formula in the form of MF-Tyre 5.2 and PAC2002, with the coefficients of a property file (.tir).
+    """Magic Formula tyre (Pacejka) of MF-Tyre 5.2 and PAC2002, with the coefficients of a property file (.tir).
 
-    Longitudinal and lateral force, overturning, rolling and aligning torque, pure and combined slip, camber, load, relaxation
-    lengths; USE_MODE selects them.  Slip angle and camber enter as angles; Pacejka's book uses tan(alpha) and sin(gamma).
+    It gives longitudinal and lateral force, overturning, rolling and aligning torque. It includes pure and combined
+    slip, camber, load, and relaxation lengths; USE_MODE selects them. Slip angle and camber enter as angles; Pacejka's
+    book uses tan(alpha) and sin(gamma).
 
-    The load is VERTICAL_STIFFNESS d + VERTICAL_DAMPING d', or that of [DEFLECTION_LOAD_CURVE] with the same damping.  It is never
-    negative; the load in the formula is limited to FZMAX.  With BOTTOMING_RADIUS and [BOTTOMING_CURVE], the rim adds to the normal
-    force and the overturning torque only.  The rolling radius is UNLOADED_RADIUS - d0 (DREFF atan(BREFF d/d0) + FREFF d/d0), with
-    d0 = FNOMIN/VERTICAL_STIFFNESS.  A file without coefficients of combined slip uses the friction ellipse, and a note says so.
+    The load is VERTICAL_STIFFNESS d + VERTICAL_DAMPING d', or that of [DEFLECTION_LOAD_CURVE] with the same damping. It
+    is never negative; the load in the formula is limited to FZMAX. With BOTTOMING_RADIUS and [BOTTOMING_CURVE], the rim
+    adds to the normal force and the overturning torque only. The rolling radius is UNLOADED_RADIUS - d0 (DREFF
+    atan(BREFF d/d0) + FREFF d/d0), with d0 = FNOMIN/VERTICAL_STIFFNESS. A file without coefficients of combined slip
+    uses the friction ellipse, and a note reports it.
 
     Pacejka, Tire and Vehicle Dynamics (2006), sec. 4.3.2; MSC Adams/Tire, PAC2002.
     """
@@ -59,7 +61,7 @@ class MagicFormulaTyre(Tyre):
     def valid_ranges(self) -> Mapping[str, tuple[float, float]]:
         """Return the valid ranges of the property file for each quantity, SI units; empty if the file has none."""
         ranges = self.properties.ranges
-        return {"load": (-math.inf, math.inf), **ranges} if ranges else {}  # without load no range applies
+        return {"load": (-math.inf, math.inf), **ranges} if ranges else {}  # no range applies without contact
 
     def own_states(self) -> tuple[str, ...]:
         transient = self.properties.is_transient if self.transient is None else self.transient
@@ -67,7 +69,7 @@ class MagicFormulaTyre(Tyre):
 
     @classmethod
     def relaxation_lengths(cls, e: Symbolic, load: Any, camber: Any) -> tuple[Any, Any]:
-        """By PTX1 to PTX3, and by PTY1, PTY2 and PKY3."""
+        """Return the relaxation lengths by PTX1 to PTX3, and by PTY1, PTY2 and PKY3."""
         from ...tyres.magic_formula import relaxation_lengths
 
         return relaxation_lengths(e.properties, load, camber, e.named)
@@ -84,7 +86,7 @@ class MagicFormulaTyre(Tyre):
 
     @staticmethod
     def rim_contact(e: Symbolic, deflection: Any, camber: Any) -> tuple[Any, Any] | None:
-        """Return the force of [BOTTOMING_CURVE] and its overturning torque; the rim is a cylinder of the tyre's width."""
+        """Return the force of [BOTTOMING_CURVE] and its overturning torque; the rim is as wide as the tyre."""
         rim = e.properties.bottoming
         return (
             None if rim is None else bottomed(e, rim, deflection - (e.properties.UNLOADED_RADIUS - rim.radius), camber)
@@ -92,7 +94,7 @@ class MagicFormulaTyre(Tyre):
 
     @classmethod
     def rolling_radius(cls, e: Symbolic, deflection: Any) -> Any:
-        """The effective rolling radius by BREFF, DREFF and FREFF of the property file."""
+        """Return the effective rolling radius by BREFF, DREFF and FREFF of the property file."""
         from sympy import atan
 
         p = e.properties
@@ -102,7 +104,7 @@ class MagicFormulaTyre(Tyre):
 
     @classmethod
     def law(cls, e: Symbolic, rolling: Rolling) -> tuple[Any, Any, Any, Any, Any]:
-        """Forces and moments by the Magic Formula."""
+        """Return forces and moments by the Magic Formula."""
         from ...tyres.magic_formula import Slip, of_mode
 
         p = e.properties
@@ -123,6 +125,6 @@ class MagicFormulaTyre(Tyre):
 
     @staticmethod
     def _is_as_measured(e: Symbolic) -> bool:
-        """Whether the tyre is mounted as it was measured, but for `hand`: by its side, and the sign of USE_MODE."""
+        """Return True if the tyre is mounted as measured, apart from `hand`: by its side, and the sign of USE_MODE."""
         other_side = e.side is not None and e.properties.side in ("left", "right") and e.side != e.properties.side
         return bool(other_side == e.properties.is_mirrored)

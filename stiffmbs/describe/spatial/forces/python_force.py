@@ -1,4 +1,4 @@
-"""A force and a torque in space by a Python function."""
+"""Spatial force and torque by a Python function."""
 
 from __future__ import annotations
 
@@ -13,18 +13,17 @@ from ..wrench import Pairs, force_at, torque_on
 
 
 def _example(x: Any) -> Any:
-    """Of one number."""
     return [x[0] ** 2, math.sin(x[0]), math.cos(x[0]), x[0], 1 - x[0], x[0] ** 3]
 
 
 class PythonForce(ForceOfFunction[Marker]):
-    """A force and a torque that a Python function gives, for laws that no formula can express.
+    """Force and torque by a Python function, for laws that no formula can express.
 
-    The function takes an array of what the formulas `of` measure, in SI units, and returns six numbers: the force (N) and
-    the torque (N m) along the ground's x, y and z on body i at marker i.  With `j` a second body takes the opposite at the
-    same point of space.
+    The function takes an array of the values of the formulas `of`, in SI units, and returns six numbers. They are the
+    force (N) and the torque (N m) along the ground's x, y and z on body i at marker i. With `j` a second body receives
+    the opposite load at the same point of space.
 
-    What holds for its namesake in the plane (`stiffmbs.PythonForce`) holds here too.
+    The notes on the planar `stiffmbs.PythonForce` apply.
     """
 
     forms: ClassVar[tuple[Mapping[str, Any], ...]] = ({"of": ("a.vx",), "function": _example},)

@@ -1,4 +1,4 @@
-"""Forces that are the same in space as in the plane: along the line between two points."""
+"""Spatial forces along the line between two points, identical to the planar ones."""
 
 from __future__ import annotations
 
@@ -8,18 +8,18 @@ from ..marker import Marker
 
 
 class LineForce(ForceAlongLine[Marker]):
-    """A force between two points of space along the line through them: constant, or a formula of anything measured.
+    """Force along the line between two points in space: constant, or a formula of any measured quantity.
 
-    Above zero it pushes the points apart, as Adams' translational SFORCE does.  A constant force has a potential,
-    others have none.
+    A positive force pushes the points apart, as in Adams' translational SFORCE. A constant force has a potential, other
+    forces have none.
     """
 
 
 class SpringDamper(LineSpring[Marker]):
-    """Line spring and damper, linear or by curves, along the line between two points of space.
+    """Spring and damper along the line between two points in space, linear or nonlinear.
 
-    Its fields and its law are those of the plane's spring-damper: the tension
-    k s + spring_law(s) + c v + damper_law(v) + preload at a deflection s = L - L0 and its rate v = L'.
+    Fields and law are those of the planar spring-damper. The tension is k s + spring_law(s) + c v + damper_law(v) +
+    preload at a deflection s = L - L0 and its rate v = L'.
 
     Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), sec. 11.2 (TSDA).
     """

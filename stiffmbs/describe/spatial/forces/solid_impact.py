@@ -17,13 +17,15 @@ Sizes = tuple[si.PositiveLength, si.PositiveLength, si.PositiveLength]
 
 
 class SolidImpact(Impact):
-    """Two ellipsoids, boxes or cylinders that press on each other at one point.
+    """Contact of two ellipsoids, boxes or cylinders at one point.
 
-    The normal n of unit length makes the distance n.d - h_i - h_j largest, for d from the middle of j to that of i and the reach h
-    of each solid along n: the distance of both, or minus the least way that parts them.  The force acts in the middle between the
-    points of both surfaces with that normal.  Edges are rounded by 1e-4 of half the least size, and faces bulge as little; a face
-    is at its place in its middle.  The law is that of `Impact`: N = max(0, k (-g)^e - c g' step(g, -d, 1, 0, 0)), and mu(v) N.
-    The run stops where the solids overlap by a quarter of the least size of the smaller one.
+    The unit normal n maximises the distance n.d - h_i - h_j. Here d is the vector from the centre of j to that of i,
+    and h the support function of each solid along n. The maximum is the distance of the solids, or minus the smallest
+    displacement that separates them. The force acts midway between the points of both surfaces with that normal.
+
+    Edges are rounded by 1e-4 of half the smallest size, and faces are convex by the same amount, exact at their
+    centres. The force law is that of `Impact`: N = max(0, k (-g)^e - c g' step(g, -d, 1, 0, 0)), and mu(v) N. The run
+    stops where the penetration exceeds a quarter of the smallest size of either solid.
     """
 
     kind: ClassVar[str] = "solid_impact"
@@ -44,7 +46,7 @@ class SolidImpact(Impact):
 
     @classmethod
     def touches(cls, e: Symbolic) -> list[Touch]:
-        """One."""
+        """Return the single contact."""
         first, second = round_solid(e, e.i_shape, e.i_size), round_solid(e, e.j_shape, e.j_size)
         way = e.named(seen_from(e.i.point, e.j))
         axes = e.named([own.dot(other) for own in e.j.axes for other in e.i.axes])
@@ -61,7 +63,7 @@ class SolidImpact(Impact):
 
     @classmethod
     def limits(cls, e: Symbolic) -> Any:
-        """Above zero up to a quarter of the least size."""
+        """Return an expression that is positive up to a penetration of a quarter of the smallest size."""
         from sympy import Min
 
         least = Min(

@@ -15,10 +15,10 @@ from ..sphere_impact import SphereImpact
 
 
 class SphereBoxImpact(SphereImpact):
-    """A sphere about marker i that presses on a face, an edge or a corner of a solid box.
+    """Contact of a sphere about marker i with a face, an edge or a corner of a solid box.
 
-    The point of contact is the one of the box nearest to the sphere's centre.  The run stops where the centre enters the box.
-    The law is that of `Impact`: N = max(0, k (-g)^e - c g' step(g, -d, 1, 0, 0)), and mu(v) N.
+    The contact point is the point of the box nearest to the sphere's centre. The run stops when the centre enters the
+    box. The force law is that of `Impact`: N = max(0, k (-g)^e - c g' step(g, -d, 1, 0, 0)), and mu(v) N.
     """
 
     kind: ClassVar[str] = "sphere_box_impact"
@@ -30,7 +30,7 @@ class SphereBoxImpact(SphereImpact):
 
     @classmethod
     def way(cls, e: Symbolic) -> Any:
-        """From the nearest point of the box to the sphere's centre, along the axes of j."""
+        """Return the vector from the nearest point of the box to the sphere's centre, along the axes of j."""
         from sympy import sign
 
         at = e.named(seen_from(e.i.point, e.j))

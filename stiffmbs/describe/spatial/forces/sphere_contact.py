@@ -15,17 +15,17 @@ from ..wrench import Pairs, velocity
 
 
 class SphereContact(ContactLaw):
-    """A sphere or point about marker i that presses on a plane, on a sphere, or on a hollow sphere from within.
+    """Contact of a sphere or point about marker i with a plane, a sphere, or the inside of a hollow sphere.
 
-    Where the gap is closed by delta = -gap > 0 the surfaces repel each other with N = k delta^n (1 + chi delta'), never
-    below zero, and rub with mu(v) N against the direction in which i's surface slides on j's at the point of contact,
-    spin and rolling included.  The force is the same and opposite on both bodies there; nothing resists drilling.
+    With the penetration delta = -gap > 0 the normal force is N = k delta^n (1 + chi delta'), not negative. The friction
+    force mu(v) N is opposite to the sliding velocity of i's surface relative to j's at the contact point. Equal and
+    opposite forces act on both bodies there; there is no drilling friction.
 
     Surfaces of j: ``plane``, the plane of x and y of j, solid on the side away from z; ``sphere``, solid inside
     `surface_radius`; ``hollow``, solid outside of it.
 
-    Without friction and dissipation the element keeps energy: it has the potential k delta^(n+1)/(n+1).  The sources of
-    the law, and chi for a coefficient of restitution, are those of the plane's `contact`.
+    Without friction and dissipation the element is conservative, with the potential k delta^(n+1)/(n+1). The sources of
+    the law, and chi for a coefficient of restitution, are those of the planar `contact`.
     """
 
     kind: ClassVar[str] = "sphere_contact"
@@ -56,7 +56,7 @@ class SphereContact(ContactLaw):
 
     @classmethod
     def normal(cls, e: Symbolic) -> Any:
-        """The unit vector out of j's surface at the point of contact."""
+        """Return the outward unit normal of j's surface at the contact point."""
         outward = cls.outward(e)
         if not outward:
             return e.j.z
@@ -64,7 +64,7 @@ class SphereContact(ContactLaw):
 
     @classmethod
     def powers(cls, e: Symbolic) -> Pairs:
-        """N on the gap's rate, and friction on the sliding velocity."""
+        """Return N on the gap's rate, and friction on the sliding velocity."""
         pressure, rate = e.named(cls.pressure(e)), e.named(e.rate(cls.gap(e)))
         if e.friction is None:
             return [(pressure, rate)]

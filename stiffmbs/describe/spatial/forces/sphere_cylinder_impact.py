@@ -15,10 +15,10 @@ from ..sphere_impact import SphereImpact
 
 
 class SphereCylinderImpact(SphereImpact):
-    """A sphere about marker i that presses on the mantle, an end or an edge of a solid cylinder.
+    """Contact of a sphere about marker i with the lateral surface, an end or an edge of a solid cylinder.
 
-    The point of contact is the one of the cylinder nearest to the sphere's centre.  The run stops where the centre enters the
-    cylinder.  The law is that of `Impact`: N = max(0, k (-g)^e - c g' step(g, -d, 1, 0, 0)), and mu(v) N.
+    The contact point is the point of the cylinder nearest to the sphere's centre. The run stops when the centre enters
+    the cylinder. The force law is that of `Impact`: N = max(0, k (-g)^e - c g' step(g, -d, 1, 0, 0)), and mu(v) N.
     """
 
     kind: ClassVar[str] = "sphere_cylinder_impact"
@@ -29,7 +29,7 @@ class SphereCylinderImpact(SphereImpact):
 
     @classmethod
     def way(cls, e: Symbolic) -> Any:
-        """From the nearest point of the cylinder to the sphere's centre, along the axes of j."""
+        """Return the vector from the nearest point of the cylinder to the sphere's centre, along the axes of j."""
         from sympy import sign
 
         x, y, z = e.named(seen_from(e.i.point, e.j))

@@ -15,10 +15,10 @@ from ..sphere_impact import SphereImpact
 
 
 class SphereSphereImpact(SphereImpact):
-    """A sphere about marker i that presses on a sphere about marker j.
+    """Contact of a sphere about marker i with a sphere about marker j.
 
-    The run stops where the centres come together.
-    The law is that of `Impact`: N = max(0, k (-g)^e - c g' step(g, -d, 1, 0, 0)), and mu(v) N.
+    The run stops when the centres coincide.
+    The force law is that of `Impact`: N = max(0, k (-g)^e - c g' step(g, -d, 1, 0, 0)), and mu(v) N.
     """
 
     kind: ClassVar[str] = "sphere_sphere_impact"
@@ -32,11 +32,11 @@ class SphereSphereImpact(SphereImpact):
 
     @classmethod
     def way(cls, e: Symbolic) -> Any:
-        """From the other centre to the sphere's, along the axes of j."""
+        """Return the vector from the centre of j to that of i, along the axes of j."""
         return e.named(seen_from(e.i.point, e.j))
 
     @classmethod
     def touches(cls, e: Symbolic) -> list[Touch]:
-        """One, so much nearer as the other sphere is wide."""
+        """Return the contact, with the gap reduced by the radius of the sphere about j."""
         (touch,) = super().touches(e)
         return [Touch(touch.gap - e.other_radius, touch.point, touch.normal)]

@@ -1,4 +1,4 @@
-"""Torsion spring-damper in space."""
+"""Spatial torsion spring-damper."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from ..primitives import angle_about_z
 
 
 class TorsionSpring(AngleSpring[Marker]):
-    """Rotational spring and damper, linear or by curves, about the axis z that two markers have in common.
+    """Rotational spring and damper about the common z axis of two markers, linear or nonlinear.
 
-    With the angle of marker i against marker j about z, counted over whole turns from within half a turn at the start,
-    it has the fields and the law of the plane's torsion spring: the moment
-    k s + spring_law(s) + c v + damper_law(v) + preload at s = angle - free_angle and v = angle' turns i back towards j.
+    Fields and law are those of the planar torsion spring. The restoring moment on i is k s + spring_law(s) + c v +
+    damper_law(v) + preload at s = angle - free_angle and v = angle'. The angle of marker i relative to marker j about z
+    includes full revolutions; it is within half a turn at the start.
 
-    The axes z are kept parallel by a joint, such as a revolute or cylindrical one.  Where they are not quite parallel
-    the angle is that of i's x about j's z, and the torque is the one that conserves energy.
+    A joint must keep the z axes parallel, such as a revolute or cylindrical one. If they are not exactly parallel the
+    angle is that of i's x about j's z, and the torque is the one that conserves energy.
 
     Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), sec. 11.2 (RSDA).
     """

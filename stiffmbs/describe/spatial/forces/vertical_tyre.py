@@ -1,4 +1,4 @@
-"""A tyre that only carries."""
+"""Tyre with a vertical force only."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from ..tyre import Rolling, Tyre
 
 
 class VerticalTyre(Tyre):
-    """A spring and damper between a wheel and a road, which lifts off; it transmits no force along the road.
+    """Spring and damper between a wheel and a road, with lift-off and without forces along the road.
 
-    load = max(0, stiffness d + damping d') where the deflection d = radius - (loaded radius) is above zero.
+    load = max(0, stiffness d + damping d') where the deflection d = radius - (loaded radius) is positive.
     """
 
     kind: ClassVar[str] = "vertical_tyre"

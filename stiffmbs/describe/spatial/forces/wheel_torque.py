@@ -13,10 +13,10 @@ from ..wrench import Pairs
 
 
 class WheelTorque(AxleForce):
-    """A torque on a wheel about its axle: constant, or a formula of time and of anything measured.
+    """Torque on a wheel about its axle: constant, or a formula of time and of any measured quantity.
 
-    Above zero it drives forward.  The opposite torque acts on the body of j: the upright for a motor in the hub.  For a motor
-    that drives by shafts with joints of constant velocity it is the car's body, or the carrier of a differential.
+    A positive torque drives forward. The opposite torque acts on the body of j: the upright for an in-wheel motor. For
+    drive shafts with constant velocity joints it is the car's body or the carrier of a differential.
     """
 
     kind: ClassVar[str] = "wheel_torque"

@@ -1,1 +1,1 @@
-"""Joints in space, one kind per file."""
+"""Spatial joints, one kind per file."""

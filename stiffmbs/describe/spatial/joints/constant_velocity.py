@@ -16,12 +16,12 @@ from ..primitives import COINCIDE, coincide
 
 
 class ConstantVelocity(Joint):
-    """Homokinetic joint of two shafts: two points coincide, and both shafts turn about their axes z at one rate.
+    """Constant velocity joint: two points coincide, and both shafts rotate about their z axes at the same rate.
 
-    One marker is turned into the other about an axis in the plane that bisects their xy planes, with no twist:
-    i.x . j.y = i.y . j.x where the axes z point the same way when the shafts are in line.  Where they are opposite,
-    both away from the joint as in Adams' CONVEL, it is i.x . j.y = -i.y . j.x.  The x axes (or the y axes) of both
-    markers are to be drawn parallel, the shafts in line.  The shafts may bend by less than half a turn.
+    One marker is rotated relative to the other about an axis in the plane that bisects their xy planes, without twist:
+    i.x . j.y = i.y . j.x for z axes with the same direction when the shafts are in line. For opposite z axes, both away
+    from the joint as in Adams' CONVEL, it is i.x . j.y = -i.y . j.x. With the shafts in line the x axes (or the y axes)
+    of both markers must be drawn parallel. The joint angle must be less than half a turn.
 
     The reaction is a force of any direction, and a torque in the bisecting plane.
 

@@ -17,10 +17,10 @@ from ..primitives import ALIGN, ON_AXIS, align, along, angle_about_z, on_axis
 
 
 class Cylindrical(Joint):
-    """Sleeve on a shaft: marker i stays on the z axis of marker j, parallel to it, and may slide and turn.
+    """Sleeve on a shaft: marker i remains on the z axis of marker j, parallel to it, and can slide and rotate.
 
-    The reaction is a force and a torque across the axis.  It has two coordinates, so that drives and couplers name the
-    one they mean: ``sleeve.displacement``, ``sleeve.angle``.
+    The reaction is a force and a torque normal to the axis. Drives and couplers name one of its two coordinates:
+    ``sleeve.displacement``, ``sleeve.angle``.
 
     Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), section 9.4 (cylindrical joint).
     """
@@ -47,12 +47,12 @@ class Cylindrical(Joint):
 
     @staticmethod
     def displacement(e: Symbolic) -> Any:
-        """The displacement of marker i along the z axis of marker j."""
+        """Return the displacement of marker i along the z axis of marker j."""
         return along(e.i, e.j, e.j.z)
 
     @staticmethod
     def angle(e: Symbolic) -> Any:
-        """The angle of marker i against marker j about z."""
+        """Return the angle of marker i relative to marker j about z."""
         return angle_about_z(e)
 
     @staticmethod

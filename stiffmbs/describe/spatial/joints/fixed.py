@@ -1,4 +1,4 @@
-"""Fixed joint in space."""
+"""Spatial fixed joint."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from ..primitives import COINCIDE, ORIENT, coincide, orient
 
 
 class Fixed(Joint):
-    """Weld: two markers coincide in place and orientation.
+    """Weld: two markers coincide in position and orientation.
 
-    The reaction is a force and a torque of any direction.  This is Adams' FIXED.
+    The reaction is a force and a torque of any direction. This is Adams' FIXED.
 
-    The equations of orientation hold for seven other orientations too (half turns and turns by a third), so that
-    markers drawn 60 degrees apart and more are refused.
+    The equations of orientation have seven other solutions (half turns and third turns), so markers drawn 60 degrees or
+    more apart are refused.
     """
 
     kind: ClassVar[str] = "fixed"

@@ -15,12 +15,12 @@ from ..primitives import ORIENT, orient
 
 
 class Orientation(Joint):
-    """Two markers keep the same axes, wherever their points are.
+    """Joint that keeps the axes of two markers parallel, at any positions.
 
-    The reaction is a torque of any direction.  This is Adams' ORIENTATION.
+    The reaction is a torque of any direction. This is Adams' ORIENTATION.
 
-    The equations hold for seven other orientations too (half turns and turns by a third), so that markers drawn
-    60 degrees apart and more are refused.
+    The equations have seven other solutions (half turns and third turns), so markers drawn 60 degrees or more apart are
+    refused.
 
     Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), section 9.4 (three dot 1 constraints).
     """

@@ -15,9 +15,9 @@ from ..primitives import ALIGN, align
 
 
 class Parallel(Joint):
-    """The axes z of two markers stay parallel, wherever their points are.
+    """Joint that keeps the z axes of two markers parallel or opposite, at any positions.
 
-    Opposite axes are parallel too.  The reaction is a torque across the axes.  This is Adams' PARALLEL_AXES.
+    The reaction is a torque normal to the axes. This is Adams' PARALLEL_AXES.
 
     Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), section 9.4 (parallel 1 constraint).
     """

@@ -15,9 +15,9 @@ from ..primitives import ACROSS, perpendicular
 
 
 class Perpendicular(Joint):
-    """The axes z of two markers stay at right angles, wherever their points are.
+    """Joint that keeps the z axes of two markers perpendicular, at any positions.
 
-    The reaction is a torque at right angles to both axes.  This is Adams' PERPENDICULAR.
+    The reaction is a torque normal to both axes. This is Adams' PERPENDICULAR.
 
     Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), section 9.4 (dot 1 constraint).
     """

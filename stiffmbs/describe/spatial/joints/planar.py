@@ -15,12 +15,12 @@ from ..primitives import ALIGN, IN_PLANE, align, along
 
 
 class Planar(Joint):
-    """A body that slides and turns on a plane: the point of marker i stays in the xy plane of marker j, their z parallel.
+    """Sliding and rotation in a plane: the point of marker i remains in the xy plane of marker j, with parallel z axes.
 
-    The reaction is a force along z and a torque across it.  This is Adams' PLANAR.
+    The reaction is a force along z and a torque normal to it. This is Adams' PLANAR.
 
-    Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), section 9.4 (parallel 1 and dot
-    2 constraints); Nikravesh (1988), section 7.2.
+    Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), section 9.4 (parallel 1 and dot 2
+    constraints); Nikravesh (1988), section 7.2.
     """
 
     kind: ClassVar[str] = "planar"

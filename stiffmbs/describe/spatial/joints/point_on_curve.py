@@ -1,4 +1,4 @@
-"""Point on a smooth curve in space: a curved slot or wire, or a cam with a pointed follower."""
+"""Point on a smooth curve in space: a curved slot or wire, or a cam with a point follower."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ from ..primitives import IN_PLANE, along
 
 
 class PointOnCurve(Curve[Marker]):
-    """Point-follower: the point of marker i stays on a curve in the xy plane of marker j, in any orientation.
+    """Point follower: the point of marker i remains on a curve in the axes of marker j, in any orientation.
 
-    The curve is given as in the plane: in the axes of marker j the point is at (x, y), or at the distance rho in the
-    direction theta from x; a slot ``y`` = Y(x) has y - Y(x) = 0, a cam ``radius`` = R(theta) has rho - R(theta) = 0, R
-    repeating after every turn.  Nikravesh, Computer-Aided Analysis of Mechanical Systems (1988), section 4.2.6.
+    In the axes of marker j the point is at (x, y), or at the distance rho in the direction theta from x. A slot ``y`` =
+    Y(x) has y - Y(x) = 0, a cam ``radius`` = R(theta) has rho - R(theta) = 0, with R periodic over a turn. Nikravesh,
+    Computer-Aided Analysis of Mechanical Systems (1988), section 4.2.6.
 
-    A slot may leave the plane by ``z`` = Z(x), as a bent wire does, and a cam by ``height`` = H(theta), which repeats as its
-    radius does; else z = 0.
+    By default the curve is in the xy plane. A slot can leave it by ``z`` = Z(x), as a bent wire, and a cam by
+    ``height`` = H(theta), which must be periodic, too.
 
-    The curve should have no breakpoints.  The reaction is across the curve, without friction, and may pull: the point
-    cannot lift off.  This is Adams' PTCV.
+    The curve should be free of breakpoints. The reaction is normal to the curve, without friction, and bilateral: the
+    point cannot lift off. This is Adams' PTCV.
     """
 
     equations: ClassVar[tuple[str, ...]] = (*Curve.equations, *IN_PLANE)
@@ -63,7 +63,7 @@ class PointOnCurve(Curve[Marker]):
 
     @staticmethod
     def position(e: Symbolic) -> Any:
-        """y - Y(x) of a slot, rho - R(theta) of a cam, and what is beside the way out of the plane."""
+        """Return y - Y(x) of a slot or rho - R(theta) of a cam, and the residual along z."""
         x, y, z = e.named([along(e.i, e.j, axis) for axis in (e.j.x, e.j.y, e.j.z)])
         if e.y is not None:
             return [y - e.y(x), z if e.z is None else z - e.z(x)]

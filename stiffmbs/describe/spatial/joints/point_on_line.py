@@ -12,9 +12,9 @@ from ..primitives import ON_AXIS, along, on_axis
 
 
 class PointOnLine(Joint):
-    """Bead on a wire: the point of marker i stays on the z axis of marker j, in any orientation.
+    """Bead on a wire: the point of marker i remains on the z axis of marker j, in any orientation.
 
-    The reaction is a force across the line, without friction.  This is Adams' INLINE.
+    The reaction is a force normal to the line, without friction. This is Adams' INLINE.
 
     Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), section 9.4 (two dot 2 constraints).
     """
@@ -38,5 +38,5 @@ class PointOnLine(Joint):
 
     @staticmethod
     def displacement(e: Symbolic) -> Any:
-        """The displacement of the point along the line, from marker j."""
+        """Return the displacement of the point along the line, from marker j."""
         return along(e.i, e.j, e.j.z)

@@ -12,9 +12,9 @@ from ..primitives import IN_PLANE, along
 
 
 class PointOnPlane(Joint):
-    """A tip on a floor: the point of marker i stays in the xy plane of marker j, in any orientation.
+    """Point on a plane: the point of marker i remains in the xy plane of marker j, in any orientation.
 
-    The reaction is a force along z of marker j, without friction, and may pull.  This is Adams' INPLANE.
+    The reaction is a force along z of marker j, without friction and bilateral. This is Adams' INPLANE.
 
     Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), section 9.4 (dot 2 constraint).
     """

@@ -1,4 +1,4 @@
-"""Prismatic (translational) joint in space."""
+"""Spatial prismatic (translational) joint."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from ..primitives import ON_AXIS, ORIENT, along, on_axis, orient
 
 
 class Prismatic(Joint):
-    """Slider: marker i stays on the z axis of marker j and keeps j's orientation.
+    """Slider: marker i remains on the z axis of marker j and keeps j's orientation.
 
-    The reaction is a force across the axis and a torque of any direction.
+    The reaction is a force normal to the axis and a torque of any direction.
 
     Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), section 9.4 (translational joint).
     """
@@ -43,7 +43,7 @@ class Prismatic(Joint):
 
     @staticmethod
     def displacement(e: Symbolic) -> Any:
-        """The displacement of marker i along the z axis of marker j."""
+        """Return the displacement of marker i along the z axis of marker j."""
         return along(e.i, e.j, e.j.z)
 
     @staticmethod

@@ -1,4 +1,4 @@
-"""Revolute joint in space."""
+"""Spatial revolute joint."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from ..primitives import ALIGN, COINCIDE, align, angle_about_z, coincide
 
 
 class Revolute(Joint):
-    """Hinge: two points coincide and the axes z of both markers are one.
+    """Hinge: two points coincide, with the z axes of both markers parallel.
 
-    The reaction is a force of any direction, and a torque across the axis.
+    The reaction is a force of any direction, and a torque normal to the axis.
 
     Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), section 9.4 (revolute joint).
     """
@@ -46,12 +46,12 @@ class Revolute(Joint):
 
     @staticmethod
     def angle(e: Symbolic) -> Any:
-        """The angle of marker i against marker j about z."""
+        """Return the angle of marker i relative to marker j about z."""
         return angle_about_z(e)
 
     @staticmethod
     def loads(e: Symbolic) -> Loads:
-        """Force across and along the axis, and the moment across it."""
+        """Return the force normal to and along the axis, and the moment normal to it."""
         from sympy import Matrix
 
         force, z = Matrix(e.lam[:3]), e.j.z

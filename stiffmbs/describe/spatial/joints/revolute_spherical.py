@@ -13,13 +13,13 @@ from ..primitives import IN_PLANE, along
 
 
 class RevoluteSpherical(Rod[Marker]):
-    """Rod without mass, hinged at marker j and ending in a ball at marker i.
+    """Massless rod with a hinge at marker j and a ball at marker i.
 
-    The point of marker i stays at a distance L from the point of marker j, and in the plane across j's z axis, the
-    axis of the hinge: d . z_j = 0 and (d . d - L^2)/(2 L) = 0.  The reaction is a force on the ball, without torque.
+    The point of marker i remains at a distance L from that of marker j, (d . d - L^2)/(2 L) = 0, and in the plane
+    normal to the hinge axis z_j, d . z_j = 0. The reaction is a force on the ball, without torque.
 
-    Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), section 9.4
-    (revolute-spherical composite joint).
+    Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), section 9.4 (revolute-spherical composite
+    joint).
     """
 
     kind: ClassVar[str] = "revolute_spherical"

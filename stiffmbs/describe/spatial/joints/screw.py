@@ -13,13 +13,13 @@ from .thread import Thread
 
 
 class Screw(Thread):
-    """Nut on a spindle: marker i stays on the z axis of marker j, parallel to it, and a turn carries it on by the pitch.
+    """Nut on a spindle: marker i remains on the z axis of marker j, parallel to it, and advances by the pitch per turn.
 
-    A cylindrical joint with the thread's equation, s - pitch theta/(2 pi) - offset = 0.  (Adams'
-    SCREW is the thread's equation alone: `thread`.)  The joint leaves one freedom; drives and couplers name the
-    coordinate that they mean, ``spindle.displacement`` or ``spindle.angle``.
+    It is a cylindrical joint with the thread's equation, s - pitch theta/(2 pi) - offset = 0. (Adams' SCREW is the
+    thread's equation alone: `thread`.) The joint leaves one degree of freedom; drives and couplers name one coordinate,
+    ``spindle.displacement`` or ``spindle.angle``.
 
-    The reaction is a force and a torque, of which those along the axis do no work together.
+    The reaction is a force and a torque; the total power of their components along the axis is zero.
 
     Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), section 9.4 (screw joint).
     """
@@ -38,10 +38,10 @@ class Screw(Thread):
 
     @staticmethod
     def displacement(e: Symbolic) -> Any:
-        """The displacement of marker i along the z axis of marker j."""
+        """Return the displacement of marker i along the z axis of marker j."""
         return along(e.i, e.j, e.j.z)
 
     @staticmethod
     def angle(e: Symbolic) -> Any:
-        """The angle of marker i against marker j about z."""
+        """Return the angle of marker i relative to marker j about z."""
         return angle_about_z(e)

@@ -1,4 +1,4 @@
-"""Joints that are the same in space as in the plane: their equations are of distances, joint coordinates, or formulas alone."""
+"""Joints common to the plane and space, with equations of distances, joint coordinates, or formulas."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ __all__ = ["ConstraintEquation", "Coupler", "Distance", "Drive", "Gear", "RackAn
 
 
 class Distance(Rod[Marker]):
-    """Rod: a point of body i and a point of body j keep their distance, (d . d - L^2)/(2 L) = 0.
+    """Rod with constant distance between a point of body i and a point of body j, (d . d - L^2)/(2 L) = 0.
 
-    It turns freely about both of its ends (spherical - spherical).  The reaction is a force along the rod; the
-    multiplier is its tension.
+    Both ends are free to rotate (spherical - spherical). The reaction is a force along the rod; the multiplier is its
+    tension.
 
     Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), section 9.4 (distance constraint).
     """

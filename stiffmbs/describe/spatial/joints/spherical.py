@@ -16,7 +16,7 @@ from ..primitives import COINCIDE, coincide
 class Spherical(Joint):
     """Ball joint: a point of body i and a point of body j coincide.
 
-    The reaction is a force of any direction; it has no torque.
+    The reaction is a force of any direction, without torque.
 
     Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), section 9.4 (spherical joint).
     """

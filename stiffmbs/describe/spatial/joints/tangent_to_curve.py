@@ -1,4 +1,4 @@
-"""Point and direction on a smooth curve of a plane in space: half of two curves that touch."""
+"""Point and direction on a smooth planar curve in space; two of them form a curve-curve contact."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from ..primitives import IN_PLANE, along, perpendicular
 
 
 class TangentToCurve(Curve[Marker]):
-    """Follower with a direction: the point of marker i stays on a curve, its x axis along the tangent there.
+    """Follower with a direction: the point of marker i remains on a curve, with its x axis along the tangent.
 
     The curve is in the xy plane of marker j, as in `point_on_curve`: a slot ``y`` = Y(x), or a cam ``radius`` =
-    R(theta).  With n the normal of the curve at the point, the further equation is x_i . n = 0, satisfied by either
-    sense of the x axis.  Two such joints of one slight body make two curves touch, as Adams' CVCV.
+    R(theta). With the normal n of the curve at the point, the additional equation is x_i . n = 0, for either sense of
+    the x axis. Two such joints of one light body keep two curves in contact, as Adams' CVCV.
 
-    The curve should have no breakpoints.  The reaction has a force across the curve, and a torque.
+    The curve should be free of breakpoints. The reaction has a force normal to the curve, and a torque.
     """
 
     kind: ClassVar[str] = "tangent_to_curve"
@@ -25,7 +25,7 @@ class TangentToCurve(Curve[Marker]):
 
     @staticmethod
     def position(e: Symbolic) -> Any:
-        """y - Y(x) or rho - R(theta), the distance from the plane, and the x axis along the gradient of the first."""
+        """Return y - Y(x) or rho - R(theta), the distance from the plane, and x_i . n with its gradient n."""
         x, y = (e.variable(along(e.i, e.j, axis)) for axis in (e.j.x, e.j.y))
         curve = e.named(_curve(e, x, y))
         gradient = e.slope(curve, x) * e.j.x + e.slope(curve, y) * e.j.y
@@ -33,7 +33,6 @@ class TangentToCurve(Curve[Marker]):
 
 
 def _curve(e: Symbolic, x: Any, y: Any) -> Any:
-    """What is zero on the curve."""
     if e.y is not None:
         return y - e.y(x)
     from sympy import atan2, sqrt

@@ -1,4 +1,4 @@
-"""Thread: the one equation of a screw."""
+"""Thread: the equation of a screw."""
 
 from __future__ import annotations
 
@@ -15,12 +15,10 @@ from ..primitives import along, angle_about_z
 
 
 class Thread(OffsetConstraint):
-    """Ties how far marker i is along the z axis of marker j to its angle about it: s - pitch theta/(2 pi) - offset = 0.
+    """Relation of displacement along the z axis of marker j to the angle about it: s - pitch theta/(2 pi) - offset = 0.
 
-    Nothing else is held: this is Adams' SCREW, which wants a cylindrical joint beside it.  A pitch above zero is a
-    right-handed thread.
-
-    The reaction is a force along z and a torque about it.
+    This is Adams' SCREW, a single equation that requires an additional cylindrical joint. A positive pitch is a
+    right-handed thread. The reaction is a force along z and a torque about it.
 
     Shabana, Computational Dynamics (2001), p. 434 (screw joint).
     """

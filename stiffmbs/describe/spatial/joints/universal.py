@@ -15,10 +15,10 @@ from ..primitives import ACROSS, COINCIDE, coincide, perpendicular
 
 
 class Universal(Joint):
-    """Cardan joint: two points coincide, and the axes z of both markers, the arms of its cross, are at right angles.
+    """Cardan joint: two points coincide, and the z axes of both markers, the arms of its cross, are perpendicular.
 
-    Each body turns about its own arm.  The reaction is a force of any direction, and a torque at right angles to both
-    arms.  This is Adams' UNIVERSAL; its HOOKE, whose markers have z along the shafts, has the arms i.x and j.y.
+    Each body rotates about its own arm. The reaction is a force of any direction, and a torque normal to both arms.
+    This is Adams' UNIVERSAL; its HOOKE, whose markers have z along the shafts, has the arms i.x and j.y.
 
     Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), section 9.4 (universal joint).
     """
