@@ -76,6 +76,7 @@ def test_a_spring_is_changed(run_with):
     np.testing.assert_allclose(found["PART_2.z"], 4 - sag + (sag - 1) * np.cos(omega * t), atol=1e-6)
 
 
+@pytest.mark.long
 def test_it_starts_from_the_equilibrium_that_is_asked_for(run_with):
     found = run_with("DEACTIVATE/JOINT, ID=1\nSIM/STATIC\n" + RUN)
     np.testing.assert_allclose(found["PART_2.z"], 3 - 2 * G / 50, atol=1e-6)

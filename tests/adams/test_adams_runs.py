@@ -11,6 +11,7 @@ from stiffmbs.adams.load import read_adams
 from .metric_datasets import GRAVITY, HEAD, TWO, G, run
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "statement, equations",
     [
@@ -212,6 +213,7 @@ def test_a_hooke_joint_turns_unevenly():
     np.testing.assert_allclose(np.sin(out) * np.cos(angle), np.cos(out) * np.sin(angle) * math.cos(BENT), atol=1e-6)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("marker", [21, 22])
 def test_a_constant_velocity_joint_turns_evenly(marker):
     solution = run(SHAFTS + f"JOINT/3, CONVEL, I={marker}, J=30", 2.0)

@@ -22,6 +22,7 @@ def run(text, **settings):
     return stiffmbs.run(read_adams(UNITS + text + "END\n"), **{"rtol": 1e-9, "duration": 0.3, "points": 4, **settings})
 
 
+@pytest.mark.long
 def test_a_transfer_function_and_a_linear_system_and_an_equation_drive_a_slider():
     found = run(
         SLIDER

@@ -8,6 +8,8 @@ import stiffmbs
 from stiffmbs import InputError
 from stiffmbs.adams.load import read_adams
 
+pytestmark = pytest.mark.long  # kernels that no other test compiles, or many scenes
+
 HEAD = """cam and follower
 UNITS/FORCE=NEWTON, MASS=KILOGRAM, LENGTH=MILLIMETER, TIME=SECOND
 PART/1, GROUND
@@ -68,7 +70,6 @@ def turning(height, angle, spin, times, inertia, weight):
     return solve_ivp(rates, (times[0], times[-1]), [angle, spin], t_eval=times, rtol=1e-10, atol=1e-12).y
 
 
-@pytest.mark.long
 def test_an_eccentric_disc_lifts_a_flat_face():
     """The face is at e sin(angle) + R; the force on it by its acceleration, and no torque about the point of contact."""
     found = stiffmbs.run(
@@ -87,7 +88,6 @@ def test_an_eccentric_disc_lifts_a_flat_face():
         np.testing.assert_allclose(found[name], sign * found["CVCV_6.fy"], atol=1e-9)
 
 
-@pytest.mark.long
 def test_an_ellipse_lifts_a_flat_face_by_its_support():
     """Height sqrt(a^2 sin^2 + b^2 cos^2) of the highest point of an ellipse that turns about its middle."""
     cam = ellipse(50, 30, 73)
@@ -101,7 +101,6 @@ def test_an_ellipse_lifts_a_flat_face_by_its_support():
     np.testing.assert_allclose(found["PART_2.wz"], rate, atol=5e-3)
 
 
-@pytest.mark.long
 def test_an_eccentric_disc_lifts_a_roller():
     """Two circles are as far apart as the sum of their radii, though they are drawn 1 mm apart."""
     text = dataset(ellipse(40, 40), ellipse(10, 10), (15, 0), np.sqrt(50**2 - 15**2) + 1, "CLOSED", spin=8.0)

@@ -22,6 +22,7 @@ def solved(text, duration=1.0):
     return stiffmbs.run(read_adams(HEAD.format(text)), duration=duration, rtol=1e-9, output=0.1)
 
 
+@pytest.mark.long
 def test_lists_may_begin_on_the_continuation_line():
     stiffness = "\n".join(", " + ", ".join("8" if row == column else "0" for row in range(6)) for column in range(6))
     found = solved(f"FIELD/1, I=21, J=10\n, KMATRIX =\n{stiffness}\n, LENGTH =\n, 0, 0, 0, 0, 0, 0")

@@ -39,6 +39,7 @@ def scaled(data, factor):
     return data.model_copy(update={"forces": forces})
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("solver", ["bdf", "projected", "auto"])
 @pytest.mark.parametrize("name", CHANGES)
 def test_a_job_changed_in_place_gives_what_a_new_one_gives_to_the_last_bit(examples, name, solver):

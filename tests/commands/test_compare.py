@@ -182,6 +182,7 @@ def test_a_report_says_why_there_is_no_equilibrium(tmp_path):
     assert "<p>none: " in page.read_text()
 
 
+@pytest.mark.long
 def test_a_report_has_no_sections_that_nobody_asks_for(examples, tmp_path):
     page = tmp_path / "page.html"
     assert invoke("report", examples / "bar_pendulum.yaml", "--no-verify", "-o", page).exit_code == 0

@@ -50,6 +50,7 @@ def test_a_title_that_is_no_formula_is_drawn_as_it_is(folder, title):
     assert not list(folder.glob(".part-*"))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "command", [["run", "--json"], ["check"], ["report", "--no-verify"], ["convert", "--in-space"]]
 )
@@ -92,6 +93,7 @@ def started(*arguments, **options):
     return subprocess.Popen([*COMMAND, *arguments], stderr=subprocess.PIPE, text=True, **options)
 
 
+@pytest.mark.long
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="needs /dev/full")
 @pytest.mark.parametrize(
     "arguments", [["check", "scene.yaml"], ["run", "scene.yaml", "--json"], ["schema"], ["--help"]]

@@ -60,6 +60,7 @@ def test_a_long_run_in_a_terminal_shows_time_step_order_and_time_left(examples, 
     assert in_a_terminal([*asked, "-q"], tmp_path, program=("-c", IMPATIENT)) == ""
 
 
+@pytest.mark.long
 def test_a_short_run_in_a_terminal_shows_nothing(examples, tmp_path):
     stiffmbs.run(examples / "bar_pendulum.yaml", duration=0.01)  # compiled before
     assert in_a_terminal(["run", examples / "bar_pendulum.yaml", "--json", "--duration", "0.01"], tmp_path) == ""

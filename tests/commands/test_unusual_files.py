@@ -77,6 +77,7 @@ def test_unusual_files_are_refused(tmp_path, use, kind):
     assert len(done.stderr.strip().splitlines()) == 1
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kind", KINDS)
 def test_meshes_of_mjcf_are_refused(tmp_path, kind):
     pytest.importorskip("mujoco")
@@ -89,6 +90,7 @@ def test_meshes_of_mjcf_are_refused(tmp_path, kind):
     assert done.returncode == 2, (done.returncode, done.stderr[-500:])
 
 
+@pytest.mark.long
 def test_standard_input_has_an_end():
     with open("/dev/zero", "rb") as zeros:
         done = subprocess.run(

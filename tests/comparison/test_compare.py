@@ -83,6 +83,7 @@ def test_absolute_tolerances_stay_in_proportion():
     assert entry.at(RunSettings(rtol=1e-6), 1e-4).atol is None
 
 
+@pytest.mark.long
 def test_a_chaotic_motion_has_no_reference(examples):
     scene = stiffmbs.load_scene(examples / "chain.yaml", DOUBLE_PENDULUM)
     with pytest.raises(

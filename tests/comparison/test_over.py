@@ -42,6 +42,7 @@ def test_steps_at_an_error_lie_between_those_of_the_rows_about_it():
     assert min(steps) < one.at.steps["bdf"] < max(steps)
 
 
+@pytest.mark.long
 def test_a_value_without_reference_is_told_and_the_others_are_measured(examples):
     """A double pendulum from rest: soon a chaotic motion, unless there is nearly no gravity."""
 
@@ -62,6 +63,7 @@ def test_a_value_without_reference_is_told_and_the_others_are_measured(examples)
     assert "g = 9.81: no reference" in str(found)
 
 
+@pytest.mark.long
 def test_no_value_with_a_reference_is_refused(examples):
     with pytest.raises(stiffmbs.SolverError, match="no reference"):
         stiffmbs.compare_over(

@@ -130,6 +130,7 @@ def test_inputs_with_too_many_features_are_told_and_followed():
     assert not features("sin(2000*pi*t)").note
 
 
+@pytest.mark.long
 def test_a_pulse_of_a_microsecond_in_1000_s_is_found_wherever_it_is():
     for c in np.random.default_rng(1).uniform(0, 1000, 20):
         length, t = features(f"exp(-((t - {c:.17g})/1e-6)^2)", end=1000.0).narrowest()
@@ -235,6 +236,7 @@ def test_ranges_of_tables_hold_their_values_and_slopes(how):
     assert np.all(found.slope[0][:, None] <= rates + 1e-6) and np.all(rates <= found.slope[1][:, None] + 1e-6)
 
 
+@pytest.mark.long
 def test_a_kinematic_peak_between_output_points_is_told_and_found_by_verify():
     pulse = driven("1e-3*exp(-((t - 0.505)/1 ms)^2)")
     how = {"duration": 1.0, "points": 101, "solver": "kinematic"}

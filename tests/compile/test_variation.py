@@ -73,6 +73,7 @@ joints:
 """
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("formula", "held"), [("az(c) - tanh(20*(b.x - 5)) - 1", False), ("az(c) - 0*b.x", True)])
 def test_an_orientation_is_held_by_what_depends_on_it_alone(formula, held):
     rows = {"upright.x_across_z", "upright.y_across_z", "turning.zero[0]"}

@@ -96,6 +96,7 @@ TEXTS = st.lists(LINES, min_size=1, max_size=6).map(
 )
 
 
+@pytest.mark.long
 @settings(max_examples=500, deadline=None)
 @given(TEXTS)
 @example("a: {&b12:30}")

@@ -59,6 +59,7 @@ def test_in_space_variables_hold_all_that_requests_may():
     np.testing.assert_allclose(solution["left"], 0, atol=1e-6)
 
 
+@pytest.mark.long
 def test_a_planar_scene_takes_its_variables_and_tables_into_space():
     plane = pushed("pull + more", "turn*pull", requests={"r": "pull"})
     np.testing.assert_allclose(stiffmbs.run(in_space(plane))["r"], stiffmbs.run(plane)["r"], atol=1e-6)

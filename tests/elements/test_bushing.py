@@ -77,6 +77,7 @@ def test_a_preloaded_bushing_keeps_energy(axes):
     assert solution.energy_drift() < 1e-7
 
 
+@pytest.mark.long
 def test_bushing_by_curves_keeps_energy_and_is_stiffer_where_they_say():
     law = {"table": [[-0.1, -300], [0, 0], [0.1, 300]], "lines": True}
     model = bushed(0.02, -0.03, 0.1, stiffness=(1, 1, 1), law_x="1e6*s^3 - s", law_y=law, law_angle="40*s")

@@ -129,6 +129,7 @@ def test_pinion_moves_its_rack(radius):
     np.testing.assert_allclose(solution["teeth.torque"], 0, atol=1e-12)
 
 
+@pytest.mark.long
 def test_couplers_of_a_winch_and_of_two_slides():
     """A drum lifts a weight (m per rad), which moves a counterweight in a slot: one acceleration for all."""
     lift, share, drum, mass, other, torque = 0.2, -0.5, 0.05, 3.0, 1.5, 8.0

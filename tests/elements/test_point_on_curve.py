@@ -15,6 +15,7 @@ PARABOLA = {
 }
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("curve", PARABOLA.values(), ids=PARABOLA.keys())
 def test_bead_on_a_parabola(curve):
     """Energy is kept, and the wire presses with N = m (g cos psi + v^2 curvature) across itself."""

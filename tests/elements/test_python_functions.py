@@ -129,6 +129,7 @@ def test_ctrl_c_in_the_function_interrupts_the_run():
     assert solution.outcome.name == "INTERRUPTED" and len(solution.time) > 10
 
 
+@pytest.mark.long
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
 @pytest.mark.parametrize("solver", ["bdf", "projected"])
 def test_ctrl_c_before_the_function_interrupts_the_run_and_no_number_is_wrong(solver):

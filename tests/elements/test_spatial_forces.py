@@ -93,6 +93,7 @@ def cases(names):
     return [pytest.param(name, marks=pytest.mark.long if name in LONG else ()) for name in names]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", cases(INNER))
 def test_action_is_reaction_in_force_and_in_torque(name):
     element, fields = INNER[name]
@@ -102,6 +103,7 @@ def test_action_is_reaction_in_force_and_in_torque(name):
         assert np.max(np.abs(found.sum(axis=0))) < 1e-13 * np.max(np.abs(found))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", cases(CONSERVATIVE))
 def test_energy_and_momenta_are_kept(name):
     element, fields = CONSERVATIVE[name]

@@ -71,6 +71,7 @@ def test_a_sleeve_rubs_against_the_velocity_of_its_surface():
     np.testing.assert_allclose(R * solution["body.wz"], -4 + 4 / 5 * slowing, atol=1e-7)
 
 
+@pytest.mark.long
 def test_a_ball_is_braked_against_its_angular_velocity():
     model = held(spatial.Spherical, spin=(0, 6, 0), force=(0, 30, 40), radius=0.02)
     solution = run(model)
@@ -84,6 +85,7 @@ def test_a_body_stays_where_friction_holds_it():
     assert along_axis(run(model, 0.5))[-1] == pytest.approx(1e-3 * np.arctanh(3 / 5), rel=1e-6)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "joint",
     ["revolute", *(pytest.param(each, marks=pytest.mark.long) for each in ("cylindrical", "prismatic")), "spherical"],

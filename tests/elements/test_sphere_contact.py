@@ -65,6 +65,7 @@ def test_restitution_follows_from_the_dissipation(dissipation):
     np.testing.assert_allclose(v, after * normal, atol=1e-7)
 
 
+@pytest.mark.long
 def test_a_ball_with_side_spin_slides_on_a_parabola_until_it_rolls():
     """Friction is along the sliding velocity, whose direction stays; it ends at v = (5 v0 + 2 w0 x r n)/7 (Coriolis)."""
     mu, radius, g = 0.3, 0.1, 9.81

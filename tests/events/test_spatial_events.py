@@ -6,6 +6,8 @@ import pytest
 import stiffmbs
 from stiffmbs.solve import integrator
 
+pytestmark = pytest.mark.long  # kernels that no other test compiles, or many scenes
+
 RADIUS, MASS, PRESS = 0.1, 1.0, 1e6
 EXPLICIT = {"solver": "projected", "scheme": "dop853"}
 BALL = f"""

@@ -192,6 +192,7 @@ forces:
         assert solution.solver["events"] == 1
 
 
+@pytest.mark.long
 def test_an_argument_that_rests_on_a_point_of_its_table_is_no_event():
     """Interpolants differ from a coordinate that rests by roundings, which lie on both sides of the point."""
     scene = stiffmbs.read_scene("""

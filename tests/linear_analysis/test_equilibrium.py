@@ -83,6 +83,7 @@ forces:
 """
 
 
+@pytest.mark.long
 def test_a_buckled_strut_finds_a_stable_branch_and_says_that_there_are_two():
     """k a = F L sin a for the angle a from upright; upright itself is unstable for F L > k."""
     from scipy.optimize import brentq

@@ -33,6 +33,7 @@ def read(content):
     return stiffmbs.read_scene(json.dumps(content))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("load, buckled", [(3.5, False), (4.2, True), (30.0, True)])
 def test_a_column_of_two_links_buckles_at_its_critical_load(load, buckled):
     """P_1 = k/L (3 - sqrt 5)/2 = 3.82 N (Timoshenko and Gere, Theory of Elastic Stability, 1961, sec. 2.1)."""
@@ -93,6 +94,7 @@ def test_a_leaf_spring_and_a_tie_rod_carry_the_car_from_any_height(lift):
             assert np.ptp(still[f"{body}.{axis}"]) < 1e-8
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("count", [200, pytest.param(1000, marks=pytest.mark.long)])
 def test_many_bodies_hang_as_a_catenary_of_springs_says(count):
     """Weights on springs: each carries what hangs below it."""
@@ -109,6 +111,7 @@ def test_many_bodies_hang_as_a_catenary_of_springs_says(count):
     assert not found.notes  # stable, and nothing free
 
 
+@pytest.mark.long
 def test_a_long_strut_finds_its_stable_branch_as_the_elastica_has_it():
     """Euler's column, clamped below, of 120 rods: Timoshenko and Gere, Theory of Elastic Stability, 2nd ed., table 2-1."""
     count, load = 120, 1.152 * np.pi**2 / 4

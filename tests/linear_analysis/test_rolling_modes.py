@@ -9,8 +9,9 @@ from stiffmbs.show.modes import modes_text
 from tests.stress.families.analyses.rolling_modes import SKATE, TRAILER
 from tests.stress.mechanisms.bicycle import bicycle, published
 
+pytestmark = pytest.mark.long  # kernels that no other test compiles, or many scenes
 
-@pytest.mark.long
+
 @pytest.mark.parametrize("speed", range(11))
 def test_the_benchmark_bicycle_has_its_published_eigenvalues(speed):
     """Weave, capsize and castering, and rolling on as the only rigid body motion."""

@@ -78,6 +78,7 @@ def test_a_car_on_a_circle_rolls_outwards():
     assert speed == pytest.approx(rate * outwards, rel=1e-12)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("rate", [0.5, pytest.param(1.0, marks=pytest.mark.long)])
 def test_a_disc_rolls_on_a_circle(rate):
     """Its lean and spin follow from rolling; it falls over by statics and stays up by its spin, as a run from there does."""

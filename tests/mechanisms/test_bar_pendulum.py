@@ -11,6 +11,7 @@ def scene(examples):
     return stiffmbs.load_scene(examples / "bar_pendulum.yaml")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("step", "gap"), [(1e-3, 17.708), (5e-4, 8.850), (2.5e-4, 4.424)])
 def test_gap_of_the_pin_without_projection(scene, step, gap):
     solution = stiffmbs.run(

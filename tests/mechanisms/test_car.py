@@ -57,7 +57,6 @@ def test_a_leaf_sprung_car_on_bumps_is_the_same_by_both_integrators(examples):
         assert found[channel] == pytest.approx(exact[channel], abs=bound)
 
 
-@pytest.mark.long
 def test_the_driver_follows_a_change_of_lane(examples):
     found = stiffmbs.run(stiffmbs.load_scene(examples / "car.yaml", [("choose.manoeuvre", "lane_change")]))
     y = found["chassis.y"]

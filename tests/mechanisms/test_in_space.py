@@ -97,6 +97,7 @@ def runs():
             yield pytest.param(path, DOP853, id=f"{path.stem}-dop853", marks=long)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("path", "settings"), list(runs()))
 def test_an_example_is_the_same_in_space(path, settings):
     scene, stiff = stiffmbs.load_scene(path), path.stem in STIFF

@@ -79,6 +79,7 @@ def test_a_stiffer_bearing_gives_way_less(solved):
     assert give[1] / give[2] == pytest.approx(10, rel=0.05)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("links", [10, 40])
 def test_a_swinging_chain_keeps_its_energy(solved, links):
     solution = solved("chain", ("N", str(links)), rtol=1e-9)

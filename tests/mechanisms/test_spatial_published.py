@@ -127,6 +127,7 @@ def test_a_chain_of_hinges_in_space(solved, four_rods, settings):
         np.testing.assert_allclose(axes(solution, f"link{k + 1}"), [pose[k].turn for pose in at], atol=1e-7)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("links", [10, 40])
 @pytest.mark.parametrize("joint", ["revolute", "spherical"])
 def test_a_long_chain_in_space_keeps_its_energy_and_its_spin(solved, links, joint):

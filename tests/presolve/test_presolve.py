@@ -242,6 +242,7 @@ def test_a_body_that_nothing_lets_move():
     np.testing.assert_allclose(solution["floor.fy"], 2 * 9.81, rtol=1e-12)
 
 
+@pytest.mark.long
 @settings(max_examples=12, deadline=None, suppress_health_check=list(HealthCheck))
 @given(seed=st.integers(0, 10**6), count=st.integers(2, 6), welds=st.integers(1, 3))
 def test_random_trees_with_welds(seed, count, welds):

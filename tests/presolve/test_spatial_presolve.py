@@ -62,6 +62,7 @@ run: {duration: 1, points: 51}
 """
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("solver", "scheme"), [("bdf", "dop853"), ("projected", "dop853")])
 def test_welded_bodies_and_independent_mechanisms(solver, scheme):
     with_it, without = both(read_scene(WELDED), solver=solver, scheme=scheme, rtol=1e-10)

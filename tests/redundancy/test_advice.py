@@ -111,6 +111,7 @@ def table():
     return model
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("ratio", [1.0, 2.0, 0.1])
 def test_a_table_on_four_legs(ratio):
     """Springs k0 and 1, 1, 1 under the corners of a plate: the diagonals share as their compliances in series do."""

@@ -40,6 +40,7 @@ def test_two_bushings_on_the_line_through_the_ball_do_not_hold_its_turn():
     assert messages(model) == ["arm can turn by itself between ball, front and rear, which moves no other body"]
 
 
+@pytest.mark.long
 def test_a_torsional_stiffness_there_holds_it():
     assert messages(wishbone((1e7, 1e7, 1e7, 1.0, 0, 0), apart=0.0)) == []
 
@@ -50,6 +51,7 @@ def test_dampers_alone_hold_nothing():
     assert messages(model) == ["rod can turn by itself between big_end and small_end, which moves no other body"]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("stiffness", [1.0, 1e8])
 def test_a_bushing_that_holds_the_turn_of_a_rod_on_two_balls_is_named(stiffness):
     model = slider_crank(0.7)

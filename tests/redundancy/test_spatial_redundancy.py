@@ -248,6 +248,7 @@ def test_two_drives_that_agree():
     np.testing.assert_allclose(solution["door.x"], 0.4 * np.cos(5 * solution.time), atol=1e-12)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "second", ["6*t", pytest.param("5*t - t^2", marks=pytest.mark.long), "5*t + 0.1", "5*t + 0.2*step(t, 2.5, 0, 2.6, 1)"],
     ids=["speed", "acceleration", "position", "after turns"],
@@ -260,6 +261,7 @@ def test_two_drives_that_disagree_are_an_error_that_names_both(second):
         stiffmbs.run(model, duration=3.0)
 
 
+@pytest.mark.long
 def test_an_over_driven_loop_tells_the_drives_from_the_hinges():
     model = parallelogram(1.0)
     model.add("motor", Drive(joint="foot0", position="1 + t"))

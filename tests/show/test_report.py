@@ -83,6 +83,7 @@ def test_a_page_needs_nothing_from_elsewhere(page_of):
         assert image[:4] == b"\x89PNG" if kind == "png" else ElementTree.fromstring(image).tag.endswith("svg")
 
 
+@pytest.mark.long
 def test_a_run_is_not_verified_where_one_says_so(page_of):
     page = page_of("bar_pendulum", "--no-verify")
     assert "not verified: peaks have no error bars" in page.texts
@@ -96,6 +97,7 @@ def test_what_is_in_doubt_stands_first(page_of):
     assert doubt < page.texts.index("Check")
 
 
+@pytest.mark.long
 def test_names_are_no_markup(tmp_path):
     scene = tmp_path / "odd.yaml"
     scene.write_text(

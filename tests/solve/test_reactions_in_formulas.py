@@ -36,6 +36,7 @@ def sliding(friction):
 FORMULA = AppliedForce(i="cart", force=(f"-{MU}*abs(fy(rail))*tanh(cart.vx/{SMOOTH})", 0))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "settings",
     [
@@ -84,6 +85,7 @@ def test_a_reaction_in_a_formula_is_its_channel_in_space_too():
     )
 
 
+@pytest.mark.long
 def test_a_spatial_joints_components_are_its_channels():
     model = spatial.Model("top", gravity=(0, 0, -9.81))
     model.add("bar", spatial.Body(mass=1, inertia=(0.01, 0.03, 0.03), position=(0.3, 0.1, 0), omega=(3, 1, 2)))

@@ -73,6 +73,7 @@ def test_moves_between_poses_are_inverse_to_moving():
     np.testing.assert_allclose(SPACE.move(there, there), 0.0, atol=1e-15)
 
 
+@pytest.mark.long
 @settings(max_examples=12, deadline=None, suppress_health_check=list(HealthCheck), derandomize=True)
 @given(seed=st.integers(0, 2**32 - 1))
 def test_assembly_finds_the_branch_that_is_drawn(seed):

@@ -188,6 +188,7 @@ def bouncing_top():
     )
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("engine", ["native", "through scikit-sundae"])
 def test_corners_in_time_and_state_are_met_in_space(engine, monkeypatch):
     exact = stiffmbs.run(bouncing_top(), solver="projected", scheme="dop853", rtol=1e-12)

@@ -30,6 +30,7 @@ def noisy(seed, sigma=1e-3, k=130.0, c=2.5):
 PARAMETERS = {"k": Range(50, 500, log=True), "c": (0.1, 10)}
 
 
+@pytest.mark.long
 def test_stiffness_and_damping_are_found_again():
     t = np.linspace(0, 2, 40)
     found = fit(stiffmbs.read_scene(SLED), {"time": t, "sled.x": moved(t, 130.0, 2.5)}, PARAMETERS)
@@ -166,6 +167,7 @@ run: {duration: 0.5, rtol: 1e-8}
     assert found.runs < 25
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("ranges", "sentence"),
     [

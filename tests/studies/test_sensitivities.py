@@ -320,6 +320,7 @@ def test_a_vibration_that_no_step_resolves_is_refused():
         stiffmbs.sensitivities(scene, "A", "final(b.x)")
 
 
+@pytest.mark.long
 def test_an_event_of_an_algebraic_state_takes_the_law_behind_it():
     """The branch has another value at zero than on both sides; the time of the event changes by -1/z'(0) with the start."""
     start = -0.0685166
@@ -441,6 +442,7 @@ def test_a_jump_of_accelerations_is_refused_from_a_size_on(step, jumps, refused)
         recorder.passed(1.0)
 
 
+@pytest.mark.long
 def test_a_request_changes_with_the_channels_that_it_reads():
     """x = v t + F t^2/(2 m) in a request: the derivatives come by its channels alone, or by its parameter as well."""
     scene = stiffmbs.read_scene("""

@@ -87,6 +87,7 @@ def test_matrices_have_a_dimension_of_numbers_and_their_entries_beside_it():
     np.testing.assert_allclose(found.x, expected, atol=1e-5)
 
 
+@pytest.mark.long
 def test_samples_are_stratified_within_their_ranges_and_the_same_each_time(examples):
     path = examples / "cart_pendulum.yaml"
 

@@ -25,6 +25,7 @@ def test_channels_that_tell_a_parameter_each_are_fits_of_their_own():
         np.testing.assert_allclose(found.freedom[k], count - 1.0, rtol=1e-10)
 
 
+@pytest.mark.long
 def test_intervals_of_a_mean_from_two_instruments_hold_it_about_as_often_as_they_say():
     """Means of two samples of eight, weighted by what they scatter: with a common noise and all its freedom 92 % hold."""
     held, trials, chance = np.zeros(2), 800, np.random.default_rng(1)

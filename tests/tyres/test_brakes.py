@@ -25,6 +25,7 @@ def hub(spin=0.0, fixed=True):
     return model
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("solver", ["bdf", "projected"])
 def test_a_brake_stops_a_wheel_and_holds_it(solver):
     """At C/I per second, but for the lag in which the torque builds up, and then not a turn more."""
@@ -67,6 +68,7 @@ def test_the_carrier_takes_the_opposite_torque(torque):
     assert np.ptp(found["upright.wy"]) > 1
 
 
+@pytest.mark.long
 def test_a_wheel_with_a_brake_keeps_its_spin_as_a_coordinate():
     """Steps don't grow with the speed, which a wheel solved for by its quaternion would cost."""
     steps = []

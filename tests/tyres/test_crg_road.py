@@ -12,6 +12,8 @@ from stiffmbs.spatial import VerticalTyre
 
 from .wheels import reported, wheel
 
+pytestmark = pytest.mark.long  # kernels that no other test compiles, or many scenes
+
 STEP, COUNT, SECTIONS = 0.1, 400, (-2.0, -0.5, 0.5, 3.0)
 BEND, HEADING = 1 / 40, 0.4
 """Curvature of the reference line, 1/m, and its heading at the start, rad."""
@@ -73,7 +75,6 @@ def error_at(road, x, y, z):
 PLACES = [(3.05, 0.2), (11.3, -1.7), (20.0, 2.9), (33.7, -0.5), (39.0, 1.0)]
 
 
-@pytest.mark.long
 @pytest.mark.parametrize(("layout", "bend"), [("KRBI", BEND), ("KDBI", 0.0), ("LRFI", 0.0), ("LDFI", BEND)])
 def test_heights_beside_the_reference_line(tmp_path, layout, bend):
     road = CrgRoad(file=written(tmp_path / "road.crg", layout, bend), placed="file")
@@ -124,7 +125,6 @@ run: {duration: 1.5, output: 10 ms, rtol: 1e-8}
 """
 
 
-@pytest.mark.long
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("bend", "filtered"),

@@ -101,6 +101,7 @@ def test_a_blocked_wheel_stands_on_a_slope(tyre):
         assert found[f"tyre.{force}"][-1] == pytest.approx(-400 * {"x": 1.5, "y": 0.4}[direction], rel=1e-3)
 
 
+@pytest.mark.long
 def test_a_sliding_wheel_does_not_wind_up_its_deflection():
     model = gliding(FialaTyre(i="wheel", **FIALA, relaxation=LENGTHS), 0.0)
     model.add("spun", Drive(joint="pin", velocity="60*step(t, 0, 0, 0.1, 1)"))
@@ -136,6 +137,7 @@ def at_slip(coefficients=SMALL, use_mode=4, **fields):
     return reported(wheel(tyre, 0.3, 0.02, slip_angle=0.05, camber=0.02, spin=36.0))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("mode", "acting"),
     [(0, ""), (1, "longitudinal rolling"), (2, "lateral overturning aligning"),

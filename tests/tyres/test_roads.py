@@ -43,6 +43,7 @@ def test_an_upright_wheel_stands_on_the_height_where_the_road_is_level(road, x, 
     assert load_at(road, x) == pytest.approx(K * (0.03 + height), rel=1e-9)
 
 
+@pytest.mark.long
 def test_on_a_slope_the_load_is_along_the_normal():
     """A wheel whose plane is along a slope of angle a: the centre's distance from the plane is h cos(a)."""
     slope = 0.1
@@ -134,6 +135,7 @@ def driven_over(road, speed, duration):
     return model.run(duration=duration, output=1e-3)
 
 
+@pytest.mark.long
 def test_a_short_bump_at_speed_is_not_jumped_over():
     """The bump lasts 10 ms after 3 s of perfectly steady running; the impulse is that of a free mass on a moved spring."""
     solution = driven_over(CosineBump(start=90, length=0.3, crest=0.05), 30.0, 3.2)

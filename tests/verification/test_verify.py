@@ -179,6 +179,7 @@ def nearly_a_parallelogram():
     return stiffmbs.read_scene(text)
 
 
+@pytest.mark.long
 def test_another_branch_after_a_singular_pose_is_told_with_time_pose_and_remedy(monkeypatch):
     monkeypatch.setattr(taken_again, "CREPT", np.inf)  # exact constraints see the micron at any tolerance
     found = stiffmbs.verify(nearly_a_parallelogram(), duration=3.0, rtol=1e-5)
@@ -192,6 +193,7 @@ def test_another_branch_after_a_singular_pose_is_told_with_time_pose_and_remedy(
 LONG = ("bricard", "bushing_axle", "car", "governor", "leaf_sprung_car", "quarter_car", "spatial_chain")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "path",
     [

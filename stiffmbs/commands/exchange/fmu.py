@@ -27,7 +27,7 @@ def fmu(scene: str, output: Path | None, outputs: tuple[str, ...], as_json: bool
 
     The FMU needs this package in the Python of the program that runs it (needs the extra fmu).
 
-    Exit status: 0 done, 2 the input is wrong.
+    Exit status: 0 done, 1 the FMU could not be written, 2 the input is wrong.
     """
     from ...show.summary import json_line
     from ...studies.fmu.build import build_fmu

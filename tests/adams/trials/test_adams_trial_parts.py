@@ -100,6 +100,7 @@ def test_a_link_without_mass_hands_everything_on(tmp_path, middle):
     assert any("PART/2 has no MASS" in note for note in stiffmbs.load_scene(path).notes)
 
 
+@pytest.mark.long
 def test_a_mass_without_moments_of_inertia_on_a_chain(tmp_path):
     """A point on the second link: IP is left out."""
     text, mechanism, own = chain(", MASS=1, CM=20, IP=0.1,0.2,0.3", "IP=0,0,0")

@@ -8,13 +8,14 @@ from tests.bench.peers import peers
 from tests.bench.peers.mounted.mounted import turned
 from tests.bench.problems.axle_on_bushings import BENCHMARKS
 
+pytestmark = pytest.mark.long  # kernels that no other test compiles, or many scenes
+
 STEP, RTOL = 5e-4, 1e-9
 COMPILED = "compiled"
 """Of peers whose equations a C compiler takes seconds for: the others have the same ones."""
 PROBLEMS = {benchmark.name: benchmark for benchmark in BENCHMARKS}
 
 
-@pytest.mark.long
 @pytest.mark.parametrize(
     "name",
     [

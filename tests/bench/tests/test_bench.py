@@ -23,6 +23,8 @@ from tests.bench.problems.cars.car_conditioning import RTOLS, Conditioning
 from tests.bench.report import table
 from tests.bench.sweep import at_target_rows
 
+pytestmark = pytest.mark.long  # kernels that no other test compiles, or many scenes
+
 FAMILIES = families()
 PROBLEMS = {name: family[0] for name, family in FAMILIES.items() if isinstance(family[0], Problem)}
 LONG_RACES = ("andrews", "axle_on_bushings", "half_car", "trees_in_space")
@@ -56,7 +58,6 @@ def test_starts_by_hand_are_consistent(name):
     run.close()
 
 
-@pytest.mark.long
 @pytest.mark.parametrize(
     "name",
     [pytest.param(name, marks=pytest.mark.long if name in LONG_RACES else ()) for name in PROBLEMS],
@@ -68,7 +69,6 @@ def test_contestants_agree_with_the_reference(name):
         np.testing.assert_allclose(contestant.at(1e-10)(), reference, atol=3e-7, err_msg=contestant.solver)
 
 
-@pytest.mark.long
 def test_references_have_the_published_values():
     cart = PROBLEMS["cart_pendulum"].reference()[-1]
     assert (cart[0], cart[5] + np.pi / 2) == pytest.approx(
@@ -81,7 +81,6 @@ def test_references_have_the_published_values():
     np.testing.assert_allclose(found, andrews_problem.ANGLES_AT_END, rtol=5e-10)
 
 
-@pytest.mark.long
 @pytest.mark.parametrize("k_b", [1e5, *(pytest.param(k_b, marks=pytest.mark.long) for k_b in (1e7, 1e9))])
 def test_the_half_cars_references_are_those_of_other_programs(k_b):
     y = half_car_problem.reference(k_b)[:, 1]
@@ -143,7 +142,6 @@ WITHOUT_YARDSTICK = (
 )
 
 
-@pytest.mark.long
 @pytest.mark.parametrize("name", [pytest.param(name, marks=MANY if name in LONG_LOOKS else ()) for name in FAMILIES])
 def test_quick_look_in_json(name):
     result = CliRunner().invoke(bench, ["--quick", "--json", name])
@@ -223,7 +221,6 @@ def test_contestants_that_never_arrive_are_left_out():
     assert problem.measured() == []
 
 
-@pytest.mark.long
 @pytest.mark.parametrize("car", CARS, ids=lambda car: car.name)
 @pytest.mark.sampled(4)
 def test_places_of_a_car_are_off_by_little_more_than_one_error_at_the_start_makes(car):

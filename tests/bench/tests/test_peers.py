@@ -28,13 +28,14 @@ from tests.bench.peers.segments import segments_of
 from tests.bench.problems.stiffness import OverStiffness
 from tests.bench.sweep import at_target_rows
 
+pytestmark = pytest.mark.long  # kernels that no other test compiles, or many scenes
+
 PROBLEMS = {name: families()[name][0] for name in ("andrews", "cart_pendulum", "chain", "half_car")}
 LOOSE = {"lambdify and NumPy": 1.0, "Exudyn generalised-alpha": 5e-3}
 """Errors at a moderate step of methods of order 1 and 2."""
 NUMPY = Maths(np.sin, np.cos, np.sqrt, min, max)
 
 
-@pytest.mark.long
 @pytest.mark.parametrize(
     "name", [pytest.param(name, marks=pytest.mark.long if name in ("andrews", "half_car") else ()) for name in PROBLEMS]
 )
@@ -90,7 +91,6 @@ def _slope(m, k):
     return (plus - minus) / 2e-6
 
 
-@pytest.mark.long
 def test_the_jacobian_of_the_half_car_is_the_derivative_of_its_rates():
     minimal = PROBLEMS["half_car"].task().minimal
     y, h = minimal.start + 1e-2 * np.random.default_rng(3).normal(size=18), 1e-6
@@ -187,7 +187,6 @@ def test_a_figure_is_drawn(tmp_path):
     assert path.stat().st_size > 1000
 
 
-@pytest.mark.long
 def test_quick_look_at_peers_in_json(tmp_path):
     result = CliRunner().invoke(bench, ["--quick", "--json", "--peers", "--plot", str(tmp_path), "andrews"])
     assert result.exit_code == 0, result.output
@@ -214,7 +213,6 @@ def test_exact_velocities_and_reactions_of_the_cart_pendulum():
     np.testing.assert_allclose(exact.lam[500, 0], -107.1068184413, atol=1e-8)
 
 
-@pytest.mark.long
 def test_stiffness_is_measured_at_both_ends():
     rows = OverStiffness((1e4, 1e5)).glanced()
     assert [(row.solver, row.setting) for row in rows] == [

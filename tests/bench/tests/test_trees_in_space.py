@@ -11,6 +11,8 @@ from tests.bench.peers.trees.tree import GROUND, Link, Tree
 from tests.bench.problems.accelerations import InSpace
 from tests.bench.problems.trees_in_space import BENCHMARKS, tilted_chain
 
+pytestmark = pytest.mark.long  # kernels that no other test compiles, or many scenes
+
 PROBLEMS = {benchmark.name: benchmark for benchmark in BENCHMARKS}
 STEP, RTOL = 1e-3, 1e-9
 COMPILED = "compiled"

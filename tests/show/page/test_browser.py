@@ -77,6 +77,7 @@ def test_the_mechanism_is_drawn_and_moves(tab, opened, command, scene, options):
     assert (np.abs(then - first).max(axis=2) > 60).mean() > 0.0005
 
 
+@pytest.mark.long
 def test_it_plays_to_its_end_and_again(tab, opened):
     """However slowly the machine draws: the first time slowly until it is seen to play, then to the end at once."""
     opened("animate", EXAMPLES / "four_bar.yaml")
@@ -132,6 +133,7 @@ def test_a_drag_zooms_and_a_click_sets_the_time(tab, opened):
     assert time == pytest.approx(0.45 * 3, abs=0.15)
 
 
+@pytest.mark.long
 def test_keys_move_the_time(tab, opened):
     opened("animate", EXAMPLES / "bar_pendulum.yaml")
     tab.run("document.querySelector('.viewer canvas').focus()")

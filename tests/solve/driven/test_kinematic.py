@@ -187,6 +187,7 @@ def test_a_driven_velocity_leaves_no_freedom_to_dynamics():
         stiffmbs.run(model, solver="kinematic")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("force", [1e20, 1e23])
 def test_steps_follow_the_drive_where_forces_leave_no_digit_of_accelerations(force):
     model = Model(gravity=(0, -9.81))

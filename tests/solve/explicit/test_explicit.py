@@ -175,6 +175,7 @@ def test_frozen_factors_cost_no_accuracy(examples):
     assert np.exp(np.mean(np.log(ratios))) < 1.1
 
 
+@pytest.mark.long
 @settings(max_examples=6, deadline=None, suppress_health_check=list(HealthCheck), derandomize=True)
 @given(st.integers(0, 2**32 - 1), st.integers(1, 5))
 def test_all_integrators_agree_on_random_trees(seed, count):

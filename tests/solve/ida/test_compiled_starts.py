@@ -162,6 +162,7 @@ def test_breakpoints_are_passed_in_one_call_with_the_same_numbers(examples, rtol
     assert found.statistics["breakpoints"] == 3 and passed == expected
 
 
+@pytest.mark.long
 def test_many_breakpoints_are_passed_in_a_few_calls(monkeypatch):
     times = [0.01 * k for k in range(1, 100)]
     found, passed = both_ways(prepare(hopping(times), solver="bdf", duration=1.0, rtol=1e-6), monkeypatch)
@@ -176,6 +177,7 @@ def test_an_output_time_a_rounding_behind_a_breakpoint_is_left_to_python(monkeyp
     assert (found.statistics["breakpoints"], passed, len(found.t)) == (2, 1, 101)
 
 
+@pytest.mark.long
 def test_rows_before_a_breakpoint_keep_the_offsets_of_their_start(examples, monkeypatch):
     """Projections change what stands still by rounding."""
     scene = yaml.safe_load((examples / "spatial_slider_crank.yaml").read_text())

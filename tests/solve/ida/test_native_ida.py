@@ -100,6 +100,7 @@ def ball():
     return Problem(model, rtol=1e-8)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("name", "end"), [("pendulum", 2.0), ("chain", 2.0), ("squeezer", 0.03)]
 )  # dense, sparse, dense

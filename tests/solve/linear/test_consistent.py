@@ -58,6 +58,7 @@ def test_a_state_beside_the_constraints_is_reported_as_by_the_lu(make):
     np.testing.assert_allclose(eliminated.log_determinant, whole.log_determinant, atol=1e-3)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("make", [chain, car])
 def test_accelerations_multipliers_and_determinant_are_those_of_the_lu(make):
     """At a state that both have to leave where it is."""

@@ -11,6 +11,8 @@ from tests.stress.__main__ import stress as command
 from tests.stress.case import Outcome
 from tests.stress.fuzzers import constraints, entry_points
 
+pytestmark = pytest.mark.long  # kernels that no other test compiles, or many scenes
+
 TOY = "tests.stress.tests.toy_fuzzer"
 
 
@@ -80,7 +82,6 @@ def test_every_fuzzer_says_what_it_tries():
     assert stress("--fuzz").exit_code == 2
 
 
-@pytest.mark.long
 @pytest.mark.parametrize("seed", [430003, 450727])
 def test_constraints_that_hold_by_a_slope_alone(seed):
     """Slopes of 5e-5 and 1.4e-12: relaxed constraints lost energy without a word there, or took 14 million steps."""
@@ -88,7 +89,6 @@ def test_constraints_that_hold_by_a_slope_alone(seed):
     assert verdict.outcome is Outcome.RIGHT
 
 
-@pytest.mark.long
 @pytest.mark.parametrize(("seed", "kind"), [(0, "urdf"), (2, "urdf"), (8, "mjcf"), (202, "scene")])
 def test_conversions_are_compared_and_the_comparison_can_fail(monkeypatch, seed, kind):
     """A robot's or dataset's gravity that is read wrongly is seen."""
@@ -103,7 +103,6 @@ def test_conversions_are_compared_and_the_comparison_can_fail(monkeypatch, seed,
     assert trial(np.random.default_rng(seed)).outcome is Outcome.WRONG
 
 
-@pytest.mark.long
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize("name", sorted(set(fuzz.fuzzers()) - {"entry-points"}))
 def test_the_first_cases_of_a_fuzzer_are_not_wrong(name):

@@ -16,10 +16,11 @@ from tests.stress.invariance.typed import NotLegitimate
 from tests.stress.random_scenes.features import SMOOTH
 from tests.stress.random_scenes.scene import random_scene
 
+pytestmark = pytest.mark.long  # kernels that no other test compiles, or many scenes
+
 BDF = {"solver": "bdf"}
 
 
-@pytest.mark.long
 @pytest.mark.parametrize("seeds", [range(1), pytest.param(range(1, 5), marks=pytest.mark.long)])
 def test_random_scenes_move_alike(seeds):
     for seed in seeds:
@@ -67,7 +68,6 @@ def test_random_scenes_keep_the_momentum_of_each_body(original):
     assert gap.ratio <= 1
 
 
-@pytest.mark.long
 @pytest.mark.parametrize("dimensions", [2, 3])
 @pytest.mark.parametrize("seed", range(3))
 def test_two_halves_of_a_body_are_one_again(dimensions, seed):

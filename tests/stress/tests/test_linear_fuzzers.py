@@ -9,6 +9,8 @@ from stiffmbs.linear_analysis import tangent_space
 from tests.stress.case import Outcome
 from tests.stress.fuzzers import modes, stability, transfer
 
+pytestmark = pytest.mark.long  # kernels that no other test compiles, or many scenes
+
 
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize("fuzzer", [modes, transfer])
@@ -18,7 +20,6 @@ def test_nothing_is_wrong(fuzzer, seed):
     assert verdict.outcome in (Outcome.RIGHT, Outcome.TOLD), verdict
 
 
-@pytest.mark.long
 def test_a_wrong_sign_in_the_accelerations_is_found(monkeypatch):
     right = tangent_space.linearised
 
@@ -30,13 +31,11 @@ def test_a_wrong_sign_in_the_accelerations_is_found(monkeypatch):
     assert modes.trial(7).outcome is Outcome.WRONG
 
 
-@pytest.mark.long
 def test_a_load_at_the_origin_in_place_of_the_centre_of_mass_is_found(monkeypatch):
     monkeypatch.setattr(inputs, "_place", lambda data, body, marker: {"body": body})
     assert transfer.trial(7).outcome is Outcome.WRONG
 
 
-@pytest.mark.long
 def test_a_growing_motion_without_a_note_is_found(monkeypatch):
     assert stability.trial(15).outcome is Outcome.RIGHT
     monkeypatch.setattr("stiffmbs.analyses.settled._growth", lambda dynamics, t: [])

@@ -18,6 +18,8 @@ from tests.stress.random_scenes.driven import driven_scene
 from tests.stress.random_scenes.features import STATIC, TREE, Features
 from tests.stress.random_scenes.scene import random_scene
 
+pytestmark = pytest.mark.long  # kernels that no other test compiles, or many scenes
+
 
 def scenes(count, **options):
     return [random_scene(np.random.default_rng(seed), **options) for seed in range(count)]
@@ -46,7 +48,6 @@ def test_every_shipped_part_has_a_maker():
     assert made | set(WITHOUT) >= set(shipped_parts())
 
 
-@pytest.mark.long
 @pytest.mark.parametrize("dimensions", [2, 3])
 def test_scenes_have_all_kinds(dimensions):
     found = set.union(*map(used, scenes(1500 if dimensions == 3 else 300, dimensions=dimensions)))
@@ -70,7 +71,6 @@ def test_features_are_left_out():
     assert not any({"states", "use", "roads", "inputs"} & scene.keys() for scene in scenes(60, features=bare))
 
 
-@pytest.mark.long
 @pytest.mark.parametrize("seeds", [range(2), pytest.param(range(2, 20), marks=pytest.mark.long)])
 def test_scenes_run(seeds):
     """Nine of ten scenes run to their end; drives of others contradict their joints, which is refused."""
@@ -85,7 +85,6 @@ def outcome(scene):
         return str(refusal)
 
 
-@pytest.mark.long
 @pytest.mark.parametrize("dimensions", [2, 3])
 def test_driven_scenes_have_no_freedom(dimensions):
     scene = read_scene(json.dumps(driven_scene(np.random.default_rng(1), dimensions)))

@@ -16,6 +16,8 @@ from tests.stress.mechanisms.double_pendulum import angles, double_pendulum
 from tests.stress.mechanisms.pendulum import swing
 from tests.stress.simulation import simulation
 
+pytestmark = pytest.mark.long  # kernels that no other test compiles, or many scenes
+
 ALWAYS = 1
 """Cases of each family that are run without being asked for: compiling the kinds of all of them takes minutes."""
 COSTLY = ("space", "held_twice", "cars_over_lines")
@@ -36,14 +38,12 @@ def _label(value):
     return value if isinstance(value, str) else value.name
 
 
-@pytest.mark.long
 @pytest.mark.parametrize(("family", "case"), QUICK, ids=_label)
 def test_case(family, case):
     (row,) = outcomes([(family, case)])
     assert row.verdict.outcome is case.expected, row.verdict
 
 
-@pytest.mark.long
 @pytest.mark.sampled(23)
 @pytest.mark.parametrize(("family", "case"), LONG, ids=_label)
 def test_long_case(family, case):

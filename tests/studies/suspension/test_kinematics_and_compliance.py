@@ -170,6 +170,7 @@ PENDULUM = (
 )
 
 
+@pytest.mark.long
 def test_equilibria_over_time_follow_a_torque():
     """A pendulum under a torque of time hangs where its weight balances it."""
     found = stiffmbs.quasi_static(stiffmbs.read_scene(PENDULUM))

@@ -33,6 +33,7 @@ def runs():
     return {name: stiffmbs.quasi_static(stiffmbs.read_scene(SCENE, changes)) for name, changes in cases.items()}
 
 
+@pytest.mark.long
 def test_peaks_are_along_the_axes_of_the_bushing():
     """x of the ground is minus y of a bushing that is turned by 90 degrees: it pushes back by as much."""
     found = stiffmbs.road_loads(stiffmbs.read_scene(SCENE), runs())
