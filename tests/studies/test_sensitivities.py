@@ -461,5 +461,5 @@ run: {duration: 1 s, rtol: 1e-9}
 @pytest.mark.parametrize("of", [["final(a.x)", "final(a.y)"], ("final(a.x)",), 3])
 def test_an_output_that_is_no_text_is_refused(of):
     scene = stiffmbs.read_scene("{bodies: {a: {mass: 1, inertia: 1}}}")
-    with pytest.raises(stiffmbs.InputError, match="of: found .*, expected the text of one formula"):
+    with pytest.raises(stiffmbs.InputError, match=r"of: found .*, expected the text of one formula"):
         sensitivities(scene, "bodies.a.mass", of)

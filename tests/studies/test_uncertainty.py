@@ -1,6 +1,7 @@
 """Certainty of fitted parameters: linear models, whose intervals are known."""
 
 import numpy as np
+import pytest
 from scipy.stats import t as student
 
 from stiffmbs.studies.uncertainty import of_common_noise, of_separate_noise
