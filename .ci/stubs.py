@@ -62,14 +62,14 @@ from .errors import AssemblyError as AssemblyError
 from .errors import InputError as InputError
 from .errors import SolverError as SolverError
 from .errors import StiffmbsError as StiffmbsError
-from .jobs.check import Report as Report
-from .jobs.check import check as check
-from .jobs.equilibrium import equilibrium as equilibrium
-from .jobs.quasi_static import quasi_static as quasi_static
-from .jobs.load_scene import load_scene as load_scene
-from .jobs.linearised.modes import modes as modes
-from .jobs.run import run as run
-from .jobs.linearised.transfer import transfer as transfer
+from .analyses.check import Report as Report
+from .analyses.check import check as check
+from .analyses.equilibrium import equilibrium as equilibrium
+from .analyses.quasi_static import quasi_static as quasi_static
+from .analyses.load_scene import load_scene as load_scene
+from .analyses.linearised.modes import modes as modes
+from .analyses.run import run as run
+from .analyses.linearised.transfer import transfer as transfer
 from .results.listings.differences import differences as differences
 from .results.saved_state import SavedState as SavedState
 from .results.saved_state import read_state as read_state
@@ -103,7 +103,7 @@ from .describe.element import Joint as Joint
 from .describe.spatial.body import Body as Body
 from .describe.spatial.marker import Marker as Marker
 from .describe.spatial.model import Model as Model
-from .jobs.in_space import in_space as in_space
+from .analyses.in_space import in_space as in_space
 """
 VALUES = "__version__: str\nground: str"
 MODULES = {"__init__.pyi": (PLANE, VALUES, stiffmbs), "spatial.pyi": (SPACE, "", stiffmbs.spatial)}

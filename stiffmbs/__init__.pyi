@@ -26,6 +26,14 @@ from stiffmbs.describe.joints.velocity_equation import VelocityEquation as _Velo
 
 from . import spatial as spatial
 from .adams.listing import listed_statements as listed_statements
+from .analyses.check import Report as Report
+from .analyses.check import check as check
+from .analyses.equilibrium import equilibrium as equilibrium
+from .analyses.linearised.modes import modes as modes
+from .analyses.linearised.transfer import transfer as transfer
+from .analyses.load_scene import load_scene as load_scene
+from .analyses.quasi_static import quasi_static as quasi_static
+from .analyses.run import run as run
 from .comparison.compare import compare as compare
 from .comparison.over import compare_over as compare_over
 from .compile.compile_model import compile_model as compile_model
@@ -53,14 +61,6 @@ from .errors import AssemblyError as AssemblyError
 from .errors import InputError as InputError
 from .errors import SolverError as SolverError
 from .errors import StiffmbsError as StiffmbsError
-from .jobs.check import Report as Report
-from .jobs.check import check as check
-from .jobs.equilibrium import equilibrium as equilibrium
-from .jobs.linearised.modes import modes as modes
-from .jobs.linearised.transfer import transfer as transfer
-from .jobs.load_scene import load_scene as load_scene
-from .jobs.quasi_static import quasi_static as quasi_static
-from .jobs.run import run as run
 from .results.listings.differences import differences as differences
 from .results.saved_state import SavedState as SavedState
 from .results.saved_state import read_state as read_state

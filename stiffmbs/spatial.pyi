@@ -51,13 +51,13 @@ from stiffmbs.describe.spatial.joints.tangent_to_curve import TangentToCurve as 
 from stiffmbs.describe.spatial.joints.thread import Thread as _Thread
 from stiffmbs.describe.spatial.joints.universal import Universal as _Universal
 
+from .analyses.in_space import in_space as in_space
 from .describe import given
 from .describe.element import Force as Force
 from .describe.element import Joint as Joint
 from .describe.spatial.body import Body as Body
 from .describe.spatial.marker import Marker as Marker
 from .describe.spatial.model import Model as Model
-from .jobs.in_space import in_space as in_space
 
 class AppliedForce(_AppliedForce):
     """Force at a point of a body: constant, or a formula of time and of any measured quantity."""
