@@ -16,17 +16,17 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 from pydantic_core import PydanticUndefined
 
 import stiffmbs
-from stiffmbs.describe.element import Element
-from stiffmbs.describe.fields import Measured
-from stiffmbs.describe.formula.formula import Formula
-from stiffmbs.describe.joint_name import JointName
-from stiffmbs.describe.marker import MarkerReference
-from stiffmbs.describe.python_function import PythonFunction
-from stiffmbs.describe.roads.road import Road
-from stiffmbs.describe.spatial.orientation import OrientationField
-from stiffmbs.describe.table import Table
-from stiffmbs.describe.tyres.coefficients import TyreProperties
+from stiffmbs.elements.element import Element
+from stiffmbs.elements.roads.road import Road
+from stiffmbs.elements.spatial.orientation import OrientationField
+from stiffmbs.elements.tyres.coefficients import TyreProperties
 from stiffmbs.loaded_later import elements_of
+from stiffmbs.reading.fields import Measured
+from stiffmbs.reading.formula.formula import Formula
+from stiffmbs.reading.joint_name import JointName
+from stiffmbs.reading.marker import MarkerReference
+from stiffmbs.reading.python_function import PythonFunction
+from stiffmbs.reading.table import Table
 
 ROOT = Path(stiffmbs.__file__).parent
 HEAD = '"""Types of the module; written by .ci/stubs.py."""\n'
@@ -38,26 +38,27 @@ from .adams.listing import listed_statements as listed_statements
 from .comparison.compare import compare as compare
 from .comparison.over import compare_over as compare_over
 from .compile.compile_model import compile_model as compile_model
-from .describe import given
-from .describe.body import Body as Body
-from .describe.element import Force as Force
-from .describe.element import Joint as Joint
-from .describe.marker import Marker as Marker
-from .describe.model import Model as Model
-from .describe.own_elements import register as register
-from .describe.python_function import PythonFunction as PythonFunction
-from .describe.scene import Scene as Scene
-from .describe.reading import read_scene as read_scene
-from .describe.schema import scene_schema as scene_schema
-from .describe.settings import RunSettings as RunSettings
-from .describe.settings import SteadyMotion as SteadyMotion
-from .describe.states.linear_system import PID as PID
-from .describe.states.algebraic_state import AlgebraicState as AlgebraicState
-from .describe.states.linear_system import LinearSystem as LinearSystem
-from .describe.states.linear_system import TransferFunction as TransferFunction
-from .describe.states.state import State as State
-from .describe.table import Table as Table
-from .describe.units import si as si
+from .reading import given
+from .elements.body import Body as Body
+from .model.beams.planar import BeamBody as BeamBody
+from .elements.element import Force as Force
+from .elements.element import Joint as Joint
+from .reading.marker import Marker as Marker
+from .model.model import Model as Model
+from .elements.own_elements import register as register
+from .reading.python_function import PythonFunction as PythonFunction
+from .model.scene import Scene as Scene
+from .model.read_scene import read_scene as read_scene
+from .model.schema import scene_schema as scene_schema
+from .model.settings import RunSettings as RunSettings
+from .model.settings import SteadyMotion as SteadyMotion
+from .elements.states.linear_system import PID as PID
+from .elements.states.state import AlgebraicState as AlgebraicState
+from .elements.states.linear_system import LinearSystem as LinearSystem
+from .elements.states.linear_system import TransferFunction as TransferFunction
+from .elements.states.state import State as State
+from .reading.table import Table as Table
+from .reading.units import si as si
 from .errors import AssemblyError as AssemblyError
 from .errors import InputError as InputError
 from .errors import SolverError as SolverError
@@ -76,6 +77,9 @@ from .results.saved_state import read_state as read_state
 from .results.solution import Solution as Solution
 from .show.drawing.animate import animate as animate
 from .show.drawing.draw import draw as draw
+from .show.figure import plot as plot
+from .show.html import html as html
+from .show.summary import summary as summary
 from .studies.fit import Fit as Fit
 from .studies.fit import fit as fit
 from .studies.optimise import Optimum as Optimum
@@ -91,18 +95,19 @@ from .studies.suspension.kinematics_and_compliance import kinematics_and_complia
 from .studies.suspension.road_loads import RoadLoads as RoadLoads
 from .studies.suspension.road_loads import road_loads as road_loads
 from .studies.sweep import sweep as sweep
-from .studies.variation import Range as Range
+from .reading.variation import Range as Range
 from .verification.verify import verify as verify
 """
 SPACE = """
 from typing import Literal
 
-from .describe import given
-from .describe.element import Force as Force
-from .describe.element import Joint as Joint
-from .describe.spatial.body import Body as Body
-from .describe.spatial.marker import Marker as Marker
-from .describe.spatial.model import Model as Model
+from .reading import given
+from .elements.element import Force as Force
+from .elements.element import Joint as Joint
+from .elements.spatial.body import Body as Body
+from .model.beams.spatial import BeamBody as BeamBody
+from .elements.spatial.marker import Marker as Marker
+from .model.spatial_model import Model as Model
 from .analyses.in_space import in_space as in_space
 """
 VALUES = "__version__: str\nground: str"
@@ -112,7 +117,7 @@ MODULES = {"__init__.pyi": (PLANE, VALUES, stiffmbs), "spatial.pyi": (SPACE, "",
 def stub(file: str) -> str:
     """The content of a stub, before it is formatted."""
     exports, others, module = MODULES[file]
-    elements = sorted(elements_of(module._MODEL).items())
+    elements = sorted(elements_of(module._KINDS).items())
     imports = [f"from {element.__module__} import {name} as _{name}" for name, element in elements]
     classes = ["\n".join(_class(name, element)) for name, element in elements]
     return "\n\n".join([HEAD + exports + "\n".join(imports), others, *classes]) + "\n"

@@ -20,19 +20,19 @@ from .loaded_later import elements_of, loaded
 
 __version__ = "0.1.0"
 
-_MODEL = ".describe.model"
+_KINDS = ".elements.planar_kinds"
 _LATER = {
-    "AlgebraicState": ".describe.states.algebraic_state", "Body": ".describe.body", "Force": ".describe.element", "Joint": ".describe.element",
-    "LinearSystem": ".describe.states.linear_system", "Marker": ".describe.marker", "Model": _MODEL, "PID": ".describe.states.linear_system",
-    "PythonFunction": ".describe.python_function", "RunSettings": ".describe.settings", "Scene": ".describe.scene", "State": ".describe.states.state",
-    "SteadyMotion": ".describe.settings", "Table": ".describe.table", "TransferFunction": ".describe.states.linear_system",
-    "ground": ".describe.marker:GROUND", "load_scene": ".analyses.load_scene", "read_scene": ".describe.reading", "register": ".describe.own_elements",
-    "scene_schema": ".describe.schema",
+    "AlgebraicState": ".elements.states.state", "BeamBody": ".model.beams.planar", "Body": ".elements.body", "Force": ".elements.element", "Joint": ".elements.element",
+    "LinearSystem": ".elements.states.linear_system", "Marker": ".reading.marker", "Model": ".model.model", "PID": ".elements.states.linear_system",
+    "PythonFunction": ".reading.python_function", "RunSettings": ".model.settings", "Scene": ".model.scene", "State": ".elements.states.state",
+    "SteadyMotion": ".model.settings", "Table": ".reading.table", "TransferFunction": ".elements.states.linear_system",
+    "ground": ".reading.marker:GROUND", "load_scene": ".analyses.load_scene", "read_scene": ".model.read_scene", "register": ".elements.own_elements",
+    "scene_schema": ".model.schema",
     "Report": ".analyses.check", "Solution": ".results.solution", "check": ".analyses.check", "compare": ".comparison.compare",
     "compare_over": ".comparison.over",
     "compile_model": ".compile.compile_model", "equilibrium": ".analyses.equilibrium", "quasi_static": ".analyses.quasi_static", "modes": ".analyses.linearised.modes", "run": ".analyses.run",
     "SavedState": ".results.saved_state", "read_state": ".results.saved_state", "transfer": ".analyses.linearised.transfer",
-    "verify": ".verification.verify", "sweep": ".studies.sweep", "Range": ".studies.variation", "Fit": ".studies.fit", "fit": ".studies.fit",
+    "verify": ".verification.verify", "sweep": ".studies.sweep", "Range": ".reading.variation", "Fit": ".studies.fit", "fit": ".studies.fit",
     "Optimum": ".studies.optimise", "optimise": ".studies.optimise",
     "Sensitivity": ".studies.sensitivities.sensitivities", "sensitivities": ".studies.sensitivities.sensitivities",
     "RoadLoads": ".studies.suspension.road_loads", "road_loads": ".studies.suspension.road_loads",
@@ -40,24 +40,25 @@ _LATER = {
     "kinematics_and_compliance": ".studies.suspension.kinematics_and_compliance",
     "Simulation": ".studies.simulation", "simulation": ".studies.simulation", "follow": ".studies.follow",
     "listed_statements": ".adams.listing", "build_fmu": ".studies.fmu.build", "differences": ".results.listings.differences",
-    "animate": ".show.drawing.animate", "draw": ".show.drawing.draw",
+    "animate": ".show.drawing.animate", "draw": ".show.drawing.draw", "html": ".show.html", "plot": ".show.figure",
+    "summary": ".show.summary",
 }  # fmt: skip
 """Module of each name that is loaded on first use; a different name in that module follows a colon."""
 
-_MODULES = {"fields": ".fields", "si": ".describe.units.si", "spatial": ".spatial"}
+_MODULES = {"fields": ".fields", "si": ".reading.units.si", "spatial": ".spatial"}
 
 _OFFERED = "AssemblyError", "InputError", "SolverError", "StiffmbsError", "si", *_LATER
 
 
 def __getattr__(name: str) -> Any:
     if name == "__all__":
-        return [*_OFFERED, *elements_of(_MODEL)]
+        return [*_OFFERED, *elements_of(_KINDS)]
     if name in _MODULES:
         from importlib import import_module
 
         return import_module(_MODULES[name], __name__)
-    return loaded(name, __name__, _MODEL, _LATER)
+    return loaded(name, __name__, _KINDS, _LATER)
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *_OFFERED, *elements_of(_MODEL), *_MODULES})
+    return sorted({*globals(), *_OFFERED, *elements_of(_KINDS), *_MODULES})

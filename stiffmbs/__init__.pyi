@@ -2,27 +2,28 @@
 
 from typing import Literal
 
-from stiffmbs.describe.forces.applied import AppliedForce as _AppliedForce
-from stiffmbs.describe.forces.applied import AppliedTorque as _AppliedTorque
-from stiffmbs.describe.forces.bushing import Bushing as _Bushing
-from stiffmbs.describe.forces.contact import Contact as _Contact
-from stiffmbs.describe.forces.joint_friction import JointFriction as _JointFriction
-from stiffmbs.describe.forces.line_force import LineForce as _LineForce
-from stiffmbs.describe.forces.python_force import PythonForce as _PythonForce
-from stiffmbs.describe.forces.spring_damper import SpringDamper as _SpringDamper
-from stiffmbs.describe.forces.torsion_spring import TorsionSpring as _TorsionSpring
-from stiffmbs.describe.joints.constraint_equation import ConstraintEquation as _ConstraintEquation
-from stiffmbs.describe.joints.coupler import Coupler as _Coupler
-from stiffmbs.describe.joints.distance import Distance as _Distance
-from stiffmbs.describe.joints.drive import Drive as _Drive
-from stiffmbs.describe.joints.fixed import Fixed as _Fixed
-from stiffmbs.describe.joints.gear import Gear as _Gear
-from stiffmbs.describe.joints.point_on_curve import PointOnCurve as _PointOnCurve
-from stiffmbs.describe.joints.point_on_line import PointOnLine as _PointOnLine
-from stiffmbs.describe.joints.prismatic import Prismatic as _Prismatic
-from stiffmbs.describe.joints.rack_and_pinion import RackAndPinion as _RackAndPinion
-from stiffmbs.describe.joints.revolute import Revolute as _Revolute
-from stiffmbs.describe.joints.velocity_equation import VelocityEquation as _VelocityEquation
+from stiffmbs.elements.forces.applied import AppliedForce as _AppliedForce
+from stiffmbs.elements.forces.applied import AppliedTorque as _AppliedTorque
+from stiffmbs.elements.forces.bushing import Bushing as _Bushing
+from stiffmbs.elements.forces.contact import Contact as _Contact
+from stiffmbs.elements.forces.exact_beam import ExactBeam as _ExactBeam
+from stiffmbs.elements.forces.joint_friction import JointFriction as _JointFriction
+from stiffmbs.elements.forces.line_force import LineForce as _LineForce
+from stiffmbs.elements.forces.python_force import PythonForce as _PythonForce
+from stiffmbs.elements.forces.spring_damper import SpringDamper as _SpringDamper
+from stiffmbs.elements.forces.torsion_spring import TorsionSpring as _TorsionSpring
+from stiffmbs.elements.joints.constraint_equation import ConstraintEquation as _ConstraintEquation
+from stiffmbs.elements.joints.coupler import Coupler as _Coupler
+from stiffmbs.elements.joints.distance import Distance as _Distance
+from stiffmbs.elements.joints.drive import Drive as _Drive
+from stiffmbs.elements.joints.fixed import Fixed as _Fixed
+from stiffmbs.elements.joints.gear import Gear as _Gear
+from stiffmbs.elements.joints.point_on_curve import PointOnCurve as _PointOnCurve
+from stiffmbs.elements.joints.point_on_line import PointOnLine as _PointOnLine
+from stiffmbs.elements.joints.prismatic import Prismatic as _Prismatic
+from stiffmbs.elements.joints.rack_and_pinion import RackAndPinion as _RackAndPinion
+from stiffmbs.elements.joints.revolute import Revolute as _Revolute
+from stiffmbs.elements.joints.velocity_equation import VelocityEquation as _VelocityEquation
 
 from . import spatial as spatial
 from .adams.listing import listed_statements as listed_statements
@@ -37,36 +38,41 @@ from .analyses.run import run as run
 from .comparison.compare import compare as compare
 from .comparison.over import compare_over as compare_over
 from .compile.compile_model import compile_model as compile_model
-from .describe import given
-from .describe.body import Body as Body
-from .describe.element import Force as Force
-from .describe.element import Joint as Joint
-from .describe.marker import Marker as Marker
-from .describe.model import Model as Model
-from .describe.own_elements import register as register
-from .describe.python_function import PythonFunction as PythonFunction
-from .describe.reading import read_scene as read_scene
-from .describe.scene import Scene as Scene
-from .describe.schema import scene_schema as scene_schema
-from .describe.settings import RunSettings as RunSettings
-from .describe.settings import SteadyMotion as SteadyMotion
-from .describe.states.algebraic_state import AlgebraicState as AlgebraicState
-from .describe.states.linear_system import PID as PID
-from .describe.states.linear_system import LinearSystem as LinearSystem
-from .describe.states.linear_system import TransferFunction as TransferFunction
-from .describe.states.state import State as State
-from .describe.table import Table as Table
-from .describe.units import si as si
+from .elements.body import Body as Body
+from .elements.element import Force as Force
+from .elements.element import Joint as Joint
+from .elements.own_elements import register as register
+from .elements.states.linear_system import PID as PID
+from .elements.states.linear_system import LinearSystem as LinearSystem
+from .elements.states.linear_system import TransferFunction as TransferFunction
+from .elements.states.state import AlgebraicState as AlgebraicState
+from .elements.states.state import State as State
 from .errors import AssemblyError as AssemblyError
 from .errors import InputError as InputError
 from .errors import SolverError as SolverError
 from .errors import StiffmbsError as StiffmbsError
+from .model.beams.planar import BeamBody as BeamBody
+from .model.model import Model as Model
+from .model.read_scene import read_scene as read_scene
+from .model.scene import Scene as Scene
+from .model.schema import scene_schema as scene_schema
+from .model.settings import RunSettings as RunSettings
+from .model.settings import SteadyMotion as SteadyMotion
+from .reading import given
+from .reading.marker import Marker as Marker
+from .reading.python_function import PythonFunction as PythonFunction
+from .reading.table import Table as Table
+from .reading.units import si as si
+from .reading.variation import Range as Range
 from .results.listings.differences import differences as differences
 from .results.saved_state import SavedState as SavedState
 from .results.saved_state import read_state as read_state
 from .results.solution import Solution as Solution
 from .show.drawing.animate import animate as animate
 from .show.drawing.draw import draw as draw
+from .show.figure import plot as plot
+from .show.html import html as html
+from .show.summary import summary as summary
 from .studies.fit import Fit as Fit
 from .studies.fit import fit as fit
 from .studies.fmu.build import build_fmu as build_fmu
@@ -82,7 +88,6 @@ from .studies.suspension.kinematics_and_compliance import kinematics_and_complia
 from .studies.suspension.road_loads import RoadLoads as RoadLoads
 from .studies.suspension.road_loads import road_loads as road_loads
 from .studies.sweep import sweep as sweep
-from .studies.variation import Range as Range
 from .verification.verify import verify as verify
 
 __version__: str
@@ -141,8 +146,8 @@ class Contact(_Contact):
         *,
         friction: given.Number | None = ...,
         static_friction: given.Number | None = ...,
-        stribeck_velocity: given.Number = ...,
-        smooth_velocity: given.Number = ...,
+        friction_velocity: given.Number = ...,
+        stiction_velocity: given.Number = ...,
         stiffness: given.Number,
         exponent: given.Number = ...,
         dissipation: given.Number = ...,
@@ -186,6 +191,20 @@ class Drive(_Drive):
         type: Literal["drive"] = ...,
     ) -> None: ...
 
+class ExactBeam(_ExactBeam):
+    """Massless beam from marker j to marker i with constant strain, for any displacement and rotation."""
+    def __init__(
+        self,
+        *,
+        length: given.Number,
+        damping_ratio: given.Number | None = ...,
+        i: given.Marker,
+        j: given.Marker,
+        stiffness: given.Matrix,
+        unloaded: given.Numbers = ...,
+        type: Literal["exact_beam"] = ...,
+    ) -> None: ...
+
 class Fixed(_Fixed):
     """Weld: two markers coincide in position and direction."""
     def __init__(self, *, i: given.Marker, j: given.Marker, type: Literal["fixed"] = ...) -> None: ...
@@ -209,8 +228,8 @@ class JointFriction(_JointFriction):
         *,
         friction: given.Number,
         static_friction: given.Number | None = ...,
-        stribeck_velocity: given.Number = ...,
-        smooth_velocity: given.Number = ...,
+        friction_velocity: given.Number = ...,
+        stiction_velocity: given.Number = ...,
         joint: str,
         radius: given.Number = ...,
         length: given.Number | None = ...,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from importlib.util import find_spec
 
 
 class StiffmbsError(Exception):
@@ -47,3 +48,22 @@ def needs(package: str, extra: str) -> Iterator[None]:
         if (error.name or "").partition(".")[0] != package:
             raise
         raise InputError(f"found no {package}, expected it installed: pip install 'stiffmbs[{extra}]'") from None
+
+
+def refuse_missing(package: str, source: str, where: str = "") -> None:
+    """Raise an error if an optional package is not installed.
+
+    Parameters
+    ----------
+    package : str
+    source : str
+        Argument of ``pip install`` that installs it.
+    where : str
+        Beginning of the message.
+
+    Raises
+    ------
+    InputError
+    """
+    if find_spec(package) is None:
+        raise InputError(f"{where}found no {package}, expected it installed: pip install {source}")

@@ -14,7 +14,8 @@ Examples
 ...         return [(e.force, e.i.point[0])]
 """
 
-from .describe.formula.field import (
+from .elements.forces.friction import Loads
+from .reading.formula.field import (
     ForceOfDeflection,
     ForceOfMotion,
     ForceOfRate,
@@ -25,9 +26,8 @@ from .describe.formula.field import (
     TorqueOfMotion,
     TorqueOfRate,
 )
-from .describe.joint_name import JointReference
-from .describe.loads import Loads
-from .describe.python_function import PythonFunction
+from .reading.joint_name import JointReference
+from .reading.python_function import PythonFunction
 
 __all__ = [
     "ForceOfDeflection",

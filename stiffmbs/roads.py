@@ -6,16 +6,13 @@ Examples
 >>> road = CosineBump(start=5, length="600 mm", crest="80 mm")
 """
 
-from .describe.roads.cosine_bump import CosineBump
-from .describe.roads.crg import CrgRoad
-from .describe.roads.flat import FlatRoad
-from .describe.roads.formula import FormulaRoad
-from .describe.roads.grid import GridRoad
-from .describe.roads.iso8608 import Iso8608Road
-from .describe.roads.profile import TableRoad
-from .describe.roads.road import Road
-from .describe.roads.sine_sweep import SineSweep
-from .describe.roads.step import StepRoad
+from .elements.roads.crg import CrgRoad
+from .elements.roads.formula import FormulaRoad
+from .elements.roads.grid import GridRoad
+from .elements.roads.iso8608 import Iso8608Road
+from .elements.roads.obstacles import CosineBump, SineSweep, StepRoad
+from .elements.roads.profile import TableRoad
+from .elements.roads.road import FlatRoad, Road
 
 __all__ = [
     "CosineBump",

@@ -12,18 +12,18 @@ from typing import Any
 
 from .loaded_later import elements_of, loaded
 
-_MODEL = ".describe.spatial.model"
+_KINDS = ".elements.spatial.spatial_kinds"
 _LATER = {
-    "Body": ".describe.spatial.body", "Force": ".describe.element", "Joint": ".describe.element", "Marker": ".describe.spatial.marker",
-    "Model": _MODEL, "in_space": ".analyses.in_space",
+    "BeamBody": ".model.beams.spatial", "Body": ".elements.spatial.body", "Force": ".elements.element", "Joint": ".elements.element", "Marker": ".elements.spatial.marker",
+    "Model": ".model.spatial_model", "in_space": ".analyses.in_space",
 }  # fmt: skip
 
 
 def __getattr__(name: str) -> Any:
     if name == "__all__":
-        return [*_LATER, *elements_of(_MODEL)]
-    return loaded(name, __name__, _MODEL, _LATER)
+        return [*_LATER, *elements_of(_KINDS)]
+    return loaded(name, __name__, _KINDS, _LATER)
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *_LATER, *elements_of(_MODEL)})
+    return sorted({*globals(), *_LATER, *elements_of(_KINDS)})

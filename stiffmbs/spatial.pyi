@@ -2,62 +2,64 @@
 
 from typing import Literal
 
-from stiffmbs.describe.joints.constraint_equation import ConstraintEquation as _ConstraintEquation
-from stiffmbs.describe.joints.coupler import Coupler as _Coupler
-from stiffmbs.describe.joints.drive import Drive as _Drive
-from stiffmbs.describe.joints.gear import Gear as _Gear
-from stiffmbs.describe.joints.rack_and_pinion import RackAndPinion as _RackAndPinion
-from stiffmbs.describe.joints.velocity_equation import VelocityEquation as _VelocityEquation
-from stiffmbs.describe.spatial.forces.applied import AppliedForce as _AppliedForce
-from stiffmbs.describe.spatial.forces.applied import AppliedTorque as _AppliedTorque
-from stiffmbs.describe.spatial.forces.beam import Beam as _Beam
-from stiffmbs.describe.spatial.forces.box_plane_impact import BoxPlaneImpact as _BoxPlaneImpact
-from stiffmbs.describe.spatial.forces.brake import Brake as _Brake
-from stiffmbs.describe.spatial.forces.bushing import Bushing as _Bushing
-from stiffmbs.describe.spatial.forces.cylinder_plane_impact import CylinderPlaneImpact as _CylinderPlaneImpact
-from stiffmbs.describe.spatial.forces.ellipsoid_plane_impact import EllipsoidPlaneImpact as _EllipsoidPlaneImpact
-from stiffmbs.describe.spatial.forces.fiala_tyre import FialaTyre as _FialaTyre
-from stiffmbs.describe.spatial.forces.field import FieldForce as _FieldForce
-from stiffmbs.describe.spatial.forces.joint_friction import JointFriction as _JointFriction
-from stiffmbs.describe.spatial.forces.magic_formula_tyre import MagicFormulaTyre as _MagicFormulaTyre
-from stiffmbs.describe.spatial.forces.python_force import PythonForce as _PythonForce
-from stiffmbs.describe.spatial.forces.shared import LineForce as _LineForce
-from stiffmbs.describe.spatial.forces.shared import SpringDamper as _SpringDamper
-from stiffmbs.describe.spatial.forces.solid_impact import SolidImpact as _SolidImpact
-from stiffmbs.describe.spatial.forces.sphere_box_impact import SphereBoxImpact as _SphereBoxImpact
-from stiffmbs.describe.spatial.forces.sphere_contact import SphereContact as _SphereContact
-from stiffmbs.describe.spatial.forces.sphere_cylinder_impact import SphereCylinderImpact as _SphereCylinderImpact
-from stiffmbs.describe.spatial.forces.sphere_sphere_impact import SphereSphereImpact as _SphereSphereImpact
-from stiffmbs.describe.spatial.forces.torsion_spring import TorsionSpring as _TorsionSpring
-from stiffmbs.describe.spatial.forces.vertical_tyre import VerticalTyre as _VerticalTyre
-from stiffmbs.describe.spatial.forces.wheel_torque import WheelTorque as _WheelTorque
-from stiffmbs.describe.spatial.joints.constant_velocity import ConstantVelocity as _ConstantVelocity
-from stiffmbs.describe.spatial.joints.cylindrical import Cylindrical as _Cylindrical
-from stiffmbs.describe.spatial.joints.fixed import Fixed as _Fixed
-from stiffmbs.describe.spatial.joints.orientation import Orientation as _Orientation
-from stiffmbs.describe.spatial.joints.parallel import Parallel as _Parallel
-from stiffmbs.describe.spatial.joints.perpendicular import Perpendicular as _Perpendicular
-from stiffmbs.describe.spatial.joints.planar import Planar as _Planar
-from stiffmbs.describe.spatial.joints.point_on_curve import PointOnCurve as _PointOnCurve
-from stiffmbs.describe.spatial.joints.point_on_line import PointOnLine as _PointOnLine
-from stiffmbs.describe.spatial.joints.point_on_plane import PointOnPlane as _PointOnPlane
-from stiffmbs.describe.spatial.joints.prismatic import Prismatic as _Prismatic
-from stiffmbs.describe.spatial.joints.revolute import Revolute as _Revolute
-from stiffmbs.describe.spatial.joints.revolute_spherical import RevoluteSpherical as _RevoluteSpherical
-from stiffmbs.describe.spatial.joints.screw import Screw as _Screw
-from stiffmbs.describe.spatial.joints.shared import Distance as _Distance
-from stiffmbs.describe.spatial.joints.spherical import Spherical as _Spherical
-from stiffmbs.describe.spatial.joints.tangent_to_curve import TangentToCurve as _TangentToCurve
-from stiffmbs.describe.spatial.joints.thread import Thread as _Thread
-from stiffmbs.describe.spatial.joints.universal import Universal as _Universal
+from stiffmbs.elements.joints.constraint_equation import ConstraintEquation as _ConstraintEquation
+from stiffmbs.elements.joints.coupler import Coupler as _Coupler
+from stiffmbs.elements.joints.drive import Drive as _Drive
+from stiffmbs.elements.joints.gear import Gear as _Gear
+from stiffmbs.elements.joints.rack_and_pinion import RackAndPinion as _RackAndPinion
+from stiffmbs.elements.joints.velocity_equation import VelocityEquation as _VelocityEquation
+from stiffmbs.elements.spatial.forces.applied import AppliedForce as _AppliedForce
+from stiffmbs.elements.spatial.forces.applied import AppliedTorque as _AppliedTorque
+from stiffmbs.elements.spatial.forces.beam import Beam as _Beam
+from stiffmbs.elements.spatial.forces.box_plane_impact import BoxPlaneImpact as _BoxPlaneImpact
+from stiffmbs.elements.spatial.forces.brake import Brake as _Brake
+from stiffmbs.elements.spatial.forces.bushing import Bushing as _Bushing
+from stiffmbs.elements.spatial.forces.cylinder_plane_impact import CylinderPlaneImpact as _CylinderPlaneImpact
+from stiffmbs.elements.spatial.forces.ellipsoid_plane_impact import EllipsoidPlaneImpact as _EllipsoidPlaneImpact
+from stiffmbs.elements.spatial.forces.exact_beam import ExactBeam as _ExactBeam
+from stiffmbs.elements.spatial.forces.fiala_tyre import FialaTyre as _FialaTyre
+from stiffmbs.elements.spatial.forces.field import FieldForce as _FieldForce
+from stiffmbs.elements.spatial.forces.joint_friction import JointFriction as _JointFriction
+from stiffmbs.elements.spatial.forces.magic_formula_tyre import MagicFormulaTyre as _MagicFormulaTyre
+from stiffmbs.elements.spatial.forces.python_force import PythonForce as _PythonForce
+from stiffmbs.elements.spatial.forces.shared import LineForce as _LineForce
+from stiffmbs.elements.spatial.forces.shared import SpringDamper as _SpringDamper
+from stiffmbs.elements.spatial.forces.solid_impact import SolidImpact as _SolidImpact
+from stiffmbs.elements.spatial.forces.sphere_box_impact import SphereBoxImpact as _SphereBoxImpact
+from stiffmbs.elements.spatial.forces.sphere_contact import SphereContact as _SphereContact
+from stiffmbs.elements.spatial.forces.sphere_cylinder_impact import SphereCylinderImpact as _SphereCylinderImpact
+from stiffmbs.elements.spatial.forces.sphere_sphere_impact import SphereSphereImpact as _SphereSphereImpact
+from stiffmbs.elements.spatial.forces.torsion_spring import TorsionSpring as _TorsionSpring
+from stiffmbs.elements.spatial.forces.vertical_tyre import VerticalTyre as _VerticalTyre
+from stiffmbs.elements.spatial.forces.wheel_torque import WheelTorque as _WheelTorque
+from stiffmbs.elements.spatial.joints.constant_velocity import ConstantVelocity as _ConstantVelocity
+from stiffmbs.elements.spatial.joints.cylindrical import Cylindrical as _Cylindrical
+from stiffmbs.elements.spatial.joints.fixed import Fixed as _Fixed
+from stiffmbs.elements.spatial.joints.orientation import Orientation as _Orientation
+from stiffmbs.elements.spatial.joints.parallel import Parallel as _Parallel
+from stiffmbs.elements.spatial.joints.perpendicular import Perpendicular as _Perpendicular
+from stiffmbs.elements.spatial.joints.planar import Planar as _Planar
+from stiffmbs.elements.spatial.joints.point_on_curve import PointOnCurve as _PointOnCurve
+from stiffmbs.elements.spatial.joints.point_on_line import PointOnLine as _PointOnLine
+from stiffmbs.elements.spatial.joints.point_on_plane import PointOnPlane as _PointOnPlane
+from stiffmbs.elements.spatial.joints.prismatic import Prismatic as _Prismatic
+from stiffmbs.elements.spatial.joints.revolute import Revolute as _Revolute
+from stiffmbs.elements.spatial.joints.revolute_spherical import RevoluteSpherical as _RevoluteSpherical
+from stiffmbs.elements.spatial.joints.screw import Screw as _Screw
+from stiffmbs.elements.spatial.joints.shared import Distance as _Distance
+from stiffmbs.elements.spatial.joints.spherical import Spherical as _Spherical
+from stiffmbs.elements.spatial.joints.tangent_to_curve import TangentToCurve as _TangentToCurve
+from stiffmbs.elements.spatial.joints.thread import Thread as _Thread
+from stiffmbs.elements.spatial.joints.universal import Universal as _Universal
 
 from .analyses.in_space import in_space as in_space
-from .describe import given
-from .describe.element import Force as Force
-from .describe.element import Joint as Joint
-from .describe.spatial.body import Body as Body
-from .describe.spatial.marker import Marker as Marker
-from .describe.spatial.model import Model as Model
+from .elements.element import Force as Force
+from .elements.element import Joint as Joint
+from .elements.spatial.body import Body as Body
+from .elements.spatial.marker import Marker as Marker
+from .model.beams.spatial import BeamBody as BeamBody
+from .model.spatial_model import Model as Model
+from .reading import given
 
 class AppliedForce(_AppliedForce):
     """Force at a point of a body: constant, or a formula of time and of any measured quantity."""
@@ -260,6 +262,20 @@ class EllipsoidPlaneImpact(_EllipsoidPlaneImpact):
         type: Literal["ellipsoid_plane_impact"] = ...,
     ) -> None: ...
 
+class ExactBeam(_ExactBeam):
+    """Massless beam from marker j to marker i with constant strain, for any displacement and rotation."""
+    def __init__(
+        self,
+        *,
+        length: given.Number,
+        damping_ratio: given.Number | None = ...,
+        i: given.Marker,
+        j: given.Marker,
+        stiffness: given.Matrix,
+        unloaded: given.Numbers = ...,
+        type: Literal["exact_beam"] = ...,
+    ) -> None: ...
+
 class FialaTyre(_FialaTyre):
     """Fiala tyre: constant slip stiffnesses, and a friction coefficient that decreases with the total slip."""
     def __init__(
@@ -319,8 +335,8 @@ class JointFriction(_JointFriction):
         *,
         friction: given.Number,
         static_friction: given.Number | None = ...,
-        stribeck_velocity: given.Number = ...,
-        smooth_velocity: given.Number = ...,
+        friction_velocity: given.Number = ...,
+        stiction_velocity: given.Number = ...,
         joint: str,
         radius: given.Number = ...,
         length: given.Number | None = ...,
@@ -490,8 +506,8 @@ class SphereContact(_SphereContact):
         *,
         friction: given.Number | None = ...,
         static_friction: given.Number | None = ...,
-        stribeck_velocity: given.Number = ...,
-        smooth_velocity: given.Number = ...,
+        friction_velocity: given.Number = ...,
+        stiction_velocity: given.Number = ...,
         stiffness: given.Number,
         exponent: given.Number = ...,
         dissipation: given.Number = ...,

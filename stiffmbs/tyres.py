@@ -7,8 +7,8 @@ Examples
 >>> tyre.wrench(load=4000, slip_angle=0.05)["lateral"]
 """
 
-from .describe.spatial.relaxation import DEFLECTIONS
-from .describe.spatial.tyre import Rolling, Tyre
-from .describe.tyres.coefficients import TyreProperties
+from .elements.spatial.relaxation import DEFLECTIONS
+from .elements.spatial.tyre import Rolling, Tyre
+from .elements.tyres.coefficients import TyreProperties
 
 __all__ = ["DEFLECTIONS", "Rolling", "Tyre", "TyreProperties"]

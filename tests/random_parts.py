@@ -8,16 +8,16 @@ import numpy as np
 
 import stiffmbs
 from stiffmbs import Body, InputError, Marker, Model, spatial
-from stiffmbs.describe import model as plane
-from stiffmbs.describe.element import Component, Element
-from stiffmbs.describe.fields import Measured
-from stiffmbs.describe.formula.field import FormulaOf
-from stiffmbs.describe.joint_name import JointName
-from stiffmbs.describe.marker import MarkerReference
-from stiffmbs.describe.python_function import PythonFunction
-from stiffmbs.describe.samples import Samples, types_in
-from stiffmbs.describe.spatial import model as space
-from stiffmbs.describe.spatial.orientation import about, conjugate, product
+from stiffmbs.elements.element import Component, Element
+from stiffmbs.elements.samples import Samples, types_in
+from stiffmbs.elements.spatial.orientation import about, conjugate, product
+from stiffmbs.model import model as plane
+from stiffmbs.model import spatial_model as space
+from stiffmbs.reading.fields import Measured
+from stiffmbs.reading.formula.field import FormulaOf
+from stiffmbs.reading.joint_name import JointName
+from stiffmbs.reading.marker import MarkerReference
+from stiffmbs.reading.python_function import PythonFunction
 
 Form = tuple[frozenset[str], tuple[tuple[str, typing.Any], ...]]
 """The fields that are left out, and those that are given."""

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from stiffmbs.describe.spatial.orientation import matrix, product, rotated
+from stiffmbs.elements.spatial.orientation import matrix, product, rotated
 from stiffmbs.spatial import Body, Marker, Model, Prismatic, Revolute, Spherical, Universal
 
 CRANK, SPAN = 0.5, 2.0

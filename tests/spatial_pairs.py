@@ -6,7 +6,7 @@ import numpy as np
 
 from stiffmbs import compile_model
 from stiffmbs.compile.state import State
-from stiffmbs.describe.spatial.orientation import conjugate, matrix, product, rotated
+from stiffmbs.elements.spatial.orientation import conjugate, matrix, product, rotated
 from stiffmbs.spatial import Body, Model
 
 

@@ -18,11 +18,11 @@ from ruamel.yaml import YAML
 import stiffmbs
 import stiffmbs.spatial
 from stiffmbs.commands.main import main
-from stiffmbs.describe import model
-from stiffmbs.describe.files.expand import repeat_entries
-from stiffmbs.describe.reading import SECTIONS
-from stiffmbs.describe.scene import PlanarScene
-from stiffmbs.describe.spatial import model as spatial_model
+from stiffmbs.model import model
+from stiffmbs.model import spatial_model as spatial_model
+from stiffmbs.model.files.expand import repeat_entries
+from stiffmbs.model.read_scene import SECTIONS
+from stiffmbs.model.scene import PlanarScene
 
 HERE = Path(__file__).parent.parent
 PAGES = [HERE / "README.md", *sorted((HERE / "docs").rglob("*.md"))]

@@ -12,9 +12,9 @@ import pytest
 
 import stiffmbs
 from stiffmbs import spatial
-from stiffmbs.describe.settings import Settings
-from stiffmbs.describe.spatial.body import Body as SpatialBody
-from stiffmbs.describe.spatial.marker import Marker as SpatialMarker
+from stiffmbs.elements.spatial.body import Body as SpatialBody
+from stiffmbs.elements.spatial.marker import Marker as SpatialMarker
+from stiffmbs.model.settings import Settings
 
 ROOT = Path(stiffmbs.__file__).parent
 RIGHT = """
@@ -176,7 +176,7 @@ def test_importing_the_package_loads_no_solver():
     program = (
         "import sys, stiffmbs; dir(stiffmbs);"
         "print([name for name in ('scipy', 'sympy', 'sksundae', 'llvmlite', 'pandas', 'xarray', 'stiffmbs.solve', 'stiffmbs.compile', "
-        "'stiffmbs.results', 'stiffmbs.analyses.run', 'stiffmbs.adams', 'stiffmbs.describe.spatial') if name in sys.modules])"
+        "'stiffmbs.results', 'stiffmbs.analyses.run', 'stiffmbs.adams', 'stiffmbs.elements.spatial') if name in sys.modules])"
     )
     found = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert found.stdout.strip() == "[]"

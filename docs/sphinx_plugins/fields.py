@@ -8,14 +8,14 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 from pydantic_core import PydanticUndefined
 
-from stiffmbs.describe.element import Force, Joint
-from stiffmbs.describe.fields import Described, Measured
-from stiffmbs.describe.formula.field import FormulaOf
-from stiffmbs.describe.joint_name import JointName
-from stiffmbs.describe.marker import MarkerReference, Placement
-from stiffmbs.describe.spatial.marker import Placement as SpatialPlacement
-from stiffmbs.describe.spatial.orientation import OrientationField
-from stiffmbs.describe.units.units import ANY, DIMENSIONS
+from stiffmbs.elements.element import Force, Joint
+from stiffmbs.elements.spatial.marker import Placement as SpatialPlacement
+from stiffmbs.elements.spatial.orientation import OrientationField
+from stiffmbs.reading.fields import Described, Measured
+from stiffmbs.reading.formula.field import FormulaOf
+from stiffmbs.reading.joint_name import JointName
+from stiffmbs.reading.marker import MarkerReference, Placement
+from stiffmbs.reading.units.units import ANY, DIMENSIONS
 
 WORDS = {
     MarkerReference: "marker",

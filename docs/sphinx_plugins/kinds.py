@@ -20,10 +20,10 @@ from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
 import stiffmbs
-from stiffmbs.describe import model
-from stiffmbs.describe.element import Element, Force, Joint
-from stiffmbs.describe.fields import Described
-from stiffmbs.describe.spatial import model as spatial_model
+from stiffmbs.elements.element import Element, Force, Joint
+from stiffmbs.model import model
+from stiffmbs.model import spatial_model as spatial_model
+from stiffmbs.reading.fields import Described
 
 SECTIONS = {
     "joints": ("stiffmbs", model.JOINTS),

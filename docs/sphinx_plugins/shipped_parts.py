@@ -10,7 +10,7 @@ from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
-from stiffmbs.describe.parts.library import included_texts, shipped_part, shipped_parts, shipped_text
+from stiffmbs.model.parts.definitions import included_texts, shipped_part, shipped_parts, shipped_text
 
 _PARAMETER = re.compile(r"^  (\w+): (.*?)(?: # (.*))?$")
 

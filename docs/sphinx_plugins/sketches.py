@@ -8,11 +8,11 @@ import numpy as np
 
 import stiffmbs
 from stiffmbs import spatial
-from stiffmbs.describe import model as plane
-from stiffmbs.describe.element import Element, Force
-from stiffmbs.describe.joint_name import JointName
-from stiffmbs.describe.samples import Samples
-from stiffmbs.describe.spatial import model as space
+from stiffmbs.elements.element import Element, Force
+from stiffmbs.elements.samples import Samples
+from stiffmbs.model import model as plane
+from stiffmbs.model import spatial_model as space
+from stiffmbs.reading.joint_name import JointName
 from stiffmbs.show.drawing.derive import drawing_of
 from stiffmbs.show.drawing.picture import Shown, picture
 from stiffmbs.show.drawing.poses import described_poses

@@ -2,26 +2,44 @@
 
 from __future__ import annotations
 
+import ast
 from collections.abc import Collection, Iterable, Iterator, Sequence
-from dataclasses import asdict, dataclass
+from contextlib import suppress
+from dataclasses import asdict, dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
 
-from ..describe.files.text_file import file_text, source_name
 from ..errors import InputError
+from ..reading.files.text_file import file_text, source_name
 from .commands.command_files import Read, command_file_of
 from .commands.commands import ENDING, FOLLOWED, HARMLESS, SETTINGS, full_name, read_commands
-from .listed_arguments import arguments_of, unread_functions
+from .functions.adams_functions import ADAMS_FUNCTIONS
+from .functions.angles import ANGLES_OF_AXES
+from .functions.expression import ExpressionError, parse
+from .functions.inputs import PLANTS
+from .functions.reactions import REACTIONS
+from .functions.splines import CURVES
+from .functions.translate import ANGLES, ANGULAR_VELOCITIES, COUPLED, PLAIN, POSITIONS, VELOCITIES
+from .functions.translate_output import ACCELERATIONS, ANGULAR_ACCELERATIONS, ROUNDING_FUNCTIONS
 from .load import ENCODING, command_file, other_commands
+from .statements.arguments import Argument
 from .statements.changes import Key, alters, key_of
-from .statements.dataset import all_statements, faults_of
+from .statements.dataset import all_statements, faults_of, read_statement
 from .statements.fault import DatasetFault
 from .statements.keywords import LEFT_OUT, REFUSED, keyword
 from .statements.left_out import LEFT_OUT_ARGUMENTS, UNREAD_SYSTEM, is_unread_system
 from .statements.text import ZERO_BYTE, Statement, commands
+from .statements.units import Units
 
 READ, OMITTED, NOT_READ = "read", "left out", "refused"
+ANYWHERE = {
+    *POSITIONS, *ANGLES, *VELOCITIES, *ANGULAR_VELOCITIES, *PLAIN, *ADAMS_FUNCTIONS, *CURVES, *ANGLES_OF_AXES, *REACTIONS,
+    "INTERP", "ARYVAL", *PLANTS, "VARVAL", "DIF", "DIF1", "INCANG", "SENVAL",
+}  # fmt: skip
+IN_REQUESTS = {*ANYWHERE, *COUPLED, *ACCELERATIONS, *ANGULAR_ACCELERATIONS, *ROUNDING_FUNCTIONS, "ORIENT"}
+REPORTED = ("REQUEST", "VARIABLE", "SENSOR")
+"""Statements that may use request functions; a VARIABLE used by forces is checked when the scene is built."""
 
 
 @dataclass(frozen=True)
@@ -32,7 +50,6 @@ class ListedStatement:
     ----------
     file : str
         Its name.
-    line : int
     statement : str
         Full name and number: ``JOINT/3``.
     fate : str
@@ -88,9 +105,27 @@ def listed_statements(path: str | Path) -> tuple[ListedStatement, ...]:
 
 def _solids(found: Iterable[Statement]) -> set[tuple[str, int]]:
     """Return the GRAPHICS used by contacts, by name and number."""
-    contacts = (arguments_of(one, "CONTACT") for one in found if keyword(one.word) == "CONTACT")
-    named = (value for given in contacts for side in ("IGEOM", "JGEOM") for value in given.get(side, (0, ()))[1])
-    return {("GRAPHICS", int(value)) for value in named if value.strip().isdecimal()}
+    contacts = (_arguments(one, "CONTACT") for one in found if keyword(one.word) == "CONTACT")
+    named = (text for given in contacts for one in given if one.name in ("IGEOM", "JGEOM") for text in one.values)
+    return {("GRAPHICS", int(text)) for text in named if text.strip().isdecimal()}
+
+
+def _arguments(statement: Statement, name: str) -> list[Argument]:
+    """Return the arguments of a statement, up to the first fault."""
+    fresh = replace(statement, requests=[])
+    with suppress(DatasetFault):
+        read_statement(name, fresh, Units())
+    return list({argument.name: argument for found in fresh.requests for argument in found.values()}.values())
+
+
+def _unread_functions(name: str, values: Sequence[str]) -> Iterator[str]:
+    """Yield the unsupported functions in an argument of a statement."""
+    known = IN_REQUESTS if name in REPORTED else ANYWHERE
+    for value in values:
+        with suppress(ExpressionError):
+            calls = (node for node in ast.walk(parse(value.strip().strip('"'))) if isinstance(node, ast.Call))
+            called = dict.fromkeys(node.func.id for node in calls if isinstance(node.func, ast.Name))
+            yield from (function for function in called if function not in known)
 
 
 def _statement(
@@ -112,16 +147,15 @@ def _statement(
     elif faults_here := [faults[line] for line in sorted(faults) if line in _lines(statement)]:
         yield one(NOT_READ, faults_here[0])
     else:
-        found = arguments_of(statement, name)
+        found = _arguments(statement, name)
         omitted = LEFT_OUT_ARGUMENTS.get(name, {})
-        yield one(READ, arguments=tuple(argument for argument in found if argument not in omitted))
-        for argument, (line, values) in found.items():
-            if argument in omitted:
-                yield ListedStatement(file, line, label, OMITTED, omitted[argument], argument)
-            for function in unread_functions(name, values):
-                yield ListedStatement(
-                    file, line, label, NOT_READ, f"a function that {argument} cannot use here", function
-                )
+        yield one(READ, arguments=tuple(argument.name for argument in found if argument.name not in omitted))
+        for argument in found:
+            of_argument = partial(ListedStatement, file, argument.line, label)
+            if argument.name in omitted:
+                yield of_argument(OMITTED, omitted[argument.name], argument.name)
+            for function in _unread_functions(name, argument.values):
+                yield of_argument(NOT_READ, f"a function that {argument.name} cannot use here", function)
 
 
 def _lines(statement: Statement) -> set[int]:

@@ -12,12 +12,12 @@ from typing import Any
 
 import numpy as np
 
-from ..describe.files.scene_text import scene_text
-from ..describe.files.text_file import STANDARD_INPUT, checked, file_text, source_name
-from ..describe.reading import made_scene
-from ..describe.scene import Scene
-from ..describe.spatial.massless import BEYOND
+from ..elements.spatial.massless import BEYOND
 from ..errors import InputError
+from ..model.read_scene import made_scene
+from ..model.scene import Scene
+from ..reading.files.scene_text import scene_text
+from ..reading.files.text_file import STANDARD_INPUT, checked, file_text, source_name
 from .commands.commands import Segment, read_commands
 from .scene.scene import scene
 from .stages import followed

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, TypeAlias
 
-from ..describe.files.stages import merge_patch
+from ..model.files.stages import merge_patch
 from .commands.commands import Segment
 from .commands.simulations import STATICS, one_run, refuse_velocities
 from .scene.sensors import conditions
@@ -51,7 +51,7 @@ def followed(
     settled = first.kind == STATICS and not first.takes_time
     over_time = segments[1:] if settled and len(segments) > 1 else segments
     unchanged = all(s.changes == segments[0].changes and s.settings == over_time[0].settings for s in over_time)
-    watched = bool(dataset.sensors) or any(
+    watched = bool(dataset.active_sensors) or any(
         key[0] == "SENSOR" for s in segments for key in (*s.changes.inactive, *s.changes.altered)
     )
     whole = one_run([s.simulation for s in over_time], units) if unchanged and not watched else None

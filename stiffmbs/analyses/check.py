@@ -8,10 +8,14 @@ from typing import Any, Unpack
 
 from ..compile.system import System
 from ..compile.table_notes import table_notes
-from ..describe.scene import Scene, notes_of
-from ..describe.settings import RunSettings, Settings, takes_settings
+from ..dynamics.initial import InitialValues, initial_values
+from ..dynamics.moves import Move
 from ..errors import AssemblyError, SolverError
+from ..methods import NotebookMethods
+from ..model.scene import Scene, notes_of
+from ..model.settings import RunSettings, Settings, takes_settings
 from ..redundancy.idle_freedoms import IdleFreedom, idle_freedoms
+from ..redundancy.messages.of_run import unconnected_sentence
 from ..redundancy.messages.presolve_report import presolve_sentences, unknowns
 from ..redundancy.messages.redundancy import (
     inconsistency_sentences,
@@ -20,11 +24,8 @@ from ..redundancy.messages.redundancy import (
     pose_sentences,
     singular_sentence,
 )
-from ..redundancy.messages.unconnected import unconnected_sentence
 from ..redundancy.opposed_actuators import opposed_sentences
 from ..redundancy.overconstraint import Overconstraint, listed, overconstraints
-from ..solve.initial import InitialValues, initial_values
-from ..solve.moves import Move
 from ..solve.subsystems import Subsystem, presolved
 from .job import Examined, Runnable, data_of, examined
 
@@ -33,7 +34,7 @@ MOST_MOVES = 50
 
 
 @dataclass(frozen=True, repr=False)
-class Report:
+class Report(NotebookMethods):
     """Result of `check`.
 
     Attributes
@@ -79,12 +80,6 @@ class Report:
     moved: tuple[Move, ...]
     messages: tuple[str, ...]
     sound: bool
-
-    def _repr_html_(self) -> str:
-        """Return the representation in a notebook."""
-        from ..show.html import report_html
-
-        return report_html(self)
 
     def as_dict(self, scene: str) -> dict[str, Any]:
         """Return the content of ``stiffmbs check --json``; `scene` is the file or name of the scene."""

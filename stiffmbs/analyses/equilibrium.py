@@ -7,8 +7,8 @@ from typing import Any, Unpack
 
 import numpy as np
 
-from ..describe.scene import Scene
-from ..describe.settings import RunSettings, Settings, SteadyMotion, takes_settings
+from ..model.scene import Scene
+from ..model.settings import RunSettings, Settings, SteadyMotion, takes_settings
 from ..results.solution import Solution
 from .job import Job, Runnable, data_of, prepare
 from .settled import Settled, settled

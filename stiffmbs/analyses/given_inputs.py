@@ -8,12 +8,13 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from ..describe.files.quoted import written
-from ..describe.model_data import ModelData
-from ..describe.settings import RunSettings
-from ..describe.states.amount import Amount
-from ..describe.table import Table
+from ..elements.states.amount import Amount
 from ..errors import InputError
+from ..model.model_data import ModelData
+from ..model.settings import RunSettings
+from ..reading.did_you_mean import did_you_mean
+from ..reading.files.quoted import written
+from ..reading.table import Table
 from ..solve.settings import output_grid
 
 Given: TypeAlias = float | Callable[[float], float] | tuple[Any, Any] | Table
@@ -29,26 +30,19 @@ SAMPLES = 1001
 
 
 def with_inputs(data: ModelData, inputs: Mapping[str, Given] | None, settings: RunSettings) -> ModelData:
-    """Return a model with other input values.
+    """Return a model with other input values; raise an InputError for an unknown input or a value that is not a finite number.
 
-    Parameters
-    ----------
-    data : ModelData
-    inputs : mapping of str to number, callable, (times, values) or Table
-        A smooth callable is approximated by a spline with a relative error of 1e-11.  A callable with jumps or kinks is
-        sampled at the output times and on both sides of jumps, with linear interpolation.
-    settings : RunSettings
-
-    Raises
-    ------
-    InputError
-        If the model has no such input, or a value is not a finite number.
+    A smooth callable is approximated by a spline with a relative error of 1e-11.  A callable with jumps or kinks is
+    sampled at the output times and on both sides of jumps, with linear interpolation.
     """
     if not inputs:
         return data
     for name in inputs:
         if name not in data.inputs:
-            raise InputError(f"inputs: found no input '{name}', expected one of {', '.join(data.inputs) or 'none'}")
+            near = did_you_mean(name, data.inputs)
+            raise InputError(
+                f"inputs: found no input '{name}'{near}, expected one of {', '.join(data.inputs) or 'none'}"
+            )
     return data.model_copy(
         update={"inputs": {**data.inputs, **{name: _value(name, given, settings) for name, given in inputs.items()}}}
     )
@@ -81,7 +75,8 @@ def _followed(name: str, given: Callable[[float], float], settings: RunSettings)
         there = np.array([_number(name, given(float(t))) for t in between])
         spline = CubicSpline(times, values, bc_type="not-a-knot")
         followed = np.max(np.abs(spline(between) - there)) <= FOLLOWED * np.max(np.abs(values))
-        times, values = (_merged(*both) for both in ((times, between), (values, there)))
+        at = np.arange(1, len(times))
+        times, values = np.insert(times, at, between), np.insert(values, at, there)
         if followed:
             return Table(table=list(zip(times.tolist(), values.tolist(), strict=True)), ends="not-a-knot")
     points = {float(t): _number(name, given(float(t))) for t in outputs}
@@ -105,13 +100,6 @@ def _jumps(
             low, high = (low, middle) if abs(middle[1] - low[1]) > abs(high[1] - middle[1]) else (middle, high)
         if abs(high[1] - low[1]) > max(JUMP * abs(after[1] - before[1]), FOLLOWED * largest):
             yield from (low, high)
-
-
-def _merged(ends: np.ndarray, between: np.ndarray) -> np.ndarray:
-    """Interleave points and midpoints."""
-    found = np.empty(len(ends) + len(between))
-    found[::2], found[1::2] = ends, between
-    return found
 
 
 def _table(name: str, times: Any, values: list[float]) -> Table:

@@ -6,29 +6,17 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..describe.scene import Scene
-from ..describe.settings import RunSettings
-from ..solve.dynamics import Dynamics
-from ..solve.initial import consistent_values, initial_values
+from ..dynamics.dynamics import Dynamics
+from ..dynamics.initial import consistent_values, initial_values
+from ..model.scene import Scene
+from ..model.settings import RunSettings
 
 
 def hold_at_start(dynamics: Dynamics, scene: Scene, t: float) -> None:
-    """Move the current state by the least amount to satisfy the joints that hold at the start alone.
+    """Move the current state by the least amount to satisfy the joints that hold at the start alone, at t = `t` s.
 
     Position equations constrain positions alone, velocity equations velocities: a position drive leaves the velocity
-    free.
-
-    Parameters
-    ----------
-    dynamics : Dynamics
-    scene : Scene
-    t : float
-        Time, s.
-
-    Raises
-    ------
-    AssemblyError
-        If no such state is found.
+    free.  Raise an AssemblyError if no such state is found.
     """
     from .job import examined
 

@@ -7,16 +7,16 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import overload
 
-from ..describe.files.scene_text import scene_text
-from ..describe.files.text_file import source_name
-from ..describe.model import Model as PlanarModel
-from ..describe.model import PlanarData
-from ..describe.reading import made_scene
-from ..describe.spatial.embedding.markers import Written
-from ..describe.spatial.embedding.scene import scene_in_space
-from ..describe.spatial.model import Model
-from ..describe.spatial.scene import SpatialScene
 from ..errors import InputError
+from ..model.embedding.angles import Written
+from ..model.embedding.scene import scene_in_space
+from ..model.model import Model as PlanarModel
+from ..model.model import PlanarData
+from ..model.read_scene import made_scene
+from ..model.spatial_model import Model
+from ..model.spatial_scene import SpatialScene
+from ..reading.files.scene_text import scene_text
+from ..reading.files.text_file import source_name
 from .load_scene import load_scene
 
 

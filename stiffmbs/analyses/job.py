@@ -9,19 +9,20 @@ from pathlib import Path
 from typing import Any, NamedTuple, TypeAlias
 
 from ..compile.compile_model import compile_model
-from ..describe.building.model_builder import ModelBuilder
-from ..describe.model_data import ModelData
-from ..describe.scene import Scene
-from ..describe.settings import RunSettings, SteadyMotion
+from ..dynamics.dynamics import Dynamics
+from ..dynamics.initial import InitialValues, consistent_values, initial_values
+from ..dynamics.nearest_turns import take_nearest_turns
 from ..errors import InputError
+from ..model.model_builder import ModelBuilder
+from ..model.model_data import ModelData
+from ..model.scene import Scene
+from ..model.settings import RunSettings, SteadyMotion
+from ..reading.did_you_mean import did_you_mean
 from ..redundancy.redundancy import Redundancy, examine
 from ..results.saved_state import SavedState
 from ..run_checks.far_away import refuse_far_away
 from ..solve import SOLVERS
-from ..solve.dynamics import Dynamics
 from ..solve.events.input_ends import solve_up_to_the_inputs_end
-from ..solve.initial import InitialValues, consistent_values, initial_values
-from ..solve.nearest_turns import take_nearest_turns
 from ..solve.settings import changed, near_constraints, output_grid
 from ..solve.subsystems import Subsystem, presolved, solve_subsystems
 from ..solve.trajectory import Grid, ProgressCallback, Trajectory, unwatched
@@ -91,13 +92,7 @@ Runnable: TypeAlias = ModelBuilder[Any, Any, Any] | ModelData | str | Path
 
 
 def data_of(model: Runnable) -> ModelData:
-    """Return the data of a model or a file.
-
-    Raises
-    ------
-    InputError
-        If it is neither, or the file cannot be read.
-    """
+    """Return the data of a model or a file; raise an InputError if it is neither, or the file cannot be read."""
     match model:
         case ModelBuilder():
             data: ModelData = model.data()
@@ -178,7 +173,10 @@ def examined(
     grid = output_grid(chosen)
     for name in chosen.drop_first:
         if name not in data.joints:
-            raise InputError(f"drop_first: found no joint '{name}', expected one of {', '.join(data.joints) or 'none'}")
+            near = did_you_mean(name, data.joints)
+            raise InputError(
+                f"drop_first: found no joint '{name}'{near}, expected one of {', '.join(data.joints) or 'none'}"
+            )
     order = [*(name for name in data.joints if name not in chosen.drop_first), *chosen.drop_first]
     system = compile_model(data)
     refuse_far_away(system)

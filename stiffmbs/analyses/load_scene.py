@@ -6,11 +6,11 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..describe.files.text_file import STANDARD_INPUT, file_text, source_name
 from ..errors import InputError
+from ..reading.files.text_file import STANDARD_INPUT, file_text, source_name
 
 if TYPE_CHECKING:
-    from ..describe.scene import Scene
+    from ..model.scene import Scene
 
 DATASET = ".adm"
 """File suffix of Adams/Solver datasets."""
@@ -52,9 +52,9 @@ def load_scene(path: str | Path, changes: Sequence[tuple[str, str]] = ()) -> Sce
 
         return load_adams(path, changes)
     if str(path) == STANDARD_INPUT:
-        from ..describe.reading import read_scene
+        from ..model.read_scene import read_scene
 
         return read_scene(file_text(path), changes, source_name(path))
-    from ..describe.files.scenes_read_before import read_scene_file
+    from ..model.files.scenes_read_before import read_scene_file
 
     return read_scene_file(file_text(path), changes, source_name(path), Path(path))

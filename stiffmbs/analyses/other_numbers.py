@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from ..errors import InputError
+from ..reading.did_you_mean import did_you_mean
 from .job import Job, prepare
 from .renumber import renumbered
 
@@ -18,7 +19,6 @@ def with_numbers(job: Job, name: str, **numbers: Any) -> Job:
 
     Parameters
     ----------
-    job : Job
     name : str
         Name of the force.
     **numbers
@@ -40,7 +40,8 @@ def with_numbers(job: Job, name: str, **numbers: Any) -> Job:
     """
     force = job.data.forces.get(name)
     if force is None:
-        raise InputError(f"found no force '{name}', expected one of {', '.join(job.data.forces) or 'none'}")
+        near = did_you_mean(name, job.data.forces)
+        raise InputError(f"found no force '{name}'{near}, expected one of {', '.join(job.data.forces) or 'none'}")
     try:
         changed = type(force)(**{**{field: getattr(force, field) for field in force.model_fields_set}, **numbers})
     except InputError as error:

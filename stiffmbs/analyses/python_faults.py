@@ -14,12 +14,7 @@ from ..solve.trajectory import Outcome, Trajectory
 
 @contextmanager
 def told_faults(system: System) -> Iterator[None]:
-    """Replace an error that a faulty function caused by one with the message of that fault.
-
-    Raises
-    ------
-    AssemblyError
-    """
+    """Replace an error that a faulty function caused by an AssemblyError with the message of that fault."""
     try:
         yield
     except (StiffmbsError, ArithmeticError, ValueError) as error:

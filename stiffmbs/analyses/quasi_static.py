@@ -6,13 +6,13 @@ from typing import Unpack
 
 import numpy as np
 
-from ..describe.scene import Scene
-from ..describe.settings import RunSettings, Settings, takes_settings
+from ..dynamics.algebraic_states import failure
+from ..dynamics.dynamics import Dynamics
+from ..equilibria.equilibrium import Equilibrium, find_equilibrium
 from ..errors import AssemblyError, SolverError
+from ..model.scene import Scene
+from ..model.settings import RunSettings, Settings, takes_settings
 from ..results.solution import Solution
-from ..solve.algebraic_states import failure
-from ..solve.dynamics import Dynamics
-from ..solve.equilibria.equilibrium import Equilibrium, find_equilibrium
 from .job import Runnable, data_of, prepare
 from .solution_at_rest import solution_at_rest
 

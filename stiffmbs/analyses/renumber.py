@@ -11,15 +11,14 @@ import numpy as np
 from ..compile.group import Group
 from ..compile.kind import sorted_out
 from ..compile.system import System
-from ..describe.element import Element
-from ..describe.files.followed import NotFollowed
-from ..describe.formula.formula import Formula
-from ..describe.formula.nodes import TIME
-from ..describe.marker import GROUND
-from ..describe.model_data import ModelData
-from ..describe.scene import Scene
-from ..describe.table import Table
+from ..elements.element import Element
+from ..model.model_data import ModelData
+from ..model.scene import Scene
 from ..presolve.presolve import may_be_apart
+from ..reading.formula.formula import Formula
+from ..reading.formula.nodes import TIME
+from ..reading.marker import GROUND
+from ..reading.table import Table
 from .job import Job, start_of_job
 
 HELD = ("dimensions", "gravity", "markers", "bodies", "joints")
@@ -30,18 +29,7 @@ def renumbered(job: Job, data: ModelData) -> Job | None:
     """Return the job of a model that differs only in numbers of forces, or None if the model must be prepared again.
 
     The compiled system is changed in place: `job` must not be integrated again.  The start is assembled again, so that
-    a run gives the same numbers as one of the separately prepared model.
-
-    Parameters
-    ----------
-    job : Job
-    data : ModelData
-        Other model.
-
-    Raises
-    ------
-    AssemblyError
-        If the other model has no consistent start.
+    a run gives the same numbers as one of the separately prepared model.  Raise an AssemblyError if there is none.
     """
     if not write_numbers(job, data):
         return None
@@ -77,12 +65,9 @@ def changes_of_numbers(job: Job, data: ModelData) -> list[Change] | None:
         if change is None:
             return None
         written.append(change)
-    if (
-        any(_moved(job.data.forces[name], data.forces[name]) for name in {c.name for c in written} & {*data.forces})
-        and data.size() != system.size
-    ):
-        return None  # tolerances depend on the size
-    return written
+    forces = ((job.data.forces[c.name], data.forces[c.name]) for c in written if c.name in data.forces)
+    moved = any(list(before.markers()) != list(after.markers()) for before, after in forces)
+    return None if moved and data.size() != system.size else written  # tolerances depend on the size
 
 
 def renumberable(job: Job) -> bool:
@@ -91,14 +76,6 @@ def renumberable(job: Job) -> bool:
     if not job.settings.presolve:
         return True
     return not job.subsystems and not job.dynamics.kept("apart", None, lambda: may_be_apart(system))
-
-
-def _moved(before: Element, after: Element) -> bool:
-    """Return True if a force acts at other markers, or may do so as their positions are tracked."""
-    try:
-        return list(before.markers()) != list(after.markers())
-    except NotFollowed:
-        return True
 
 
 def _same_structure(before: ModelData, after: ModelData) -> bool:
@@ -184,6 +161,7 @@ class Change:
         return may_be_input(self.element) or may_be_input(self.group.elements[self.number])
 
     def write(self) -> None:
+        """Write the numbers of the element into its group."""
         self.group.numbers[self.first : self.first + len(self.values)] = self.values
         self.group.elements[self.number] = self.element
 

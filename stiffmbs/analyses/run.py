@@ -4,29 +4,28 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import partial
 from typing import Unpack
 
 import numpy as np
 
 from ..compile.callbacks import fault_of, notes_on_functions
 from ..compile.table_notes import table_notes
-from ..describe.element import Force
-from ..describe.requests.order import units
-from ..describe.scene import Scene, notes_of
-from ..describe.settings import RunSettings, Settings, takes_settings
+from ..dynamics.algebraic_states import failure
+from ..dynamics.dynamics import OutputRows
+from ..elements.element import Force
+from ..elements.requests.order import units
 from ..errors import AssemblyError
+from ..model.scene import Scene, notes_of
+from ..model.settings import RunSettings, Settings, takes_settings
 from ..redundancy.messages.of_run import StructureNotes, structure_notes
-from ..results.beyond_ranges import range_notes
-from ..results.channels import named, series_of
-from ..results.energy_balance import may_be_broken
-from ..results.of_run import RunResults, results_of_run
+from ..results.channels import channels_of, named, series_of, turns_of
+from ..results.energy_balance import Balance, energy_balance
+from ..results.energy_balance_notes import balance_notes
 from ..results.solution import Solution
-from ..run_checks.glance import glance_at
+from ..results.value_notes import range_notes, undefined_values
+from ..run_checks.growth import senseless
 from ..run_checks.motion import motion_notes
-from ..run_checks.overlooked import OVERLOOKED_PART
-from ..solve.algebraic_states import failure
-from ..solve.dynamics import OutputRows
 from ..solve.error_control.accumulated_errors import ACCUMULATED
 from ..solve.missing_rows import reported
 from ..solve.settings import changed, settings_notes
@@ -36,7 +35,7 @@ from .given_inputs import Given, with_inputs
 from .job import Job, Runnable, data_of, prepare
 from .python_faults import up_to_a_fault
 from .start_from import StartFrom
-from .taken_again import Computed, on_exact_constraints, seen_through
+from .taken_again import Computed, on_exact_constraints, rerun_after_missed_events
 
 OF_ANY_ERROR = ACCUMULATED.tolerances * ACCUMULATED.usual_rtol
 """Estimated position error, relative to the mechanism's size, below which none is reported, with any tolerances."""
@@ -95,20 +94,7 @@ def run(
 
 @dataclass(frozen=True)
 class Finished:
-    """Job that was integrated and examined.
-
-    Attributes
-    ----------
-    job : Job
-    trajectory : Trajectory
-    rows : OutputRows
-    outcome : Outcome
-    message : str
-    notes : tuple of str
-    structure : StructureNotes
-    examined : RunResults or None
-        Channels and energy balance; None if the scan of the output rows found nothing to report.
-    """
+    """Job that was integrated and examined; `examined` has the channels if the checks of the run needed them."""
 
     job: Job
     trajectory: Trajectory
@@ -117,7 +103,8 @@ class Finished:
     message: str
     notes: tuple[str, ...]
     structure: StructureNotes
-    examined: RunResults | None
+    balance: Balance
+    examined: dict[str, np.ndarray] | None
 
     @property
     def time(self) -> np.ndarray:
@@ -126,46 +113,61 @@ class Finished:
 
     def __getitem__(self, channel: str) -> np.ndarray:
         if self.examined:
-            return named(self.examined.channels, channel)
+            return named(self.examined, channel)
         return series_of(self.job.data, self.job.dynamics.system, self.rows, channel)
 
-    @cached_property
-    def results(self) -> RunResults:
-        """Channels and energy balance."""
-        job = self.job
-        return self.examined or results_of_run(
-            job.data, job.dynamics.system, self.rows, job.settings, self.trajectory.step_times
-        )
+    @property
+    def channels(self) -> dict[str, np.ndarray]:
+        """All channels."""
+        return self.examined or channels_of(self.job.data, self.job.dynamics.system, self.rows)
 
 
 @np.errstate(all="ignore")  # numbers of a diverged run overflow
 def finished(job: Job, watch: ProgressCallback | None = None) -> Finished:
     """Integrate and examine a prepared job; errors as for `run`."""
-    computed, overlooked = seen_through(job, lambda job: on_exact_constraints(job, lambda job: _computed(job, watch)))
-    trajectory, rows, seen = computed.trajectory, computed.rows, computed.seen
+    compute = partial(on_exact_constraints, compute=partial(_computed, watch=watch))
+    computed, missed_events = rerun_after_missed_events(job, compute)
+    trajectory, rows = computed.trajectory, computed.rows
     if not len(rows.t):
         raise AssemblyError(
             f"no accelerations could be computed at the start: {failure(job.dynamics, rows.status, job.grid.start)}"
         )
     outcome, message = _ending(job, rows, trajectory)
-    sound = seen and not (may_be_broken(seen.missing, seen.exchanged) or job.data.requests)
-    examined = (
-        None if sound else results_of_run(job.data, job.dynamics.system, rows, job.settings, trajectory.step_times)
-    )
-    of_motion = motion_notes(
-        job.dynamics, rows, job.on_constraints, seen, job.settings.rtol, lambda times: _reported_at(job, times)
-    )
+    system, steps = job.dynamics.system, trajectory.step_times
+    balance = energy_balance(system, rows, steps)
+    broken = tuple(balance_notes(system, balance, rows, job.settings, steps)) if balance.may_be_broken else ()
+    channels = channels_of(job.data, system, rows) if job.data.requests or not rows.finite else None
+    impossible = tuple(senseless(job.dynamics, rows, job.on_constraints)) or broken
+    uncertain = tuple(motion_notes(job.dynamics, rows, job.settings.rtol, partial(_reported_at, job)))
     structure = structure_notes(job.redundancy, job.subsystems, job.dynamics)
-    broken, undefined = (examined.broken_balance, examined.undefined) if examined else ((), ())
-    wrong = (*(of_motion.senseless or broken), *of_motion.uncertain, *undefined)
-    bounded = {name: x for name, x in job.data.forces.items() if type(x).valid_ranges is not Force.valid_ranges}
-    ranges = {name: found for name, force in bounded.items() if (found := force.valid_ranges())}
-    beyond = (
-        range_notes(ranges, lambda channel: series_of(job.data, job.dynamics.system, rows, channel)) if ranges else ()
+    notes = (
+        *_notes(job, trajectory, structure),
+        *missed_events,
+        *computed.left_out,
+        *_range_notes(job, rows),
+        *_flexible_body_notes(job, rows),
+        *impossible,
+        *uncertain,
+        *(undefined_values(rows, channels) if channels else ()),
     )
-    notes = (*_notes(job, trajectory, structure), *overlooked, *computed.left_out, *beyond, *wrong)
-    doubts = (*computed.doubts, *(of_motion.senseless or broken))
-    return Finished(job, trajectory, rows, outcome, _headline(outcome, message, doubts), notes, structure, examined)
+    headline = _headline(outcome, message, (*computed.doubts, *impossible))
+    return Finished(job, trajectory, rows, outcome, headline, notes, structure, balance, channels)
+
+
+def _flexible_body_notes(job: Job, rows: OutputRows) -> Iterator[str]:
+    """Yield the notes on flexible bodies."""
+    if job.dynamics.system.has_coupled_inertia:
+        from ..run_checks.fast_rotation import fast_rotation_notes
+
+        yield from fast_rotation_notes(job.dynamics.system, rows)
+
+
+def _range_notes(job: Job, rows: OutputRows) -> Iterator[str]:
+    """Yield the notes on forces that leave the valid ranges of their data."""
+    limited = {name: x for name, x in job.data.forces.items() if type(x).valid_ranges is not Force.valid_ranges}
+    ranges = {name: found for name, force in limited.items() if (found := force.valid_ranges())}
+    if ranges:
+        yield from range_notes(ranges, partial(series_of, job.data, job.dynamics.system, rows))
 
 
 def _headline(outcome: Outcome, message: str, doubts: Sequence[str]) -> str:
@@ -178,24 +180,34 @@ def _headline(outcome: Outcome, message: str, doubts: Sequence[str]) -> str:
 def solved(job: Job, watch: ProgressCallback | None = None) -> Solution:
     """Integrate a prepared job and return its channels; errors as for `run`."""
     found = finished(job, watch)
-    trajectory, rows, results, structure = found.trajectory, found.rows, found.results, found.structure
+    trajectory, rows, structure = found.trajectory, found.rows, found.structure
     statistics = {"name": trajectory.solver or job.settings.solver, **trajectory.statistics}
     if job.on_constraints:
         statistics["drift"] = float(np.fmax.reduce(rows.drift))
+    requested = units(job.data.outputs()) if job.data.requests else {}
     return Solution(
-        name=job.data.name, time=rows.t, channels=results.channels, outcome=found.outcome, message=found.message,
-        notes=found.notes, solver=statistics, history=trajectory.history, balance=results.balance, not_unique=structure.not_unique,
-        requested=units(job.data.outputs()) if job.data.requests else {}, figure=job.data.figure if isinstance(job.data, Scene) else None,
-        presolve=structure.of_presolve, turns=results.turns,
-    )  # fmt: skip
+        name=job.data.name,
+        time=rows.t,
+        channels=found.channels,
+        outcome=found.outcome,
+        message=found.message,
+        notes=found.notes,
+        solver=statistics,
+        history=trajectory.history,
+        balance=found.balance,
+        not_unique=structure.not_unique,
+        requested=requested,
+        figure=job.data.figure if isinstance(job.data, Scene) else None,
+        presolve=structure.of_presolve,
+        turns=turns_of(job.dynamics.system, rows.q),
+    )
 
 
 def _computed(job: Job, watch: ProgressCallback | None) -> Computed:
     """Integrate a job and compute its output rows."""
     trajectory = _sound_part(job, up_to_a_fault(job.dynamics.system, job.integrate(watch)))
     rows, left_out = reported(job.dynamics, trajectory, job.on_constraints)
-    seen = glance_at(job.dynamics.system, rows, trajectory.step_times, OVERLOOKED_PART)
-    return Computed(trajectory, rows, left_out, seen)
+    return Computed(trajectory, rows, left_out)
 
 
 def _reported_at(job: Job, times: np.ndarray) -> OutputRows:
@@ -221,9 +233,13 @@ def _sound_part(job: Job, trajectory: Trajectory) -> Trajectory:
         return trajectory
     outputs, sentence = found
     return replace(
-        trajectory, t=trajectory.t[:outputs], q=trajectory.q[:outputs], u=trajectory.u[:outputs], outcome=Outcome.STOPPED,
+        trajectory,
+        t=trajectory.t[:outputs],
+        q=trajectory.q[:outputs],
+        u=trajectory.u[:outputs],
+        outcome=Outcome.STOPPED,
         message=sentence,
-    )  # fmt: skip
+    )
 
 
 def _ending(job: Job, rows: OutputRows, trajectory: Trajectory) -> tuple[Outcome, str]:
@@ -239,15 +255,14 @@ def _ending(job: Job, rows: OutputRows, trajectory: Trajectory) -> tuple[Outcome
 
 
 def _notes(job: Job, trajectory: Trajectory, structure: StructureNotes) -> Iterator[str]:
+    """Yield the notes on the model, its start, the solver and the settings."""
     system = job.dynamics.system
     yield from notes_of(job.data)
     if system.has_laws:
         yield from table_notes(job.data)
     yield from structure.of_joints
-    for joint in job.data.joints.values():
-        if joint.kind == "drive":
-            yield from job.dynamics.kept("opposed actuators", None, lambda: _opposed(job))
-            break
+    if any(joint.kind == "drive" for joint in job.data.joints.values()):
+        yield from job.dynamics.kept("opposed actuators", None, partial(_opposed, job))
     yield from job.start.notes
     if system.has_functions:
         yield from notes_on_functions(system)
@@ -263,6 +278,7 @@ def _notes(job: Job, trajectory: Trajectory, structure: StructureNotes) -> Itera
 
 
 def _opposed(job: Job) -> tuple[str, ...]:
+    """Return sentences on actuators that act on prescribed motions."""
     from ..redundancy.opposed_actuators import opposed_sentences  # models without drives do not load it
 
     return opposed_sentences(job.dynamics.system, job.data, job.start.q, job.grid)

@@ -7,23 +7,20 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..dynamics.algebraic_states import failure
+from ..dynamics.dynamics import Dynamics
+from ..dynamics.initial import InitialValues
+from ..equilibria.equilibrium import Equilibrium, find_equilibrium
+from ..equilibria.force_balance import balance_at, forces_by_velocity
+from ..equilibria.steady_motion import at_rest
 from ..errors import SolverError
 from ..linear_analysis.eigenvalues import eigen
 from ..linear_analysis.stability import lowest
 from ..linear_analysis.state_space import state_matrix
 from ..linear_analysis.tangent_space import linearised
-from ..solve.algebraic_states import failure
-from ..solve.dynamics import Dynamics
-from ..solve.equilibria.equilibrium import Equilibrium, find_equilibrium
-from ..solve.equilibria.force_balance import balance_at, forces_by_velocity
-from ..solve.equilibria.steady_motion import at_rest
-from ..solve.initial import InitialValues
 
-MOST_FOR_EIGENVALUES, MOST_CONSERVATIVE = 1500, 150
-"""Largest numbers of velocities for eigenvalues (dense matrices): in general, and if all forces are conservative.
-
-For conservative forces static stability is sufficient.
-"""
+MOST_FOR_EIGENVALUES = 1500
+"""Largest number of velocities for eigenvalues (dense matrices)."""
 SYMMETRIC = 1e-9
 """Asymmetry of a stiffness matrix, relative to its largest entry, that counts as rounding."""
 BRANCH = 1e-3
@@ -69,16 +66,7 @@ class Settled:
 
 
 def settled(dynamics: Dynamics, start: InitialValues, t: float) -> Settled:
-    """Find a stable equilibrium, with notes on unstable ones and on free motions.
-
-    Parameters
-    ----------
-    dynamics : Dynamics
-    start : InitialValues
-        Pose from which the search starts.
-    t : float
-        Time, s.
-    """
+    """Find a stable equilibrium from the pose of `start`, with notes on unstable ones and on free motions."""
     system, state = dynamics.system, dynamics.state
     state.q[:] = start.q
     found = find_equilibrium(dynamics, t)
@@ -102,18 +90,7 @@ def settled(dynamics: Dynamics, start: InitialValues, t: float) -> Settled:
 def moving_in_equilibrium(dynamics: Dynamics, start: InitialValues, t: float) -> InitialValues:
     """Find the equilibrium pose at rest and make the described velocities consistent there: a car that begins to roll.
 
-    Parameters
-    ----------
-    dynamics : Dynamics
-    start : InitialValues
-        Pose from which the search starts, and the velocities.
-    t : float
-        Time, s.
-
-    Raises
-    ------
-    SolverError
-        If no equilibrium is found, or the velocities have no accelerations there.
+    Raise a SolverError if no equilibrium is found, or the velocities have no accelerations there.
     """
     state = dynamics.state
     state.q[:] = start.q
@@ -158,7 +135,7 @@ def _settled(found: Equilibrium, start: InitialValues, notes: Sequence[str], fre
 def _growth(dynamics: Dynamics, t: float) -> Iterator[str]:
     """Yield a note if an equilibrium is dynamically unstable, or if this was not assessed."""
     system = dynamics.system
-    if system.n_u > MOST_CONSERVATIVE and not system.states and _is_conservative(dynamics, t):
+    if not system.states and _is_conservative(dynamics, t):  # static stability is sufficient
         return
     if system.n_u > MOST_FOR_EIGENVALUES:
         yield f"the dynamic stability of the equilibrium was not assessed: {system.n_u} velocities, at most {MOST_FOR_EIGENVALUES} expected"

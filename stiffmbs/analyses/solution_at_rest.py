@@ -1,4 +1,4 @@
-"""Solutions of equilibria, one instant each."""
+"""Solutions of single instants: equilibria, and instants of a natural mode."""
 
 from __future__ import annotations
 
@@ -6,12 +6,15 @@ from typing import Any
 
 import numpy as np
 
-from ..describe.requests.order import units
+from ..compile.system import System
+from ..dynamics.algebraic_states import failure
+from ..dynamics.dynamics import OutputRows
+from ..elements.requests.order import units
 from ..errors import SolverError
+from ..model.model_data import ModelData
 from ..results.channels import channels_of, turns_of
 from ..results.energy_balance import energy_balance
 from ..results.solution import Solution
-from ..solve.algebraic_states import failure
 from ..solve.trajectory import History, Outcome
 from .job import Job
 
@@ -19,33 +22,29 @@ from .job import Job
 def solution_at_rest(
     job: Job, t: np.ndarray, q: np.ndarray, u: np.ndarray, message: str, notes: tuple[str, ...], solver: dict[str, Any]
 ) -> Solution:
-    """Return the channels of equilibria.
+    """Return the channels of equilibria with these instants, s, poses and velocities.
 
-    Parameters
-    ----------
-    job : Job
-    t, q, u : ndarrays, shapes (n,), (n, n_q), (n, n_u)
-        Instants, s, with the poses and velocities at them.
-    message : str
-    notes : tuple of str
-    solver : dict
-        Statistics of the search.
-
-    Raises
-    ------
-    SolverError
-        If an equilibrium has no reactions.
+    Raise a SolverError if one has no reactions.
     """
-    system = job.dynamics.system
     rows = job.dynamics.report(t, q, u, project=False)
     if len(rows.t) < len(t):
+        first = t[len(rows.t)]
         raise SolverError(
-            f"no reactions were found in the equilibrium at t = {t[len(rows.t)]:g} s: {failure(job.dynamics, rows.status, t[len(rows.t)])}"
+            f"no reactions were found in the equilibrium at t = {first:g} s: {failure(job.dynamics, rows.status, first)}"
         )
-    channels = channels_of(job.data, system, rows)
+    return solution_of_rows(
+        job.data.name, job.data, job.dynamics.system, rows, job.redundancy.not_unique, message, notes, solver
+    )
+
+
+def solution_of_rows(
+    name: str, data: ModelData, system: System, rows: OutputRows, not_unique: tuple[str, ...], message: str,
+    notes: tuple[str, ...], solver: dict[str, Any],
+) -> Solution:  # fmt: skip
+    """Return the channels of rows that no integrator has computed."""
+    nothing = np.empty(0)
     return Solution(
-        name=job.data.name, time=rows.t, channels=channels, outcome=Outcome.DONE, message=message, notes=notes,
-        solver=solver, history=History(np.empty(0), np.empty(0, dtype=int)),
-        balance=energy_balance(system, rows, np.empty(0)), not_unique=job.redundancy.not_unique,
-        requested=units(job.data.outputs()), turns=turns_of(system, rows.q),
+        name=name, time=rows.t, channels=channels_of(data, system, rows), outcome=Outcome.DONE, message=message, notes=notes,
+        solver=solver, history=History(nothing, np.empty(0, dtype=int)), balance=energy_balance(system, rows, nothing),
+        not_unique=not_unique, requested=units(data.outputs()), turns=turns_of(system, rows.q),
     )  # fmt: skip

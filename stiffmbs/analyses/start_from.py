@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -10,28 +11,22 @@ import numpy as np
 
 from ..compile.bodies import BODY_KINDS
 from ..compile.system import System
-from ..describe.model_data import ModelData
-from ..describe.parts.names import owner_of
-from ..describe.settings import RunSettings
 from ..errors import InputError
+from ..model.model_data import ModelData
+from ..model.settings import RunSettings
 from ..presolve.subsystems import counters_of
+from ..reading.files.quoted import listed
+from ..reading.names import owner_of
 from ..results.body_axes import from_own_axes, rates_from_own_axes
 from ..results.saved_state import SavedState, read_state
 from ..results.solution import Solution
 
 StartFrom: TypeAlias = SavedState | Solution | str | Path
 """Saved state: one row of a solution or of a results file, by default the last."""
-MOST_NAMES = 5
 
 
 def state_to_start_from(given: StartFrom | None) -> SavedState | None:
-    """Return the state to start from, or None if none is given.
-
-    Raises
-    ------
-    InputError
-        If the argument holds no state.
-    """
+    """Return the state to start from, or None if none is given; raise an InputError if the argument holds no state."""
     match given:
         case None | SavedState():
             return given
@@ -51,16 +46,7 @@ def starting_at(state: SavedState | None, given: RunSettings | None, changes: di
 def started_from(system: System, model: ModelData, state: SavedState | None) -> System:
     """Return a system that starts from a saved state, or the same system if there is none.
 
-    Parameters
-    ----------
-    system : System
-    model : ModelData
-    state : SavedState, optional
-
-    Raises
-    ------
-    InputError
-        If the state belongs to other bodies, or lacks values.
+    Raise an InputError if the state belongs to other bodies, or lacks values.
     """
     if state is None:
         return system
@@ -139,6 +125,5 @@ def _where(dimensions: int, before: str = "") -> str:
     return f"{before}the plane" if dimensions == 2 else f"{before}space"
 
 
-def _listed(names: Any) -> str:
-    more = f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else ""
-    return ", ".join(f"'{name}'" for name in names[:MOST_NAMES]) + more
+def _listed(names: Sequence[str]) -> str:
+    return listed([f"'{name}'" for name in names])

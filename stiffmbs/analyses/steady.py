@@ -7,21 +7,19 @@ from dataclasses import replace
 import numpy as np
 
 from ..compile.system import System
-from ..describe.model_data import ModelData
-from ..describe.settings import SteadyMotion as Described
+from ..dynamics.dynamics import Dynamics
+from ..dynamics.initial import InitialValues
+from ..equilibria.equilibrium import Equilibrium, find_equilibrium
+from ..equilibria.force_balance import balance_at, forces_by_velocity
+from ..equilibria.found_speeds import with_found_spins
+from ..equilibria.nearest_equilibrium import nearest_equilibrium
+from ..equilibria.steady_motion import SteadyMotion
 from ..errors import InputError, SolverError
 from ..linear_analysis.steady_motion import eigenvalues_beside
-from ..solve.dynamics import Dynamics
-from ..solve.equilibria.equilibrium import Equilibrium, find_equilibrium
-from ..solve.equilibria.force_balance import balance_at, forces_by_velocity
-from ..solve.equilibria.found_speeds import with_found_spins
-from ..solve.equilibria.nearest_equilibrium import nearest_equilibrium
-from ..solve.equilibria.steady_motion import SteadyMotion
-from ..solve.initial import InitialValues
-from .settled import GROWING, Settled
-
-MOST_FOR_STABILITY = 1500
-"""Number of velocities up to which the stability of a steady motion is assessed (dense matrices)."""
+from ..model.model_data import ModelData
+from ..model.settings import SteadyMotion as Described
+from ..reading.did_you_mean import did_you_mean
+from .settled import GROWING, MOST_FOR_EIGENVALUES, Settled
 
 MOTION_AHEAD = 1e-3
 """Distance along a motion, rad or parts of the mechanism's size, after which the balance of forces is checked."""
@@ -34,16 +32,7 @@ def settled_in_motion(
 ) -> Settled:
     """Find an equilibrium in steady motion and assess its stability.
 
-    Parameters
-    ----------
-    model : ModelData
-    dynamics : Dynamics
-    start : InitialValues
-        Pose from which the search starts, and the spins of bodies that neither rolling constraints nor forces
-        determine.
-    t : float
-        Time, s.
-    described : SteadyMotion
+    The search begins at the pose of `start`, with its spins of bodies that neither rolling constraints nor forces determine.
 
     Raises
     ------
@@ -68,6 +57,10 @@ def start_in_motion(
 
 
 def _found(model: ModelData, dynamics: Dynamics, start: InitialValues, t: float, described: Described) -> Equilibrium:
+    if dynamics.system.has_coupled_inertia:
+        raise InputError(
+            "bodies: found a flexible body, expected rigid ones: steady motions do not include flexible bodies"
+        )
     motion = _motion(model, dynamics, start, described)
     dynamics.state.q[:] = start.q
     if len(motion.spinning):
@@ -89,7 +82,7 @@ def _moving(start: InitialValues, found: Equilibrium, notes: tuple[str, ...]) ->
 
 def _eigenvalues(dynamics: Dynamics, t: float, found: Equilibrium) -> np.ndarray | None:
     """Return the eigenvalues of perturbations of the steady motion, or None if they cannot be computed."""
-    if dynamics.system.n_u > MOST_FOR_STABILITY:
+    if dynamics.system.n_u > MOST_FOR_EIGENVALUES:
         return None
     state = dynamics.state
     state.q[:], state.u[:] = found.q, found.u
@@ -99,7 +92,7 @@ def _eigenvalues(dynamics: Dynamics, t: float, found: Equilibrium) -> np.ndarray
 
 def _stability(values: np.ndarray | None, n_u: int) -> str:
     if values is None:
-        reason = f"it has {n_u} velocities" if n_u > MOST_FOR_STABILITY else "its equations change along the motion"
+        reason = f"it has {n_u} velocities" if n_u > MOST_FOR_EIGENVALUES else "its equations change along the motion"
         return f"whether the steady motion is stable was not looked at: {reason}"
     fastest = float(np.max(values.real, initial=0.0))
     if fastest > GROWING * np.max(np.abs(values), initial=0.0):
@@ -143,7 +136,8 @@ def _rotation(model: ModelData, described: Described) -> np.ndarray:
 def _spin(system: System, body: str) -> int:
     """Return the index of a body's angular velocity about its axis of symmetry."""
     if body not in system.bodies:
-        raise InputError(f"rolling: found no body '{body}', expected one of {', '.join(system.bodies)}")
+        near = did_you_mean(body, system.bodies)
+        raise InputError(f"rolling: found no body '{body}'{near}, expected one of {', '.join(system.bodies)}")
     n_u, linear = system.of_body.n_u, system.of_body.linear
     first = n_u * system.bodies.index(body) + linear
     if linear == 2:

@@ -16,17 +16,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..run_checks.glance import Glance
+from ..dynamics.dynamics import OutputRows
 from ..run_checks.overlooked import Overlooked, overlooked, together
 from ..run_checks.within_long_steps import overlooked_in_long_steps
-from ..solve.dynamics import OutputRows
 from ..solve.error_control.relaxation import Creep, creep_of, creeps
 from ..solve.settings import changed, traits_of
 from ..solve.trajectory import Outcome, Trajectory
 
 if TYPE_CHECKING:
     from ..compile.system import System
-    from ..describe.settings import RunSettings
+    from ..model.settings import RunSettings
     from .job import Job
 
 ROUNDS, STARTS = 3, 1000
@@ -43,24 +42,16 @@ LESS = 0.5
 
 @dataclass(frozen=True)
 class Computed:
-    """Trajectory and rows of a run, notes on omitted rows, results of the scan of rows, and notes on doubts."""
+    """Trajectory and rows of a run, notes on omitted rows, and notes on doubts."""
 
     trajectory: Trajectory
     rows: OutputRows
     left_out: list[str]
-    seen: Glance | None
     doubts: tuple[str, ...] = ()
 
 
-def seen_through(job: Job, compute: Callable[[Job], Computed]) -> tuple[Computed, list[str]]:
-    """Compute a job until no checked instant contradicts its steps; return it with notes on missed events.
-
-    Parameters
-    ----------
-    job : Job
-    compute : callable
-        Function that integrates a job and reports it.
-    """
+def rerun_after_missed_events(job: Job, compute: Callable[[Job], Computed]) -> tuple[Computed, list[str]]:
+    """Compute a job until no checked instant contradicts its steps; return it with notes on missed events."""
     found = compute(job)
     seen = left = _overlooked(job, found)
     stops = np.empty(0)
@@ -86,23 +77,15 @@ def _overlooked(job: Job, computed: Computed) -> Overlooked | None:
     if not system.has_laws:
         return None
     long_steps = () if trajectory.outcome is Outcome.INTERRUPTED else trajectory.long_steps
-    of_rows = computed.seen is None or computed.seen.contradicting
     found = [
-        overlooked(system, computed.rows, trajectory, job.settings) if of_rows else None,
+        overlooked(system, computed.rows, trajectory, job.settings),
         *(overlooked_in_long_steps(steps, job.settings, float(trajectory.t[-1])) for steps in long_steps),
     ]
     return together([each for each in found if each is not None])
 
 
 def on_exact_constraints(job: Job, compute: Callable[[Job], Computed]) -> Computed:
-    """Compute a job, and rerun it with SI2_exact if its constraints drift; the result has a note on that.
-
-    Parameters
-    ----------
-    job : Job
-    compute : callable
-        Function that integrates a job and reports it.
-    """
+    """Compute a job, and rerun it with SI2_exact if its constraints drift; the result has a note on that."""
     found = compute(job)
     compared = _compared(job, found)
     if not relaxed(job) or not len(found.rows.t) or not creeps(*compared, CREPT):

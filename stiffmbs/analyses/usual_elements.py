@@ -4,24 +4,18 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..describe.body import Body
-from ..describe.building.model_builder import ModelBuilder
-from ..describe.joints.prismatic import Prismatic
-from ..describe.joints.revolute import Revolute
-from ..describe.model import Model
-from ..describe.samples import Samples
+from ..elements.body import Body
+from ..elements.joints.prismatic import Prismatic
+from ..elements.joints.revolute import Revolute
+from ..elements.samples import Samples
+from ..model.model import Model
+from ..model.model_builder import ModelBuilder
 
 BODIES = ("a", "b", "c")
 
 
 def usual_elements(dimensions: int) -> ModelBuilder:
-    """Return a model of all forms of all kinds, including registered user-defined ones; it is compiled, never solved.
-
-    Parameters
-    ----------
-    dimensions : int
-        2 or 3.
-    """
+    """Return a model of all forms of all kinds, including registered user-defined ones; it is compiled, never solved."""
     model = _in_plane() if dimensions == 2 else _in_space()
     joints = dict(model.joints)
     samples = Samples(lambda k: BODIES[k], joints)
@@ -34,9 +28,9 @@ def usual_elements(dimensions: int) -> ModelBuilder:
 
 def usual_bearings() -> ModelBuilder:
     """Return a spatial model of all joints in which body ``a`` may spin freely, relative to another body."""
-    from ..describe.spatial.joints.cylindrical import Cylindrical
-    from ..describe.spatial.joints.revolute import Revolute
-    from ..describe.spatial.joints.spherical import Spherical
+    from ..elements.spatial.joints.cylindrical import Cylindrical
+    from ..elements.spatial.joints.revolute import Revolute
+    from ..elements.spatial.joints.spherical import Spherical
 
     model = _bodies_in_space()
     for bearing in (Revolute, Cylindrical, Spherical):
@@ -54,10 +48,10 @@ def _in_plane() -> ModelBuilder:
 
 
 def _in_space() -> ModelBuilder:
-    from ..describe.spatial.joints.cylindrical import Cylindrical
-    from ..describe.spatial.joints.prismatic import Prismatic
-    from ..describe.spatial.joints.revolute import Revolute
-    from ..describe.spatial.joints.spherical import Spherical
+    from ..elements.spatial.joints.cylindrical import Cylindrical
+    from ..elements.spatial.joints.prismatic import Prismatic
+    from ..elements.spatial.joints.revolute import Revolute
+    from ..elements.spatial.joints.spherical import Spherical
 
     model = _bodies_in_space()
     _add_joints(model, Revolute, Prismatic)
@@ -67,8 +61,8 @@ def _in_space() -> ModelBuilder:
 
 
 def _bodies_in_space() -> ModelBuilder:
-    from ..describe.spatial.body import Body
-    from ..describe.spatial.model import Model
+    from ..elements.spatial.body import Body
+    from ..model.spatial_model import Model
 
     model = Model(gravity=(0, 0, -9.81))
     for k, name in enumerate(BODIES):

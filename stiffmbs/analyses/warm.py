@@ -8,14 +8,10 @@ from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
 
-from .. import compile as compile_package
-from .. import results as results_package
-from .. import run_checks as run_checks_package
-from .. import solve as solve_package
 from ..compile.compile_model import kinds_of
-from ..compile.kernels import compile_usual
 from ..compile.kind import Kind
 from ..compile.machine.routines import Routine
+from ..compile.record import compile_usual
 from ..presolve.spinning_bodies import AXES, SpinningBodies
 from .usual_elements import usual_bearings, usual_elements
 
@@ -41,7 +37,8 @@ def usual_kinds() -> tuple[Kind, ...]:
 
 def routines() -> Iterator[Routine]:
     """Yield every compiled routine that a module of the package declares."""
-    for package in (compile_package, solve_package, results_package, run_checks_package):
+    for name in ("compile", "dynamics", "solve", "sensitivity_equations", "results", "run_checks"):
+        package = importlib.import_module(f"stiffmbs.{name}")
         for module in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
             if ".native." not in f"{module.name}.":
                 found = vars(importlib.import_module(module.name)).values()

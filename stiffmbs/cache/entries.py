@@ -38,28 +38,22 @@ def cache_directory() -> Path:
     A directory that others may write to is refused with a note, and the user's cache directory is used instead.
     """
     chosen = os.environ.get(DIRECTORY_VARIABLE)
-    if chosen:
-        if not (fault := _fault(Path(chosen))):
-            return Path(chosen)
-        _tell(
-            f"{DIRECTORY_VARIABLE}: the cache {chosen} is not used, as {fault}; expected a folder of your own (chmod go-w)"
-        )
+    if chosen and _trusted(Path(chosen), f"{DIRECTORY_VARIABLE}: "):
+        return Path(chosen)
     from platformdirs import user_cache_path
 
     usual = user_cache_path("stiffmbs", appauthor=False)
-    if not (fault := _fault(usual)):
-        return usual
-    _tell(f"the cache {usual} is not used, as {fault}; expected a folder of your own (chmod go-w)")
-    return NOWHERE
+    return usual if _trusted(usual) else NOWHERE
 
 
-def _fault(directory: Path) -> str:
-    """Return the reason why the files in a directory cannot be trusted, or an empty string."""
+def _trusted(directory: Path, prefix: str = "") -> bool:
+    """Return True if the files in a directory can be trusted; else note the reason."""
     try:
         check_folder(directory)
     except NotOwnError as fault:
-        return str(fault)
-    return ""
+        _tell(f"{prefix}the cache {directory} is not used, as {fault}; expected a folder of your own (chmod go-w)")
+        return False
+    return True
 
 
 @cache
@@ -91,9 +85,7 @@ class Folder:
     def read(self, name: str) -> bytes | None:
         """Return the content of an entry, or None if none of this name is undamaged and the user's own."""
         directory = self.path
-        if (fault := _fault(directory)) or (secret := _secret(directory.parent)) is None:
-            if fault:
-                _tell(f"the cache {directory} is not used, as {fault}; expected a folder of your own (chmod go-w)")
+        if not _trusted(directory) or (secret := _secret(directory.parent)) is None:
             return None
         try:
             stored = read_own(directory / name)
@@ -111,7 +103,7 @@ class Folder:
         with suppress(OSError):
             directory.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
             directory.mkdir(mode=0o700, exist_ok=True)
-            secret = None if _fault(directory) else _secret(directory.parent) or _new_secret(directory.parent)
+            secret = (_secret(directory.parent) or _new_secret(directory.parent)) if _trusted(directory) else None
             if secret is not None:
                 _put(directory / name, self._code(secret, name, content) + content)
 

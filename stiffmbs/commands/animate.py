@@ -10,20 +10,15 @@ from typing import Any
 import click
 
 from ..analyses.load_scene import load_scene
-from ..errors import StiffmbsError
+from .process import Status
 from .runs import loaded_runs
-from .scene import STOPPED_EARLY, changes_of, file_beside, refuse, refuse_own_input, solve_scene, solving_options
+from .scene import changes_of, file_beside, output_option, refuse_own_input, refusing, solve_scene, solving_options
 
 
 @click.command(short_help="A mechanism in motion: a film or a page.")
 @click.argument("scene")
 @click.argument("results", nargs=-1, type=click.Path(path_type=Path))
-@click.option(
-    "-o",
-    "--output",
-    type=click.Path(path_type=Path),
-    help="Where to write: .gif, .mp4 or .html; SCENE.html without it.",
-)
+@output_option("Where to write: .gif, .mp4 or .html; SCENE.html without it.")
 @click.option(
     "--view", default="", help="front, side, top, isometric, a plane such as xz, or AZIMUTH,ELEVATION in degrees."
 )
@@ -55,7 +50,7 @@ def animate(
     from ..show.drawing.view import check_view
 
     path, pace = output or file_beside(scene, ".html"), Pace(speed, rate)
-    try:
+    with refusing(scene, as_json, path):
         check_animation(path)
         check_pace(pace)
         check_view(view)
@@ -65,11 +60,6 @@ def animate(
         traced(loaded, traces)
         runs = loaded_runs(results) if results else {"": solve_scene(scene, loaded, False)}
         write_animation(path, loaded, runs, view, pace, Shown(names, forces), traces)
-    except StiffmbsError as error:
-        refuse(scene, error, as_json)
-    except OSError as error:
-        click.echo(f"stiffmbs: not written: {path}: {error.strerror}", err=True)
-        sys.exit(STOPPED_EARLY)
     first = next(iter(runs.values()))
     told = {
         "scene": scene,
@@ -78,4 +68,4 @@ def animate(
         "time": {"start": float(first.time[0]), "end": float(first.time[-1])},
     }
     click.echo(json.dumps(told) if as_json else f"animation: {path}")
-    sys.exit(0 if all(run.outcome.name == "DONE" for run in runs.values()) else STOPPED_EARLY)
+    sys.exit(0 if all(run.outcome.name == "DONE" for run in runs.values()) else Status.FAILED)

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 
 import click
 
-from ..errors import InputError, StiffmbsError
+from ..errors import StiffmbsError
+from .process import Status
+from .scene import refusing
 
 if TYPE_CHECKING:
     from ..comparison.compare import Comparison
-
-SOME_FAILED, WRONG_INPUT = 1, 2
 
 
 @click.command(short_help="Run time against error of the examples.")
@@ -29,35 +29,27 @@ def bench(names: tuple[str, ...], as_json: bool) -> None:
     example.
     """
     from ..comparison.compare import compare
-    from ..comparison.machine import machine_sentence
+    from ..comparison.machine import machine, machine_sentence
     from .starting.shipped import scene_file, scene_files
 
-    try:
+    with refusing("bench"):
         files = {name: scene_file(name) for name in names or scene_files()}
-    except InputError as error:
-        click.echo(f"stiffmbs: {error}", err=True)
-        sys.exit(WRONG_INPUT)
     if not as_json:
         click.echo(machine_sentence())
-    some_failed = False
+    status = Status.DONE
     for name, path in files.items():
         try:
             found = compare(path)
         except StiffmbsError as error:
             click.echo(f"stiffmbs: {name}: {error}", err=True)
-            some_failed = True
+            status = Status.FAILED
             continue
-        click.echo(_json_object(name, found) if as_json else _table(name, found))
+        rows = [row.as_dict(found.measure) for row in found.rows]
+        as_object = {"problem": name, "machine": machine(), "rows": rows}
+        click.echo(json.dumps(as_object) if as_json else _table(name, found))
         if found.interrupted:
-            sys.exit(SOME_FAILED)
-    sys.exit(SOME_FAILED if some_failed else 0)
-
-
-def _json_object(name: str, found: Comparison) -> str:
-    from ..comparison.machine import machine
-
-    rows = [row.as_dict(found.measure) for row in found.rows]
-    return json.dumps({"problem": name, "machine": machine(), "rows": rows})
+            sys.exit(Status.FAILED)
+    sys.exit(status)
 
 
 def _table(name: str, found: Comparison) -> str:

@@ -12,6 +12,8 @@ WORDS = {
     "kernel": "kernels",
     "routine": "routines",
     "file": "contents of YAML files",
+    "scene": "scenes read before",
+    "body": "reduced flexible bodies",
     "other": "of other versions or machines",
 }
 

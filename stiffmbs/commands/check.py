@@ -11,12 +11,11 @@ import click
 
 from ..analyses.load_scene import DATASET, load_scene
 from ..errors import StiffmbsError
-from .scene import CHANGES, in_file, refuse
+from .process import Status
+from .scene import CHANGES, in_file, refusing
 
 if TYPE_CHECKING:
     from ..adams.listing import ListedStatement
-
-PROBLEMS = 1
 
 
 @click.command(short_help="Degrees of freedom, redundancy.")
@@ -36,19 +35,17 @@ def check(scene: str, as_json: bool, changes: list[tuple[str, str]]) -> None:
     if not as_json:
         for statement in listed:
             click.echo(statement)
-    try:
+    with refusing(scene, as_json):
         loaded = load_scene(scene, changes)
         with in_file(scene):
             report = examine(loaded)
-    except StiffmbsError as error:
-        refuse(scene, error, as_json)
     if as_json:
         from ..show.summary import check_as_json
 
         click.echo(check_as_json(scene, report, listed))
     else:
         click.echo(report)
-    sys.exit(0 if report.sound else PROBLEMS)
+    sys.exit(Status.DONE if report.sound else Status.FAILED)
 
 
 def _listed(scene: str) -> Sequence[ListedStatement]:

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any, get_args
 import click
 
 from ..analyses.load_scene import load_scene
-from ..errors import InputError, StiffmbsError
+from ..errors import InputError
 from ..solver_names import SchemeName
-from .ranges import numbers_in, values_in
-from .scene import CHANGES, STOPPED_EARLY, in_file, refuse, refuse_own_input
+from .process import Status
+from .scene import CHANGES, in_file, is_written, output_option, refuse_own_input, refusing
 
 if TYPE_CHECKING:
     from ..comparison.compare import Comparison
@@ -25,20 +25,22 @@ if TYPE_CHECKING:
 @click.argument("scene")
 @click.option(
     "--solver", "--solvers", "solvers", metavar="NAME,...",
-    help=f"bdf, auto, kinematic, {', '.join(get_args(SchemeName))}, or all; bdf,dop853,auto by default.",
+    help=f"bdf, radau, auto, kinematic, {', '.join(get_args(SchemeName))}, or all; bdf,dop853,auto by default.",
 )  # fmt: skip
 @click.option("--formulation", "--formulations", "formulations", metavar="NAME,...", help="Of bdf: SI2, SI1, I3, ...")
 @click.option(
-    "--rtol", metavar="A..B[:N]", help="Relative tolerances, 1e-3..1e-8 by default, four in a decade without N."
+    "--rtol",
+    metavar="VALUES",
+    help="Relative tolerances, FROM:TO[:COUNT][:log] or VALUE,VALUE,...; 1e-3:1e-8:log, four per decade, by default.",
 )
-@click.option("--step", metavar="A..B[:N]", help="Steps of the schemes with fixed steps, s.")
+@click.option("--step", metavar="VALUES", help="Steps of the schemes with fixed steps, s, as for --rtol.")
 @click.option(
     "--measure", default="positions", show_default=True, help="What errors are of: positions, velocities or forces."
 )
 @click.option(
     "--over",
-    metavar="P=A..B[:N]",
-    help="Time at an equal error against a parameter, also with units (k=1..100 N/mm); by decades where A..B has any.",
+    metavar="NAME=VALUES",
+    help="Time at an equal error against a parameter or a path, as in k_b=1e5:1e9:9:log, k=1:100 N/mm:5 or N=10,20.",
 )
 @click.option(
     "--error", type=float, help="With --over: at which times are compared; of positions 1e-4 m or rad by default."
@@ -50,7 +52,7 @@ if TYPE_CHECKING:
 )  # fmt: skip
 @click.option("--duration", help="Time to solve, s, or with a unit.")
 @CHANGES
-@click.option("-o", "--output", type=click.Path(path_type=Path), help="Draw the figure: .svg, .png or .pdf.")
+@output_option("Draw the figure: .svg, .png or .pdf.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line instead of tables.")
 def compare(scene: str, output: Path | None, as_json: bool, **options: Any) -> None:
     """Measure run time against error of solvers, schemes and formulations on SCENE.
@@ -62,21 +64,19 @@ def compare(scene: str, output: Path | None, as_json: bool, **options: Any) -> N
     Exit status: 0 done, 1 interrupted (measurements so far are shown), there is no reference, or the figure could not
     be written, 2 the input is wrong.
     """
-    from .progress import Telling
+    from ..comparison.figure import write_figure
+    from ..show.figure import check_figure
+    from .progress import StatusLine
 
-    try:
+    with refusing(scene, as_json):
         if output is not None:
-            from ..show.figure import check_figure
-
             check_figure("-o", output)
             refuse_own_input("-o", scene, output)
-        with Telling() as tell:
+        with StatusLine() as tell:
             found = _found(scene, options, tell)
-    except StiffmbsError as error:
-        refuse(scene, error, as_json)
     _show(scene, found, as_json)
-    written = output is None or _draw(output, found)
-    sys.exit(0 if written and not found.interrupted else STOPPED_EARLY)
+    written = output is None or is_written(output, lambda: write_figure(output, found.plot()))
+    sys.exit(0 if written and not found.interrupted else Status.FAILED)
 
 
 def _found(scene: str, options: dict[str, Any], tell: Any) -> Found:
@@ -85,19 +85,20 @@ def _found(scene: str, options: dict[str, Any], tell: Any) -> Found:
     asked |= {name: _names(options[name]) for name in ("solvers", "formulations") if options[name]}
     changes = [*options["changes"], *([("run.duration", options["duration"])] if options["duration"] else [])]
     if options["error"] is not None and not options["over"]:
-        raise InputError(f"--error {options['error']:g}: found no --over, expected it with --over PARAMETER=RANGE")
-    over = values_in("--over", options["over"]) if options["over"] else None
-    from ..comparison.plan import PER_DECADE
+        raise InputError(f"--error {options['error']:g}: found no --over, expected it with --over NAME=VALUES")
+    from ..reading.variation import read_variation, variation
 
-    if options["rtol"]:
-        asked["tolerances"] = numbers_in("--rtol", options["rtol"], PER_DECADE)
-    if options["step"]:
-        asked["steps"] = numbers_in("--step", options["step"], PER_DECADE)
-    if over is not None:
+    asked |= {
+        name: variation(f"--{option}", options[option])
+        for name, option in (("tolerances", "rtol"), ("steps", "step"))
+        if options[option]
+    }
+    if options["over"]:
         from ..comparison.over import compare_over, with_parameter
 
-        made = with_parameter(scene, over.parameter, changes, over.dimension)
-        return compare_over(made, over.parameter, over.numbers, error=options["error"], tell=tell, **asked)
+        over = read_variation(options["over"], "--over")
+        made = with_parameter(scene, over.name, changes, over.dimension)
+        return compare_over(made, over.name, over, error=options["error"], tell=tell, **asked)
     from ..comparison.compare import compare
 
     loaded = load_scene(scene, changes)
@@ -115,23 +116,7 @@ def _show(scene: str, found: Found, as_json: bool) -> None:
 
         click.echo(json_line(found.as_dict(scene)))
         return
-    from ..comparison.compare import Comparison
-    from ..comparison.table import print_comparison, print_over
+    from ..comparison.table import show
     from .run import console
 
-    if isinstance(found, Comparison):
-        print_comparison(found, console())
-    else:
-        print_over(found, console())
-
-
-def _draw(path: Path, found: Found) -> bool:
-    """Draw the figure; return True if it was written."""
-    from ..comparison.figure import write_figure
-
-    try:
-        write_figure(path, found.plot())
-    except OSError as error:
-        click.echo(f"stiffmbs: not written: {path}: {error.strerror}", err=True)
-        return False
-    return True
+    show(found, console())

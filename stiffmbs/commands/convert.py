@@ -3,25 +3,21 @@
 from __future__ import annotations
 
 import sys
+from functools import partial
 from pathlib import Path
 
 import click
 
-from ..errors import InputError, StiffmbsError
-from .scene import CHANGES, STOPPED_EARLY, refuse, refuse_own_input
+from ..errors import InputError
+from .process import Status
+from .scene import CHANGES, is_written, output_option, refuse_own_input, refusing
 
 DATASET = ".adm"
 
 
 @click.command(short_help="Write a dataset, a robot, or a planar scene, as a scene; or a scene as a dataset.")
 @click.argument("scene")
-@click.option(
-    "-o",
-    "--output",
-    "output",
-    type=click.Path(path_type=Path),
-    help="The scene file, or a dataset where it ends in .adm; standard output without.",
-)
+@output_option("The scene file, or a dataset where it ends in .adm; standard output without.")
 @click.option("--in-space", is_flag=True, help="Take a planar SCENE, and write it in the x-y plane of space.")
 @click.option(
     "--at",
@@ -40,31 +36,22 @@ def convert(
 
     Exit status: 0 done, 1 the file could not be written, 2 the input is wrong.
     """
-    try:
+    from ..analyses.in_space import text_in_space
+    from ..results.files import write_text
+
+    with refusing(scene):
         if output is not None:
             refuse_own_input("-o", scene, output)
         if output is not None and output.suffix.lower() == DATASET:
             texts = _as_dataset(scene, output, coordinates, changes)
         else:
-            text = _in_space(scene, changes) if in_space else _of_other(scene, coordinates, changes)
+            text = text_in_space(scene, changes) if in_space else _of_other(scene, coordinates, changes)
             texts = {output: text}
-    except StiffmbsError as error:
-        refuse(scene, error)
     for path, text in texts.items():
-        _write(path, text)
-
-
-def _write(path: Path | None, text: str) -> None:
-    if path is None:
-        click.echo(text, nl=False)
-        return
-    from ..results import files
-
-    try:
-        files.write_text(path, text)
-    except OSError as error:
-        click.echo(f"stiffmbs: not written: {path}: {error.strerror}", err=True)
-        sys.exit(STOPPED_EARLY)
+        if path is None:
+            click.echo(text, nl=False)
+        elif not is_written(path, partial(write_text, path, text)):
+            sys.exit(Status.FAILED)
 
 
 def _as_dataset(
@@ -75,7 +62,7 @@ def _as_dataset(
     from ..adams.load import COMMANDS
     from ..analyses.in_space import in_space
     from ..analyses.load_scene import ROBOTS, load_scene
-    from ..describe.spatial.scene import SpatialScene
+    from ..model.spatial_scene import SpatialScene
     from ..robots.load import load_robot
 
     beside = output.with_suffix(COMMANDS)
@@ -86,12 +73,6 @@ def _as_dataset(
         scene = load_scene(path, changes)
     spatial = scene if isinstance(scene, SpatialScene) else in_space(scene)  # type: ignore[call-overload]
     return {output: dataset_text(spatial, path), beside: command_text(spatial)}
-
-
-def _in_space(scene: str, changes: list[tuple[str, str]]) -> str:
-    from ..analyses.in_space import text_in_space
-
-    return text_in_space(scene, changes)
 
 
 def _of_other(path: str, coordinates: tuple[str, ...], changes: list[tuple[str, str]]) -> str:

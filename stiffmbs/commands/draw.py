@@ -3,25 +3,18 @@
 from __future__ import annotations
 
 import json
-import sys
 from pathlib import Path
 from typing import Any
 
 import click
 
 from ..analyses.load_scene import load_scene
-from ..errors import StiffmbsError
-from .scene import STOPPED_EARLY, changes_of, file_beside, in_file, refuse, refuse_own_input, solving_options
+from .scene import changes_of, file_beside, in_file, output_option, refuse_own_input, refusing, solving_options
 
 
 @click.command(short_help="A picture of a mechanism.")
 @click.argument("scene")
-@click.option(
-    "-o",
-    "--output",
-    type=click.Path(path_type=Path),
-    help="Where to draw: .svg, .png, .pdf, or .json; SCENE.svg without it.",
-)
+@output_option("Where to draw: .svg, .png, .pdf, or .json; SCENE.svg without it.")
 @click.option("--at", type=float, help="The instant of the run, s; its start by default.")
 @click.option("--described", is_flag=True, help="The bodies as they are described, before assembly, without forces.")
 @click.option("--check", "checked", is_flag=True, help="Show what is redundant or not unique in colors of its own.")
@@ -44,7 +37,7 @@ def draw(
     from ..show.drawing.view import check_view
 
     path = output or file_beside(scene, ".svg")
-    try:
+    with refusing(scene, as_json, path):
         check_drawing(path)
         check_view(view)
         refuse_own_input("-o", scene, path)
@@ -52,11 +45,6 @@ def draw(
         with in_file(scene):
             drawing, poses = state_drawn(loaded, at, described, checked)
         write_drawing(path, drawing, poses, view, names, forces)
-    except StiffmbsError as error:
-        refuse(scene, error, as_json)
-    except OSError as error:
-        click.echo(f"stiffmbs: not written: {path}: {error.strerror}", err=True)
-        sys.exit(STOPPED_EARLY)
     if as_json:
         click.echo(json.dumps({"scene": scene, "output": str(path), **summary(drawing, poses)}))
     else:

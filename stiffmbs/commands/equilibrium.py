@@ -10,31 +10,26 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..analyses.load_scene import load_scene
-from ..errors import StiffmbsError
+from .process import Status
 from .scene import (
-    STOPPED_EARLY,
     changes_of,
     in_file,
     is_written,
-    refuse,
+    output_option,
     refuse_own_input,
+    refusing,
     solving_options,
     start_of,
     state_options,
-)  # fmt: skip
+)
 
 if TYPE_CHECKING:
-    from ..describe.settings import SteadyMotion
+    from ..model.settings import SteadyMotion
 
 
 @click.command(short_help="The pose in which forces balance.")
 @click.argument("scene")
-@click.option(
-    "-o",
-    "--output",
-    type=click.Path(path_type=Path),
-    help="Write the state, which run --from starts from: .npz, .csv or .nc.",
-)
+@output_option("Write the state, which run --from starts from: .npz, .csv or .nc.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line instead of a table.")
 @click.option("--velocity", help="Seek it at constant speed: VX,VY or VX,VY,VZ, m/s, or with units.")
 @click.option(
@@ -61,7 +56,7 @@ def equilibrium(
     from ..results.files import check_output, write
     from ..show.equilibrium import equilibrium_text
 
-    try:
+    with refusing(scene, as_json):
         if output is not None:
             check_output(output)
             refuse_own_input("-o", scene, output)
@@ -71,11 +66,9 @@ def equilibrium(
         motion = _motion(velocity, rotation, about, rolling, speed)
         with in_file(scene):
             found = found_equilibrium(loaded, motion=motion, **start)
-    except StiffmbsError as error:
-        refuse(scene, error, as_json)
     written = output is None or is_written(output, lambda: write(output, found.solution))
     click.echo(json.dumps(found.as_dict(scene)) if as_json else equilibrium_text(found, loaded))
-    sys.exit(0 if written else STOPPED_EARLY)
+    sys.exit(0 if written else Status.FAILED)
 
 
 def _motion(
@@ -88,7 +81,7 @@ def _motion(
         "about": _numbers(about), "rolling": rolling or None, "speed": speed,
     }  # fmt: skip
     given = {name: value for name, value in given.items() if value is not None}
-    from ..describe.settings import SteadyMotion
+    from ..model.settings import SteadyMotion
 
     return SteadyMotion(**given) if given else None
 

@@ -4,38 +4,27 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from ..analyses.load_scene import load_scene
-from ..errors import InputError, StiffmbsError
-from .scene import STOPPED_EARLY, changes_of, in_file, refuse, solving_options
+from ..errors import InputError
+from .process import Status
+from .scene import changes_of, in_file, refusing, several, solving_options
 
 if TYPE_CHECKING:
     from ..studies.fit import Fit
     from ..studies.optimise import Optimum
 
-Command = TypeVar("Command", bound=Callable[..., Any])
-
-
-def _sought_options(command: Command) -> Command:
-    options = (
-        click.option(
-            "--parameter",
-            "parameters",
-            multiple=True,
-            required=True,
-            metavar="NAME=LOW:HIGH[:log]",
-            help="What is sought, a parameter or a path, with its bounds; any number of times.",
-        ),
-        click.option("--start", "start", multiple=True, metavar="NAME=VALUE", help="Where the search starts."),
-        click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line instead of a table."),
-    )
-    for option in reversed(options):
-        command = option(command)
-    return command
+_sought_options = several(
+    click.option(
+        "--parameter", "parameters", multiple=True, required=True, metavar="NAME=FROM:TO[:log]",
+        help="What is sought, a parameter or a path, with its bounds; any number of times.",
+    ),
+    click.option("--start", "start", multiple=True, metavar="NAME=VALUE", help="Where the search starts."),
+    click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line instead of a table."),
+)  # fmt: skip
 
 
 @click.command(short_help="Fit parameters to measured channels.")
@@ -52,14 +41,12 @@ def fit(
     """
     from ..studies.fit import fit as fitted
 
-    try:
+    with refusing(scene, as_json):
         loaded = load_scene(scene, changes_of(options))
         with in_file(scene):
             found = fitted(loaded, data, _ranges(parameters), start=_values(start))
-    except StiffmbsError as error:
-        refuse(scene, error, as_json)
     click.echo(json.dumps({"scene": scene, **found.as_dict()}) if as_json else _fit_text(found))
-    sys.exit(0 if found.success else STOPPED_EARLY)
+    sys.exit(0 if found.success else Status.FAILED)
 
 
 @click.command(short_help="Find the parameters that make an output least.")
@@ -80,28 +67,22 @@ def optimise(
     """
     from ..studies.optimise import optimise as optimised
 
-    try:
+    with refusing(scene, as_json):
         loaded = load_scene(scene, changes_of(options))
         with in_file(scene):
             found = optimised(loaded, minimise, _ranges(parameters), _limits(keep), start=_values(start))
-    except StiffmbsError as error:
-        refuse(scene, error, as_json)
     click.echo(json.dumps({"scene": scene, **found.as_dict()}) if as_json else _optimum_text(minimise, found))
-    sys.exit(0 if found.success else STOPPED_EARLY)
+    sys.exit(0 if found.success else Status.FAILED)
 
 
 def _ranges(parameters: tuple[str, ...]) -> dict[str, Any]:
-    from ..studies.variation import read_variation
+    from ..reading.variation import read_variation
 
-    found = [read_variation(text, "--parameter") for text in parameters]
-    for one in found:
-        if one.range is None:
-            raise InputError(f"--parameter {one.name}: found no range, expected NAME=LOW:HIGH[:log]")
-    return {one.name: one.range for one in found}
+    return {one.name: one for one in (read_variation(text, "--parameter") for text in parameters)}
 
 
 def _values(pairs: tuple[str, ...]) -> dict[str, float]:
-    from ..studies.variation import number
+    from ..reading.variation import number
 
     found = {}
     for text in pairs:
@@ -113,7 +94,7 @@ def _values(pairs: tuple[str, ...]) -> dict[str, float]:
 
 
 def _limits(keep: tuple[str, ...]) -> dict[str, tuple[float | None, float | None]]:
-    from ..studies.variation import number
+    from ..reading.variation import number
 
     found: dict[str, tuple[float | None, float | None]] = {}
     for text in keep:

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import click
 
-from .terminal.subcommands import Subcommands
+from .subcommands import Subcommands
 
 SECTIONS = {
     "Start": {
         "init": "starting.init",
         "examples": "starting.examples",
         "parts": "starting.parts",
-        "schema": "schema",
+        "schema": "starting.schema",
     },
     "Analyses of a scene": {
         "check": "check",
@@ -19,6 +19,9 @@ SECTIONS = {
         "equilibrium": "equilibrium",
         "modes": "modes",
         "response": "response",
+    },
+    "Flexible bodies": {
+        "flexible": "flexible",
     },
     "Many runs": {
         "study": "study",

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import json
-import sys
 from pathlib import Path
 from typing import Any
 
 import click
 
 from ..analyses.load_scene import load_scene
-from ..errors import StiffmbsError
-from .scene import STOPPED_EARLY, changes_of, in_file, refuse, solving_options, start_of
+from .scene import changes_of, in_file, output_option, refusing, solving_options, start_of
 
 
 @click.command(short_help="Natural frequencies and damping.")
@@ -22,12 +20,7 @@ from .scene import STOPPED_EARLY, changes_of, in_file, refuse, solving_options, 
     type=float,
     help="The instant whose state is taken, s: of that FILE (else its last row), or of the run (else its start).",
 )
-@click.option(
-    "-o",
-    "--output",
-    type=click.Path(path_type=Path),
-    help="Write one period of every mode: FILE.npz becomes FILE_1.npz, FILE_2.npz, ..., results as of run -o.",
-)
+@output_option("Write one period of every mode: FILE.npz becomes FILE_1.npz, FILE_2.npz, ..., results as of run -o.")
 @click.option(
     "--amplitude",
     type=click.FloatRange(0, min_open=True),
@@ -48,7 +41,7 @@ def modes(
     from ..results.files import check_output, write
     from ..show.modes import modes_text
 
-    try:
+    with refusing(scene, as_json, output):
         if output is not None:
             check_output(output)
         changes = changes_of(options)
@@ -59,9 +52,4 @@ def modes(
         for number in range(1, len(found.modes) + 1) if output is not None else ():
             assert output is not None
             write(output.with_stem(f"{output.stem}_{number}"), found.shape(number, amplitude))
-    except OSError as error:
-        click.echo(f"stiffmbs: not written: {output}: {error.strerror}", err=True)
-        sys.exit(STOPPED_EARLY)
-    except StiffmbsError as error:
-        refuse(scene, error, as_json)
     click.echo(json.dumps(found.as_dict(scene)) if as_json else modes_text(found))

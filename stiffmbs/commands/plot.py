@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 import json
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from ..analyses.load_scene import load_scene
-from ..errors import InputError, StiffmbsError
+from ..errors import InputError
 from .runs import RESULTS, runs_of
-from .scene import STOPPED_EARLY, changes_of, refuse, refuse_own_input, solving_options
+from .scene import changes_of, output_option, refuse_own_input, refusing, solving_options
 
 if TYPE_CHECKING:
-    from ..describe.figure import Figure
+    from ..model.scene import Figure
 
 
 @click.command(short_help="Plots of any channels.")
@@ -30,9 +29,7 @@ if TYPE_CHECKING:
     help="Results (.npz) of another run, drawn over; any number of times.",
 )
 @click.option("--title", default="", help="Shown above; the scene's name without it.")
-@click.option(
-    "-o", "--output", type=click.Path(path_type=Path), help="Where to draw: .png, .svg or .pdf; a window without it."
-)
+@output_option("Where to draw: .png, .svg or .pdf; a window without it.")
 @click.option("--live", is_flag=True, help="A window whose plots grow while SCENE is solved.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line on what was drawn.")
 @solving_options
@@ -44,14 +41,15 @@ def plot(
 
     Exit status: 0 done, 1 the file could not be written, 2 the input is wrong.
     """
-    from ..show.plot import check_plot, figure_of, plotted_runs, show_window, write_plot
+    from ..show.figure import figure_of
+    from ..show.plot import check_plot, plotted_runs, write_plot
 
-    try:
+    with refusing(source, as_json, output):
         check_plot(output)
         if live:
             figure = _live(source, channels, against, title, others, output, options)
             _tell(source, figure, None, as_json)
-            show_window()
+            _show_window()
             return
         for path in (source, *(str(other) for other in others)) if output is not None else ():
             refuse_own_input("-o", path, output)  # type: ignore[arg-type]
@@ -60,14 +58,9 @@ def plot(
         sheet = plotted_runs(runs, figure, in_window=output is None)
         if output is not None:
             write_plot(output, sheet)
-    except StiffmbsError as error:
-        refuse(source, error, as_json)
-    except OSError as error:
-        click.echo(f"stiffmbs: not written: {output}: {error.strerror}", err=True)
-        sys.exit(STOPPED_EARLY)
     _tell(source, figure, output, as_json)
     if output is None:
-        show_window()
+        _show_window()
 
 
 def _live(
@@ -75,7 +68,7 @@ def _live(
     options: dict[str, Any],
 ) -> Figure:  # fmt: skip
     """Solve a scene and plot the solution so far in a window."""
-    from ..show.live_window import show_live
+    from ..show.plot import show_live
     from ..studies.follow import follow
 
     if source.endswith(RESULTS) or others or output is not None:
@@ -87,3 +80,10 @@ def _live(
 def _tell(source: str, figure: Figure, output: Path | None, as_json: bool) -> None:
     told = {"source": source, "output": str(output or "window"), "channels": list(figure.y), "against": figure.x}
     click.echo(json.dumps(told) if as_json else f"plot: {told['output']}")
+
+
+def _show_window() -> None:
+    """Show the window until it is closed."""
+    from matplotlib import pyplot
+
+    pyplot.show()

@@ -11,20 +11,29 @@ import threading
 import warnings
 from _thread import interrupt_main
 from collections.abc import Iterator
+from enum import IntEnum
 from typing import Any
 
 import click
 
-from ..describe.files.quoted import quoted
 from ..interrupts import INTERRUPTED
+from ..reading.files.quoted import quoted
 from ..show.escaped import EscapingStream
 
-FAILED = 1
 OF_OUTPUT = (errno.ENOSPC, errno.EIO, errno.EBADF, errno.EPIPE, errno.EDQUOT)
+TOO_LITTLE_MEMORY = "found too little memory, expected more, or a smaller scene with fewer output points"
 ASKING_TO_END = ("SIGINT", "SIGTERM")
-STANDARD_FILES = (0, 1, 2)
 AGAIN = 0.01
 """Delay after which an interrupt lost in a callback is raised again, s."""
+
+
+class Status(IntEnum):
+    """Exit status of a command."""
+
+    DONE = 0
+    FAILED = 1
+    """Stopped early, not written, or a negative finding."""
+    WRONG_INPUT = 2
 
 
 class Process(click.Group):
@@ -46,7 +55,7 @@ class Process(click.Group):
                 written = _flushed(told=status != 0)
         if closed:
             _tell("standard output is closed: nothing is shown")
-        sys.exit(status or (0 if written and not closed else FAILED))
+        sys.exit(status or (0 if written and not closed else Status.FAILED))
 
 
 def _status(command: Any) -> int:
@@ -54,27 +63,29 @@ def _status(command: Any) -> int:
     try:
         ended = command()
     except SystemExit as end:
-        return end.code if isinstance(end.code, int) else 0 if end.code is None else FAILED
+        return end.code if isinstance(end.code, int) else 0 if end.code is None else Status.FAILED
     except click.exceptions.Exit as end:
         return end.exit_code
     except click.ClickException as error:
+        if isinstance(error, click.NoSuchOption):  # with the nearest option alone
+            error = click.NoSuchOption(error.option_name, error.message, (error.possibilities or [])[:1], error.ctx)
         error.show()
         return error.exit_code
     except (KeyboardInterrupt, click.Abort):
         _tell("interrupted")
         return INTERRUPTED
     except MemoryError:
-        _tell("found too little memory, expected more, or a smaller scene with fewer output points")
-        return FAILED
+        _tell(TOO_LITTLE_MEMORY)
+        return Status.FAILED
     except OSError as error:
         _tell(_reason(error))
-        return FAILED
+        return Status.FAILED
     return ended if isinstance(ended, int) else 0
 
 
 def _reason(error: OSError) -> str:
     if error.errno == errno.ENOMEM:
-        return "found too little memory, expected more, or a smaller scene with fewer output points"
+        return TOO_LITTLE_MEMORY
     if error.filename is None and error.errno in OF_OUTPUT:
         return f"standard output: cannot be written ({error.strerror})"
     where = f"{quoted(str(error.filename))}: " if error.filename is not None else ""
@@ -91,7 +102,7 @@ def _with_standard_files() -> bool:
     closed = sys.stdout is None
     if not closed and sys.stdout is not sys.__stdout__:  # stream of a test, or of another program
         return False
-    for number in STANDARD_FILES:
+    for number in range(3):
         try:
             os.fstat(number)
         except OSError:

@@ -11,27 +11,18 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..analyses.load_scene import load_scene
-from ..describe.files.text_file import STANDARD_INPUT, file_text
 from ..errors import StiffmbsError
-from .scene import (  # fmt: skip
-    STOPPED_EARLY,
-    changes_of,
-    file_beside,
-    refuse,
-    refuse_own_input,
-    solve_scene,
-    solving_options,
-)
+from ..reading.files.text_file import STANDARD_INPUT, file_text
+from .process import Status
+from .scene import changes_of, file_beside, output_option, refuse_own_input, refusing, solve_scene, solving_options
 
 if TYPE_CHECKING:
-    from ..describe.scene import Scene
-    from ..results.solution import Solution
     from ..show.sections import Section
 
 
 @click.command(short_help="One page on a scene and its run.")
 @click.argument("scene")
-@click.option("-o", "--output", type=click.Path(path_type=Path), help="Where to write the page: .html.")
+@output_option("Where to write the page: .html.")
 @click.option("--verify/--no-verify", default=True, show_default=True, help="Whether peaks get error bars.")
 @click.option("--equilibrium", is_flag=True, help="With the static equilibrium.")
 @click.option("--compare", is_flag=True, help="With run time against error of bdf, dop853 and auto.")
@@ -48,32 +39,45 @@ def report(
 
     Exit status: 0 done, 1 stopped early (the page is written all the same), 2 the input is wrong.
     """
+    from ..analyses.equilibrium import equilibrium as found_equilibrium
+    from ..comparison.compare import compare as compared
+    from ..comparison.table import comparison_section
+    from ..show.equilibrium import equilibrium_section
+    from ..show.kinematics_and_compliance import kc_section
     from ..show.report import check_report, write_report
+    from ..show.road_loads import road_loads_section
+    from ..studies.suspension.kinematics_and_compliance import kinematics_and_compliance
+    from ..studies.suspension.road_loads import road_loads
 
     path = output or file_beside(scene, ".report.html")
-    try:
+    with refusing(scene, output=path):
         check_report(path)
         refuse_own_input("-o", scene, path)
         loaded = load_scene(scene, changes_of(options))
         solution = solve_scene(scene, loaded, verify)
         asked: list[tuple[str, Callable[[], Section]]] = [
-            *([("Static equilibrium", lambda: _equilibrium(loaded))] if equilibrium else []),
-            *((f"Kinematics and compliance: {axle}", partial(_kc, loaded, axle)) for axle in kc),
-            *([("Road loads", lambda: _loads(loaded, solution))] if loads else []),
-            *([("Solvers compared", lambda: _compared(loaded))] if compare else []),
+            *(
+                [("Static equilibrium", lambda: equilibrium_section(found_equilibrium(loaded), loaded))]
+                if equilibrium
+                else []
+            ),
+            *(
+                (
+                    f"Kinematics and compliance: {axle}",
+                    partial(lambda axle: kc_section(kinematics_and_compliance(loaded, axle)), axle),
+                )
+                for axle in kc
+            ),
+            *([("Road loads", lambda: road_loads_section(road_loads(loaded, {"run": solution})))] if loads else []),
+            *([("Solvers compared", lambda: comparison_section(compared(loaded)))] if compare else []),
         ]
         sections = [_section(title, made) for title, made in asked]
         text = "" if scene == STANDARD_INPUT else file_text(scene)
         write_report(path, loaded, solution, text, sections)
-    except StiffmbsError as error:
-        refuse(scene, error)
-    except OSError as error:
-        click.echo(f"stiffmbs: not written: {path}: {error.strerror}", err=True)
-        sys.exit(STOPPED_EARLY)
     for note in solution.notes:
         click.echo(f"note: {note}")
     click.echo(f"report: {path}")
-    sys.exit(0 if solution.outcome.name == "DONE" else STOPPED_EARLY)
+    sys.exit(0 if solution.outcome.name == "DONE" else Status.FAILED)
 
 
 def _section(title: str, made: Callable[[], Section]) -> Section:
@@ -84,31 +88,3 @@ def _section(title: str, made: Callable[[], Section]) -> Section:
         return made()
     except StiffmbsError as error:
         return Section(title, (f"none: {error}",))
-
-
-def _equilibrium(scene: Scene) -> Section:
-    from ..analyses.equilibrium import equilibrium
-    from ..show.sections import equilibrium_section
-
-    return equilibrium_section(equilibrium(scene), scene)
-
-
-def _kc(scene: Scene, axle: str) -> Section:
-    from ..show.kinematics_and_compliance import kc_section
-    from ..studies.suspension.kinematics_and_compliance import kinematics_and_compliance
-
-    return kc_section(kinematics_and_compliance(scene, axle))
-
-
-def _loads(scene: Scene, solution: Solution) -> Section:
-    from ..show.road_loads import road_loads_section
-    from ..studies.suspension.road_loads import road_loads
-
-    return road_loads_section(road_loads(scene, {"run": solution}))
-
-
-def _compared(scene: Scene) -> Section:
-    from ..comparison.compare import compare
-    from ..comparison.report_section import comparison_section
-
-    return comparison_section(compare(scene))

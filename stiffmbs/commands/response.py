@@ -9,8 +9,9 @@ from typing import Any
 import click
 
 from ..analyses.load_scene import load_scene
-from ..errors import InputError, StiffmbsError
-from .scene import STOPPED_EARLY, changes_of, in_file, is_written, refuse, solving_options
+from ..errors import InputError
+from .process import Status
+from .scene import changes_of, in_file, is_written, refusing, solving_options
 
 
 @click.command(short_help="Frequency response.")
@@ -53,7 +54,7 @@ def response(
     from ..show.response import response_as_json, response_csv, response_text
 
     changes = changes_of(options)
-    try:
+    with refusing(scene, as_json):
         if not lowest < highest:
             raise InputError(f"--from {lowest:g} --to {highest:g}: found no range, expected --from below --to")
         loaded = load_scene(scene, changes)
@@ -67,9 +68,7 @@ def response(
             found = transfer(loaded, given, outputs, at=at)
             frequencies = np.geomspace(lowest, highest, points)
             values = found.response(frequencies)
-    except StiffmbsError as error:
-        refuse(scene, error, as_json)
     text = response_csv(found, frequencies, values)
     written = path is None or is_written(path, lambda: write_text(path, text))
     click.echo((response_as_json if as_json else response_text)(scene, found, frequencies, values))
-    sys.exit(0 if written else STOPPED_EARLY)
+    sys.exit(0 if written else Status.FAILED)

@@ -10,34 +10,28 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..analyses.load_scene import load_scene
-from ..errors import StiffmbsError
+from .process import Status
 from .scene import (
-    STOPPED_EARLY,
     changes_of,
     file_beside,
     is_written,
-    refuse,
+    output_option,
     refuse_own_input,
+    refusing,
     solve_scene,
     solving_options,
     start_of,
     state_options,
-)  # fmt: skip
+)
 
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from ..describe.scene import Scene
-
 
 @click.command(short_help="Solve a scene.")
 @click.argument("scene")
-@click.option(
-    "-o",
-    "--output",
-    "output",
-    type=click.Path(path_type=Path),
-    help="Write every channel: .csv, .npz, .nc, .tab or .res; to SCENE.results.npz without it and without --json.",
+@output_option(
+    "Write every channel: .csv, .npz, .nc, .tab or .res; to SCENE.results.npz without it and without --json."
 )
 @click.option("--figure", type=click.Path(path_type=Path), help="Draw the scene's figure: .png, .svg or .pdf.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line instead of the summary.")
@@ -56,67 +50,47 @@ def run(
     Exit status: 0 done, 1 stopped early (results up to there are kept) or a requested file could not be written, 2 the
     input is wrong.
     """
-    try:
+    from ..results.files import check_output
+    from ..show.figure import check_figure, draw
+
+    with refusing(scene, as_json):
         if output is not None:
-            _files().check_output(output)
+            check_output(output)
             refuse_own_input("-o", scene, output)
         if figure is not None:
-            _drawing().check_figure("--figure", figure)
+            check_figure("--figure", figure)
             refuse_own_input("--figure", scene, figure)
         changes = changes_of(options)
         loaded = load_scene(scene, changes)
         solution = solve_scene(scene, loaded, verify, **start_of(loaded, state, at, changes))
-    except StiffmbsError as error:
-        refuse(scene, error, as_json)
     results, written = _write(scene, output, as_json, solution)
     if figure is not None:
-        written = _draw(scene, figure, solution, loaded, as_json) and written
-    _show(scene, solution, results, as_json, all_loads)
-    sys.exit(0 if solution.outcome.name == "DONE" and written else STOPPED_EARLY)
+        with refusing(scene, as_json):
+            written = is_written(figure, lambda: draw(figure, solution, loaded.figure)) and written
+    from ..show import summary
 
-
-def _files() -> Any:
-    from ..results import files
-
-    return files
-
-
-def _drawing() -> Any:
-    from ..show import figure
-
-    return figure
-
-
-def _draw(scene: str, path: Path, solution: Any, loaded: Scene, as_json: bool) -> bool:
-    """Draw the figure; return True if it was written."""
-    try:
-        return is_written(path, lambda: _drawing().draw(path, solution, loaded.figure))
-    except StiffmbsError as error:
-        refuse(scene, error, as_json)
+    if as_json:
+        click.echo(summary.as_json(scene, solution))
+    else:
+        summary.print_summary(scene, solution, results, console(), all_loads)
+    sys.exit(0 if solution.outcome.name == "DONE" and written else Status.FAILED)
 
 
 def _write(scene: str, output: Path | None, as_json: bool, solution: Any) -> tuple[str, bool]:
     """Write the results to the requested or default file; return where, and False if a requested file is missing."""
+    from ..results.files import write
+
     path = output or file_beside(scene, ".results.npz")
     if output is None and as_json:
         return "not written", True
     try:
-        _files().write(path, solution)
+        write(path, solution)
     except OSError as error:
         reason = f"not written: {path}: {error.strerror}"
         if output is not None:
             click.echo(f"stiffmbs: {reason}", err=True)
         return reason, output is None
     return str(path), True
-
-
-def _show(scene: str, solution: Any, results: str, as_json: bool, all_loads: bool) -> None:
-    from ..show import summary
-
-    if as_json:
-        click.echo(summary.as_json(scene, solution))
-        return
-    summary.print_summary(scene, solution, results, console(), all_loads)
 
 
 def console() -> Console:

@@ -18,12 +18,7 @@ RESULTS = ".npz"
 
 
 def loaded_runs(paths: Sequence[Path]) -> dict[str, Solution]:
-    """Return runs from files of results, by distinct names.
-
-    Raises
-    ------
-    InputError
-    """
+    """Return runs from files of results, by distinct names."""
     from ..results.solution import Solution
 
     return {_name(path, paths): Solution.load(path) for path in paths}
@@ -36,12 +31,7 @@ def _name(path: Path, paths: Sequence[Path]) -> str:
 
 
 def runs_of(source: str, others: Sequence[Path], options: dict[str, Any]) -> dict[str, Solution]:
-    """Return the run of a scene, or of a file of results, and other runs from files; a single run has no name.
-
-    Raises
-    ------
-    InputError, AssemblyError, SolverError
-    """
+    """Return the run of a scene, or of a file of results, and other runs from files; a single run has no name."""
     if source.endswith(RESULTS):
         changed = changes_of(options)
         if changed:

@@ -7,19 +7,19 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn, TypeVar, get_args
+from typing import TYPE_CHECKING, Any, TypeVar, get_args
 
 import click
 
-from ..describe.files.text_file import STANDARD_INPUT, source_name
 from ..errors import AssemblyError, InputError, SolverError, StiffmbsError
+from ..reading.files.text_file import STANDARD_INPUT, source_name
 from ..solver_names import SchemeName, SolverName
+from .process import Status
 
 if TYPE_CHECKING:
-    from ..describe.scene import Scene
+    from ..model.scene import Scene
     from ..results.solution import Solution
 
-WRONG_INPUT, STOPPED_EARLY = 2, 1
 Command = TypeVar("Command", bound=Callable[..., Any])
 
 
@@ -43,40 +43,46 @@ CHANGES = click.option(
 )
 
 
-def solving_options(command: Command) -> Command:
-    """Add the options ``--rtol``, ``--duration``, ``--solver``, ``--scheme`` and ``--set``; see `changes_of`."""
-    options = (
-        click.option("--rtol", help="Relative tolerance of bdf and the adaptive schemes."),
-        click.option("--duration", help="Time to solve, s, or with a unit."),
-        click.option("--solver", help=f"{', '.join(get_args(SolverName))}."),
-        click.option(
-            "--scheme",
-            help=f"Of projected: {', '.join(get_args(SchemeName))}; by default dop853, and euler_cromer where a step is given.",
-        ),
-        CHANGES,
-    )
-    for option in reversed(options):
-        command = option(command)
-    return command
+def several(*options: Callable[[Command], Command]) -> Callable[[Command], Command]:
+    """Return one decorator that adds several options to a command, in their order."""
+
+    def add(command: Command) -> Command:
+        for option in reversed(options):
+            command = option(command)
+        return command
+
+    return add
+
+
+def output_option(words: str) -> Callable[[Command], Command]:
+    """Return the option ``-o`` with its help."""
+    return click.option("-o", "--output", type=click.Path(path_type=Path), help=words)
+
+
+solving_options = several(
+    click.option("--rtol", help="Relative tolerance of bdf and the adaptive schemes."),
+    click.option("--duration", help="Time to solve, s, or with a unit."),
+    click.option("--solver", help=f"{', '.join(get_args(SolverName))}."),
+    click.option(
+        "--scheme",
+        help=f"Of projected: {', '.join(get_args(SchemeName))}; by default dop853, and euler_cromer where a step is given.",
+    ),
+    CHANGES,
+)
+"""Options ``--rtol``, ``--duration``, ``--solver``, ``--scheme`` and ``--set``; see `changes_of`."""
+state_options = several(
+    click.option(
+        "--from", "state", metavar="FILE", help="Start from the state in FILE, results of run -o or equilibrium -o."
+    ),
+    click.option("--at", type=float, help="The instant of the row in that FILE, s; its last row by default."),
+)
+"""Options ``--from`` and ``--at`` of a command that may start from a saved state; see `start_of`."""
 
 
 def changes_of(options: dict[str, Any]) -> list[tuple[str, str]]:
     """Return all changes that the options of `solving_options` request, as paths and values."""
     chosen = [(f"run.{name}", options[name]) for name in ("rtol", "duration", "solver", "scheme")]
     return options["changes"] + [(path, value) for path, value in chosen if value is not None]
-
-
-def state_options(command: Command) -> Command:
-    """Add the options ``--from`` and ``--at`` to a command that may start from a saved state; see `start_of`."""
-    options = (
-        click.option(
-            "--from", "state", metavar="FILE", help="Start from the state in FILE, results of run -o or equilibrium -o."
-        ),
-        click.option("--at", type=float, help="The instant of the row in that FILE, s; its last row by default."),
-    )
-    for option in reversed(options):
-        command = option(command)
-    return command
 
 
 def start_of(scene: Scene, state: str | None, at: float | None, changes: list[tuple[str, str]]) -> dict[str, Any]:
@@ -127,12 +133,7 @@ def in_file(path: str) -> Iterator[None]:
 
 
 def refuse_own_input(option: str, scene: str, output: Path) -> None:
-    """Reject an output that is the input file under any name.
-
-    Raises
-    ------
-    InputError
-    """
+    """Reject an output that is the input file under any name."""
     try:
         same = scene != STANDARD_INPUT and os.path.samefile(scene, output)
     except (OSError, ValueError):  # one of them does not exist
@@ -146,9 +147,14 @@ def is_written(path: Path, write: Callable[[], object]) -> bool:
     try:
         write()
     except OSError as error:
-        click.echo(f"stiffmbs: not written: {path}: {error.strerror or error}", err=True)
+        tell_unwritten(path, error)
         return False
     return True
+
+
+def tell_unwritten(path: Path, error: OSError) -> None:
+    """Print the reason why a file is not written."""
+    click.echo(f"stiffmbs: not written: {path}: {error.strerror or error}", err=True)
 
 
 def file_beside(scene: str, ending: str) -> Path:
@@ -156,12 +162,21 @@ def file_beside(scene: str, ending: str) -> Path:
     return Path(f"{'stdin' if scene == STANDARD_INPUT else Path(scene).stem}{ending}")
 
 
-def refuse(scene: str, error: StiffmbsError, as_json: bool = False) -> NoReturn:
-    """End the command with one sentence on the invalid input, or on the failure of the solver."""
-    from ..show.summary import error_as_json
+@contextmanager
+def refusing(scene: str, as_json: bool = False, output: Path | None = None) -> Iterator[None]:
+    """End the command with one sentence on an invalid input, a failure of the solver, or an output that is not written."""
+    try:
+        yield
+    except StiffmbsError as error:
+        from ..show.summary import error_as_json
 
-    unsolved = isinstance(error, SolverError)
-    if as_json:
-        click.echo(error_as_json(scene, str(error), "stopped" if unsolved else "error"))
-    click.echo(f"stiffmbs: {error}", err=True)
-    sys.exit(STOPPED_EARLY if unsolved else WRONG_INPUT)
+        unsolved = isinstance(error, SolverError)
+        if as_json:
+            click.echo(error_as_json(scene, str(error), "stopped" if unsolved else "error"))
+        click.echo(f"stiffmbs: {error}", err=True)
+        sys.exit(Status.FAILED if unsolved else Status.WRONG_INPUT)
+    except OSError as error:
+        if output is None:
+            raise
+        tell_unwritten(output, error)
+        sys.exit(Status.FAILED)

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..analyses.load_scene import load_scene
-from ..errors import InputError, StiffmbsError
-from .scene import changes_of, in_file, refuse, solving_options
+from ..errors import InputError
+from .scene import changes_of, in_file, refusing, solving_options
 
 if TYPE_CHECKING:
     from ..studies.sensitivities.sensitivities import Sensitivity
@@ -35,7 +35,7 @@ def sensitivities(scene: str, to: tuple[str, ...], of: str, as_json: bool, **opt
     from ..studies.outputs import outputs_of
     from ..studies.sensitivities.sensitivities import sensitivities as found_sensitivities
 
-    try:
+    with refusing(scene, as_json):
         names = [name.strip() for part in to for name in part.split(",") if name.strip()]
         (output,) = outputs_of(of)
         if output.is_series:
@@ -43,8 +43,6 @@ def sensitivities(scene: str, to: tuple[str, ...], of: str, as_json: bool, **opt
         loaded = load_scene(scene, changes_of(options))
         with in_file(scene):
             found = found_sensitivities(loaded, names, of)
-    except StiffmbsError as error:
-        refuse(scene, error, as_json)
     click.echo(json.dumps(found.as_dict(scene)) if as_json else _text(found))
 
 

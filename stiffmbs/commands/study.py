@@ -5,16 +5,14 @@ from __future__ import annotations
 import json
 import sys
 from pathlib import Path
-from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from ..analyses.load_scene import load_scene
-from ..errors import StiffmbsError
-from ..show.escaped import console
-from .progress import SHOWN_AFTER
-from .scene import STOPPED_EARLY, changes_of, in_file, is_written, refuse, refuse_own_input, solving_options
+from .process import Status
+from .progress import CaseBar
+from .scene import changes_of, in_file, is_written, output_option, refuse_own_input, refusing, solving_options
 
 if TYPE_CHECKING:
     import xarray
@@ -26,7 +24,7 @@ if TYPE_CHECKING:
     "--vary",
     multiple=True,
     metavar="NAME=VALUES",
-    help="LOW:HIGH:COUNT[:log], or VALUE,VALUE,... of a parameter or a path; any number of times.",
+    help="FROM:TO:COUNT[:log] or VALUE,VALUE,... of a parameter or a path; any number of times.",
 )
 @click.option("--sample", metavar="KIND:N", help="lhs:N, sobol:N or random:N cases in place of the full grid.")
 @click.option("--seed", type=int, default=0, help="Of the sample.")
@@ -35,7 +33,7 @@ if TYPE_CHECKING:
 )
 @click.option("--workers", type=click.IntRange(1), default=1, help="How many cases are solved at once.")
 @click.option("--processes", is_flag=True, help="Processes in place of threads.")
-@click.option("-o", "--output", type=click.Path(path_type=Path), help="Write the table: .nc or .csv.")
+@output_option("Write the table: .nc or .csv.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line instead of a table.")
 @solving_options
 def study(
@@ -49,29 +47,27 @@ def study(
 
     Exit status: 0 done, 1 not all cases could be solved or the file could not be written, 2 the input is wrong.
     """
-    from ..studies.data_set import check_output, write
+    from ..reading.variation import read_variation
+    from ..studies.data_set import as_dict, check_output, text, write
     from ..studies.sweep import study_of
-    from ..studies.variation import read_variation
 
-    try:
+    with refusing(scene, as_json):
         if output is not None:
             check_output(output)
             refuse_own_input("-o", scene, output)
         loaded = load_scene(scene, changes_of(options))
-        varied = [read_variation(text) for text in vary]
+        varied = [read_variation(text, "--vary") for text in vary]
         store = None if output is None else output.with_name(f"{output.name}.study")
         with in_file(scene):
             ready = study_of(loaded, varied, sample, seed, outputs or None, {})
-            with _Bar() as watch:
+            with CaseBar() as watch:
                 data = _solved(ready, workers, processes, store, watch)
-    except StiffmbsError as error:
-        refuse(scene, error, as_json)
     written = _write(output, store, data, write)
-    _show(scene, data, as_json)
-    sys.exit(0 if written and bool((data["status"] == "done").all()) else STOPPED_EARLY)
+    click.echo(json.dumps(as_dict(scene, data)) if as_json else text(data))
+    sys.exit(0 if written and bool((data["status"] == "done").all()) else Status.FAILED)
 
 
-def _solved(ready: Any, workers: int, processes: bool, store: Path | None, watch: _Bar) -> xarray.Dataset:
+def _solved(ready: Any, workers: int, processes: bool, store: Path | None, watch: CaseBar) -> xarray.Dataset:
     if not processes:
         return ready.solve(workers, None, store, watch)
     from concurrent.futures import ProcessPoolExecutor
@@ -94,36 +90,3 @@ def _write(output: Path | None, store: Path | None, data: xarray.Dataset, write:
     for ending in ("", "-wal", "-shm"):
         store.with_name(store.name + ending).unlink(missing_ok=True)
     return True
-
-
-def _show(scene: str, data: xarray.Dataset, as_json: bool) -> None:
-    from ..studies.table import as_dict, text
-
-    click.echo(json.dumps(as_dict(scene, data)) if as_json else text(data))
-
-
-class _Bar:
-    """Progress bar of a study on standard error, on a terminal."""
-
-    def __init__(self) -> None:
-        self._bar: Any = None
-
-    def __call__(self, done: int, total: int, left: float) -> None:
-        if self._bar is None:
-            if not sys.stderr.isatty() or left < SHOWN_AFTER:
-                return
-            from rich.progress import Progress
-
-            self._bar = Progress(console=console(stderr=True), transient=True)
-            self._bar.start()
-            self._task = self._bar.add_task("solving", total=total)
-        self._bar.update(self._task, completed=done, description=f"case {done} of {total}, {left:.0f} s left")
-
-    def __enter__(self) -> _Bar:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        if self._bar is not None:
-            self._bar.stop()

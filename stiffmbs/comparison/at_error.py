@@ -1,17 +1,109 @@
-"""Run times at equal errors, interpolated between measurements."""
+"""Measurements, and run times at equal errors, interpolated between them."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+import itertools
+import time
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from .interpolation import value_at_error
-from .row import Row
-
-CLOCK_RESOLUTION = 1e-9
+CLOCK = time.get_clock_info("process_time").resolution
 """Least time of a solution, s, as clocks may show zero."""
+
+
+@dataclass(frozen=True)
+class LineAtError:
+    """Choice of the measured points through which a line is laid about a target error.
+
+    Attributes
+    ----------
+    window : float
+        Largest ratio of a point's error to the target, either way.
+    fewest : int
+        Least number of points; with fewer in the window, the line runs between the two neighbours of the target.
+    """
+
+    window: float = 10**1.5
+    fewest: int = 4
+
+
+LINE = LineAtError()
+
+
+def value_at_error(points: Iterable[tuple[float, float]], target: float) -> float | None:
+    """Return the value at an error: on a line through several points about it, or between two neighbours.
+
+    A point with a smaller error and a smaller value than the line counts with its own value.  Looser settings may take
+    longer where stability, not the error, limits steps; they make no solver slower.
+
+    Parameters
+    ----------
+    points : iterable of (float, float)
+        Errors and values, each positive.
+    target : float
+        Error.
+
+    Returns
+    -------
+    float or None
+        None if all errors are larger than the target, or there are none.
+    """
+    own = sorted(points, key=lambda point: point[0])
+    if not own or own[0][0] > target:
+        return None
+    near = [point for point in own if target / LINE.window <= point[0] <= target * LINE.window]
+    if len(near) < LINE.fewest:
+        near = [point for pair in itertools.pairwise(own) if pair[0][0] <= target < pair[1][0] for point in pair]
+    values = [value for error, value in own if error <= target]
+    if near and near[0][0] <= target <= near[-1][0]:
+        values.append(on_line(near, target))
+    elif own[-1][0] >= target:
+        return None
+    return min(values)
+
+
+def on_line(points: Sequence[tuple[float, float]], target: float) -> float:
+    """Return the value at an error, on the straight line through the logarithms of values and errors."""
+    errors, values = np.array(points).T
+    return float(np.exp(np.polyfit(np.log(errors / target), np.log(values), 1)[-1]))
+
+
+@dataclass(frozen=True)
+class Row:
+    """Measurement of a solver configuration at a setting.
+
+    Attributes
+    ----------
+    solver, setting : str
+        Texts such as ``dop853`` and ``rtol 1e-06``.
+    errors : mapping of str to float
+        Largest errors over all output instants and channels, by measure; empty if the run failed.
+    seconds : float
+        Median of the times of a solution; nan if the run failed.
+    steps : int
+    message : str
+        Reason of a failure; else empty.
+    """
+
+    solver: str
+    setting: str
+    errors: Mapping[str, float]
+    seconds: float
+    steps: int
+    message: str = ""
+
+    def as_dict(self, measure: str) -> dict[str, Any]:
+        """Return a row of ``stiffmbs compare --json``; a failed run has a message, and None as error and time."""
+        found = {"solver": self.solver, "setting": self.setting, "error": _finite(self.errors.get(measure, np.nan))}
+        told = {"message": self.message} if self.message else {}
+        return {**found, "seconds": _finite(self.seconds), "steps": self.steps, **told}
+
+
+def _finite(value: float) -> float | None:
+    return value if np.isfinite(value) else None
 
 
 @dataclass(frozen=True)
@@ -91,5 +183,5 @@ def times_at(rows: Sequence[Row], measure: str, resolved: float, targets: Sequen
 
 def _read(rows: Sequence[Row], measure: str, values: Sequence[float], target: float) -> float | None:
     """Return the interpolated value of one solver at an error, or None if all its errors are on one side."""
-    least = [max(value, CLOCK_RESOLUTION) for value in values]
+    least = [max(value, CLOCK) for value in values]
     return value_at_error(zip((row.errors[measure] for row in rows), least, strict=True), target)

@@ -7,13 +7,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Unpack
 
 from ..analyses.job import Runnable, data_of
-from ..describe.settings import RunSettings, Settings, takes_settings
 from ..errors import InputError
-from .at_error import AtError, decades, times_at
+from ..model.settings import RunSettings, Settings, takes_settings
+from .at_error import AtError, Row, decades, times_at
 from .entries import USUAL, Entry
-from .plan import LONGER_REFERENCE, LONGEST_RUN, REPEATS, TOLERANCES, Plan, base_settings, plan_of
+from .plan import LONGER_REFERENCE, LONGEST_RUN, REPEATS, TOLERANCES, Plan, Values, base_settings, plan_of
 from .reference import Reference, Tell, reference
-from .row import Row
 from .sweep import Point, Sweep
 from .turns import take_turns
 
@@ -83,8 +82,8 @@ def compare(
     model: Runnable,
     solvers: Sequence[str] = USUAL,
     formulations: Sequence[str] = (),
-    tolerances: Sequence[float] = TOLERANCES,
-    steps: Sequence[float] = (),
+    tolerances: Values = TOLERANCES,
+    steps: Values | None = None,
     measure: str = "positions",
     repeats: int = REPEATS,
     longest: float = LONGEST_RUN,
@@ -105,9 +104,9 @@ def compare(
         ``bdf``, ``auto``, ``kinematic``, ``dop853``, ``dopri5``, ``rk4``, ``euler_cromer``, or ``all``.
     formulations : sequence of str
         Formulations of bdf to compare: ``SI2``, ``SI1``, ``I3``, ...
-    tolerances : sequence of float
-        Relative tolerances.
-    steps : sequence of float
+    tolerances : sequence of float, Range or str
+        Relative tolerances, such as ``"1e-3:1e-8:11:log"``; without a count there are four per decade.
+    steps : sequence of float, Range or str, optional
         Steps of the schemes with fixed steps, s; by default parts of the duration.
     measure : str
         Measure of the error, the largest over all output instants: ``positions`` (m or rad, of all bodies),
@@ -177,12 +176,7 @@ def _told(repeats: int, tell: Tell) -> Iterator[int]:
 
 
 def refuse_unmeasured(plan: Plan, exact: Reference) -> None:
-    """Reject a measure without values to compare.
-
-    Raises
-    ------
-    InputError
-    """
+    """Reject a measure without values to compare."""
     if plan.measure not in exact.agreement:
         raise InputError(
             f"measure: found '{plan.measure}', of which nothing can be compared, expected one of {', '.join(exact.agreement)}"

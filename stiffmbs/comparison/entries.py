@@ -6,8 +6,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from ..describe.settings import RunSettings
 from ..errors import InputError
+from ..model.settings import RunSettings
+from ..reading.did_you_mean import did_you_mean
 from ..solve import SOLVERS
 from ..solve.explicit.projected import TRAITS as SCHEMES
 from ..solve.formulations import FORMULATIONS
@@ -27,7 +28,6 @@ class Entry:
 
     Attributes
     ----------
-    name : str
     settings : mapping of str to object
         Settings that select it.
     varied : str
@@ -68,7 +68,6 @@ def entries_of(solvers: Sequence[str], formulations: Sequence[str], settings: Ru
         ``bdf``, ``auto``, ``kinematic``, schemes of `projected`, or ``all``, which is all but ``kinematic``.
     formulations : sequence of str
         Formulations of bdf; by default that of the settings.
-    settings : RunSettings
 
     Raises
     ------
@@ -79,10 +78,12 @@ def entries_of(solvers: Sequence[str], formulations: Sequence[str], settings: Ru
     names = [DEFAULT_SCHEME if name == PROJECTED else name for name in dict.fromkeys(names)]
     wrong = [name for name in names if name not in KNOWN]
     if wrong or not names:
-        raise InputError(f"solvers: found '{', '.join(wrong)}', expected some of {', '.join(KNOWN)}, or {ALL}")
+        near = did_you_mean(wrong[0], KNOWN) if wrong else ""
+        raise InputError(f"solvers: found '{', '.join(wrong)}'{near}, expected some of {', '.join(KNOWN)}, or {ALL}")
     for formulation in formulations:
         if formulation not in FORMULATIONS:
-            raise InputError(f"formulations: found '{formulation}', expected some of {', '.join(FORMULATIONS)}")
+            near = did_you_mean(formulation, FORMULATIONS)
+            raise InputError(f"formulations: found '{formulation}'{near}, expected some of {', '.join(FORMULATIONS)}")
     if formulations and BDF not in names:
         raise InputError(f"formulations: found {', '.join(formulations)} without bdf, expected bdf among the solvers")
     return tuple(entry for name in names for entry in _entries(name, tuple(dict.fromkeys(formulations)), settings))

@@ -9,16 +9,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..results.files import written_whole
-from ..show.style import dress, legend_below, stroke
+from ..show.style import dress, legend_below, new_sheet, stroke
 from .compare import Comparison
-from .comparison_over import ComparisonOver
+from .comparison_over import ComparisonOver, logarithmic
 from .measures import MEASURES
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Sheet
-
-SIZE = (7, 4.2)
-"""Size of figures, inches."""
 
 
 def write_figure(path: Path, sheet: Sheet) -> None:
@@ -32,10 +29,7 @@ def write_figure(path: Path, sheet: Sheet) -> None:
 
 def work_precision(comparison: Comparison) -> Sheet:
     """Plot time against error of each solver, both logarithmic."""
-    from matplotlib.figure import Figure as Sheet
-
-    sheet = Sheet(figsize=SIZE, layout="constrained")
-    axes = sheet.add_subplot()
+    axes: Any = new_sheet((7, 4.2)).add_subplot()
     measure, resolved = comparison.measure, comparison.reference.resolved(comparison.measure)
     for name in dict.fromkeys(row.solver for row in comparison.rows):
         own = [row for row in comparison.rows if row.solver == name and row.errors]
@@ -44,15 +38,12 @@ def work_precision(comparison: Comparison) -> Sheet:
             curve(axes, [row.errors[measure] for row in known], [row.seconds for row in known], name)
     axes.invert_xaxis()
     finished(axes, f"largest error in {measure}, {MEASURES[measure].unit}", comparison.name)
-    return sheet
+    return axes.figure
 
 
 def over_parameter(comparison: ComparisonOver) -> Sheet:
     """Plot the time of each solver against the parameter, with the crossings."""
-    from matplotlib.figure import Figure as Sheet
-
-    sheet = Sheet(figsize=SIZE, layout="constrained")
-    axes = sheet.add_subplot()
+    axes: Any = new_sheet((7, 4.2)).add_subplot()
     for entry in comparison.entries:
         pairs = [
             (one.value, one.at.seconds[entry.name])
@@ -66,12 +57,11 @@ def over_parameter(comparison: ComparisonOver) -> Sheet:
         axes.axvline(
             crossing.at, color="0.5", linestyle=":", label=f"{crossing.then} is faster from {crossing.at:.1e} on"
         )
-    numbers = [one.value for one in comparison.values]
-    if not (min(numbers) > 0 and max(numbers) >= 10 * min(numbers)):
+    if not logarithmic([one.value for one in comparison.values]):
         axes.set_xscale("linear")
     error = f"{comparison.error:g} {MEASURES[comparison.measure].unit}"
     finished(axes, comparison.parameter, f"{comparison.name} at an error of {error}")
-    return sheet
+    return axes.figure
 
 
 def curve(axes: Any, x: Sequence[float], seconds: Sequence[float], label: str, marker: str = ".") -> None:

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..compile.bodies import SPACE
 from ..errors import InputError
+from ..reading.did_you_mean import did_you_mean
 from ..results.scales import kind_of
 from ..results.solution import Solution
 
@@ -41,7 +42,8 @@ def measure_of(name: str) -> Measure:
         If there is no such measure.
     """
     if name not in MEASURES:
-        raise InputError(f"measure: found '{name}', expected one of {', '.join(MEASURES)}")
+        near = did_you_mean(name, MEASURES)
+        raise InputError(f"measure: found '{name}'{near}, expected one of {', '.join(MEASURES)}")
     return MEASURES[name]
 
 

@@ -3,32 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Unpack
+from typing import Unpack
 
 from ..analyses.job import Runnable, data_of
 from ..analyses.load_scene import load_scene
-from ..describe.files.text_file import STANDARD_INPUT, file_text, source_name
-from ..describe.reading import read_scene
-from ..describe.settings import RunSettings, Settings, takes_settings
-from ..describe.units.units import Dimension, Quantity, in_text
 from ..errors import AssemblyError, InputError, SolverError
+from ..model.read_scene import read_scene
+from ..model.settings import RunSettings, Settings, takes_settings
+from ..reading.files.text_file import STANDARD_INPUT, file_text, source_name
+from ..reading.units.units import Dimension, Quantity, in_text
+from ..reading.variation import variation
 from .at_error import times_at
 from .compare import measured, refuse_unmeasured
 from .comparison_over import AtValue, ComparisonOver
 from .entries import USUAL, Entry
 from .measures import measure_of
-from .plan import LONGER_REFERENCE, LONGEST_RUN, REPEATS, TOLERANCES, Plan, base_settings, plan_of
+from .plan import LONGER_REFERENCE, LONGEST_RUN, REPEATS, TOLERANCES, Plan, Values, base_settings, numbers_of, plan_of
 from .reference import Tell, reference
-from .row import Row
 from .sweep import Sweep
-
-if TYPE_CHECKING:
-    pass
 
 USUAL_ERROR = 1e-4
 """Default error in positions, m or rad."""
-WHOLE = 1e15
 Family = Callable[[float], Runnable]
 
 
@@ -36,12 +33,12 @@ Family = Callable[[float], Runnable]
 def compare_over(
     model: str | Path | Family,
     parameter: str,
-    values: Sequence[float],
+    values: Values,
     error: float | None = None,
     solvers: Sequence[str] = USUAL,
     formulations: Sequence[str] = (),
-    tolerances: Sequence[float] = TOLERANCES,
-    steps: Sequence[float] = (),
+    tolerances: Values = TOLERANCES,
+    steps: Values | None = None,
     measure: str = "positions",
     repeats: int = REPEATS,
     longest: float = LONGEST_RUN,
@@ -57,8 +54,9 @@ def compare_over(
         A scene's file, or a function of a value that returns a model, a scene or a file's name.
     parameter : str
         A parameter of the scene, or the path of any of its values; for a function, any name.
-    values : sequence of float
-        Values of the parameter, SI units.
+    values : sequence of float, Range or str
+        Values of the parameter, SI units, or text with units such as ``"1e5:1e9:9:log"``; without a count there is one
+        per decade.
     error : float, optional
         Error at which times are compared, in the unit of the measure; by default 1e-4 m or rad for positions.
     solvers, formulations, tolerances, steps, measure, repeats, longest, settings, tell, **changes
@@ -77,17 +75,16 @@ def compare_over(
     """
     plan = plan_of(solvers, formulations, tolerances, steps, measure, repeats, longest)
     at_error = _error(error, measure)
-    if not len(values):
-        raise InputError(f"{parameter}: found no values, expected some")
-    made = model if callable(model) else with_parameter(model, parameter)
+    varied = variation(parameter, values)
+    made = model if callable(model) else with_parameter(model, parameter, dimension=varied.dimension)
     found: list[AtValue] = []
     entries: tuple[Entry, ...] = ()
     name, interrupted = "", False
-    for value in sorted(float(value) for value in values):
+    for value in numbers_of(varied, 1):
         data = data_of(made(value))
         base = base_settings(data, settings, changes)
         name, entries = data.name, plan.entries(base)
-        report = _prefixed(f"{parameter} = {value:.4g}", tell)
+        report = partial(_report, tell, f"{parameter} = {value:.4g}")
         try:
             exact = reference(data, base, LONGER_REFERENCE * plan.longest, report)
             refuse_unmeasured(plan, exact)
@@ -122,14 +119,14 @@ def _at_value(
     rows = tuple(point.row() for point in points)
     at = next(times_at(rows, plan.measure, resolved, [error]), None)
     missing = [entry.name for entry in entries if at is None or entry.name not in at.seconds]
-    reasons = [f"{name}: {_reason(name, rows)}" for name in missing]
+    messages = {row.solver: row.message for row in rows if row.message}  # the last of each solver
+    reasons = [f"{name}: {messages.get(name, 'the error was not reached')}" for name in missing]
     return AtValue(value, rows, at, "; ".join(reasons)), interrupted
 
 
-def _reason(name: str, rows: Sequence[Row]) -> str:
-    """Return the reason why a solver has no time at the error."""
-    messages = [row.message for row in rows if row.solver == name and row.message]
-    return messages[-1] if messages else "the error was not reached"
+def _report(tell: Tell | None, where: str, line: str) -> None:
+    if tell:
+        tell(f"{where}: {line}")
 
 
 def _error(error: float | None, measure: str) -> float:
@@ -160,8 +157,4 @@ def _written(value: float, dimension: Dimension | None) -> str:
     """Return a value with its unit, if any; whole numbers without a decimal point, for counts."""
     if dimension is not None:
         return str(in_text(Quantity(value, dimension)))
-    return str(int(value)) if value.is_integer() and abs(value) < WHOLE else repr(value)
-
-
-def _prefixed(prefix: str, tell: Tell | None) -> Tell:
-    return (lambda line: tell(f"{prefix}: {line}")) if tell else (lambda line: None)
+    return str(int(value)) if value.is_integer() else repr(value)

@@ -7,16 +7,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..describe.model_data import ModelData
-from ..describe.scene import Scene
-from ..describe.settings import RunSettings
 from ..errors import InputError
+from ..model.model_data import ModelData
+from ..model.scene import Scene
+from ..model.settings import RunSettings
+from ..reading.variation import FORMS, Range, Variation, variation
 from ..solve.settings import DEFAULT_POINTS, changed
 from .entries import Entry, entries_of
 from .measures import measure_of
 
 PER_DECADE = 4
-LOOSEST, TIGHTEST = 1e-3, 1e-8
+EVENLY = 5
+"""Default number of values of a range with equal steps."""
+Values = str | Range | Variation | Sequence[float]
 TOLERANCES = tuple(float(f"{10.0**k:.2g}") for k in np.arange(-3, -8.01, -1 / PER_DECADE))
 """Default relative tolerances."""
 STEPS = tuple(10.0**k for k in np.arange(-2, -5.1, -1 / PER_DECADE))
@@ -41,8 +44,6 @@ class Plan:
         Relative tolerances, the loosest first.
     steps : tuple of float
         Fixed steps, s, the longest first; empty for parts of the duration.
-    measure : str
-    repeats : int
     longest : float
         Time limit of a run, s.
     """
@@ -73,29 +74,41 @@ class Plan:
 
 
 def plan_of(
-    solvers: Sequence[str], formulations: Sequence[str], tolerances: Sequence[float], steps: Sequence[float],
-    measure: str, repeats: int, longest: float,
+    solvers: Sequence[str], formulations: Sequence[str], tolerances: Values, steps: Values | None, measure: str,
+    repeats: int, longest: float,
 ) -> Plan:  # fmt: skip
-    """Return a plan after a check of its numbers.
-
-    Raises
-    ------
-    InputError
-    """
+    """Return a plan after a check of its numbers."""
     measure_of(measure)
     for name, value in (("repeats", repeats), ("longest", longest)):
         if not value > 0:
             raise InputError(f"{name}: found {value}, expected more than 0")
-    if not len(tolerances):
-        raise InputError("tolerances: found none, expected some such as 1e-3, 1e-6")
+    loose_first = numbers_of(variation("tolerances", tolerances), PER_DECADE)[::-1]
+    steps_first = numbers_of(variation("steps", steps), PER_DECADE)[::-1] if steps is not None else ()
     return Plan(
-        tuple(solvers), tuple(formulations), _loose_first(tolerances), _loose_first(steps), measure, int(repeats),
-        float(longest),
+        tuple(solvers), tuple(formulations), loose_first, steps_first, measure, int(repeats), float(longest)
     )  # fmt: skip
 
 
-def _loose_first(values: Sequence[float]) -> tuple[float, ...]:
-    return tuple(sorted((float(value) for value in values), reverse=True))
+def numbers_of(found: Variation, per_decade: int) -> tuple[float, ...]:
+    """Return the values of a variation in increasing order.
+
+    Parameters
+    ----------
+    per_decade : int
+        Number of values per decade of a range with equal ratios that has no count.
+
+    Raises
+    ------
+    InputError
+        If a value is not a number.
+    """
+    if found.range is not None and not found.values:
+        low, high = found.range.low, found.range.high
+        return found.range.spread(max(round(per_decade * np.log10(high / low)), 1) + 1 if found.range.log else EVENLY)
+    try:
+        return tuple(sorted(map(float, found.values)))
+    except (TypeError, ValueError):
+        raise InputError(f"{found.name}: found {list(found.values)}, expected numbers as {FORMS}") from None
 
 
 def base_settings(model: ModelData, settings: RunSettings | None, changes: Mapping[str, object]) -> RunSettings:

@@ -9,18 +9,18 @@ import numpy as np
 
 from ..analyses.job import prepare
 from ..analyses.run import solved
-from ..describe.model_data import ModelData
-from ..describe.settings import RunSettings
 from ..errors import SolverError
+from ..model.model_data import ModelData
+from ..model.settings import RunSettings
 from ..results.scales import kind_of, scales
 from ..results.solution import Solution
 from ..solve.settings import changed, traits_of
 from ..solve.trajectory import Outcome
-from ..verification.settings_again import EXPLICIT, IMPLICIT
-from ..verification.solve_again import Deadline
+from ..verification.solve_again import BDF, EXPLICIT, TIGHTEST_RTOL, Deadline
 from .measures import MEASURES, ROTATION, compared, difference, largest
 
-TIGHT, TIGHTER, LOOSER = 1e-12, 1e-13, (1e-11, 1e-10, 1e-9)
+TIGHT, TIGHTER = 1e-12, TIGHTEST_RTOL
+LOOSER = tuple(float(f"1e{k}") for k in range(-11, -8))
 """Relative tolerances: the first, the next if the integrators disagree, the others if a run does not end.
 
 In the stiffest scenes rounding stops steps at tight tolerances.
@@ -160,7 +160,7 @@ def reference(model: ModelData, settings: RunSettings, allowed: float, tell: Tel
 def _pair(model: ModelData, settings: RunSettings, rtol: float, allowed: float, tell: Tell) -> _Pair | str:
     """Return both runs, or the reason why there is no such pair."""
     solutions, names = [], []
-    for integrator in (IMPLICIT, EXPLICIT):
+    for integrator in (BDF, EXPLICIT):
         chosen = changed(settings, {**integrator, "rtol": rtol, "atol": None})
         names.append(f"{traits_of(chosen).name} at rtol {rtol:g}")
         tell(f"reference: {names[-1]}")

@@ -9,19 +9,18 @@ import numpy as np
 
 from ..analyses.job import Job, prepare
 from ..analyses.python_faults import up_to_a_fault
-from ..describe.model_data import ModelData
-from ..describe.settings import RunSettings
 from ..errors import InputError, StiffmbsError
+from ..model.model_data import ModelData
+from ..model.settings import RunSettings
 from ..results.channels import channels_of
 from ..solve.missing_rows import reported
 from ..solve.settings import near_constraints
 from ..solve.trajectory import Grid, Outcome, Trajectory
 from ..verification.solve_again import Deadline
+from .at_error import LINE, Row
 from .entries import Entry
-from .interpolation import WINDOW
 from .reference import Reference, Tell
-from .row import Row
-from .turns import ONCE, Timed, seconds_of
+from .turns import TIMING, Timed, seconds_of
 
 ENOUGH_SETTINGS = 2
 """Number of successive settings far more accurate than required after which a sweep ends."""
@@ -51,9 +50,6 @@ class Sweep:
 
     Attributes
     ----------
-    model : ModelData
-    settings : RunSettings
-    reference : Reference
     longest : float
         Time limit of a run, s.
     tell : callable
@@ -71,7 +67,6 @@ class Sweep:
 
         Parameters
         ----------
-        entry : Entry
         values : sequence of float
             Tolerances or steps, the loosest first.
         target : (str, float), optional
@@ -92,7 +87,7 @@ class Sweep:
                 continue
             yield point
             if target is not None and not point.message:
-                beyond = beyond + 1 if point.errors[target[0]] < target[1] / WINDOW else 0
+                beyond = beyond + 1 if point.errors[target[0]] < target[1] / LINE.window else 0
             if given_up or beyond == ENOUGH_SETTINGS:
                 return
 
@@ -100,7 +95,7 @@ class Sweep:
         """Return the first point at a setting, timed again after possible compilation, and True if it took too long."""
         deadline = Deadline(job.grid.start, job.grid.end, self.longest)
         seconds, trajectory = seconds_of(lambda: job.integrate(deadline))
-        if compiles and seconds >= ONCE and trajectory.outcome is Outcome.DONE:
+        if compiles and seconds >= TIMING.once and trajectory.outcome is Outcome.DONE:
             seconds, _ = seconds_of(lambda: _again(job))
         if trajectory.outcome is Outcome.INTERRUPTED and not deadline.passed:
             raise KeyboardInterrupt
@@ -113,7 +108,7 @@ class Sweep:
         errors = {} if message else self._errors(job, trajectory)
         if not message and not errors:
             message = "some output instants have no accelerations and reactions"
-        solve = (lambda: _again(job)) if seconds < ONCE and not message else None
+        solve = (lambda: _again(job)) if seconds < TIMING.once and not message else None
         return Point(solve, [] if message else [seconds], entry, setting, errors, steps, message), False
 
     @np.errstate(all="ignore")  # numbers of a diverged run overflow

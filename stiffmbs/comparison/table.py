@@ -1,4 +1,4 @@
-"""Comparisons as text with tables."""
+"""Comparisons as text with tables, and as a section of a report."""
 
 from __future__ import annotations
 
@@ -8,11 +8,13 @@ from io import StringIO
 from typing import TYPE_CHECKING, Any
 
 from ..show.escaped import console as escaping_console
+from ..show.sections import Section
+from ..show.sections import Table as Cells
 from ..show.summary import UNBROKEN
+from .at_error import Row
 from .compare import Comparison
 from .comparison_over import ComparisonOver
 from .measures import MEASURES
-from .row import Row
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -20,32 +22,34 @@ if TYPE_CHECKING:
 
 BETTER = "*"
 """Mark of a time at which all settings of a solver are more accurate than required."""
+NO_TIME = "-"
 BETTER_WORDS = f"{BETTER} more accurate at every setting: the time of the fastest"
-INTERRUPTED = "interrupted by the user; what was measured is shown"
 BESIDE, FIRST, EACH = 4, 16, 28
 """Number of solvers side by side at most; characters of the first column, and of a solver's."""
-Print = Callable[["Console"], None]
+Say = Callable[[str], None]
 
 
-def text(comparison: Comparison) -> str:
-    """Return the output of `print_comparison`."""
-    return _text(partial(print_comparison, comparison))
-
-
-def text_over(comparison: ComparisonOver) -> str:
-    """Return the output of `print_over`."""
-    return _text(partial(print_over, comparison))
-
-
-def _text(show: Print) -> str:
+def text(comparison: Comparison | ComparisonOver) -> str:
+    """Return the output of `show`."""
     written = StringIO()
-    show(escaping_console(file=written, width=UNBROKEN))
+    show(comparison, escaping_console(file=written, width=UNBROKEN))
     return written.getvalue().rstrip()
 
 
-def print_comparison(comparison: Comparison, console: Console) -> None:
-    """Print the measurements, times at equal errors, the reference, and the conclusion."""
+def show(comparison: Comparison | ComparisonOver, console: Console) -> None:
+    """Print the measurements or the times against the parameter, and the conclusion."""
     say = partial(console.print, highlight=False, markup=False, emoji=False)
+    if isinstance(comparison, Comparison):
+        _show_measured(comparison, console, say)
+    else:
+        _show_over(comparison, console, say)
+    if comparison.interrupted:
+        say("interrupted by the user; what was measured is shown")
+    say(f"conclusion: {comparison.conclusion}")
+
+
+def _show_measured(comparison: Comparison, console: Console, say: Say) -> None:
+    """Print the measurements, times at equal errors, and the reference."""
     unit = MEASURES[comparison.measure].unit
     say(
         f"{comparison.name or 'model'}: error in {comparison.measure} ({unit}), median time of the integration (ms), steps"
@@ -57,33 +61,28 @@ def print_comparison(comparison: Comparison, console: Console) -> None:
         say(sentence)
     if comparison.at_errors:
         say(f"ms at an error of ({unit}):")
-        console.print(at_errors_table(comparison))
+        console.print(_table(*_at_errors(comparison)))
         if any(at.better for at in comparison.at_errors):
             say(BETTER_WORDS)
     for sentence in comparison.reference.sentences():
         say(sentence)
-    if comparison.interrupted:
-        say(INTERRUPTED)
-    say(f"conclusion: {comparison.conclusion}")
 
 
-def print_over(comparison: ComparisonOver, console: Console) -> None:
-    """Print times against the parameter, and the crossings of integrators."""
-    say = partial(console.print, highlight=False, markup=False, emoji=False)
+def _show_over(comparison: ComparisonOver, console: Console, say: Say) -> None:
+    """Print times against the parameter."""
     unit = MEASURES[comparison.measure].unit
     say(
         f"{comparison.name or 'model'}: median time of the integration (ms) at an error of {comparison.error:g} {unit} in "
         f"{comparison.measure}"
     )
-    console.print(over_table(comparison))
+    names = [entry.name for entry in comparison.entries]
+    rows = [[f"{one.value:.4g}", *(_time(name, one.at) for name in names)] for one in comparison.values]
+    console.print(_table([comparison.parameter, *names], rows))
     if any(at.better for at in comparison.at if at):
         say(BETTER_WORDS)
     for one in comparison.values:
         if one.message:
             say(f"{comparison.parameter} = {one.value:.4g}: {one.message}")
-    if comparison.interrupted:
-        say(INTERRUPTED)
-    say(f"conclusion: {comparison.conclusion}")
 
 
 def measured_tables(comparison: Comparison, beside: int) -> Iterator[Table]:
@@ -131,24 +130,28 @@ def failures(rows: Sequence[Row]) -> Iterator[str]:
             yield f"{row.solver}, {row.setting}: {row.message}"
 
 
-def at_errors_table(comparison: Comparison) -> Table:
-    """Return a table of the time of each solver at each error."""
+def _at_errors(comparison: Comparison) -> tuple[list[str], list[list[str]]]:
+    """Return heads and rows of a table of the time of each solver at each error."""
     heads = [f"{at.error:.0e}" for at in comparison.at_errors]
     names = dict.fromkeys(name for at in comparison.at_errors for name in at.seconds)
-    rows = [[name, *(_time(name, at) for at in comparison.at_errors)] for name in names]
-    return _table(["solver", *heads], rows)
+    return ["solver", *heads], [[name, *(_time(name, at) for at in comparison.at_errors)] for name in names]
 
 
-def over_table(comparison: ComparisonOver) -> Table:
-    """Return a table of the time of each solver at each value of the parameter."""
-    names = [entry.name for entry in comparison.entries]
-    rows = [[f"{one.value:.4g}", *(_time(name, one.at) for name in names)] for one in comparison.values]
-    return _table([comparison.parameter, *names], rows)
+def comparison_section(comparison: Comparison) -> Section:
+    """Return a report section with times at equal errors, the reference, the conclusion, and the figure."""
+    heads, rows = _at_errors(comparison)
+    sentences = [
+        f"Median times of the integration, ms, by the error in {comparison.measure}.",
+        *([BETTER_WORDS] if any(one.better for one in comparison.at_errors) else []),
+        *comparison.reference.sentences(), *failures(comparison.rows), comparison.conclusion,
+    ]  # fmt: skip
+    cells = tuple(tuple("" if cell == NO_TIME else cell for cell in row) for row in rows)
+    return Section("Solvers compared", tuple(sentences), (Cells(tuple(heads), cells),), (comparison.plot(),))
 
 
 def _time(name: str, at: Any) -> str:
     if at is None or name not in at.seconds:
-        return "-"
+        return NO_TIME
     return milliseconds(at.seconds[name]) + BETTER * (name in at.better)
 
 

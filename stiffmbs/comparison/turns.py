@@ -8,9 +8,23 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
-ONCE = 0.2
-"""Time above which solutions are timed only once, s."""
 Found = TypeVar("Found")
+
+
+@dataclass(frozen=True)
+class Timing:
+    """Way in which solutions are timed.
+
+    Attributes
+    ----------
+    once : float
+        Time above which a solution is timed only once, s.
+    """
+
+    once: float = 0.2
+
+
+TIMING = Timing()
 
 
 @dataclass

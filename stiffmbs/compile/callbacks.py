@@ -9,16 +9,16 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from ..describe.element import Element
-from ..describe.python_function import PythonFunction
+from ..elements.element import Element
+from ..reading.python_function import PythonFunction
 
 if TYPE_CHECKING:
     from .system import System
 
 _PROTOTYPE = ctypes.CFUNCTYPE(None, ctypes.c_int64, ctypes.c_int64, ctypes.c_int64, ctypes.c_int64, ctypes.c_void_p)
-DIFFERENCE, LEAST_ARGUMENT = 6e-6, 1e-3
-"""Relative step of central differences (cube root of the rounding error), and least magnitude of an argument for it."""
-COMPLEX_STEP = 1e-30
+DIFFERENCE, LEAST_ARGUMENT = np.cbrt(np.finfo(float).eps), 1e-3
+"""Relative step of central differences, and least magnitude of an argument for it."""
+COMPLEX_STEP = np.sqrt(np.finfo(float).tiny)
 
 
 class Callback:
@@ -70,7 +70,8 @@ class Callback:
             if by < 0:
                 return float(self._values[output])
             if self._slopes is None:
-                self._slopes = self._derivatives(np.frombuffer(given), count)
+                x = np.frombuffer(given)
+                self._slopes = np.array([self._by(x, k, count) for k in range(n)]).T
             return float(self._slopes[output, by])
         except BaseException as fault:
             self._raised = fault
@@ -84,10 +85,6 @@ class Callback:
         if not np.isfinite(values).all():
             raise ValueError(f"found {values[~np.isfinite(values)][0]}, expected finite numbers")
         return values
-
-    def _derivatives(self, x: np.ndarray, count: int) -> np.ndarray:
-        """Return the Jacobian, shape (count, len(x))."""
-        return np.array([self._by(x, k, count) for k in range(len(x))]).T
 
     def _by(self, x: np.ndarray, k: int, count: int) -> np.ndarray:
         if self._way == "complex_step":

@@ -8,12 +8,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..describe.body import body_numbers
-from ..describe.building.model_builder import ModelBuilder
-from ..describe.element import Element
-from ..describe.formula.text import FormulaError
-from ..describe.marker import GROUND, PlacedMarkers
+from ..elements.body import body_numbers
+from ..elements.element import Element
 from ..errors import InputError
+from ..model.model_builder import ModelBuilder
+from ..reading.formula.text import FormulaError
+from ..reading.marker import GROUND, PlacedMarkers
 from .bodies import BODY_KINDS, BodyKind
 from .group import Group
 from .kind import Compilable, ElementData, Kind, sorted_out
@@ -52,6 +52,9 @@ def compile_model(model: Compilable | ModelBuilder) -> System:
     n_counters = sum(records[kind].n_counters * len(members) for kind, members in sorted_elements.items())
     places = _Places(of_body, bodies, rows, n_counters, tuple(states))
     groups = [_group(kind, records[kind], of_body, members, places) for kind, members in sorted_elements.items()]
+    principal_axes = np.empty((len(bodies), 0))
+    if model.dimensions == 3:
+        principal_axes = np.array([body.principal_axes() for body in model.bodies.values()])
     return System(
         bodies=bodies,
         states=tuple(states),
@@ -63,7 +66,7 @@ def compile_model(model: Compilable | ModelBuilder) -> System:
         open_rates=np.array(numbers.open_rates),
         mass=np.array(numbers.masses),
         followed=_followed(model, of_body),
-        principal_axes=_principal_axes(model),
+        principal_axes=principal_axes,
         groups=tuple(groups),
         equations=tuple(equations),
         holonomic=np.array(holonomic, dtype=bool),
@@ -100,13 +103,6 @@ def _followed(model: Compilable, of_body: BodyKind) -> np.ndarray:
     return followed.ravel()
 
 
-def _principal_axes(model: Compilable) -> np.ndarray:
-    """Return the quaternions of spatial bodies' principal axes in their body axes."""
-    if model.dimensions == 2:
-        return np.empty((len(model.bodies), 0))
-    return np.array([body.principal_axes() for body in model.bodies.values()])
-
-
 class _Member(NamedTuple):
     name: str
     element: Element
@@ -127,14 +123,11 @@ def _rows(
     first: dict[str, int] = {}
     equations: list[tuple[str, str]] = []
     holonomic: list[bool] = []
-    labels = {
-        member.name: member.element.equation_names() for members in sorted_elements.values() for member in members
-    }
     for kind, members in sorted_elements.items():
         record = records[kind]
         for member in members if record.n_equations else ():
             first[member.name] = len(equations)
-            equations += zip(repeat(member.name), labels[member.name], strict=False)
+            equations += zip(repeat(member.name), member.element.equation_names(), strict=False)
             holonomic += [k < record.n_holonomic for k in range(record.n_equations)]
     return first, equations, holonomic
 
@@ -143,13 +136,8 @@ class _Places:
     """Indices of bodies, equations, turn counters and states in a system; counters are assigned consecutively."""
 
     def __init__(
-        self,
-        of_body: BodyKind,
-        bodies: tuple[str, ...],
-        rows: Mapping[str, int],
-        n_counters: int,
-        states: tuple[str, ...],
-    ) -> None:
+        self, of_body: BodyKind, bodies: tuple[str, ...], rows: Mapping[str, int], n_counters: int, states: tuple[str, ...]
+    ) -> None:  # fmt: skip
         n_q, n_u = of_body.n_q, of_body.n_u
         self.rows = rows
         first_state = n_q * len(bodies) + n_counters

@@ -14,9 +14,8 @@ from .machine.native.tables import EQUATIONS
 from .system import System, Term
 from .terms import TERM_SETS
 
-ABSENT = -1
-FEW = 0.5
-"""Fraction of slots that start with an entry below which the whole matrix is cleared instead."""
+ABSENT = FIXED
+"""Position of a coordinate or multiplier that is not among the unknowns."""
 
 
 class AlongMotion(NamedTuple):
@@ -25,7 +24,7 @@ class AlongMotion(NamedTuple):
     Attributes
     ----------
     arrays : dict of str to ndarray
-        Arrays for compiled code (`stiffmbs.solve.native.tables.steps.ACCUMULATED_ERRORS`), each padded by one number:
+        Arrays for compiled code (`stiffmbs.solve.error_control.native.layouts.ACCUMULATED_ERRORS`), each padded by one number:
         places of the independent velocities, masses that move with them, and entries of f_u in the matrix values.
     n, n_damped : int
         Number of independent velocities and of entries of f_u.
@@ -50,8 +49,6 @@ class Equations:
     coordinates : Coordinates, optional
         Independent coordinates; all by default. The equations of dependent coordinates are added to those of their
         leaders (virtual work: N^T r(N z) with q = offset + N z).
-    place : ndarray of int, shape (n,), optional
-        Position of each unknown of the natural order (kind after kind).
 
     Attributes
     ----------
@@ -64,9 +61,7 @@ class Equations:
         Row and column of each slot of the matrix, by columns.
     """
 
-    def __init__(
-        self, formulation: Formulation, system: System, coordinates: Coordinates | None = None, place: np.ndarray | None = None
-    ) -> None:  # fmt: skip
+    def __init__(self, formulation: Formulation, system: System, coordinates: Coordinates | None = None) -> None:
         self.formulation, self.system = formulation, system
         self.coordinates = coordinates or all_independent(system)
         independent, solved_for = self.coordinates.independent, system.active & ~self.coordinates.satisfied
@@ -80,15 +75,9 @@ class Equations:
         for name in formulation.unknowns:
             self.at[name] = np.where(present[name], self.n + np.cumsum(present[name]) - 1, ABSENT)
             self.n += int(present[name].sum())
-        if place is not None:
-            self.at = {name: np.where(at == ABSENT, ABSENT, place[at]) for name, at in self.at.items()}
         self._offset = np.zeros(system.n_q)
         self._compile_residual()
         self._compile_matrix()
-
-    def reordered(self, place: np.ndarray) -> Equations:
-        """Return the equations with reordered unknowns."""
-        return Equations(self.formulation, self.system, self.coordinates, place)
 
     def start_from(self, q: np.ndarray) -> None:
         """Set the offsets of dependent coordinates from a pose that satisfies the constraints."""
@@ -125,7 +114,7 @@ class Equations:
             found[name] = np.where(independent_of == FIXED, 0, place[independent_of]), ratio
         return found
 
-    def _carried(self, name: str, own: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def carried(self, name: str, own: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the positions of a kind's entries among the unknowns, and their factors."""
         if name not in ("q", "u"):
             return self.at[name][own], np.ones(len(own))
@@ -162,13 +151,13 @@ class Equations:
         parts: dict[str, list[tuple[np.ndarray, ...]]] = {"plain": [], "y": [], "yp": []}
         for line in self.formulation.residual:
             source, row, column = self._block(self.formulation.residual_set, line.block, line.rows)
-            line_row, factor = self._carried(line.rows, row)
+            line_row, factor = self.carried(line.rows, row)
             factor = line.factor * factor
             if line.operand is None:
                 part, operand = "plain", np.zeros_like(source)
             else:
                 part = "yp" if line.operand.endswith("'") else "y"
-                operand, ratio = self._carried(line.operand.rstrip("'"), column)
+                operand, ratio = self.carried(line.operand.rstrip("'"), column)
                 factor = factor * ratio
             kept = (line_row != ABSENT) & (operand != ABSENT)
             parts[part].append(tuple(column[kept] for column in (line_row, source, operand, factor)))
@@ -185,8 +174,8 @@ class Equations:
         for line in self.formulation.matrix:
             source, row, column = self._block(self.formulation.matrix_set, line.block, line.rows)
             (at_row, of_row), (at_column, of_column) = (
-                self._carried(line.rows, row),
-                self._carried(line.columns, column),
+                self.carried(line.rows, row),
+                self.carried(line.columns, column),
             )
             kept, factor = (at_row != ABSENT) & (at_column != ABSENT), of_row * of_column
             parts = (at_row, at_column, source, line.constant * factor, line.cj * factor)
@@ -220,6 +209,11 @@ class Equations:
             int(independent.sum()), int(kept.sum()), *self._leads["u"],
         )  # fmt: skip
 
+    @property
+    def slots_with_rates(self) -> np.ndarray:
+        """Slots of the matrix with an entry of dr/dy', in the order of the pattern."""
+        return np.unique(self._slot[self._cj != 0.0])
+
     def used(self) -> dict[str, np.ndarray]:
         """Return the groups whose values are used, for the term sets of the residual and of the matrix."""
         residual_set, matrix_set = self.formulation.residual_set, self.formulation.matrix_set
@@ -248,7 +242,7 @@ class Equations:
             moving = np.flatnonzero(independent_of != FIXED) if name in self.at else empty[:0]
             lists |= {
                 f"moving_{name}": moving,
-                f"{name}_from": self._carried(name, moving)[0] if len(moving) else empty,
+                f"{name}_from": self.carried(name, moving)[0] if len(moving) else empty,
             }
         lists |= {f"at_{name}": self.at.get(name, empty) for name in ("mu", "lam", "x")}
         return {name: np.ascontiguousarray(part, dtype=np.int64) for name, part in lists.items()}
@@ -264,13 +258,13 @@ class Equations:
         slot = self._slot if slots is None else np.ascontiguousarray(slots[self._slot], dtype=np.int32)
         n_slots = len(self.pattern[0]) if slots is None else int(slots.max()) + 1
         sets = list(TERM_SETS)
-        lists = entry_lists(slot, self._source, self._constant, self._cj, n_slots)
+        lists = entry_lists(slot, self._source, self._constant, self._cj)
         values = {
             "n": self.n, "residual_set": sets.index(self.formulation.residual_set),
             "matrix_set": sets.index(self.formulation.matrix_set),
             "n_plain": self._n_plain, "n_with_y": self._n_with_y, "n_with_yp": self._n_with_yp,
             "r_row": self._r_row, "r_source": self._r_source, "r_operand": self._r_operand, "r_factor": self._r_factor,
-            "integrated": self.formulation.integrated, "n_slots": n_slots, **lists,
+            "integrated": self.formulation.integrated, "n_slots": n_slots, "n_entries": len(slot), **lists,
             "has_mu": "mu" in self.at, "has_lam": "lam" in self.at,
             "n_moving_q": len(self._index["moving_q"]), "n_moving_u": len(self._index["moving_u"]), "offset": self._offset,
             "q_ratio": self.coordinates.ratio, "u_ratio": self.coordinates.u_ratio, **self._index,
@@ -279,27 +273,13 @@ class Equations:
 
 
 def entry_lists(
-    slot: np.ndarray, source: np.ndarray, constant: np.ndarray, cj: np.ndarray, n_slots: int
+    slot: np.ndarray, source: np.ndarray, constant: np.ndarray, cj: np.ndarray
 ) -> dict[str, np.ndarray | int]:
-    """Return the matrix entries in their order of addition.
-
-    First entries of slots independent of cj come first, then other entries of these slots, then those of other slots.
-    Slots without a first entry are cleared: those in `m_bare`, or all (`n_cleared`).
-    """
-    late = np.zeros(n_slots, dtype=bool)
-    late[slot[cj != 0]] = True
-    begins = np.full(n_slots, -1)
-    begins[slot[::-1]] = np.arange(len(slot))[::-1]  # for equal indices the last assignment counts: the first entry
-    begun = (begins >= 0) & ~late
-    first = begins[begun] if np.count_nonzero(begun) >= FEW * n_slots else begins[:0]
-    bare = np.flatnonzero(~begun).astype(np.int32) if len(first) else slot[:0]
-    other = ~late[slot]
-    other[first] = False
-    parts = (first, np.flatnonzero(other), np.flatnonzero(late[slot]))
-    order = np.concatenate(parts)
+    """Return the matrix entries in their order of addition: those of slots independent of cj, then all others."""
+    late = np.isin(slot, slot[cj != 0])
+    order = np.argsort(late, kind="stable")
     columns = {"slot": slot, "source": source, "constant": constant, "cj": cj}
     return {
-        "n_cleared": 0 if len(first) else n_slots, "n_bare": len(bare), "m_bare": held_once(bare),
-        "n_first": len(first), "n_constant": len(first) + len(parts[1]), "n_entries": len(slot),
+        "n_constant": int(np.count_nonzero(~late)),
         **{f"m_{name}": held_once(part[order]) for name, part in columns.items()},
-    }  # fmt: skip
+    }

@@ -8,13 +8,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from ..describe.formula.formula import Formula
-from ..describe.formula.nodes import TIME, is_measure, is_named, is_reaction, joint_of, measured_markers
-from ..describe.formula.text import UNIT
-from ..describe.formula.value import formula_value
-from ..describe.joint_name import JointName
-from ..describe.marker import MarkerReference
-from ..describe.table import Table
+from ..reading.formula.formula import Formula
+from ..reading.formula.nodes import TIME, is_measure, is_named, is_reaction, joint_of, measured_markers
+from ..reading.formula.text import UNIT
+from ..reading.formula.value import formula_value
+from ..reading.joint_name import JointName
+from ..reading.marker import MarkerReference
+from ..reading.table import Table
 from .table_values import spline_data
 
 if TYPE_CHECKING:
@@ -196,14 +196,9 @@ class FormulaShape(ast.NodeVisitor):
         return node if node.id == TIME else ast.Name(f"v{self.formula.variables.index(node.id)}")
 
     def _inlined(self, output: Formula) -> ast.AST:
-        """Return the shape of another formula used in this one."""
         inner = FormulaShape(output, self.model, self.data, self._shape_of)
-        inner.numbers, inner.measures, inner.tables, inner.reactions = (
-            self.numbers,
-            self.measures,
-            self.tables,
-            self.reactions,
-        )
+        for shared in ("numbers", "measures", "tables", "reactions"):
+            setattr(inner, shared, getattr(self, shared))
         tree: ast.AST = inner.visit(output.tree)
         return tree
 

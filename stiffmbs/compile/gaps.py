@@ -8,8 +8,9 @@ import numpy as np
 
 from .state import State
 
-MOST_MOVES, CLOSED, TINY = 60, 1e-12, 1e-300
-"""Limit of Newton steps, relative violation at which an equation is satisfied, and smallest derivative."""
+MOST_MOVES, CLOSED = 60, 1e-12
+"""Limit of Newton steps, and relative violation at which an equation is satisfied."""
+TINY = np.finfo(float).tiny
 
 
 class Gap(NamedTuple):

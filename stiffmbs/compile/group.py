@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..describe.element import Element
+from ..elements.element import Element
 from .bodies import BodyKind
 from .kind import Kind
 from .record import KindRecord
@@ -128,8 +128,9 @@ class Group:
             case "q" | "u":
                 return self._of_bodies(axis, own)
             case "l":
-                joint, offset = self._joint_of_column(own)
-                return self.index[:, 2 * self.kind.n_bodies + 1 + joint] + offset[None, :]
+                starts = np.cumsum([0, *self.record.joint_equations])
+                joint = np.searchsorted(starts, own, side="right") - 1
+                return self.index[:, 2 * self.kind.n_bodies + 1 + joint] + (own - starts[joint])[None, :]
             case _:
                 return np.broadcast_to(own[None, :], (self.count, len(own)))
 
@@ -140,9 +141,3 @@ class Group:
         behind = own - width * self.kind.n_bodies
         first = self.index[:, np.where(behind < 0, 2 * body + (axis == "u"), self.first_behind + behind)]
         return first + np.where(behind < 0, offset, 0)
-
-    def _joint_of_column(self, own: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return joint and equation index for columns that number the equations of all joints referred to."""
-        starts = np.cumsum([0, *self.record.joint_equations])
-        joint = np.searchsorted(starts, own, side="right") - 1
-        return joint, own - starts[joint]

@@ -12,16 +12,15 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from ..describe.element import Component, Element, Force, Joint
-from ..describe.files.followed import Followed
-from ..describe.formula.formula import Formula
-from ..describe.joint_name import JointName
-from ..describe.marker import MarkerReference, PlacedMarkers
-from ..describe.python_function import PythonFunction
-from ..describe.states.name import StateName, own_state
-from ..describe.states.state import StateValue
-from ..describe.table import Table
+from ..elements.element import Component, Element, Force, Joint
+from ..elements.states.equation import StateName, own_state
+from ..elements.states.state import StateValue
 from ..errors import InputError
+from ..reading.formula.formula import Formula
+from ..reading.joint_name import JointName
+from ..reading.marker import MarkerReference, PlacedMarkers
+from ..reading.python_function import PythonFunction
+from ..reading.table import Table
 from .callbacks import callback_of
 from .formula_shape import FormulaShape, Shape
 from .table_values import spline_data
@@ -99,9 +98,9 @@ class Kind:
     n_joints: int
     n_states: int
     fields: tuple[tuple[str, Shape], ...]
-    spins: tuple[str, ...] = ()
-    algebraic: tuple[int, ...] = ()
-    n_own: int = 0
+    spins: tuple[str, ...]
+    algebraic: tuple[int, ...]
+    n_own: int
 
     def holds(self, *forms: str) -> bool:
         """Return True if a field, or one of its values, has one of the given forms."""
@@ -128,7 +127,7 @@ class ElementData:
         Placement of markers.
     bodies : list of str
         Bodies by slot; the reaction is reported on the first.
-    numbers : list of float or Followed
+    numbers : list of float
         Kernel parameters in the order of use in the kind's equations.
     tables : list of (int, ndarray)
         Index in `numbers` of each table's offset, and the table's spline data.
@@ -243,9 +242,6 @@ def _shape(value: Any, model: Compilable, data: ElementData) -> Shape:
         case int() | float():
             data.numbers.append(float(value))
             return ("number",)
-        case Followed():
-            data.numbers.append(value)
-            return ("number",)
         case Formula():
             return FormulaShape(value, model, data, _shape).shape()
         case PythonFunction():
@@ -255,6 +251,10 @@ def _shape(value: Any, model: Compilable, data: ElementData) -> Shape:
             data.tables.append((len(data.numbers), spline_data(value)))
             data.numbers.append(0.0)
             return ("table",)
+        case np.ndarray():
+            data.tables.append((len(data.numbers), value))
+            data.numbers.append(0.0)
+            return ("array",)
         case Component():
             return ("component", type(value), _parts(value.in_equations(), model, data))
         case tuple():

@@ -2,7 +2,7 @@
 
 A bump in a table over distance may lie between the ends of a step. Breakpoints divide the argument of each law into
 intervals without hidden features: a cubic describes the table, tanh has saturated, exp has vanished. Solvers ensure
-that no step crosses a whole interval (`stiffmbs.solve.native.event_search.within_step`). A sine has no intervals: its
+that no step crosses a whole interval (`stiffmbs.solve.events.native.within_step`). A sine has no intervals: its
 phase change per step is limited, as is that of a periodic table with few intervals. A law continues unchanged for a
 distance beyond a breakpoint; a step that ends within it has missed nothing.
 """
@@ -36,18 +36,18 @@ negative powers. None of these is at 1, an extremum of 1 + x^2 and cos(x), where
 so that a step near a feature is limited to its size."""
 FEW = 8
 """Number of intervals per period up to which the phase of a periodic table is limited too."""
-DESCRIBED = 1e-3
-"""Error, relative to the range of a table's values, up to which one cubic describes an interval."""
+CLOSE = 1e-3
+"""Relative error at which two curves are the same: of a cubic from a table, relative to the range of its values, and of a
+table from its tangent at a breakpoint, relative to its change. Also the part of the narrower interval at a breakpoint over
+which a function is straight."""
 WITHIN = np.array([0.0, 0.25, 0.5, 0.75, 1.0])
 """Sampling points within a piece for that error."""
-SMOOTH = 1e-3
-"""Part of the narrower interval at a breakpoint over which a function is straight."""
-DEPARTED, NOTHING = 1e-3, 1e-9
-"""Allowed departure of a table from its tangent at a breakpoint: relative to its change, and to its range of values."""
-BARELY = 2.0**-20
-"""Part of an interval over which a table always continues: less is rounding of its argument."""
+NOTHING = 1e-9
+"""Departure of a table from its tangent that is rounding, relative to the range of its values."""
 NEARER = 2.0 ** -np.arange(21)
 """Sampling distances for the departure, as parts of an interval."""
+BARELY = NEARER[-1]
+"""Part of an interval over which a table always continues: less is rounding of its argument."""
 
 
 class Zones(NamedTuple):
@@ -93,43 +93,36 @@ def zones_of(system: System) -> Zones:
 
 
 def _zones_of(system: System) -> Zones:
-    of_event_function = np.zeros(1), np.zeros(1), 0.0
+    of_event_function = "", np.zeros(1), np.zeros(1), 0.0
     found = [of_event_function] * system.n_event_functions + list(_of_arguments(system))
-    counts = np.array([len(edges) for edges, _, _ in found], dtype=np.int64)
-    period = np.array([period for _, _, period in found])
+    counts = np.array([len(edges) for _, edges, _, _ in found], dtype=np.int64)
+    period = np.array([period for *_, period in found])
     repeated = (period > 0) & (counts <= FEW)
-    turns = np.flatnonzero([False] * system.n_event_functions + [name == TURN for name in _names(system)] | repeated)
+    turns = np.flatnonzero(np.array([name == TURN for name, *_ in found], dtype=bool) | repeated)
     return Zones(
         np.concatenate([[0], np.cumsum(counts)]).astype(np.int64),
-        np.concatenate([np.empty(0), *(edges for edges, _, _ in found)]),
-        np.concatenate([np.empty(0), *(overlap for _, overlap, _ in found)]),
+        np.concatenate([np.empty(0), *(edges for _, edges, _, _ in found)]),
+        np.concatenate([np.empty(0), *(overlap for _, _, overlap, _ in found)]),
         period,
         turns,
         np.divide(2 * np.pi, period[turns], out=np.ones(len(turns)), where=period[turns] > 0),
-        np.array([_has_kinks(edges, overlap, period) for edges, overlap, period in found], dtype=np.int64),
+        np.array([_has_kinks(edges, overlap, period) for _, edges, overlap, period in found], dtype=np.int64),
         int(np.count_nonzero(counts)),
     )
 
 
-def _names(system: System) -> Iterator[str]:
-    """Yield the name of the intervals of each argument."""
-    for group in system.groups:
-        for _ in group.index[:, 2 * group.kind.n_bodies] if group.record.laws else ():
-            yield from (name for name, _ in group.record.laws)
-
-
-def _of_arguments(system: System) -> Iterator[tuple[np.ndarray, np.ndarray, float]]:
-    """Yield breakpoints, overlaps and period of each argument, by kind and element."""
+def _of_arguments(system: System) -> Iterator[tuple[str, np.ndarray, np.ndarray, float]]:
+    """Yield name, breakpoints, overlaps and period of each argument, by kind and element."""
     for group in system.groups:
         own = group.index[:, 2 * group.kind.n_bodies] if group.record.laws else ()
         for start in own:
             for name, number in group.record.laws:
                 if name != "table":
-                    yield FIXED[name], SMOOTH * _narrower(FIXED[name]), 0.0
+                    yield name, FIXED[name], CLOSE * _narrower(FIXED[name]), 0.0
                     continue
                 at = int(start + group.numbers[start + number])
                 count = int(group.numbers[at])
-                yield _of_table(group.numbers[at : at + 2 + count + 4 * (count - 1)].tobytes())
+                yield name, *_of_table(group.numbers[at : at + 2 + count + 4 * (count - 1)].tobytes())
 
 
 def _narrower(edges: np.ndarray, period: float = 0.0) -> np.ndarray:
@@ -151,7 +144,7 @@ def _of_table(data: bytes) -> tuple[np.ndarray, np.ndarray, float]:
     z = x.reshape(-1, len(WITHIN)) - knots[:-1, None]
     a, b, c, d = (column[:, None] for column in pieces.T)
     y = (((a * z + b) * z + c) * z + d).ravel()
-    allowed = DESCRIBED * float(np.ptp(y))
+    allowed = CLOSE * float(np.ptp(y))
     starts = list(_zones(x, y, 0, count - 1, allowed))
     period = float(knots[-1] - knots[0]) if numbers[1] else 0.0
     at = np.array(starts if period else [*starts, count - 1])
@@ -172,7 +165,7 @@ def _overlaps(numbers: np.ndarray, at: np.ndarray, narrower: np.ndarray) -> np.n
     keeps = np.ones(distances.shape, dtype=bool)
     for side, slope in ((1.0, before), (-1.0, behind)):
         change = sides[side]
-        keeps &= np.abs(change - side * slope[at] * distances) <= DEPARTED * np.abs(change) + NOTHING * span
+        keeps &= np.abs(change - side * slope[at] * distances) <= CLOSE * np.abs(change) + NOTHING * span
     near = np.logical_and.accumulate(keeps[:, ::-1], axis=1).sum(axis=1)
     return narrower * BARELY * 2.0 ** np.maximum(near - 1, 0)
 
@@ -188,7 +181,6 @@ def _zones(x: np.ndarray, y: np.ndarray, first: int, end: int, allowed: float) -
 
 
 def _described(x: np.ndarray, y: np.ndarray, first: int, end: int, allowed: float) -> bool:
-    """Return True if one cubic describes some pieces to within `allowed`."""
     part = slice(first * len(WITHIN), end * len(WITHIN))
     place = 2 * (x[part] - x[part][0]) / (x[part][-1] - x[part][0]) - 1
     powers = np.power.outer(place, np.arange(4))

@@ -49,7 +49,6 @@ def monotone_pieces(x: np.ndarray, y: np.ndarray) -> np.ndarray:
 
 
 def _hermite(x: np.ndarray, y: np.ndarray, chords: np.ndarray, slopes: np.ndarray) -> np.ndarray:
-    """Return the cubics with given slopes at the points."""
     apart = np.diff(x)
     bend = (slopes[:-1] + slopes[1:] - 2 * chords) / apart
     return np.stack([bend / apart, (chords - slopes[:-1]) / apart - bend, slopes[:-1], y[:-1]])

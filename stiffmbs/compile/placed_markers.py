@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..describe.spatial.marker import Placement
+from ..elements.spatial.marker import Placement
 from .quaternions import rotated
 from .system import System
 

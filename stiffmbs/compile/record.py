@@ -18,19 +18,19 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..cache.source_files import digest_of, python_files
-from ..describe.element import Component, Element
+from ..elements.element import Component, Element
 from ..interrupts import uncollected
 from .formula_shape import Shape
 from .kind import Kind, with_place
 from .machine import cache as store
-from .machine.description import Description
-from .terms import TERM_SETS
+from .machine.compiler import Compiled, Description, compiled_source
+from .terms import KERNEL_SIGNATURE, TERM_SETS
 
 if TYPE_CHECKING:
     from .symbolic.derive import Derived
 
-RARE = ("all_levels", "all_levels_tangent")
-"""Term sets used by the formulation index1 only; derived on first use, as they are expensive."""
+RARE = ("effort", "effort_tangent", "all_levels", "all_levels_tangent")
+"""Term sets of Radau methods and of the formulation index1 only; derived on first use, as they are expensive."""
 
 _INDENTED_IMPORT = re.compile(r"^[ \t]+from (\.+)(\w[\w.]*) import", re.MULTILINE)
 
@@ -102,6 +102,8 @@ def record_of(kind: Kind, place: str = "") -> KindRecord:
 
 @cache
 def _record_of(kind: Kind, place: Description) -> KindRecord:
+    if hasattr(kind.element, "compiled_terms"):
+        return _by_loops(kind)
     entry = _entry(kind)
     record = _read(entry) if entry else None
     if record is not None:
@@ -127,9 +129,26 @@ def _read(entry: str) -> KindRecord | None:
 def source_of(kind: Kind, term_set: str) -> str | None:
     """Return the source of a kind's kernel for a term set; None if the kind contributes nothing."""
     record = record_of(kind)
-    if term_set in RARE and any(record.patterns.get(term) for term in TERM_SETS[term_set]):
+    if (
+        term_set in RARE
+        and not hasattr(kind.element, "compiled_terms")
+        and any(record.patterns.get(term) for term in TERM_SETS[term_set])
+    ):
         return _rare_source(kind, term_set)
     return record.sources.get(term_set)
+
+
+def kernel_of(kind: Kind, term_set: str, place: str = "") -> Compiled | None:
+    """Return the compiled kernel of a kind for a set of terms, or None; `place` as for `record_of`."""
+    source = source_of(kind, term_set)
+    return compiled_source(source, "kernel", KERNEL_SIGNATURE, with_place(kind, place)) if source else None
+
+
+def compile_usual(kind: Kind) -> None:
+    """Compile and cache all kernels of a kind that solvers commonly use."""
+    for term_set in TERM_SETS:
+        if term_set not in RARE:
+            kernel_of(kind, term_set)
 
 
 def _rare_source(kind: Kind, term_set: str) -> str:
@@ -151,6 +170,17 @@ def _terms(kind: Kind) -> Derived:
     from .symbolic.derive import derive
 
     return derive(kind)
+
+
+def _by_loops(kind: Kind) -> KindRecord:
+    """Return the record of a kind with kernels written as loops."""
+    terms = kind.element.compiled_terms(kind.n_bodies)  # type: ignore[attr-defined]
+    sources = {}
+    for term_set, names in TERM_SETS.items():
+        places = {name: k for k, name in enumerate(names) if name in terms.patterns}
+        if places:
+            sources[term_set] = terms.source(places)
+    return KindRecord(0, 0, [], 0, [], dict(terms.patterns), sources, None, [], [], [])
 
 
 def _derived(kind: Kind) -> KindRecord:
@@ -176,7 +206,8 @@ def _entry(kind: Kind, *part: str) -> str | None:
     classes = [kind.element, *(found for _, shape in kind.fields for found in _classes_in(shape))]
     bases = [base for element in classes for base in element.__mro__ if _says_equations(base)]
     try:
-        texts = _files(bases) if all(map(_is_shipped, bases)) else _equations(kind)
+        is_shipped = all(base.__module__.partition(".")[0] == __name__.partition(".")[0] for base in bases)
+        texts = _files(bases) if is_shipped else _equations(kind)
     except (OSError, TypeError):
         return None
     return store.name_of(
@@ -184,18 +215,7 @@ def _entry(kind: Kind, *part: str) -> str | None:
         _own_files(),
         *texts,
         kind.element.__qualname__,
-        repr(
-            (
-                kind.dimensions,
-                kind.n_bodies,
-                kind.n_joints,
-                kind.n_states,
-                kind.fields,
-                kind.spins,
-                kind.algebraic,
-                kind.n_own,
-            )
-        ),
+        repr([value for name, value in vars(kind).items() if name != "element"]),
         *part,
     )
 
@@ -215,10 +235,6 @@ def _classes_in(shape: Shape) -> Iterator[type]:
     for part in shape:
         if isinstance(part, tuple):
             yield from _classes_in(part)
-
-
-def _is_shipped(element: type) -> bool:
-    return element.__module__.partition(".")[0] == __name__.partition(".")[0]
 
 
 def _files(elements: list[type]) -> list[str]:
@@ -261,11 +277,12 @@ def _own_files() -> str:
     """Return a digest of the modules for derivation and element description."""
     from importlib.metadata import version
 
-    here, describe = Path(__file__).parent, Path(__file__).parent.parent / "describe"
+    here, package = Path(__file__).parent, Path(__file__).parent.parent
     folders = (
         here,
         here / "symbolic",
         here / "inputs",
-        *(describe / name for name in ("", "formula", "units", "spatial")),
+        *(package / "reading" / name for name in ("", "formula", "units")),
+        *(package / "elements" / name for name in ("", "spatial")),
     )
     return f"{version('sympy')} {digest_of(path for folder in folders for path in python_files(folder))}"

@@ -13,14 +13,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..describe.element import Element
+from ..elements.element import Element
 from .bodies import BodyKind
 from .group import Group
-from .kernels import kernel_of
 from .machine.compiler import Compiled
 from .machine.layout import held_once
 from .reactions import reported_terms
-from .record import source_of
+from .record import kernel_of, source_of
 from .terms import TERM_AXES, TERM_SETS, TURNED
 
 
@@ -78,6 +77,8 @@ class System:
         Index of the first state among the coordinates.
     has_inputs, has_functions : bool
         True if an element has a formula or a table, or calls a Python function.
+    has_coupled_inertia : bool
+        True if the mass matrix is not diagonal, as that of flexible bodies.
     has_laws : bool
         True if forces or joints have breakpoints or laws (formulas, tables), which may change within one step.
     forces_by_reactions : tuple of str
@@ -109,6 +110,7 @@ class System:
     has_inputs: bool = field(init=False)
     has_laws: bool = field(init=False)
     has_functions: bool = field(init=False)
+    has_coupled_inertia: bool = field(init=False)
     forces_by_reactions: tuple[str, ...] = field(init=False)
 
     def __post_init__(self) -> None:
@@ -118,6 +120,7 @@ class System:
             n_q=n_q, n_u=len(self.u), n_c=len(self.equations), n_pose=n_pose, first_state=first_state,
             n_counters=first_state - n_pose, has_inputs=any(group.has_inputs for group in self.groups),
             has_functions=any(group.has_functions for group in self.groups),
+            has_coupled_inertia=any(group.entries["inertia"] for group in self.groups),
             has_laws=any(group.has_law for group in self.groups if group.entries["f"] or group.record.n_equations),
             forces_by_reactions=tuple(name for group in self.groups if group.record.patterns.get("f_lam") for name in group.names),
         )  # fmt: skip

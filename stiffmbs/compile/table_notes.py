@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from ..describe.fields import Described
-from ..describe.formula.formula import Formula
-from ..describe.table import Table
+from ..reading.fields import Described
+from ..reading.formula.formula import Formula
+from ..reading.table import Table
 from .table_values import parts_of
 
 BEYOND = 0.1
@@ -68,7 +68,7 @@ def _beyond(table: Table) -> str:
 
 def _extrema(table: Table) -> tuple[np.ndarray, np.ndarray]:
     """Return the arguments inside the pieces at which the slope is zero, and the values there."""
-    _, x, pieces = parts_of(table)
+    x, pieces = parts_of(table)
     a, b, c, d = pieces.T[:, None]
     with np.errstate(all="ignore"):
         half = -(b + np.copysign(np.sqrt(b * b - 3 * a * c), b))

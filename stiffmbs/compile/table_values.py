@@ -6,16 +6,15 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ..describe.table import Table
 from ..errors import InputError
+from ..reading.table import Table
 from .local_cubics import akima_pieces, monotone_pieces
 
 Curve = Callable[[np.ndarray], np.ndarray]
-NATURAL, PERIODIC = 0.0, 1.0
 
 
 def spline_data(table: Table) -> np.ndarray:
-    """Return the kernel data of a table: count, ends, knots, and the coefficients of each piece (highest first).
+    """Return the kernel data of a table: count, 1 if it is periodic, knots, and the coefficients of each piece (highest first).
 
     Splines are those of SciPy, monotone and Akima's cubics those of `stiffmbs.compile.local_cubics`; straight lines are
     pieces without curvature.
@@ -36,8 +35,7 @@ def spline_data(table: Table) -> np.ndarray:
             f"found points of a table that are {np.diff(x).min():.3g} apart, where its slope or curvature has no finite "
             "value, expected them further apart"
         )
-    ends = PERIODIC if table.ends == "periodic" else NATURAL
-    return np.concatenate([[len(x), ends], x, pieces.T.ravel()])
+    return np.concatenate([[len(x), table.ends == "periodic"], x, pieces.T.ravel()])
 
 
 def _pieces(table: Table, x: np.ndarray, y: np.ndarray) -> np.ndarray:
@@ -66,7 +64,7 @@ def curve(table: Table) -> Curve:
 def value_of(data: np.ndarray, at: np.ndarray) -> np.ndarray:
     """Return the values of a table of `spline_data` at an array of arguments."""
     x, pieces = _taken_apart(data)
-    if data[1] == PERIODIC:
+    if data[1]:
         at = x[0] + np.mod(at - x[0], x[-1] - x[0])
     inside = np.clip(at, x[0], x[-1])
     k = np.clip(np.searchsorted(x, inside, side="right") - 1, 0, len(x) - 2)
@@ -82,16 +80,15 @@ def ends_of(data: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.nd
     h = np.diff(x)
     a, b, c, _ = pieces.T
     at_ends = (3 * a * h + 2 * b) * h + c
-    periodic = data[1] == PERIODIC
+    periodic = bool(data[1])
     before = np.append(at_ends[-1] if periodic else c[0], at_ends)
     behind = np.append(c, c[0] if periodic else at_ends[-1])
     return x, value_of(data, x), before, behind
 
 
-def parts_of(table: Table) -> tuple[int, np.ndarray, np.ndarray]:
-    """Return the number of points, the points, and the coefficients of each piece, highest first."""
-    x, pieces = _taken_apart(spline_data(table))
-    return len(x), x, pieces
+def parts_of(table: Table) -> tuple[np.ndarray, np.ndarray]:
+    """Return the points of a table, and the coefficients of each piece, highest first."""
+    return _taken_apart(spline_data(table))
 
 
 def _taken_apart(data: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

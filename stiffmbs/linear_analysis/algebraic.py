@@ -12,8 +12,8 @@ from ..errors import SolverError
 if TYPE_CHECKING:
     from .tangent_space import Linearised
 
-WITHOUT_UNIQUE_VALUES = 1e14
-"""Condition number of Z with normalised rows from which on algebraic states are not unique."""
+SINGULAR = 1e15
+"""Condition number of a matrix with normalised rows from which on it is singular."""
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ def algebraic_of(is_algebraic: np.ndarray, by_states: np.ndarray, rate_by_states
     """
     own = rate_by_states[np.ix_(is_algebraic, is_algebraic)]
     sizes = np.linalg.norm(own, axis=1)[:, None]
-    if own.size and not (np.all(sizes > 0) and np.linalg.cond(own / sizes) < WITHOUT_UNIQUE_VALUES):
+    if own.size and not (np.all(sizes > 0) and np.linalg.cond(own / sizes) < SINGULAR):
         raise SolverError(
             "the algebraic states have no unique values beside this state, expected formulas that change with them"
         )

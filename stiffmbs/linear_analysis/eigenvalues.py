@@ -11,6 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import eig, svd
 
+CLOSE = 1e-6
+"""Relative difference up to which quantities of linearised equations are equal."""
 ZERO_SINGULAR = 10 * np.finfo(float).eps
 """Singular value that counts as zero, relative to normalised rows, per row."""
 

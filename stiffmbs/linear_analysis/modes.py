@@ -10,13 +10,11 @@ from typing import Any
 import numpy as np
 from scipy.sparse import csr_array
 
-from .eigenvalues import Zeros, eigen
+from .eigenvalues import CLOSE, Zeros, eigen
 from .state_space import StateMatrix
 
 NO_MOTION = 1e-12
 """Displacement, in sizes of the mechanism, or rotation of a normalised eigenvector that counts as zero."""
-NOT_FREE = 1e-6
-"""Relative size of velocities of generalised eigenvectors above which constraints do not leave them free."""
 
 
 class Motion(Enum):
@@ -103,7 +101,10 @@ def natural_modes(state: StateMatrix, mass: csr_array, bodies: tuple[str, ...], 
     values, vectors, zeros = eigen(state.matrix, state.n_poses, state.n_states)
     shapes = state.poses @ vectors
     pairs = [
-        *_oscillations(values, shapes),
+        *(
+            ((complex(values[k]), complex(values[k].conjugate())), shapes[:, k])
+            for k in np.flatnonzero(values.imag > 0)
+        ),
         *_without_oscillation(values, shapes, state, zeros, scale),
     ]
     found = [_mode(both, shape, mass, bodies, scale) for both, shape in pairs]
@@ -111,11 +112,6 @@ def natural_modes(state: StateMatrix, mass: csr_array, bodies: tuple[str, ...], 
 
 
 Pair = tuple[tuple[complex, ...], np.ndarray]
-
-
-def _oscillations(values: np.ndarray, shapes: np.ndarray) -> Iterator[Pair]:
-    for k in np.flatnonzero(values.imag > 0):
-        yield (complex(values[k]), complex(values[k].conjugate())), shapes[:, k]
 
 
 def _without_oscillation(
@@ -156,7 +152,7 @@ def _rigid_motions(state: StateMatrix, zeros: Zeros, scale: np.ndarray) -> np.nd
     rates = state.velocities @ zeros.generalised / scale[:, None]
     free = _free_velocities(state, scale)
     _, sizes, combined = np.linalg.svd(rates - free @ (free.T @ rates))
-    accompanying = int(np.sum(sizes > NOT_FREE * np.linalg.norm(rates)))
+    accompanying = int(np.sum(sizes > CLOSE * np.linalg.norm(rates)))
     return np.asarray(scale[:, None] * (rates @ combined[accompanying:].T if accompanying else rates))
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from scipy.sparse import block_array, csc_array, diags_array
 from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigs, splu
 
+from .eigenvalues import CLOSE
 from .state_space import null_space
 
 MOST_DENSE = 300
@@ -81,7 +82,7 @@ def lowest(stiffness: csc_array, jacobian: csc_array, mass: np.ndarray, scale: n
     rounding = STIFFNESS_ROUNDING * np.sum(sizes * (abs(stiffness) @ sizes), axis=0)
     beside = BESIDE_IMBALANCE * (np.abs(left) / scale) @ sizes**2
     none = (rounding + beside) / np.where(inertia > 0, inertia, np.inf) + of_eigenvalues
-    real = np.abs(squares.imag) <= 1e-6 * np.abs(squares) + none
+    real = np.abs(squares.imag) <= CLOSE * np.abs(squares) + none
     return Lowest(squares[real].real, shapes[:, real], none[real])
 
 

@@ -11,12 +11,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import SolverError
+from .algebraic import SINGULAR
 from .tangent_space import Linearised
 
 DEPENDENT = 1e-9
 """Pivot, relative to the largest, below which an equation is dependent at a pose."""
-WITHOUT_INERTIA = 1e15
-"""Condition number of the inertia of the free motions from which on one of them has none."""
 
 
 @dataclass(frozen=True)
@@ -47,7 +46,7 @@ class StateMatrix:
     accelerations: np.ndarray
     forced: np.ndarray
     n_poses: int
-    n_states: int = 0
+    n_states: int
 
     @property
     def degrees_of_freedom(self) -> int:
@@ -121,7 +120,7 @@ def _solved(inertia: np.ndarray, forces: np.ndarray) -> np.ndarray:
     if not len(inertia):
         return np.zeros(forces.shape)
     sizes = np.linalg.norm(inertia, axis=1)
-    if not np.all(sizes > 0) or np.linalg.cond(inertia / sizes[:, None]) > WITHOUT_INERTIA:
+    if not np.all(sizes > 0) or np.linalg.cond(inertia / sizes[:, None]) > SINGULAR:
         raise SolverError(
             "a motion that the joints leave free has no mass, expected mass or inertia in every free motion"
         )

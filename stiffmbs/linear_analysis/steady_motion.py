@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..solve.dynamics import Dynamics
-from ..solve.equilibria.steady_motion import SteadyMotion
+from ..dynamics.dynamics import Dynamics
+from ..equilibria.steady_motion import SteadyMotion
+from .eigenvalues import CLOSE
 from .state_space import state_matrix
 from .tangent_space import linearised
-
-CONSTANT = 1e-6
-"""Largest residual of the rates, relative to them, for which coefficients count as constant in that frame."""
 
 
 def eigenvalues_beside(
@@ -46,7 +44,7 @@ def eigenvalues_beside(
     x, v = state.velocities - turning @ state.poses, state.accelerations - turning @ state.velocities
     rates = np.vstack([x / scale[:, None], v / scale[:, None], own])
     matrix, *_ = np.linalg.lstsq(values, rates, rcond=None)
-    if np.linalg.norm(values @ matrix - rates) > CONSTANT * np.linalg.norm(rates):
+    if np.linalg.norm(values @ matrix - rates) > CLOSE * np.linalg.norm(rates):
         return None
     found: np.ndarray = np.linalg.eigvals(matrix)
     return found[np.lexsort((found.imag, -found.real))]

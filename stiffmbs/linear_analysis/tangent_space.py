@@ -14,7 +14,7 @@ from scipy.sparse import csr_array, diags_array
 
 from ..compile.quaternions import rotated
 from ..compile.system import System
-from ..solve.dynamics import Dynamics
+from ..dynamics.dynamics import Dynamics
 from .algebraic import Algebraic, algebraic_of, without_algebraic
 
 
@@ -105,12 +105,12 @@ def linearised(dynamics: Dynamics, t: float, acceleration: np.ndarray) -> Linear
     back = axes.T
     rows = system.active
     to_coordinates = rates @ back
-    mass = axes @ diags_array(system.mass) @ back
+    mass = axes @ (diags_array(system.mass) + csr_array(term("inertia"))) @ back
     own = slice(system.first_state, None)
     by_states, rate_by_states = axes @ (term("f_q") - term("G_lam"))[:, own], term("rate_q")[own, own]
     linear = Linearised(
         mass=mass,
-        stiffness=axes @ (term("f_q") - term("G_lam")) @ to_coordinates,
+        stiffness=axes @ (term("f_q") - term("G_lam") - term("inertia_q")) @ to_coordinates,
         damping=axes @ term("f_u") @ back + mass @ spin,
         reactions=axes @ (term("J").T - term("f_lam"))[:, rows],
         position=(term("C_q") @ to_coordinates)[rows & system.holonomic],

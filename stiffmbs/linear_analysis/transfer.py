@@ -12,15 +12,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..errors import InputError
-from .eigenvalues import is_singular
+from .eigenvalues import CLOSE, is_singular
 from .state_space import StateMatrix
 from .tangent_space import Linearised
 
 if TYPE_CHECKING:
     from scipy.signal import StateSpace
-
-NEAR_POLE = 1e-6
-"""Distance from an eigenvalue, relative to the largest one or in 1/s, below which a frequency is checked."""
 
 
 @dataclass(frozen=True)
@@ -154,7 +151,7 @@ class Transfer:
 
     def _refuse_poles(self, rates: np.ndarray, values: np.ndarray) -> None:
         """Refuse frequencies at which i w - A is numerically singular."""
-        near = np.min(np.abs(rates[:, None] - values), axis=1) < NEAR_POLE * np.max(np.abs(values)) + NEAR_POLE
+        near = np.min(np.abs(rates[:, None] - values), axis=1) < CLOSE * (np.max(np.abs(values)) + 1.0)
         for rate in rates[near]:
             if is_singular(rate * np.eye(len(values)) - self.a):
                 held = "an unconstrained motion" if rate == 0 else "an undamped mode"

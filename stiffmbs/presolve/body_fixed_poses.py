@@ -3,36 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..compile.quaternions import CONJUGATE, rotated, times
 
 IDENTITY = np.array([1.0, 0.0, 0.0, 0.0])
-
-
-class BodyFixedPoses(Protocol):
-    """Poses of k bodies on their parent bodies."""
-
-    @property
-    def moved(self) -> bool:
-        """True if any pose differs from that of its parent body."""
-
-    def inverse(self) -> BodyFixedPoses:
-        """Return the poses of the parent bodies on the bodies."""
-
-    def like(self, q: np.ndarray, parent: np.ndarray) -> BodyFixedPoses:
-        """Return the same poses in the representation nearest to body coordinates q, shape (k, n_q).
-
-        Parameters
-        ----------
-        parent : ndarray of int, shape (k,)
-            Number of each body's parent body.
-        """
-
-    def carried(self, q: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the states of the bodies from those of their parents, shapes (..., k, n_q) and (..., k, n_u)."""
 
 
 class PlanarPoses(NamedTuple):
@@ -59,15 +36,19 @@ class PlanarPoses(NamedTuple):
 
     @property
     def moved(self) -> bool:
+        """True if any pose differs from that of its parent body."""
         return bool(self.point.any() or self.angle.any())
 
     def inverse(self) -> PlanarPoses:
+        """Return the poses of the parent bodies on the bodies."""
         return PlanarPoses(-_turned(-self.angle, self.point), -self.angle)
 
     def like(self, q: np.ndarray, parent: np.ndarray) -> PlanarPoses:
+        """Return the same poses: those in the plane have one representation."""
         return self
 
     def carried(self, q: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the states of the bodies from those of their parents, shapes (..., k, n_q) and (..., k, n_u)."""
         arm = _turned(q[..., 2], self.point)
         across = np.stack([-arm[..., 1], arm[..., 0]], axis=-1)
         place = np.concatenate([q[..., :2] + arm, (q[..., 2] + self.angle)[..., None]], axis=-1)
@@ -100,20 +81,31 @@ class SpatialPoses(NamedTuple):
 
     @property
     def moved(self) -> bool:
+        """True if any pose differs from that of its parent body."""
         return bool(self.point.any() or np.any(self.turn != IDENTITY))
 
     def inverse(self) -> SpatialPoses:
+        """Return the poses of the parent bodies on the bodies."""
         back = CONJUGATE * self.turn
         return SpatialPoses(-rotated(back, self.point), back)
 
     def like(self, q: np.ndarray, parent: np.ndarray) -> SpatialPoses:
-        """Choose the sign of each quaternion that is continuous with that of the parent's first body."""
+        """Choose the sign of each quaternion that is continuous with that of the parent's first body.
+
+        Parameters
+        ----------
+        q : ndarray, shape (k, n_q)
+            Coordinates of the bodies.
+        parent : ndarray of int, shape (k,)
+            Number of each body's parent body.
+        """
         _, first, number = np.unique(parent, return_index=True, return_inverse=True)
         of_parent = times(q[first, 3:], CONJUGATE * self.turn[first])[number]
         against = np.sum(times(of_parent, self.turn) * q[:, 3:], axis=1) < 0
         return SpatialPoses(self.point, np.where(against[:, None], -self.turn, self.turn))
 
     def carried(self, q: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the states of the bodies from those of their parents, as `PlanarPoses.carried`."""
         p, w = q[..., 3:], u[..., 3:]
         arm = rotated(p, self.point)
         velocity = u[..., :3] + np.cross(rotated(p, w), arm)
@@ -127,4 +119,5 @@ def _turned(phi: np.ndarray, points: np.ndarray) -> np.ndarray:
     return np.stack([c * xi - s * eta, s * xi + c * eta], axis=-1)
 
 
+BodyFixedPoses = PlanarPoses | SpatialPoses
 BODY_FIXED_POSES: dict[int, type[PlanarPoses] | type[SpatialPoses]] = {2: PlanarPoses, 3: SpatialPoses}

@@ -7,13 +7,13 @@ from importlib import import_module
 from types import ModuleType
 from typing import Any, NamedTuple
 
-from ..describe.element import Element, Joint
-from ..describe.formula.formula import Formula
-from ..describe.joint_name import JointName
-from ..describe.joints.fixed import Fixed
-from ..describe.marker import GROUND, MarkerReference
-from ..describe.model_data import ModelData
-from ..describe.states.state import StateValue
+from ..elements.element import Element, Joint
+from ..elements.joints.fixed import Fixed
+from ..elements.states.state import StateValue
+from ..model.model_data import ModelData
+from ..reading.formula.formula import Formula
+from ..reading.joint_name import JointName
+from ..reading.marker import GROUND, MarkerReference
 
 
 class MergedBodies(NamedTuple):
@@ -127,7 +127,8 @@ def _candidates(model: ModelData) -> Iterator[str]:
     named = {body for e in elements for _, formula in e.parts(Formula) for body, _ in formula.coordinates()}
     for name, joint in model.joints.items():
         bodies = {marker.body for _, marker in joint.markers()}
-        if joint.kind == Fixed.kind and name not in referred and not bodies & {GROUND, *named}:
+        apart = {GROUND, *named, *(body for body in bodies - {GROUND} if not model.bodies[body].rigid)}
+        if joint.kind == Fixed.kind and name not in referred and not bodies & apart:
             yield name
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from ..describe.body import Body
-from ..describe.marker import Placement
+from ..elements.body import Body
+from ..reading.marker import Placement
 
 
 def on(frame: Placement, placed: Placement) -> Placement:

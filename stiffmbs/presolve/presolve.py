@@ -16,12 +16,12 @@ import numpy as np
 from ..compile.compile_model import compile_model
 from ..compile.quaternions import rotated
 from ..compile.system import System
-from ..describe.model_data import ModelData
+from ..model.model_data import ModelData
 from .body_fixed_poses import BODY_FIXED_POSES, BodyFixedPoses
 from .merged_bodies import MergedBodies, merge
 from .spin import Spin
 from .spinning_bodies import AXES, SpinningBodies, name_of_angle, spinning
-from .subsystems import A_STATE, behind_bodies, mechanisms, part_of
+from .subsystems import behind_bodies, mechanisms, part_of
 
 MOST_APART = 8
 """Largest number of mechanisms solved separately, as each has the cost of its own start and steps."""
@@ -35,7 +35,6 @@ class Part:
 
     Attributes
     ----------
-    system : System
     bodies : ndarray of int
         Numbers of the bodies in the whole model.
     parent : ndarray of int
@@ -46,7 +45,6 @@ class Part:
         Coordinates of the whole model that the part's rotation counters and states represent.
     kept : ndarray of int
         The corresponding coordinates of the part.
-    spins : tuple of Spin
     """
 
     system: System
@@ -174,7 +172,7 @@ def _part(
     shared = sorted(of_part.keys() & of_whole.keys(), key=of_part.__getitem__)
     behind, kept = (np.array([of[key] for key in shared], dtype=np.int64) for of in (of_whole, of_part))
     spins = tuple(
-        Spin(number[name], AXES.index(axis), of_part[name_of_angle(name), A_STATE])
+        Spin(number[name], AXES.index(axis), of_part[name_of_angle(name), None])
         for name, axis in (spun.axes if spun else {}).items()
         if name in number
     )

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..describe.spatial.body import Body
-from ..describe.spatial.marker import Placement
-from ..describe.spatial.orientation import conjugate, matrix, product, rotated
+from ..elements.spatial.body import Body
+from ..elements.spatial.marker import Placement
+from ..elements.spatial.orientation import conjugate, matrix, product, rotated
 
 
 def on(frame: Placement, placed: Placement) -> Placement:

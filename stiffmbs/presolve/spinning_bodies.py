@@ -3,7 +3,7 @@
 A wheel's quaternion rotates with the wheel, and each turn requires integrator steps. If nothing depends on the spin
 angle, the quaternion follows only the angular velocity across the axis, and the angle is a separate state. Forces are
 unchanged. Constraints and the angular momentum, which are differentiated by time, follow the quaternion
-(`stiffmbs.describe.spatial.forces.gyroscopic_torque`).
+(`stiffmbs.elements.spatial.forces.gyroscopic_torque`).
 """
 
 from __future__ import annotations
@@ -14,12 +14,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..compile.kind import Compilable
-from ..describe.element import Element, Joint
-from ..describe.formula.formula import Formula
-from ..describe.joint_name import JointName
-from ..describe.marker import MarkerReference
-from ..describe.states.name import StateName
-from ..describe.states.state import StateValue
+from ..elements.element import Element, Joint
+from ..elements.states.equation import StateName
+from ..elements.states.state import StateValue
+from ..reading.formula.formula import Formula
+from ..reading.joint_name import JointName
+from ..reading.marker import MarkerReference
 
 AXES = "xyz"
 ALIKE = 1e-12
@@ -83,7 +83,7 @@ class SpinningBodies(NamedTuple):
 
     def elements(self) -> Iterator[tuple[str, Element]]:
         """Yield the elements of the model, and the rates of the spin angles."""
-        from ..describe.spatial.spin_angle import SpinAngle
+        from ..elements.states.equation import SpinAngle
 
         yield from self.model.elements()
         for body, axis in self.axes.items():
@@ -100,7 +100,7 @@ def spinning(model: Compilable, turns: Mapping[str, np.ndarray]) -> SpinningBodi
     """Return the model with spins removed from quaternions, or None if no body qualifies.
 
     A body qualifies if its moments across the axis are equal and nothing that acts on it depends on its spin angle.
-    Only elements that `stiffmbs.describe.element.Element.spins_with` allows may act on it: no angles, no joint that
+    Only elements that `stiffmbs.elements.element.Element.spins_with` allows may act on it: no angles, no joint that
     another element refers to. It must also rotate in a bearing, roll on a tyre, or spin at the start.
 
     Parameters
@@ -126,7 +126,7 @@ def spinning(model: Compilable, turns: Mapping[str, np.ndarray]) -> SpinningBodi
 
 
 REFUSED, POINT, BODY = "", "point", "body"
-"""Requirements on a marker other than an axis (`stiffmbs.describe.element.Element.spins_with`)."""
+"""Requirements on a marker other than an axis (`stiffmbs.elements.element.Element.spins_with`)."""
 
 
 class _Demand(NamedTuple):
@@ -144,7 +144,7 @@ class _Demand(NamedTuple):
         return bool(beside <= ALIKE * size and (self.what == POINT or self._tilt(axis) <= ALIKE))
 
     def _tilt(self, axis: int) -> float:
-        from ..describe.spatial.orientation import matrix
+        from ..elements.spatial.orientation import matrix
 
         along = matrix(self.placed.orientation)[:, AXES.index(self.what)]
         return float(np.abs(np.delete(along, axis)).max())

@@ -9,8 +9,6 @@ import numpy as np
 from ..compile.group import Group
 from ..compile.system import System
 
-A_STATE = -1
-"""Marker of a state, in place of the number of a rotation counter."""
 NO_MECHANISM = np.iinfo(np.int64).max
 
 
@@ -49,9 +47,9 @@ def counters_of(system: System) -> dict[tuple[str, int], int]:
     }
 
 
-def behind_bodies(system: System) -> dict[tuple[str, int], int]:
-    """Return the coordinates of rotation counters and states by name."""
-    return counters_of(system) | {(name, A_STATE): system.first_state + k for k, name in enumerate(system.states)}
+def behind_bodies(system: System) -> dict[tuple[str, int | None], int]:
+    """Return the coordinates of rotation counters and states by name; a state has no number."""
+    return {**counters_of(system)} | {(name, None): system.first_state + k for k, name in enumerate(system.states)}
 
 
 def _parts(system: System, group: Group) -> np.ndarray:
@@ -107,7 +105,6 @@ def part_of(system: System, bodies: np.ndarray) -> System:
 
 
 def _rows(group: Group, inside: np.ndarray) -> np.ndarray:
-    """Return the equations of the selected elements."""
     count = group.record.n_equations
     return (group.first_row + count * np.flatnonzero(inside)[:, None] + np.arange(count)).ravel()
 

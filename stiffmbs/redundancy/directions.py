@@ -104,7 +104,6 @@ def _space(change: np.ndarray, negligible: float) -> tuple[int, np.ndarray]:
 
 
 def _same(a: np.ndarray, b: np.ndarray) -> bool:
-    """Return True if two unit vectors are parallel or antiparallel."""
     return bool(min(np.linalg.norm(a - b), np.linalg.norm(a + b)) < SAME_DIRECTION)
 
 

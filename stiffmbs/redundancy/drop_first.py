@@ -9,8 +9,8 @@ import numpy as np
 
 from .loop_rank import LoopRank
 
-WELL_CHOSEN = (0.1, 1e-2, 1e-4, 1e-7)
-"""Smallest shares of a dropped row in the null spaces, relative to the largest, in the order of their trial."""
+WELL_CHOSEN = 0.1
+"""Smallest share of a dropped row in the null spaces, relative to the largest, unless no other row remains."""
 TAKES_PART = 1e-6
 """Share in a combination, relative to its largest, below which a row is not part of it."""
 
@@ -49,7 +49,7 @@ def redundant_rows(found: LoopRank, order: Sequence[str], holonomic: np.ndarray)
     spaces = [space for _, space in found.null_spaces]
     rests, chosen = list(spaces), list[int]()
     preference, shares = _preference(found, order, holonomic), _least_shares(rests)
-    for least in WELL_CHOSEN:
+    for least in (WELL_CHOSEN, TAKES_PART):
         for row in preference:
             if len(chosen) < found.redundancy and shares[row] > least:
                 chosen.append(row)
@@ -63,10 +63,15 @@ def redundant_rows(found: LoopRank, order: Sequence[str], holonomic: np.ndarray)
     ]
 
 
+def rank_of(rows: np.ndarray) -> int:
+    """Return the rank of some rows of null vectors."""
+    return int(np.linalg.matrix_rank(rows, tol=TAKES_PART)) if rows.size else 0
+
+
 def _preference(found: LoopRank, order: Sequence[str], holonomic: np.ndarray) -> list[int]:
     """Return the loop's rows in the order in which they are dropped."""
     rank = {name: k for k, name in enumerate(order)}
-    joint_of = [rank[joint.name] for joint in found.equations.loop.joints for _ in joint.rows]
+    joint_of = [rank[name] for name in found.equations.loop.joint_of]
     shares = _least_shares([space for _, space in found.null_spaces]).round(6)
     return sorted(range(len(joint_of)), key=lambda row: (holonomic[row], -joint_of[row], -shares[row], -row))
 

@@ -8,18 +8,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..compile.system import System
-from ..solve.dynamics import Dynamics
+from ..dynamics.dynamics import Dynamics
+from .drop_first import TAKES_PART
 from .elastic import held, screwed, stiffnesses
+from .loop_rank import PERTURBATION
+from .loops import DEPENDENT
 from .unproven import by_functions
 
-FREE = 1e-8
-"""Singular value that counts as zero, relative to the largest."""
-PERTURBATION = 0.1
-"""Displacement (sizes of the system, rad) to a second pose, as a motion that is free at one pose may be singular."""
 FURTHER = 0.3
 """Displacement along a free motion to a pose at which the stiffness of forces is checked again."""
-TURNS = 1e-6
-"""Part of a motion that counts as rounding."""
 
 
 @dataclass(frozen=True)
@@ -28,7 +25,6 @@ class IdleFreedom:
 
     Attributes
     ----------
-    body : str
     between : tuple of str
         Joints and forces that connect it to others.
     motion : str
@@ -59,6 +55,10 @@ def idle_freedoms(dynamics: Dynamics, t: float) -> list[IdleFreedom]:
     around = _joints_around(system)
     for body in _held_by_functions(system):  # a formula with zero slope here may hold the body elsewhere
         around.pop(body, None)
+    for group in system.groups:
+        if group.entries["inertia"]:  # of flexible bodies, whose coordinates are coupled by elasticity and inertia
+            for body in group.bodies.ravel().tolist():
+                around.pop(body, None)
     ways = dict(_free_ways(dynamics, list(around), t))
     if not ways:
         return []
@@ -144,7 +144,7 @@ def _free_ways(dynamics: Dynamics, bodies: list[int], t: float) -> Iterator[tupl
         if not np.all(np.isfinite(J)):
             continue
         _, values, ways = np.linalg.svd(J)
-        free = ways[values <= FREE * values[0]]
+        free = ways[values <= DEPENDENT * values[0]]
         if len(free):
             yield body, free
 
@@ -154,6 +154,6 @@ def _motion(ways: np.ndarray, linear: int) -> str:
     if len(ways) > 1:
         return "move"
     turning = ways[0, linear:]
-    if np.linalg.norm(turning) < TURNS:
+    if np.linalg.norm(turning) < TAKES_PART:
         return "slide"
     return "turn"

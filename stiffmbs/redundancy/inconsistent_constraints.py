@@ -10,7 +10,7 @@ import numpy as np
 from ..compile.gaps import Gap, position_gap, velocity_gap
 from .drop_first import Redundant
 from .loop_equations import AGREES, CLOSED, LoopEquations, Pose
-from .loop_rank import LoopRank
+from .loop_rank import SOUND, LoopRank
 
 INSTANTS = (0.0137, 0.0931, 0.2113, 0.3719, 0.6131, 0.8677, 0.9941)
 """Times of the check of time-dependent scenes, as fractions of the run."""
@@ -18,14 +18,10 @@ NEARLY = 1e-3
 """Largest violation at which equations count as redundant apart from their disagreement."""
 INDEPENDENT_ROW = 0.2
 """Smallest component of a row of J perpendicular to others, relative to its norm, that makes it clearly independent."""
-DISAGREES = 1e-7
-"""Largest difference of two equations, relative to the largest prescribed velocity."""
 LONGEST_MOVE = 20.0
 """Largest displacement that satisfies the other equations, in gaps, for which the gap counts as a contradiction."""
 STRIDE, MOST_STRIDES = 0.2, 150
 """Longest displacement (arms, rad) between two poses, to stay on one branch, and the largest number of poses."""
-REGULAR = 1e-5
-"""Smallest singular value for a velocity to be computed from the remaining equations."""
 
 
 class Inconsistency(NamedTuple):
@@ -122,7 +118,7 @@ def _disagreement(equations: LoopEquations, redundant: list[Redundant], pose: Po
     if not pose.J.finite:
         return "", {}
     if pose.gap <= AGREES:
-        return "velocity", _off(equations, _velocity_violations(pose, kept), DISAGREES * np.abs(pose.rates).max())
+        return "velocity", _off(equations, _velocity_violations(pose, kept), AGREES * np.abs(pose.rates).max())
     return "position", _off(equations, _position_violations(equations, pose, kept), AGREES)
 
 
@@ -144,7 +140,7 @@ def _velocity_violations(pose: Pose, kept: np.ndarray) -> np.ndarray:
     if not np.any(pose.rates):
         return np.zeros(len(pose.rates))
     u, _, _, values = np.linalg.lstsq(pose.J.of_rows(kept).dense(), -pose.rates[kept])
-    gaps: np.ndarray = np.abs(pose.J.times(u) + pose.rates) * ~kept * (values[-1] >= REGULAR)
+    gaps: np.ndarray = np.abs(pose.J.times(u) + pose.rates) * ~kept * (values[-1] >= SOUND)
     return gaps
 
 
@@ -182,7 +178,7 @@ def _blamed(pose: Pose, gaps: dict[int, float]) -> list[Redundant]:
 
 
 def _joints(equations: LoopEquations, redundant: Redundant, driven: np.ndarray) -> tuple[str, ...]:
-    names = [joint.name for joint in equations.loop.joints for _ in joint.rows]
+    names = equations.loop.joint_of
     rows = [redundant.row, *redundant.others]
     of_time = [row for row in rows if driven[row]]
     return tuple(dict.fromkeys(names[row] for row in (of_time if len(of_time) > 1 else rows)))

@@ -19,12 +19,10 @@ MOST_STEPS = 40
 """Largest number of steps of an assembly."""
 LONGEST_STEP = 1.0
 """Longest step (arms, rad), so that assembly stays near the described pose."""
-STATIONARY = 1e-9
-"""Slope of |C|, relative to |C|, below which contradicting equations are as close as possible."""
+ROUNDING = 1e-9
+"""Slope of |C| relative to |C|, norm of a row relative to the others, and direction, below which they count as zero."""
 LEAST_DAMPING = 1e-13
 """Smallest damping, which keeps C_q C_q^T regular with redundant equations."""
-LEAST_NORM = 1e-9
-"""Smallest row norm for the scaling, relative to the others, as a row that vanishes must not be amplified."""
 
 
 class Pose(NamedTuple):
@@ -97,7 +95,7 @@ class LoopEquations:
     def scale_rows(self, matrices: list[SparseMatrix]) -> None:
         """Scale rows so that the largest norm of each in the given scaled matrices is one."""
         norms = np.max([J.norms() for J in matrices], axis=0)
-        self.row_scale /= np.maximum(norms, LEAST_NORM * np.median(norms) or 1.0)
+        self.row_scale /= np.maximum(norms, ROUNDING * np.median(norms) or 1.0)
 
     def pose(self, q: np.ndarray, t: float) -> Pose:
         """Return the equations at given coordinates of the loop's bodies."""
@@ -142,7 +140,7 @@ class LoopEquations:
                 break
             closed = bool(np.abs(C).max() < CLOSED)
             slope = C_q.transposed_times(C)
-            if not closed and np.linalg.norm(slope) < STATIONARY * np.linalg.norm(C):
+            if not closed and np.linalg.norm(slope) < ROUNDING * np.linalg.norm(C):
                 break
             damping = max(float(C @ C), LEAST_DAMPING)
             step = -C_q.transposed_times(C_q.solved_gram(damping, C))

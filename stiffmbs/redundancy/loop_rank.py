@@ -8,18 +8,16 @@ from typing import NamedTuple
 import numpy as np
 
 from .loop_equations import AGREES, CLOSED, LoopEquations, Pose
+from .loops import DEPENDENT
 from .small_singular import small_singular
 
 SOUND = 1e-5
-"""Smallest singular value of the scaled J above which the equations are clearly independent."""
-DEPENDENT = 1e-8
-"""Singular value of the scaled J below which an equation is redundant, at regular poses."""
+"""Smallest singular value of the scaled J above which the equations are clearly independent.
+
+A pose with singular values between `DEPENDENT` and this one is nearly singular. Relative to the least value in general,
+it is the bound of a singular start."""
 BY_GAP = 30.0
 """Bound of redundancy in gaps of the start, for equations of limited precision."""
-UNCLEAR = 1e-9, 1e-5
-"""Interval of singular values that exclude a pose, as nearly singular, if there are others."""
-SINGULAR_START = 1e-5
-"""Singular value at the start, relative to the least in general, below which the start is singular."""
 POSES, PERTURBATION, SHRINKS = 3, 0.1, 5
 """Number of poses that confirm the rank, the perturbation (arms, rad), and the number of its reductions."""
 
@@ -29,7 +27,6 @@ class LoopRank(NamedTuple):
 
     Attributes
     ----------
-    equations : LoopEquations
     start : Pose
         Assembled.
     rank : int
@@ -83,25 +80,23 @@ def loop_rank(equations: LoopEquations, q: np.ndarray, t: float) -> LoopRank:
     asked = (values[1:] if gap else _clear(values[1:])) or values[1:] or values
     rank = max(int(np.sum(s > max(DEPENDENT, BY_GAP * gap))) for s in asked)
     least = max(float(s[rank - 1]) for s in asked) if rank else 0.0
-    start_rank = int(np.sum(values[0][:rank] > SINGULAR_START * least))
+    start_rank = int(np.sum(values[0][:rank] > SOUND * least))
     general = [k for k, s in enumerate(values) if _is_general(s, rank, least, k == 0 or any(s is own for own in asked))]
     null_spaces = [(poses[k], _last(decomposed[k][1], count - rank)) for k in general]
     return LoopRank(equations, start, rank, start_rank, least, null_spaces)
 
 
 def _last(vectors: np.ndarray, count: int) -> np.ndarray:
-    """Return the last `count` columns."""
     return vectors[:, vectors.shape[1] - count :]
 
 
 def _clear(values: list[np.ndarray]) -> list[np.ndarray]:
     """Return the singular values of poses that are not nearly singular."""
-    return [s for s in values if not np.any((s > UNCLEAR[0]) & (s < UNCLEAR[1]))]
+    return [s for s in values if not np.any((s > DEPENDENT) & (s < SOUND))]
 
 
 def _is_general(values: np.ndarray, rank: int, least: float, asked: bool) -> bool:
-    """Return True if a pose has the general rank."""
-    return asked and int(np.sum(values > SINGULAR_START * least)) == rank
+    return asked and int(np.sum(values > SOUND * least)) == rank
 
 
 def _perturbed(equations: LoopEquations, start: Pose) -> Iterator[Pose]:

@@ -11,10 +11,10 @@ from ..compile.group import Group
 from ..compile.state import State
 from ..compile.system import System
 from ..compile.terms import TERM_SETS
-from ..describe.element import Joint
+from ..elements.element import Joint
 
-FULL_RANK = 1e-8
-"""Determinant of the Gram matrix of normalised rows above which a joint's equations are independent on a body."""
+DEPENDENT = 1e-8
+"""Singular value, or determinant of the Gram matrix, of normalised rows below which they are dependent."""
 
 
 class LoopJoint(NamedTuple):
@@ -39,7 +39,6 @@ class Loop(NamedTuple):
 
     Attributes
     ----------
-    joints : tuple of LoopJoint
     bodies : tuple of int
         Their numbers in the system.
     rows, columns, coordinates : ndarrays of int
@@ -51,6 +50,11 @@ class Loop(NamedTuple):
     rows: np.ndarray
     columns: np.ndarray
     coordinates: np.ndarray
+
+    @property
+    def joint_of(self) -> list[str]:
+        """Name of the joint of each row."""
+        return [joint.name for joint in self.joints for _ in joint.rows]
 
 
 def loops(system: System, state: State) -> list[Loop]:
@@ -100,7 +104,7 @@ def _joints(system: System, state: State, g: int, group: Group) -> Iterator[tupl
     with np.errstate(invalid="ignore"):  # a joint that is undefined at this pose has no independent rows
         J /= np.where(norms > 0, norms, 1.0)
         parts = J.transpose(0, 2, 1, 3)
-        independent = np.linalg.det(parts @ parts.transpose(0, 1, 3, 2)) > FULL_RANK
+        independent = np.linalg.det(parts @ parts.transpose(0, 1, 3, 2)) > DEPENDENT
     for e, (name, joint) in enumerate(zip(group.names, group.elements, strict=True)):
         assert isinstance(joint, Joint)
         on = [int(body) for body in group.bodies[e]]

@@ -12,20 +12,17 @@ from ..compile.quaternions import rotated
 from ..compile.state import State
 from ..compile.system import System
 from ..compile.terms import TERM_SETS
-from ..describe.formula.formula import Formula
+from ..reading.formula.formula import Formula
 from ..solve.trajectory import Grid
+from .loop_equations import ROUNDING
 from .overconstraint import listed
 
 if TYPE_CHECKING:
-    from ..describe.element import Force
-    from ..describe.model_data import ModelData
+    from ..elements.element import Force
+    from ..model.model_data import ModelData
 
 SAMPLES = 4
 """Number of random states and times at which forces are compared, so that no gain is zero at all of them."""
-ROUNDING = 1e-9
-"""Relative size of rounding in a direction or in singular values."""
-SHORT = 1e-300
-"""Lower bound of a divisor."""
 
 
 def opposed_sentences(system: System, data: ModelData, q: np.ndarray, grid: Grid) -> tuple[str, ...]:
@@ -134,7 +131,7 @@ class _Directions:
     def space(self, without: Iterator[int] | list[int] | tuple[int, ...]) -> np.ndarray:
         """Return an orthonormal basis of the row space of all constraints except some rows."""
         J = np.delete(self._J, list(without), axis=0)
-        J = J / np.maximum(np.linalg.norm(J, axis=1, keepdims=True), SHORT)
+        J = J / np.maximum(np.linalg.norm(J, axis=1, keepdims=True), np.finfo(float).tiny)
         _, values, basis = np.linalg.svd(J, full_matrices=False)
         return basis[values > ROUNDING * max(values, default=0.0)]
 
@@ -157,7 +154,7 @@ class _Directions:
                 np.add.at(changes[k], column[moving], change[moving])
             changes /= self._scale
             _, values, ways = np.linalg.svd(changes, full_matrices=False)
-            yield from ways[values > ROUNDING * np.max(np.abs(samples), initial=SHORT)]
+            yield from ways[values > ROUNDING * np.max(np.abs(samples), initial=np.finfo(float).tiny)]
 
     def elsewhere(self, way: np.ndarray, held: dict[int, set[int]]) -> Iterator[np.ndarray]:
         """Yield a direction, and its variants with the force moved to a body connected by a bushing."""

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ..compile.system import System
-from .drop_first import TAKES_PART, Redundant
-from .loop_equations import Pose
+from .drop_first import TAKES_PART, Redundant, rank_of
 from .loops import LoopJoint
 from .rank_result import LoopRankResult
 from .redundancy import Redundancy
@@ -73,7 +72,7 @@ def listed(names: Sequence[str]) -> str:
 
 def _blocks(rank_result: LoopRankResult) -> list[list[Redundant]]:
     """Group redundant equations with common rows or the same joints."""
-    joint_of = [joint.name for joint in rank_result.rank.equations.loop.joints for _ in joint.rows]
+    joint_of = rank_result.rank.equations.loop.joint_of
     blocks: list[tuple[set[int], list[Redundant]]] = []
     for part in rank_result.redundant:
         blocks.append(({part.row, *part.others}, [part]))
@@ -105,7 +104,11 @@ def _overconstraint(system: System, rank_result: LoopRankResult, block: list[Red
     remedies = list(_remedies(rank_result, spaces[-1][1], joints))
     shares = [spaces[-1][1][rows] for rows in _own_rows(rank_result, joints)]
     elastic = elastic_joints(joints, shares)
-    chosen = _in_space(rank_result, spaces, joints) if system.of_body.dimensions == 3 else []
+    chosen: list[Choice] = []
+    if system.of_body.dimensions == 3:
+        from .replacements import replacements  # not imported for planar models
+
+        chosen = replacements(rank_result.rank.equations, spaces, joints)
     parts = indeterminate(rank_result.rank, spaces)
     channels = {name for part in rank_result.indeterminate if part.element in names for name in part.channels}
     return Overconstraint(
@@ -136,16 +139,7 @@ def _reason(system: System, joints: list[LoopJoint], driven: list[str], count: i
 
 
 def _between_the_same(joints: list[LoopJoint]) -> bool:
-    """Return True if joints connect the same bodies."""
     return all(set(joint.bodies) == set(joints[0].bodies) for joint in joints)
-
-
-def _in_space(
-    rank_result: LoopRankResult, spaces: Sequence[tuple[Pose, np.ndarray]], joints: Sequence[LoopJoint]
-) -> list[Choice]:
-    from .replacements import replacements
-
-    return replacements(rank_result.rank.equations, spaces, joints)
 
 
 def _of_block(rank_result: LoopRankResult, space: np.ndarray, block: list[Redundant]) -> np.ndarray:
@@ -160,8 +154,8 @@ def _remedies(
 ) -> Iterator[tuple[LoopJoint, ...]]:
     """Yield each joint that is a remedy alone, or else a few that are together."""
     count = space.shape[1]
-    own = list(_own_rows(rank_result, joints))
-    alone = [joint for joint, rows in zip(joints, own, strict=True) if _rank(space[rows]) == count]
+    own = _own_rows(rank_result, joints)
+    alone = [joint for joint, rows in zip(joints, own, strict=True) if rank_of(space[rows]) == count]
     if alone:
         yield from ((joint,) for joint in alone)
         return
@@ -186,22 +180,9 @@ def _together(space: np.ndarray, own: list[np.ndarray], elastic: list[bool]) -> 
         rest = rest - (rest @ taken.T) @ taken
 
 
-def _own_rows(rank_result: LoopRankResult, joints: list[LoopJoint]) -> Iterator[np.ndarray]:
-    """Yield the rows of each joint in the loop."""
-    first = {joint.name: row for row, joint in _first_rows(rank_result)}
-    yield from (np.arange(first[joint.name], first[joint.name] + len(joint.rows)) for joint in joints)
-
-
-def _first_rows(rank_result: LoopRankResult) -> Iterator[tuple[int, LoopJoint]]:
-    first = 0
-    for joint in rank_result.rank.equations.loop.joints:
-        yield first, joint
-        first += len(joint.rows)
-
-
-def _rank(rows: np.ndarray) -> int:
-    values = np.linalg.svd(rows, compute_uv=False)
-    return int(np.sum(values > TAKES_PART)) if values.size else 0
+def _own_rows(rank_result: LoopRankResult, joints: list[LoopJoint]) -> list[np.ndarray]:
+    joint_of = rank_result.rank.equations.loop.joint_of
+    return [np.array([row for row, name in enumerate(joint_of) if name == joint.name]) for joint in joints]
 
 
 def _remedy(

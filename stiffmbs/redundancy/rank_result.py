@@ -25,11 +25,8 @@ class LoopRankResult(NamedTuple):
 
     Attributes
     ----------
-    rank : LoopRank
     redundant : list of Redundant
         Dropped equations.
-    indeterminate : list of Indeterminate
-    inconsistencies : list of Inconsistency
     driven : ndarray of bool
         Mask of the loop's rows that depend on time.
     motion_unique : bool

@@ -34,7 +34,6 @@ class _Option:
 
     Attributes
     ----------
-    joint, kind : str
     let_go : list of ndarray, shape (components, null vectors)
         Released components along each null vector, at each pose.
     count : int
@@ -118,7 +117,6 @@ def _independent(choice: Sequence[_Option]) -> bool:
 
 
 def _one_each(alone: Sequence[tuple[_Option]]) -> Iterator[tuple[_Option]]:
-    """Yield the first option of each joint."""
     yield from {choice[0].joint: choice for choice in reversed(alone)}.values()
 
 

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from .drop_first import TAKES_PART
+from .drop_first import TAKES_PART, rank_of
 from .loops import LoopJoint
 
 
@@ -43,7 +43,7 @@ def _decides(shares: Sequence[np.ndarray]) -> bool:
     if len(shares) < 2:
         return False
     count = shares[0].shape[1]
-    return all(_rank(np.vstack([*shares[:k], *shares[k + 1 :]])) == count for k in range(len(shares)))
+    return all(rank_of(np.vstack([*shares[:k], *shares[k + 1 :]])) == count for k in range(len(shares)))
 
 
 def _last_of_each_path(joints: Sequence[LoopJoint], usable: Sequence[int]) -> list[int]:
@@ -55,8 +55,3 @@ def _last_of_each_path(joints: Sequence[LoopJoint], usable: Sequence[int]) -> li
             one, other = (path[k] for k in around)
             path = [one if p == other else p for p in path]
     return list({path[k]: k for k in usable}.values())
-
-
-def _rank(rows: np.ndarray) -> int:
-    values = np.linalg.svd(rows, compute_uv=False)
-    return int(np.sum(values > TAKES_PART)) if values.size else 0

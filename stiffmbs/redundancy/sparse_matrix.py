@@ -13,19 +13,17 @@ DENSE_UP_TO = 300
 
 @dataclass(frozen=True)
 class SparseMatrix:
-    """Sparse matrix with unique places.
-
-    Attributes
-    ----------
-    row, column : ndarrays of int
-    value : ndarray
-    shape : tuple of int
-    """
+    """Sparse matrix with unique places."""
 
     row: np.ndarray
     column: np.ndarray
     value: np.ndarray
     shape: tuple[int, int]
+
+    @property
+    def is_small(self) -> bool:
+        """True if dense factors are used."""
+        return self.shape[0] <= DENSE_UP_TO
 
     @property
     def finite(self) -> bool:
@@ -75,7 +73,7 @@ class SparseMatrix:
 
     def solved_gram(self, shift: float, right: np.ndarray) -> np.ndarray:
         """Return x of (A A^T + shift I) x = right, with one or several columns; the shift is positive."""
-        if self.shape[0] <= DENSE_UP_TO:
+        if self.is_small:
             return np.linalg.solve(self._dense_gram(shift), right)
         result: np.ndarray = _factors(self._sparse_gram(shift)).solve(right)
         return result
@@ -84,7 +82,7 @@ class SparseMatrix:
         """Return True if all singular values exceed a bound: A A^T - least^2 I is positive definite."""
         if self.shape[0] > self.shape[1]:
             return False
-        if self.shape[0] <= DENSE_UP_TO:
+        if self.is_small:
             try:
                 np.linalg.cholesky(self._dense_gram(-(least**2)))
             except np.linalg.LinAlgError:
@@ -126,7 +124,6 @@ class SparseMatrix:
 
 
 def _factors(gram: Any) -> Any:
-    """Return SuperLU's factors of a symmetric matrix, with diagonal pivots."""
     from scipy.sparse.linalg import splu
 
     return splu(gram, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})

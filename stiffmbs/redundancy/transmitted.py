@@ -11,7 +11,7 @@ def transmitted() -> dict[str, tuple[str, ...]]:
     Kinds that transmit only forces come first, those with most components leading, as point guides are easier to make
     than orientation guides.
     """
-    from ..describe.spatial.model import JOINTS
+    from ..elements.spatial.spatial_kinds import JOINTS
 
     found = [(kind, joint.transmits) for kind, joint in JOINTS.items() if joint.transmits]
     return dict(sorted(found, key=lambda item: (any(name[0] == "t" for name in item[1]), -len(item[1]))))

@@ -7,16 +7,13 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compile.reactions import reactions
-from ..describe.parts.names import owner_of
+from ..reading.names import owner_of
 from .directions import Direction, directions
+from .drop_first import TAKES_PART
 from .loop_equations import LoopEquations, Pose
 from .loop_rank import LoopRank
 
-CHANGES = 1e-6
-"""Change of a reaction, relative to the largest, from which on it is not unique."""
 TORQUES = ("torque", "tx", "ty", "tz")
-SPEED = 1.0
-"""Velocity (arms and rad per second) for forces that depend on reactions, as friction is zero at rest."""
 
 
 class Indeterminate(NamedTuple):
@@ -24,7 +21,6 @@ class Indeterminate(NamedTuple):
 
     Attributes
     ----------
-    element : str
     channels : tuple of str
         Components in ground axes, such as ``hinge.fx``.
     directions : tuple of Direction
@@ -53,11 +49,11 @@ def indeterminate(found: LoopRank, null_spaces: list[tuple[Pose, np.ndarray]]) -
     changes = [changes_of(equations, pose, space) for pose, space in null_spaces]
     of_owner: dict[str, list[str]] = {}
     for name in changes[0]:
-        if any(np.abs(change[name]).max() > CHANGES for change in changes):
+        if any(np.abs(change[name]).max() > TAKES_PART for change in changes):
             of_owner.setdefault(owner_of(name), []).append(name)
     poses = [pose for pose, _ in null_spaces]
     return [
-        Indeterminate(owner, tuple(names), tuple(directions(equations, poses, changes, owner, CHANGES)))
+        Indeterminate(owner, tuple(names), tuple(directions(equations, poses, changes, owner, TAKES_PART)))
         for owner, names in of_owner.items()
     ]
 
@@ -74,10 +70,10 @@ def forces_change(found: LoopRank, null_spaces: list[tuple[Pose, np.ndarray]]) -
         _place(equations, pose)
         rng = np.random.default_rng(1)
         columns = equations.loop.columns
-        state.u[columns] = equations.velocities(SPEED * rng.uniform(-1, 1, len(columns)))
+        state.u[columns] = equations.velocities(rng.uniform(-1, 1, len(columns)))  # friction is zero at rest
         for lam in (*_multipliers(equations, space).T, *-_multipliers(equations, space).T):
             at_zero, loaded = (_force(equations, part * lam, pose.t) for part in (0.0, 1.0))
-            if np.abs(loaded - at_zero).max() > CHANGES:
+            if np.abs(loaded - at_zero).max() > TAKES_PART:
                 return True
     return False
 

@@ -10,10 +10,10 @@ import numpy as np
 
 from ..compile.group import Group
 from ..compile.system import System
-from ..describe.element import Element
-from ..describe.formula.formula import Formula
-from ..describe.table import Table
+from ..elements.element import Element
 from ..presolve.dependence import curved
+from ..reading.formula.formula import Formula
+from ..reading.table import Table
 from .redundancy import Redundancy
 
 

@@ -8,13 +8,14 @@ import numpy as np
 
 from ..compile.reactions import reactions
 from ..compile.system import System
-from ..describe.model_data import ModelData
-from ..describe.parts.names import owner_of
+from ..compile.terms import TERM_SETS
+from ..dynamics.dynamics import OutputRows
 from ..errors import ChannelError
+from ..model.model_data import ModelData
 from ..presolve.subsystems import counters_of
-from ..solve.dynamics import OutputRows
+from ..reading.did_you_mean import did_you_mean
+from ..reading.names import owner_of
 from .body_axes import in_own_axes
-from .states import state_channels
 
 
 def channels_of(model: ModelData, system: System, rows: OutputRows) -> dict[str, np.ndarray]:
@@ -42,6 +43,26 @@ def channels_of(model: ModelData, system: System, rows: OutputRows) -> dict[str,
     return channels | requested(model, rows.t, channels, counters(model, system, rows.q))
 
 
+def state_channels(system: System, q: np.ndarray, values: np.ndarray) -> dict[str, np.ndarray]:
+    """Return values and rates of states, and the outputs of their equations, by name.
+
+    Parameters
+    ----------
+    q : ndarray, shape (n, n_q)
+    values : ndarray
+        Values of the set ``output``, one row per instant.
+    """
+    channels = {name: q[:, system.first_state + k] for k, name in enumerate(system.states)}
+    algebraic = {name for name, is_algebraic in zip(system.states, system.algebraic, strict=True) if is_algebraic}
+    place = 1 + TERM_SETS["output"].index("signal")
+    for g, group in enumerate(system.groups):
+        for k, name in enumerate(group.names if group.entries["signal"] else ()):
+            if name not in algebraic:  # the signal of an algebraic state is always zero
+                signal = values[:, system.places["output"][g, place] + k]
+                channels[f"{name}.rate" if name in channels else name] = signal
+    return channels
+
+
 def named(channels: Mapping[str, np.ndarray], name: str) -> np.ndarray:
     """Return a channel by its name.
 
@@ -55,7 +76,9 @@ def named(channels: Mapping[str, np.ndarray], name: str) -> np.ndarray:
     except KeyError:
         owner = owner_of(str(name))
         near = [other for other in channels if owner_of(other) == owner] or list(channels)[:12]
-        raise ChannelError(f"found no channel '{name}', expected one such as {', '.join(near)}") from None
+        raise ChannelError(
+            f"found no channel '{name}'{did_you_mean(name, channels)}, expected one such as {', '.join(near)}"
+        ) from None
 
 
 def series_of(model: ModelData, system: System, rows: OutputRows, name: str) -> np.ndarray:

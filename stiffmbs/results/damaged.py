@@ -11,7 +11,7 @@ from pathlib import Path
 from xml.etree.ElementTree import ParseError
 from zipfile import BadZipFile
 
-from ..describe.files.files_read import check_regular
+from ..reading.files.files_read import check_regular
 
 RAISED = (
     BadZipFile, zlib.error, struct.error, tokenize.TokenError, ParseError, ArithmeticError, AssertionError, AttributeError,

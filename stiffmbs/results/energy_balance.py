@@ -18,7 +18,7 @@ from ..compile.machine.layout import addresses
 from ..compile.machine.routines import together
 from ..compile.system import System
 from ..compile.terms import TERM_SETS
-from ..solve.dynamics import OutputRows
+from ..dynamics.dynamics import OutputRows
 
 WORK, STEPS_INSIDE = together(
     "stiffmbs.results.native.work",
@@ -30,8 +30,6 @@ MOST_INSTANTS = 100_000
 """Number of instants of a balance at most; of more, only every second (or third, ...) is used."""
 BROKEN = 1e-2
 """Part of the exchanged energy that may be missing before it is reported."""
-SEEN = 1
-"""Number of solver steps that may end inside an interval whose work is resolved."""
 
 
 @dataclass(frozen=True)
@@ -81,7 +79,7 @@ class Balance:
     @property
     def _seen(self) -> np.ndarray:
         """Return True for intervals whose work may be resolved: those with at most one solver step inside."""
-        return (self.steps <= SEEN) | self.keeps_energy
+        return (self.steps <= 1) | self.keeps_energy
 
     @property
     def imbalance(self) -> float:
@@ -93,6 +91,11 @@ class Balance:
     def between(self) -> float:
         """Return the sum of the energies missing in the other intervals: work between instants, or an error."""
         return float(np.sum(np.abs(np.diff(self.open)), where=~self._seen))
+
+    @property
+    def may_be_broken(self) -> bool:
+        """Return True if the missing energy requires a closer check."""
+        return self.furthest > BROKEN * self.scale
 
     def as_dict(self) -> dict[str, float | bool]:
         """Return the object ``balance`` of ``stiffmbs run --json``, J."""
@@ -107,8 +110,6 @@ def energy_balance(system: System, rows: OutputRows, steps: np.ndarray) -> Balan
 
     Parameters
     ----------
-    system : System
-    rows : OutputRows
     steps : ndarray
         Ends of the solver's own steps, s; empty if unknown.
     """
@@ -131,11 +132,6 @@ def energy_balance(system: System, rows: OutputRows, steps: np.ndarray) -> Balan
         scale = max(float(kinetic.max()), float(np.ptp(potential)), float(np.ptp(work)))
     inside = steps_inside(t, steps)
     return Balance(t, total - total[0], work, within, inside, resolved, scale, keeps_energy)
-
-
-def may_be_broken(missing: float, exchanged: float) -> bool:
-    """Return True if the energy missing in a balance, J, requires a closer check."""
-    return missing > BROKEN * exchanged
 
 
 def work_since_start(t: np.ndarray, power: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:

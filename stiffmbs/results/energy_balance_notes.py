@@ -13,8 +13,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..compile.system import System
-from ..describe.settings import RunSettings
-from ..solve.dynamics import OutputRows
+from ..dynamics.dynamics import OutputRows
+from ..model.settings import RunSettings
 from ..solve.settings import traits_of
 from .energy_balance import BROKEN, Balance, potentials
 
@@ -25,7 +25,7 @@ PER_TOLERANCE = 100.0
 TOLD = 1e-6
 """Part of the exchanged energy above which work between output instants is reported."""
 CERTAIN = 3.0
-"""Ratio of an interval's missing energy to the end corrections of the quadrature above which it counts."""
+"""Ratio of missing energy to the resolution of the quadrature, such as its end corrections, above which it counts."""
 OF_TOLERANCE = 10.0
 """Factor on the work of the largest force along a position error of the tolerance; smaller energies are ignored."""
 OF_POTENTIAL = 1e-10

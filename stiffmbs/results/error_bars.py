@@ -21,8 +21,6 @@ import numpy as np
 Fine = tuple[np.ndarray, np.ndarray, np.ndarray]
 SAFETY = 2.0
 """Factor on the difference, valid if a better run has at most half the error."""
-LEVEL = 1e-300
-"""Curvature below which a peak counts as flat."""
 FINER = 1.1
 """Factor on the excess at finer instants, as the finest show a little more."""
 
@@ -45,11 +43,11 @@ class ErrorBar:
     over_time: float
     least: float
     greatest: float
-    sampled_least: float = 0.0
-    sampled_greatest: float = 0.0
+    sampled_least: float
+    sampled_greatest: float
 
 
-UNKNOWN = ErrorBar(np.nan, np.nan, np.nan)
+UNKNOWN = ErrorBar(np.nan, np.nan, np.nan, 0.0, 0.0)
 
 
 def error_bar(values: np.ndarray, others: Sequence[np.ndarray], fine: Fine | None, rounding: float) -> ErrorBar:
@@ -107,7 +105,7 @@ def between(times: np.ndarray, values: np.ndarray, at: np.ndarray) -> float:
     k = 1 + np.flatnonzero((values[1:-1] >= values[:-2]) & (values[1:-1] >= values[2:]))
     before, after = times[k - 1] - times[k], times[k + 1] - times[k]
     fall, rise = (values[k - 1] - values[k]) / before, (values[k + 1] - values[k]) / after
-    bend = np.minimum((rise - fall) / (after - before), -LEVEL)
+    bend = np.minimum((rise - fall) / (after - before), -np.finfo(float).tiny)  # a flat peak has no curvature
     slope = fall - bend * before
     around = [values[np.clip(k + beside, 0, len(values) - 1)] for beside in (-2, -1, 1, 2)]
     top = np.minimum(slope**2 / (-4 * bend), values[k] - np.nanmin(around, axis=0))  # limit at jumps

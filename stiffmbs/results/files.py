@@ -4,19 +4,19 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Callable, Collection
-from importlib.util import find_spec
+from collections.abc import Callable, Collection, Iterator
 from pathlib import Path
 from zipfile import ZipFile
 
 import numpy as np
 
-from ..describe.files.quoted import quoted
-from ..errors import InputError
-from ..solve.storage import blocks, release
-from .adams_results import write_adams_results
+from ..dynamics.storage import blocks, release
+from ..errors import InputError, refuse_missing
+from ..reading.files.quoted import quoted
 from .saved import record
 from .solution import Solution
+
+NAMESPACE = "http://www.mscsoftware.com/:xrf10"
 
 
 def _write_csv(path: Path, solution: Solution) -> None:
@@ -61,12 +61,44 @@ def _write_table(path: Path, solution: Solution) -> None:
     np.savetxt(path, columns, delimiter="\t", fmt="%.16e", header="\t".join(heads), comments="", encoding="utf-8")
 
 
+def _write_adams(path: Path, solution: Solution) -> None:
+    """Write Adams' XML for Adams/PostProcessor (MSC Adams/Solver, RESULTS statement, XRF).
+
+    A map that names the numbers of a step is followed by the steps.  The entity is the part of a channel's name before
+    its last dot, the component the part after it.
+    """
+    from xml.sax.saxutils import quoteattr
+
+    with path.open("w", encoding="utf-8") as file:
+        file.write('<?xml version="1.0" encoding="UTF-8"?>\n')
+        file.write(f'<Results xmlns="{NAMESPACE}">\n<Analysis name={quoteattr(solution.name or "run")}>\n')
+        file.write('<StepMap name="map_001">\n<Entity name="time">\n<Component name="TIME" id="1"/>\n</Entity>\n')
+        file.writelines(_entities(solution))
+        file.write('</StepMap>\n<Data name="dynamic_001">\n')
+        columns = (solution.time, *solution.channels.values())
+        for k in range(len(solution.time)):
+            numbers = "\n".join(f"{column[k]:.16e}" for column in columns)
+            file.write(f'<Step type="dynamic">\n{numbers}\n</Step>\n')
+        file.write("</Data>\n</Analysis>\n</Results>\n")
+
+
+def _entities(solution: Solution) -> Iterator[str]:
+    from xml.sax.saxutils import quoteattr
+
+    for number, channel in enumerate(solution.channels, start=2):
+        entity, _, component = channel.rpartition(".")
+        yield (
+            f"<Entity name={quoteattr(entity or channel)}>\n"
+            f'<Component name={quoteattr(component if entity else "")} id="{number}"/>\n</Entity>\n'
+        )
+
+
 WRITERS: dict[str, Callable[[Path, Solution], None]] = {
     ".csv": _write_csv,
     ".npz": _write_npz,
     ".nc": _write_netcdf,
     ".tab": _write_table,
-    ".res": write_adams_results,
+    ".res": _write_adams,
 }
 
 
@@ -79,8 +111,8 @@ def check_output(path: Path, option: str = "-o") -> None:
         If the suffix is unknown, or the folder or a package is missing.
     """
     refuse_path(option, path, WRITERS)
-    if path.suffix == ".nc" and find_spec("xarray") is None:
-        raise InputError(f"{option} {path}: found no xarray, expected it installed: pip install 'stiffmbs[netcdf]'")
+    if path.suffix == ".nc":
+        refuse_missing("xarray", "'stiffmbs[netcdf]'", f"{option} {path}: ")
 
 
 def refuse_path(option: str, path: Path, endings: Collection[str]) -> None:
@@ -130,7 +162,6 @@ def written_whole(path: Path, write_to: Callable[[Path], object]) -> None:
 
     Parameters
     ----------
-    path : Path
     write_to : callable
         Function that writes to a given path.
     """

@@ -11,16 +11,12 @@ import numpy as np
 
 from ..solve.trajectory import IN_DOUBT, History
 from .energy_balance import Balance
-from .scales import kind_of
+from .scales import MECHANICAL, ROUNDING, kind_of
 from .solution import Solution
 
 SAME_VALUE = 1e-6
 """Difference up to which two values are equal, relative to the largest value of channels of that kind."""
 VIOLATIONS = "constraint."
-ROUNDING = 1e-9
-"""Rounding of torques relative to forces times a length, and of forces relative to torques over a length."""
-MECHANICAL = ("force", "torque")
-"""Kinds of channels that are zero if their element does not exist."""
 COUNTED = (
     "steps", "residuals", "jacobians", "factorizations", "error_test_failures", "convergence_failures", "newton_iterations",
     "newton_failures", "rejected", "accelerations", "breakpoints", "events", "moves", "seconds",
@@ -36,7 +32,6 @@ def joined(name: str, solutions: Sequence[Solution]) -> Solution:
 
     Parameters
     ----------
-    name : str
     solutions : sequence of Solution
         At least one.
     """
@@ -80,19 +75,14 @@ def _kept_rows(solutions: Sequence[Solution]) -> list[slice]:
         for name, values in solution.channels.items():
             kind = kind_of(name) or name
             sizes[kind] = max(sizes.get(kind, 0.0), float(np.nanmax(np.abs(values), initial=0.0)))
-    _with_rounding(sizes)
+    force, torque = (sizes.get(kind, 0.0) for kind in MECHANICAL)  # a zero one is rounding of the other
+    length = sizes.get("position") or 1.0
+    sizes["force"], sizes["torque"] = max(force, ROUNDING * torque / length), max(torque, ROUNDING * force * length)
     found = []
     for before, after in itertools.pairwise(solutions):
         same = before.time[-1] == after.time[0] and before.channels.keys() == after.channels.keys()
         found.append(slice(None, -1 if same and _goes_on(before, after, sizes) else None))
     return [*found, slice(None)]
-
-
-def _with_rounding(sizes: dict[str, float]) -> None:
-    """Raise the sizes of forces and torques to at least the rounding of each other, as a zero one is pure rounding."""
-    force, torque = (sizes.get(kind, 0.0) for kind in MECHANICAL)
-    length = sizes.get("position") or 1.0
-    sizes["force"], sizes["torque"] = max(force, ROUNDING * torque / length), max(torque, ROUNDING * force * length)
 
 
 def _goes_on(before: Solution, after: Solution, sizes: Mapping[str, float]) -> bool:

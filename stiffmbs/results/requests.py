@@ -8,14 +8,14 @@ from typing import Any
 import numpy as np
 
 from ..compile.table_values import curve
-from ..describe.formula.functions import FUNCTIONS
-from ..describe.formula.nodes import TIME
-from ..describe.formula.text import evaluate
-from ..describe.model_data import ModelData
-from ..describe.requests.check import ends
-from ..describe.requests.order import in_order
-from ..describe.requests.output import CONTINUOUS_ANGLES, Output, Term, placeholder
-from ..solve.storage import allocated, blocks, release
+from ..dynamics.storage import allocated, blocks, release
+from ..elements.requests.check import ends
+from ..elements.requests.order import in_order
+from ..elements.requests.output import CONTINUOUS_ANGLES, Output, Term, placeholder
+from ..model.model_data import ModelData
+from ..reading.formula.functions import FUNCTIONS
+from ..reading.formula.nodes import TIME
+from ..reading.formula.text import evaluate
 from .marker_measures import MAGNITUDES, SCALARS, VECTORS
 from .marker_motion import Channels, Motions
 
@@ -29,7 +29,6 @@ def requested(model: ModelData, time: np.ndarray, channels: Channels, counters: 
 
     Parameters
     ----------
-    model : ModelData
     time : ndarray, shape (n,)
         Times, s.
     channels : mapping of str to ndarray

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..describe.figure import Figure
 from ..errors import InputError
+from ..model.scene import Figure
 from ..solve.trajectory import History, Outcome
 from .damaged import readable
 from .energy_balance import Balance
@@ -41,16 +41,11 @@ def record(solution: Solution) -> dict[str, np.ndarray]:
         "figure": solution.figure and solution.figure.model_dump(),
     }
     return {
-        ABOUT: np.array(json.dumps(about, default=_plain)),
+        ABOUT: np.array(json.dumps(about, default=lambda number: number.item())),
         **{HISTORY + part.name: getattr(solution.history, part.name) for part in fields(History)},
         **{TURNS + name: values for name, values in solution.turns.items()},
         **{BALANCE + part.name: np.asarray(getattr(solution.balance, part.name)) for part in fields(Balance)},
     }
-
-
-def _plain(value: Any) -> Any:
-    """Return a number of NumPy as a Python number."""
-    return value.item()
 
 
 def loaded(path: Path) -> Solution:

@@ -11,16 +11,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..describe.files.files_read import content_of
-from ..describe.files.quoted import quoted
 from ..errors import InputError
+from ..reading.files.files_read import content_of
+from ..reading.files.quoted import quoted
 from .damaged import readable
+from .scales import ROUNDING
 
 if TYPE_CHECKING:
     from .solution import Solution
 
-SAME_INSTANT = 1e-9
-"""Part of the time between two rows by which an instant may differ from that of a row."""
 TURNS = "run/turns/"
 """Prefix of the names of revolution counters in .npz files."""
 
@@ -107,7 +106,7 @@ def _row(source: str, time: np.ndarray, arrays: Mapping[str, np.ndarray], at: fl
 def _number_of_row(source: str, time: np.ndarray, at: float) -> int:
     k = int(np.argmin(np.abs(time - at)))
     apart = np.diff(time)
-    if not abs(time[k] - at) <= SAME_INSTANT * max(float(np.max(apart, initial=0.0)), abs(at)):
+    if not abs(time[k] - at) <= ROUNDING * max(float(np.max(apart, initial=0.0)), abs(at)):
         near = time[max(0, k - 1) : k + 2]
         raise InputError(
             f"{source}: found no row at t = {at:.9g} s, expected an instant that was saved: there are {len(time)} from "

@@ -7,27 +7,29 @@ from types import MappingProxyType
 
 import numpy as np
 
-from ..describe.parts.names import owner_of
+from ..reading.formula.measured import CHANNELS, unit_of
+from ..reading.names import owner_of
 
-SMALL = {"force": 1e-2, "torque": 1e-2}
-LITTLE = 0.1
-"""Least size of a body or element relative to the largest of its kind: smaller for forces than for motions."""
+MECHANICAL = ("force", "torque")
+"""Kinds of channels that are zero if their element does not exist."""
+LITTLE, LITTLE_FORCE = 0.1, 1e-2
+"""Least size of a body, or of the force or torque of an element, relative to the largest of its kind."""
+ROUNDING = 1e-9
+"""Difference that counts as rounding of results, relative to a size, or for instants to a length of time."""
 FIXED = 1e-8
 """Largest motion that counts as none, in sizes of the mechanism and rad."""
 CROSSED = 1e-3
 """Least size of torques relative to forces, and of rotations relative to displacements, at the mechanism's size."""
 REQUEST_ROUNDING = 1e-14
 """Part of the largest number of all channels below which a request of unknown unit is only rounding."""
-MEASURED = {
-    "position": "x y z deflection", "angle": "angle slip_angle camber", "orientation": "q0 q1 q2 q3", "velocity": "vx vy vz",
-    "angular velocity": "omega wx wy wz", "acceleration": "ax ay az", "angular acceleration": "alpha wdx wdy wdz",
-    "force": "fx fy fz longitudinal lateral load", "torque": "torque tx ty tz overturning rolling aligning", "energy": "kinetic potential total",
-}  # fmt: skip
-KINDS = {ending: kind for kind, endings in MEASURED.items() for ending in endings.split()}
-UNITS = {
-    "position": "m", "angle": "rad", "velocity": "m/s", "angular velocity": "rad/s", "acceleration": "m/s^2",
-    "angular acceleration": "rad/s^2", "force": "N", "torque": "N m", "energy": "J",
-}  # fmt: skip
+PLACED = {"length": "position", "number": "orientation"}
+ON_THEIR_OWN = ("slip", "deflection_x", "deflection_y")
+"""Channels of tyres without a common scale."""
+_DIMENSIONS = {name: dimension for name, dimension in CHANNELS.items() if name not in ON_THEIR_OWN}
+KINDS = {name: PLACED.get(dimension, dimension) for name, dimension in _DIMENSIONS.items()}
+KINDS |= dict.fromkeys(("kinetic", "potential", "total"), "energy")
+"""Kind of each channel, by the last part of its name."""
+UNITS = {KINDS[name]: unit_of(dimension) for name, dimension in _DIMENSIONS.items()} | {"energy": "J"}
 TURNING = {
     "angle": "position", "orientation": "position", "angular velocity": "velocity", "angular acceleration": "acceleration",
 }  # fmt: skip
@@ -90,7 +92,9 @@ def scales(
         largest[kind] = max(largest.get(kind, 0.0), CROSSED * largest.get(of, 0.0) / size)
     largest["torque"] = max(largest.get("torque", 0.0), CROSSED * largest.get("force", 0.0) * size)
     return {
-        name: max(own[key], SMALL.get(key[1], LITTLE) * largest[key[1]]) if key[1] else own[key]
+        name: max(own[key], (LITTLE_FORCE if key[1] in MECHANICAL else LITTLE) * largest[key[1]])
+        if key[1]
+        else own[key]
         for name in channels
         for key in [(_owner(name), kinds[name])]
     }

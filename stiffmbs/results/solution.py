@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 
-from ..describe.figure import Figure
-from ..errors import InputError
-from ..solve.storage import release
+from ..dynamics.storage import release
+from ..errors import InputError, refuse_missing
+from ..methods import SolutionMethods
+from ..model.scene import Figure
 from ..solve.trajectory import History, Outcome
 from .channels import named
 from .energy_balance import Balance
@@ -21,13 +22,12 @@ from .scales import UNITS, kind_of
 if TYPE_CHECKING:
     import pandas
     import xarray
-    from matplotlib.figure import Figure as Sheet
 
     from .saved_state import SavedState
 
 
 @dataclass(frozen=True, repr=False)
-class Solution(Mapping[str, np.ndarray]):
+class Solution(SolutionMethods, Mapping[str, np.ndarray]):
     """Channels over time: ``solution["rail.fy"]``, and ``solution.time`` (or ``solution.t``).
 
     Attributes
@@ -122,12 +122,6 @@ class Solution(Mapping[str, np.ndarray]):
     def __repr__(self) -> str:
         return f"<Solution '{self.name}': {len(self.channels)} channels at {len(self.time)} instants, {self.message}>"
 
-    def _repr_html_(self) -> str:
-        """Return the representation in a notebook."""
-        from ..show.html import solution_html
-
-        return solution_html(self)
-
     def __array__(self, *_: Any, **__: Any) -> NoReturn:
         raise InputError(
             "found a whole solution in place of an array, expected one channel, solution['energy.total'], or solution.to_pandas()"
@@ -141,9 +135,12 @@ class Solution(Mapping[str, np.ndarray]):
         InputError
             If pandas is not installed.
         """
-        from .frames import data_frame
+        refuse_missing("pandas", "pandas")
+        import pandas
 
-        return data_frame(self)
+        frame = pandas.DataFrame(self.channels, index=pandas.Index(self.time, name="time"))
+        frame.attrs = {"name": self.name, "units": {"time": "s", **self.units}}
+        return frame
 
     def to_xarray(self) -> xarray.Dataset:
         """Return a data set of all channels over time, s, with their units (needs xarray, the extra ``netcdf``).
@@ -153,9 +150,17 @@ class Solution(Mapping[str, np.ndarray]):
         InputError
             If xarray is not installed.
         """
-        from .frames import data_set
+        refuse_missing("xarray", "'stiffmbs[netcdf]'")
+        import xarray
 
-        return data_set(self)
+        variables = {}
+        for name, values in self.channels.items():
+            unit = self.unit(name)
+            known = {"channel": name, "unique": int(name not in self.not_unique), **({"units": unit} if unit else {})}
+            variables[name] = ("time", values, known)
+        about = {"title": self.name, "outcome": self.outcome.name, "message": self.message}
+        time = xarray.Variable("time", self.time, {"units": "s"})
+        return xarray.Dataset(variables, coords={"time": time}, attrs=about)
 
     def save(self, path: str | Path) -> None:
         """Write every channel to a file, completely or not at all, as ``stiffmbs run -o`` does.
@@ -204,48 +209,6 @@ class Solution(Mapping[str, np.ndarray]):
         from .saved import loaded
 
         return loaded(Path(path))
-
-    def summary(self, all: bool = False) -> str:
-        """Return what ``stiffmbs run`` prints: loads of elements, energy balance, statistics of the solver, notes.
-
-        Parameters
-        ----------
-        all : bool
-            Whether to list the loads of all elements; by default the ten largest are listed.
-        """
-        from ..show.summary import summary
-
-        return summary(self, all)
-
-    def plot(self, *channels: str, x: str = "time", z: str = "", title: str = "", equal: bool = False) -> Sheet:
-        """Plot channels over time, or over another channel (needs matplotlib, the extra ``plot``).
-
-        Parameters
-        ----------
-        *channels : str
-            Channels to plot; by default the scene's own figure, or the total energy.
-        x : str
-            A channel, or ``"time"``.
-        z : str
-            A channel: the figure is then a path in space, of one channel over `x`.
-        title : str
-            Title of the figure; the scene's name by default.
-        equal : bool
-            True for the same scale on all axes, as for paths.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-            Figure of pyplot, which ``pyplot.show()`` displays.
-
-        Raises
-        ------
-        InputError
-            If there is no such channel, or matplotlib is not installed.
-        """
-        from ..show.figure import plotted
-
-        return plotted(self, Figure(y=channels, x=x, z=z, title=title, equal=equal) if channels else self.figure)
 
     def energy_drift(self) -> float:
         """Return the largest change of the total energy since the start, J."""

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..describe.spatial.orientation import conjugate, product, rotated
-from .robot import SAME_AXES, Link, LinkJoint, Robot
+from ..elements.spatial.orientation import IDENTITY, conjugate, product, rotated
+from .robot import Link, LinkJoint, Robot
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ class Placed:
         return product(conjugate(self.orientation), orientation)
 
 
-WORLD = Placed(np.zeros(3), SAME_AXES, np.zeros(3), np.zeros(3))
+WORLD = Placed(np.zeros(3), IDENTITY, np.zeros(3), np.zeros(3))
 
 
 def frames(robot: Robot, coordinates: Mapping[str, float], rates: Mapping[str, float]) -> dict[str, tuple[Placed, ...]]:

@@ -8,9 +8,10 @@ from typing import Literal
 
 import numpy as np
 
+from ..elements.spatial.marker import ORIGIN
+from ..elements.spatial.orientation import IDENTITY
+
 JointKind = Literal["hinge", "slide", "ball", "free"]
-ORIGIN = (0.0, 0.0, 0.0)
-SAME_AXES = (1.0, 0.0, 0.0, 0.0)
 
 
 class RobotFault(Exception):
@@ -23,7 +24,6 @@ class LinkJoint:
 
     Attributes
     ----------
-    name : str
     kind : str
         ``hinge``, ``slide``, ``ball`` or ``free``.
     point, axis : tuple of float
@@ -64,12 +64,10 @@ class Link:
 
     Attributes
     ----------
-    name : str
     parent : str or None
         None for the world.
     position, orientation : tuple of float
         Frame of the link in the parent's with all joints at their zero: m, quaternion with the scalar first.
-    mass : float
     center_of_mass : tuple of float
         In its frame, m.
     inertia : ndarray, shape (3, 3)
@@ -83,7 +81,7 @@ class Link:
     name: str
     parent: str | None
     position: tuple[float, ...] = ORIGIN
-    orientation: tuple[float, ...] = SAME_AXES
+    orientation: tuple[float, ...] = IDENTITY
     mass: float = 0.0
     center_of_mass: tuple[float, ...] = ORIGIN
     inertia: np.ndarray = field(default_factory=lambda: np.zeros((3, 3)))
@@ -105,7 +103,6 @@ class Transmission:
 
     Attributes
     ----------
-    name : str
     gears : mapping of str to float
         Gear by joint.
     gain, bias : tuple of float
@@ -122,8 +119,8 @@ class Transmission:
 
     name: str
     gears: Mapping[str, float]
-    gain: tuple[float, ...] | None = (1.0, 0.0, 0.0)
-    bias: tuple[float, ...] = (0.0, 0.0, 0.0)
+    gain: tuple[float, ...] | None
+    bias: tuple[float, ...]
     control: tuple[float, float] | None = None
     force: tuple[float, float] | None = None
     lag: float | None = None
@@ -147,8 +144,6 @@ class Connection:
 
     Attributes
     ----------
-    name : str
-    link, other : str or None
     point, other_point : tuple of float
         Each in its link's frame, m.
     orientation : tuple of float or None
@@ -169,11 +164,8 @@ class Robot:
 
     Attributes
     ----------
-    name : str
-    links : tuple of Link
     gravity : tuple of float
         m/s^2.
-    transmissions, relations, connections : tuples
     notes : tuple of str
         Omitted content.
     """

@@ -7,9 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from ..describe.files.requested import unused_notes
-from ..describe.spatial.orientation import about, matrix, product
-from .robot import ORIGIN, SAME_AXES, JointKind, Link, LinkJoint, Relation, Robot, RobotFault, Transmission
+from ..elements.spatial.marker import ORIGIN
+from ..elements.spatial.orientation import IDENTITY, about, matrix, product
+from ..reading.files.requested import unused_notes
+from .robot import JointKind, Link, LinkJoint, Relation, Robot, RobotFault, Transmission
 from .xml_nodes import Node, parsed
 
 KINDS: dict[str, JointKind] = {"revolute": "hinge", "continuous": "hinge", "prismatic": "slide", "floating": "free"}
@@ -191,7 +192,9 @@ def _efforts(root: Node, moving: dict[str, Node]) -> Iterator[Transmission]:
         effort = 0.0 if limit is None else _value(f"joint {name}", limit, "effort", 0.0)
         driven = name in given if given else effort > 0
         if driven and element.get("type") in OF_ONE_COORDINATE and element.find("mimic") is None:
-            yield Transmission(name, {name: 1.0}, force=(-effort, effort) if effort > 0 else None)
+            yield Transmission(
+                name, {name: 1.0}, gain=(1.0, 0.0, 0.0), bias=ORIGIN, force=(-effort, effort) if effort > 0 else None
+            )
 
 
 def _mimics(joints: dict[str, Node], child_of: dict[str, str]) -> Iterator[Relation]:
@@ -233,7 +236,7 @@ def _origin(where: str, element: Node) -> tuple[tuple[float, ...], tuple[float, 
     """Return position and orientation of an <origin>: roll, pitch and yaw about the fixed axes x, y and z."""
     origin = element.find("origin")
     if origin is None:
-        return ORIGIN, SAME_AXES
+        return ORIGIN, IDENTITY
     roll, pitch, yaw = _numbers(where, "rpy", origin.get("rpy") or "0 0 0")
     turned = product(product(about(2, yaw), about(1, pitch)), about(0, roll))
     return tuple(_numbers(where, "xyz", origin.get("xyz") or "0 0 0")), turned

@@ -7,7 +7,7 @@ from typing import Any
 from xml.etree.ElementTree import Element, TreeBuilder
 from xml.parsers.expat import ExpatError, ParserCreate
 
-from ..describe.files.requested import Fields
+from ..reading.files.requested import Fields
 from .robot import RobotFault
 
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..compile.system import System
-from ..describe.settings import RunSettings
+from ..model.settings import RunSettings
 from ..solve.error_control.accumulated_errors import ACCUMULATED
 from ..solve.trajectory import Trajectory
 
@@ -15,16 +15,7 @@ AXES = ("x", "y", "z")
 
 
 def accumulated_errors_sentence(system: System, settings: RunSettings, trajectory: Trajectory) -> Iterator[str]:
-    """Yield a sentence on the position with the largest estimated error, if it exceeds a number of tolerances.
-
-    Parameters
-    ----------
-    system : System
-        Of the whole model.
-    settings : RunSettings
-    trajectory : Trajectory
-        With estimates.
-    """
+    """Yield a sentence on the position with the largest estimated error, if it exceeds a number of tolerances."""
     displaced = trajectory.displaced
     if displaced is None:
         return

@@ -3,53 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from ..compile.state import LEFT_OPEN
-from ..solve.dynamics import Dynamics
+from ..dynamics.dynamics import Dynamics
 from ..solve.trajectory import Trajectory
 
-SAMPLES, LEAST_SAMPLES = 20, 4000
-"""Poses to check between two outputs, including the second, and in total at least."""
+POSES = 10_000
+"""Number of poses to check in the whole motion, with one for each output at least."""
 LEFT_OUT = 10.0
 """Largest violation of dropped equations, relative to that of the others, that is due to interpolation."""
 MOST_ASSEMBLIES = 500
 """Largest number of poses between outputs that are assembled."""
 
 
-@dataclass(frozen=True)
-class Departure:
-    """Dropped equation that does not hold.
-
-    Attributes
-    ----------
-    output : int
-        Last output before.
-    t : float
-        Time, s.
-    row : int
-    """
-
-    output: int
-    t: float
-    row: int
-
-
-def departure(dynamics: Dynamics, rows: Sequence[int], way: Trajectory) -> Departure | None:
-    """Return the first violation of dropped rows where the others hold, or None.
+def departure(dynamics: Dynamics, rows: Sequence[int], way: Trajectory) -> tuple[int, float, int] | None:
+    """Return the last output before a violation of dropped rows where the others hold, its time, s, and row; or None.
 
     Poses between outputs are interpolated. A pose is assembled if the violation of dropped rows exceeds that due to
-    interpolation.
-
-    Parameters
-    ----------
-    dynamics : Dynamics
-        Its state is changed.
-    rows : sequence of int
-        Dropped rows.
-    way : Trajectory
+    interpolation. The state of `dynamics` is changed.
     """
     system, state = dynamics.system, dynamics.state
     source, row = system.term("position", "C").source, system.term("position", "C").row
@@ -67,7 +40,7 @@ def departure(dynamics: Dynamics, rows: Sequence[int], way: Trajectory) -> Depar
             continue
         assemblies += 1
         if dynamics.assemble(t) < 0:
-            return Departure(output, t, rows[int(np.argmax(gaps))])
+            return output, t, rows[int(np.argmax(gaps))]
         if assemblies == MOST_ASSEMBLIES:
             return None
     return None
@@ -76,7 +49,7 @@ def departure(dynamics: Dynamics, rows: Sequence[int], way: Trajectory) -> Depar
 def _poses(dynamics: Dynamics, way: Trajectory) -> Iterator[tuple[int, float, np.ndarray]]:
     """Yield poses at outputs and on Hermite interpolants between them: number of the output before, time, s, pose."""
     of_body, bodies = dynamics.system.of_body, dynamics.system.of_body.n_q * len(dynamics.system.bodies)
-    count = max(SAMPLES, LEAST_SAMPLES // len(way.t))
+    count = 1 + POSES // len(way.t)
     parts = np.arange(1, count + 1) / count
     for k in range(len(way.t) - 1):
         h, q = way.t[k + 1] - way.t[k], way.q[k]

@@ -14,17 +14,9 @@ COARSE = 1e-6
 
 
 def refuse_far_away(system: System) -> None:
-    """Refuse joints whose equations are dominated by rounding, which no step size can satisfy.
+    """Refuse joints whose equations are dominated by rounding at the start, which no step size can satisfy.
 
-    Parameters
-    ----------
-    system : System
-        At its start.
-
-    Raises
-    ------
-    InputError
-        Names the body.
+    Raise an InputError that names the body.
     """
     if not system.n_c:
         return

@@ -9,57 +9,22 @@ import numpy as np
 
 from ..compile.reactions import reactions
 from ..compile.system import System
-from ..solve.dynamics import Dynamics, OutputRows
-from ..solve.events.refusals import SPEED_OF_LIGHT, UNBOUNDED_MOTION, exponential, reaches
-from ..solve.storage import blocks, release
-from .glance import Glance
+from ..dynamics.dynamics import Dynamics, OutputRows
+from ..dynamics.storage import blocks, release
+from ..solve.events.refusals import DIVERGENCE, SPEED_OF_LIGHT, exponential, reaches
+from .far_away import COARSE
 
-RESOLVED = 1e-6
-"""Largest rounding of coordinates, relative to the mechanism's size."""
 OPEN, DRIFTED = 1e-6, 1e-2
 """Largest opening of a joint in sizes of the mechanism: with projection onto the constraints, and with drift."""
 
 
-def senseless(dynamics: Dynamics, rows: OutputRows, on_constraints: bool, seen: Glance | None) -> Iterator[str]:
-    """Yield a sentence on each impossible property of a motion.
+def senseless(dynamics: Dynamics, rows: OutputRows, on_constraints: bool) -> Iterator[str]:
+    """Yield a sentence on each impossible property of a motion; the state of `dynamics`, of the whole model, is changed.
 
-    Parameters
-    ----------
-    dynamics : Dynamics
-        Of the whole model; its state is changed.
-    rows : OutputRows
-        Of the run.
-    on_constraints : bool
-        Whether states are projected onto the constraints; otherwise drift is shown.
-    seen : Glance or None
-        Result of the scan.
+    Drift is shown if states are not projected onto the constraints (`on_constraints`).
     """
     with np.errstate(all="ignore"):
-        grown = "" if seen and _within_bounds(dynamics, seen) else _grown(dynamics.system, rows)
-        if grown:
-            yield grown
-        open_joint = _open_joint(dynamics, rows, on_constraints)
-        if open_joint:
-            yield open_joint
-
-
-def _within_bounds(dynamics: Dynamics, seen: Glance) -> bool:
-    """Return True if the scan excludes growth."""
-    furthest, fastest = dynamics.kept("bounds of growth", None, lambda: _bounds(dynamics.system))
-    return seen.width_q <= furthest and seen.width_u <= fastest
-
-
-def _bounds(system: System) -> tuple[float, float]:
-    """Return the widths of coordinates and of velocities up to which growth is excluded."""
-    if not system.bodies:
-        return np.inf, np.inf
-    limit, resolved = _limits(system)
-    return min(limit, resolved) / reaches(system).max(), SPEED_OF_LIGHT / system.per_velocity(1.0, system.size).max()
-
-
-def _limits(system: System) -> tuple[float, float]:
-    """Return the distances, m, beyond which growth is impossible, and beyond which rounding exceeds the resolution."""
-    return UNBOUNDED_MOTION * system.size, RESOLVED * system.size / float(np.finfo(float).eps)
+        yield from filter(None, (_grown(dynamics.system, rows), _open_joint(dynamics, rows, on_constraints)))
 
 
 def _grown(system: System, rows: OutputRows) -> str:
@@ -67,7 +32,12 @@ def _grown(system: System, rows: OutputRows) -> str:
     if not system.bodies:
         return ""
     of_places, of_rates = reaches(system), system.per_velocity(1.0, system.size)
-    limit, resolved = _limits(system)
+    limit, resolved = DIVERGENCE.unbounded * system.size, COARSE * system.size / float(np.finfo(float).eps)
+    if (
+        np.ptp(rows.q) * of_places.max() <= min(limit, resolved)
+        and np.abs(rows.u).max() * of_rates.max() <= SPEED_OF_LIGHT
+    ):
+        return ""
     far, speed = np.empty(len(rows.t)), np.empty(len(rows.t))
     for block in blocks(len(rows.t)):
         far[block] = np.max(np.abs(rows.q[block] - rows.q[0]) * of_places, axis=1)
@@ -78,12 +48,12 @@ def _grown(system: System, rows: OutputRows) -> str:
         lambda row: np.abs(rows.u[row]) * of_rates,
     )
     if np.nanmax(far) > limit and exponential(rows.t, np.fmax.accumulate(far)):
-        what = f"{UNBOUNDED_MOTION:.0e} times the mechanism's size of {system.size:.3g} m"
+        what = f"{DIVERGENCE.unbounded:.0e} times the mechanism's size of {system.size:.3g} m"
         return _growth_sentence(system, rows, far, limit, what, farthest)
     if np.nanmax(speed) > SPEED_OF_LIGHT:
         return _growth_sentence(system, rows, speed, SPEED_OF_LIGHT, "the speed of light", fastest)
     if np.nanmax(far) > resolved and _connected(system):
-        what = f"where rounding takes more than {RESOLVED:.0e} of the mechanism's size of {system.size:.3g} m"
+        what = f"where rounding takes more than {COARSE:.0e} of the mechanism's size of {system.size:.3g} m"
         return _growth_sentence(system, rows, far, resolved, what, farthest)
     return ""
 

@@ -10,7 +10,8 @@ from ..compile.machine.layout import address, addresses
 from ..compile.machine.routines import Routine
 from ..compile.state import State
 from ..compile.written_values import writer
-from ..solve.dynamics import Dynamics, OutputRows
+from ..dynamics.dynamics import Dynamics, OutputRows
+from .instants import some_instants
 
 APART_FROM_COUNTERS = Routine(
     "stiffmbs.run_checks.native.turns",
@@ -20,26 +21,16 @@ APART_FROM_COUNTERS = Routine(
 
 UNCERTAIN_TURN = 1.0
 """Difference of an orientation and the integral of its rate, rad, from which on the turn is uncertain."""
-MOST_INSTANTS = 2000
-"""Largest number of checked output times."""
 
 
 def lost_turns_sentence(dynamics: Dynamics, rows: OutputRows) -> Iterator[str]:
-    """Yield a sentence on the angle that differs most from the counter of its turns, if the turn is uncertain.
-
-    Parameters
-    ----------
-    dynamics : Dynamics
-        Of the whole model; its state is changed.
-    rows : OutputRows
-        Of the run.
-    """
+    """Yield a sentence on the angle that differs most from the counter of its turns, if the turn is uncertain."""
     system, state = dynamics.system, dynamics.state
     solved = np.flatnonzero(~np.isnan(rows.position_violation))
     if not len(solved):
         return
     counted = system.term("position", "continuous_angle")
-    instants = solved[np.linspace(0, len(solved) - 1, min(len(solved), MOST_INSTANTS)).astype(int)]
+    instants = solved[some_instants(len(solved))]
     apart = _apart(state, rows.t[instants], rows.q[instants], counted.source, counted.row)
     if not np.nanmax(apart) > UNCERTAIN_TURN:
         return

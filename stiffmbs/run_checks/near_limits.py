@@ -7,28 +7,18 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..compile.system import System
-from ..solve.dynamics import Dynamics, OutputRows
-
-MOST_INSTANTS = 400
-"""Largest number of checked output times."""
+from ..dynamics.dynamics import Dynamics, OutputRows
+from .instants import some_instants
 
 
 def near_limits_sentence(dynamics: Dynamics, rows: OutputRows) -> Iterator[str]:
-    """Yield a sentence on the first force outside the range in which its kind is reliable.
-
-    Parameters
-    ----------
-    dynamics : Dynamics
-        Of the whole model; its state is changed.
-    rows : OutputRows
-        Of the run.
-    """
+    """Yield a sentence on the first force outside the range in which its kind is reliable; the state is changed."""
     system, state = dynamics.system, dynamics.state
     first, end = system.first_limit, system.n_event_functions
     if not len(rows.t):
         return
     doubtful, words = _doubts(system)
-    for k in np.unique(np.linspace(0, len(rows.t) - 1, min(len(rows.t), MOST_INSTANTS)).astype(int)):
+    for k in some_instants(len(rows.t)):
         state.q[:], state.u[:] = rows.q[k], rows.u[k]
         state.evaluate("event_function", rows.t[k])
         passed = np.flatnonzero(state.values["event_function"][first:end] < doubtful)

@@ -17,8 +17,8 @@ from ..compile.machine.layout import addresses
 from ..compile.machine.routines import Routine
 from ..compile.reactions import reactions
 from ..compile.system import System
-from ..describe.settings import RunSettings
-from ..solve.dynamics import OutputRows
+from ..dynamics.dynamics import OutputRows
+from ..model.settings import RunSettings
 from ..solve.error_control.tolerances import absolute_tolerances
 from ..solve.trajectory import Trajectory
 
@@ -77,17 +77,7 @@ def together(found: Sequence[Overlooked]) -> Overlooked | None:
 
 
 def overlooked(system: System, rows: OutputRows, trajectory: Trajectory, settings: RunSettings) -> Overlooked | None:
-    """Return the events that the steps of a run missed; None if there are none or no force law has breakpoints.
-
-    Parameters
-    ----------
-    system : System
-        Of the whole model.
-    rows : OutputRows
-    trajectory : Trajectory
-        Trajectory to check.
-    settings : RunSettings
-    """
+    """Return the events that the steps of a run missed; None if there are none or no force law has breakpoints."""
     steps = trajectory.step_times
     if len(steps) < 2 or not system.has_laws:
         return None
@@ -108,25 +98,12 @@ def overlooked(system: System, rows: OutputRows, trajectory: Trajectory, setting
     return Overlooked(rows.t[at[first]], float(step[k]), velocity, acting(system, rows, int(at[0])))
 
 
-def contradicting_rows(
-    rows: OutputRows, mass: np.ndarray, steps: np.ndarray, part: float = OVERLOOKED_PART
-) -> np.ndarray:
-    """Return the numbers of the rows that contradict the next one in the same step.
-
-    Parameters
-    ----------
-    rows : OutputRows
-    mass : ndarray, shape (n_u,)
-        Weights.
-    steps : ndarray
-        Ends of the steps, s.
-    part : float
-        Difference that is a contradiction, relative to the larger acceleration.
-    """
+def contradicting_rows(rows: OutputRows, mass: np.ndarray, steps: np.ndarray) -> np.ndarray:
+    """Return the numbers of the rows that contradict the next one in the same step, with these weights and ends of steps."""
     found = np.empty(len(rows.t), dtype=np.int64)
     t, u, acceleration, mass, steps = map(np.ascontiguousarray, (rows.t, rows.u, rows.acceleration, mass, steps))
     *of_rows, at_steps, at_found = addresses(t, u, acceleration, mass, steps, found)
-    count = CONTRADICTING_ROWS.call(len(t), len(mass), *of_rows, part, len(steps), at_steps, at_found)
+    count = CONTRADICTING_ROWS.call(len(t), len(mass), *of_rows, OVERLOOKED_PART, len(steps), at_steps, at_found)
     return found[:count]
 
 

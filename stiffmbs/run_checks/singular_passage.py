@@ -11,8 +11,8 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
+from ..dynamics.dynamics import Dynamics, OutputRows
 from ..redundancy.overconstraint import listed
-from ..solve.dynamics import Dynamics, OutputRows
 from .singular_poses import NEARLY_SINGULAR, PosesOnTheWay, SingularPose
 
 DIP = 0.25
@@ -32,14 +32,7 @@ def singular_passage_sentence(
 ) -> Iterator[str]:
     """Yield a sentence on the first checked passage if chance decides it, else on the worst one.
 
-    Parameters
-    ----------
-    dynamics : Dynamics
-    rows : OutputRows
-    rtol : float
-        Of the run.
-    again : callable
-        Rerun up to the last of other times, s, and report at these.
+    `again` is a rerun up to the last of other times, s, with rows at these.
     """
     dips = deepest_dips(rows.log_determinant)
     if not dips:
@@ -65,13 +58,7 @@ def singular_passage_sentence(
 
 
 def deepest_dips(log_determinant: np.ndarray) -> list[int]:
-    """Return the outputs near which the joints may lose rank: the det falls to a small fraction of its neighbours.
-
-    Parameters
-    ----------
-    log_determinant : ndarray, shape (n,)
-        Of [M J^T; J 0].
-    """
+    """Return the outputs near which the joints may lose rank: det [M J^T; J 0] falls to a small part of its neighbours."""
     if len(log_determinant) < 3 or np.ptp(log_determinant) < np.log(1.25 / (DIP + 0.25)):
         return []  # a parabola falls below its smallest point by at most a quarter of its second difference
     D = np.nan_to_num(np.exp(log_determinant - np.nanmedian(log_determinant)))

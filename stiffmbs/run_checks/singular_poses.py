@@ -25,19 +25,7 @@ MOST_POSES, USUAL_POSES, EFFORT = 400, 20, 5e8
 
 
 class SingularPose(NamedTuple):
-    """Nearly singular pose.
-
-    Attributes
-    ----------
-    t : float
-        s.
-    joints : tuple of str
-        Joints with nearly dependent equations.
-    bodies : tuple of str
-        Bodies of the loops.
-    poses : tuple of str
-        Their poses, in words.
-    """
+    """Nearly singular pose at a time, s: joints with nearly dependent equations, bodies of loops, and their poses in words."""
 
     t: float
     joints: tuple[str, ...]

@@ -2,59 +2,35 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
-from ..solve.dynamics import Dynamics
+from ..dynamics.dynamics import Dynamics
 from ..solve.trajectory import Trajectory
+from .instants import some_instants
 
 UNFOLLOWED_PART, UNFOLLOWED_VELOCITY = 1e-2, 1e-3
 """Violation of a velocity equation that no tolerance explains: relative to its terms, and in m/s or rad/s at least."""
-MOST_OUTPUTS = 200
-"""Number of checked outputs; a mechanism that has locked violates its drive at later outputs too."""
 
 
-@dataclass(frozen=True)
-class Unfollowed:
-    """Velocity equation that does not hold.
-
-    Attributes
-    ----------
-    output : int
-        First output at which it does not hold.
-    row : int
-    gap : float
-        Violation, m/s or rad/s.
-    """
-
-    output: int
-    row: int
-    gap: float
+Unfollowed = tuple[int, int, float]
+"""First output at which a velocity equation does not hold, its row, and the violation, m/s or rad/s."""
 
 
 def unfollowed(dynamics: Dynamics, way: Trajectory) -> Unfollowed | None:
     """Return the violation at the first output at which a nonholonomic equation does not hold, or None.
 
     The relaxed formulation lets velocities drift if multipliers grow without bound. Holonomic equations cannot remain
-    violated in this way.
-
-    Parameters
-    ----------
-    dynamics : Dynamics
-        Its state is changed.
-    way : Trajectory
-        As integrated.
+    violated in this way. The state of `dynamics` is changed.
     """
     rows = np.flatnonzero(dynamics.system.active & ~dynamics.system.holonomic)
     if not len(rows):
         return None
-    outputs = np.unique(np.linspace(0, len(way.t) - 1, MOST_OUTPUTS).astype(int))
+    outputs = some_instants(len(way.t))  # a mechanism that has locked violates its drive at later outputs too
     seen = _first(dynamics, rows, way, outputs)
     if seen is None:
         return None
-    before = outputs[max(int(np.searchsorted(outputs, seen.output)) - 1, 0)]
-    return _first(dynamics, rows, way, np.arange(before, seen.output + 1))
+    before = outputs[max(int(np.searchsorted(outputs, seen[0])) - 1, 0)]
+    return _first(dynamics, rows, way, np.arange(before, seen[0] + 1))
 
 
 def _first(dynamics: Dynamics, rows: np.ndarray, way: Trajectory, outputs: np.ndarray) -> Unfollowed | None:
@@ -78,4 +54,4 @@ def _first(dynamics: Dynamics, rows: np.ndarray, way: Trajectory, outputs: np.nd
         return None
     k = int(wrong[0])
     worst = int(rows[np.argmax(excess[k])])
-    return Unfollowed(int(outputs[k]), worst, float(gaps[k, worst]))
+    return int(outputs[k]), worst, float(gaps[k, worst])

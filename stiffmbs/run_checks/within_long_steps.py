@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..describe.settings import RunSettings
-from ..solve.dynamics import OutputRows
+from ..dynamics.dynamics import OutputRows
+from ..model.settings import RunSettings
 from ..solve.error_control.tolerances import absolute_tolerances
-from ..solve.events.long_steps import FROM_MIDDLE, LongSteps, Motion
+from ..solve.events.long_steps import LONG_STEP, LongSteps, Motion
 from ..solve.settings import near_constraints
 from .overlooked import OVERLOOKED_PART, Overlooked, acting
 
@@ -26,16 +26,9 @@ SLIGHT = 0.01
 
 
 def overlooked_in_long_steps(found: LongSteps, settings: RunSettings, end: float) -> Overlooked | None:
-    """Return the events that long steps missed, or None.
+    """Return the events that long steps, up to the end of the output, s, missed, or None.
 
     The steps are checked at their midpoint, and throughout if a force law is a Python function.
-
-    Parameters
-    ----------
-    found : LongSteps
-    settings : RunSettings
-    end : float
-        End of the output, s; later steps are ignored.
     """
     count = int(np.searchsorted(found.begin, end))
     steps = np.arange(count) if found.whole else _doubtful(found, count, settings)
@@ -57,7 +50,11 @@ def _doubtful(found: LongSteps, count: int, settings: RunSettings) -> np.ndarray
     tolerances = settings.rtol, atol[system.n_q :]
     ends, states = (found.begin[:count], found.end[:count]), (found.q[:count], found.u[:count])
     return found.dynamics.contradicting(
-        ends, FROM_MIDDLE, states, tolerances, (WORTH_A_NOTE * OVERLOOKED_PART, WORTH_A_NOTE * CONTRADICTED_TOLERANCES)
+        ends,
+        LONG_STEP.from_middle,
+        states,
+        tolerances,
+        (WORTH_A_NOTE * OVERLOOKED_PART, WORTH_A_NOTE * CONTRADICTED_TOLERANCES),
     )
 
 

@@ -19,7 +19,6 @@ if TYPE_CHECKING:
 _UNUSUAL = re.compile("[^ -~\n\t]")
 ESCAPED = ("Cc", "Cf", "Cn", "Co", "Cs", "Zl", "Zp")
 """Unicode categories that are escaped."""
-BASIC = 0xFFFF
 
 
 def escaped(text: str) -> str:
@@ -37,7 +36,7 @@ def _escape(found: re.Match[str]) -> str:
     sign = found[0]
     if unicodedata.category(sign) not in ESCAPED:
         return sign
-    return f"\\u{ord(sign):04x}" if ord(sign) <= BASIC else f"\\U{ord(sign):08x}"
+    return f"\\u{ord(sign):04x}" if ord(sign) <= 0xFFFF else f"\\U{ord(sign):08x}"
 
 
 class EscapingStream:

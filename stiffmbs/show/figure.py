@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..describe.figure import Figure
-from ..errors import InputError
+from ..errors import refuse_missing
+from ..model.scene import Figure
 from ..results.files import refuse_path, written_whole
 from ..results.solution import Solution
-from .style import dress, legend_below, stroke
+from .style import dress, legend_below, new_sheet, stroke
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Sheet
@@ -36,8 +35,7 @@ def check_figure(option: str, path: Path) -> None:
         If the suffix is unknown, or the folder or matplotlib is missing.
     """
     refuse_path(option, path, ENDINGS)
-    if find_spec("matplotlib") is None:
-        raise InputError(f"{option} {path}: found no matplotlib, expected it installed: pip install 'stiffmbs[plot]'")
+    refuse_missing("matplotlib", "'stiffmbs[plot]'", f"{option} {path}: ")
 
 
 def draw(path: Path, solution: Solution, figure: Figure | None) -> None:
@@ -54,30 +52,71 @@ def drawn(solution: Solution, figure: Figure | None) -> Sheet:
     InputError
         If the figure names an unknown channel.
     """
-    from matplotlib.figure import Figure as Sheet
-
-    sheet = Sheet(figsize=SIZE, layout="constrained")
+    sheet = new_sheet(SIZE)
     draw_on(sheet, solution, figure or TOTAL_ENERGY)
     return sheet
 
 
-def plotted(solution: Solution, figure: Figure | None) -> Sheet:
-    """Return a figure of pyplot; see `Solution.plot`."""
-    if find_spec("matplotlib") is None:
-        raise InputError("plot: found no matplotlib, expected it installed: pip install 'stiffmbs[plot]'")
-    figure = figure or TOTAL_ENERGY
-    for channel in (*figure.y, *([figure.x] if figure.x != "time" else []), *([figure.z] if figure.z else [])):
-        solution[channel]  # raises an error before an empty figure is made
-    from matplotlib import pyplot
+def plot(
+    solution: Solution, *channels: str, x: str = "time", z: str = "", title: str = "", equal: bool = False
+) -> Sheet:
+    """Plot channels over time, or over another channel (needs matplotlib, the extra ``plot``).
 
-    sheet = pyplot.figure(figsize=SIZE, layout="constrained")
+    Parameters
+    ----------
+    solution : Solution
+    *channels : str
+        Names of channels; a plot for each unit.  Without any, the figure that the scene describes, or the total energy.
+    x : str
+        A channel, or ``"time"``.
+    z : str
+        A channel: the figure is then a path in space, of one channel over `x`.
+    title : str
+        Title of the figure; the scene's name by default.
+    equal : bool
+        True for the same scale on all axes, as for paths.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Figure of pyplot, which ``pyplot.show()`` displays.
+
+    Raises
+    ------
+    InputError
+        If there is no such channel, or matplotlib is not installed.
+    """
+    refuse_missing("matplotlib", "'stiffmbs[plot]'", "plot: ")
+    figure = figure_of({"": solution}, channels, x, title, z, equal)
+    sheet = new_sheet(SIZE, on_screen=True)
     draw_on(sheet, solution, figure)
     return sheet
 
 
-def _drawable(values: np.ndarray) -> np.ndarray:
-    """Return values with nan for those of a diverged run that exceed an axis."""
-    return np.where(np.abs(values) < LARGEST, values, np.nan)
+def figure_of(
+    runs: Mapping[str, Solution],
+    channels: Sequence[str],
+    against: str,
+    title: str = "",
+    z: str = "",
+    equal: bool = False,
+) -> Figure:
+    """Return the figure to draw: the given channels, by default the scene's own figure or the total energy.
+
+    Raises
+    ------
+    InputError
+        If a run has no such channel.
+    """
+    if channels:
+        figure = Figure(y=tuple(channels), x=against, z=z, title=title, equal=equal)
+    else:
+        figure = next(iter(runs.values())).figure or TOTAL_ENERGY
+    for run in runs.values():
+        for channel in (*figure.y, figure.x, figure.z):
+            if channel not in ("time", ""):
+                run[channel]
+    return figure
 
 
 def draw_on(sheet: Sheet, solution: Solution, figure: Figure) -> None:
@@ -94,7 +133,6 @@ def draw_runs(sheet: Sheet, runs: Mapping[str, Solution], figure: Figure) -> Non
         Empty sheet.
     runs : mapping of str to Solution
         Runs by their names in the legend; a single run may have no name.
-    figure : Figure
 
     Raises
     ------
@@ -114,7 +152,9 @@ def draw_runs(sheet: Sheet, runs: Mapping[str, Solution], figure: Figure) -> Non
         run, label = runs[name], channel if count > 1 or len(units) == 1 else _label(first, channel)
         others = [run[figure.z]] if figure.z else []
         x = run.time if figure.x == "time" else run[figure.x]
-        values = (_drawable(part) for part in (x, run[channel], *others))
+        values = (
+            np.where(np.abs(part) < LARGEST, part, np.nan) for part in (x, run[channel], *others)
+        )  # a run may diverge
         axes.plot(*values, label=f"{label}, {name}" if name else label, **stroke(k))
     _name_axes(plots, first, figure, units if count > 1 or len(units) == 1 else [""])
     title = figure.title or first.name

@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-import base64
-import html
-import io
 from collections.abc import Iterable, Sequence
+from html import escape as quoted
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
+from ..analyses.check import Report
 from ..errors import StiffmbsError
-from ..results.solution import channel_ranges
+from ..results.solution import Solution, channel_ranges
 from .escaped import escaped
+from .style import data_url
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Sheet
 
-    from ..analyses.check import Report
-    from ..results.solution import Solution
 
 MOST_ROWS = 40
 """Number of rows of a table; further ones are counted."""
@@ -25,16 +23,35 @@ MOST_DRAWN = 200
 """Number of bodies and elements up to which a model is drawn by default."""
 
 
-def model_html(model: Any) -> str:
-    """Return a model's content by sections, with its drawing as described.
+def html(shown: Any) -> str:
+    """Return a model, a report or a solution as HTML, as notebooks show it.
 
     Parameters
     ----------
-    model : Model or Scene
+    shown : Model, Scene, Report or Solution
+
+    Returns
+    -------
+    str
+        Tables of the content; with the drawing or the figure if matplotlib is installed.
     """
+    if isinstance(shown, Solution):
+        return _of_solution(shown)
+    if isinstance(shown, Report):
+        return _of_report(shown)
+    return _of_model(shown)
+
+
+def _of_model(model: Any) -> str:
+    """Return a model's content by sections, with its drawing as described."""
     sections = {name: getattr(model, name) for name in ("bodies", "joints", "forces")}
     rows = [
-        (section, name, getattr(part, "kind", "") or "body", _placed(part))
+        (
+            section,
+            name,
+            getattr(part, "kind", "") or "body",
+            ", ".join(str(marker) for end in "ij" if (marker := getattr(part, end, None)) is not None),
+        )
         for section, parts in sections.items()
         for name, part in parts.items()
     ]
@@ -43,7 +60,7 @@ def model_html(model: Any) -> str:
     )
 
 
-def report_html(report: Report) -> str:
+def _of_report(report: Report) -> str:
     """Return the findings of `stiffmbs.check`."""
     rows = [
         ("degrees of freedom", report.degrees_of_freedom), ("constraint equations", report.equations), ("rank", report.rank),
@@ -55,31 +72,24 @@ def report_html(report: Report) -> str:
     return _page(report.name, "", _table(("", ""), [*rows, *told]))
 
 
-def solution_html(solution: Solution) -> str:
+def _of_solution(solution: Solution) -> str:
     """Return the final message of a run, its figure, and the range of every channel."""
+    from .figure import drawn
+
     ranges = channel_ranges(solution)
     rows = [
-        (
-            name,
-            solution.unit(name),
-            *(f"{found[key]:.6g}" for key in ("first", "last", "min", "max")),
-        )
+        (name, solution.unit(name), *(f"{found[key]:.6g}" for key in ("first", "last", "min", "max")))
         for name, found in ranges.items()
     ]
     told = "".join(f"<p>{escape(sentence)}</p>" for sentence in (solution.message, *solution.notes))
-    return _page(
-        solution.name, told + _figure(solution), _table(("channel", "unit", "first", "last", "min", "max"), rows)
-    )
+    drawable = find_spec("matplotlib") is not None and solution.figure is not None and len(solution.time) > 1
+    figure = _picture(drawn(solution, solution.figure)) if drawable else ""
+    return _page(solution.name, told + figure, _table(("channel", "unit", "first", "last", "min", "max"), rows))
 
 
 def escape(text: str) -> str:
     """Return text escaped for HTML."""
-    return html.escape(escaped(text))
-
-
-def _placed(part: Any) -> str:
-    """Return the markers between which an element acts."""
-    return ", ".join(str(getattr(part, name)) for name in ("i", "j") if getattr(part, name, None) is not None)
+    return quoted(escaped(text))
 
 
 def _page(title: str, above: str, table: str) -> str:
@@ -110,15 +120,5 @@ def _drawing(model: Any, count: int) -> str:
     return _picture(sheet)
 
 
-def _figure(solution: Solution) -> str:
-    if find_spec("matplotlib") is None or solution.figure is None or len(solution.time) < 2:
-        return ""
-    from .figure import drawn
-
-    return _picture(drawn(solution, solution.figure))
-
-
 def _picture(sheet: Sheet) -> str:
-    content = io.BytesIO()
-    sheet.savefig(content, format="png", dpi=90)
-    return f'<br><img alt="" src="data:image/png;base64,{base64.b64encode(content.getvalue()).decode("ascii")}">'
+    return f'<br><img alt="" src="{data_url(sheet, "png", 90)}">'

@@ -7,14 +7,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..compile.bodies import PLANE, SPACE
-from ..describe.parts.names import owner_of
 from ..results.error_bars import UNKNOWN
 from ..results.solution import Solution
 from .digits import with_bar
-
-ZERO_LOAD = 1e-11
-"""Part of the largest force, or torque, of all elements below which one counts as zero."""
+from .force_table import LOADS, elements_of, reactions_of
 
 
 def joint_forces(solution: Solution) -> list[dict[str, str]]:
@@ -23,18 +19,15 @@ def joint_forces(solution: Solution) -> list[dict[str, str]]:
     The peak is the largest magnitude at the output instants.  Its bar is the magnitude of the components' bars, a bound
     on the error of the vector.
     """
-    own = [name for name in solution.channels if name not in solution.requested]
-    in_space = any(name.endswith(".tz") for name in own)
-    components = (SPACE if in_space else PLANE).reactions
-    forces, torques = [c for c in components if c[0] == "f"], [c for c in components if c[0] == "t"]
-    elements = list(dict.fromkeys(owner_of(name) for name in own if name.endswith(f".{components[-1]}")))
+    components, elements = reactions_of(solution), elements_of(solution)
+    levels = tuple((unit, [c for c in components if c[0] == kind]) for unit, kind in (("N", "f"), ("N m", "t")))
     noise = {
-        unit: ZERO_LOAD * max((_peak(solution, element, parts)[0] for element in elements), default=0.0)
-        for unit, parts in (("N", forces), ("N m", torques))
+        unit: LOADS.zero * max((_peak(solution, element, parts)[0] for element in elements), default=0.0)
+        for unit, parts in levels
     }
     rows: list[dict[str, str]] = []
     for element in elements:
-        for unit, parts in (("N", forces), ("N m", torques)):
+        for unit, parts in levels:
             peak, at = _peak(solution, element, parts)
             names = [f"{element}.{part}" for part in parts]
             if unit == "N" or peak > noise[unit] or any(name in solution.not_unique for name in names):

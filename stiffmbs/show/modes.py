@@ -19,17 +19,13 @@ def modes_text(found: Modes) -> str:
     count = found.degrees_of_freedom
     head = f"{found.name or 'model'} at t = {found.t:g} s: {count} degree{'s' if count != 1 else ''} of freedom"
     columns = f"{'':>4}  {'Hz':>12}  {'damping':>10}  {'eigenvalues, 1/s':<28}  kinetic energy"
-    rows = [_row(k, mode) for k, mode in enumerate(found.modes, start=1)]
+    rows = []
+    for k, mode in enumerate(found.modes, start=1):
+        damping = "rigid body" if mode.motion is Motion.RIGID else f"{mode.damping_ratio:.4g}"
+        columns_of = f"{k:>4}  {mode.natural_frequency:>12.6g}  {damping:>10}  {_values(mode):<28}"
+        rows.append(f"{columns_of}  {', '.join(_bodies(mode))}")
     notes = [f"note: {note}" for note in found.notes]
     return "\n".join([head, *([columns, *rows] if rows else []), *notes])
-
-
-def _row(number: int, mode: Mode) -> str:
-    return f"{number:>4}  {mode.natural_frequency:>12.6g}  {_damping(mode):>10}  {_values(mode):<28}  {', '.join(_bodies(mode))}"
-
-
-def _damping(mode: Mode) -> str:
-    return "rigid body" if mode.motion is Motion.RIGID else f"{mode.damping_ratio:.4g}"
 
 
 def _values(mode: Mode) -> str:

@@ -1,64 +1,35 @@
-"""Plots of any channels of one run or several (needs matplotlib, the extra ``plot``)."""
+"""Plots of any channels of one run or several, also during a run (needs matplotlib, the extra ``plot``)."""
 
 from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Mapping, Sequence
-from importlib.util import find_spec
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..describe.figure import Figure
-from ..errors import InputError
+from ..errors import InputError, refuse_missing
+from ..model.scene import Figure
 from ..results.files import refuse_path, written_whole
 from ..results.solution import Solution
-from .figure import ENDINGS, draw_runs
+from .figure import ENDINGS, draw_runs, figure_of
+from .style import new_sheet
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Sheet
 
-WIDTH, HEIGHT = 8.0, 3.4
-"""Size of a plot, inch."""
-
 
 def check_plot(path: Path | None) -> None:
-    """Check that a plot can be drawn to a file, or in a window without a path, before anything is solved.
-
-    Raises
-    ------
-    InputError
-    """
+    """Check that a plot can be drawn to a file, or in a window without a path, before anything is solved."""
     if path is not None:
         refuse_path("-o", path, ENDINGS)
-    if find_spec("matplotlib") is None:
-        raise InputError("plot: found no matplotlib, expected it installed: pip install 'stiffmbs[plot]'")
+    refuse_missing("matplotlib", "'stiffmbs[plot]'", "plot: ")
     if path is None and not _has_screen():
         raise InputError("plot: found no screen for a window, expected -o FILE, such as -o plot.svg")
 
 
 def _has_screen() -> bool:
     return sys.platform in ("darwin", "win32") or bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
-
-
-def figure_of(runs: Mapping[str, Solution], channels: Sequence[str], against: str, title: str = "") -> Figure:
-    """Return the figure to draw: the given channels, by default the scene's own figure or the total energy.
-
-    Raises
-    ------
-    InputError
-        If a run has no such channel.
-    """
-    first = next(iter(runs.values()))
-    if channels:
-        figure = Figure(y=tuple(channels), x=against, title=title)
-    else:
-        figure = first.figure or Figure(title="total energy", y=("energy.total",))
-    for run in runs.values():
-        for channel in (*figure.y, figure.x, figure.z):
-            if channel not in ("time", ""):
-                run[channel]
-    return figure
 
 
 def plotted_runs(runs: Mapping[str, Solution], figure: Figure, in_window: bool = False) -> Sheet:
@@ -68,20 +39,10 @@ def plotted_runs(runs: Mapping[str, Solution], figure: Figure, in_window: bool =
     ----------
     runs : mapping of str to Solution
         Runs by their names in the legend; a single run may have no name.
-    figure : Figure
-    in_window : bool
     """
     first = next(iter(runs.values()))
     plots = 1 if figure.z else len({first.unit(channel) for channel in figure.y})
-    size = (WIDTH, max(5.0, HEIGHT * min(plots, 4)))
-    if in_window:
-        from matplotlib import pyplot
-
-        sheet = pyplot.figure(figsize=size, layout="constrained")
-    else:
-        from matplotlib.figure import Figure as Sheet
-
-        sheet = Sheet(figsize=size, layout="constrained")
+    sheet = new_sheet((8.0, max(5.0, 3.4 * min(plots, 4))), in_window)
     draw_runs(sheet, runs, figure)
     return sheet
 
@@ -91,8 +52,45 @@ def write_plot(path: Path, sheet: Sheet) -> None:
     written_whole(path, lambda part: sheet.savefig(part, dpi=130))
 
 
-def show_window() -> None:
-    """Show the window until it is closed."""
+def show_live(solutions: Iterator[Solution], channels: Sequence[str], against: str, title: str = "") -> Figure:
+    """Draw each of the solutions as it arrives, in one window, until the last one or until the window is closed.
+
+    Parameters
+    ----------
+    solutions : iterator of Solution
+        Solutions as `stiffmbs.follow` yields them.
+    channels : sequence of str
+        Channels; by default the scene's own figure.
+    against : str
+        A channel, or time.
+
+    Returns
+    -------
+    Figure
+        Figure that was drawn.
+
+    Raises
+    ------
+    InputError
+        If a run has no such channel.
+    """
     from matplotlib import pyplot
 
-    pyplot.show()
+    first = next(solutions)
+    figure = figure_of({"": first}, channels, against, title)
+    sheet = plotted_runs({"": first}, figure, in_window=True)
+    pyplot.show(block=False)
+    _refresh(sheet)
+    for solution in solutions:
+        if not pyplot.fignum_exists(sheet.number):
+            break
+        sheet.clear()
+        draw_runs(sheet, {"": solution}, figure)
+        _refresh(sheet)
+    return figure
+
+
+def _refresh(sheet: Sheet) -> None:
+    """Redraw, and process window events."""
+    sheet.canvas.draw_idle()
+    sheet.canvas.flush_events()

@@ -2,49 +2,44 @@
 
 from __future__ import annotations
 
-import base64
-import io
 import math
 from collections.abc import Sequence
 from importlib.metadata import version
 from importlib.resources import files
-from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..analyses.check import Report, check
+from ..analyses.check import check
 from ..analyses.linearised.modes import modes
-from ..describe.figure import Figure
-from ..describe.scene import Scene
-from ..errors import InputError, StiffmbsError
+from ..errors import StiffmbsError, refuse_missing
+from ..model.scene import Figure, Scene
 from ..results.energy_balance_notes import balance_words
 from ..results.error_bars import UNKNOWN
 from ..results.files import refuse_path, write_text
 from ..results.scales import scales
 from ..results.solution import Solution, channel_ranges
+from ..solve.trajectory import History
 from .counters import solver_lines
 from .digits import with_bar
 from .drawing.derive import drawing_of
-from .drawing.marks import marks_of
+from .drawing.draw import marks_of
 from .drawing.poses import poses_of
 from .figure import drawn
-from .force_table import SHOWN_AS_ZERO
+from .force_table import LOADS
+from .html import MOST_ROWS
 from .joint_forces import joint_forces
 from .modes import modes_text
 from .page.data import page_data
-from .page.moving import environment
-from .page.parts import page_parts
+from .page.moving import environment, page_parts
 from .sections import Section
-from .step_history import step_history
+from .style import COLORS, data_url, dress
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Sheet
 
 NEEDED = ("jinja2", "matplotlib")
-MOST_MODES = 40
-"""Number of lines of modes."""
 MOST_LINES = 5_000
 """Number of points above which a line drawing becomes a bitmap."""
 ENERGIES = Figure(title="energy (J)", y=("energy.kinetic", "energy.potential", "energy.total"))
@@ -60,8 +55,7 @@ def check_report(path: Path) -> None:
     """
     refuse_path("-o", path, (".html",))
     for package in NEEDED:
-        if find_spec(package) is None:
-            raise InputError(f"-o {path}: found no {package}, expected it installed: pip install 'stiffmbs[report]'")
+        refuse_missing(package, "'stiffmbs[report]'", f"-o {path}: ")
 
 
 def write_report(
@@ -71,7 +65,6 @@ def write_report(
 
     Parameters
     ----------
-    path : Path
     scene : Scene
         Scene as it was solved.
     solution : Solution
@@ -94,22 +87,19 @@ def report_page(scene: Scene, solution: Solution, text: str = "", sections: Sequ
     figures.append(drawn(solution, ENERGIES))
     if len(solution.step_times) > 1:
         figures.append(step_history(solution.history))
+    poses, shown = poses_of(scene, solution.time, solution.channels), scene.figure.y if scene.figure else ()
+    moving = page_data(drawing_of(scene, marks_of(report)), {"": poses}, solution, shown)
+    chosen = scene.run.model_fields_set  # shown first
+    settings = dict(sorted(scene.run, key=lambda field: field[0] not in chosen))
     points = len(solution.time) + len(solution.step_times)
     return template.render(
-        solution=solution, check=report, settings=_settings(scene), peaks=_peaks(solution),
+        solution=solution, check=report, settings=settings, peaks=_peaks(solution),
         start=float(solution.time[0]), end=float(solution.time[-1]), energy=balance_words(solution.balance, float(solution.channels["energy.total"][0])),
         figures=[_embedded(sheet, points) for sheet in figures], version=version("stiffmbs"),
         sections=[(section, [_embedded(sheet, 0) for sheet in section.figures]) for section in sections],
         counted=[f"{label}: {text}" for label, text in solver_lines(solution.solver)], violation=float(np.nanmax(solution.channels["constraint.position"])),
-        forces=joint_forces(solution), modes=_modes(scene), text=text, moving=_moving(scene, solution, report), **page_parts(),
+        forces=joint_forces(solution), modes=_modes(scene), text=text, moving=moving, **page_parts(),
     )  # fmt: skip
-
-
-def _moving(scene: Scene, solution: Solution, report: Report) -> dict[str, str]:
-    """Return the page data of the moving mechanism, with its channels."""
-    shown = scene.figure.y if scene.figure else ()
-    drawing = drawing_of(scene, marks_of(report))
-    return page_data(drawing, {"": poses_of(scene, solution.time, solution.channels)}, solution, shown)
 
 
 def _modes(scene: Scene) -> list[str]:
@@ -118,16 +108,8 @@ def _modes(scene: Scene) -> list[str]:
         lines = modes_text(modes(scene)).splitlines()
     except StiffmbsError as error:
         return [f"no modes: {error}"]
-    left = len(lines) - MOST_MODES
-    return lines if left <= 0 else [*lines[:MOST_MODES], f"and {left} more lines: stiffmbs modes"]
-
-
-def _settings(scene: Scene) -> dict[str, Any]:
-    """Return every setting, those of the scene first."""
-    chosen = {
-        name: getattr(scene.run, name) for name in type(scene.run).model_fields if name in scene.run.model_fields_set
-    }
-    return {**chosen, **{name: value for name, value in scene.run if name not in chosen}}
+    left = len(lines) - MOST_ROWS
+    return lines if left <= 0 else [*lines[:MOST_ROWS], f"and {left} more lines: stiffmbs modes"]
 
 
 def _peaks(solution: Solution) -> list[dict[str, str]]:
@@ -135,7 +117,7 @@ def _peaks(solution: Solution) -> list[dict[str, str]]:
     rows = []
     sizes = scales(solution.channels, 1.0, solution.requested)
     for name, cell in channel_ranges(solution).items():
-        bar, noise = solution.errors.get(name, UNKNOWN), SHOWN_AS_ZERO * sizes[name]
+        bar, noise = solution.errors.get(name, UNKNOWN), LOADS.zero * sizes[name]
         verified = name in solution.errors
         rows.append(
             {
@@ -153,9 +135,27 @@ def _peaks(solution: Solution) -> list[dict[str, str]]:
 
 
 def _embedded(sheet: Sheet, points: int) -> str:
-    """Return a figure as a data URL."""
-    form = "svg" if points < MOST_LINES else "png"
-    content = io.BytesIO()
-    sheet.savefig(content, format=form, dpi=110, metadata={"Date": None} if form == "svg" else None)
-    kind = {"svg": "image/svg+xml", "png": "image/png"}[form]
-    return f"data:{kind};base64,{base64.b64encode(content.getvalue()).decode('ascii')}"
+    """Return a figure as a data URL; above many points a line drawing becomes a bitmap."""
+    return data_url(sheet, "svg" if points < MOST_LINES else "png", 110)
+
+
+def step_history(history: History) -> Sheet:
+    """Plot the step length over time on a logarithmic axis, and below it the order if known."""
+    from matplotlib.figure import Figure as Sheet
+
+    told = len(history.order) == len(history.t)
+    sheet = Sheet(figsize=(8, 5 if told else 3), layout="constrained")
+    lengths = np.diff(history.t)
+    rows = sheet.subplots(2 if told else 1, sharex=True, squeeze=False, height_ratios=[2, 1] if told else None)[:, 0]
+    shown = lengths > 0
+    rows[0].plot(history.t[1:][shown], lengths[shown], ".", color=COLORS[0], markersize=2)
+    rows[0].set_yscale("log")
+    rows[0].set_ylabel("step (s)")
+    rows[0].set_title("steps of the solver")
+    if told:
+        rows[1].plot(history.t, history.order, ".", color=COLORS[0], markersize=2)
+        rows[1].set_ylabel("order")
+    rows[-1].set_xlabel("time (s)")
+    for axes in rows:
+        dress(axes)
+    return sheet

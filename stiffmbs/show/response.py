@@ -14,8 +14,6 @@ def response_text(scene: str, found: Transfer, frequencies: np.ndarray, values: 
 
     Parameters
     ----------
-    scene : str
-    found : Transfer
     frequencies : ndarray, shape (n,)
         Frequencies, Hz.
     values : ndarray, shape (n, outputs, inputs)

@@ -7,13 +7,7 @@ from .sections import Section, Table
 
 
 def road_loads_text(scene: str, found: RoadLoads) -> str:
-    """Return a line for each component of each bushing: its peak with time and load case.
-
-    Parameters
-    ----------
-    scene : str
-    found : RoadLoads
-    """
+    """Return a line for each component of each bushing: its peak with time and load case."""
     lines = [f"{scene}: largest loads of bushings in their own axes (N, N m) over {', '.join(found.loads)}"]
     for name, peaks in found.peaks.items():
         lines.append(name)

@@ -2,11 +2,35 @@
 
 from __future__ import annotations
 
-from typing import Any
+import base64
+import io
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure as Sheet
 
 COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#000000")
 """Colors of Okabe and Ito, Color Universal Design (2008)."""
 STROKES: tuple[Any, ...] = ("-", "--", "-.", ":", (0, (8, 2)), (0, (5, 1, 1, 1, 1, 1)))
+
+
+def new_sheet(size: tuple[float, float], on_screen: bool = False) -> Sheet:
+    """Return an empty figure of matplotlib, size in inches; on screen, one of pyplot."""
+    if on_screen:
+        from matplotlib import pyplot
+
+        return pyplot.figure(figsize=size, layout="constrained")
+    from matplotlib.figure import Figure as Sheet
+
+    return Sheet(figsize=size, layout="constrained")
+
+
+def data_url(sheet: Sheet, form: str, dpi: int) -> str:
+    """Return a figure as a data URL: ``svg`` or ``png``."""
+    content = io.BytesIO()
+    sheet.savefig(content, format=form, dpi=dpi, metadata={"Date": None} if form == "svg" else None)
+    kind = {"svg": "image/svg+xml", "png": "image/png"}[form]
+    return f"data:{kind};base64,{base64.b64encode(content.getvalue()).decode('ascii')}"
 
 
 def stroke(k: int) -> dict[str, Any]:

@@ -17,7 +17,7 @@ from ..results.solution import Solution, channel_ranges
 from ..solve.trajectory import Outcome
 from .counters import solver_lines
 from .escaped import console as escaping_console
-from .force_table import NOT_UNIQUE, elements_of, force_table
+from .force_table import LOADS, NOT_UNIQUE, elements_of, force_table
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -27,10 +27,8 @@ if TYPE_CHECKING:
 
 UNBROKEN = 10_000
 """Line width of files, pipes and texts, characters."""
-INDENT = 13
-"""Width of the labels of lines."""
-MOST_LOADS = 10
-"""Number of elements whose loads are shown by default."""
+INDENT = len("constraints  ")
+"""Width of the longest label of a line, and of the blanks after it."""
 STATUS = {Outcome.DONE: "done", Outcome.INTERRUPTED: "interrupted", Outcome.STOPPED: "stopped"}
 
 
@@ -94,7 +92,14 @@ def _finite(content: Any) -> Any:
 
 
 def summary(solution: Solution, all: bool = False) -> str:
-    """Return the summary as text; see `Solution.summary`."""
+    """Return what ``stiffmbs run`` prints: loads of elements, energy balance, statistics of the solver, notes.
+
+    Parameters
+    ----------
+    solution : Solution
+    all : bool
+        Whether to list the loads of all elements; by default the ten largest are listed.
+    """
     from io import StringIO
 
     text = StringIO()
@@ -137,7 +142,7 @@ def _print(scene: str, solution: Solution, console: Console, all: bool) -> Calla
 
 def _print_loads(solution: Solution, console: Console, say: Callable[[str], None], all: bool) -> None:
     n_elements = len(elements_of(solution))
-    most = None if all or n_elements <= MOST_LOADS + 1 else MOST_LOADS
+    most = None if all or n_elements <= LOADS.most + 1 else LOADS.most
     table = force_table(solution, most)
     if table.row_count:
         largest = "" if most is None else f"the {most} largest of {n_elements} (--all shows all), "

@@ -5,6 +5,7 @@ from .solver import loaded_when_used
 SOLVERS = {
     "auto": loaded_when_used(".auto", __name__),
     "bdf": loaded_when_used(".bdf", __name__),
+    "radau": loaded_when_used(".radau.radau", __name__),
     "projected": loaded_when_used(".explicit.projected", __name__),
     "kinematic": loaded_when_used(".kinematic", __name__),
 }

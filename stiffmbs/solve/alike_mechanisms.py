@@ -7,12 +7,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..compile.system import System
-from . import cost
-from .dynamics import Dynamics
-from .initial import InitialValues
+from ..dynamics.dynamics import Dynamics
+from ..dynamics.initial import InitialValues
+from .cost import COSTS, ImplicitCost, of_explicit_step
 
 ITERATIONS = 5
-"""Iterations of the power method, as in `stiffmbs.solve.native.fastest_rate`."""
+"""Iterations of the power method, as in `stiffmbs.solve.explicit.native.fastest_rate`."""
 MOVE = 1e-7
 """Largest perturbation of a coordinate or velocity in the difference quotient, m, rad, m/s, rad/s."""
 IMPLICIT_STEPS, EXPLICIT_STEPS = 30.0, 2.0
@@ -54,15 +54,15 @@ def alike(
     if len(smooth) < 2:
         return sets + [[k] for k in smooth]
     rates = _rates(dynamics, during[0], start, label, len(mechanisms))
-    whole = cost.ImplicitCost.of(dynamics).step if implicit else cost.of_explicit_step(dynamics)
-    itself = cost.RESIDUALS * cost.RESIDUAL[0] if implicit else cost.EXPLICIT_STEP[0]
+    whole = ImplicitCost.of(dynamics).step if implicit else of_explicit_step(dynamics)
+    itself = COSTS.step_residuals * COSTS.residual if implicit else COSTS.explicit_step
     share = np.bincount(label[label >= 0], minlength=len(mechanisms)) / np.count_nonzero(label >= 0)
     of_unknowns = (whole - itself) * share
-    steps = cost.STEPS_OF_A_START + (IMPLICIT_STEPS if implicit else EXPLICIT_STEPS) * (during[1] - during[0]) * rates
+    steps = COSTS.start_steps + (IMPLICIT_STEPS if implicit else EXPLICIT_STEPS) * (during[1] - during[0]) * rates
     current: list[int] = []
     for k in sorted(smooth, key=lambda k: -steps[k]):
         more = (steps[current[0]] - steps[k]) * of_unknowns[k] if current else np.inf
-        if more < cost.START[0] + steps[k] * itself:
+        if more < COSTS.start + steps[k] * itself:
             current.append(k)
         else:
             current = [k]

@@ -1,22 +1,39 @@
-"""Automatic choice between the explicit integrator and BDF, which a run may repeat as its stiffness changes.
+"""Automatic choice between the explicit integrator and an implicit one, which a run may repeat as its stiffness changes.
 
 The fastest rate of the motion bounds the explicit steps by stability. It is computed at the start, and when step
-rejections indicate that stability, not accuracy, limits the steps. The step size of BDF is not known in advance, as
-vibrations may shorten it. BDF is therefore tried, preferably from the start, and kept while it costs less.
+rejections indicate that stability, not accuracy, limits the steps. The step size of the implicit integrator, `bdf` or
+`radau`, is not known in advance. It is therefore tried, preferably from the start, and kept while it costs less.
+The criteria are in `stiffmbs.solve.auto_decisions`.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from ..compile.callbacks import has_fault
-from ..describe.settings import RunSettings
+from ..dynamics.dynamics import Dynamics
+from ..dynamics.initial import InitialValues
 from ..errors import SolverError
+from ..model.settings import RunSettings
 from . import bdf, cost
-from .dynamics import Dynamics
+from .auto_decisions import (
+    AUTO,
+    AutoParameters,
+    ExplicitSteps,
+    ImplicitSteps,
+    Thresholds,
+    implicit_solver,
+    loss_of_trial,
+    saving_by_return,
+    since,
+    stability_limits,
+    starts_for_first_trial,
+    trial_goes_on,
+)
+from .error_control.newton import stiffness_at
 from .error_control.tolerances import absolute_tolerances
 from .events.restart import just_after, just_before, restarted
 from .explicit import DOP853
@@ -25,144 +42,365 @@ from .explicit.fastest_rate import fastest_rate
 from .explicit.integration import Integration
 from .explicit.projected import TRAITS
 from .ida.engine import Reached
-from .initial import InitialValues
 from .integrator import Integrator
+from .radau import radau
 from .segments import Segment, joined
 from .solver import Traits
 from .trajectory import Grid, Outcome, ProgressCallback, Trajectory, unwatched
 
-LOOK = 32
-"""Explicit steps between two checks for stiffness."""
-HELD_BACK = 0.05
-"""Fraction of steps limited by stability from which on the scene counts as stiff."""
-LOOK_AT_IMPLICIT = 3.0
-"""Cost of the BDF steps between two checks, in BDF starts without their small steps."""
-MAY_LOSE = 0.45
-"""Fraction of the remaining explicit cost that BDF may lose, in addition to a start, in its first trial; later 0."""
-WORTH_A_TRIAL, AT_RTOL, MOST = 7.0, 1e-4, 7.0
-"""Remaining explicit cost that justifies a trial, in BDF starts at the tolerance `AT_RTOL`, and its upper bound."""
-QUIET, FEWER = 100.0, 1 / 3
-"""Velocity change in an explicit step, in tolerances, that excites few vibrations, and a factor on `WORTH_A_TRIAL`."""
-AT_REST, FEWEST = 1e-4, 1.5
-"""Velocity change that excites no vibrations, in tolerances, and the replacement for `WORTH_A_TRIAL` then."""
-DEARER = 1.5
-"""Ratio of explicit cost to that of BDF at which BDF is tried again; multiplied by itself after each return."""
-AMENDS = 3.0
-"""Explicit cost before the next trial, in the cost of a failed trial; it doubles after each further one."""
 MOST_MESSAGES = 3
 """Switches of integrator that the note lists."""
 
 
 def traits(settings: RunSettings) -> Traits:
-    """Return the traits of `bdf`. The settings of the explicit scheme, projected `dop853`, are among them."""
-    return replace(bdf.traits(settings), name="auto", switches=True)
+    """Return the traits of `bdf` and `radau`. The settings of the explicit scheme, projected `dop853`, are among them."""
+    reads = dict.fromkeys((*bdf.traits(settings).reads, *radau.traits(settings).reads))
+    return replace(bdf.traits(settings), name="auto", reads=tuple(reads), switches=True)
 
 
 def solve(
     dynamics: Dynamics, start: InitialValues, grid: Grid, settings: RunSettings, watch: ProgressCallback
 ) -> Trajectory:
-    """Integrate with `dop853`, and with `bdf` while it costs less; the contract is in `stiffmbs.solve.trajectory`."""
+    """Integrate with `dop853`, and with `bdf` or `radau` while it costs less; the contract is in `stiffmbs.solve.trajectory`."""
     dynamics.forget_pivots()
-    return _Shared(dynamics, grid, settings, watch).run(start)
+    return _AutoRun(dynamics, grid, settings, watch).run(start)
 
 
 def begins_implicit(dynamics: Dynamics, start: InitialValues, grid: Grid, settings: RunSettings) -> bool:
-    """Return True if `bdf` is tried from the start because of the fastest rate there."""
-    return _Shared(dynamics, grid, settings, unwatched)._is_stiff_at_once(start)
+    """Return True if the implicit integrator is tried from the start because of the fastest rate there."""
+    return _AutoRun(dynamics, grid, settings, unwatched).first_trial(start) is not None
 
 
-@dataclass
-class _Pace:
-    """Time and step counters of the explicit integrator at a check: accepted, attempted, limited by stability."""
+class _ExplicitFailure(Exception):
+    """Explicit steps cannot go on; the message says where and why."""
+
+
+class _Switch(NamedTuple):
+    """Switch to the implicit integrator.
+
+    Attributes
+    ----------
+    reason : str
+    explicit_rate : float
+        Cost of explicit steps per second of the motion, with which the implicit one is compared.
+    thresholds : Thresholds
+        Thresholds from then on.
+    """
+
+    reason: str
+    explicit_rate: float
+    thresholds: Thresholds
+
+
+class _Left(NamedTuple):
+    """Time and state at which a segment was left to the other integrator."""
 
     t: float
-    steps: int = 0
-    tried: int = 0
-    held: int = 0
+    q: np.ndarray
+    u: np.ndarray
 
 
-class _Spent(NamedTuple):
-    """Totals of the implicit integrator: time of the motion, restarts at breakpoints and events, cost."""
+class _Implicit:
+    """Implicit integrator, created when it or its cost is needed.
 
-    t: float
-    restarts: int
-    cost: float
+    Attributes
+    ----------
+    name : str
+        ``bdf`` or ``radau``; empty before the integrator exists.
+    cost : ImplicitCost
+        Cost with the chosen linear solver, or a lower bound before the integrator exists.
+    """
 
-    def since(self, before: _Spent) -> _Spent:
-        """Return the totals since an earlier record."""
-        return _Spent(self.t - before.t, self.restarts - before.restarts, self.cost - before.cost)
+    def __init__(self, dynamics: Dynamics, settings: RunSettings) -> None:
+        self._dynamics, self._settings = dynamics, settings
+        self.name = ""
+        self.cost = cost.ImplicitCost.of(dynamics)
+
+    def create(self, parameters: AutoParameters, t: float, q: np.ndarray, u: np.ndarray) -> None:
+        """Choose and create the integrator by the stiffness of a state, unless it exists, and estimate its cost."""
+        if self.name:
+            return
+        self._dynamics.state.q[:], self._dynamics.state.u[:] = q, u
+        self.name = implicit_solver(parameters, self._settings.rtol, stiffness_at(self._dynamics, t).damping_ratio)
+        create = radau.radau_integrator if self.name == "radau" else Integrator
+        self.integrator = create(self._dynamics, self._settings)
+        of_bdf = cost.ImplicitCost.of(self._dynamics, self.integrator.factors)
+        self.cost = radau.of_radau(of_bdf) if self.name == "radau" else of_bdf
+
+    def traits(self) -> Traits:
+        """Return the traits of the solver."""
+        return (radau if self.name == "radau" else bdf).traits(self._settings)
+
+    def steps(self, t: float) -> ImplicitSteps:
+        """Return the steps of all segments, the last of which has reached the time t."""
+        counted = self.integrator.statistics()
+        restarts = int(counted["breakpoints"]) + int(counted["events"])
+        return ImplicitSteps(t, restarts, self.cost.work(int(counted["residuals"]), int(counted["factorizations"])))
 
 
-class _Shared:
-    """A run shared by two integrators."""
+class _ExplicitCheck:
+    """Check of the explicit steps of a segment: they may be left to the implicit integrator.
 
-    def __init__(self, dynamics: Dynamics, grid: Grid, settings: RunSettings, watch: ProgressCallback) -> None:
-        self._dynamics, self._grid, self._watch = dynamics, grid, watch
+    Attributes
+    ----------
+    switch : _Switch or None
+        Switch that the last check decided on.
+    """
+
+    def __init__(self, run: _AutoRun, t: float) -> None:
+        self._run = run
+        self._counted = ExplicitSteps(t, 0, 0, 0)
+        self.switch: _Switch | None = None
+
+    def __call__(self, work: Integration) -> bool:
+        """Compare the steps since the last check with the implicit integrator; return True if that is to follow."""
+        accepted = work.count("steps")
+        if accepted == self._counted.accepted:  # a return at output points only
+            return False
+        counted = ExplicitSteps(work.t, accepted, accepted + work.count("rejected"), work.count("stiff_steps"))
+        steps, self._counted = since(self._counted, counted), counted
+        self.switch = self._run.returned(steps, work.t) or self._run.later_trial(steps, counted, work)
+        return self.switch is not None
+
+
+class _ImplicitCheck:
+    """Check of the implicit steps of a segment: they are kept while their loss is tolerable.
+
+    Attributes
+    ----------
+    every : int
+        Steps between two checks.
+    rate : float
+        Cost of implicit steps per second of the motion in the last interval.
+    loss : float
+        Cost in excess of explicit steps, since it was last lower.
+    """
+
+    def __init__(self, run: _AutoRun, implicit: _Implicit, t: float) -> None:
+        self._run, self._implicit = run, implicit
+        every = run.parameters.check_cost * implicit.cost.memory / implicit.cost.step
+        self.every = max(int(every), run.parameters.fewest_steps)
+        self._counted, self._next = implicit.steps(t), implicit.integrator.steps() + self.every
+        self.rate, self.loss = np.inf, 0.0
+
+    def __call__(self, reached: Reached) -> bool:
+        """Add the loss since the last check; return True if the implicit integrator is kept."""
+        steps = self._implicit.integrator.steps()
+        if steps < self._next or self._run.is_breakpoint(reached.t):  # an event between two checks
+            return True
+        self._next = steps + self.every
+        counted = self._implicit.steps(reached.t)
+        taken, self._counted = since(self._counted, counted), counted
+        self.rate = taken.cost / taken.time if taken.time else np.inf
+        self.loss = loss_of_trial(self.loss, taken.cost, self._run.explicit_cost(taken.time, taken.restarts))
+        return trial_goes_on(
+            self.loss, self._implicit.cost.start, self._run.thresholds.loss, self._run.explicit_cost_from(reached.t)
+        )
+
+
+class _AutoRun:
+    """A run shared by two integrators.
+
+    Parameters
+    ----------
+    dynamics : Dynamics
+    grid : Grid
+    settings : RunSettings
+    watch : ProgressCallback
+    parameters : AutoParameters
+
+    Attributes
+    ----------
+    thresholds : Thresholds
+        Current ones.
+    """
+
+    def __init__(
+        self,
+        dynamics: Dynamics,
+        grid: Grid,
+        settings: RunSettings,
+        watch: ProgressCallback,
+        parameters: AutoParameters = AUTO,
+    ) -> None:
+        self._dynamics, self._grid, self._watch, self.parameters = dynamics, grid, watch, parameters
         self._settings = settings.model_copy(update={"scheme": "dop853", "projection": True})
+        self._implicit = _Implicit(dynamics, self._settings)
         self._explicit_step = cost.of_explicit_step(dynamics)
-        self._implicit: Integrator | None = None
-        self._costs = cost.ImplicitCost.of(dynamics)
-        self._starts = WORTH_A_TRIAL * (AT_RTOL / settings.rtol) ** 0.2  # BDF starts that justify a trial
-        self._pace = _Pace(grid.start)
-        self._explicit_cost = np.inf  # per second of the motion, where stability limits the steps
-        self._implicit_cost = np.inf  # of BDF per second, before it was left
-        self._dearer = DEARER
-        self._amends = 0.0  # explicit cost before the next trial
+        self._explicit_rate = np.inf  # cost per second of the motion
+        self._implicit_rate = np.inf  # the same of implicit steps, before they were left
+        self.thresholds = Thresholds.of(parameters)
         self._segments: list[Segment] = []
         self._messages: list[str] = []
-        self._lost = 0.0  # cost of BDF in excess of explicit steps, since it was last lower
-        self._may_lose = MAY_LOSE
-        self._gave_up = False  # explicit steps failed
 
     def run(self, start: InitialValues) -> Trajectory:
         """Integrate all segments and join them; rerun with the implicit integrator alone if explicit steps fail.
 
         They fail at singular poses, near which no integrator can start but which an integrator can pass.
         """
-        t: float | None = self._grid.start
-        explicit = not self._is_stiff_at_once(start)
-        while t is not None:
+        try:
+            self._alternate(start)
+        except _ExplicitFailure as failure:
+            self._rerun_implicit(start, str(failure))
+        return self._joined()
+
+    def _alternate(self, start: InitialValues) -> None:
+        """Integrate by both integrators in turn, up to the end or a failure."""
+        trial, t = self.first_trial(start), self._grid.start
+        explicit = trial is None
+        if trial:
+            self._switch(trial)
+        while True:
+            left = self._explicit_segment(start, t) if explicit else self._implicit_segment(start, t)
+            if left is None:
+                return
             try:
-                at = start if t == self._grid.start else restarted(self._dynamics, t, *self._state)
+                start, t = restarted(self._dynamics, *left), left.t
             except SolverError as error:
-                stopped = replace(self._segments[-1].trajectory, outcome=Outcome.STOPPED, message=str(error))
-                self._segments[-1] = replace(self._segments[-1], trajectory=stopped)
-                break
-            t = self._explicit_segment(at, t) if explicit else self._implicit_segment(at, t)
-            explicit = not explicit and not self._gave_up
-        return self._together()
+                self._stop(str(error))
+                return
+            explicit = not explicit
 
-    def _is_stiff_at_once(self, start: InitialValues) -> bool:
-        """Return True if BDF is to be tried from the start."""
-        rate = self._rate_at(self._grid.start, start.q, start.u)
-        worth = self._worth_a_trial(self._grid.start, self._starts_from(start, rate))
-        if worth:
-            self._messages.append(f"bdf, as the fastest rate is {rate:.3g} 1/s")
-        return worth
+    def first_trial(self, start: InitialValues) -> _Switch | None:
+        """Return the decision to begin with the implicit integrator, because stability would limit explicit steps; None to begin explicit."""
+        t = self._grid.start
+        fastest = fastest_rate(self._dynamics, t, start.q, start.u)
+        rate = self._stable_rate(fastest)
+        starts = starts_for_first_trial(self.parameters, self._excitation(start, fastest))
+        if not self._pays(rate, t, start.q, start.u, starts):
+            return None
+        return _Switch(f"{self._implicit.name}, as the fastest rate is {fastest:.3g} 1/s", rate, self.thresholds)
 
-    def _rate_at(self, t: float, q: np.ndarray, u: np.ndarray) -> float:
-        """Return the fastest rate at a state, and update the cost of explicit steps by it."""
-        rate = fastest_rate(self._dynamics, t, q, u)
-        self._explicit_cost = self._explicit_step * rate / DOP853.stability
-        return rate
+    def later_trial(self, steps: ExplicitSteps, segment: ExplicitSteps, work: Integration) -> _Switch | None:
+        """Return the decision to try the implicit integrator, because stability limits explicit steps; None to go on with these.
 
-    def _worth_a_trial(self, t: float, starts: float) -> bool:
-        """Return True if stability-limited explicit steps up to the end cost more than a number of BDF starts."""
-        left, starts = (self._grid.end - t) * self._explicit_cost, min(starts, MOST)
-        if self._implicit is None and left > starts * self._costs.start:
-            self._implicit = Integrator(self._dynamics, self._settings)
-            self._costs = cost.ImplicitCost.of(self._dynamics, self._implicit.factors)
-        return left > starts * self._costs.start
+        Parameters
+        ----------
+        steps : ExplicitSteps
+            Steps since the last check.
+        segment : ExplicitSteps
+            Steps of the whole segment.
+        work : Integration
+        """
+        if not stability_limits(self.parameters, steps):
+            return None
+        if segment.attempted * self._explicit_step < self.thresholds.penalty:
+            return None
+        following = (self._grid.end - work.t) / steps.time
+        starts = self.parameters.trial_starts
+        if following * steps.attempted * self._explicit_step <= starts * self._implicit.cost.start:
+            return None  # these include rejected and short steps, which cost more than the rate indicates
+        fastest = fastest_rate(self._dynamics, work.t, work.q, work.u)
+        rate = self._stable_rate(fastest)
+        if not self._pays(rate, work.t, work.q, work.u, starts):
+            return None
+        reason = (
+            f"{self._implicit.name} from t = {work.t:.4g} s on, as stability held back {100 * steps.limited / steps.accepted:.0f} % of the "
+            f"steps (fastest rate {fastest:.3g} 1/s)"
+        )
+        return _Switch(reason, rate, self.thresholds)
 
-    def _starts_from(self, start: InitialValues, rate: float) -> float:
-        """Return the BDF starts that explicit steps must cost for a trial, by the vibrations that the start excites."""
-        if not rate:
-            return self._starts
+    def returned(self, steps: ExplicitSteps, t: float) -> _Switch | None:
+        """Return the decision to resume the implicit integrator, because explicit steps cost more than its own did; None to go on with these."""
+        rate = steps.attempted * self._explicit_step / steps.time
+        saving = saving_by_return(rate, self._implicit_rate, self.thresholds.return_ratio, self._grid.end - t)
+        if not saving > self._implicit.cost.start:
+            return None
+        reason = f"{self._implicit.name} from t = {t:.4g} s on, as explicit steps cost more than its own had"
+        return _Switch(reason, rate, self.thresholds.after_return(self.parameters))
+
+    def _stable_rate(self, fastest: float) -> float:
+        """Return the cost of explicit steps per second if stability limits them, for a fastest rate in 1/s."""
+        return self._explicit_step * fastest / DOP853.stability
+
+    def _excitation(self, start: InitialValues, fastest: float) -> float:
+        """Return the largest change of a velocity in a step limited by stability, in tolerances."""
+        if not fastest:
+            return np.inf
         system, settings = self._dynamics.system, self._settings
         tolerances = self._dynamics.kept("tolerances", settings, lambda: absolute_tolerances(system, settings))
-        change = np.abs(start.acceleration) * (DOP853.stability / rate)
-        excited = float((change / (tolerances[system.n_q :] + settings.rtol * np.abs(start.u))).max(initial=0.0))
-        return FEWEST if excited < AT_REST else self._starts * (FEWER if excited < QUIET else 1.0)
+        change = np.abs(start.acceleration) * (DOP853.stability / fastest)
+        return float((change / (tolerances[system.n_q :] + settings.rtol * np.abs(start.u))).max(initial=0.0))
+
+    def _pays(self, explicit_rate: float, t: float, q: np.ndarray, u: np.ndarray, starts: float) -> bool:
+        """Return True if explicit steps from t to the end cost more than a number of implicit starts.
+
+        If they cost more than by the lower bound of a start, the integrator is created for a better estimate.
+        """
+        explicit_cost = (self._grid.end - t) * explicit_rate
+        if not explicit_cost > starts * self._implicit.cost.start:
+            return False
+        self._implicit.create(self.parameters, t, q, u)
+        return explicit_cost > starts * self._implicit.cost.start
+
+    def explicit_cost(self, duration: float, restarts: int) -> float:
+        """Return the cost of explicit steps over a time of the motion, s, with restarts."""
+        return duration * self._explicit_rate + restarts * cost.COSTS.restart_steps * self._explicit_step
+
+    def explicit_cost_from(self, t: float) -> float:
+        """Return the cost of explicit steps from t to the end, without restarts."""
+        return (self._grid.end - t) * self._explicit_rate
+
+    def is_breakpoint(self, t: float) -> bool:
+        """Return True if t is within rounding of an input breakpoint, where no integrator can start."""
+        breakpoints = self._dynamics.input_features(self._grid.start, self._grid.end).breakpoints
+        return bool(np.any((breakpoints >= just_before(t)) & (breakpoints <= just_after(t))))
+
+    def _explicit_segment(self, start: InitialValues, t: float) -> _Left | None:
+        """Integrate explicitly from t; return the state at which implicit steps are to follow, or None at the end of the run.
+
+        Raises
+        ------
+        _ExplicitFailure
+            If explicit steps cannot go on.
+        """
+        run = AdaptiveRun(DOP853, self._dynamics, start, self._rest(t), self._settings, self._watch)
+        check = _ExplicitCheck(self, t)
+        trajectory = run.integrate(Leaving(self.parameters.check_after, check))
+        stopped = trajectory.outcome is Outcome.STOPPED
+        if run.left and stopped and not has_fault(self._dynamics.system):
+            raise _ExplicitFailure(trajectory.message)
+        self._segments.append(Segment(replace(trajectory, solver="projected"), TRAITS["dop853"]))
+        if stopped or not run.left:
+            return None
+        assert check.switch is not None
+        self._switch(check.switch)
+        return _Left(run.work.t, run.work.q.copy(), run.work.u.copy())
+
+    def _implicit_segment(self, start: InitialValues, t: float) -> _Left | None:
+        """Integrate with the implicit integrator from t; return the state at which explicit steps follow, or None at the end of the run."""
+        integrator = self._implicit.integrator
+        check = _ImplicitCheck(self, self._implicit, t)
+        integrator.engine.pause_after(check.every)
+        trajectory = bdf.integrated(integrator, start, self._rest(t), self._watch, check)
+        self._segments.append(Segment(replace(trajectory, solver=self._implicit.name), self._implicit.traits()))
+        reached = integrator.reached
+        if trajectory.outcome is not Outcome.DONE or reached is None or reached.t >= self._grid.end:
+            return None
+        self._implicit_rate = check.rate
+        self.thresholds = self.thresholds.after_failed_trial(self.parameters, self._implicit.cost.start + check.loss)
+        self._messages.append(
+            f"projected again from t = {reached.t:.4g} s on, as {self._implicit.name} took shorter steps than they pay for"
+        )
+        return _Left(reached.t, *integrator.split(reached.y))
+
+    def _rerun_implicit(self, start: InitialValues, message: str) -> None:
+        """Integrate the whole run with the implicit integrator, because explicit steps have failed."""
+        self._implicit.create(self.parameters, self._grid.start, start.q, start.u)
+        trajectory = bdf.integrated(self._implicit.integrator, start, self._grid, self._watch)
+        self._segments = [Segment(replace(trajectory, solver=self._implicit.name), self._implicit.traits())]
+        self._messages = [f"{self._implicit.name}, as explicit steps {message}"]
+
+    def _switch(self, switch: _Switch) -> None:
+        """Continue with the implicit integrator."""
+        self._explicit_rate, self.thresholds = switch.explicit_rate, switch.thresholds
+        self._messages.append(switch.reason)
+
+    def _stop(self, message: str) -> None:
+        """End the run with the last segment."""
+        last = self._segments[-1]
+        stopped = replace(last.trajectory, outcome=Outcome.STOPPED, message=message)
+        self._segments[-1] = replace(last, trajectory=stopped)
 
     def _rest(self, t: float) -> Grid:
         """Return the grid from a time on."""
@@ -171,117 +409,17 @@ class _Shared:
             return self._grid
         return replace(self._grid, start=t, times=None if times is None else np.append(t, times[times > t]))
 
-    def _explicit_segment(self, start: InitialValues, t: float) -> float | None:
-        """Integrate explicitly from t; return the time at which the integrator was left, or None at the end."""
-        self._pace = _Pace(t)
-        run = AdaptiveRun(DOP853, self._dynamics, start, self._rest(t), self._settings, self._watch)
-        segment = run.integrate(Leaving(LOOK, self._should_try_implicit))
-        if run.left and segment.outcome is Outcome.STOPPED and not has_fault(self._dynamics.system):
-            self._gave_up, self._segments = True, []
-            self._messages = [f"bdf, as explicit steps {segment.message}"]
-            return self._grid.start
-        self._segments.append(Segment(replace(segment, solver="projected"), TRAITS["dop853"]))
-        if not run.left or segment.outcome is Outcome.STOPPED:
-            return None
-        self._state = run.work.q.copy(), run.work.u.copy()
-        return run.work.t
-
-    def _should_try_implicit(self, work: Integration) -> bool:
-        """Return True if stability limits the explicit steps and the rest of them would cost far more than a trial."""
-        seen = _Pace(
-            work.t, work.count("steps"), work.count("steps") + work.count("rejected"), work.count("stiff_steps")
-        )
-        if seen.steps == self._pace.steps:  # a return at output points only
-            return False
-        before, self._pace = self._pace, seen
-        if self._is_dearer(before, seen):
-            return True
-        held = (seen.held - before.held) / (seen.steps - before.steps)
-        if held < HELD_BACK:
-            return False
-        if seen.tried * self._explicit_step < self._amends:
-            return False
-        rest = (self._grid.end - seen.t) / (seen.t - before.t)
-        if rest * (seen.tried - before.tried) * self._explicit_step <= MOST * self._costs.start:
-            return False  # these include rejected and short steps, which cost more than the rate indicates
-        rate = self._rate_at(work.t, work.q, work.u)
-        worth = self._worth_a_trial(work.t, self._starts)
-        if worth:
-            self._messages.append(
-                f"bdf from t = {work.t:.4g} s on, as stability held back {100 * held:.0f} % of the steps "
-                f"(fastest rate {rate:.3g} 1/s)"
-            )
-        return worth
-
-    def _is_dearer(self, before: _Pace, seen: _Pace) -> bool:
-        """Return True if explicit steps now cost far more than those of BDF did, and the saving exceeds a BDF start."""
-        pace = (seen.tried - before.tried) * self._explicit_step / (seen.t - before.t)
-        saved = (self._grid.end - seen.t) * (pace - self._dearer * self._implicit_cost)
-        if not saved > self._costs.start:
-            return False
-        self._explicit_cost, self._dearer = pace, DEARER * self._dearer
-        self._messages.append(f"bdf from t = {seen.t:.4g} s on, as explicit steps cost more than its own had")
-        return True
-
-    def _implicit_segment(self, start: InitialValues, t: float) -> float | None:
-        """Integrate with BDF from t; return the time at which the integrator was left, or None at the end."""
-        self._implicit = self._implicit or Integrator(self._dynamics, self._settings)
-        self._look_after = int(LOOK_AT_IMPLICIT * self._costs.memory / self._costs.step)
-        self._implicit.engine.pause_after(self._look_after)
-        self._spent, self._lost, self._next_look = self._spent_up_to(t), 0.0, self._implicit.steps() + self._look_after
-        pays = None if self._gave_up else self._implicit_pays
-        segment = bdf.integrated(self._implicit, start, self._rest(t), self._watch, pays)
-        self._segments.append(Segment(replace(segment, solver="bdf"), bdf.traits(self._settings)))
-        reached = self._implicit.reached
-        if segment.outcome is not Outcome.DONE or reached is None or reached.t >= self._grid.end:
-            return None
-        self._state = self._implicit.split(reached.y)
-        self._may_lose = 0.0
-        self._amends = max(AMENDS * (self._costs.start + self._lost), 2.0 * self._amends)
-        self._messages.append(
-            f"projected again from t = {reached.t:.4g} s on, as bdf took shorter steps than they pay for"
-        )
-        return reached.t
-
-    def _implicit_pays(self, reached: Reached) -> bool:
-        """Return True if the cost of BDF in excess of explicit steps is small compared with their remaining cost."""
-        assert self._implicit is not None
-        steps = self._implicit.steps()
-        if steps < self._next_look or self._is_breakpoint(reached.t):  # an event between two checks
-            return True
-        self._next_look = steps + self._look_after
-        before, self._spent = self._spent, self._spent_up_to(reached.t)
-        taken = self._spent.since(before)
-        self._implicit_cost = taken.cost / taken.t if taken.t else np.inf
-        explicit = taken.t * self._explicit_cost + taken.restarts * cost.STEPS_OF_A_RESTART * self._explicit_step
-        self._lost = max(self._lost + taken.cost - explicit, 0.0)
-        left = (self._grid.end - reached.t) * self._explicit_cost
-        return self._lost <= self._costs.start + self._may_lose * left
-
-    def _is_breakpoint(self, t: float) -> bool:
-        """Return True if t is within rounding of an input breakpoint, where no integrator can start."""
-        breakpoints = self._dynamics.input_features(self._grid.start, self._grid.end).breakpoints
-        return bool(np.any((breakpoints >= just_before(t)) & (breakpoints <= just_after(t))))
-
-    def _spent_up_to(self, t: float) -> _Spent:
-        """Return the totals of the implicit integrator so far."""
-        assert self._implicit is not None
-        counted = self._implicit.statistics()
-        restarts = int(counted["breakpoints"]) + int(counted["events"])
-        work = self._costs.work(int(counted["residuals"]), int(counted["jacobians"]))
-        return _Spent(t, restarts, work)
-
-    def _together(self) -> Trajectory:
+    def _joined(self) -> Trajectory:
         """Join the segments to one trajectory with a note on the switches."""
         messages = self._messages[:MOST_MESSAGES]
         if len(self._messages) > MOST_MESSAGES:
             messages += [f"and so on, {len(self._messages)} changes in all"]
-        note = "auto chose " + ", then ".join(
-            messages if self._segments[0].traits.implicit else ["projected dop853", *messages]
-        )
+        if not self._segments[0].traits.implicit:
+            messages.insert(0, "projected dop853")
         parts = [segment.trajectory for segment in self._segments]
+        notes = ["auto chose " + ", then ".join(messages), *dict.fromkeys(part.note for part in parts if part.note)]
         return replace(
             parts[0] if len(parts) == 1 else joined(self._segments),
-            note="; ".join([note, *dict.fromkeys(part.note for part in parts if part.note)]),
+            note="; ".join(notes),
             solver=", ".join(dict.fromkeys(part.solver for part in parts)),
         )

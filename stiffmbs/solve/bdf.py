@@ -5,16 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from ..compile.system import System
-from ..describe.settings import RunSettings
+from ..dynamics.algebraic_states import no_value_ahead
+from ..dynamics.dynamics import Dynamics
+from ..dynamics.initial import InitialValues
 from ..errors import InputError, SolverError
-from .algebraic_states import no_value_ahead
-from .dynamics import Dynamics
+from ..model.settings import RunSettings
 from .error_control.error_test import ErrorControl
-from .error_control.precision import SLOW, governed_by_rounding, too_fine
-from .events.refusals import FOLLOWED_STEPS, refuse_beyond_sense
+from .error_control.precision import PRECISION, governed_by_rounding, too_fine
+from .events.refusals import DIVERGENCE, refuse_beyond_sense
 from .formulations import FORMULATIONS, READ_BY_FORMULATIONS
 from .ida.engine import Reached
-from .initial import InitialValues
 from .integrator import Integrator
 from .solver import Traits
 from .step_logging import is_logged, log_step
@@ -44,12 +44,12 @@ def solve(
     InputError
         When the formulation does not test velocities and forces depend on reactions.
     """
-    _refuse_untested_reactions(dynamics.system, settings)
+    refuse_untested_reactions(dynamics.system, settings)
     dynamics.forget_pivots()
     return integrated(Integrator(dynamics, settings, control), start, grid, watch)
 
 
-def _refuse_untested_reactions(system: System, settings: RunSettings) -> None:
+def refuse_untested_reactions(system: System, settings: RunSettings) -> None:
     """Refuse forces that depend on reactions in a formulation whose error test excludes velocities.
 
     A step size change causes velocity errors that violate the constraints, which the next steps remove. Friction turns
@@ -82,7 +82,7 @@ def integrated(
     rows = Rows(system.n_q, system.n_u, len(grid.times) if grid.times is not None else 1024)
     rows.append(grid.start, start.q, start.u)
     with Ending() as ending:
-        for reached in integrator.run(start, grid, passing=pays is None and not is_logged()):
+        for reached in integrator.run(start, grid, passing=not is_logged()):
             rows.extend(reached.times, *integrator.equations.states(reached.rows))
             if is_logged() and (step := integrator.engine.last_step()):
                 log_step(reached.t, *step)
@@ -92,7 +92,7 @@ def integrated(
                 raise SolverError(f"stopped at t = {reached.t:.9g} s: {failure}")
             if pays and not pays(reached):
                 break
-            if reached.t < grid.end and integrator.steps() >= FOLLOWED_STEPS:
+            if reached.t < grid.end and integrator.steps() >= DIVERGENCE.followed_steps:
                 state = integrator.split(reached.y)
                 refuse_beyond_sense(integrator.dynamics, rows, reached.t, *state)
     statistics = {**integrator.statistics(), "seconds": ending.seconds}
@@ -111,7 +111,7 @@ def integrated(
 
 def _failure(integrator: Integrator, reached: Reached) -> str:
     """Return the reason why the run ends at this state, or an empty string."""
-    by_rounding = integrator.steps() > SLOW and governed_by_rounding(integrator.statistics())
+    by_rounding = integrator.steps() > PRECISION.slow and governed_by_rounding(integrator.statistics())
     if not (by_rounding or reached.failure):
         return ""
     q, u = integrator.split(reached.y)

@@ -8,33 +8,71 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from .dynamics import Dynamics
+from ..dynamics.dynamics import Dynamics
 
-EXPLICIT_STEP = (1.96, 0.002, 0.139)
-"""Cost of a DOP853 step: fixed, per operation of the acceleration kernels, per constraint equation."""
-BY_ELIMINATION, BY_LARGE_BLOCKS = 0.007, (50.0, 0.0022)
-"""Cost per multiplication of the elimination; in large blocks, used for many: fixed, and per multiplication."""
-BY_LU = 0.007
-"""Cost per multiplication of the LU of the full block system, where accelerations are not found by elimination."""
-RESIDUAL = (0.34, 0.0131)
-"""Cost of a BDF residual with its share of the step: fixed, and per unknown."""
-MATRIX = (0.00029, 1.9)
-"""Cost per operation of the iteration matrix kernels, and factor on the estimated time of its linear solver."""
-LEAST_FACTORS = 0.044
-"""Cost of the linear solver per unknown, used before it is chosen: that of a chain, a lower bound."""
-RESIDUALS, MATRICES = 1.5, 0.2
-"""Average numbers of residuals and iteration matrices per BDF step."""
-START = (250.0, 3.5)
-"""Cost of consistent initial values and integrator memory at a switch of integrator: fixed, and per unknown."""
-STEPS_OF_A_START = 40
-"""Small BDF steps from order 1 up to the regular step size."""
-STEPS_OF_A_RESTART = 27
-"""Explicit steps, including rejected ones, that a breakpoint or an event adds to those that stability requires."""
+
+@dataclass(frozen=True)
+class CostParameters:
+    """Costs of the parts of steps and starts, in microseconds.
+
+    Source: least-squares fit of processor times of 20 scenes by ``python -m tests.bench.costs``.
+
+    Attributes
+    ----------
+    explicit_step : float
+        DOP853 step, without what follows.
+    explicit_operation : float
+        Operation of the acceleration kernels in such a step.
+    explicit_equation : float
+        Constraint equation in such a step.
+    multiplication : float
+        Multiplication of the elimination in such a step, or of the LU of the full block system.
+    large_blocks, large_block_multiplication : float
+        Elimination by large blocks, which many multiplications have: fixed, and per multiplication.
+    residual, residual_unknown : float
+        BDF residual with its share of the step: fixed, and per unknown.
+    matrix_operation : float
+        Operation of the kernels of the iteration matrix.
+    matrix_solver : float
+        Factor on the estimated time of the linear solver.
+    least_solver : float
+        Linear solver per unknown, before it is chosen: that of a chain, a lower bound.
+    step_residuals, step_matrices : float
+        Average numbers of residuals and of iteration matrices in a BDF step.
+    start, start_unknown : float
+        Consistent initial values and integrator memory at a switch of integrator: fixed, and per unknown.
+    start_steps : int
+        Small BDF steps from order 1 up to the regular step size.
+    restart_steps : int
+        Explicit steps, including rejected ones, that a breakpoint or an event adds to those that stability requires.
+    """
+
+    explicit_step: float = 1.96
+    explicit_operation: float = 0.002
+    explicit_equation: float = 0.139
+    multiplication: float = 0.007
+    large_blocks: float = 50.0
+    large_block_multiplication: float = 0.0022
+    residual: float = 0.34
+    residual_unknown: float = 0.0131
+    matrix_operation: float = 0.00029
+    matrix_solver: float = 1.9
+    least_solver: float = 0.044
+    step_residuals: float = 1.5
+    step_matrices: float = 0.2
+    start: float = 250.0
+    start_unknown: float = 3.5
+    start_steps: int = 40
+    restart_steps: int = 27
+
+
+COSTS = CostParameters()
+"""Costs of every run."""
 
 
 @dataclass(frozen=True)
 class ImplicitCost:
-    """Cost of BDF.
+    """Cost of implicit steps.
 
     Attributes
     ----------
@@ -42,22 +80,28 @@ class ImplicitCost:
         Cost of each, with the solutions of the linear system.
     memory : float
         Cost of a start, excluding its small steps.
+    step_residuals, step_matrices : float
+        Average numbers of residuals and of real iteration matrices in a step; those of BDF by default.
+    start_steps : int
+        Small steps up to the regular step size.
     """
 
     residual: float
     matrix: float
     memory: float
+    step_residuals: float = COSTS.step_residuals
+    step_matrices: float = COSTS.step_matrices
+    start_steps: int = COSTS.start_steps
 
     @classmethod
     def of(cls, dynamics: Dynamics, factors: float | None = None) -> ImplicitCost:
         """Return the cost for a scene; `factors` is the estimated time of the linear solver, None if unknown."""
         n = unknowns(dynamics)
-        operation, times = MATRIX
-        factors = LEAST_FACTORS * n if factors is None else factors
+        factors = COSTS.least_solver * n if factors is None else factors
         return cls(
-            RESIDUAL[0] + RESIDUAL[1] * n,
-            operation * dynamics.system.n_operations("tangent") + times * factors,
-            START[0] + START[1] * n,
+            COSTS.residual + COSTS.residual_unknown * n,
+            COSTS.matrix_operation * dynamics.system.n_operations("tangent") + COSTS.matrix_solver * factors,
+            COSTS.start + COSTS.start_unknown * n,
         )
 
     def work(self, residuals: float, matrices: float) -> float:
@@ -67,30 +111,30 @@ class ImplicitCost:
     @property
     def step(self) -> float:
         """Average cost of a step."""
-        return self.work(RESIDUALS, MATRICES)
+        return self.work(self.step_residuals, self.step_matrices)
 
     @property
     def start(self) -> float:
         """Cost of a start, including its small steps."""
-        return self.memory + STEPS_OF_A_START * self.step
+        return self.memory + self.start_steps * self.step
 
 
 def of_explicit_step(dynamics: Dynamics) -> float:
     """Return the cost of a DOP853 step."""
-    itself, operation, equation = EXPLICIT_STEP
     system = dynamics.system
+    kernels = COSTS.explicit_operation * system.n_operations("acceleration")
     linear = (
         _of_elimination(dynamics.eliminated.multiplications)
         if dynamics.eliminated.serves
-        else BY_LU * dynamics.lu_updates
+        else COSTS.multiplication * dynamics.lu_updates
     )
-    return itself + operation * system.n_operations("acceleration") + equation * system.n_c + linear
+    return COSTS.explicit_step + kernels + COSTS.explicit_equation * system.n_c + linear
 
 
 def _of_elimination(multiplications: int) -> float:
     """Return the cost of the multiplications of a step."""
-    blocks, each = BY_LARGE_BLOCKS
-    return min(BY_ELIMINATION * multiplications, blocks + each * multiplications)
+    by_large_blocks = COSTS.large_blocks + COSTS.large_block_multiplication * multiplications
+    return min(COSTS.multiplication * multiplications, by_large_blocks)
 
 
 def unknowns(dynamics: Dynamics) -> int:

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from ..compile.equations import ABSENT
-from ..describe.settings import RunSettings
-from .algebraic_states import rates_of_algebraic
-from .dynamics import Dynamics
+from ..compile.equations import ABSENT, Equations
+from ..dynamics.algebraic_states import rates_of_algebraic
+from ..dynamics.dynamics import Dynamics
+from ..dynamics.initial import InitialValues, rates_of
+from ..model.settings import RunSettings
 from .error_control.error_test import CHOSEN, ErrorControl
 from .error_control.newton import newton_tolerance, stiffness_at
 from .error_control.relaxation import relax
@@ -18,15 +19,14 @@ from .events.long_steps import LongSteps
 from .events.masked import MaskedEvents
 from .events.refusals import refuse_beyond_limits
 from .events.restart import just_after, restarted_past, straight_on
-from .events.velocity_jumps import WORTH_TELLING, VelocityJumps
+from .events.velocity_jumps import VELOCITY_JUMP, VelocityJumps
 from .ida.choice import dense_cost, driven_by_callbacks, driven_natively
-from .ida.engine import Reached
+from .ida.engine import Engine, Reached
 from .ida.libraries import available
-from .initial import InitialValues, rates_of
+from .ida.native.parameters import LOOP
 from .trajectory import Grid
 
-MOST_PASSED = 64
-"""Largest number of breakpoints at which the engine may restart before it returns."""
+Driver = Callable[[Dynamics, RunSettings, ErrorControl], tuple[Equations, Engine, float]]
 
 
 class Integrator:
@@ -39,6 +39,8 @@ class Integrator:
     control : ErrorControl, optional
     memory : str
         Name under which the dynamics keep the engine for the next integrator of that name.
+    driver : callable
+        Returns the equations, their engine and the cost of its linear solver.
 
     Attributes
     ----------
@@ -49,8 +51,9 @@ class Integrator:
     """
 
     def __init__(
-        self, dynamics: Dynamics, settings: RunSettings, control: ErrorControl | None = None, memory: str = "bdf"
-    ) -> None:
+        self, dynamics: Dynamics, settings: RunSettings, control: ErrorControl | None = None, memory: str = "bdf",
+        driver: Driver = driven_natively,
+    ) -> None:  # fmt: skip
         control = control or CHOSEN[dynamics.system.of_body.dimensions]
         self.dynamics, self.settings, self.control = dynamics, settings, control
         self.reached: Reached | None = None
@@ -58,7 +61,7 @@ class Integrator:
         native, reason = available()
         if native:
             self.equations, self.engine, cost = dynamics.kept(
-                memory, (settings, control), lambda: driven_natively(dynamics, settings, control)
+                memory, (settings, control), lambda: driver(dynamics, settings, control)
             )
             self.engine.forget()
         else:
@@ -110,7 +113,7 @@ class Integrator:
                 refuse_beyond_limits(self.dynamics, t, ready.q, ready.u)
                 self._begin(ready, t)
                 chattering.begin(t, ready.q, ready.u)
-            for reached in self._segment(t, stops[: MOST_PASSED if passing else 1], grid):
+            for reached in self._segment(t, stops[: LOOP.most_passed if passing else 1], grid):
                 del stops[: reached.passed]
                 self._breakpoints += reached.passed
                 yield reached if not reached.failure else self._explained(reached)
@@ -144,7 +147,7 @@ class Integrator:
         if begun is None:
             return self._consistent(q, u, before, t, ahead)
         state = self.dynamics.state
-        if begun.jump > WORTH_TELLING:
+        if begun.jump > VELOCITY_JUMP.least:
             self._jumps.note(before, state.u - u)
         if begun.meets:
             chattering.begin(begun.t, state.q.copy(), state.u.copy())

@@ -8,29 +8,19 @@ import numpy as np
 
 from ..compile.inputs.features import InputFeatures
 from ..compile.inputs.of_time import inputs_of
-from ..describe.settings import RunSettings
+from ..compile.machine.native.statuses import NO_BALANCE, NO_MEMORY, NO_STATE, NOT_FINITE
+from ..dynamics.algebraic_states import failure
+from ..dynamics.dynamics import Dynamics
+from ..dynamics.initial import InitialValues
 from ..errors import InputError, SolverError
-from .algebraic_states import failure
-from .driven.states import Instant, states_after
-from .driven.velocities import IntegratedMotion
-from .dynamics import Dynamics
+from ..model.settings import RunSettings
+from .driven_states import Instant, states_after
+from .driven_velocities import IntegratedMotion
 from .events.narrow_inputs import hidden_peak, narrower_than_output
 from .events.refusals import refuse_beyond_limits
-from .initial import InitialValues
-from .native.statuses import NO_BALANCE, NO_MEMORY, NO_STATE, NOT_FINITE
+from .kinematic_parameters import KINEMATIC
 from .solver import Traits
 from .trajectory import Ending, Grid, ProgressCallback, Rows, Trajectory
-
-LARGEST_SURPRISE = 0.05
-"""Largest distance from predicted to corrected positions, as a fraction of the step's displacement."""
-LARGEST_TURN = 0.5
-"""Largest distance from predicted to corrected velocities, as a fraction of their norm."""
-LARGEST_ROTATION = 2.0
-"""Largest rotation of a body in one step, rad; a pose does not determine whole turns."""
-SHORTEST_STEP = 1e-10
-"""Shortest step, as a fraction of the duration. A shorter one that fails means that the mechanism locks."""
-MOST_MOVES = 12
-"""Largest number of Newton moves of a step; the step is shortened beyond it."""
 
 
 def _length(vector: np.ndarray) -> float:
@@ -65,7 +55,7 @@ def solve(
     system = dynamics.system
     rows = Rows(system.n_q, system.n_u, len(times))
     features = dynamics.input_features(grid.start, grid.end)
-    shortest = SHORTEST_STEP * (grid.end - grid.start)
+    shortest = KINEMATIC.shortest * (grid.end - grid.start)
     motion: _Motion | IntegratedMotion
     if _by_velocities(dynamics):
         longest = float(np.min(features.longest, initial=np.inf))
@@ -158,7 +148,9 @@ class _Motion:
         self.go_to(breakpoint - self._shortest)
         state, t = self._dynamics.state, breakpoint + self._shortest
         state.q[:], state.u[:] = self.q, self.u
-        self._status = min(self._dynamics.assemble(t, most=MOST_MOVES), 0) or self._dynamics.correct_velocities(t)
+        self._status = min(
+            self._dynamics.assemble(t, most=KINEMATIC.most_moves), 0
+        ) or self._dynamics.correct_velocities(t)
         if self._status < 0 or not self._take(t):
             raise SolverError(self._stuck())
 
@@ -167,12 +159,12 @@ class _Motion:
         state, dynamics = self._dynamics.state, self._dynamics
         step = h * self.u + h * h / 2 * self.a
         self._status = 0
-        if np.abs(step * self._turns).max() > LARGEST_ROTATION:
+        if np.abs(step * self._turns).max() > KINEMATIC.rotation:
             return False
         predicted_q, predicted_u = dynamics.system.of_body.moved(self.q, step), self.u + h * self.a
         predicted_q[self._counters] += h * self._turning
         state.q[:], state.u[:] = predicted_q, predicted_u
-        moves = dynamics.assemble(t, most=MOST_MOVES)
+        moves = dynamics.assemble(t, most=KINEMATIC.most_moves)
         self._status = min(moves, 0)
         if moves < 0 or not self._near(state.q, predicted_q, h):
             return False
@@ -180,13 +172,13 @@ class _Motion:
         if self._status < 0:
             return False
         size = max(_length(self.u), _length(state.u))
-        if _length(state.u - predicted_u) > LARGEST_TURN * size + 1e-9:
+        if _length(state.u - predicted_u) > KINEMATIC.change * size + 1e-9:
             return False
         before = self.u
         if not self._take(t):
             return False
         secant = (self.u - before) / h
-        if h * _length(self.a - secant) > LARGEST_TURN * size + 1e-9:  # forces of 1e23 N leave no significant digit
+        if h * _length(self.a - secant) > KINEMATIC.change * size + 1e-9:  # forces of 1e23 N leave no significant digit
             self.a = secant
         self.steps, self.moves = self.steps + 1, self.moves + moves
         return True
@@ -207,7 +199,6 @@ class _Motion:
         return self._status == 0
 
     def _rates_of_counters(self, t: float) -> np.ndarray:
-        """Return the rates of the rotation counters at the current state, rad/s."""
         state = self._dynamics.state
         if not self._dynamics.system.n_counters:
             return np.empty(0)
@@ -217,7 +208,7 @@ class _Motion:
     def _near(self, q: np.ndarray, predicted: np.ndarray, h: float) -> bool:
         own = _length(h * self.u) + _length(h * h / 2 * self.a)
         miss = self._dynamics.system.move(predicted, q)
-        return bool(_length(miss) <= LARGEST_SURPRISE * own + 1e-9)
+        return bool(_length(miss) <= KINEMATIC.surprise * own + 1e-9)
 
     def _polish(self, t: float) -> None:
         """Correct positions to rounding by up to two more Newton moves, then velocities."""

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from .dynamics import Dynamics, OutputRows
-from .failures import FAILURES
+from ..dynamics.dynamics import Dynamics, OutputRows
+from ..dynamics.failures import FAILURES
 from .trajectory import Trajectory
 
 MOST_MISSING = 100

@@ -48,6 +48,5 @@ def _summed(segments: Sequence[Trajectory], counted: Sequence[Trajectory]) -> di
 
 
 def _history(counted: Sequence[Trajectory]) -> History:
-    """Merge the steps of all segments, without orders."""
     t = np.concatenate([segment.history.t for segment in counted])
     return History(np.sort(t), np.empty(0, dtype=int))

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..compile.system import System
-from ..describe.settings import RunSettings
+from ..model.settings import RunSettings
 from . import SOLVERS
 from .solver import Traits
 from .trajectory import Grid

@@ -8,7 +8,7 @@ from functools import cache
 from importlib import import_module
 from typing import Any, NamedTuple
 
-from ..describe.settings import RunSettings
+from ..model.settings import RunSettings
 from .trajectory import Solver, Trajectory
 
 FOR_ALL_SOLVERS = frozenset({"duration", "start", "output", "points", "solver", "presolve", "drop_first"})

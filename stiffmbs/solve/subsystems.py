@@ -9,17 +9,17 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..describe.model_data import ModelData
-from ..describe.settings import RunSettings
+from ..dynamics.dynamics import Dynamics
+from ..dynamics.initial import InitialValues
+from ..dynamics.storage import allocated
+from ..model.model_data import ModelData
+from ..model.settings import RunSettings
 from ..presolve.linear_equations import independent_coordinates
 from ..presolve.presolve import Part, parts_of
 from .alike_mechanisms import alike
 from .auto import begins_implicit
-from .dynamics import Dynamics
 from .events.restart import restarted
-from .initial import InitialValues
 from .settings import may_presolve, traits_of
-from .storage import allocated
 from .trajectory import Grid, History, Outcome, ProgressCallback, Solver, Trajectory, summed
 
 
@@ -170,7 +170,6 @@ def _together(subsystems: Sequence[Subsystem], found: Sequence[Trajectory], star
 
 
 def _merged(histories: Sequence[History]) -> History:
-    """Merge the steps of all histories in the order of time."""
     t, order = (np.concatenate(parts) for parts in zip(*((h.t, h.order) for h in histories), strict=True))
     sequence = np.argsort(t, kind="stable")
     return History(t[sequence], order[sequence] if len(order) == len(t) else order)

@@ -3,17 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
 from ..compile.system import System
 from ..compile.written_values import writer
-from .dynamics import Dynamics
+from ..dynamics.dynamics import Dynamics
 
-BEYOND_LAST_STATE = (0.0, 1e-12, 1e-9, 1e-6)
-"""Times after the last state, relative to the time, s, at which undefined values are searched for."""
-LOCKED_VIOLATION = 1e-5
-"""Violation of a constraint, m or rad, from which on a mechanism counts as locked."""
+
+@dataclass(frozen=True)
+class SuspectParameters:
+    """Parameters of the search."""
+
+    beyond: tuple[float, ...] = (0.0, 1e-12, 1e-9, 1e-6)
+    """Times after the last state, relative to the time, at which undefined values are searched for."""
+    locked: float = 1e-5
+    """Violation of a constraint, m or rad, from which on a mechanism counts as locked."""
+
+
+SUSPECT = SuspectParameters()
+
 TERM_SETS = ("motion", "acceleration")
 
 
@@ -30,7 +40,7 @@ def suspect(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> str:
     q, u : ndarrays, shapes (n_q,), (n_u,)
         Last state that was reached.
     """
-    for ahead in BEYOND_LAST_STATE:
+    for ahead in SUSPECT.beyond:
         later = ahead * max(1.0, abs(t))
         _move(dynamics, dynamics.system.of_body.moved(q, later * u), u)
         for term_set in TERM_SETS:
@@ -57,14 +67,13 @@ def _open(dynamics: Dynamics, t: float) -> str:
     system, state = dynamics.system, dynamics.state
     state.evaluate("motion", t)
     gaps = np.abs(state.vector("motion", "C")) * system.active
-    if not len(gaps) or gaps.max() < LOCKED_VIOLATION:
+    if not len(gaps) or gaps.max() < SUSPECT.locked:
         return ""
     joint, equation = system.equations[int(np.argmax(gaps))]
     return f"; joint '{joint}' (equation {equation}) is open by {gaps.max():.3g}"
 
 
 def _hardest(dynamics: Dynamics, t: float) -> str:
-    """Return the element that accelerates a body most."""
     if dynamics.accelerate(t)[0] < 0:
         return ""
     largest, name, k = max(_pulls(dynamics, t), default=(0.0, "", 0))

@@ -20,14 +20,14 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from ..describe.settings import RunSettings
+from ..dynamics.storage import BLOCK, allocated, release
 from ..errors import SolverError
-from .storage import BLOCK, allocated, release
+from ..model.settings import RunSettings
 
 if TYPE_CHECKING:
-    from .dynamics import Dynamics
+    from ..dynamics.dynamics import Dynamics
+    from ..dynamics.initial import InitialValues
     from .events.long_steps import LongSteps
-    from .initial import InitialValues
 
 ProgressCallback = Callable[[float], None]
 

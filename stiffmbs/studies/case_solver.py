@@ -10,19 +10,19 @@ from typing import Any
 import numpy as np
 
 from ..analyses.job import Job, prepare
-from ..analyses.number_plan import NumberPlan, number_plan
 from ..analyses.renumber import renumbered
 from ..analyses.run import Finished, finished, solved
-from ..describe.files.files_read import recorded
-from ..describe.files.followed import NotFollowed
-from ..describe.files.other_forces import OtherForces
-from ..describe.files.quoted import quoted
-from ..describe.files.unchanged import Unchanged
-from ..describe.files.written_scene import WrittenScene
-from ..describe.reading import made_scene
-from ..describe.scene import Scene
-from ..describe.settings import RunSettings
 from ..errors import InputError, StiffmbsError
+from ..model.files.other_forces import OtherForces
+from ..model.files.written_scene import WrittenScene
+from ..model.read_scene import made_scene
+from ..model.scene import Scene
+from ..model.settings import RunSettings
+from ..reading.files.files_read import recorded
+from ..reading.files.quoted import quoted
+from ..reading.files.unchanged import Unchanged
+from ..reading.units.units import Quantity, in_text
+from ..reading.variation import Variation
 from ..results.channels import channels_of
 from ..results.solution import Solution
 from ..solve.settings import changed
@@ -41,7 +41,6 @@ class Task:
 
     Attributes
     ----------
-    scene : WrittenScene
     names : tuple of str
         Varied parameters or paths, as `stiffmbs.load_scene` changes them.
     settings : mapping
@@ -61,7 +60,6 @@ class Row:
 
     Attributes
     ----------
-    case : int
     status : str
         ``done``, ``stopped`` early, or ``error``.
     message : str
@@ -84,20 +82,13 @@ class ChangedFileError(InputError):
 
 
 class CaseSolver:
-    """Solver of cases in one thread; each thread needs its own.
-
-    Parameters
-    ----------
-    task : Task
-    """
+    """Solver of cases in one thread; each thread needs its own."""
 
     def __init__(self, task: Task) -> None:
         self._task = task
         self._unchanged = Unchanged()
         self._other_forces: OtherForces | None = None
         self._jobs: list[Job] = []
-        self._plan: NumberPlan | None = None
-        self._may_plan = True
         self._of_scene = self._changed = RunSettings()
         self._files: dict[str, str] = {}
 
@@ -113,10 +104,8 @@ class CaseSolver:
         if found is not None:
             return found
         written, names = self._task.scene, self._task.names
-        content = copy.deepcopy(dict(written.content))
-        changes = (*written.changes, *zip(names, values, strict=True))
         with recorded() as files:
-            scene = made_scene(content, changes, written.source, lambda _: None, written.folder, self._unchanged)
+            scene = read_changed(written, list(zip(names, values, strict=True)), self._unchanged)
         self._check_files(files)
         if self._other_forces is None:
             self._other_forces = OtherForces(written, names, self._unchanged)
@@ -145,14 +134,9 @@ class CaseSolver:
     def row(self, case: int, values: Sequence[Any]) -> Row:
         """Solve a case and return its outputs, or its error."""
         try:
-            solution = finished(self._job_of_case(values))
+            solution = finished(self.job(self.scene(values)))
             done = solution.outcome is Outcome.DONE
             outputs = tuple(_kept(output, solution, done) for output in self._task.outputs)
-        except NotFollowed:  # something depends on the described forces after all
-            if self._plan is None:
-                raise
-            self._plan, self._jobs = None, []
-            return self.row(case, values)
         except ChangedFileError:
             raise
         except StiffmbsError as error:
@@ -162,19 +146,6 @@ class CaseSolver:
             raise KeyboardInterrupt
         told = "; ".join([*([] if done else [solution.message]), *self._undefined(outputs, done), *solution.notes])
         return Row(case, "done" if done else "stopped", told[:MOST_WORDS], outputs, dict(self._files))
-
-    def _job_of_case(self, values: Sequence[Any]) -> Job:
-        """Return the job of a case; its data may belong to another case, as only its compiled numbers are used."""
-        if self._plan is None:
-            job = self.job(self.scene(values))
-            if self._may_plan and self._other_forces:
-                self._plan, self._may_plan = number_plan(job, self._other_forces, values), False
-            return job
-        found = self._plan.with_values(values)
-        if found is None:
-            return self.job(self.scene(values))
-        self._jobs = [found, *(job for job in self._jobs if job.dynamics is not found.dynamics)]
-        return found
 
     def _undefined(self, outputs: Sequence[float | np.ndarray], done: bool) -> Iterator[str]:
         """Yield a sentence for each output number of a completed run that is not finite, such as log(0)."""
@@ -193,7 +164,6 @@ class CaseSolver:
 
         Parameters
         ----------
-        scene : Scene
         settings : RunSettings, optional
             Settings of the run; by default those of the scene with the task's changes.
         """
@@ -221,12 +191,14 @@ def _kept(output: Output, solution: Finished, done: bool) -> float | np.ndarray:
     return output.value(solution)
 
 
+def read_changed(written: WrittenScene, changes: Sequence[tuple[str, Any]], unchanged: Unchanged) -> Scene:
+    """Read a scene with other values, without what was validated before."""
+    content = copy.deepcopy(dict(written.content))
+    return made_scene(content, (*written.changes, *changes), written.source, lambda _: None, written.folder, unchanged)
+
+
 def written_scene(model: Any) -> WrittenScene:
     """Return the source from which the cases of a model are read.
-
-    Parameters
-    ----------
-    model : Model, Scene, str or Path
 
     Raises
     ------
@@ -234,8 +206,8 @@ def written_scene(model: Any) -> WrittenScene:
         If the file cannot be read, the scene is a changed copy, or the model cannot be written as a scene.
     """
     from ..analyses.job import data_of
-    from ..describe.model_text import model_text
-    from ..describe.reading import read_scene
+    from ..model.model_text import model_text
+    from ..model.read_scene import read_scene
 
     data = data_of(model)
     if isinstance(data, Scene) and not _as_written(data):
@@ -247,6 +219,14 @@ def written_scene(model: Any) -> WrittenScene:
     if data.written is None:
         raise InputError("study: found a scene that was not read from text, expected a file, a scene or a model")
     return data.written
+
+
+def refuse_units(scene: WrittenScene, variations: Sequence[Variation]) -> None:
+    """Reject units that the scene does not accept at the varied place."""
+    for one in variations:
+        if one.dimension is not None:
+            value = one.range.low if one.range else one.values[0]
+            CaseSolver(Task(scene, (one.name,), {}, ())).scene([in_text(Quantity(value, one.dimension))])
 
 
 def _as_written(scene: Scene) -> bool:

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import InputError
-from .variation import Variation
+from ..reading.variation import Variation
 
 SAMPLES = ("random", "lhs", "sobol")
 MOST_CASES = 10_000_000

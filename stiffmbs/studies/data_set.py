@@ -1,7 +1,8 @@
-"""Results of a study as a data set of xarray."""
+"""Results of a study as a data set of xarray, as text and as JSON."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -9,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..errors import InputError, needs
+from ..results.value_notes import MOST_NAMED
 from .case_solver import Row
 from .cases import Cases
 from .outputs import Output
@@ -17,6 +19,7 @@ if TYPE_CHECKING:
     import xarray
 
 CASE, TIME = "case", "time"
+STATUS, MESSAGE = "status", "message"
 
 
 def data_set(
@@ -48,7 +51,7 @@ def data_set(
             array.reshape(*shape, *array.shape[1:]),
             {"formula": one.text},
         )
-    for name, words in (("status", status), ("message", message)):
+    for name, words in ((STATUS, status), (MESSAGE, message)):
         variables[name] = (dimensions, words.astype(str).reshape(shape))
     if any(one.is_series for one in outputs):
         coordinates[TIME] = (TIME, time, {"units": "s"})
@@ -124,8 +127,6 @@ def _write_netcdf(path: Path, data: xarray.Dataset) -> None:
 def _write_csv(path: Path, data: xarray.Dataset) -> None:
     import csv
 
-    from .table import as_dict
-
     rows = as_dict("", data)["cases"]
     with path.open("w", encoding="utf-8", newline="") as file:
         writer = csv.DictWriter(file, list(rows[0]))
@@ -134,3 +135,58 @@ def _write_csv(path: Path, data: xarray.Dataset) -> None:
 
 
 WRITERS: dict[str, Callable[[Path, Any], None]] = {".nc": _write_netcdf, ".csv": _write_csv}
+
+
+def numbers(data: xarray.Dataset) -> list[str]:
+    """Return the variables that are one number for each case."""
+    return [
+        str(name) for name in data.data_vars if name not in (STATUS, MESSAGE) and data[name].dims == data[STATUS].dims
+    ]
+
+
+def varied(data: xarray.Dataset) -> list[str]:
+    """Return the coordinates that vary over the cases."""
+    return [str(name) for name in data.coords if set(data[name].dims) & set(data[STATUS].dims) and name != CASE]
+
+
+def text(data: xarray.Dataset) -> str:
+    """Return the ranges of all outputs with the cases of their extremes, and the failed cases."""
+    done = int((data[STATUS] == "done").sum())
+    lines = [f"{data.attrs.get('title', '')}: {done} of {data[STATUS].size} cases done"]
+    for name in numbers(data):
+        if np.isfinite(data[name].values).any():
+            low, high = (_at(data, name, extreme) for extreme in (np.nanargmin, np.nanargmax))
+            lines.append(f"  {name}: {low} to {high}")
+    failed = np.flatnonzero(data[STATUS].values.ravel() != "done")
+    for k in failed[:MOST_NAMED]:
+        where = ", ".join(f"{name} = {value}" for name, value in _case(data, int(k)).items())
+        lines.append(f"  not solved: {where}: {data[MESSAGE].values.ravel()[k]}")
+    if len(failed) > MOST_NAMED:
+        lines.append(f"  not solved: {len(failed) - MOST_NAMED} more")
+    return "\n".join(lines)
+
+
+def _at(data: xarray.Dataset, name: str, extreme: Any) -> str:
+    k = int(extreme(data[name].values))
+    values = {key: f"{value:.6g}" if isinstance(value, float) else value for key, value in _case(data, k).items()}
+    where = ", ".join(f"{key} = {value}" for key, value in values.items())
+    return f"{data[name].values.ravel()[k]:.6g} ({where})"
+
+
+def _case(data: xarray.Dataset, number: int) -> dict[str, Any]:
+    """Return the varied values of a case."""
+    dims = data[STATUS].dims
+    index = dict(zip(dims, np.unravel_index(number, data[STATUS].shape), strict=True))
+    places = {name: {d: k for d, k in index.items() if d in data[name].dims} for name in varied(data)}
+    return {name: data[name].isel(place).values.tolist() for name, place in places.items()}
+
+
+def as_dict(scene: str, data: xarray.Dataset) -> dict[str, Any]:
+    """Return the content of ``--json``: every case with its varied values, numeric outputs, status and message."""
+    rows = []
+    outputs = {name: data[name].values.ravel() for name in numbers(data)}
+    status, message = (data[name].values.ravel() for name in (STATUS, MESSAGE))
+    for k in range(data[STATUS].size):
+        values = {name: float(array[k]) if math.isfinite(array[k]) else None for name, array in outputs.items()}
+        rows.append({"case": k, **_case(data, k), **values, STATUS: str(status[k]), MESSAGE: str(message[k])})
+    return {"scene": scene, "status": "done" if (status == "done").all() else "incomplete", "cases": rows}

@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+import pickle
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
 from contextlib import contextmanager
+from functools import lru_cache
 from itertools import islice
+from queue import Empty, LifoQueue
+from typing import Any
 
 from ..errors import SolverError, StiffmbsError
-from .case_solver import Row
-from .worker import Chunk, solve_chunk
+from .case_solver import CaseSolver, Row, Task
 
+Chunk = Sequence[tuple[int, tuple[Any, ...]]]
+"""Cases with their numbers."""
+STUDIES = 2
+"""Number of studies whose compiled jobs a process keeps."""
 AHEAD = 3
 """Number of chunks for each worker that are running or waiting, so that no worker is idle."""
 TRIES = 3
@@ -21,7 +28,7 @@ TRIES = 3
 def executor_of(workers: int | None, executor: Executor | None) -> Iterator[tuple[Executor | None, int]]:
     """Yield an executor and the number of its workers, or None for work in the current thread."""
     if executor is not None:
-        yield executor, workers or _workers_of(executor)
+        yield executor, workers or int(getattr(executor, "_max_workers", 0) or 16)  # else a small cluster
         return
     count = workers or 1
     if count == 1:
@@ -32,11 +39,6 @@ def executor_of(workers: int | None, executor: Executor | None) -> Iterator[tupl
         yield threads, count
     finally:
         threads.shutdown(wait=True, cancel_futures=True)
-
-
-def _workers_of(executor: Executor) -> int:
-    """Return the number of workers that an executor reports, or else one for a small cluster."""
-    return int(getattr(executor, "_max_workers", 0) or 16)
 
 
 def rows_of(
@@ -88,3 +90,22 @@ def _ended(error: Exception) -> SolverError:
     return SolverError(
         f"a worker of the study ended ({type(error).__name__}: {error}); what is done is kept: start the study again to go on"
     )
+
+
+@lru_cache(maxsize=STUDIES)
+def _solvers(task: bytes) -> LifoQueue[CaseSolver]:
+    """Return the idle solvers of a study in this process."""
+    return LifoQueue()
+
+
+def solve_chunk(task: bytes, chunk: Chunk) -> list[Row]:
+    """Solve cases of a pickled `Task`; the row of a failed case has the reason."""
+    idle = _solvers(task)
+    try:
+        solver = idle.get_nowait()
+    except Empty:
+        found: Task = pickle.loads(task)
+        solver = CaseSolver(found)
+    rows = [solver.row(case, values) for case, values in chunk]
+    idle.put(solver)  # not after an interruption, which may leave the solver inconsistent
+    return rows

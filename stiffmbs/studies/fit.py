@@ -17,7 +17,7 @@ from ..solve.trajectory import Grid, Outcome
 from .case_solver import CaseSolver, Task, written_scene
 from .measured import Measured, measured
 from .outputs import Output, outputs_of
-from .parameters import Sought, sought
+from .parameters import Sought, central_differences, sought
 from .sensitivities.gradients import Gradients
 from .uncertainty import of_common_noise, of_separate_noise
 
@@ -97,8 +97,9 @@ def fit(
     scene : str, Path, Scene or Model
     data : mapping, Solution, pandas.DataFrame, str or Path
         Measured channels over ``time``, or formulas of channels; nan values are left out.
-    parameters : mapping of str to Range or (float, float)
-        Parameters or paths of the scene, with bounds; a range with ``log=True`` is searched by its logarithm.
+    parameters : mapping of str to Range, str or (float, float)
+        Parameters or paths of the scene, with bounds: ``Range(1e5, 1e6, log=True)`` or ``"1e5:1e6:log"`` is searched
+        by its logarithm.
     start : mapping of str to float, optional
         Start of the search; by default the middle of each range.
     sigma : mapping of str to float, optional
@@ -117,8 +118,9 @@ def fit(
     ----------
     Seber and Wild, Nonlinear Regression, 1989, chapter 5: confidence intervals.
     """
-    found, ranges = measured(data), sought(parameters)
-    model = _Model(written_scene(scene), ranges, found, settings)
+    found, written = measured(data), written_scene(scene)
+    ranges = sought(parameters, written)
+    model = _Model(written, ranges, found, settings)
     weights = _weights(found, sigma)
     point = ranges.point(start or {})
     model.check(point)
@@ -149,7 +151,8 @@ class _Model:
     def __init__(self, scene: Any, ranges: Sought, data: Measured, settings: Mapping[str, Any]) -> None:
         self._outputs: tuple[Output, ...] = outputs_of({name: name for name in data.channels})
         self._solver = CaseSolver(Task(scene, ranges.names, {}, self._outputs))
-        self._ranges, self._data, self._runs = ranges, data, 0
+        self._ranges, self._data = ranges, data
+        self.runs = 0  # number of integrations so far
         known = self._solver.scene(ranges.values(ranges.point({})))
         begin, end = known.run.start, float(data.time[-1])
         if data.time[0] < begin:
@@ -159,16 +162,11 @@ class _Model:
         self._gradients = Gradients(scene, ranges, list(data.channels), self._settings, self._times)
         self._step = max(1e-4, self._settings.rtol ** (1 / 3))
 
-    @property
-    def runs(self) -> int:
-        """Number of integrations so far."""
-        return self._runs
-
     def solution(self, point: np.ndarray) -> Solution:
         """Return the solution at the times of the data; errors as for `stiffmbs.run`."""
         scene = self._solver.scene(self._ranges.values(point))
         job = self._solver.job(scene, self._settings)
-        self._runs += 1
+        self.runs += 1
         grid = Grid(job.grid.start, job.grid.end, self._times)
         return solved(replace(job, grid=grid))
 
@@ -199,12 +197,12 @@ class _Model:
         """Return the weighted residuals of all channels."""
         kept = {name: np.isfinite(values) for name, values in self._data.channels.items()}
         try:
-            solution = self.solution(point)
+            solution: Solution | None = self.solution(point)
         except StiffmbsError:
-            return np.full(sum(int(rows.sum()) for rows in kept.values()), FAR)
-        if solution.outcome is Outcome.INTERRUPTED:
+            solution = None
+        if solution is not None and solution.outcome is Outcome.INTERRUPTED:
             raise KeyboardInterrupt
-        if solution.outcome is not Outcome.DONE:
+        if solution is None or solution.outcome is not Outcome.DONE:
             return np.full(sum(int(rows.sum()) for rows in kept.values()), FAR)
         off = self._differences(solution)
         return np.concatenate([weights[name] * off[name][rows] for name, rows in kept.items()])
@@ -214,23 +212,13 @@ class _Model:
         try:
             slopes = self._gradients.at(point)
         except StiffmbsError:
-            return self._by_differences(point, weights)
-        self._runs += 1
+            return central_differences(lambda at: self.residuals(at, weights), point, self._step)
+        self.runs += 1
         rows, parts = np.searchsorted(self._times, self._data.time), []
         for (name, values), slope in zip(self._data.channels.items(), slopes, strict=True):
             whole = np.broadcast_to(slope, (len(self._times), len(point)))
             parts.append(weights[name] * whole[rows][np.isfinite(values)])
         return np.concatenate(parts)
-
-    def _by_differences(self, point: np.ndarray, weights: Mapping[str, float]) -> np.ndarray:
-        """Return the Jacobian by central differences, one-sided at the bounds."""
-        columns = []
-        for k in range(len(point)):
-            ends = [point.copy(), point.copy()]
-            ends[0][k], ends[1][k] = max(point[k] - self._step, 0.0), min(point[k] + self._step, 1.0)
-            below, above = (self.residuals(end, weights) for end in ends)
-            columns.append((above - below) / (ends[1][k] - ends[0][k]))
-        return np.column_stack(columns)
 
     def by_channel(self, rows: np.ndarray) -> list[np.ndarray]:
         """Split rows of `residuals` or `jacobian` by channel."""

@@ -10,21 +10,19 @@ import numpy as np
 
 from ..analyses.job import Job, Runnable, data_of, prepare
 from ..analyses.start_from import StartFrom
-from ..describe.requests.order import units
-from ..describe.scene import Scene
-from ..describe.settings import RunSettings, Settings, takes_settings
+from ..elements.requests.order import units
 from ..errors import InputError
+from ..model.scene import Scene
+from ..model.settings import RunSettings, Settings, takes_settings
 from ..results.channels import channels_of
 from ..results.energy_balance import energy_balance
 from ..results.solution import Solution
-from ..solve.settings import changed
+from ..solve.settings import DEFAULT_POINTS, changed
 from ..solve.trajectory import Ending, History, Outcome
 from .stepping import stepper_of
 
 SHARE = 5.0
 """Least ratio of the time of solving to the time of reporting, so that long runs are reported less often."""
-INTERVALS = 500
-"""Number of intervals between reported instants if a run has the solver's own steps as output."""
 STILL_SOLVING = "still solving"
 
 
@@ -82,7 +80,7 @@ def follow(
 
 def _followed(job: Job, every: float) -> Iterator[Solution]:
     grid = job.grid
-    instants = grid.times if grid.times is not None else np.linspace(grid.start, grid.end, INTERVALS + 1)
+    instants = grid.times if grid.times is not None else np.linspace(grid.start, grid.end, DEFAULT_POINTS)
     stepper = stepper_of(job, job.start, job.grid.start)
     q = np.empty((len(instants), len(job.start.q)))
     u = np.empty((len(instants), len(job.start.u)))

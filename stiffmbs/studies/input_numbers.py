@@ -3,32 +3,24 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping
 
 import numpy as np
 
 from ..analyses.job import Job
 from ..analyses.renumber import Change, changes_of_numbers, write_numbers
-from ..describe.scene import Scene
 from ..errors import InputError
+from ..model.scene import Scene
+from ..reading.did_you_mean import did_you_mean
 from .case_solver import CaseSolver
 
-TRIED = (-1.7, -0.4, 0.3, 1.0, 2.9, 1e3)
-"""Values at which the linearity of force parameters in an input is tested, in addition to zero."""
+TRIED = (0.0, *(sign * 10.0**k for k in (0, -1, 3) for sign in (1, -1)))
+"""Values at which the linearity of force parameters in an input is tested."""
 SAME_NUMBER = 8 * float(np.finfo(float).eps)
 
 
-@dataclass(frozen=True)
-class _Linear:
-    """Numbers of a force that depend on an input: numbers[place] = offset + slope * value by (place, offset, slope)."""
-
-    numbers: np.ndarray
-    parts: Sequence[tuple[int, float, float]]
-
-    def write(self, value: float) -> None:
-        for place, offset, slope in self.parts:  # few parts: a loop is faster than numpy
-            self.numbers[place] = offset + slope * value
+Linear = list[tuple[np.ndarray, int, float, float]]
+"""Numbers of forces that depend on an input: numbers[place] = offset + slope * value."""
 
 
 class InputNumbers:
@@ -77,7 +69,8 @@ class InputNumbers:
         for name, value in changed.items():
             if name not in self.values:
                 raise InputError(
-                    f"input '{name}': found no such input, expected one of {', '.join(self.values) or 'none'}"
+                    f"input '{name}': found no such input{did_you_mean(name, self.values)}, expected one of "
+                    f"{', '.join(self.values) or 'none'}"
                 )
             if not math.isfinite(value):
                 raise InputError(f"input '{name}': found {value}, expected a finite number")
@@ -86,34 +79,31 @@ class InputNumbers:
             write_numbers(self._job, self._scene(self.values))
             return True
         for name in changed:
-            for part in self._quick[name]:
-                part.write(self.values[name])
+            for numbers, place, offset, slope in self._quick[name]:  # few: a loop is faster than numpy
+                numbers[place] = offset + slope * self.values[name]
         return True
 
-    def _linear(self) -> dict[str, Sequence[_Linear]] | None:
+    def _linear(self) -> dict[str, Linear] | None:
         """Return the numbers that depend on each input alone and linearly, or None if forces must be read again."""
-        found: dict[str, Sequence[_Linear]] = {}
+        found: dict[str, Linear] = {}
         taken: set[tuple[int, int]] = set()
         for name in self._names:
             parts = self._linear_parts(name)
-            if parts is None:
-                return None
-            places = {(id(part.numbers), place) for part in parts for place, _, _ in part.parts}
-            if places & taken:
+            places = {(id(numbers), place) for numbers, place, _, _ in parts or ()}
+            if parts is None or places & taken:
                 return None
             taken |= places
             found[name] = parts
         return found
 
-    def _linear_parts(self, name: str) -> Sequence[_Linear] | None:
+    def _linear_parts(self, name: str) -> Linear | None:
         """Return the numbers that equal offset + slope * value at all tested values, or None if any does not."""
-        tried = {value: self._changes(name, value) for value in (0.0, 1.0, *TRIED)}
+        tried = {value: self._changes(name, value) for value in TRIED}
         known = {value: changes for value, changes in tried.items() if changes is not None}
         if len(known) < len(tried):
             return None
-        forces = {at: change for changes in known.values() for at, change in changes.items()}
-        parts = []
-        for at, force in forces.items():
+        parts: Linear = []
+        for at, force in {at: change for changes in known.values() for at, change in changes.items()}.items():
             if force.of_inputs:
                 return None
             present = force.group.numbers[force.first :][: len(force.values)].copy()
@@ -122,9 +112,10 @@ class InputNumbers:
             for value, numbers in found.items():
                 if not np.allclose(numbers, offset + slope * value, rtol=SAME_NUMBER, atol=SAME_NUMBER * abs(value)):
                     return None
-            places = np.flatnonzero(slope)
-            rows = ((force.first + places).tolist(), offset[places].tolist(), slope[places].tolist())
-            parts.append(_Linear(force.group.numbers, tuple(zip(*rows, strict=True))))
+            parts += [
+                (force.group.numbers, force.first + int(k), float(offset[k]), float(slope[k]))
+                for k in np.flatnonzero(slope)
+            ]
         return parts
 
     def _changes(self, name: str, value: float) -> dict[tuple[int, int], Change] | None:

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from ..describe.files.quoted import quoted
 from ..errors import InputError
+from ..reading.files.quoted import quoted
 from ..results.saved_state import READERS
 from ..results.solution import Solution
 

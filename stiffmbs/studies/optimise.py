@@ -10,18 +10,16 @@ import numpy as np
 
 from ..analyses.job import Runnable
 from ..errors import InputError, SolverError, StiffmbsError
+from ..model.files.written_scene import WrittenScene
 from ..solve.settings import changed
 from .case_solver import CaseSolver, Task, written_scene
 from .outputs import Output, outputs_of
-from .parameters import Sought, sought
+from .parameters import Sought, central_differences, sought
 from .sensitivities.formulas import of_whole_time
 from .sensitivities.gradients import Gradients
 
 STEP = 1e-3
 """Step of central differences, as a part of each range."""
-REMEMBERED = 10_000
-FEASIBLE = 1e-6
-"""Accepted violation of a constraint, as a part of its bound."""
 
 
 @dataclass(frozen=True)
@@ -77,14 +75,16 @@ def optimise(
     scene : str, Path, Scene or Model
     objective : str
         A formula of channels and of ``peak``, ``rms`` and the like, as in `stiffmbs.sweep`: ``"rms(chassis.ay)"``.
-    parameters : mapping of str to Range or (float, float)
-        Parameters or paths of the scene, with bounds; a range with ``log=True`` is searched by its logarithm.
+    parameters : mapping of str to Range, str or (float, float)
+        Parameters or paths of the scene, with bounds: ``Range(1e5, 1e6, log=True)`` or ``"1e5:1e6:log"`` is searched
+        by its logarithm.
     constraints : mapping of str to (float or None, float or None), optional
         Least and largest value of further outputs: ``{"peak(travel)": (None, 0.08)}``.
     start : mapping of str to float, optional
         Start of the search; by default the middle of each range.
     tolerance : float
-        Part of the objective by which the last step may still improve it.
+        Part of the objective by which the last step may still improve it, and of its bound by which a constraint may be
+        violated.
     **settings
         Fields of the run's settings to change.
 
@@ -100,8 +100,9 @@ def optimise(
     Kraft, A software package for sequential quadratic programming, DFVLR-FB 88-28, 1988 (`scipy.optimize.minimize`,
     SLSQP).
     """
-    limits, ranges = dict(constraints or {}), sought(parameters)
-    model = _Model(scene, objective, limits, ranges, settings)
+    limits, written = dict(constraints or {}), written_scene(scene)
+    ranges = sought(parameters, written)
+    model = _Model(written, objective, limits, ranges, settings)
     point = ranges.point(start or {})
     first = model.check(point)
     scale = abs(first[0]) or 1.0
@@ -113,7 +114,7 @@ def optimise(
     )  # fmt: skip
     best = np.clip(result.x, 0, 1)
     found = model.outputs(best)
-    feasible = all(side["fun"](best) >= -FEASIBLE for side in model.sides())
+    feasible = all(side["fun"](best) >= -tolerance for side in model.sides())
     message = str(result.message) if feasible else f"{result.message}; not all constraints are satisfied"
     return Optimum(
         dict(zip(ranges.names, ranges.values(best), strict=True)), float(found[0]), float(first[0]),
@@ -125,7 +126,7 @@ class _Model:
     """Objective and constrained outputs at points of the unit cube, each point solved once."""
 
     def __init__(
-        self, scene: Runnable, objective: str, limits: Mapping[str, tuple[float | None, float | None]], ranges: Sought,
+        self, written: WrittenScene, objective: str, limits: Mapping[str, tuple[float | None, float | None]], ranges: Sought,
         settings: Mapping[str, Any],
     ) -> None:  # fmt: skip
         self._texts = [objective, *limits]
@@ -136,13 +137,12 @@ class _Model:
                     f"output '{output.text}': found a channel over time, expected a number such as peak(...)"
                 )
         self._outputs: tuple[Output, ...] = outputs
-        written = written_scene(scene)
         self._solver = CaseSolver(Task(written, ranges.names, dict(settings), outputs))
         known = self._solver.scene(ranges.values(ranges.point({})))
         self._gradients = Gradients(written, ranges, self._texts, changed(known.run, dict(settings)))
-        self._sloped, self._slopes = b"", np.empty(0)
         self._ranges, self._limits = ranges, limits
         self._known: dict[bytes, np.ndarray] = {}
+        self._known_slopes: dict[bytes, np.ndarray] = {}
         self.runs = 0
 
     def check(self, point: np.ndarray) -> np.ndarray:
@@ -159,8 +159,6 @@ class _Model:
         """Return the objective and the constrained outputs; nan if the model cannot be solved."""
         key = np.ascontiguousarray(point).tobytes()
         if key not in self._known:
-            if len(self._known) >= REMEMBERED:
-                self._known.clear()
             self.runs += 1
             row = self._solver.row(0, self._ranges.values(np.clip(point, 0, 1)))
             self._message = row.message
@@ -174,29 +172,19 @@ class _Model:
         sensitivities.
         """
         key = np.ascontiguousarray(point).tobytes()
-        if self._sloped != key:
-            self._slopes, self._sloped = self._slopes_at(point), key
-        return self._slopes
+        if key not in self._known_slopes:
+            self._known_slopes[key] = self._slopes_at(point)
+        return self._known_slopes[key]
 
     def _slopes_at(self, point: np.ndarray) -> np.ndarray:
         if any(of_whole_time(text) for text in self._texts):
-            return self._by_differences(point)
+            return central_differences(self.outputs, point, STEP)
         try:
             slopes = np.array(self._gradients.at(np.clip(point, 0, 1)))
         except StiffmbsError:
-            return self._by_differences(point)
+            return central_differences(self.outputs, point, STEP)
         self.runs += 1
         return slopes
-
-    def _by_differences(self, point: np.ndarray) -> np.ndarray:
-        """Return the derivatives by central differences, one-sided at the bounds."""
-        columns = []
-        for k in range(len(point)):
-            ends = [point.copy(), point.copy()]
-            ends[0][k], ends[1][k] = max(point[k] - STEP, 0.0), min(point[k] + STEP, 1.0)
-            below, above = map(self.outputs, ends)
-            columns.append((above - below) / (ends[1][k] - ends[0][k]))
-        return np.column_stack(columns)
 
     def sides(self) -> list[dict[str, Any]]:
         """Return the constraints as functions that must not be negative, relative to their bounds."""

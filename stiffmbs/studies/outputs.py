@@ -10,13 +10,12 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from ..describe.parts.names import owner_of
 from ..errors import ChannelError, InputError
+from ..reading.did_you_mean import did_you_mean
+from ..reading.names import owner_of
 
 Series = np.ndarray
 TIME = "time"
-FORMULAS = 256
-"""Number of formulas whose syntax trees are cached."""
 
 
 class Reported(Protocol):
@@ -28,14 +27,6 @@ class Reported(Protocol):
     def __getitem__(self, channel: str, /) -> np.ndarray: ...
 
 
-def _peak(t: Series, x: Series) -> float:
-    return float(np.max(np.abs(x)))
-
-
-def _t_peak(t: Series, x: Series) -> float:
-    return float(t[int(np.argmax(np.abs(x)))])
-
-
 def _integral(t: Series, x: Series) -> float:
     return float(np.trapezoid(x, t))
 
@@ -44,12 +35,9 @@ def _mean(t: Series, x: Series) -> float:
     return float(np.divide(_integral(t, x), t[-1] - t[0]))
 
 
-def _rms(t: Series, x: Series) -> float:
-    return float(np.sqrt(_mean(t, x * x)))
-
-
 REDUCTIONS: dict[str, Callable[[Series, Series], float]] = {
-    "peak": _peak, "t_peak": _t_peak, "rms": _rms, "mean": _mean, "integral": _integral,
+    "peak": lambda t, x: float(np.max(np.abs(x))), "t_peak": lambda t, x: float(t[int(np.argmax(np.abs(x)))]),
+    "rms": lambda t, x: float(np.sqrt(_mean(t, x * x))), "mean": _mean, "integral": _integral,
     "final": lambda t, x: float(x[-1]), "first": lambda t, x: float(x[0]),
     "min": lambda t, x: float(np.min(x)), "max": lambda t, x: float(np.max(x)),
     "t_min": lambda t, x: float(t[int(np.argmin(x))]), "t_max": lambda t, x: float(t[int(np.argmax(x))]),
@@ -71,7 +59,6 @@ class Output:
 
     Attributes
     ----------
-    name : str
     text : str
         A formula of channels, ``time`` and `REDUCTIONS`: ``peak(rail.fy)``, ``rms(chassis.ay - front.ay)``,
         ``rail.fy``.
@@ -93,17 +80,13 @@ class Output:
         return np.asarray(found, dtype=float) if np.ndim(found) else float(found)
 
     def refuse_unknown(self, known: Collection[str]) -> None:
-        """Reject a channel that is not among the known ones.
-
-        Raises
-        ------
-        InputError
-        """
+        """Reject a channel that is not among the known ones."""
         for name in _channels(parsed(self.text).body):
             if name != TIME and name not in known:
                 near = [channel for channel in known if owner_of(channel) == owner_of(name)] or list(known)[:12]
                 raise InputError(
-                    f"output '{self.text}': found no channel '{name}', expected one such as {', '.join(near)}"
+                    f"output '{self.text}': found no channel '{name}'{did_you_mean(name, known)}, expected one such as "
+                    f"{', '.join(near)}"
                 )
 
     @property
@@ -128,7 +111,7 @@ def outputs_of(found: Mapping[str, str] | list[str] | tuple[str, ...] | str) -> 
     return tuple(Output(name, text) for name, text in pairs.items())
 
 
-@lru_cache(maxsize=FORMULAS)
+@lru_cache
 def parsed(text: str) -> ast.Expression:
     """Return the syntax tree of a formula."""
     try:
@@ -175,9 +158,14 @@ def _check(text: str, node: ast.AST) -> None:
         case _ if channel_of(node):
             return
         case _:
-            known = ", ".join((*REDUCTIONS, *FUNCTIONS))
+            known = (*REDUCTIONS, *FUNCTIONS)
+            near = (
+                did_you_mean(node.func.id, known)
+                if isinstance(node, ast.Call) and isinstance(node.func, ast.Name)
+                else ""
+            )
             raise InputError(
-                f"output '{text}': found '{ast.unparse(node)}', expected channels, numbers, + - * / ^ and {known}"
+                f"output '{text}': found '{ast.unparse(node)}'{near}, expected channels, numbers, + - * / ^ and {', '.join(known)}"
             )
     for part in parts:
         _check(text, part)

@@ -2,25 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from ..errors import InputError
-from .variation import Range
+from ..model.files.written_scene import WrittenScene
+from ..reading.did_you_mean import did_you_mean
+from ..reading.variation import Range, Variation, variation
+from .case_solver import refuse_units
 
 
 @dataclass(frozen=True)
 class Sought:
-    """Parameters within ranges, as points of the unit cube.
-
-    Attributes
-    ----------
-    names : tuple of str
-    ranges : tuple of Range
-    """
+    """Parameters within ranges, as points of the unit cube."""
 
     names: tuple[str, ...]
     ranges: tuple[Range, ...]
@@ -39,7 +36,8 @@ class Sought:
         """
         for name in values:
             if name not in self.names:
-                raise InputError(f"start: found '{name}', expected one of {', '.join(self.names)}")
+                near = did_you_mean(name, self.names)
+                raise InputError(f"start: found '{name}'{near}, expected one of {', '.join(self.names)}")
         return np.array([_part(name, one, values.get(name)) for name, one in zip(self.names, self.ranges, strict=True)])
 
     def slopes(self, point: np.ndarray) -> np.ndarray:
@@ -51,8 +49,8 @@ class Sought:
         ])  # fmt: skip
 
 
-def sought(parameters: Mapping[str, Any]) -> Sought:
-    """Return parameters with their ranges, each a `Range` or a pair of its ends.
+def sought(parameters: Mapping[str, Any], scene: WrittenScene) -> Sought:
+    """Return parameters of a scene with their ranges, each a `Range`, its text, or a pair of its ends.
 
     Raises
     ------
@@ -61,21 +59,40 @@ def sought(parameters: Mapping[str, Any]) -> Sought:
     """
     if not parameters:
         raise InputError("parameters: found none, expected one or more with their ranges")
-    return Sought(tuple(parameters), tuple(_range(name, found) for name, found in parameters.items()))
+    found = [_bounded(name, given) for name, given in parameters.items()]
+    refuse_units(scene, found)
+    return Sought(tuple(parameters), tuple(one.range for one in found if one.range))
 
 
-def _range(name: str, found: Any) -> Range:
-    if isinstance(found, Range):
-        return found
-    try:
-        low, high = found
-        return Range(float(low), float(high))
-    except (TypeError, ValueError):
-        raise InputError(
-            f"{name}: found {found!r}, expected a range: (low, high) or Range(low, high, log=True)"
-        ) from None
-    except InputError as error:
-        raise InputError(f"{name}: {error}") from None
+def central_differences(function: Callable[[np.ndarray], np.ndarray], point: np.ndarray, step: float) -> np.ndarray:
+    """Return the derivatives of a function at a point of the unit cube, a column for each coordinate.
+
+    Differences are central, and one-sided at the bounds.
+    """
+    columns = []
+    for k in range(len(point)):
+        ends = [point.copy(), point.copy()]
+        ends[0][k], ends[1][k] = max(point[k] - step, 0.0), min(point[k] + step, 1.0)
+        below, above = map(function, ends)
+        columns.append((above - below) / (ends[1][k] - ends[0][k]))
+    return np.column_stack(columns)
+
+
+def _bounded(name: str, given: Any) -> Variation:
+    if not isinstance(given, str | Range | Variation):
+        try:
+            low, high = given
+            given = Range(float(low), float(high))
+        except (TypeError, ValueError):
+            raise InputError(
+                f"{name}: found {given!r}, expected a range: (low, high), Range(low, high, log=True) or 'FROM:TO:log'"
+            ) from None
+        except InputError as error:
+            raise InputError(f"{name}: {error}") from None
+    found = variation(name, given)
+    if found.range is None or found.range.count:
+        raise InputError(f"{name}: found no range, or one with a count; expected FROM:TO or FROM:TO:log")
+    return found
 
 
 def _part(name: str, one: Range, value: float | None) -> float:

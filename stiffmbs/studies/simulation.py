@@ -13,12 +13,13 @@ from ..analyses.job import Job, Runnable, data_of, prepare
 from ..analyses.renumber import renumberable
 from ..analyses.start_from import StartFrom, started_from, state_to_start_from
 from ..analyses.taken_again import CREPT, exactly, relaxed
-from ..describe.settings import RunSettings, Settings, takes_settings
+from ..dynamics.algebraic_states import failure
 from ..errors import AssemblyError, InputError, SolverError
+from ..model.settings import RunSettings, Settings, takes_settings
+from ..reading.did_you_mean import did_you_mean
 from ..results.channels import channels_of, turns_of
 from ..results.files import written_whole
 from ..results.saved_state import TURNS, SavedState
-from ..solve.algebraic_states import failure
 from ..solve.error_control.relaxation import creep_at
 from ..solve.events.restart import restarted
 from ..solve.settings import changed
@@ -216,7 +217,8 @@ class Simulation:
             return values.item(number)
         known = self.channels
         if channel not in known:
-            raise InputError(f"found no channel '{channel}', expected one such as {', '.join(list(known)[:12])}")
+            near = did_you_mean(channel, known)
+            raise InputError(f"found no channel '{channel}'{near}, expected one such as {', '.join(list(known)[:12])}")
         return known[channel]
 
     @property

@@ -6,8 +6,8 @@ import numpy as np
 
 from ..analyses.job import Job
 from ..compile.inputs.features import InputFeatures
-from ..describe.settings import RunSettings
 from ..errors import SolverError
+from ..model.settings import RunSettings
 from ..solve.events.restart import just_after, just_before, restarted
 from ..solve.ida.engine import Reached
 from ..solve.ida.native_engine import NativeEngine
@@ -15,8 +15,6 @@ from ..solve.integrator import Integrator
 from ..solve.settings import changed
 from ..solve.trajectory import Grid
 
-NO_PAUSE = 10**9
-"""Number of steps after which IDA returns; never reached."""
 PART, FINEST = 0.01, 1e-12
 """Part of the tolerance that restarts get, and the finest tolerance; errors of restarts accumulate."""
 
@@ -26,7 +24,6 @@ class StartedSteps:
 
     Parameters
     ----------
-    job : Job
     q, u : ndarrays
         Memory of the current state.
 
@@ -72,7 +69,7 @@ class StartedSteps:
 
     def _run(self, t: float, end: float) -> None:
         self._features = None  # the run has the inputs up to its end only
-        self._engine.pause_after(NO_PAUSE)
+        self._engine.pause_after(np.iinfo(np.int32).max)  # never
         start = restarted(self._dynamics, t, self._q, self._u)
         for reached in self._integrator.run(start, Grid(t, end, np.array([end]))):
             last = sound(self._integrator, reached)

@@ -9,13 +9,14 @@ from typing import Protocol
 import numpy as np
 
 from ..analyses.job import Job
+from ..dynamics.initial import InitialValues
 from ..errors import SolverError
 from ..solve import SOLVERS
 from ..solve.events.restart import just_after, restarted
 from ..solve.ida.engine import Reached
 from ..solve.ida.native_engine import NativeEngine
-from ..solve.initial import InitialValues
 from ..solve.integrator import Integrator
+from ..solve.radau.radau import radau_integrator
 from ..solve.trajectory import Grid, Outcome
 from .started_steps import StartedSteps, sound
 
@@ -49,9 +50,10 @@ class Stepper(Protocol):
 
 
 def stepper_of(job: Job, start: InitialValues, t: float) -> Stepper:
-    """Return a stepper: with IDA's own steps for bdf with the native engine, else with short runs."""
-    if job.settings.solver == "bdf":
-        integrator = Integrator(job.dynamics, job.settings)
+    """Return a stepper: with the own steps of bdf and radau with the native engine, else with short runs."""
+    made = {"bdf": Integrator, "radau": radau_integrator}.get(job.settings.solver)
+    if made is not None:
+        integrator = made(job.dynamics, job.settings)
         if isinstance(integrator.engine, NativeEngine):
             return ImplicitSteps(job, integrator, start, t)
     return ShortRuns(job, start, t)
@@ -64,10 +66,8 @@ class ImplicitSteps:
 
     Parameters
     ----------
-    job : Job
     integrator : Integrator
         Integrator with the native engine.
-    start : InitialValues
     t : float
         Time, s.
     """
@@ -133,8 +133,6 @@ class ShortRuns:
 
     Parameters
     ----------
-    job : Job
-    start : InitialValues
     t : float
         Time, s.
     """

@@ -8,18 +8,17 @@ import sqlite3
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from types import TracebackType
 
 import numpy as np
 
-from ..describe.files.files_read import check_regular, digest_of_file
-from ..describe.files.own_sources import CODE
-from ..describe.files.quoted import quoted
 from ..errors import InputError, SolverError
+from ..reading.files.files_read import check_regular, digest_of_file
+from ..reading.files.own_sources import CODE
+from ..reading.files.quoted import quoted
 from .case_solver import ChangedFileError, Row
 
-PRIMARY, OF_DISK = 0xFF, (sqlite3.SQLITE_FULL, sqlite3.SQLITE_IOERR)
-"""Primary error codes of SQLite, and those of a full or failing disk."""
+OF_DISK = (sqlite3.SQLITE_FULL, sqlite3.SQLITE_IOERR)
+"""Primary error codes of a full or failing disk."""
 FORMAT = 2
 """Version of the tables, stored as SQLite's user version."""
 _TABLES = """
@@ -61,7 +60,9 @@ class Store:
             self._connection = sqlite3.connect(path or ":memory:", isolation_level=None)
             self._connection.execute("pragma journal_mode = wal")
             self._connection.execute("pragma synchronous = normal")
-            self._claim({name: _digest(text) for name, text in study.items()})
+            self._claim(
+                {name: hashlib.sha256(text.encode(errors="surrogatepass")).hexdigest() for name, text in study.items()}
+            )
             self._drop_damaged()
 
     @property
@@ -80,7 +81,7 @@ class Store:
         except (sqlite3.Error, OSError, ValueError, TypeError, OverflowError) as error:
             self.close()
             reason = getattr(error, "strerror", None) or error
-            if getattr(error, "sqlite_errorcode", 0) & PRIMARY in OF_DISK:
+            if getattr(error, "sqlite_errorcode", 0) & 0xFF in OF_DISK:
                 raise SolverError(f"{self._named}: the store cannot be written ({reason})") from None
             raise InputError(
                 f"{self._named}: the store cannot be used ({reason}), expected the store of a study: remove the file to start again"
@@ -197,18 +198,6 @@ class Store:
         with suppress(sqlite3.Error):
             self._connection.close()
         self._connection = None
-
-    def __enter__(self) -> Store:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self.close()
-
-
-def _digest(text: str) -> str:
-    return hashlib.sha256(text.encode(errors="surrogatepass")).hexdigest()
 
 
 def _text(found: str) -> str:

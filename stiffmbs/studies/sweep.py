@@ -6,6 +6,7 @@ import pickle
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
+from contextlib import closing
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
@@ -14,19 +15,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..analyses.job import Runnable
-from ..describe.files.quoted import quoted
-from ..describe.scene import Scene
-from ..describe.settings import RunSettings
 from ..errors import InputError, StiffmbsError
+from ..model.scene import Scene
+from ..model.settings import RunSettings
+from ..reading.files.quoted import quoted
+from ..reading.variation import Range, Variation, variation
 from ..solve.settings import changed, output_grid
-from .case_solver import CaseSolver, Row, Task, written_scene
+from .case_solver import CaseSolver, Row, Task, refuse_units, written_scene
 from .cases import Cases, cases_of
 from .data_set import data_set
-from .executors import executor_of, rows_of
+from .executors import Chunk, executor_of, rows_of
 from .outputs import Output, outputs_of
 from .store import Store
-from .variation import Range, Variation, variation
-from .worker import Chunk
 
 if TYPE_CHECKING:
     import xarray
@@ -43,11 +43,8 @@ class Study:
 
     Attributes
     ----------
-    task : Task
-    cases : Cases
     time : ndarray
         Output instants of series, s.
-    title : str
     """
 
     task: Task
@@ -76,7 +73,7 @@ class Study:
             raise InputError(f"workers: found {workers}, expected 1 or more")
         task = pickle.dumps(self.task)
         with (
-            Store(Path(store) if store else None, self.parts) as rows,
+            closing(Store(Path(store) if store else None, self.parts)) as rows,
             executor_of(workers, executor) as (found, count),
         ):
             done = rows.done()
@@ -132,7 +129,8 @@ def sweep(
         A file of a scene has parameters; a model has only paths.
     vary : mapping, optional
         Values by parameters or paths that no keyword can name: ``{"forces.spring.stiffness": [100, 200]}``,
-        ``{"bodies.bar.angle": Range(0, 1)}``, ``{"run.rtol": [1e-6, 1e-8]}``.  Each value may be a vector or a matrix.
+        ``{"bodies.bar.angle": Range(0, 1)}``, ``{"run.rtol": "1e-8:1e-4:5:log"}``.  Each value may be a vector or a
+        matrix.
     sample : str, optional
         ``lhs:500`` (Latin hypercube), ``sobol:512`` or ``random:500`` cases instead of the full grid; values are drawn
         from ranges, or picked from lists.
@@ -186,14 +184,18 @@ def study_of(
     """Return a study after a check that one of its cases can be prepared; parameters and errors as for `sweep`."""
     written = written_scene(scene)
     known = CaseSolver(Task(written, (), {}, ())).scene(())
-    settings = {name: value for name, value in parameters.items() if _is_setting(name, value, known)}
+    settings = {
+        name: value
+        for name, value in parameters.items()
+        if _path(name, known) != name and not isinstance(value, list | tuple | np.ndarray | Range | Variation)
+    }
     varied = vary.items() if isinstance(vary, Mapping) else ((one.name, one) for one in vary)
     pairs = [*varied, *((name, found) for name, found in parameters.items() if name not in settings)]
-    variations = [
-        found if isinstance(found, Variation) else variation(_path(name, known), found) for name, found in pairs
-    ]
+    variations = [variation(_path(name, known), found) for name, found in pairs]
+    refuse_units(written, variations)
     cases = cases_of(variations, sample, seed)
-    chosen = outputs_of(outputs if outputs is not None else _usual(known))  # type: ignore[arg-type]
+    usual = [f"peak({channel})" for channel in (known.figure.y if known.figure else ("energy.total",))]
+    chosen = outputs_of(outputs if outputs is not None else usual)  # type: ignore[arg-type]
     _refuse_other_instants(cases, chosen)
     task = Task(written, cases.names, settings, chosen)
     _refuse_unfit(task, cases)
@@ -208,9 +210,9 @@ def _refuse_unfit(task: Task, cases: Cases) -> None:
     InputError, AssemblyError
         If neither the first nor the last case can be prepared.
     """
-    solver, all_cases = CaseSolver(task), [*islice(cases, 1), _last(cases)]
+    solver, values_of = CaseSolver(task), cases.drawn or tuple(one.values for one in cases.variations)
     faults = []
-    for values in all_cases:
+    for values in (tuple(each[k] for each in values_of) for k in (0, -1)):
         try:
             known = solver.channels(values)
         except StiffmbsError as error:
@@ -222,26 +224,9 @@ def _refuse_unfit(task: Task, cases: Cases) -> None:
     raise faults[0]
 
 
-def _last(cases: Cases) -> tuple[Any, ...]:
-    if cases.drawn:
-        return tuple(drawn[-1] for drawn in cases.drawn)
-    return tuple(one.values[-1] for one in cases.variations)
-
-
-def _is_setting(name: str, value: Any, scene: Scene) -> bool:
-    """Return True if a keyword is a setting that all cases share."""
-    several = isinstance(value, list | tuple | np.ndarray | Range | Variation)
-    return name in RunSettings.model_fields and name not in scene.parameters and not several
-
-
 def _path(name: str, scene: Scene) -> str:
     """Return the path of a name, which may be the bare name of a setting."""
     return f"run.{name}" if name in RunSettings.model_fields and name not in scene.parameters else name
-
-
-def _usual(scene: Scene) -> list[str]:
-    channels = scene.figure.y if scene.figure else ("energy.total",)
-    return [f"peak({channel})" for channel in channels]
 
 
 def _refuse_other_instants(cases: Cases, outputs: Sequence[Output]) -> None:

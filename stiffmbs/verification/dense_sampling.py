@@ -9,16 +9,15 @@ import numpy as np
 
 from ..analyses.job import Job
 from ..compile.inputs.features import InputFeatures
+from ..results.body_axes import from_own_axes
 from ..results.error_bars import Fine
-from ..results.scales import kind_of
+from ..results.scales import ROUNDING, kind_of
 from ..results.solution import Solution
-from .poses import poses_of
+from ..run_checks.singular_poses import PosesOnTheWay
 from .solve_again import Again
 
 BLOWN_UP = 0.05
-"""Excess of a channel over its output values, relative to its scale, from which on the pose is checked."""
-AT_OUTPUT = 1e-9
-"""Smallest distance of a time from an output time, relative to the interval."""
+"""Excess of a channel over its output values, relative to its scale, from which on a peak is reported and the pose is checked."""
 PARTS_OF_IMPLICIT_STEPS, PARTS = 2, 4
 """Parts of an interval between two times, for implicit (order up to 5) and explicit steps (order 8)."""
 MOST_OF_INPUTS = 5000
@@ -79,7 +78,7 @@ def apart(more: np.ndarray, found: np.ndarray) -> np.ndarray:
     """Return the times that differ from others by more than rounding."""
     k = np.clip(np.searchsorted(found, more), 1, len(found) - 1)
     nearest = np.minimum(np.abs(found[k] - more), np.abs(more - found[k - 1]))
-    return more[nearest > AT_OUTPUT * (found[-1] - found[0]) / len(found)]
+    return more[nearest > ROUNDING * (found[-1] - found[0]) / len(found)]
 
 
 def dense_samples(job: Job, run: Again, sizes: Mapping[str, float]) -> DenseSamples | None:
@@ -90,8 +89,6 @@ def dense_samples(job: Job, run: Again, sizes: Mapping[str, float]) -> DenseSamp
 
     Parameters
     ----------
-    job : Job
-    run : Again
     sizes : mapping of str to float
         Scales of the channels.
     """
@@ -123,11 +120,24 @@ def _peaks(
     """Return the sound times at which channels are far larger than at output times."""
     kept = np.flatnonzero(sound)
     reported = np.searchsorted(kept, at)
-    return {int(kept[k]) for name in names for k in _blown_up(solution[name][kept], reported, BLOWN_UP * sizes[name])}
+    found = set()
+    for name in names:
+        values = solution[name][kept]
+        for excess, extreme in zip(beyond(values, reported), (np.nanargmin, np.nanargmax), strict=True):
+            if excess > BLOWN_UP * sizes[name]:
+                found.add(int(kept[extreme(values)]))
+    return found
 
 
-def _blown_up(values: np.ndarray, at: np.ndarray, much: float) -> list[int]:
-    """Return the positions of the minimum and maximum if they are far beyond the output values."""
-    low, high = int(np.nanargmin(values)), int(np.nanargmax(values))
-    found = [low] if np.nanmin(values[at]) - values[low] > much else []
-    return found + ([high] if values[high] - np.nanmax(values[at]) > much else [])
+def beyond(values: np.ndarray, at: np.ndarray) -> tuple[float, float]:
+    """Return the excess of a channel below and above its output values."""
+    return float(np.nanmin(values[at]) - np.nanmin(values)), float(np.nanmax(values) - np.nanmax(values[at]))
+
+
+def poses_of(job: Job, solution: Solution) -> PosesOnTheWay:
+    """Return the poses of a solution with their distances from singular ones."""
+    system = job.dynamics.system
+    names = [f"{body}.{name}" for body in system.bodies for name in system.of_body.positions]
+    q = from_own_axes(system, np.column_stack([solution[name] for name in names]))
+    behind = np.zeros((len(q), system.n_q - system.n_pose))  # irrelevant, as only J is evaluated
+    return PosesOnTheWay(system, solution.time, np.column_stack([q, behind]))

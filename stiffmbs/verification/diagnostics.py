@@ -11,21 +11,17 @@ from functools import cached_property
 import numpy as np
 
 from ..analyses.job import Job
-from ..results.error_bars import ErrorBar, Fine
+from ..results.error_bars import ErrorBar
 from ..results.solution import Solution
-from ..run_checks.singular_poses import SingularPose
 from ..solve.settings import traits_of
-from .dense_sampling import DenseSamples
+from .dense_sampling import BLOWN_UP, DenseSamples, beyond, poses_of
 from .divergence import SENSITIVE, Divergence, distance, divergence
-from .poses import poses_of
 from .solve_again import Again
 
 AMPLIFIED, VISIBLE, LOOSE = 1e6, 1e-2, 100.0
 """Acceptable error in tolerances, its limit as a fraction of the channel's scale, and its lower bound in tolerances."""
 CONVERGES = 2.0
 """Smallest reduction of the error at a tolerance tighter by a factor of ten."""
-MISSED = 0.05
-"""Excess of a peak over the output values, relative to its scale, from which on it is reported."""
 NAMED = 3
 """Largest number of channels that a sentence names."""
 
@@ -36,8 +32,6 @@ class Comparison:
 
     Attributes
     ----------
-    job : Job
-    first : Solution
     tighter : tuple of Again
         By the same solver, the tightest last.
     other : Again or None
@@ -68,13 +62,13 @@ class Comparison:
     @cached_property
     def uncertain(self) -> dict[str, float]:
         """Channels with unacceptably uncertain peaks, the worst first, and their uncertainties in scales."""
-        parts = {name: self._part(name, bar) for name, bar in self.bars.items() if self.sizes[name]}
+        parts = {
+            name: max(bar.least - bar.sampled_least, bar.greatest - bar.sampled_greatest) / self.sizes[name]
+            for name, bar in self.bars.items()
+            if self.sizes[name]
+        }
         beyond = {name: part for name, part in parts.items() if part > self.acceptable}
         return dict(sorted(beyond.items(), key=lambda item: -item[1]))
-
-    def _part(self, name: str, bar: ErrorBar) -> float:
-        of_solver = max(bar.least - bar.sampled_least, bar.greatest - bar.sampled_greatest)
-        return of_solver / self.sizes[name]
 
     def divergences(self) -> list[Divergence | None]:
         """Return the divergences, or None, between successive tighter runs, and of the first run from the other's."""
@@ -108,7 +102,8 @@ def diagnostics(comparison: Comparison) -> Iterator[str]:
 
 
 def _divergence_sentence(comparison: Comparison, divergences: list[Divergence | None], first: Divergence) -> str:
-    pose = _pose(comparison, first)
+    solution = comparison.between.solution if comparison.between else comparison.first
+    pose = poses_of(comparison.job, solution).nearest(first.begun, first.t)
     settings = comparison.job.settings
     if pose is not None:
         where = ", ".join(
@@ -120,7 +115,8 @@ def _divergence_sentence(comparison: Comparison, divergences: list[Divergence | 
             f"part there ({first.body} is elsewhere from t = {first.t:.4g} s on). Remedy: a tighter rtol until two runs "
             "agree, exact dimensions, or a gear or stop that decides the branch"
         )
-    names = _run_names(comparison)
+    others = [comparison.other.name] if comparison.other else []
+    names = ["this run", *(run.name for run in comparison.tighter), *others]
     of_levels = divergences[: len(comparison.tighter)]
     if len(of_levels) > 1 and of_levels[0] and of_levels[1]:
         begin = comparison.job.grid.start
@@ -137,17 +133,6 @@ def _divergence_sentence(comparison: Comparison, divergences: list[Divergence | 
         f"the motion is not resolved: from t = {first.t:.4g} s on {first.body} is elsewhere in {other}; {remedy} until "
         "two runs agree"
     )
-
-
-def _run_names(comparison: Comparison) -> list[str]:
-    others = [comparison.other.name] if comparison.other else []
-    return ["this run", *(run.name for run in comparison.tighter), *others]
-
-
-def _pose(comparison: Comparison, found: Divergence) -> SingularPose | None:
-    """Return the singular pose before the divergence of the runs, or None."""
-    solution = comparison.between.solution if comparison.between else comparison.first
-    return poses_of(comparison.job, solution).nearest(found.begun, found.t)
 
 
 def _uncertain_sentence(comparison: Comparison, parted: bool) -> str:
@@ -194,24 +179,18 @@ def _missed(comparison: Comparison) -> list[str]:
     if comparison.between is None:
         return []
     parts = {
-        name: max(_beyond(comparison.between.fine(name))) / comparison.sizes[name]
+        name: max(beyond(*comparison.between.fine(name)[1:])) / comparison.sizes[name]
         for name in comparison.bars
         if comparison.sizes[name]
     }
-    return sorted((name for name, part in parts.items() if part > MISSED), key=lambda name: -parts[name])
-
-
-def _beyond(fine: Fine) -> tuple[float, float]:
-    """Return the excess of a channel below and above its output values."""
-    _, values, at = fine
-    return float(np.nanmin(values[at]) - np.nanmin(values)), float(np.nanmax(values) - np.nanmax(values[at]))
+    return sorted((name for name, part in parts.items() if part > BLOWN_UP), key=lambda name: -parts[name])
 
 
 def _missed_sentence(comparison: Comparison, missed: list[str]) -> str:
     name = missed[0]
     assert comparison.between is not None
     times, values, at = comparison.between.fine(name)
-    below, above = _beyond((times, values, at))
+    below, above = beyond(values, at)
     low = below > above
     k = int(np.nanargmin(values) if low else np.nanargmax(values))
     reported = np.nanmin(values[at]) if low else np.nanmax(values[at])

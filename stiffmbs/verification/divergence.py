@@ -12,12 +12,10 @@ from ..compile.quaternions import CONJUGATE, rotation_vector, times
 from ..results.scales import kind_of
 
 DIVERGED = 0.05
-"""Smallest difference of positions, relative to the motion's size, or in rad, of diverged motions."""
+"""Smallest difference of positions or velocities, relative to the motion's size, or in rad, of diverged motions."""
 TOGETHER = 1e-3
 """Fraction of `DIVERGED` at which the difference begins to grow."""
 TURNING = (*SPACE.positions[SPACE.linear :], *SPACE.velocities[SPACE.linear :])
-LEAST_LENGTH = 1e-300
-"""Lower bound of divisors, so that a body without rotation has no axis."""
 SENSITIVE = 2.0
 """Smallest factor of time by which a tighter tolerance delays the divergence of a motion that is not sensitive."""
 
@@ -83,7 +81,7 @@ def _turned_apart(first: np.ndarray, other: np.ndarray) -> np.ndarray:
     """
     p, w = first[:4], first[4:]
     turn = rotation_vector(times(CONJUGATE * p.T, other[:4].T))
-    axis = (w / np.maximum(np.linalg.norm(w, axis=0), LEAST_LENGTH)).T
+    axis = (w / np.maximum(np.linalg.norm(w, axis=0), np.finfo(float).tiny)).T  # zero without a rotation
     along = np.sum(turn * axis, axis=1, keepdims=True)
     turned = 4 * np.arcsin(np.minimum(np.linalg.norm(np.diff(p), axis=0) / 2, 1.0))
     phase = np.abs(along[:, 0]) / max(1.0, float(np.nansum(turned)))

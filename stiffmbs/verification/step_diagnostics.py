@@ -6,14 +6,12 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
+from ..results.energy_balance_notes import CERTAIN
 from ..results.scales import kind_of
 from .diagnostics import Comparison
 from .divergence import distance, divergence
 from .solve_again import Again
 from .stepped_over import Along, SteppedOver
-
-CERTAIN = 3.0
-"""Smallest imbalance of energy that is reported, relative to the resolution of the quadrature."""
 
 
 def step_diagnostics(comparison: Comparison, along: Along, shorter: Again | None) -> Iterator[str]:

@@ -17,41 +17,39 @@ import numpy as np
 from ..analyses.job import Job
 from ..compile.reactions import reactions
 from ..compile.system import System
+from ..dynamics.dynamics import OutputRows
 from ..errors import StiffmbsError
 from ..results.energy_balance import Balance, energy_balance
 from ..results.energy_balance_notes import may_be_missing
 from ..results.solution import Solution
 from ..run_checks.singular_poses import PosesOnTheWay
-from ..solve.dynamics import OutputRows
 from ..solve.events.restart import restarted
 from ..solve.missing_rows import reported
 from ..solve.settings import changed, near_constraints, traits_of
 from ..solve.trajectory import Grid, Outcome
 from .dense_sampling import apart
-from .settings_again import EXPLICIT
-from .solve_again import Deadline
+from .divergence import DIVERGED
+from .solve_again import EXPLICIT, TIGHTEST_RTOL, Deadline
 
-SAMPLES, COUNTED = 20_000, 20
-"""Largest number of samples, and number of samples from which the cost of one is determined."""
+SAMPLES = 20_000
+"""Largest number of samples."""
 OF_EFFORT_LEFT = 0.25
 """Fraction of the remaining effort for the sampling."""
 OPEN_BALANCE = 1e-3
 """Imbalance of momentum in an interval that is checked, relative to the largest mass-weighted velocity."""
 ELSEWHERE = 1e-2
-"""Difference of velocities at the end of a repeated interval that proves a missed event, relative to the same."""
+"""Difference of velocities at the end of a repeated interval, relative to the same, or of kinetic energies, relative to
+the largest, between runs that are not equivalent; impacts magnify differences.
+"""
 SHARE = 1e-3
 """Smallest change of a force law's reaction, relative to the largest change, for the law to be named."""
-MUCH = 0.05
-"""Difference of velocities that no tolerance error causes in one step, relative to the same."""
-SAME_ENERGY = 1e-2
-"""Largest difference of kinetic energy of equivalent runs, relative to the largest; impacts magnify differences."""
 STRETCHES = 4
 """Largest number of intervals that are solved again."""
 SHORTER = 50
 """Number of steps in an unbalanced interval when it is solved again."""
 FEWEST_STEPS = 4
-STRETCH_TOLERANCE, TIGHTEST_STRETCH = 1e-2, 1e-13
-"""Factor on the tolerance of a repeated interval without short steps, and the tightest tolerance."""
+STRETCH_TOLERANCE = 1e-2
+"""Factor on the tolerance of a repeated interval without short steps."""
 
 
 @dataclass(frozen=True)
@@ -60,24 +58,17 @@ class SteppedOver:
 
     Attributes
     ----------
-    begin, end : float
-        Of the interval, s.
     at : float
         Time of the largest imbalance of momentum, s.
     width : float
         Length of the unbalanced interval, s.
     element : str
         Name of the force or joint, or an empty string.
-    missed : float
-        Missing velocity change, relative to the largest velocity, mass-weighted.
     """
 
-    begin: float
-    end: float
     at: float
     width: float
     element: str
-    missed: float
 
     @property
     def max_step(self) -> float:
@@ -115,7 +106,6 @@ def looked_along(job: Job, first: Solution, allowed: float) -> Along:
 
     Parameters
     ----------
-    job : Job
     first : Solution
         Of the job.
     allowed : float
@@ -144,7 +134,7 @@ def _same_way(first: Solution, t: np.ndarray, kinetic: np.ndarray) -> bool:
     """Return True if a run with more output times has the same kinetic energies."""
     at = np.minimum(np.searchsorted(t, first.time), len(t) - 1)
     own = first["energy.kinetic"]
-    return bool(np.nanmax(np.abs(own - kinetic[at])) <= SAME_ENERGY * np.nanmax(own, initial=0.0))
+    return bool(np.nanmax(np.abs(own - kinetic[at])) <= ELSEWHERE * np.nanmax(own, initial=0.0))
 
 
 def _instants(job: Job, first: Solution, allowed: float) -> np.ndarray:
@@ -152,9 +142,8 @@ def _instants(job: Job, first: Solution, allowed: float) -> np.ndarray:
     reported_at, steps = first.time, first.step_times
     start, end = float(reported_at[0]), float(reported_at[-1])
     begun = job.evaluations()
-    q, u = np.tile(job.start.q, (COUNTED, 1)), np.tile(job.start.u, (COUNTED, 1))
-    job.dynamics.report(np.full(COUNTED, start), q, u, True)
-    each = (job.evaluations() - begun) / COUNTED
+    job.dynamics.report(np.array([start]), job.start.q[None], job.start.u[None], True)
+    each = job.evaluations() - begun
     most = int(np.clip(allowed / each, 2, SAMPLES))
     found = np.union1d(reported_at, apart(steps[(steps > start) & (steps < end)], reported_at))
     spread = np.linspace(start, end, most)[1:-1]
@@ -179,10 +168,8 @@ def _stepped_over(job: Job, rows: OutputRows, steps: np.ndarray, allowed: float)
         width, element = float(rows.t[worst + 1] - rows.t[worst]), _acting(system, rows, worst)
         if not element or poses.nearest(float(rows.t[first]), float(rows.t[last])) is not None:
             continue  # near a singular pose, any difference may decide the branch
-        off = _parted(job, rows, first, last, width, left / 2, MUCH * speed) / speed
-        if off > ELSEWHERE:
-            ends = float(rows.t[first]), float(rows.t[last])
-            yield SteppedOver(*ends, float(rows.t[worst]), width, element, off)
+        if _parted(job, rows, first, last, width, left / 2, DIVERGED * speed) > ELSEWHERE * speed:
+            yield SteppedOver(float(rows.t[worst]), width, element)
 
 
 def _momentum(system: System, rows: OutputRows) -> tuple[np.ndarray, float]:
@@ -222,7 +209,7 @@ def _parted(job: Job, rows: OutputRows, first: int, last: int, width: float, all
     if off > much:
         return off
     tight = _solved_again(
-        job, rows, first, last, {"rtol": max(STRETCH_TOLERANCE * job.settings.rtol, TIGHTEST_STRETCH)}, allowed
+        job, rows, first, last, {"rtol": max(STRETCH_TOLERANCE * job.settings.rtol, TIGHTEST_RTOL)}, allowed
     )
     return off if tight is not None and np.linalg.norm((tight - short) * roots) > off / 2 else 0.0
 

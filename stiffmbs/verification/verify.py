@@ -26,8 +26,8 @@ import numpy as np
 from ..analyses.job import Job, Runnable, prepare
 from ..analyses.run import solved
 from ..analyses.start_from import StartFrom
-from ..describe.settings import RunSettings, Settings, takes_settings
-from ..results.error_bars import UNKNOWN, ErrorBar, error_bar
+from ..model.settings import RunSettings, Settings, takes_settings
+from ..results.error_bars import UNKNOWN, error_bar
 from ..results.scales import scales
 from ..results.solution import Solution
 from ..solve.settings import changed, traits_of
@@ -35,8 +35,7 @@ from ..solve.trajectory import Outcome, ProgressCallback
 from .dense_sampling import DenseSamples, dense_samples, more_instants
 from .diagnostics import Comparison, diagnostics
 from .divergence import distance, divergence
-from .settings_again import levels_of, other_integrator, shorter_step, tolerances
-from .solve_again import Again, solve_again
+from .solve_again import Again, levels_of, other_integrators, shorter_step, solve_again, tolerances
 from .step_diagnostics import by_luck, step_diagnostics
 from .stepped_over import Along, SteppedOver, looked_along
 
@@ -71,7 +70,9 @@ def verify(
     if first.outcome is Outcome.INTERRUPTED:
         return replace(first, verification=("not verified: interrupted by the user",))
     try:
-        return verified(job, first, max(_patience(job), MOST_EFFORT * job.evaluations()))
+        system = job.dynamics.system
+        least = EFFORT_ALLOWED / (system.n_q + system.n_u + system.n_c)
+        return verified(job, first, max(least, MOST_EFFORT * job.evaluations()))
     except KeyboardInterrupt:
         return replace(first, verification=("verification interrupted by the user",))
 
@@ -82,19 +83,12 @@ def verified(job: Job, first: Solution, allowed: float) -> Solution:
 
     Parameters
     ----------
-    job : Job
     first : Solution
         Of the job, with at least two output times.
     allowed : float
         Evaluations of the job's equations for all reruns.
     """
     return _Verification(job, first, allowed).result()
-
-
-def _patience(job: Job) -> float:
-    """Return the minimum of allowed evaluations."""
-    system = job.dynamics.system
-    return EFFORT_ALLOWED / (system.n_q + system.n_u + system.n_c)
 
 
 class _Verification:
@@ -109,6 +103,7 @@ class _Verification:
         self._dense: DenseSamples | None = None
         self._tighter: dict[int, Again] = {}
         self._other: Again | None = None
+        self._other_settings: dict[str, Any] = {}
         self._along = Along(None)
         self._shorter: Again | None = None
         self._narrow: tuple[SteppedOver, ...] = ()
@@ -163,7 +158,7 @@ class _Verification:
         for level, run in self._tighter.items():
             self._tighter[level] = self._looked_along(run, self._tighter_settings(level)[1], allowed)
         if self._other is not None and _judges(self._other):
-            self._other = self._looked_along(self._other, self._other_settings(), allowed)
+            self._other = self._looked_along(self._other, self._other_settings, allowed)
         if self._dense is not None and any(run.blind for run in self._tighter.values()):
             self._dense = None
 
@@ -229,14 +224,14 @@ class _Verification:
         return f"{self._traits.name} at rtol {changes['rtol']:.3g}", changes
 
     def _ask_the_other(self) -> None:
-        changes, reported = self._other_settings(), self._first.time
-        name = f"{traits_of(changed(self._job.settings, changes)).name} at rtol {changes['rtol']:.3g}"
-        self._other = solve_again(self._job, name, changes, reported, np.arange(len(reported)), self._left())
-
-    def _other_settings(self) -> dict[str, Any]:
-        settings = self._job.settings
+        settings, reported = self._job.settings, self._first.time
         tighter = {"rtol": OTHER_OF_FIXED} if self._traits.fixed_steps else tolerances(settings, 2)
-        return {**other_integrator(self._first, settings), **tighter}
+        for integrator in other_integrators(self._first, settings):
+            changes = self._other_settings = {**integrator, **tighter}
+            name = f"{traits_of(changed(settings, changes)).name} at rtol {changes['rtol']:.3g}"
+            self._other = solve_again(self._job, name, changes, reported, np.arange(len(reported)), self._left())
+            if _judges(self._other) and not self._other.obstacle:
+                return
 
     def _left(self) -> float:
         return self._allowed - (self._job.evaluations() - self._begun)
@@ -249,17 +244,18 @@ class _Verification:
         lost = bool(self._along.stretches) and (shorter is None or bool(shorter.obstacle))
         runs = [*tighter, *([other] if other else []), *([shorter] if shorter else [])]
         bars = {
-            name: UNKNOWN if lost else self._bar(name, runs)
+            name: UNKNOWN
+            if lost
+            else error_bar(
+                self._first[name],
+                [run.reported(name) for run in runs],
+                self._dense.fine(name) if self._dense else None,
+                CHANNEL_ROUNDING * self._sizes[name],
+            )
             for name in self._first
             if name not in self._first.not_unique and not name.startswith("constraint.")
         }
         return Comparison(self._job, self._first, tighter, other, self._dense, bars, self._sizes)
-
-    def _bar(self, name: str, runs: list[Again]) -> ErrorBar:
-        fine = self._dense.fine(name) if self._dense else None
-        return error_bar(
-            self._first[name], [run.reported(name) for run in runs], fine, CHANNEL_ROUNDING * self._sizes[name]
-        )
 
     def _messages(self) -> list[str]:
         """Return the list of reruns, and of those that failed."""

@@ -6,8 +6,8 @@ import math
 import numpy as np
 import pytest
 
-from stiffmbs.describe.formula.text import evaluate
 from stiffmbs.errors import InputError
+from stiffmbs.reading.formula.text import evaluate
 
 from .adams_parts import made
 

@@ -6,8 +6,8 @@ import math
 import numpy as np
 import pytest
 
-from stiffmbs.describe.formula.text import evaluate
 from stiffmbs.errors import InputError
+from stiffmbs.reading.formula.text import evaluate
 
 from .adams_parts import made
 
@@ -133,7 +133,7 @@ def test_primitives_are_joints(kind, expected):
 
 def test_the_arms_of_a_hooke_joint_are_x_of_i_and_y_of_j():
     found = joint("JOINT/1, HOOKE, I=2, J=22")
-    from stiffmbs.describe.spatial.orientation import matrix
+    from stiffmbs.elements.spatial.orientation import matrix
 
     assert found["type"] == "universal" and found["i"]["point"] == [0, 0, 1] and found["j"]["point"] == [-1, 0, 0]
     np.testing.assert_allclose(matrix(found["i"]["orientation"])[:, 2], [1, 0, 0], atol=1e-15)

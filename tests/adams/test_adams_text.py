@@ -246,11 +246,6 @@ def test_a_marker_that_names_no_part_is_on_the_one_before_it():
     found = dataset(
         "MARKER/5\nPOINT_MASS/7, MASS=1, CM=8\nMARKER/8, QP=1,0,0\nPART/3\nMARKER/9\nMARKER/10, PART=1"
     ).markers
-    assert [(found[k].owner, found[k].on_point_mass) for k in (5, 8, 9, 10)] == [
-        (2, False),
-        (7, True),
-        (3, False),
-        (1, False),
-    ]
+    assert [found[k].owner for k in (5, 8, 9, 10)] == [("PART", 2), ("POINT_MASS", 7), ("PART", 3), ("PART", 1)]
     with pytest.raises(InputError, match="line 2, MARKER/5: found neither PART nor POINT_MASS"):
         read_dataset("t\nMARKER/5\nPART/1, GROUND\nEND")

@@ -11,7 +11,7 @@ import stiffmbs
 from stiffmbs.analyses import taken_again
 from stiffmbs.analyses.job import prepare
 from stiffmbs.analyses.run import solved
-from stiffmbs.describe.model import FORCES
+from stiffmbs.elements.planar_kinds import FORCES
 from stiffmbs.errors import SolverError
 from stiffmbs.solve.trajectory import Outcome
 from stiffmbs.studies import simulation

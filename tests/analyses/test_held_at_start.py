@@ -34,6 +34,8 @@ def test_a_run_starts_where_they_hold_and_goes_on_without_them():
 def test_they_can_be_changed_from_outside():
     scene = stiffmbs.read_scene(TEXT, [("at_start.tilt.position", "90 deg")])
     assert stiffmbs.run(scene)["bar.x"][0] == pytest.approx(0, abs=1e-12)
+    scene = stiffmbs.read_scene(TEXT, [("at_start", "{upright: {type: drive, joint: hinge, position: 90 deg}}")])
+    assert stiffmbs.run(scene)["bar.x"][0] == pytest.approx(0, abs=1e-12)
 
 
 def test_a_stage_after_the_first_begins_where_the_one_before_it_ends():

@@ -8,7 +8,7 @@ from click.testing import CliRunner
 
 import stiffmbs
 from stiffmbs.commands.main import main
-from stiffmbs.describe.files.stages import merge_patch, merged
+from stiffmbs.model.files.stages import merge_patch, merged
 
 THROWN = """
 name: a bar that is let go

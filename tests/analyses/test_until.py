@@ -17,10 +17,11 @@ stages:
 """
 
 
-def ran(condition, scene=THROWN):
-    return stiffmbs.run(stiffmbs.read_scene(scene.replace("CONDITION", condition)))
+def ran(condition, scene=THROWN, **changes):
+    return stiffmbs.run(stiffmbs.read_scene(scene.replace("CONDITION", condition)), **changes)
 
 
+@pytest.mark.parametrize("solver", ["bdf", "radau", "projected"])
 @pytest.mark.parametrize(
     ("condition", "t"),
     [
@@ -31,8 +32,8 @@ def ran(condition, scene=THROWN):
         ("height, equals: 2, within: 0.35", 0.6 - np.sqrt(0.03)),  # 1.8 m high at the most
     ],
 )
-def test_a_stage_ends_where_a_request_comes_to_a_value(condition, t):
-    found = ran(condition)
+def test_a_stage_ends_where_a_request_comes_to_a_value(condition, t, solver):
+    found = ran(condition, solver=solver)
     assert "3 runs" not in found.message and found.success
     k = np.flatnonzero(found.time == found.time[np.searchsorted(found.time, t - 1e-4)])
     np.testing.assert_allclose(found.time[k], t, atol=1e-7)

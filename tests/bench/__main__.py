@@ -1,4 +1,4 @@
-"""Measure run time against error beside yardsticks: ``python -m tests.bench [PROBLEM]...``."""
+"""Compare run time and error with those of yardsticks: ``python -m tests.bench [PROBLEM]...``."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ WRONG_INPUT = 2
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object a line for each problem.")
 @click.option("--quick", is_flag=True, help="The smallest of each problem, at a few tolerances.")
 @click.option("--solvers", is_flag=True, help="All formulations and schemes of this package, over decades of error.")
-@click.option("--peers", is_flag=True, help="Other tools beside this package, over decades of error.")
+@click.option("--peers", is_flag=True, help="Compare with other tools, over decades of error.")
 @click.option(
     "--plot", type=click.Path(file_okay=False, path_type=Path), help="Draw run time over error into a folder."
 )
 def bench(names: tuple[str, ...], as_json: bool, quick: bool, peers: bool, solvers: bool, plot: Path | None) -> None:
-    """Measure run time against error, with yardsticks beside it in the same process.
+    """Measure run time against error, and that of yardsticks in the same process.
 
     PROBLEM is the name of a problem or of a family of problems; all without one.
 
@@ -91,7 +91,7 @@ def _chosen(names: Iterable[str], quick: bool) -> list[Benchmark]:
 
 
 def _over_decades(chosen: Iterable[Benchmark], peers: bool) -> list[Benchmark]:
-    """Of those that other tools have a task in: this package beside them, or all of its own solvers."""
+    """Compare this package, or all of its solvers, with other tools, in the tasks that they have."""
     from .beside_peers import BesidePeers
     from .own_solvers import OwnSolvers
     from .peers import missing

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from stiffmbs.analyses.job import prepare
-from stiffmbs.describe.model_data import ModelData
+from stiffmbs.model.model_data import ModelData
 from stiffmbs.solve.trajectory import Outcome
 
 if TYPE_CHECKING:

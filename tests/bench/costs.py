@@ -15,11 +15,11 @@ import numpy as np
 from scipy.optimize import nnls
 
 from stiffmbs.analyses.job import Job, prepare
-from stiffmbs.describe.model_data import ModelData
-from stiffmbs.describe.reading import read_scene
-from stiffmbs.describe.settings import RunSettings
+from stiffmbs.dynamics.dynamics import Dynamics
+from stiffmbs.model.model_data import ModelData
+from stiffmbs.model.read_scene import read_scene
+from stiffmbs.model.settings import RunSettings
 from stiffmbs.solve import cost
-from stiffmbs.solve.dynamics import Dynamics
 from stiffmbs.solve.integrator import Integrator
 from stiffmbs.solve.subsystems import Subsystem
 
@@ -87,6 +87,12 @@ MANY = 10_000
 ROUNDS, NEAR = 15, 0.15
 """Of the fit with new weights, and the logarithm of a ratio up to which a time counts as fitted well."""
 
+EXPLICIT = (
+    "explicit_step", "explicit_operation", "explicit_equation", "multiplication", "large_blocks",
+    "large_block_multiplication", "multiplication of the LU",
+)  # fmt: skip
+IMPLICIT = ("residual", "residual_unknown", "matrix_operation", "matrix_solver")
+"""Fields of `stiffmbs.solve.cost.CostParameters`, in the order of the features."""
 Run = tuple[float, Mapping[str, Any]]
 
 
@@ -140,11 +146,13 @@ def main() -> None:
             explicit[0].append(np.r_[1.0, (counted["steps"] + counted["rejected"]) * step])
             explicit[1].append(spent)
     for names, data in (
-        (("EXPLICIT_STEP", "BY_ELIMINATION", "BY_LARGE_BLOCKS", "BY_LU"), explicit),
-        (("RESIDUAL", "MATRIX"), implicit),
+        (EXPLICIT, explicit),
+        (IMPLICIT, implicit),
     ):
         costs, told = fit(*data)
-        print(f"{', '.join(names)} = {', '.join(f'{each:.3g}' for each in costs[1:])}, {costs[0]:.0f} us a run")
+        print(
+            f"{', '.join(f'{n} = {each:.3g}' for n, each in zip(names, costs[1:], strict=True))}, {costs[0]:.0f} us a run"
+        )
         print(f"times told within {told.min():.2f} .. {told.max():.2f} of what they are")
 
 

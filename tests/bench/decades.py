@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stiffmbs.comparison.interpolation import WINDOW, value_at_error
-from stiffmbs.comparison.turns import ONCE, Timed, seconds_of, take_turns
+from stiffmbs.comparison.at_error import LINE, value_at_error
+from stiffmbs.comparison.turns import TIMING, Timed, seconds_of, take_turns
 
 from .benchmark import Row
 from .contestant import Contestant, Failed
@@ -86,7 +86,7 @@ def at_errors(solver: str, peer: bool, rows: Sequence[Row], targets: Sequence[fl
 
 
 def _points(contestant: Contestant, reference: np.ndarray, targets: Sequence[float]) -> Iterator[Point]:
-    beyond, loosest, tightest = 0, max(targets) * WINDOW, min(targets) / WINDOW
+    beyond, loosest, tightest = 0, max(targets) * LINE.window, min(targets) / LINE.window
     for setting in contestant.settings or TOLERANCES:
         begun = time.process_time()
         try:
@@ -99,7 +99,7 @@ def _points(contestant: Contestant, reference: np.ndarray, targets: Sequence[flo
             continue
         error = error_of(found, reference)
         if tightest <= error <= loosest:
-            again = solve if seconds < ONCE else None  # what a slow one holds in memory is let go
+            again = solve if seconds < TIMING.once else None  # what a slow one holds in memory is let go
             yield Point(again, [seconds], contestant, setting, error, ready)
         beyond += error < tightest
         if beyond == ENOUGH or seconds > LONGEST:

@@ -12,7 +12,7 @@ import numpy as np
 from stiffmbs.analyses.job import Job, prepare
 from stiffmbs.analyses.load_scene import load_scene
 from stiffmbs.analyses.run import solved
-from stiffmbs.describe.model_data import ModelData
+from stiffmbs.model.model_data import ModelData
 from stiffmbs.results.solution import Solution
 from stiffmbs.solve.trajectory import Outcome
 

@@ -14,8 +14,8 @@ import numpy as np
 
 from stiffmbs.analyses.job import Job, prepare
 from stiffmbs.analyses.run import solved
-from stiffmbs.describe.building.model_builder import ModelBuilder
-from stiffmbs.describe.model_data import ModelData
+from stiffmbs.model.model_builder import ModelBuilder
+from stiffmbs.model.model_data import ModelData
 from stiffmbs.results.error_bars import ErrorBar
 from stiffmbs.results.scales import scales
 from stiffmbs.results.solution import Solution

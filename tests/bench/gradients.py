@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from stiffmbs.analyses.run import run
-from stiffmbs.describe.scene import Scene
+from stiffmbs.model.scene import Scene
 from stiffmbs.solve.settings import changed
 from stiffmbs.studies.case_solver import CaseSolver, Task, written_scene
 from stiffmbs.studies.outputs import outputs_of

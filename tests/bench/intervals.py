@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from stiffmbs.analyses.run import run
-from stiffmbs.describe.reading import read_scene
+from stiffmbs.model.read_scene import read_scene
+from stiffmbs.reading.variation import Range
 from stiffmbs.studies.fit import fit
-from stiffmbs.studies.variation import Range
 
 from .benchmark import Row
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from stiffmbs.analyses.job import prepare
 from stiffmbs.analyses.other_numbers import with_numbers
-from stiffmbs.describe.model_data import ModelData
+from stiffmbs.model.model_data import ModelData
 
 from .benchmark import Row
 

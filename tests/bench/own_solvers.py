@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from stiffmbs.analyses.job import prepare
-from stiffmbs.comparison.turns import ONCE, seconds_of
-from stiffmbs.describe.model_data import ModelData
+from stiffmbs.comparison.turns import TIMING, seconds_of
+from stiffmbs.model.model_data import ModelData
 from stiffmbs.solve.explicit.projected import TRAITS
 from stiffmbs.solve.formulations import FORMULATIONS
 from stiffmbs.solve.trajectory import Outcome, Trajectory
@@ -121,7 +121,7 @@ def _measured(
     job = prepare(scene, **(settings | {kind: value}))
     times: list[float] = []
     found: Trajectory | None = None
-    while len(times) <= ROUNDS and (not times or times[0] < ONCE):
+    while len(times) <= ROUNDS and (not times or times[0] < TIMING.once):
         seconds, found = seconds_of(job.integrate)
         times.append(seconds)
     if found is None or found.outcome is not Outcome.DONE:

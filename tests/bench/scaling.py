@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from stiffmbs.analyses.job import prepare
-from stiffmbs.describe.model_data import ModelData
+from stiffmbs.model.model_data import ModelData
 
 from .benchmark import Row
 from .by_hand.ida import Equations, Run

@@ -12,8 +12,8 @@ import numpy as np
 from stiffmbs.analyses.job import prepare
 from stiffmbs.analyses.renumber import changes_of_numbers
 from stiffmbs.compile.machine.routines import Routine
-from stiffmbs.describe.reading import read_scene
 from stiffmbs.errors import SolverError
+from stiffmbs.model.read_scene import read_scene
 from stiffmbs.studies.case_solver import CaseSolver, Task, written_scene
 from stiffmbs.studies.simulation import Simulation, simulation
 from stiffmbs.studies.started_steps import StartedSteps

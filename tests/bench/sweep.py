@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stiffmbs.comparison.interpolation import FEWEST, WINDOW, on_line
+from stiffmbs.comparison.at_error import LINE, on_line
 from stiffmbs.comparison.turns import seconds_of
 
 from .benchmark import Row
@@ -46,9 +46,9 @@ def points(contestant: Contestant, tolerances: Iterable[float], reference: np.nd
             error = float(np.max(np.abs(solve() - reference)))
         except Failed:
             continue
-        if target / WINDOW <= error <= target * WINDOW:
+        if target / LINE.window <= error <= target * LINE.window:
             yield Point(contestant, float(rtol), solve, error, [])
-        beyond += error < target / WINDOW
+        beyond += error < target / LINE.window
         if beyond == 2:
             return
 
@@ -60,7 +60,7 @@ def at_target(contestant: Contestant, rows: Sequence[Row], target: float) -> Ite
     dozen of them tells times within a few parts in a hundred, two neighbours do not.
     """
     own = [row for row in rows if row.solver == contestant.solver]
-    if len(own) < FEWEST or not min(r.error for r in own) <= target <= max(r.error for r in own):
+    if len(own) < LINE.fewest or not min(r.error for r in own) <= target <= max(r.error for r in own):
         return
     seconds = on_line([(row.error, row.seconds) for row in own], target)
     yield Row(contestant.solver, f"{AT_TARGET} {target:g}", target, seconds, contestant.peer)

@@ -41,7 +41,9 @@ def test_the_table_names_the_machine_and_the_fastest():
 def test_an_unknown_example_is_refused():
     result = bench("cart_pendulums")
     assert result.exit_code == 2
-    assert result.stderr.startswith("stiffmbs: found no example 'cart_pendulums', expected one of andrews")
+    assert result.stderr.startswith(
+        "stiffmbs: found no example 'cart_pendulums' (did you mean 'cart_pendulum'?), expected one of andrews"
+    )
 
 
 def test_an_example_that_cannot_be_measured_leaves_the_others(monkeypatch):

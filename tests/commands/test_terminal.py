@@ -90,7 +90,7 @@ def test_stages_and_steps_are_told_to_who_listens(examples, caplog):
 
 
 def test_two_kinds_with_the_same_kernel_share_it_whatever_is_told_of_them():
-    from stiffmbs.compile.machine.description import Description
+    from stiffmbs.compile.machine.compiler import Description
 
     assert Description("revolute (1 of 2 kinds)") == Description("weight")
     assert len({Description("one"), Description("another")}) == 1

@@ -7,7 +7,7 @@ import stiffmbs
 from stiffmbs.analyses.job import prepare
 from stiffmbs.comparison.entries import entries_of
 from stiffmbs.comparison.reference import reference
-from stiffmbs.describe.settings import RunSettings
+from stiffmbs.model.settings import RunSettings
 
 OSCILLATOR = """
 bodies: {block: {mass: 2, inertia: 1, position: [0.1, 0]}}
@@ -184,11 +184,11 @@ def test_an_interruption_before_there_is_anything_is_none_of_its_business(oscill
     [
         ({"solvers": ("bdf", "ode45")}, "solvers: found 'ode45', expected some of bdf, "),
         ({"solvers": ()}, "solvers: found '', expected some of bdf"),
-        ({"formulations": ("SI4",)}, "formulations: found 'SI4', expected some of SI2"),
+        ({"formulations": ("SI4",)}, "formulations: found 'SI4' (did you mean 'SI2'?), expected some of SI2"),
         ({"solvers": ("dop853",), "formulations": ("SI2",)}, "without bdf, expected bdf among the solvers"),
         ({"measure": "energies"}, "measure: found 'energies', expected one of positions, velocities, forces"),
         ({"repeats": 0}, "repeats: found 0, expected more than 0"),
-        ({"tolerances": ()}, "tolerances: found none"),
+        ({"tolerances": ()}, "tolerances: found no value"),
         ({"rtol": 1e-6}, "rtol: found a setting of one solver, expected it among"),
         ({"duration": -1.0}, "duration"),
     ],

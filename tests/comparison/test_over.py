@@ -99,7 +99,7 @@ def test_times_are_compared_at_an_error_of_the_measure():
 @pytest.mark.parametrize(
     ("values", "options", "message"),
     [
-        ([], {}, "k: found no values"),
+        ([], {}, "k: found no value,"),
         ([1.0], {"error": 0.0}, "error: found 0"),
         ([1.0], {"measure": "forces"}, "error: found none, expected one in N or N m"),
         ([1.0], {"solvers": ("x",)}, "found 'x'"),

@@ -3,12 +3,13 @@
 import numpy as np
 import pytest
 
-from stiffmbs.comparison.at_error import AtError, decades, times_at
+import stiffmbs
+from stiffmbs.comparison import sweep
+from stiffmbs.comparison.at_error import AtError, Row, decades, times_at, value_at_error
 from stiffmbs.comparison.compare import Comparison
-from stiffmbs.comparison.crossing import crossings
+from stiffmbs.comparison.comparison_over import crossings
 from stiffmbs.comparison.entries import entries_of
-from stiffmbs.comparison.row import Row
-from stiffmbs.describe.settings import RunSettings
+from stiffmbs.model.settings import RunSettings
 
 RTOLS = 10.0 ** -np.arange(3, 8.1, 0.5)
 ENTRIES = entries_of(["bdf", "dop853", "auto"], (), RunSettings())
@@ -127,3 +128,24 @@ def test_values_without_any_time_are_passed_over():
 def test_one_kind_of_solver_crosses_nothing():
     values = [1e5, 1e7]
     assert not list(crossings(values, at_each(values, lambda k: 1.0, lambda k: k), ENTRIES[:1]))
+
+
+def test_a_line_goes_through_the_points_within_a_decade_and_a_half():
+    """Four points within 31.6 times the target error determine it, those beyond do not; of three, the neighbours do."""
+    ratios = np.array([1 / 40, 1 / 20, 1 / 2, 2, 20, 40])
+    values = np.array([50.0, 3.0, 2.0, 1.1, 0.4, 0.01])
+    points = list(zip(1e-5 * ratios, values, strict=True))
+    through = np.exp(np.polyfit(np.log(ratios[1:5]), np.log(values[1:5]), 1)[-1])
+    assert value_at_error(points, 1e-5) == pytest.approx(through)
+    assert value_at_error(points[2:], 1e-5) == pytest.approx(np.sqrt(2.0 * 1.1))
+    steep = [(1e-5 * ratio, 1 / ratio) for ratio in (0.5, 2)]
+    assert value_at_error([*steep, (2e-4, 1e-6)], 1e-5) == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize(("seconds", "again"), [(0.15, True), (0.25, False)])
+def test_a_solution_of_a_fifth_of_a_second_is_timed_once(examples, monkeypatch, seconds, again):
+    scene = stiffmbs.load_scene(examples / "cart_pendulum.yaml")
+    monkeypatch.setattr(sweep, "seconds_of", lambda solve: (seconds, solve()))
+    monkeypatch.setattr(sweep.Sweep, "_errors", lambda *_: {"positions": 1e-6})
+    measured = sweep.Sweep(scene, scene.run, None, 100.0, lambda line: None).points(ENTRIES[0], [1e-4])
+    assert (next(measured).solve is not None) == again

@@ -23,9 +23,9 @@ from stiffmbs.compile.kind import sorted_out
 from stiffmbs.compile.machine import cache
 from stiffmbs.compile.machine import compiler as machine
 from stiffmbs.compile.machine.cache_contents import OTHERS, clear, stored
-from stiffmbs.describe import model
-from stiffmbs.describe.spatial import model as spatial_model
-from stiffmbs.describe.tyres.names import SAMPLE
+from stiffmbs.elements.tyres.names import SAMPLE
+from stiffmbs.model import model
+from stiffmbs.model import spatial_model as spatial_model
 from stiffmbs.tyres import TyreProperties
 
 NAME = f"kernel-{'0' * 40}"
@@ -153,6 +153,7 @@ def test_routines_of_all_solvers_are_found():
         ("runge_kutta", "advance"),
         ("dynamics", "assemble"),
         ("evaluate", "terms"),
+        ("variations", "advance"),
     } <= found
 
 
@@ -178,7 +179,7 @@ def test_a_warm_run_imports_nothing_that_derives_or_compiles(examples, tmp_path,
 
 WARMED = """
 import sys
-from stiffmbs.compile.kernels import compile_usual
+from stiffmbs.compile.record import compile_usual
 from stiffmbs.compile.machine import cache
 from stiffmbs.analyses.warm import routines, usual_kinds
 
@@ -229,7 +230,7 @@ BUSHING = spatial.Bushing(i="block", j="ground", stiffness=(1, 1, 1, 1, 1, 1))
 TYRE = spatial.MagicFormulaTyre(i="block", properties=TyreProperties(coefficients=SAMPLE))
 
 
-@pytest.mark.parametrize(("element", "called"), [(BUSHING, "matrix.py"), (TYRE, "magic_formula.py")])
+@pytest.mark.parametrize(("element", "called"), [(BUSHING, "wrench.py"), (TYRE, "magic_formula.py")])
 def test_a_change_of_what_equations_call_makes_their_record_anew(monkeypatch, element, called):
     model = spatial.Model()
     model.add("block", spatial.Body(mass=1, inertia=(1, 1, 1)))
@@ -251,7 +252,7 @@ def test_the_name_of_a_record_does_not_depend_on_what_was_imported_first(tmp_pat
     described = model.data()
     kind, _ = sorted_out("rod", described.joints["rod"], described)
     script = (
-        f"import stiffmbs.describe.spatial.joints.{first}, pickle, sys\nfrom stiffmbs.compile.record import _entry\n"
+        f"import stiffmbs.elements.spatial.joints.{first}, pickle, sys\nfrom stiffmbs.compile.record import _entry\n"
         "print(_entry(pickle.load(sys.stdin.buffer)))"
     )
     names = subprocess.run([sys.executable, "-c", script], input=pickle.dumps(kind), capture_output=True, check=True)
@@ -262,7 +263,7 @@ def test_the_name_of_a_record_does_not_depend_on_what_was_imported_first(tmp_pat
 def test_sources_do_not_depend_on_the_order_of_sets():
     """Python orders sets by a seed of the process; sums in kernels must not follow it, or numbers change with a recompilation."""
     script = (
-        "from stiffmbs.describe.reading import read_scene\n"
+        "from stiffmbs.model.read_scene import read_scene\n"
         "from stiffmbs.compile.compile_model import compile_model\n"
         "from stiffmbs.compile.record import _derived\n"
         "scene = read_scene('bodies: {a: {mass: 1, inertia: 1}, b: {mass: 1, inertia: 1}}\\n"

@@ -54,7 +54,7 @@ def _lists(job):
     first = job.dynamics._accelerations
     equations = first.equations
     return [
-        *equations.pattern, equations._slot, equations._source, equations._constant, equations._cj, equations._r_row, equations._r_factor, *first._slots,
+        *equations.pattern, equations._slot, equations._source, equations._constant, equations._cj, equations._r_row, equations._r_factor, *first.slots,
         *job.dynamics.system.term("acceleration", "J"),
     ]  # fmt: skip
 

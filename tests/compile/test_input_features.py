@@ -20,8 +20,8 @@ from stiffmbs.compile.inputs.of_time import Input
 from stiffmbs.compile.inputs.table_ranges import TableRanges
 from stiffmbs.compile.symbolic.symbols import SMOOTH
 from stiffmbs.compile.table_values import curve
-from stiffmbs.describe.formula.text import parse
-from stiffmbs.describe.table import Table
+from stiffmbs.reading.formula.text import parse
+from stiffmbs.reading.table import Table
 from stiffmbs.verification.verify import verify
 
 WAYS = ({"solver": "bdf"}, {"solver": "projected", "scheme": "dopri5"}, {"solver": "projected", "scheme": "dop853"})
@@ -305,9 +305,9 @@ def test_long_formulas_are_looked_through_once(monkeypatch, ending):
     model.add("body", Body(mass=1, inertia=1))
     model.add("push", AppliedForce(i="body", force=(" + ".join(["body.x*body.y"] * terms + [ending]), 0)))
     system, asked = compile_model(model.data()), []
-    for module, name in ((of_time, "parts_of"), (ends, "_is_of_state")):
-        found = getattr(module, name)
-        monkeypatch.setattr(module, name, lambda *which, found=found: asked.append(which) or found(*which))
+    for module in (of_time, ends):
+        found = module.parts_of
+        monkeypatch.setattr(module, "parts_of", lambda *which, found=found: asked.append(which) or found(*which))
     assert len(of_time.inputs_of(system)) == (ending == "t")
     assert ends.first_input_end(system, 0.0, 1.0) is None
     assert len(asked) <= 30 * terms

@@ -6,8 +6,7 @@ import pytest
 import sympy as sp
 from sympy.printing.pycode import PythonCodePrinter
 
-from stiffmbs.compile.symbolic.generate import _Printer
-from stiffmbs.compile.symbolic.ordered_terms import ordered_terms
+from stiffmbs.compile.symbolic.generate import _Printer, ordered_terms
 from stiffmbs.compile.symbolic.read import read
 
 x, y, a10, a9 = sp.symbols("x y a10 a9", real=True)

@@ -7,15 +7,13 @@ import textwrap
 import numpy as np
 import pytest
 
-from stiffmbs.compile.machine import own_memory
+from stiffmbs.compile.machine import layout
+from stiffmbs.compile.machine.layout import packed_with_memory
 from stiffmbs.compile.machine.native.tables import FACTORS
-from stiffmbs.compile.machine.own_memory import packed_with_memory
-from stiffmbs.solve.ida.fixed_order import FixedOrder
-from stiffmbs.solve.ida.paired_columns import PairedColumns
-from stiffmbs.solve.linear.elimination_order import EliminationOrder
-from stiffmbs.solve.linear.factors import factors_of
+from stiffmbs.solve.linear_solvers.fixed_order import FixedOrder, PairedColumns
+from stiffmbs.sparse.elimination_order import EliminationOrder, factors_of
 
-from ..solve.linear.test_linear_solvers import Solver, scattered
+from ..solve.linear_solvers.test_linear_solvers import Solver, scattered
 
 CAPACITY, L = (list(FACTORS).index(name) for name in ("capacity", "l"))
 
@@ -27,7 +25,7 @@ def without_fill(order, *_):
 
 @pytest.mark.parametrize("kind", [FixedOrder, PairedColumns])
 def test_factors_grow_beyond_what_is_expected(kind, monkeypatch):
-    monkeypatch.setattr("tests.solve.linear.test_linear_solvers.EliminationOrder", without_fill)
+    monkeypatch.setattr("tests.solve.linear_solvers.test_linear_solvers.EliminationOrder", without_fill)
     rng = np.random.default_rng(0)
     pattern = scattered(rng, 120)
     solver = Solver(kind, pattern)
@@ -41,7 +39,7 @@ def test_factors_grow_beyond_what_is_expected(kind, monkeypatch):
 
 def test_memory_is_given_back_with_the_table(monkeypatch):
     freed = []
-    monkeypatch.setattr(own_memory, "RELEASE", lambda at: freed.append(at.value))
+    monkeypatch.setattr(layout, "RELEASE", lambda at: freed.append(at.value))
     order = EliminationOrder(np.arange(2), 4, 8)
     table = packed_with_memory(FACTORS, factors_of(2, np.array([0, 1]), np.array([0, 1]), order))
     table[L] = 4711

@@ -112,6 +112,29 @@ def test_straight_code_needs_no_memory():
     assert text.count("alloca") == 1  # of the range
 
 
+def test_fields_of_a_frozen_dataclass_are_constants():
+    source = """from dataclasses import dataclass
+
+@dataclass(frozen=True)
+class Parameters:
+    gain: float = 0.3
+    most: int = 7
+
+PARAMETERS = Parameters()
+
+def f(x, i):
+    return PARAMETERS.gain*x if i < PARAMETERS.most else x
+"""
+    compiled = compiled_source(source, "f", "float64(float64, int64)").call
+    assert [compiled(2.0, i) for i in (6, 7)] == [0.6, 2.0]
+    with pytest.raises(Untranslatable, match="no record with a field 'most_of_all'"):
+        compiled_source(
+            source.replace("x if i < PARAMETERS.most", "x if i < PARAMETERS.most_of_all"),
+            "f",
+            "float64(float64, int64)",
+        )
+
+
 def test_pointers_are_read_and_written():
     body = "for k in range(n):\n    p[k] += q[n - 1 - k]*p[k]\n    r[k] = k*2 - r[k]"
     source = "def f(n, p, q, r):\n" + "\n".join(f"    {line}" for line in body.splitlines())

@@ -5,7 +5,7 @@ import pytest
 
 import stiffmbs
 from stiffmbs.analyses.job import prepare
-from stiffmbs.describe.reading import read_scene
+from stiffmbs.model.read_scene import read_scene
 from stiffmbs.solve.trajectory import Outcome
 
 SLED = """

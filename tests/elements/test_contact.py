@@ -131,7 +131,7 @@ def in_contact(**fields):
     return State(compile_model(model.data()))
 
 
-RUBBING = {"friction": 0.3, "static_friction": 0.5, "smooth_velocity": 2, "stribeck_velocity": 3}
+RUBBING = {"friction": 0.3, "static_friction": 0.5, "stiction_velocity": 2, "friction_velocity": 3}
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ from stiffmbs import RunSettings, compile_model
 from stiffmbs.compile.equations import Equations
 from stiffmbs.compile.state import State
 from stiffmbs.compile.terms import TERM_AXES
-from stiffmbs.describe.element import Joint
+from stiffmbs.elements.element import Joint
 from stiffmbs.solve.formulations import FORMULATIONS
 
 from ..random_parts import CASES, add_joints, random_element, refers_to_joints, three_bodies, three_bodies_in_space

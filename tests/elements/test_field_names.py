@@ -14,7 +14,7 @@ from stiffmbs.compile.symbolic.derive import derive
 from stiffmbs.compile.symbolic.generate import kernel_source
 from stiffmbs.compile.symbolic.referred import ReferredJoint
 from stiffmbs.compile.symbolic.symbols import INTERNAL
-from stiffmbs.describe.element import IN_EQUATIONS
+from stiffmbs.elements.element import IN_EQUATIONS
 
 FAMILIES = {"plane": stiffmbs, "space": spatial}
 ALLOWED = [

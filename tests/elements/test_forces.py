@@ -199,7 +199,7 @@ def test_bad_input_is_refused_in_one_sentence(element, fields, sentence):
 def rubbing_guide():
     model = two_bodies(Prismatic)
     model.add(
-        "rubbing", JointFriction(joint="element", friction=0.3, static_friction=0.4, length=0.2, smooth_velocity=2)
+        "rubbing", JointFriction(joint="element", friction=0.3, static_friction=0.4, length=0.2, stiction_velocity=2)
     )
     return model
 

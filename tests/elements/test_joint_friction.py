@@ -42,7 +42,7 @@ def test_a_block_slides_down_an_incline_with_g_sin_minus_mu_cos():
 
 def test_a_block_on_a_flat_incline_creeps_as_the_smoothing_says():
     slope, mu, smooth = np.radians(10), 0.3, 1e-3
-    model = block_on_incline(slope, friction=mu, smooth_velocity=smooth)
+    model = block_on_incline(slope, friction=mu, stiction_velocity=smooth)
     solution = stiffmbs.run(model, duration=0.1, rtol=1e-8, points=11)
     speed = -solution["block.vx"][-1] / np.cos(slope)
     assert speed == pytest.approx(smooth * np.arctanh(np.tan(slope) / mu), rel=1e-6)
@@ -164,7 +164,7 @@ def test_a_slider_crank_loses_what_its_joints_rub_away(settings):
         (Revolute, {}, "rubbing.radius: found none for the revolute joint 'joint', expected the radius of its pin"),
         (Prismatic, {"joint": "rail"}, "rubbing.joint: found the unknown joint 'rail'"),
         (Prismatic, {"friction": -0.1}, "friction: found -0.1, expected a number of 0 or more"),
-        (Prismatic, {"smooth_velocity": 0}, "smooth_velocity: found 0, expected a velocity greater than 0"),
+        (Prismatic, {"stiction_velocity": 0}, "stiction_velocity: found 0, expected a velocity greater than 0"),
         (Prismatic, {"length": "3 kg"}, "length: found '3 kg', which is in kg, expected a length"),
     ],
 )
@@ -174,6 +174,18 @@ def test_bad_input_is_refused_in_one_sentence(joint, fields, sentence):
     model.add("joint", joint(i="block", j="ground"))
     with pytest.raises(InputError, match=sentence):
         model.add("rubbing", JointFriction(**{"joint": "joint", "friction": 0.1} | fields))
+
+
+@pytest.mark.parametrize(
+    ("old", "new"), [("smooth_velocity", "stiction_velocity"), ("stribeck_velocity", "friction_velocity")]
+)
+def test_an_old_name_of_a_field_is_refused_with_the_new_one(examples, old, new):
+    sentence = f"found '{old}', expected its new name '{new}'"
+    for kind in (JointFriction, stiffmbs.Contact, stiffmbs.spatial.JointFriction, stiffmbs.spatial.SphereContact):
+        with pytest.raises(InputError, match=sentence):
+            kind(**{old: 0.1})
+    with pytest.raises(InputError, match=rf"forces\.\w+: {sentence}"):
+        stiffmbs.load_scene(examples / "stick_slip.yaml", [(f"forces.rubbing.{old}", "1 mm/s")])
 
 
 def test_a_jam_is_put_down_to_friction():

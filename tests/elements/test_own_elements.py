@@ -14,8 +14,8 @@ import stiffmbs
 from stiffmbs import Body, InputError, Marker, Model, spatial
 from stiffmbs.analyses.usual_elements import usual_elements
 from stiffmbs.compile import record
-from stiffmbs.describe import own_elements
-from stiffmbs.describe.own_elements import REGISTRY
+from stiffmbs.elements import own_elements
+from stiffmbs.elements.own_elements import REGISTRY
 from stiffmbs.redundancy.transmitted import transmitted
 
 from ..outside import plane, space
@@ -144,11 +144,11 @@ def test_installed_packages_offer_elements_by_entry_points(monkeypatch):
     points = [importlib.metadata.EntryPoint("ring", "tests.outside.plane:Ring", own_elements.GROUP)]
     monkeypatch.setattr(importlib.metadata, "entry_points", lambda group: points if group == own_elements.GROUP else [])
     monkeypatch.setattr(own_elements, "REGISTRY", own_elements.Registry())
-    monkeypatch.setattr("stiffmbs.describe.kinds.REGISTRY", own_elements.REGISTRY)
+    monkeypatch.setattr("stiffmbs.elements.kinds.REGISTRY", own_elements.REGISTRY)
     found = stiffmbs.read_scene(IN_PLANE.replace("forces:", "notes: [no forces]\nrequests: {} #"))
     assert isinstance(found.joints["ring"], plane.Ring)
     points[0] = importlib.metadata.EntryPoint("ring", "tests.outside.nowhere:Ring", own_elements.GROUP)
-    monkeypatch.setattr("stiffmbs.describe.kinds.REGISTRY", own_elements.Registry())
+    monkeypatch.setattr("stiffmbs.elements.kinds.REGISTRY", own_elements.Registry())
     with pytest.raises(InputError, match=r"entry point 'ring = tests.outside.nowhere:Ring' of stiffmbs.elements"):
         stiffmbs.read_scene(IN_PLANE)
 

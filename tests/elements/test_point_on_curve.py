@@ -5,7 +5,7 @@ import pytest
 
 import stiffmbs
 from stiffmbs import Body, Marker, Model, PointOnCurve, Prismatic
-from stiffmbs.describe.reading import read_scene
+from stiffmbs.model.read_scene import read_scene
 
 from .test_joints import RATE, G, reaction, turning_arm
 

@@ -4,7 +4,7 @@ import pytest
 
 import stiffmbs
 from stiffmbs import spatial
-from stiffmbs.describe.model_data import ModelData
+from stiffmbs.model.model_data import ModelData
 
 
 def test_points_at_one_place_but_for_rounding_give_a_line_force_no_direction():

@@ -81,7 +81,7 @@ def test_a_ball_is_braked_against_its_angular_velocity():
 @pytest.mark.long
 def test_a_body_stays_where_friction_holds_it():
     """It creeps as the smoothing says: tanh(v/v_smooth) = load/(mu N)."""
-    model = held(spatial.Prismatic, force=(30, 40, 3), smooth_velocity=1e-3)
+    model = held(spatial.Prismatic, force=(30, 40, 3), stiction_velocity=1e-3)
     assert along_axis(run(model, 0.5))[-1] == pytest.approx(1e-3 * np.arctanh(3 / 5), rel=1e-6)
 
 
@@ -99,7 +99,7 @@ def test_derivatives_by_position_velocity_and_reaction(joint):
     own = {} if joint in ("cylindrical", "spherical") else {"length": 0.3}
     own |= {"length": 0.3, "thrust_radius": 0.4} if joint == "revolute" else {}
     model.add("held", kind.get(joint, spatial.Spherical)(i=like.i, j=like.j))
-    smooth = {"smooth_velocity": 0.8, "static_friction": 0.5, "stribeck_velocity": 0.7}
+    smooth = {"stiction_velocity": 0.8, "static_friction": 0.5, "friction_velocity": 0.7}
     model.add("rubbing", JointFriction(joint="held", friction=0.3, radius=0.2, **smooth, **own))
     state = State(stiffmbs.compile_model(model.data()))
     state.lam[:] = rng.uniform(0.5, 1.5, len(state.lam))

@@ -6,7 +6,7 @@ from scipy.spatial.transform import Rotation as rotation
 
 import stiffmbs
 from stiffmbs import spatial
-from stiffmbs.describe.spatial.orientation import about
+from stiffmbs.elements.spatial.orientation import about
 
 from ..rolling import Disc
 from ..spatial_channels import axes, vector

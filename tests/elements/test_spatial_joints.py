@@ -6,7 +6,7 @@ import pytest
 from stiffmbs import InputError, compile_model, spatial
 from stiffmbs.compile.reactions import reactions
 from stiffmbs.compile.state import State
-from stiffmbs.describe.spatial.orientation import about, matrix, product
+from stiffmbs.elements.spatial.orientation import about, matrix, product
 
 from ..spatial_pairs import two_bodies
 

@@ -21,7 +21,7 @@ FINE = {"rtol": 1e-10, "points": 101}
     "surface", [pytest.param(name, marks=() if name == "plane" else pytest.mark.long) for name in CLOSED]
 )
 def test_derivatives_of_a_closed_contact_that_slides(surface):
-    fields = CLOSED[surface] | {"dissipation": 0.1, "friction": 0.3, "static_friction": 0.5, "smooth_velocity": 0.5}
+    fields = CLOSED[surface] | {"dissipation": 0.1, "friction": 0.3, "static_friction": 0.5, "stiction_velocity": 0.5}
     state = State(stiffmbs.compile_model(two_bodies(spatial.SphereContact, 4, **fields).data()))
 
     assert np.max(np.abs(term(state, "motion", "f"))) > 1
@@ -77,7 +77,7 @@ def test_a_ball_with_side_spin_slides_on_a_parabola_until_it_rolls():
     model.add(
         "table",
         spatial.SphereContact(
-            i="ball", j="ground", radius=radius, stiffness=1e7, dissipation=2.0, friction=mu, smooth_velocity=1e-4
+            i="ball", j="ground", radius=radius, stiffness=1e7, dissipation=2.0, friction=mu, stiction_velocity=1e-4
         ),
     )
     solution = stiffmbs.run(model, duration=0.8, rtol=1e-8, points=401)
@@ -108,7 +108,7 @@ def test_friction_is_smoothed_below_its_velocity(part):
     """mu N tanh(v/v_smooth) against the sliding velocity (0.6, 0.8) v, at the start."""
     speed, depth = part * 1e-4, 1e-3
     model = ball(free=True, position=(0, 0, 0.1 - depth), velocity=(0.6 * speed, 0.8 * speed, 0))
-    fields = {"radius": 0.1, "stiffness": 1e6, "friction": 0.3, "smooth_velocity": 1e-4}
+    fields = {"radius": 0.1, "stiffness": 1e6, "friction": 0.3, "stiction_velocity": 1e-4}
     model.add("floor", spatial.SphereContact(i="ball", j="ground", **fields))
     solution = stiffmbs.run(model, duration=1e-12, points=2)
     drag = 0.3 * solution["floor.fz"][0] * np.tanh(part)

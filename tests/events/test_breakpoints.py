@@ -9,7 +9,7 @@ from stiffmbs.compile.inputs.breakpoints import breakpoint_times
 from stiffmbs.compile.inputs.enclosed_functions import FUNCTIONS
 from stiffmbs.compile.inputs.enclosure import Enclosure
 from stiffmbs.compile.inputs.of_time import _OF_ARRAYS, inputs_of
-from stiffmbs.describe.table import Table
+from stiffmbs.reading.table import Table
 
 
 def sled(force):

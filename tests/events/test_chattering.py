@@ -1,16 +1,20 @@
 """Motions that come to no end are told in the same words by every solver, and those that only change their law often are not."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import stiffmbs
 from stiffmbs import AlgebraicState, AppliedForce, Body, Model, Prismatic, Revolute
 from stiffmbs.analyses.run import prepare
-from stiffmbs.describe.model import FORCES
+from stiffmbs.dynamics.dynamics import Dynamics
+from stiffmbs.elements.planar_kinds import FORCES
 from stiffmbs.solve import integrator
-from stiffmbs.solve.dynamics import Dynamics
-from stiffmbs.solve.events.chattering import TRUSTED_EVENTS, WINDOW, Chattering
+from stiffmbs.solve.events import chattering
+from stiffmbs.solve.events.chattering import CHATTERING, Chattering
 from stiffmbs.solve.events.discontinuity import sliding
+from stiffmbs.solve.explicit import fixed
 from stiffmbs.solve.trajectory import Outcome
 from tests.stress.families.roads.kinks import SLIDES, belts, follower
 from tests.stress.families.roads.kinks import wheel as wheel_on_road
@@ -112,7 +116,7 @@ def test_fixed_steps_note_a_force_that_jumps_back_and_forth(scene, scheme):
 def test_looks_at_a_jump_leave_fixed_steps_as_they_are(monkeypatch):
     found = []
     for looks in (50, 1):
-        monkeypatch.setattr("stiffmbs.solve.explicit.fixed.LOOKS", looks)
+        monkeypatch.setattr(fixed, "FIXED_STEP", replace(fixed.FIXED_STEP, checks=looks))
         found.append(
             stiffmbs.run(
                 block("-5*sign(block.vx)", velocity=(1, 0)),
@@ -140,7 +144,9 @@ def test_a_law_that_changes_ever_faster_is_told_within_some_thousand_changes(sol
     solution = solve(spun_up(), solver, monkeypatch, duration=1.0)
     assert solution.outcome is Outcome.STOPPED
     assert "'push' changes its law back and forth ever faster" in solution.message
-    assert TRUSTED_EVENTS - 1 <= solution.solver["events"] <= TRUSTED_EVENTS + 3 * WINDOW
+    assert (
+        CHATTERING.trusted_events - 1 <= solution.solver["events"] <= CHATTERING.trusted_events + 3 * CHATTERING.window
+    )
 
 
 @pytest.mark.parametrize("solver", ["auto", "dop853", "bdf"])
@@ -167,8 +173,8 @@ def test_the_number_of_events_to_come_follows_the_law_of_their_growth():
 
 @pytest.mark.parametrize("solver", ["bdf", "dop853"])
 def test_steps_too_short_to_arrive_end_the_run(solver, monkeypatch):
-    monkeypatch.setattr("stiffmbs.solve.events.chattering.STEPS_SEEN", 5000)
-    monkeypatch.setattr("stiffmbs.solve.events.chattering.STEPS_AHEAD", 20_000)
+    changed = replace(chattering.CHATTERING, steps_seen=5000, steps_ahead=20_000)
+    monkeypatch.setattr(chattering, "CHATTERING", changed)
     rub = "-1000*block.vx/sqrt(block.vx^2 + block.vy^2)"
     solution = solve(block(rub, velocity=(1, 0)), solver, monkeypatch, duration=10.0)
     assert solution.outcome is Outcome.STOPPED

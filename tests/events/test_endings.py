@@ -7,9 +7,9 @@ import pytest
 
 import stiffmbs
 from stiffmbs import Body, Model, Revolute
+from stiffmbs.compile.machine.native.statuses import NO_BALANCE
+from stiffmbs.dynamics.dynamics import Dynamics
 from stiffmbs.results.solution import channel_ranges
-from stiffmbs.solve.dynamics import Dynamics
-from stiffmbs.solve.native.statuses import NO_BALANCE
 from stiffmbs.solve.trajectory import Outcome
 
 

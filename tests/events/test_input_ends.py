@@ -5,7 +5,7 @@ import pytest
 
 import stiffmbs
 from stiffmbs import AppliedForce, Body, Drive, Model, Prismatic
-from stiffmbs.describe.settings import RunSettings
+from stiffmbs.model.settings import RunSettings
 from stiffmbs.solve.trajectory import Outcome
 
 SOLVERS = [

@@ -34,7 +34,7 @@ RESTING = RADIUS - (MASS * 9.81 / PRESS) ** (1 / 1.5)
 def test_a_sliding_ball_comes_to_roll(how):
     """Friction mu m g until the foot rests after 2 v/(7 mu g), when 5/7 of the speed are left; spin about z goes on."""
     friction, speed = 0.2, 1.0
-    more = f"friction: {friction}, smooth_velocity: 1e-4"
+    more = f"friction: {friction}, stiction_velocity: 1e-4"
     found = stiffmbs.run(ball(RESTING, (0.6, 0.8, 0), (0, 0, 3), more), **how)
     t = found.time
     along = 0.6 * found["ball.vx"] + 0.8 * found["ball.vy"]
@@ -56,7 +56,7 @@ ENGINES = {"bdf": {}, "through scikit-sundae": {}, "dopri5": {"solver": "project
 @pytest.mark.parametrize("engine", ENGINES)
 def test_all_integrators_meet_the_same_impacts(engine, monkeypatch):
     """A ball with backspin on an elastic floor that rubs."""
-    scene = ball(0.3, (1, 0, 0), (0, -30, 5), "dissipation: 0.2, friction: 0.3, smooth_velocity: 0.01")
+    scene = ball(0.3, (1, 0, 0), (0, -30, 5), "dissipation: 0.2, friction: 0.3, stiction_velocity: 0.01")
     exact = stiffmbs.run(scene, **EXPLICIT, rtol=1e-12)
     if engine == "through scikit-sundae":
         monkeypatch.setattr(integrator, "available", lambda: (False, "found SUNDIALS 6, expected 7"))

@@ -46,7 +46,7 @@ def test_a_sliding_ball_comes_to_roll_at_five_sevenths_of_its_speed():
     model = Model(gravity=(0, 0, -9.81))
     model.add("ball", Body(mass=MASS, inertia=INERTIA, position=(0, 0, RADIUS - sunk), velocity=speed))
     touch = SphereContact(
-        i="ball", j="ground", radius=RADIUS, stiffness=stiffness, friction=friction, smooth_velocity=1e-4
+        i="ball", j="ground", radius=RADIUS, stiffness=stiffness, friction=friction, stiction_velocity=1e-4
     )
     model.add("table", touch)
     rolls = 2 * np.linalg.norm(speed) / (7 * friction * 9.81)

@@ -6,4 +6,4 @@ import pytest
 @pytest.fixture
 def few_moves(monkeypatch):
     """A search is given up after a tenth of its moves."""
-    monkeypatch.setattr("stiffmbs.solve.equilibria.equilibrium.MOST_MOVES", 200)
+    monkeypatch.setattr("stiffmbs.equilibria.equilibrium.MOST_MOVES", 200)

@@ -25,7 +25,6 @@ def test_an_equilibrium_too_large_for_eigenvalues_says_so(monkeypatch):
 
 def test_forces_with_a_potential_need_no_eigenvalues(monkeypatch):
     monkeypatch.setattr("stiffmbs.analyses.settled.MOST_FOR_EIGENVALUES", 2)
-    monkeypatch.setattr("stiffmbs.analyses.settled.MOST_CONSERVATIVE", 2)
     assert not stiffmbs.equilibrium(slider("-100*b.x")).notes
 
 

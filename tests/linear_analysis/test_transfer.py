@@ -10,7 +10,7 @@ import stiffmbs
 from stiffmbs import AppliedForce, Body, Marker, Model, Revolute
 from stiffmbs.analyses.linearised.transfer import transfer
 from stiffmbs.commands.main import main
-from stiffmbs.describe.spatial.orientation import matrix
+from stiffmbs.elements.spatial.orientation import matrix
 from stiffmbs.errors import InputError
 
 from ..conftest import EXAMPLES

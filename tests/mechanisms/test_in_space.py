@@ -8,10 +8,11 @@ import stiffmbs
 from stiffmbs import InputError, spatial
 from stiffmbs.analyses.job import prepare
 from stiffmbs.commands.main import main
-from stiffmbs.describe.element import Element
-from stiffmbs.describe.model import FORCES, JOINTS
-from stiffmbs.describe.reading import read_scene
-from stiffmbs.describe.spatial import model as spatial_model
+from stiffmbs.elements.element import Element
+from stiffmbs.elements.planar_kinds import FORCES, JOINTS
+from stiffmbs.elements.spatial import spatial_kinds
+from stiffmbs.model.embedding.elements import element_in_space
+from stiffmbs.model.read_scene import read_scene
 
 from ..conftest import EXAMPLE_SCENES, EXAMPLES
 
@@ -26,6 +27,7 @@ BDF, DOP853 = {"solver": "bdf"}, {"solver": "projected", "scheme": "dop853"}
 SORTS = {
     "x": "place", "y": "place", "vx": "speed", "vy": "speed", "ax": "acceleration", "ay": "acceleration",
     "angle": "angle", "omega": "rate", "alpha": "rate of rate", "fx": "force", "fy": "force", "torque": "torque",
+    "n1": "force", "n2": "force", "m3": "torque",
 }  # fmt: skip
 NAMES = {"omega": "wz", "alpha": "wdz", "torque": "tz"}
 ENERGIES = ("kinetic", "potential", "total")
@@ -81,7 +83,7 @@ DURATIONS = {
     "elastic_bearing": 0.01, "front_axle": 0.6,
 }  # fmt: skip
 LONG = ("half_car", "half_car_at_rest", "stick_slip")
-STIFF = ("elastic_bearing", "half_car", "cam_follower", "stick_slip")
+STIFF = ("elastic_bearing", "half_car", "cam_follower", "leaf_spring", "stick_slip")
 WITHOUT_POTENTIAL = ("andrews",)
 """A constant torque has a potential in the plane, and none in space."""
 
@@ -170,6 +172,18 @@ forces:
   z: {type: bushing, axes: ground, i: a.end, j: b.end, stiffness: [30, 20, 0], damping: [3, 2, 0]}
   y: {type: bushing, axes: ground, i: a, j: ground.anchor, stiffness: [200, 100, 3], damping: [[3, 1, 0], [1, 2, 0], [0, 0, 0.2]]}
 """,
+    "exact_beam": """
+forces:
+  x:
+    type: exact_beam
+    i: a.end
+    j: {body: b, point: [-0.5, 0], angle: 6.5}
+    length: 0.8
+    stiffness: [[300, 0, 4], [0, 200, 0], [4, 0, 8]]
+    unloaded: [1, 0.05, 0.4]
+    damping_ratio: 0.01
+  z: {type: exact_beam, i: a, j: ground.anchor, length: 0.6, stiffness: [300, 200, 5]}
+""",
     "force": """
 forces:
   x: {type: force, i: a.end, force: [3, -2]}
@@ -191,8 +205,8 @@ forces:
 joints:
 {SLIDES}
 forces:
-  x: {{type: joint_friction, joint: pin, friction: 0.2, radius: 0.03, smooth_velocity: 0.01}}
-  y: {{type: joint_friction, joint: slide, friction: 0.1, static_friction: 0.2, length: 0.3, smooth_velocity: 0.05}}
+  x: {{type: joint_friction, joint: pin, friction: 0.2, radius: 0.03, stiction_velocity: 0.01}}
+  y: {{type: joint_friction, joint: slide, friction: 0.1, static_friction: 0.2, length: 0.3, stiction_velocity: 0.05}}
   pull: {{type: spring_damper, i: a.end, j: b.end, stiffness: 50}}
 """,
 }  # fmt: skip
@@ -238,13 +252,14 @@ def test_assembly_moves_bodies_as_in_the_plane(kind):
     np.testing.assert_allclose(np.sin(np.arctan2(there[:, 6], there[:, 3]) - place[:, 2] / 2), 0, atol=3e-4)
 
 
-@pytest.mark.parametrize(("plane", "space"), [(JOINTS, spatial_model.JOINTS), (FORCES, spatial_model.FORCES)])
+@pytest.mark.parametrize(("plane", "space"), [(JOINTS, spatial_kinds.JOINTS), (FORCES, spatial_kinds.FORCES)])
 def test_a_kind_without_a_case_has_a_namesake_with_the_same_fields(plane, space):
     """A Python function stands in no file; `tests/elements/test_python_functions.py` has its case."""
     for kind, element in plane.items():
-        if element.in_space is Element.in_space and kind in space:
+        own = element_in_space.dispatch(element) is not element_in_space.dispatch(Element)
+        if not own and kind in space:
             assert not {*element.model_fields} - {*space[kind].model_fields}
-        elif element.in_space is not Element.in_space:
+        elif own:
             assert kind in {*CASES, "python_force"}
 
 

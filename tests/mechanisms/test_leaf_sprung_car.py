@@ -6,8 +6,8 @@ from scipy.integrate import cumulative_simpson
 
 import stiffmbs
 from stiffmbs.compile.quaternions import rotated
-from stiffmbs.describe.marker import GROUND
-from stiffmbs.studies.suspension.characteristics import point
+from stiffmbs.reading.marker import GROUND
+from stiffmbs.results.marker_motion import Motions
 from stiffmbs.tyres import Tyre
 
 from ..conftest import EXAMPLES
@@ -49,7 +49,11 @@ def impulse(run, rates):
 def wrench(scene, run, name):
     """Force, torque about the place where it acts, and that place, in ground axes."""
     force = scene.forces[name]
-    return vector(run, name, "fx fy fz"), vector(run, name, "tx ty tz"), point(scene, run, force.i)
+    return (
+        vector(run, name, "fx fy fz"),
+        vector(run, name, "tx ty tz"),
+        Motions(scene, run, len(run.time)).of(force.i).point,
+    )
 
 
 @pytest.mark.long

@@ -10,7 +10,7 @@ from ruamel.yaml import YAML
 from scipy.integrate import solve_ivp
 
 import stiffmbs
-from stiffmbs.describe.reading import read_scene
+from stiffmbs.model.read_scene import read_scene
 
 from ..minimal_coordinates import turned
 

@@ -25,35 +25,35 @@ ELEMENTS = ("tests/elements", "tests/mechanisms")
 RUNS = ("tests/solve", "tests/events", "tests/analyses", "tests/elements")
 AREAS = {
     "joints": Area(
-        ("stiffmbs/describe/joints/*.py", "stiffmbs/describe/spatial/joints/*.py", "stiffmbs/describe/spatial/primitives.py"),
+        ("stiffmbs/elements/joints/*.py", "stiffmbs/elements/spatial/joints/*.py", "stiffmbs/elements/spatial/primitives.py"),
         ELEMENTS,
     ),
     "forces": Area(
-        ("stiffmbs/describe/forces/*.py", "stiffmbs/describe/spatial/forces/*.py", "stiffmbs/describe/spatial/*impact.py"),
+        ("stiffmbs/elements/forces/*.py", "stiffmbs/elements/spatial/forces/*.py", "stiffmbs/elements/spatial/*impact.py"),
         ELEMENTS,
     ),
-    "tyres": Area(("stiffmbs/describe/tyres/*.py", "stiffmbs/describe/spatial/forces/*tyre.py"), ("tests/tyres", *ELEMENTS)),
+    "tyres": Area(("stiffmbs/elements/tyres/*.py", "stiffmbs/elements/spatial/forces/*tyre.py"), ("tests/tyres", *ELEMENTS)),
     "friction": Area(
-        ("stiffmbs/describe/forces/*friction.py", "stiffmbs/describe/spatial/forces/joint_friction.py"),
+        ("stiffmbs/elements/forces/*friction.py", "stiffmbs/elements/spatial/forces/joint_friction.py"),
         ("tests/elements/test_joint_friction.py", "tests/elements/test_spatial_joint_friction.py", "tests/adams", *ELEMENTS),
     ),
     "events": Area(
-        ("stiffmbs/solve/events/*.py", "stiffmbs/solve/native/event_search/*.py", "stiffmbs/compile/inputs/*.py"),
+        ("stiffmbs/solve/events/*.py", "stiffmbs/solve/events/native/*.py", "stiffmbs/compile/inputs/*.py"),
         ("tests/events", "tests/compile/test_input_features.py", "tests/stress/test_stress.py", "tests/solve"),
     ),
     "error_control": Area(
-        ("stiffmbs/solve/error_control/*.py", "stiffmbs/solve/native/error_norm.py", "stiffmbs/solve/native/explicit/*.py"),
+        ("stiffmbs/solve/error_control/*.py", "stiffmbs/solve/ida/native/error_norm.py", "stiffmbs/solve/explicit/native/*.py"),
         ("tests/solve", "tests/events", "tests/mechanisms"),
     ),
-    "equilibria": Area(("stiffmbs/solve/equilibria/*.py",), ("tests/linear_analysis",)),
+    "equilibria": Area(("stiffmbs/equilibria/*.py",), ("tests/linear_analysis",)),
     "linear_analysis": Area(("stiffmbs/linear_analysis/*.py",), ("tests/linear_analysis",)),
     "sensitivities": Area(
-        ("stiffmbs/studies/sensitivities/*.py", "stiffmbs/solve/variations/*.py"),
+        ("stiffmbs/studies/sensitivities/*.py", "stiffmbs/sensitivity_equations/*.py"),
         ("tests/studies/test_sensitivities.py", "tests/studies"),
     ),
     "results": Area(("stiffmbs/results/*.py", "stiffmbs/results/native/*.py"), ("tests/results", "tests/analyses", "tests/verification")),
     "readers": Area(
-        ("stiffmbs/adams/*/*.py", "stiffmbs/robots/*.py", "stiffmbs/robots/*/*.py", "stiffmbs/describe/files/*.py"),
-        ("tests/robots", "tests/adams", "tests/tyres", "tests/describe"),
+        ("stiffmbs/adams/*/*.py", "stiffmbs/robots/*.py", "stiffmbs/robots/*/*.py", "stiffmbs/reading/files/*.py"),
+        ("tests/robots", "tests/adams", "tests/tyres", "tests/reading"),
     ),
 }  # fmt: skip

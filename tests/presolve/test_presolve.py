@@ -16,8 +16,8 @@ from stiffmbs import Body, Marker, Model
 from stiffmbs.analyses.job import prepare
 from stiffmbs.commands.main import main
 from stiffmbs.compile.coordinates import all_independent
-from stiffmbs.describe.model import FORCES, JOINTS
-from stiffmbs.describe.reading import read_scene
+from stiffmbs.elements.planar_kinds import FORCES, JOINTS
+from stiffmbs.model.read_scene import read_scene
 from stiffmbs.solve.trajectory import Outcome
 from tests.stress.random_tree import random_tree
 

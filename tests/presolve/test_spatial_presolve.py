@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 import stiffmbs
 from stiffmbs.analyses.job import prepare
-from stiffmbs.describe.reading import read_scene
-from stiffmbs.describe.spatial.orientation import conjugate, matrix, rotated
+from stiffmbs.elements.spatial.orientation import conjugate, matrix, rotated
+from stiffmbs.model.read_scene import read_scene
 from stiffmbs.spatial import (
     Body,
     Drive,

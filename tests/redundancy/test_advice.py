@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 import stiffmbs
 from stiffmbs import spatial
-from stiffmbs.describe.model import FORCES
+from stiffmbs.elements.planar_kinds import FORCES
 from stiffmbs.redundancy.transmitted import COMPONENTS
 
 from ..spatial_loops import door, ground, parallelogram

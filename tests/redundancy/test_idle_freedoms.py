@@ -4,7 +4,7 @@ import pytest
 
 import stiffmbs
 from stiffmbs import Body, Distance, Marker, Model, Revolute, spatial
-from stiffmbs.describe.model import FORCES
+from stiffmbs.elements.planar_kinds import FORCES
 
 from ..spatial_loops import ground, slider_crank
 

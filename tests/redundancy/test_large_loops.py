@@ -91,7 +91,7 @@ def test_small_singular_values_alone_are_those_of_the_whole(monkeypatch, redunda
     row, column = np.nonzero(A)
     entries = SparseMatrix(row, column, A[row, column], A.shape)
     whole, whole_vectors = small_singular.small_singular(entries)
-    monkeypatch.setattr(small_singular, "WHOLE_UP_TO", 0)
+    monkeypatch.setattr(entries_module, "DENSE_UP_TO", 0)
     values, vectors = small_singular.small_singular(entries)
     assert (len(values), vectors.shape[1]) == (len(whole), redundant + 1 + small_singular.MORE)
     np.testing.assert_allclose(values[-redundant - 1 :], whole[-redundant - 1 :], rtol=1e-6, atol=1e-13)

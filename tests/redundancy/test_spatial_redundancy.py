@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 import stiffmbs
 from stiffmbs import AssemblyError
 from stiffmbs.commands.main import main
-from stiffmbs.describe.spatial.model import JOINTS
-from stiffmbs.describe.spatial.orientation import matrix, product
+from stiffmbs.elements.spatial.orientation import matrix, product
+from stiffmbs.elements.spatial.spatial_kinds import JOINTS
 from stiffmbs.spatial import (
     Body,
     Cylindrical,

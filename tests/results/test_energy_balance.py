@@ -10,7 +10,7 @@ import stiffmbs
 from stiffmbs import Body, Marker, Model, Prismatic, SpringDamper
 from stiffmbs.commands.main import main
 from stiffmbs.compile.compile_model import compile_model
-from stiffmbs.describe.model import FORCES, JOINTS
+from stiffmbs.elements.planar_kinds import FORCES, JOINTS
 from stiffmbs.results.energy_balance import Balance
 from stiffmbs.results.energy_balance_notes import within_steps
 from stiffmbs.show.report import report_page
@@ -204,7 +204,7 @@ def test_the_error_of_a_loose_tolerance_is_no_broken_balance():
 
 @pytest.mark.parametrize("omega", [0, 1e3, 1e6])
 def test_growth_names_the_body_that_grows_and_not_the_fastest(omega):
-    """A block runs away as cosh(t), beside a wheel of the same mechanism that spins evenly."""
+    """A block runs away as cosh(t); a wheel of the same mechanism spins evenly."""
     scene = stiffmbs.read_scene(f"""
 bodies:
   wheel: {{mass: 1, inertia: 1, omega: {omega}}}

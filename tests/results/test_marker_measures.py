@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from stiffmbs.results.marker_measures import axis
 from stiffmbs.results.marker_motion import MarkerMotion
 
 
@@ -18,4 +17,4 @@ def turned(rotation):
 def test_axes_of_random_markers(k):
     one, other = (Rotation.random(50, random_state=seed) for seed in (k, k + 3))
     expected = (other.inv() * one).as_matrix()[:, :, k]
-    np.testing.assert_allclose(axis(k, turned(one), turned(other)), expected, atol=1e-12)
+    np.testing.assert_allclose(turned(one).axis(k, turned(other)), expected, atol=1e-12)

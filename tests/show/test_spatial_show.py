@@ -13,7 +13,7 @@ from rich.console import Console
 import stiffmbs
 from stiffmbs import spatial
 from stiffmbs.commands.main import main
-from stiffmbs.describe.spatial.orientation import conjugate, matrix, product, rotated
+from stiffmbs.elements.spatial.orientation import conjugate, matrix, product, rotated
 from stiffmbs.results.scales import scales
 from stiffmbs.show.figure import drawn
 from stiffmbs.show.force_table import force_table

@@ -1,11 +1,14 @@
 """The summary of a run: labels and values, the largest loads, numbered notes."""
 
 import io
+from dataclasses import replace
 
+import numpy as np
 import pytest
 
 import stiffmbs
 from stiffmbs.show.escaped import console
+from stiffmbs.show.force_table import force_table
 from stiffmbs.show.summary import INDENT, print_summary
 
 LINKS = 14
@@ -65,3 +68,17 @@ def test_long_lines_are_wrapped_below_their_values(chain, width):
 
 def _below_the_table(lines):
     return lines[next(k for k, line in enumerate(lines) if line.startswith("energy")) :]
+
+
+@pytest.mark.parametrize(("part", "is_zero"), [(0.7e-11, True), (1.5e-11, False)])
+def test_a_force_of_rounding_is_shown_as_zero(chain, part, is_zero):
+    """Below 1e-11 of the largest force."""
+    largest = max(np.abs(chain[name]).max() for name in chain if name.endswith((".fx", ".fy", ".torque")))
+    element = {
+        f"b.{label}": np.full(len(chain.time), value)
+        for label, value in (("fx", part * largest), ("fy", 0), ("torque", 0))
+    }
+    table = io.StringIO()
+    console(file=table, width=200).print(force_table(replace(chain, channels={**chain.channels, **element})))
+    (row,) = [line for line in table.getvalue().splitlines() if line.startswith("│ b ")]
+    assert (row.split("│")[2].strip() == "0 .. 0") == is_zero

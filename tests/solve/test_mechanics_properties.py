@@ -139,7 +139,7 @@ def test_spring_of_no_length_is_defined():
 def test_a_force_between_bodies_leaves_momentum_alone(kind):
     rng = np.random.default_rng(1)
     model = three_bodies(rng, gravity=False)
-    model.add("force", random_element(stiffmbs.describe.model.FORCES[kind], rng))
+    model.add("force", random_element(stiffmbs.model.model.FORCES[kind], rng))
     solution = stiffmbs.run(model, duration=0.2, points=3, rtol=1e-9)
     momentum = sum(body.mass * solution[f"{name}.vx"] for name, body in model.bodies.items())
     np.testing.assert_allclose(momentum, momentum[0], atol=1e-7)

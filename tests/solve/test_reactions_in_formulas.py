@@ -48,7 +48,7 @@ FORMULA = AppliedForce(i="cart", force=(f"-{MU}*abs(fy(rail))*tanh(cart.vx/{SMOO
 )
 def test_friction_by_formula_is_that_of_the_element(settings):
     chosen = {"duration": 1.0, "points": 21, "rtol": 1e-9, **settings}
-    element = JointFriction(joint="rail", friction=MU, smooth_velocity=SMOOTH)
+    element = JointFriction(joint="rail", friction=MU, stiction_velocity=SMOOTH)
     by_formula, by_element = (stiffmbs.run(sliding(friction), **chosen) for friction in (FORMULA, element))
     assert by_formula["cart.x"] == pytest.approx(by_element["cart.x"], abs=1e-6)
     assert by_formula["rail.fy"] == pytest.approx(by_element["rail.fy"], rel=1e-5, abs=1e-4)
@@ -111,7 +111,7 @@ def test_reactions_that_are_not_unique_are_told():
 @pytest.mark.parametrize(
     ("force", "message"),
     [
-        ("fy(rails)", "found 'fy\\(rails\\)' in .*, expected one of the joints rail"),
+        ("fy(rails)", "found 'fy\\(rails\\)' \\(did you mean 'rail'\\?\\) in .*, expected one of the joints rail"),
         ("fz(rail)", "found 'fz\\(rail\\)' in .*, expected one of fx, fy, tz"),
         ("fy(rail, cart)", "expected the name of one joint"),
         ("tz(rail) + 1 N", "expected one unit in both"),

@@ -5,7 +5,7 @@ import pytest
 
 import stiffmbs
 from stiffmbs import spatial
-from stiffmbs.describe.spatial.orientation import matrix
+from stiffmbs.elements.spatial.orientation import matrix
 from stiffmbs.solve import integrator
 from stiffmbs.solve.error_control.error_test import CHOSEN, ErrorControl
 from tests.bench.error_bars import PROBLEMS

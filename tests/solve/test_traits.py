@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import stiffmbs
-from stiffmbs.describe.settings import RunSettings
+from stiffmbs.model.settings import RunSettings
 from stiffmbs.solve import SOLVERS
 from stiffmbs.solve.explicit.projected import TRAITS, solve
 from stiffmbs.solve.settings import traits_of
@@ -18,7 +18,7 @@ CHOICES = (
 )  # fmt: skip
 OTHER = {
     "formulation": "I3", "stabilisation": 3.0, "scheme": "rk4", "rtol": 1e-3, "atol": 1e-3, "step": 5e-3, "projection": False,
-    "max_step": 2e-3, "max_order": 2,
+    "max_step": 2e-3, "max_order": 2, "stages": 3,
 }  # fmt: skip
 """Another value than the usual one of each setting of solvers."""
 SELECTS = {"solver", "formulation", "scheme"}
@@ -56,7 +56,8 @@ def test_settings_have_an_effect_where_the_solver_reads_them(how, examples):
         unused = traits.switches and name in (
             "formulation",
             "max_order",
-        )  # of the integrator that auto does not take here
+            "stages",
+        )  # of those that auto does not take here
         assert same == (name not in traits.reads or unused), name
         told = [note for note in changed.notes if "no effect" in note and f"{name} = " in note]
         assert len(told) == (name not in traits.reads), name

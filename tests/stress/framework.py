@@ -15,12 +15,13 @@ from typing import Any
 
 import numpy as np
 
-from stiffmbs.describe.body import Body
-from stiffmbs.describe.marker import Marker
-from stiffmbs.describe.model import JOINTS, Model
-from stiffmbs.describe.spatial import body as body_in_space
-from stiffmbs.describe.spatial import marker as marker_in_space
-from stiffmbs.describe.spatial import model as model_in_space
+from stiffmbs.elements.body import Body
+from stiffmbs.elements.planar_kinds import JOINTS
+from stiffmbs.elements.spatial import body as body_in_space
+from stiffmbs.elements.spatial import marker as marker_in_space
+from stiffmbs.model import spatial_model as model_in_space
+from stiffmbs.model.model import Model
+from stiffmbs.reading.marker import Marker
 from stiffmbs.results.solution import Solution
 
 GRAVITY = 9.81

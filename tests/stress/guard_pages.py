@@ -20,7 +20,7 @@ from typing import Any
 
 import numpy as np
 
-from stiffmbs.compile.machine import own_memory
+from stiffmbs.compile.machine import layout
 from stiffmbs.compile.machine.native.memory import REALLOCATE
 
 SET_HANDLER = 304
@@ -96,7 +96,7 @@ class GuardPages:
         table = ctypes.cast(pointer(np._core._multiarray_umath._ARRAY_API, None), ctypes.POINTER(_P))  # type: ignore[attr-defined]
         self._kept.append(ctypes.PYFUNCTYPE(ctypes.py_object, ctypes.py_object)(table[SET_HANDLER] or 0)(capsule))
         llvm.add_symbol(REALLOCATE, ctypes.cast(self._kept[1], _P).value)
-        own_memory.RELEASE = lambda at: self.free(at.value)  # type: ignore[assignment]
+        layout.RELEASE = lambda at: self.free(at.value)  # type: ignore[assignment]
 
     def new(self, size: int, content: int = NEVER_WRITTEN) -> int | None:
         """The address of so many bytes; None where there is no memory."""

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from stiffmbs.describe.spatial.body import Body
-from stiffmbs.describe.spatial.marker import Marker
-from stiffmbs.describe.spatial.model import FORCES, JOINTS, Model
-from stiffmbs.describe.spatial.orientation import Quaternion, conjugate, matrix, product, rotated
+from stiffmbs.elements.spatial.body import Body
+from stiffmbs.elements.spatial.marker import Marker
+from stiffmbs.elements.spatial.orientation import Quaternion, conjugate, matrix, product, rotated
+from stiffmbs.elements.spatial.spatial_kinds import FORCES, JOINTS
+from stiffmbs.model.spatial_model import Model
 
 TREE_JOINTS = (
     "revolute", "spherical", "prismatic", "cylindrical", "fixed", "universal", "planar", "parallel", "perpendicular",

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from stiffmbs.describe.spatial.orientation import Quaternion, conjugate, matrix, product, rotated
+from stiffmbs.elements.spatial.orientation import Quaternion, conjugate, matrix, product, rotated
 
 from .random_laws import random_law
 

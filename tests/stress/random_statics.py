@@ -6,11 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from stiffmbs.describe.model import FORCES, JOINTS, Model
-from stiffmbs.describe.spatial.model import FORCES as SPATIAL_FORCES
-from stiffmbs.describe.spatial.model import JOINTS as SPATIAL_JOINTS
-from stiffmbs.describe.spatial.model import Model as SpatialModel
-from stiffmbs.describe.spatial.orientation import conjugate, rotated
+from stiffmbs.elements.planar_kinds import FORCES, JOINTS
+from stiffmbs.elements.spatial.orientation import conjugate, rotated
+from stiffmbs.elements.spatial.spatial_kinds import FORCES as SPATIAL_FORCES
+from stiffmbs.elements.spatial.spatial_kinds import JOINTS as SPATIAL_JOINTS
+from stiffmbs.model.model import Model
+from stiffmbs.model.spatial_model import Model as SpatialModel
 
 from .random_space import random_space_tree
 from .random_tree import random_tree

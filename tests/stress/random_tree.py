@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from stiffmbs.describe.body import Body
-from stiffmbs.describe.marker import Marker
-from stiffmbs.describe.model import FORCES, JOINTS, Model
+from stiffmbs.elements.body import Body
+from stiffmbs.elements.planar_kinds import FORCES, JOINTS
+from stiffmbs.model.model import Model
+from stiffmbs.reading.marker import Marker
 
 
 def random_tree(rng: np.random.Generator, count: int, gravity: bool, grounded: bool, springs: int) -> Model:

@@ -7,9 +7,9 @@ from collections.abc import Callable
 from typing import Any
 
 from stiffmbs.analyses.run import run
-from stiffmbs.describe.building.model_builder import ModelBuilder
-from stiffmbs.describe.model_data import ModelData
 from stiffmbs.errors import StiffmbsError
+from stiffmbs.model.model_builder import ModelBuilder
+from stiffmbs.model.model_data import ModelData
 from stiffmbs.results.solution import Solution
 from stiffmbs.solve.trajectory import Outcome as Ending
 from stiffmbs.solve.trajectory import ProgressCallback

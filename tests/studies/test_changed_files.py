@@ -10,7 +10,7 @@ import textwrap
 import pytest
 
 from stiffmbs import InputError, sweep
-from stiffmbs.describe.files.own_sources import digests_of_code
+from stiffmbs.reading.files.own_sources import digests_of_code
 
 WHEEL = """
 dimensions: 3

@@ -1,39 +1,15 @@
 """Sensitivities: closed forms of their own derivatives, jumps at breakpoints and events, differences of converged runs."""
 
 from functools import partial
-from importlib import import_module
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
 import stiffmbs
-from stiffmbs import InputError, SolverError, sensitivities
-from stiffmbs.solve.variations.recorded import Recorder, Segment
+from stiffmbs import InputError, sensitivities
 from stiffmbs.studies.outputs import outputs_of
-from stiffmbs.studies.sensitivities.formulas import Formula
-
-SLED = """
-parameters: {k: 100 N/m, c: 1 N s/m, x0: 0.1 m, m: 2 kg}
-bodies: {sled: {mass: m, inertia: 1, position: [x0, 0]}}
-joints: {rail: {type: prismatic, i: sled, j: ground}}
-forces:
-  spring: {type: force, i: sled, force: ["-k*sled.x - c*sled.vx", 0]}
-run: {duration: 2, rtol: 1e-7, points: 41}
-"""
-
-
-def oscillation(t, k=100.0, c=1.0, x0=0.1, m=2.0):
-    d, w = c / (2 * m), np.sqrt(k / m - (c / (2 * m)) ** 2)
-    return x0 * np.exp(-d * t) * (np.cos(w * t) + d / w * np.sin(w * t))
-
-
-def slope(function, name, value):
-    """By central differences of fourth order of a closed form."""
-    h = 1e-3 * value
-    f = [function(**{name: value + shift * h}) for shift in (-2, -1, 1, 2)]
-    return (f[0] - 8 * f[1] + 8 * f[2] - f[3]) / (12 * h)
+from tests.studies.oscillator import SLED, oscillation, slope
 
 
 @pytest.mark.parametrize("of", ["sled.x", "rms(sled.x)", "final(3*sled.x^2 + sin(sled.x))", "integral(abs(sled.x))/2"])
@@ -215,135 +191,6 @@ def test_differences_of_converged_runs(scene, name, value, of, settings):
     assert found.to[name] == pytest.approx(differences(file, name, value, of, solver="bdf", **settings), rel=1e-5)
 
 
-@pytest.mark.parametrize(
-    ("to", "of", "message"),
-    [
-        (["nothing"], "final(sled.x)", "expected a parameter of the scene"),
-        (["k", "k"], "final(sled.x)", "each once"),
-        (["bodies.sled.position"], "final(sled.x)", "add a place such as .0"),
-        (["bodies.sled.position.5"], "final(sled.x)", "a place of the vector"),
-        (["bodies.sled.position.x"], "final(sled.x)", "position.x"),
-        (["k"], "final(sled.q)", "no channel 'sled.q'"),
-        (["k"], "t_peak(sled.x)", "found t_peak"),
-        (["k"], "final(constraint.position)", "has no derivatives"),
-        (["run.rtol"], "final(sled.x)", "expected a parameter of the scene"),
-    ],
-)  # fmt: skip
-def test_what_cannot_be_differentiated_is_refused(to, of, message):
-    with pytest.raises(InputError, match=message):
-        sensitivities(stiffmbs.read_scene(SLED), to, of)
-
-
-def test_a_run_that_stops_early_has_none():
-    text = SLED.replace('"-k*sled.x - c*sled.vx"', '"sqrt(1 - t)"')
-    with pytest.raises(SolverError, match="the run stopped"):
-        sensitivities(stiffmbs.read_scene(text.replace("k: 100 N/m, c: 1 N s/m, ", "")), ["m"], "final(sled.x)")
-
-
-FALLING = """
-parameters: {g: 0 m/s^2, tilt: 0, k: 100 N/m}
-bodies: {sled: {mass: 2 kg, inertia: 1, position: [0.1, 0]}}
-joints: {rail: {type: prismatic, i: sled, j: ground}}
-forces:
-  spring: {type: force, i: sled, force: ["-k*sled.x", 0]}
-run: {duration: 2, rtol: 1e-7, points: 41}
-"""
-
-
-@pytest.mark.parametrize(
-    ("gravity", "to", "factor"),
-    [
-        ("", "gravity.0", 1.0),
-        ("gravity: [0, 0]", "gravity.0", 1.0),
-        ("gravity: [g, 0]", "g", 1.0),
-        ("gravity: [0, g]", "g", 0.0),
-        ("gravity: ['-g/2', g]", "g", -0.5),
-        ("gravity: ['9.81*sin(tilt)', 0]", "tilt", 9.81),
-        ("gravity: [0, 9.81]", "gravity.0", 1.0),
-    ],
-)
-def test_those_by_gravity_that_is_zero(gravity, to, factor):
-    """The sled oscillates about m g/k: dx/dg = m/k (1 - cos(w t)); that by the stiffness is not affected."""
-    found = sensitivities(stiffmbs.read_scene(FALLING + gravity), [to, "k"], "sled.x")
-    w = np.sqrt(100 / 2)
-    np.testing.assert_allclose(found.to[to], factor * 2 / 100 * (1 - np.cos(w * found.time)), atol=1e-7)
-    by_k = slope(lambda k: oscillation(found.time, k=k, c=0.0), "k", 100.0)
-    np.testing.assert_allclose(found.to["k"], by_k, atol=1e-8)
-
-
-def test_gravity_that_vanishes_by_chance_is_named():
-    scene = stiffmbs.read_scene(FALLING.replace("tilt: 0", "tilt: 1") + "gravity: ['tilt - 1', 0]")
-    with pytest.raises(InputError, match="no body has a weight where gravity is zero"):
-        sensitivities(scene, "tilt", "sled.x")
-
-
-def test_a_motion_that_chatters_is_not_solved_a_second_time(monkeypatch):
-    """No motion follows a force against the velocity that jumps, with any tolerance."""
-    solved, module = [], import_module("stiffmbs.studies.sensitivities.sensitivities")
-    prepare = module.prepare
-    monkeypatch.setattr(
-        module, "prepare", lambda scene, settings: solved.append(settings.rtol) or prepare(scene, settings)
-    )
-    text = SLED.replace("- c*sled.vx", "- 20*sign(sled.vx)")
-    with pytest.raises(SolverError, match="jumps back and forth"):
-        sensitivities(stiffmbs.read_scene(text.replace("c: 1 N s/m, ", "")), ["k"], "final(sled.x)")
-    assert len(solved) == 1
-
-
-AT_REST = """
-parameters: {{A: 0, k: {k}}}
-bodies: {{b: {{mass: 2, inertia: 1, velocity: [{v}, 0]}}}}
-joints: {{r: {{type: prismatic, i: b, j: ground}}}}
-forces: {{f: {{type: force, i: b, force: ["{law}", 0]}}}}
-run: {{duration: 1, rtol: 1e-7}}
-"""
-
-
-@pytest.mark.parametrize("v", [0.0, 3.0])
-@pytest.mark.parametrize(
-    ("law", "k", "exact"),
-    [
-        ("A", 0.0, 0.25),
-        ("A*sin(10*t)", 0.0, (1 - np.sin(10) / 10) / 20),
-        ("A - k*(b.x - {v}*t)", 50.0, (1 - np.cos(5)) / 50),
-    ],
-)
-def test_a_motion_at_rest_or_steady_has_short_enough_steps(law, k, exact, v):
-    """The error control of such a motion limits no step, but its variation needs short ones."""
-    scene = stiffmbs.read_scene(AT_REST.format(law=law.format(v=v), k=k, v=v))
-    assert stiffmbs.sensitivities(scene, "A", "final(b.x)").to["A"] == pytest.approx(exact, rel=1e-3)
-
-
-def test_a_vibration_that_no_step_resolves_is_refused():
-    scene = stiffmbs.read_scene(AT_REST.format(law="A - k*b.x", k=5e4, v=0))
-    with pytest.raises(SolverError, match="102400 steps do not resolve how 'final"):
-        stiffmbs.sensitivities(scene, "A", "final(b.x)")
-
-
-@pytest.mark.long
-def test_an_event_of_an_algebraic_state_takes_the_law_behind_it():
-    """The branch has another value at zero than on both sides; the time of the event changes by -1/z'(0) with the start."""
-    start = -0.0685166
-    scene = stiffmbs.read_scene(f"""
-gravity: [0, 0]
-parameters: {{start: {start}}}
-bodies: {{b: {{mass: 1, inertia: 1}}}}
-states: {{p: {{zero: "2*p - z", start: 0}}, z: {{rate: "0.2 - p*z", start: start}}}}
-forces: {{f: {{type: force, i: b, force: ["branch(p + 0.0124121, 15.9, 0, 6.5)", 0]}}}}
-run: {{duration: 0.5, points: 3}}
-""")
-    found = sensitivities(scene, of="final(b.vx)", to="start")
-    assert found.to["start"] == pytest.approx(-(15.9 - 6.5) / (0.2 - start**2 / 2), rel=1e-4)
-
-
-@pytest.mark.parametrize(("size", "slope"), [(1e-17, 0.0), (0.7e-14, 0.0), (1.5e-14, 0.1), (1e-12, 0.1)])
-def test_the_magnitude_of_what_is_zero_up_to_rounding_has_the_mean_of_both_slopes(size, slope):
-    t = np.linspace(0, 1, 11)
-    x = size * np.where(np.arange(11) < 6, 1.0, -1.0)
-    found = Formula("integral(abs(x))", t, {"x": x}).dual({"x": np.ones((11, 1))})
-    assert found.slope == pytest.approx([slope], abs=1e-12)
-
-
 REFERRING = """
 dimensions: 2
 gravity: [0, -9.81]
@@ -368,7 +215,7 @@ forces:
         ("d: {{type: coupler, joint_1: p, joint_2: q, scale: -0.5}}", "", ["a.x", "b.vx", "p.fy"]),
         (
             "",
-            "f: {{type: joint_friction, joint: r, friction: 0.3, smooth_velocity: 0.01, length: 0.2}}",
+            "f: {{type: joint_friction, joint: r, friction: 0.3, stiction_velocity: 0.01, length: 0.2}}",
             ["c.x", "c.vx"],
         ),
     ],
@@ -388,60 +235,6 @@ def test_what_refers_to_a_joint_follows_its_markers(referring, force, of):
         )
 
 
-@pytest.mark.parametrize("reduction", ["max", "min", "peak"])
-def test_an_extremum_of_what_is_zero_up_to_rounding_has_no_single_time(reduction):
-    t = np.linspace(0, 1, 11)
-    x = 1e-17 * np.sin(np.arange(11))
-    with pytest.raises(SolverError, match=f"has its {reduction} at 11 output times"):
-        Formula(f"{reduction}(x)", t, {"x": x}).dual({"x": t[:, None]})
-
-
-@pytest.mark.long
-def test_coordinates_at_rest_have_no_jumps():
-    """A door on a vertical hinge: the accelerations of its other coordinates are rounding."""
-    k, inertia = 15.0, 7 + 20 * 0.45**2
-    scene = stiffmbs.read_scene("""
-        dimensions: 3
-        gravity: [0, 0, -9.81]
-        bodies: {door: {mass: 20, inertia: [6, 1.5, 7], position: [0.45, 0, 0], velocity: [0, 0.9, 0], omega: [0, 0, 2]}}
-        joints: {hinge: {type: revolute, i: {body: door, point: [-0.45, 0, 0]}, j: ground}}
-        forces: {spring: {type: torsion_spring, i: {body: door, point: [-0.45, 0, 0]}, j: ground, stiffness: 15}}
-    """)
-    found = sensitivities(scene, ["forces.spring.stiffness"], "final(door.wz)", duration=1.0).to[
-        "forces.spring.stiffness"
-    ]
-    w = np.sqrt(k / inertia)
-    assert found == pytest.approx(-2 * np.sin(w) / (2 * w * inertia), rel=1e-5)
-
-
-@pytest.mark.parametrize(
-    ("step", "jumps", "refused"),
-    [
-        (0.7e-9, (0.5, 0.0), True),
-        (1.5e-9, (0.5, 0.0), False),  # a force may change so far in so long a step
-        (1e-12, (1.5e-3, 0.0), True),
-        (1e-12, (0.7e-3, 0.0), False),
-        (1e-12, (0.0, 1.5e-6), True),
-        (1e-12, (0.0, 0.7e-6), False),  # below a millionth of the other coordinate's acceleration
-    ],
-)
-def test_a_jump_of_accelerations_is_refused_from_a_size_on(step, jumps, refused):
-    """Accelerations of about 1 and 0 change by `jumps` within a step of a run of 1 s."""
-    recorder = Recorder.__new__(Recorder)
-    recorder.equations = SimpleNamespace(n=2, at={"u": np.arange(2)})
-    recorder.dynamics = SimpleNamespace(system=SimpleNamespace(size=1.0, per_velocity=lambda *_: np.ones(2)))
-    recorder._accelerations = lambda _, y: y
-    after = np.array([1.0, 0.0])
-    before = after - jumps
-    rows = np.array([[0.5, 1.0, *before, *before], [0.5 + step, 1.0, *after, *after]])
-    recorder.segments = [Segment(None, np.array([0.0, 1.0, *before, *before]), [rows])]
-    if refused:
-        with pytest.raises(SolverError, match="discontinuous"):
-            recorder.passed(1.0)
-    else:
-        recorder.passed(1.0)
-
-
 @pytest.mark.long
 def test_a_request_changes_with_the_channels_that_it_reads():
     """x = v t + F t^2/(2 m) in a request: the derivatives come by its channels alone, or by its parameter as well."""
@@ -456,10 +249,3 @@ run: {duration: 1 s, rtol: 1e-9}
     double, product = (sensitivities(scene, ["F", "m"], f"final({name})") for name in ("double", "product"))
     assert double.to == pytest.approx({"F": 2 / 4, "m": -2 * 3 / 8}, rel=1e-7)
     assert product.to == pytest.approx({"F": 0.5 + 3 / 4 + 3 / 4, "m": -9 / 8}, rel=1e-7)
-
-
-@pytest.mark.parametrize("of", [["final(a.x)", "final(a.y)"], ("final(a.x)",), 3])
-def test_an_output_that_is_no_text_is_refused(of):
-    scene = stiffmbs.read_scene("{bodies: {a: {mass: 1, inertia: 1}}}")
-    with pytest.raises(stiffmbs.InputError, match=r"of: found .*, expected the text of one formula"):
-        sensitivities(scene, "bodies.a.mass", of)

@@ -5,9 +5,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from stiffmbs.describe.tyres.magic_formula import relaxation_lengths
-from stiffmbs.describe.tyres.names import COEFFICIENTS, SCALES
-from stiffmbs.describe.tyres.steady import OUTPUTS
+from stiffmbs.elements.tyres.magic_formula import OUTPUTS, relaxation_lengths
+from stiffmbs.elements.tyres.names import COEFFICIENTS, SCALES
 from stiffmbs.tyres import TyreProperties
 
 from .plain_magic_formula import plain_relaxation_lengths, plain_wrench

@@ -4,8 +4,8 @@ import pytest
 from scipy import constants
 
 from stiffmbs import InputError, load_scene
-from stiffmbs.describe.tyres.names import AS_BEFORE, LATER
-from stiffmbs.describe.tyres.property_file import UNITS
+from stiffmbs.elements.tyres.names import AS_BEFORE, LATER
+from stiffmbs.elements.tyres.property_file import UNITS
 from stiffmbs.tyres import TyreProperties
 
 FILE = """$ a tyre

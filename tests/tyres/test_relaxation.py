@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from stiffmbs import InputError
-from stiffmbs.describe.tyres.names import SAMPLE
 from stiffmbs.spatial import (
     AppliedTorque,
     Body,
@@ -20,7 +19,7 @@ from stiffmbs.spatial import (
 )
 from stiffmbs.tyres import TyreProperties
 
-from .wheels import reported, wheel
+from .wheels import SAMPLE, reported, wheel
 
 LENGTHS = (0.4, 0.7)
 FIALA = {"radius": 0.3, "stiffness": 2e5, "damping": 3000, "slip_stiffness": 8e4, "cornering_stiffness": 6e4,
@@ -75,7 +74,7 @@ def test_the_longitudinal_slip_lags_by_its_relaxation_length():
 def test_lengths_of_the_magic_formula():
     from sympy import Symbol, lambdify
 
-    from stiffmbs.describe.tyres.magic_formula import relaxation_lengths
+    from stiffmbs.elements.tyres.magic_formula import relaxation_lengths
 
     p = type("Numbers", (), TyreProperties(coefficients={**SMALL, "PKY3": 0.9}).in_equations())
     load, camber = Symbol("load"), Symbol("camber")

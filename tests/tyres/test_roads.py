@@ -179,7 +179,7 @@ def test_roads_of_a_scene_by_name():
 
 
 def found_text(found):
-    from stiffmbs.describe.model_text import model_text
+    from stiffmbs.model.model_text import model_text
 
     return model_text(found)
 

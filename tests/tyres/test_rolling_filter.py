@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from stiffmbs import InputError
-from stiffmbs.describe.roads.rolling_filter import heights_of, rolled
-from stiffmbs.describe.table import Table
+from stiffmbs.elements.roads.rolling_filter import heights_of, rolled
+from stiffmbs.reading.table import Table
 from stiffmbs.roads import CosineBump, FlatRoad, FormulaRoad, Iso8608Road, Road, SineSweep, StepRoad, TableRoad
 from stiffmbs.spatial import VerticalTyre
 

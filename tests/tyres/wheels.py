@@ -7,6 +7,14 @@ from stiffmbs.compile.reactions import reactions
 from stiffmbs.compile.state import State
 from stiffmbs.spatial import Body, Model
 
+SAMPLE = {
+    "FNOMIN": 1.0, "UNLOADED_RADIUS": 1.0, "VERTICAL_STIFFNESS": 1.0, "PCX1": 1.6, "PDX1": 1.1, "PKX1": 2.0, "PCY1": 1.4,
+    "PDY1": 1.0, "PKY1": -1.3, "PKY2": 1.5, "RBX1": 1.3, "RCX1": 1.1, "RBY1": 0.7, "RCY1": 1.05, "QBZ1": 1.0, "QCZ1": 1.1,
+    "QDZ1": 0.1, "QSX3": 0.1, "QSY1": 0.01, "PHY1": 0.01, "PVX1": 0.02, "RVY1": 0.1, "RVY4": 1.0, "RVY5": 2.0, "RVY6": 1.0,
+    "SSZ2": 0.1, "QDZ6": 0.1, "QBZ10": 1.0,
+}  # fmt: skip
+"""A plausible tyre of unit size."""
+
 
 def wheel(tyre, radius, deflection=0.0, slip_angle=0.0, camber=0.0, speed=10.0, spin=0.0, z=0.0):
     """A model of one wheel that is pressed on a level road at a height by a deflection, turned and moved as asked."""

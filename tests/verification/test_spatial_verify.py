@@ -11,8 +11,8 @@ from stiffmbs.analyses import taken_again
 from stiffmbs.analyses.job import prepare
 from stiffmbs.analyses.other_numbers import with_numbers
 from stiffmbs.commands.main import main
-from stiffmbs.solve.dynamics import Dynamics
-from stiffmbs.solve.native.statuses import NO_BALANCE
+from stiffmbs.compile.machine.native.statuses import NO_BALANCE
+from stiffmbs.dynamics.dynamics import Dynamics
 
 from ..conftest import EXAMPLES
 

@@ -7,7 +7,7 @@ import stiffmbs
 from stiffmbs import Body, Model
 from stiffmbs.analyses.job import prepare
 from stiffmbs.analyses.run import solved
-from stiffmbs.describe.model import FORCES
+from stiffmbs.elements.planar_kinds import FORCES
 from stiffmbs.solve.trajectory import Outcome
 from stiffmbs.verification import verify as module
 from stiffmbs.verification.stepped_over import looked_along

@@ -12,10 +12,8 @@ from ..statements.arguments import Arguments
 from ..statements.changes import Changes, Key, alters, key_of
 from ..statements.fault import DatasetFault
 from ..statements.keywords import keyword
-from ..statements.text import Statement
-from .between_runs import refuse_between_runs
+from ..statements.text import Statement, Subsystem
 from .command_files import Read, all_commands, with_first_argument
-from .integrator import USUAL_ERROR, integrator_settings
 from .simulations import Simulation, read_simulation
 
 FOLLOWED = ("SIMULATE", "ACTIVATE", "DEACTIVATE", "INTEGRATOR", "LINEAR")
@@ -28,29 +26,27 @@ HARMLESS = (
 SETTINGS = ("EQUILIBRIUM", "KINEMATICS", "IC", "LSOLVER", "ENVIRONMENT")
 """Analysis settings of Adams, which do not apply to this package."""
 LINEAR = (
-    "EIGENSOL",
-    "STATEMAT",
-    "MKB",
-    "EXPORT",
-    "FILE",
-    "FORMAT",
-    "KEEP",
-    "NODAMPIN",
-    "DAMPING",
-    "ORIGINAL",
-    "COORDS",
-    "PSTATE",
-    "PINPUT",
-    "POUTPUT",
-    "RM",
-    "ENERGY",
-    "DISSIPATION",
-    "KINETIC",
-    "STRAIN",
-    "TABLE_PRECISION",
-)
+    "EIGENSOL", "STATEMAT", "MKB", "EXPORT", "FILE", "FORMAT", "KEEP", "NODAMPIN", "DAMPING", "ORIGINAL", "COORDS",
+    "PSTATE", "PINPUT", "POUTPUT", "RM", "ENERGY", "DISSIPATION", "KINETIC", "STRAIN", "TABLE_PRECISION",
+)  # fmt: skip
+METHODS = (
+    "GSTIFF", "WSTIFF", "CONSTANT_BDF", "HASTIFF", "HHT", "NEWMARK", "ABAM", "RKF45", "DSTIFF", "SI2", "SI1", "I3",
+)  # fmt: skip
+NUMBERS = ("ERROR", "HMAX", "HMIN", "HINIT", "KMAX", "MAXIT", "PATTERN", "ADAPTIVITY", "BETA", "GAMMA", "ALPHA")
+OTHERS = ("CORRECTOR", "INTERPOLATE", "FIXIT", "HRATIO", "SCALE", "THREADS")
+USUAL_ERROR = 1e-6
+"""Default relative tolerance of a run; a looser ERROR, such as Adams' default 1e-3, does not change it."""
 NAMED_FIRST = 2
 """Number of first lines that may answer the prompts of Adams/Solver for file names."""
+
+CHANGED = {
+    "PART": ("MASS", "IP"),
+    "POINT_MASS": ("MASS",),
+    "MARKER": ("QP", "REULER", "XP", "ZP", "USEXP"),
+    "JOINT": ("I", "J", "PITCH", "PD"),
+    "MOTION": ("FUNCTION", "DISPLACEMENT", "VELOCITY"),
+}
+"""Arguments that may be changed, by statement; of statements not listed here, all arguments may be changed."""
 
 
 @dataclass(frozen=True)
@@ -59,7 +55,6 @@ class Segment:
 
     Attributes
     ----------
-    simulation : Simulation
     changes : Changes
         All changes so far.
     settings : mapping of str to float
@@ -119,7 +114,7 @@ def read_commands(text: str, known: Collection[Key] = (), read: Read | None = No
             if simulation.kind != "INITIAL_CONDITIONS":
                 segments.append(Segment(simulation, changes, dict(settings)))
         elif name == "INTEGRATOR":
-            settings |= integrator_settings(command)
+            settings |= _integrator_settings(command)
             left_out.append(f"INTEGRATOR (line {command.line}) but for HMAX, and ERROR below {USUAL_ERROR:g}")
         elif name == "LINEAR":
             linear.append(_linear_note(command, bool(segments)))
@@ -127,7 +122,7 @@ def read_commands(text: str, known: Collection[Key] = (), read: Read | None = No
             left_out.append(f"{name} (line {command.line})")
         elif not (name in HARMLESS or (not begun and _is_name_of_file(command, name))):
             if segments:
-                refuse_between_runs(command, name or "")
+                _refuse_between_runs(command, name or "")
             changes = _followed(changes, command, name, known)
         begun = begun or name is not None
     notes = (f"{', '.join(left_out)} of the command file left out: analysis settings",) if left_out else ()
@@ -178,3 +173,41 @@ def _followed(changes: Changes, command: Statement, name: str | None, known: Col
         f"found a command that is not followed, expected SIMULATE, ACTIVATE, DEACTIVATE, INTEGRATOR, STOP, new values of "
         f"statements, or one of {', '.join((*HARMLESS, *SETTINGS))}, which are left out",
     )
+
+
+def _refuse_between_runs(command: Statement, name: str) -> None:
+    """Refuse a change that would need other initial conditions or redefine the state carried over."""
+    allowed = CHANGED.get(name)
+    if allowed is None:
+        return
+    words = [_word(piece) for piece in command.pieces]
+    for word in filter(None, words):
+        if not any(full.startswith(word) for full in allowed):
+            _, ident = key_of(command)
+            raise DatasetFault(
+                command.line,
+                f"{name}/{ident}",
+                f"found {word} changed between two simulations, expected one of {', '.join(allowed)}: others belong to the "
+                "start of the first",
+            )
+
+
+def _word(piece: Subsystem) -> str:
+    """Return the argument named by a piece of a command; '' for a further value of the argument before it."""
+    head = piece.text.partition("=")[0].strip().upper()
+    return head if "=" in piece.text or head.isidentifier() else ""
+
+
+def _integrator_settings(statement: Statement) -> dict[str, float]:
+    """Return run settings: ``rtol`` if ERROR is below the default, ``max_step`` from HMAX in the dataset's units.
+
+    The integration method and the formulation are ignored.
+    """
+    found = Arguments(statement, "INTEGRATOR", (*METHODS, *NUMBERS, *OTHERS))
+    error, longest = found.positive("ERROR"), found.positive("HMAX")
+    settings = {}
+    if error is not None and error < USUAL_ERROR:
+        settings["rtol"] = max(error, 1e-14)
+    if longest is not None:
+        settings["max_step"] = longest
+    return settings

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 from ..statements.arguments import Arguments
 from ..statements.fault import DatasetFault
-from ..statements.text import Statement, Subsystem
+from ..statements.text import Statement
 from ..statements.units import Units
+from .command_files import with_first_argument
 
 if TYPE_CHECKING:
     from ..statements.dataset import Dataset
@@ -18,8 +19,6 @@ if TYPE_CHECKING:
 STATICS = "STATICS"
 OVER_TIME = ("DYNAMICS", "KINEMATICS", "TRANSIENT")
 KINDS = ("DYNAMICS", "KINEMATICS", "TRANSIENT", STATICS, "INITIAL_CONDITIONS")
-SAME_INTERVAL = 1e-9
-"""Relative tolerance within which two output intervals are equal."""
 
 
 @dataclass(frozen=True)
@@ -30,7 +29,6 @@ class Simulation:
     ----------
     kind : str
         One of `KINDS`.
-    line : int
     end, duration : float or None
         End time, or length.
     steps, interval : float or None
@@ -100,25 +98,17 @@ def read_simulation(command: Statement) -> Simulation:
     DatasetFault
         If it cannot be read, or has no end.
     """
-    kind = (Subsystem(command.ident, command.line),) if command.ident else ()
-    found = Arguments(
-        replace(command, ident="", pieces=(*kind, *command.pieces)),
-        "SIMULATE",
-        (*KINDS, "END", "DURATION", "STEPS", "DTOUT"),
-    )
+    found = Arguments(with_first_argument(command), "SIMULATE", (*KINDS, "END", "DURATION", "STEPS", "DTOUT"))
     analysis = found.one_of(*KINDS) or "TRANSIENT"
     limit, sampled = found.one_of("END", "DURATION"), found.one_of("STEPS", "DTOUT")
-    numbers = {name: found.number(name) for name in ("END", "DURATION", "STEPS", "DTOUT")}
-    for name in ("DURATION", "STEPS", "DTOUT"):
-        if name in found and not (numbers[name] or 0.0) > 0:
-            raise found.fault(f"found {name} = {found.text(name)}, expected a number above zero", found.line(name))
+    times = found.number("END"), *(found.positive(name) for name in ("DURATION", "STEPS", "DTOUT"))
     if analysis in OVER_TIME and limit is None:
         raise found.fault("found neither END nor DURATION, expected one of them")
     if analysis not in (*OVER_TIME, STATICS) and (limit or sampled):
         raise found.fault(
             f"found {limit or sampled} with {analysis}, which is not followed over time, expected neither"
         )
-    return Simulation(analysis, command.line, numbers["END"], numbers["DURATION"], numbers["STEPS"], numbers["DTOUT"])
+    return Simulation(analysis, command.line, *times)
 
 
 def one_run(simulations: Sequence[Simulation], units: Units) -> dict[str, Any] | None:
@@ -147,7 +137,7 @@ def one_run(simulations: Sequence[Simulation], units: Units) -> dict[str, Any] |
 def _same(one: float | None, other: float | None) -> bool:
     if one is None or other is None:
         return one is other
-    return math.isclose(one, other, rel_tol=SAME_INTERVAL)
+    return math.isclose(one, other)
 
 
 def refuse_velocities(line: int, dataset: Dataset) -> None:

@@ -4,22 +4,21 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...describe.marker import MarkerReference
-from ...describe.spatial.joints.cylindrical import Cylindrical
-from ...describe.spatial.joints.fixed import Fixed
-from ...describe.spatial.joints.orientation import Orientation
-from ...describe.spatial.joints.parallel import Parallel
-from ...describe.spatial.joints.planar import Planar
-from ...describe.spatial.joints.prismatic import Prismatic
-from ...describe.spatial.joints.revolute import Revolute
-from ...describe.spatial.model import SpatialData
-from ...describe.spatial.orientation import matrix
+from ...elements.spatial.joints.cylindrical import Cylindrical
+from ...elements.spatial.joints.fixed import Fixed
+from ...elements.spatial.joints.orientation import Orientation
+from ...elements.spatial.joints.parallel import Parallel
+from ...elements.spatial.joints.planar import Planar
+from ...elements.spatial.joints.prismatic import Prismatic
+from ...elements.spatial.joints.revolute import Revolute
+from ...elements.spatial.orientation import matrix
+from ...model.spatial_model import SpatialData
+from ...reading.marker import MarkerReference
+from ..statements.geometry import ROUNDING
 
 ABOUT_Z = (Cylindrical, Parallel, Planar, Revolute)
 """Joints that allow rotation about their z axis only."""
 NO_ROTATION = (Fixed, Orientation, Prismatic)
-SAME = 1e-9
-"""Sine of the largest angle between two axes of a body that count as parallel."""
 
 
 def kept_parallel(scene: SpatialData, i: MarkerReference, j: MarkerReference) -> bool:
@@ -33,10 +32,10 @@ def kept_parallel(scene: SpatialData, i: MarkerReference, j: MarkerReference) ->
                 continue
             own, other = (joint.i, joint.j) if joint.i.body == body else (joint.j, joint.i)
             axis = _axes(scene, own).T @ known[body]
-            if other.body not in known and (isinstance(joint, NO_ROTATION) or np.hypot(axis[0], axis[1]) <= SAME):
+            if other.body not in known and (isinstance(joint, NO_ROTATION) or np.hypot(axis[0], axis[1]) <= ROUNDING):
                 known[other.body] = _axes(scene, other) @ axis
                 left.append(other.body)
-    return j.body in known and bool(np.linalg.norm(np.cross(known[j.body], _axes(scene, j)[:, 2])) <= SAME)
+    return j.body in known and bool(np.linalg.norm(np.cross(known[j.body], _axes(scene, j)[:, 2])) <= ROUNDING)
 
 
 def _axes(scene: SpatialData, marker: MarkerReference) -> np.ndarray:

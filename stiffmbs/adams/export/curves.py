@@ -6,21 +6,21 @@ Curve-to-curve contact is modelled with an auxiliary light body, two joints `tan
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Generator, Iterator
 from typing import Any
 
 import numpy as np
 
-from ...describe.joints.point_on_curve import Curve
-from ...describe.marker import GROUND, MarkerReference
-from ...describe.spatial.joints.parallel import Parallel
-from ...describe.spatial.joints.tangent_to_curve import TangentToCurve
-from ...describe.spatial.model import SpatialData
-from ...describe.spatial.orientation import matrix
-from ...describe.table import Table
+from ...elements.joints.point_on_curve import Curve
+from ...elements.spatial.joints.parallel import Parallel
+from ...elements.spatial.joints.tangent_to_curve import TangentToCurve
+from ...elements.spatial.orientation import matrix
+from ...model.spatial_model import SpatialData
+from ...reading.marker import GROUND, MarkerReference
+from ...reading.table import Table
 from .numbering import Numbering
-from .refusal import Refusal
-from .statements import numbers, statement
+from .statements import Refusal, numbers, statement
 
 
 def touching(model: SpatialData) -> dict[str, tuple[str, str, str]]:
@@ -42,17 +42,11 @@ def touching(model: SpatialData) -> dict[str, tuple[str, str, str]]:
 
 
 class Curves:
-    """Exporter of the curves of one scene.
-
-    Parameters
-    ----------
-    model : SpatialData
-    numbering : Numbering
-    """
+    """Exporter of the curves of one scene."""
 
     def __init__(self, model: SpatialData, numbering: Numbering) -> None:
         self._model, self._numbering = model, numbering
-        self._curves = self._constraints = 0
+        self._curves, self._constraints = itertools.count(1), itertools.count(1)
         self._touching = {names[0]: (body, names) for body, names in touching(model).items()}
         self._parts_of_a_pair = {name for _, names in self._touching.values() for name in names[1:]}
 
@@ -61,7 +55,7 @@ class Curves:
         number = yield from self._curve(joint)
         i, axes = self._numbering.marker(joint.i), self._numbering.marker(joint.j)
         floating = f"JFLOAT = {self._numbering.floating(joint.j.body)}"
-        yield statement("PTCV", self._next(), f"CURVE = {number}", f"I = {i}", floating, f"RM = {axes}")
+        yield statement("PTCV", next(self._constraints), f"CURVE = {number}", f"I = {i}", floating, f"RM = {axes}")
 
     def pair(self, name: str) -> Iterator[str]:
         """Yield the statements of two curves in contact at the first joint of their body; nothing at its other joints.
@@ -86,25 +80,21 @@ class Curves:
                 f"{side}CURVE = {number}", f"{side}FLOAT = {self._numbering.floating(joint.j.body)}",
                 f"{side}RM = {self._numbering.marker(joint.j)}", f"{side}DISPLACEMENT = {numbers(at)}",
             ]  # fmt: skip
-        yield statement("CVCV", self._next(), *sides)
+        yield statement("CVCV", next(self._constraints), *sides)
 
     def is_level(self, name: str) -> bool:
         """Return True if a joint belongs to a curve pair but is not its first."""
         return name in self._parts_of_a_pair
 
-    def _next(self) -> int:
-        self._constraints += 1
-        return self._constraints
-
     def _curve(self, joint: Curve[Any]) -> Generator[str, None, int]:
         """Yield the statements of a curve; return its number."""
         points = _points(joint)
-        self._curves += 1
+        number = next(self._curves)
         values = f"VALUES = {numbers(points.ravel())}"
-        yield statement("MATRIX", self._curves, "FULL = RORDER", f"M = {len(points)}", "N = 3", values)
+        yield statement("MATRIX", number, "FULL = RORDER", f"M = {len(points)}", "N = 3", values)
         sort = "OPEN" if joint.radius is None else "CLOSED"
-        yield statement("CURVE", self._curves, sort, "CURVE_POINTS", "ORDER = 4", f"MATRIX = {self._curves}")
-        return self._curves
+        yield statement("CURVE", number, sort, "CURVE_POINTS", "ORDER = 4", f"MATRIX = {number}")
+        return number
 
     def _seen(self, point: Any, marker: MarkerReference) -> np.ndarray:
         """Return a point of the ground in the axes of a marker at the start."""

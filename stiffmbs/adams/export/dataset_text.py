@@ -5,17 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
-from ...describe.scene import Scene
-from ...describe.spatial.model import SpatialData
 from ...errors import InputError
+from ...model.scene import Scene
+from ...model.spatial_model import SpatialData
 from .curves import touching
 from .forces import Forces
 from .formulas import Functions
 from .joints import Joints, reactions
 from .numbering import Numbering
 from .outputs import requests, state_names, states
-from .refusal import Refusal
-from .statements import number, statement
+from .statements import Refusal, number, statement
 
 UNITS = ("FORCE = NEWTON", "MASS = KILOGRAM", "LENGTH = METER", "TIME = SECOND")
 
@@ -39,7 +38,7 @@ def dataset_text(scene: SpatialData, source: str = "scene") -> str:
     joints, forces = Joints(scene, numbering, functions), Forces(scene, numbering, functions)
     refused: list[str] = []
     made = [
-        *_each("joints", scene.joints.items(), lambda name, joint: joints.statements(name, joint), refused),
+        *_each("joints", scene.joints.items(), lambda name, joint: joints.statements(joint, name), refused),
         *_each("forces", scene.forces.items(), lambda _, force: forces.statements(force), refused),
         *_each("states", states(scene), lambda _, write: write(functions), refused),
         *requests(scene, functions),

@@ -2,42 +2,36 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator, Mapping
 from functools import singledispatchmethod
 from typing import Any
 
 import numpy as np
 
-from ...describe.element import Force
-from ...describe.marker import GROUND, MarkerReference
-from ...describe.spatial.forces.applied import AppliedForce, AppliedTorque
-from ...describe.spatial.forces.beam import Beam
-from ...describe.spatial.forces.bushing import Bushing
-from ...describe.spatial.forces.field import FieldForce
-from ...describe.spatial.forces.shared import LineForce, SpringDamper
-from ...describe.spatial.forces.torsion_spring import TorsionSpring
-from ...describe.spatial.model import SpatialData
+from ...elements.element import Force
+from ...elements.spatial.forces.applied import AppliedForce, AppliedTorque
+from ...elements.spatial.forces.beam import Beam
+from ...elements.spatial.forces.bushing import Bushing
+from ...elements.spatial.forces.field import FieldForce
+from ...elements.spatial.forces.shared import LineForce, SpringDamper
+from ...elements.spatial.forces.torsion_spring import TorsionSpring
+from ...model.spatial_model import SpatialData
+from ...reading.marker import GROUND, MarkerReference
 from .alignment import kept_parallel
 from .formulas import Functions
 from .numbering import Numbering
-from .refusal import Refusal
-from .statements import number, numbers, statement
+from .statements import Refusal, number, numbers, statement
 
 
 class Forces:
-    """Exporter of the forces of one scene.
-
-    Parameters
-    ----------
-    scene : SpatialData
-    numbering : Numbering
-    functions : Functions
-    """
+    """Exporter of the forces of one scene."""
 
     def __init__(self, scene: SpatialData, numbering: Numbering, functions: Functions) -> None:
         self._scene, self._numbering, self._functions = scene, numbering, functions
-        self._used = 0
+        self._numbers = itertools.count(1)
 
+    @singledispatchmethod
     def statements(self, force: Force) -> Iterator[str]:
         """Yield the statements of a force.
 
@@ -46,20 +40,9 @@ class Forces:
         Refusal
             If Adams has no such force.
         """
-        yield from self._made(force)
-
-    def _next(self) -> int:
-        self._used += 1
-        return self._used
-
-    def _ends(self, force: Force) -> tuple[str, str]:
-        return f"I = {self._numbering.marker(force.i)}", f"J = {self._numbering.marker(force.j)}"  # type: ignore[attr-defined]
-
-    @singledispatchmethod
-    def _made(self, force: Force) -> Iterator[str]:
         raise Refusal(f"found a force of the type {force.kind}, expected one that Adams has")
 
-    @_made.register
+    @statements.register
     def _applied(self, force: AppliedForce | AppliedTorque) -> Iterator[str]:
         """Yield a VFORCE or VTORQUE along the axes of a marker; its floating marker takes the reaction."""
         of_force = isinstance(force, AppliedForce)
@@ -69,27 +52,29 @@ class Forces:
         names = ("FX", "FY", "FZ") if of_force else ("TX", "TY", "TZ")
         laws = [f"{name} = {self._functions.text(law)}\\" for name, law in zip(names, components, strict=True)]
         ends = f"I = {self._numbering.marker(force.i)}", f"JFLOAT = {other}", f"RM = {self._numbering.marker(axes)}"
-        yield statement("VFORCE" if of_force else "VTORQUE", self._next(), *ends, *laws)
+        yield statement("VFORCE" if of_force else "VTORQUE", next(self._numbers), *ends, *laws)
 
-    @_made.register
+    @statements.register
     def _line(self, force: LineForce) -> Iterator[str]:
         yield statement(
             "SFORCE",
-            self._next(),
+            next(self._numbers),
             "TRANSLATIONAL",
-            *self._ends(force),
+            *self._numbering.ends(force),
             f"FUNCTION = {self._functions.text(force.force)}",
         )
 
-    @_made.register
+    @statements.register
     def _spring(self, spring: SpringDamper) -> Iterator[str]:
         if spring.spring_law is not None or spring.damper_law is not None:
             yield self._by_laws(spring, spring.free_length, "TRANSLATIONAL")
             return
         given = {"K": spring.stiffness, "C": spring.damping, "LENGTH": spring.free_length, "FORCE": -spring.preload}
-        yield statement("SPRINGDAMPER", self._next(), "TRANSLATIONAL", *self._ends(spring), *_given(given))
+        yield statement(
+            "SPRINGDAMPER", next(self._numbers), "TRANSLATIONAL", *self._numbering.ends(spring), *_given(given)
+        )
 
-    @_made.register
+    @statements.register
     def _torsion(self, spring: TorsionSpring) -> Iterator[str]:
         if spring.spring_law is not None or spring.damper_law is not None:
             if not kept_parallel(self._scene, spring.i, spring.j):
@@ -100,7 +85,9 @@ class Forces:
             yield self._by_laws(spring, spring.free_angle, "ROTATIONAL")
             return
         given = {"KT": spring.stiffness, "CT": spring.damping, "ANGLE": spring.free_angle, "TORQUE": -spring.preload}
-        yield statement("SPRINGDAMPER", self._next(), "ROTATIONAL", *self._ends(spring), *_given(given))
+        yield statement(
+            "SPRINGDAMPER", next(self._numbers), "ROTATIONAL", *self._numbering.ends(spring), *_given(given)
+        )
 
     def _by_laws(self, spring: SpringDamper | TorsionSpring, free: float, sort: str) -> str:
         """Return an SFORCE of the deflection s and its rate v: -(k s + law(s) + c v + law(v) + preload)."""
@@ -111,9 +98,11 @@ class Forces:
         laws = ((spring.spring_law, s), (spring.damper_law, v))
         terms += [self._functions.text(law, x) for law, x in laws if law is not None]
         terms += [number(spring.preload)] if spring.preload else []
-        return statement("SFORCE", self._next(), sort, *self._ends(spring), f"FUNCTION = -({'+'.join(terms)})")
+        return statement(
+            "SFORCE", next(self._numbers), sort, *self._numbering.ends(spring), f"FUNCTION = -({'+'.join(terms)})"
+        )
 
-    @_made.register
+    @statements.register
     def _bushing(self, force: Bushing) -> Iterator[str]:
         laws = [name for name in type(force).model_fields if name.startswith("law_")]
         _refuse_laws(force, *laws)
@@ -124,15 +113,15 @@ class Forces:
             raise Refusal("found a bushing that couples its directions, expected a field")
         given = {"K": np.diag(K)[:3], "KT": np.diag(K)[3:], "C": np.diag(C)[:3], "CT": np.diag(C)[3:]}
         given |= {"FORCE": _filled(force.preload)[:3], "TORQUE": _filled(force.preload)[3:]}
-        yield statement("BUSHING", self._next(), *self._ends(force), *_lists(given))
+        yield statement("BUSHING", next(self._numbers), *self._numbering.ends(force), *_lists(given))
 
-    @_made.register
+    @statements.register
     def _field(self, force: FieldForce) -> Iterator[str]:
         given = {"KMATRIX": _filled(force.stiffness).T.ravel(), "CMATRIX": _filled(force.damping).T.ravel()}
         given |= {"LENGTH": _filled(force.free), "FORCE": _filled(force.preload)}
-        yield statement("FIELD", self._next(), *self._ends(force), *_lists(given))
+        yield statement("FIELD", next(self._numbers), *self._numbering.ends(force), *_lists(given))
 
-    @_made.register
+    @statements.register
     def _beam(self, force: Beam) -> Iterator[str]:
         given = {
             "LENGTH": force.length, "AREA": force.area, "IXX": force.torsion, "IYY": force.iyy, "IZZ": force.izz,
@@ -141,11 +130,10 @@ class Forces:
         damping = [f"CRATIO = {number(force.damping_ratio)}"] if force.damping_ratio else []
         if np.any(_filled(force.damping)):
             damping = [f"CMATRIX = {numbers(_filled(force.damping).T.ravel())}"]
-        yield statement("BEAM", self._next(), *self._ends(force), *_given(given), *damping)
+        yield statement("BEAM", next(self._numbers), *self._numbering.ends(force), *_given(given), *damping)
 
 
 def _filled(values: Any) -> np.ndarray:
-    """Return an array with missing entries set to zero."""
     found: np.ndarray = np.array(values, dtype=float)
     return np.nan_to_num(found, nan=0.0)
 

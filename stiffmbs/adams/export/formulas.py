@@ -5,37 +5,20 @@ from __future__ import annotations
 import ast
 from collections.abc import Callable, Mapping
 
-from ...describe.files.quoted import quoted
-from ...describe.formula.formula import Formula
-from ...describe.formula.nodes import is_measure, is_reaction, joint_of, measured_markers
-from ...describe.formula.text import UNIT
-from ...describe.marker import GROUND, MarkerReference
-from ...describe.requests.output import Output, Term, placeholder
-from ...describe.table import Table
+from ...elements.requests.output import Output, Term, placeholder
+from ...reading.files.quoted import quoted
+from ...reading.formula.formula import Formula
+from ...reading.formula.nodes import is_measure, is_reaction, joint_of, measured_markers
+from ...reading.formula.text import UNIT
+from ...reading.marker import GROUND, MarkerReference
+from ...reading.table import Table
 from ..functions.reactions import COMPONENTS
+from ..functions.translate import PLAIN
 from .numbering import Numbering
-from .refusal import Refusal
-from .statements import number
+from .statements import Refusal, number
 
-SAME = (
-    "sin",
-    "cos",
-    "tan",
-    "asin",
-    "acos",
-    "atan",
-    "atan2",
-    "sinh",
-    "cosh",
-    "tanh",
-    "exp",
-    "sqrt",
-    "abs",
-    "step",
-    "step5",
-    "log",
-)
-"""Functions with the same name in Adams, in capitals."""
+SAME = {name for name, of_scene in PLAIN.items() if name == of_scene.upper()} - {"MIN", "MAX"}
+"""Functions with the same name in Adams."""
 OPERATORS: dict[type[ast.AST], tuple[str, int]] = {
     ast.Add: ("+", 1), ast.Sub: ("-", 1), ast.Mult: ("*", 2), ast.Div: ("/", 2), ast.Pow: ("**", 4),
 }  # fmt: skip
@@ -157,7 +140,7 @@ class Functions:
         if name in law.tables:
             return self._curve(name, law.tables[name], self._written(arguments[0], law))
         written = [self._written(argument, law) for argument in arguments]
-        if name in SAME:
+        if name.upper() in SAME:
             return f"{name.upper()}({','.join(written)})"
         if name in WRITTEN:
             return WRITTEN[name](written)

@@ -2,27 +2,27 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator
 from functools import singledispatchmethod
 
-from ...describe.element import Joint
-from ...describe.joint_name import JointName
-from ...describe.joints.constraint_equation import ConstraintEquation
-from ...describe.joints.coupler import Coupler
-from ...describe.joints.drive import Drive
-from ...describe.joints.point_on_curve import Curve
-from ...describe.joints.velocity_equation import VelocityEquation
-from ...describe.spatial.joints.parallel import Parallel
-from ...describe.spatial.joints.shared import Distance
-from ...describe.spatial.joints.tangent_to_curve import TangentToCurve
-from ...describe.spatial.joints.thread import Thread
-from ...describe.spatial.model import SpatialData
+from ...elements.element import Joint
+from ...elements.joints.constraint_equation import ConstraintEquation
+from ...elements.joints.coupler import Coupler
+from ...elements.joints.drive import Drive
+from ...elements.joints.point_on_curve import Curve
+from ...elements.joints.velocity_equation import VelocityEquation
+from ...elements.spatial.joints.parallel import Parallel
+from ...elements.spatial.joints.shared import Distance
+from ...elements.spatial.joints.tangent_to_curve import TangentToCurve
+from ...elements.spatial.joints.thread import Thread
+from ...model.spatial_model import SpatialData
+from ...reading.joint_name import JointName
 from ..scene.joints import KINDS
 from .curves import Curves
 from .formulas import Functions
 from .numbering import Numbering
-from .refusal import Refusal
-from .statements import number, statement
+from .statements import Refusal, number, statement
 
 PRIMITIVES = ("INLINE", "INPLANE", "ORIENTATION", "PARALLEL_AXES", "PERPENDICULAR")
 TYPES = {kind: name for name, kind in KINDS.items() if name != "ATPOINT"}
@@ -44,22 +44,16 @@ def _plain(model: SpatialData) -> dict[str, Joint]:
 
 
 class Joints:
-    """Exporter of the joints of one scene.
-
-    Parameters
-    ----------
-    model : SpatialData
-    numbering : Numbering
-    functions : Functions
-    """
+    """Exporter of the joints of one scene."""
 
     def __init__(self, model: SpatialData, numbering: Numbering, functions: Functions) -> None:
         self._model, self._numbering, self._functions = model, numbering, functions
         self._numbers = {name: k for k, name in enumerate(_plain(model), 1)}
-        self._others = 0
+        self._other_numbers = itertools.count(1)
         self._curves = Curves(model, numbering)
 
-    def statements(self, name: str, joint: Joint) -> Iterator[str]:
+    @singledispatchmethod
+    def statements(self, joint: Joint, name: str) -> Iterator[str]:
         """Yield the statements of a joint.
 
         Raises
@@ -67,64 +61,59 @@ class Joints:
         Refusal
             If Adams has no such joint.
         """
-        yield from self._made(joint, name)
-
-    def _next(self) -> int:
-        self._others += 1
-        return self._others
-
-    def _ends(self, joint: Joint) -> tuple[str, str]:
-        return f"I = {self._numbering.marker(joint.i)}", f"J = {self._numbering.marker(joint.j)}"  # type: ignore[attr-defined]
-
-    @singledispatchmethod
-    def _made(self, joint: Joint, name: str) -> Iterator[str]:
         if joint.kind not in TYPES:
             raise Refusal(f"found a joint of the type {joint.kind}, expected one that Adams has")
         kind = TYPES[joint.kind]
-        yield statement("JPRIM" if kind in PRIMITIVES else "JOINT", self._numbers[name], kind, *self._ends(joint))
+        yield statement(
+            "JPRIM" if kind in PRIMITIVES else "JOINT", self._numbers[name], kind, *self._numbering.ends(joint)
+        )
 
-    @_made.register
+    @statements.register
     def _parallel(self, joint: Parallel, name: str) -> Iterator[str]:
         if not self._curves.is_level(name):
-            yield statement("JPRIM", self._numbers[name], "PARALLEL_AXES", *self._ends(joint))
+            yield statement("JPRIM", self._numbers[name], "PARALLEL_AXES", *self._numbering.ends(joint))
 
-    @_made.register
+    @statements.register
     def _on_curve(self, joint: Curve, name: str) -> Iterator[str]:
         yield from self._curves.pair(name) if isinstance(joint, TangentToCurve) else self._curves.point(joint)
 
-    @_made.register
+    @statements.register
     def _thread(self, joint: Thread, name: str) -> Iterator[str]:
         if name not in self._numbers:
             raise Refusal(f"found a joint of the type {joint.kind}, expected a thread and a cylindrical joint")
         if joint.offset is not None:
             raise Refusal("found an offset of a thread, expected none: it starts as drawn")
-        yield statement("JOINT", self._numbers[name], "SCREW", *self._ends(joint), f"PITCH = {number(joint.pitch)}")
+        yield statement(
+            "JOINT", self._numbers[name], "SCREW", *self._numbering.ends(joint), f"PITCH = {number(joint.pitch)}"
+        )
 
-    @_made.register
+    @statements.register
     def _coupler(self, joint: Coupler, name: str) -> Iterator[str]:
         tied = (joint.joint_1, joint.joint_2)
         if joint.offset is not None:
             first, second = (self._measured(one) for one in tied)
             zero = f"{first}-({number(joint.scale)})*{second}-({number(joint.offset)})"
-            yield statement("GCON", self._next(), f"FUNCTION = {zero}")
+            yield statement("GCON", next(self._other_numbers), f"FUNCTION = {zero}")
             return
         sorts = ":".join(TURNS[self._coordinate(one)][0] for one in tied)
         idents = ", ".join(str(self._number(one)) for one in tied)
         scales = f"1, {number(-joint.scale)}"
-        yield statement("COUPLER", self._next(), f"JOINTS = {idents}", f"TYPE = {sorts}", f"SCALES = {scales}")
+        yield statement(
+            "COUPLER", next(self._other_numbers), f"JOINTS = {idents}", f"TYPE = {sorts}", f"SCALES = {scales}"
+        )
 
-    @_made.register
+    @statements.register
     def _distance(self, joint: Distance, name: str) -> Iterator[str]:
         i, j = self._numbering.marker(joint.i), self._numbering.marker(joint.j)
-        yield statement("GCON", self._next(), f"I = {i}", f"FUNCTION = DM({i},{j})-{number(joint.length)}")
+        yield statement("GCON", next(self._other_numbers), f"I = {i}", f"FUNCTION = DM({i},{j})-{number(joint.length)}")
 
-    @_made.register
+    @statements.register
     def _equation(self, joint: ConstraintEquation | VelocityEquation, name: str) -> Iterator[str]:
         reported = [] if joint.i is None else [f"I = {self._numbering.marker(joint.i)}"]
         for formula in joint.zero:
-            yield statement("GCON", self._next(), *reported, f"FUNCTION = {self._functions.text(formula)}")
+            yield statement("GCON", next(self._other_numbers), *reported, f"FUNCTION = {self._functions.text(formula)}")
 
-    @_made.register
+    @statements.register
     def _drive(self, joint: Drive, name: str) -> Iterator[str]:
         if joint.joint is None:
             raise Refusal("found a drive of a formula, expected one of a joint")
@@ -137,7 +126,7 @@ class Joints:
         sort = TURNS[self._coordinate(joint.joint)]
         yield statement(
             "MOTION",
-            self._next(),
+            next(self._other_numbers),
             f"JOINT = {self._number(joint.joint)}",
             sort,
             order,

@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Collection, Iterator, Sequence
+from typing import Any
 
 import numpy as np
 
-from ...describe.marker import GROUND, MarkerReference
-from ...describe.spatial.body import Body
-from ...describe.spatial.model import SpatialData
-from ...describe.spatial.orientation import IDENTITY, matrix
-from ...describe.table import Table
-from .refusal import Refusal
-from .statements import number, numbers, statement
+from ...elements.spatial.body import Body
+from ...elements.spatial.orientation import IDENTITY, matrix
+from ...model.spatial_model import SpatialData
+from ...reading.marker import GROUND, MarkerReference
+from ...reading.table import Table
+from ..statements.outputs import FEWEST_POINTS
+from .statements import Refusal, number, numbers, statement
 
 CURVES = {"akima": "AKISPL", "lines": "INTERP", "not-a-knot": "CUBSPL"}
-GROUND_PART = 1
-FEWEST = 4
-"""Smallest number of points of a spline in Adams."""
 
 
 class Numbering:
@@ -34,11 +33,11 @@ class Numbering:
     def __init__(self, model: SpatialData, left_out: Collection[str] = ()) -> None:
         self._model, self._left_out = model, left_out
         parts = [GROUND, *(name for name in model.bodies if name not in left_out)]
-        self.parts = {name: k for k, name in enumerate(parts, GROUND_PART)}
+        self.parts = {name: k for k, name in enumerate(parts, 1)}
         self._markers: dict[tuple[str, tuple[float, ...], tuple[float, ...]], int] = {}
         self._floating: dict[str, int] = {}
         self._splines: dict[str, tuple[int, Table]] = {}
-        self._used = 0
+        self._numbers = itertools.count(1)
 
     def marker(self, reference: MarkerReference) -> int:
         """Return the number of a marker, named or inline."""
@@ -53,18 +52,18 @@ class Numbering:
         """Return the number of a marker with the given position and orientation on a body."""
         key = body, tuple(float(x) for x in point), tuple(float(x) for x in orientation)
         if key not in self._markers:
-            self._markers[key] = self._next()
+            self._markers[key] = next(self._numbers)
         return self._markers[key]
 
     def floating(self, body: str) -> int:
         """Return the number of the floating marker of a body, on which reactions act."""
         if body not in self._floating:
-            self._floating[body] = self._next()
+            self._floating[body] = next(self._numbers)
         return self._floating[body]
 
-    def _next(self) -> int:
-        self._used += 1
-        return self._used
+    def ends(self, element: Any) -> tuple[str, str]:
+        """Return the arguments I and J of a joint or a force."""
+        return f"I = {self.marker(element.i)}", f"J = {self.marker(element.j)}"
 
     def spline(self, name: str, table: Table) -> tuple[str, int]:
         """Return the function that evaluates a table, and the number of its spline.
@@ -77,9 +76,9 @@ class Numbering:
         way = table.ends if table.interpolation == "spline" else table.interpolation
         if way is None or way not in CURVES:
             raise Refusal(f"found the table {name} ({way or 'natural'}), expected akima, lines, or ends: not-a-knot")
-        if len(table.table) < FEWEST and way != "lines":
+        if len(table.table) < FEWEST_POINTS and way != "lines":
             raise Refusal(
-                f"found a curve through {len(table.table)} points, expected {FEWEST} or more, or straight lines"
+                f"found a curve through {len(table.table)} points, expected {FEWEST_POINTS} or more, or straight lines"
             )
         if name not in self._splines:
             self._splines[name] = len(self._splines) + 1, table
@@ -88,7 +87,7 @@ class Numbering:
     def statements(self) -> Iterator[str]:
         """Yield the statements of parts, markers and splines."""
         moving = any(any(body.velocity) or any(body.omega) for body in self._model.bodies.values())
-        yield statement("PART", GROUND_PART, "GROUND")
+        yield statement("PART", self.parts[GROUND], "GROUND")
         yield from self._of(GROUND)
         for name, body in self._model.bodies.items():
             if name in self._left_out:
@@ -129,12 +128,12 @@ def _part(body: Body, centre: int, moving: bool) -> Iterator[str]:
 
 
 def _enough(table: Table) -> tuple[tuple[float, float], ...]:
-    """Return the points of a piecewise linear table, with points inserted to reach `FEWEST`."""
+    """Return the points of a piecewise linear table, with points inserted to reach `FEWEST_POINTS`."""
     points = table.table
-    if len(points) >= FEWEST:
+    if len(points) >= FEWEST_POINTS:
         return points
     x, y = zip(*points, strict=True)
-    inner = np.setdiff1d(np.linspace(x[0], x[-1], FEWEST + 1)[1:-1], x)
+    inner = np.setdiff1d(np.linspace(x[0], x[-1], FEWEST_POINTS + 1)[1:-1], x)
     more = zip(inner.tolist(), np.interp(inner, x, y).tolist(), strict=True)
     return tuple(sorted([*points, *more]))
 

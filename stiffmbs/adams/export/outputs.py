@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from functools import partial
 
-from ...describe.formula.formula import Formula
-from ...describe.spatial.model import SpatialData
-from ...describe.states.state import StateValue
+from ...elements.states.state import StateValue
+from ...model.spatial_model import SpatialData
+from ...reading.formula.formula import Formula
 from .formulas import Functions
-from .refusal import Refusal
-from .statements import number, statement
+from .statements import Refusal, number, statement
 
 Write = Callable[[Functions], Iterator[str]]
 

@@ -11,6 +11,10 @@ _CUT = re.compile(r"(?<=[,*/+)])(?<!\dE\+)(?!\*)")
 """Positions of line breaks, neither within ** nor within an exponent."""
 
 
+class Refusal(Exception):
+    """Element or field without an equivalent in Adams/Solver; the message states both and the alternatives."""
+
+
 def number(value: float) -> str:
     """Return a number with all its digits and the exponent sign E of Adams."""
     value = float(value)

@@ -11,8 +11,8 @@ import math
 import re
 from collections.abc import Iterator
 
-from ...describe.files.quoted import quoted
-from ...describe.formula.text import BINARY, UNARY
+from ...reading.files.quoted import quoted
+from ...reading.formula.text import BINARY, UNARY
 from .trees import number
 
 _TOKEN = re.compile(

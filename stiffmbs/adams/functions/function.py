@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import ast
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
+from ...reading.files.quoted import quoted
 from ..statements.arguments import Arguments
 from ..statements.fault import DatasetFault
-from .expression import ExpressionError, parse
+from .expression import OMITTED, ExpressionError, parse
 
 
 @dataclass(frozen=True)
@@ -20,7 +22,6 @@ class Function:
         As written, on one line.
     tree : ast.expr
         Result of `expression.parse`.
-    line : int
     label : str
         The statement, such as ``SFORCE/3``.
     """
@@ -29,6 +30,23 @@ class Function:
     tree: ast.expr = field(compare=False)
     line: int
     label: str
+
+    def identifier(self, arguments: Sequence[ast.expr], at: int) -> int:
+        """Return an argument of a call that is the identifier of a statement; 0 if it is omitted."""
+        match arguments[at] if at < len(arguments) else None:
+            case ast.Constant(int() as value):
+                return value
+            case ast.Name(name) if name == OMITTED:
+                return 0
+            case None:
+                found, expected = f"{len(arguments)} numbers of statements", "more"
+            case node:
+                found, expected = f"'{ast.unparse(node)}'", "the number of a statement"
+        raise self.fault(f"found {found} in '{quoted(self.text)}', expected {expected}")
+
+    def identifiers(self, arguments: Sequence[ast.expr], count: int | None = None) -> list[int]:
+        """Return some or all arguments of a call as identifiers of statements."""
+        return [self.identifier(arguments, k) for k in range(len(arguments) if count is None else count)]
 
     def fault(self, reason: str) -> DatasetFault:
         """Return the error for a fault in this expression."""

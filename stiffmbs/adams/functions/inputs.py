@@ -55,7 +55,7 @@ def variable_of_plant(dataset: Dataset, name: str, ident: int, at: int, function
 def evaluated_name(mechanism: Mechanism, ident: int, function: Function) -> str:
     """Return the name of SENVAL, the last value of a sensor: an input, zero until an active sensor sets it."""
     dataset = mechanism.dataset
-    sensor = dataset.statements.get("SENSOR", {}).get(ident)
+    sensor = dataset.sensors.get(ident)
     if ("SENSOR", ident) not in dataset.inactive and (sensor is None or sensor.evaluated is None):
         raise function.fault(f"found SENVAL({ident}), expected the number of a SENSOR with EVALUATE")
     name = f"SENVAL_{ident}"

@@ -3,24 +3,64 @@
 from __future__ import annotations
 
 import ast
+import signal
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
 
-from ...describe.files.quoted import quoted
-from ...describe.formula.text import FormulaError, parse
+from ...reading.files.quoted import quoted
+from ...reading.formula.text import FormulaError, parse
 from ..statements.constraints import TRANSLATIONAL, Motion
-from .in_place import InPlace
-from .time_limit import time_limit
+from ..statements.geometry import ROUNDING
+from .function import Function
 from .translate import Translation
 from .trees import number, times, total
 
 ORDERS = ("position", "velocity")
-SAME_START = 1e-9
-"""Tolerance on the initial displacement relative to the initial pose, m or rad."""
 
 
+MOST_PARTS = 10_000
+"""Largest number of syntax-tree nodes in the value of a VARIABLE after substitution."""
 PATIENCE = 10.0
 """Time limit of symbolic integration, s."""
 LARGEST_EXPONENT = 32
 """Largest exponent in an integrand: powers of sums are expanded."""
+
+
+@contextmanager
+def time_limit(seconds: float) -> Iterator[None]:
+    """Raise `TimeoutError` after a time; no effect outside the main thread or without alarm signals."""
+    if not hasattr(signal, "setitimer") or threading.current_thread() is not threading.main_thread():
+        yield
+        return
+
+    def too_long(number: int, frame: Any) -> None:
+        raise TimeoutError
+
+    before = signal.signal(signal.SIGALRM, too_long)
+    signal.setitimer(signal.ITIMER_REAL, seconds)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, before)
+
+
+class _InPlace(Translation):
+    """Translator of one dataset's expressions that substitutes each VARIABLE by its expression."""
+
+    def variable(self, ident: int, function: Function) -> ast.expr:
+        """Return the expression of a VARIABLE; its name if it depends on itself."""
+        variable = self.mechanism.dataset.variables.get(ident)
+        if variable is None or ident in self.implicit_variables:
+            return super().variable(ident, function)
+        value = self.translated(variable.function)
+        if sum(1 for _ in ast.walk(value)) > MOST_PARTS:
+            raise function.fault(
+                f"found VARVAL({ident}), which has more than {MOST_PARTS} parts with the variables in it, expected fewer"
+            )
+        return value
 
 
 def _check_exponents(tree: ast.expr) -> None:
@@ -68,7 +108,7 @@ class Law:
     """
 
     def __init__(self, motion: Motion, translation: Translation, sort: str) -> None:
-        self._motion, self._translation = motion, InPlace(translation.mechanism)
+        self._motion, self._translation = motion, _InPlace(translation.mechanism)
         units = translation.units
         self._length = units.length if sort == TRANSLATIONAL else 1.0
         self._unit = self._length / units.time**motion.order
@@ -88,7 +128,7 @@ class Law:
             The displacement at the initial pose, m or rad.
         """
         order = self._motion.order
-        if order == 0 or (order == 1 and (self._start is None or abs(self._start - initial) <= SAME_START)):
+        if order == 0 or (order == 1 and (self._start is None or abs(self._start - initial) <= ROUNDING)):
             return {ORDERS[order]: self._formula()}
         start = initial if self._start is None else self._start
         terms = [number(start)] if start else []

@@ -6,11 +6,10 @@ import ast
 from collections.abc import Callable
 from typing import Any
 
-from ...describe.files.quoted import quoted
-from ...describe.spatial.number_format import plain
+from ...elements.spatial.number_format import plain
+from ...reading.files.quoted import quoted
 from ..scene.mechanism import Mechanism
 from .function import Function
-from .identifier import identifier
 
 CURVES: dict[str, dict[str, Any]] = {
     "AKISPL": {"akima": True},
@@ -36,9 +35,9 @@ def spline_value(
     """
     x, _, *rest = [*arguments, *[ast.Constant(0)] * 5][: max(4, len(arguments))]
     if name == "INTERP":
-        name = {1: "LINE", 3: "CUBSPL"}.get(identifier(rest, 0, function), "")
+        name = {1: "LINE", 3: "CUBSPL"}.get(function.identifier(rest, 0), "")
         rest = rest[1:]
-    ident, order = identifier(rest, 0, function), identifier(rest, 1, function) if len(rest) > 1 else 0
+    ident, order = function.identifier(rest, 0), function.identifier(rest, 1) if len(rest) > 1 else 0
     spline = mechanism.dataset.splines.get(ident)
     if spline is None:
         raise function.fault(f"found the spline {ident} in '{quoted(function.text)}', expected the number of a SPLINE")

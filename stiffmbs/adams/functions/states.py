@@ -6,18 +6,17 @@ import ast
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from ...describe.spatial.number_format import plain, vector
-from ..statements.outputs import Array, Variable
-from ..statements.systems import Differential, LinearSystem, Matrix, TransferFunction
+from ...elements.spatial.number_format import plain, vector
+from ..statements.outputs import Variable
+from ..statements.systems import Differential, LinearSystem, TransferFunction
+from .expression import parse
 from .function import Function
 from .trees import name_of, times
 
 if TYPE_CHECKING:
-    from ..statements.constraints import Numbered
+    from ..statements.arguments import Numbered
     from ..statements.dataset import Dataset
     from .translate import Translation
-
-INPUT, STATE, OUTPUT = "U", "X", "Y"
 
 
 def states(translation: Translation) -> dict[str, Any]:
@@ -34,8 +33,8 @@ def states(translation: Translation) -> dict[str, Any]:
             match one:
                 case Variable() if ident in translation.implicit_variables:
                     value = translation.translated(one.function)
-                    zero = ast.BinOp(value, ast.Sub(), name_of(value_name(one)))
-                    found[value_name(one)] = {"zero": ast.unparse(zero), "start": plain(one.start)}
+                    zero = ast.BinOp(value, ast.Sub(), name_of(one.state))
+                    found[one.state] = {"zero": ast.unparse(zero), "start": plain(one.start)}
                 case Differential():
                     found |= _differential(one, translation)
                 case LinearSystem():
@@ -53,7 +52,7 @@ def _differential(one: Differential, translation: Translation) -> dict[str, Any]
     per_second = 1 / translation.units.time
     if not one.implicit:
         return {one.name: {"rate": translation.formula(one.function, per_second), "start": plain(one.start)}}
-    rate = rate_name(one)
+    rate = one.rate
     used = {node.id for node in ast.walk(translation.translated(one.function)) if isinstance(node, ast.Name)}
     if rate not in used:
         return {one.name: {"zero": translation.formula(one.function), "start": plain(one.start)}}
@@ -61,16 +60,6 @@ def _differential(one: Differential, translation: Translation) -> dict[str, Any]
         one.name: {"rate": ast.unparse(times(name_of(rate), per_second)), "start": plain(one.start)},
         rate: {"zero": translation.formula(one.function), "start": plain(one.start_of_rate)},
     }
-
-
-def rate_name(one: Differential) -> str:
-    """Return the name of the rate of an implicit equation."""
-    return f"{one.name}_rate"
-
-
-def value_name(one: Variable) -> str:
-    """Return the state name of a variable that depends on itself."""
-    return f"{one.name}_value"
 
 
 def depending_on_themselves(variables: Mapping[int, Variable]) -> frozenset[int]:
@@ -96,7 +85,7 @@ def _variables_in(function: Function) -> set[int]:
 
 def differential(dataset: Dataset, ident: int, function: Function) -> Differential:
     """Return the equation that DIF and DIF1 refer to."""
-    found: Differential | None = dataset.statements.get("DIFF", {}).get(ident)
+    found = dataset.differentials.get(ident)
     if found is None:
         raise function.fault(f"found DIF({ident}), expected the number of a DIFF")
     return found
@@ -122,17 +111,13 @@ def value_of_system(dataset: Dataset, array: int, at: int, function: Function) -
 
 
 def _inputs(user: Numbered, ident: int | None, translation: Translation) -> list[str]:
-    """Return the formulas of an input ARRAY of VARIABLEs."""
     if ident is None:
         return []
-    array: Array | None = translation.mechanism.dataset.arrays.get(ident)
+    array = translation.mechanism.dataset.arrays.get(ident)
     if array is None or not array.variables:
         raise user.fault(f"found U = {ident}, expected the number of an ARRAY of VARIABLES")
-    return [translation.formula(Function(f"VARVAL({k})", _varval(k), user.line, user.label)) for k in array.variables]
-
-
-def _varval(ident: int) -> ast.expr:
-    return ast.Call(ast.Name("VARVAL"), [ast.Constant(ident)], [])
+    laws = ((f"VARVAL({k})", parse(f"VARVAL({k})")) for k in array.variables)
+    return [translation.formula(Function(*law, user.line, user.label)) for law in laws]
 
 
 def _transfer(one: TransferFunction, translation: Translation) -> dict[str, Any]:
@@ -176,7 +161,7 @@ def _linear(one: LinearSystem, translation: Translation) -> dict[str, Any]:
 
 
 def _rows(one: LinearSystem, name: str, ident: int | None, translation: Translation) -> tuple[tuple[float, ...], ...]:
-    matrix: Matrix | None = translation.mechanism.dataset.statements.get("MATRIX", {}).get(ident or 0)
+    matrix = translation.mechanism.dataset.matrices.get(ident or 0)
     if matrix is None:
         raise one.fault(f"found {name} = {ident}, expected the number of a MATRIX")
     return matrix.rows

@@ -11,18 +11,18 @@ import math
 from collections.abc import Callable
 from functools import cached_property
 
-from ...describe.files.quoted import quoted
-from ...describe.units.quantity import CONSTANTS
+from ...reading.files.quoted import quoted
+from ...reading.units.quantity import CONSTANTS
 from ..scene.mechanism import Mechanism
+from ..statements.arguments import Numbered
 from .adams_functions import ADAMS_FUNCTIONS
 from .angles import ANGLES_OF_AXES, angle, included_angle, on_ground
-from .expression import IF, OMITTED
+from .expression import IF, OMITTED, parse
 from .function import Function
-from .identifier import identifier
 from .inputs import PLANTS, evaluated_name, variable_of_plant
 from .reactions import BY_ITS_PLACE, REACTIONS, component_of, reaction
 from .splines import CURVES, spline_value
-from .states import depending_on_themselves, differential, rate_name, value_name, value_of_system
+from .states import depending_on_themselves, differential, value_of_system
 from .trees import measured, name_of, number, over, power, product, times, total
 
 POSITIONS, ANGLES = ("DX", "DY", "DZ", "DM"), ("AX", "AY", "AZ")
@@ -46,12 +46,7 @@ NAMES = {"DTOR": math.pi / 180, "RTOD": 180 / math.pi}
 
 
 class Translation:
-    """Translator of the expressions of one dataset.
-
-    Parameters
-    ----------
-    mechanism : Mechanism
-    """
+    """Translator of the expressions of one dataset."""
 
     def __init__(self, mechanism: Mechanism) -> None:
         self.mechanism = mechanism
@@ -72,6 +67,10 @@ class Translation:
         """
         return ast.unparse(times(self.translated(function), unit))
 
+    def law(self, text: str, user: Numbered, *, arm: int = 0) -> str:
+        """Return a force, or with an arm of 1 a torque, that is written as an Adams function, as a formula."""
+        return self.formula(Function(text, parse(text), user.line, user.label), self.units.of(force=1, length=arm))
+
     def translated(self, function: Function) -> ast.expr:
         """Return an expression as the syntax tree of a formula."""
 
@@ -84,7 +83,7 @@ class Translation:
                 case ast.Name(name):
                     return self.name(name, function)
                 case ast.Call(ast.Name("VARVAL"), arguments):
-                    return self.variable(identifier(arguments, 0, function), function)
+                    return self.variable(function.identifier(arguments, 0), function)
                 case ast.Call(ast.Name(name), arguments):
                     return self.call(name, arguments, function, translate)
             return node
@@ -111,7 +110,7 @@ class Translation:
         if variable is None:
             raise function.fault(f"found VARVAL({ident}), expected the number of a VARIABLE")
         if ident in self.implicit_variables:
-            return name_of(value_name(variable))
+            return name_of(variable.state)
         if variable.name not in self.mechanism.variables and variable.name not in self.mechanism.inputs:
             self.mechanism.variables[variable.name] = self.formula(variable.function)
         return name_of(variable.name)
@@ -134,17 +133,17 @@ class Translation:
         if name in (*CURVES, "INTERP"):
             return spline_value(name, arguments, function, translate, self.mechanism)
         if name == "SENVAL":
-            return name_of(evaluated_name(self.mechanism, identifier(arguments, 0, function), function))
+            return name_of(evaluated_name(self.mechanism, function.identifier(arguments, 0), function))
         if name in PLANTS:
-            plant, at = (identifier(arguments, k, function) for k in range(2))
+            plant, at = function.identifiers(arguments, 2)
             return self.variable(variable_of_plant(self.mechanism.dataset, name, plant, at, function), function)
         if name == "ARYVAL":
             return self.array_value(arguments, function)
         if name == "DIF":
-            return name_of(differential(self.mechanism.dataset, identifier(arguments, 0, function), function).name)
+            return name_of(differential(self.mechanism.dataset, function.identifier(arguments, 0), function).name)
         if name == "DIF1":
-            equation = differential(self.mechanism.dataset, identifier(arguments, 0, function), function)
-            return name_of(rate_name(equation)) if equation.implicit else translate(equation.function.tree)
+            equation = differential(self.mechanism.dataset, function.identifier(arguments, 0), function)
+            return name_of(equation.rate) if equation.implicit else translate(equation.function.tree)
         if name in ANGLES_OF_AXES:
             return self._angle(name, arguments, function)
         if name in REACTIONS:
@@ -155,7 +154,7 @@ class Translation:
                 "REQUEST, or JOINT or JPRIM"
             )
         if name == "INCANG":
-            ends = [self.reference(identifier(arguments, k, function), function) for k in range(3)]
+            ends = [self.reference(function.identifier(arguments, k), function) for k in range(3)]
             return included_angle(*ends)
         raise function.fault(f"found the function {name} in '{quoted(function.text)}', expected one that is read here")
 
@@ -188,7 +187,7 @@ class Translation:
 
     def _markers(self, name: str, arguments: list[ast.expr], function: Function) -> tuple[str, str, str, str]:
         """Return the references of the markers i, j, axes and reference frame; '' means ground."""
-        idents = [identifier(arguments, k, function) for k in range(len(arguments))]
+        idents = function.identifiers(arguments)
         most = {"DM": 2, "AX": 2, "AY": 2, "AZ": 2, "VM": 3, "VR": 3, "WM": 3, "VX": 4, "VY": 4, "VZ": 4}.get(name, 3)
         if not 1 <= len(idents) <= most or not idents[0]:
             raise function.fault(
@@ -213,7 +212,7 @@ class Translation:
         return self.mechanism.placed(marker).reference
 
     def _angle(self, name: str, arguments: list[ast.expr], function: Function) -> ast.expr:
-        idents = [identifier(arguments, k, function) for k in range(len(arguments))]
+        idents = function.identifiers(arguments)
         if not 1 <= len(idents) <= 2 or not idents[0]:
             raise function.fault(f"found {len(idents)} markers of {name}, expected 1 or 2")
         places = [self.mechanism.place(ident, function) if ident else on_ground() for ident in (*idents, 0)[:2]]
@@ -221,7 +220,7 @@ class Translation:
 
     def _reaction(self, name: str, arguments: list[ast.expr], function: Function) -> ast.expr:
         """Translate JOINT(id, jflag, comp, rm) of a joint between two markers."""
-        ident, on_j, component, axes = (identifier(arguments, k, function) for k in range(4))
+        ident, on_j, component, axes = function.identifiers(arguments, 4)
         if (name, ident) in self.mechanism.dataset.inactive:
             return number(0.0)
         joint = self.mechanism.dataset.statements.get(name, {}).get(ident)
@@ -236,7 +235,7 @@ class Translation:
 
     def array_value(self, arguments: list[ast.expr], function: Function) -> ast.expr:
         """Return a number of an ARRAY."""
-        ident, at = (identifier(arguments, k, function) for k in range(2))
+        ident, at = function.identifiers(arguments, 2)
         of_system = value_of_system(self.mechanism.dataset, ident, at, function)
         if of_system is not None:
             return of_system

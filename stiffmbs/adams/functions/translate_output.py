@@ -8,13 +8,13 @@ from collections.abc import Callable, Iterator
 from ..scene.contacts import swapped
 from ..scene.forces import TORQUE
 from ..scene.joints import markers_of, rod
-from ..statements.constraints import GeneralConstraint, Numbered
+from ..statements.arguments import Numbered
+from ..statements.constraints import GeneralConstraint
 from ..statements.contact import Contact
 from ..statements.curves import CurveOnCurve, PointOnCurve
 from ..statements.elastic import Elastic
 from ..statements.forces import SingleForce, VectorForce
 from .function import Function
-from .identifier import identifier
 from .reactions import COMPONENTS, component_of
 from .translate import Translation
 from .trees import call, measured, name_of, number, over, power, times, total
@@ -56,14 +56,14 @@ class OutputTranslation(Translation):
         if name in ELEMENTS:
             return self._of_element(name, arguments, function)
         if name in COMPONENTS:
-            i, j, axes = (*(identifier(arguments, k, function) for k in range(len(arguments))), 0, 0)[:3]
+            i, j, axes = (*function.identifiers(arguments), 0, 0)[:3]
             return over(self.between(name, i, j, axes, function), self._force_unit(name))
         if name in ROUNDING_FUNCTIONS:
             return call(ROUNDING_FUNCTIONS[name], *map(translate, arguments))
         return super().call(name, arguments, function, translate)
 
     def _measure(self, name: str, arguments: list[ast.expr], function: Function) -> ast.expr:
-        found = [identifier(arguments, k, function) for k in range(len(arguments))]
+        found = function.identifiers(arguments)
         if name in ACCELERATIONS and len(found) > 3 and found[3]:
             raise function.fault(
                 f"found the acceleration {name} as seen from a marker, expected it as seen from ground"
@@ -76,7 +76,7 @@ class OutputTranslation(Translation):
 
     def _orientation(self, arguments: list[ast.expr], function: Function) -> ast.expr:
         sort, component, i, j = (
-            *(identifier(arguments, k, function) for k in range(len(arguments))), 0, 0, 0, 0,
+            *function.identifiers(arguments), 0, 0, 0, 0,
         )[:4]  # fmt: skip
         if sort != EULER_PARAMETERS or not 1 <= component <= 4 or not i:
             raise function.fault(
@@ -87,7 +87,7 @@ class OutputTranslation(Translation):
 
     def _of_element(self, name: str, arguments: list[ast.expr], function: Function) -> ast.expr:
         """Translate JOINT(id, jflag, comp, rm) and similar functions."""
-        ident, on_j, component, axes = (identifier(arguments, k, function) for k in range(4))
+        ident, on_j, component, axes = function.identifiers(arguments, 4)
         found = self.mechanism.dataset.statements.get(ELEMENTS[name], {}).get(ident)
         if (ELEMENTS[name], ident) in self.mechanism.dataset.inactive:
             return number(0.0)

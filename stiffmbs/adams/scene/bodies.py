@@ -7,23 +7,17 @@ from typing import Any
 
 import numpy as np
 
-from ...describe.spatial.massless import MASSLESS, filled, lacks_inertia, massless_moment
-from ...describe.spatial.number_format import plain, quaternion, vector
+from ...elements.spatial.massless import MASSLESS, breaks_triangle, filled, lacks_inertia, massless_moment
+from ...elements.spatial.number_format import plain, quaternion, vector
 from ..statements.bodies import Marker, Part
-from ..statements.fault import DatasetFault
 from ..statements.geometry import IDENTITY, Frame
 from .initial_conditions import in_ground
 from .mechanism import Mechanism
 
-EXCESS_IN_SILENCE = 1e-10
-"""Relative excess of a principal moment over the sum of the other two that is not reported."""
-POINT_INERTIA = 1.0
-"""Moment of inertia over mass of a point mass, m^2; its orientation is held, so the value has no effect."""
-
 
 def bodies(mechanism: Mechanism) -> dict[str, Any]:
     """Return the bodies of the scene by name, with their markers."""
-    return {mechanism.body_name(part): _body(mechanism, part) for part in mechanism.moving}
+    return {part.name: _body(mechanism, part) for part in mechanism.moving}
 
 
 def ground_markers(mechanism: Mechanism) -> dict[str, Any]:
@@ -71,14 +65,14 @@ def _pose(point: str, frame: Frame) -> dict[str, Any]:
 def _markers(mechanism: Mechanism, part: Part) -> list[tuple[str, dict[str, Any]]]:
     own: list[Marker] = [m for m in mechanism.dataset.markers.values() if mechanism.part_of(m) is part]
     places = [mechanism.placed(marker) for marker in own if not marker.floating]
-    places += [place for place in mechanism.further.values() if place.body == mechanism.body_name(part)]
+    places += [place for place in mechanism.further.values() if place.body == part.name]
     return [(place.name, _pose("point", place.on_body)) for place in places]
 
 
 def _inertia(mechanism: Mechanism, part: Part) -> list[Any]:
     """Return the inertia about the centre of mass in the axes of its marker; small moments if the part has none."""
     if part.point:
-        return vector([POINT_INERTIA * part.mass] * 3)
+        return vector([part.mass] * 3)  # its orientation is held: the value has no effect
     tensor = _tensor(mechanism, part)
     if lacks_inertia(tensor):
         places = (mechanism.placed(marker).initial.point for marker in mechanism.dataset.markers.values())
@@ -120,31 +114,23 @@ def _tensor(mechanism: Mechanism, part: Part) -> np.ndarray:
         with np.errstate(all="ignore"):
             tensor = marker.axes @ tensor @ marker.axes.T - part.mass * (d @ d * IDENTITY - np.outer(d, d))
     if not np.all(np.isfinite(tensor)):
-        raise DatasetFault(
-            part.line, part.label, "found moments of inertia about CM above 1e308 kg m^2, expected finite values"
-        )
+        raise part.fault("found moments of inertia about CM above 1e308 kg m^2, expected finite values")
     return tensor
 
 
 def _any_moments(mechanism: Mechanism, part: Part) -> dict[str, Any]:
-    """Return the flag `any_moments` if the moments break the triangle inequality."""
     return {"any_moments": True} if _breaks_triangle(mechanism, part) else {}
 
 
 def _breaks_triangle(mechanism: Mechanism, part: Part) -> bool:
     """Return True if a principal moment exceeds the sum of the other two beyond rounding."""
     tensor = _tensor(mechanism, part)
-    if part.point or lacks_inertia(tensor):
-        return False
-    small, middle, large = np.linalg.eigvalsh(tensor)
-    return bool(large > (small + middle) * (1 + EXCESS_IN_SILENCE))
+    return not (part.point or lacks_inertia(tensor)) and breaks_triangle(tensor)
 
 
 def _check(part: Part, tensor: np.ndarray) -> None:
     small, middle, large = np.linalg.eigvalsh(tensor)
     if small <= 0:
-        raise DatasetFault(
-            part.line, part.label,
-            f"found principal moments of inertia {small:.4g}, {middle:.4g} and {large:.4g} kg m^2, expected three above "
-            "zero",
-        )  # fmt: skip
+        raise part.fault(
+            f"found principal moments of inertia {small:.4g}, {middle:.4g} and {large:.4g} kg m^2, expected three above zero"
+        )

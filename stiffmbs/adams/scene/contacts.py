@@ -8,17 +8,13 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..functions.expression import parse
-from ..functions.function import Function
 from ..functions.translate import Translation
 from ..statements.contact import PLANE, SPHERE, Contact, Friction, Shape, read_shape
 from ..statements.fault import of_each
+from .forces import TORQUE
+from .friction import SLOW
 from .mechanism import Mechanism
 from .solids import between_solids, is_swapped
-
-TORQUE = "_torque"
-SLOW = 1e-6
-"""Fraction of the stiction velocity that regularises the sliding direction at rest."""
 
 
 def contacts(mechanism: Mechanism, translation: Translation) -> dict[str, Any]:
@@ -66,7 +62,7 @@ def _of_spheres(
     i, j = (mechanism.place(shape.marker, contact, "CM").reference for shape in (one, other))
     ends = f"({one.marker}, {other.marker})"
     law = _impact(contact, f"DM{ends} - {one.sizes[0] + other.sizes[0]!r}", f"VR{ends}")
-    force = _formula(contact, law, translation, 0)
+    force = translation.law(law, contact)
     return {contact.name: {"type": "line_force", "i": i, "j": j, "force": force}}
 
 
@@ -79,13 +75,13 @@ def _on_plane(
     normal = _impact(contact, f"DZ({i},{j},{j}) - {r!r}", f"VZ({i},{j},{j},{j})")
     ends: dict[str, Any] = {"i": center.reference, "j": other.body, "frame": other.reference}
     if contact.friction is None:
-        force = [0, 0, _formula(contact, normal, translation, 0)]
+        force = [0, 0, translation.law(normal, contact)]
         return {contact.name: {"type": "force", **ends, "force": force}}
     x = f"(VX({i},{j},{j},{j}) - {r!r}*(WY({i},{j},{j})))"
     y = f"(VY({i},{j},{j},{j}) + {r!r}*(WX({i},{j},{j})))"
     drag = _drag(contact.friction, x, y, normal)
-    force = [_formula(contact, law, translation, 0) for law in (f"{drag}*{x}", f"{drag}*{y}", normal)]
-    torque = [_formula(contact, law, translation, 1) for law in (f"{r!r}*{drag}*{y}", f"-{r!r}*{drag}*{x}")]
+    force = [translation.law(law, contact) for law in (f"{drag}*{x}", f"{drag}*{y}", normal)]
+    torque = [translation.law(law, contact, arm=1) for law in (f"{r!r}*{drag}*{y}", f"-{r!r}*{drag}*{x}")]
     return {
         contact.name: {"type": "force", **ends, "force": force},
         contact.name + TORQUE: {"type": "torque", **ends, "torque": [*torque, 0]},
@@ -101,8 +97,3 @@ def _drag(friction: Friction, x: str, y: str, normal: str) -> str:
         f"STEP({speed}, {slow!r}, 0, {fast!r}, {friction.dynamic - friction.static!r}))"
     )
     return f"(-{mu}*{normal}/{speed})"
-
-
-def _formula(contact: Contact, law: str, translation: Translation, arm: int) -> str:
-    function = Function(law, parse(law), contact.line, contact.label)
-    return translation.formula(function, translation.units.of(force=1, length=arm))

@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from ...describe.spatial.massless import MASSLESS, massless_moment
-from ...describe.spatial.number_format import plain, quaternion, vector
-from ..statements.constraints import Numbered
+from ...elements.spatial.massless import MASSLESS, massless_moment
+from ...elements.spatial.number_format import plain, quaternion, vector
+from ..statements.arguments import Numbered
 from ..statements.curves import CurveOnCurve, FirstContact, PointOnCurve
 from ..statements.fault import of_each
 from ..statements.geometry import Frame
@@ -29,29 +29,26 @@ ELSEWHERE = 0.01
 
 def curves(mechanism: Mechanism) -> dict[str, Any]:
     """Return the curve joints of the scene by name."""
-    return of_each(_points(mechanism), lambda one: {one.name: _on_curve(one, mechanism)}) | of_each(
-        _pairs(mechanism), lambda pair: _touching(pair, mechanism)
-    )
+    return of_each(
+        mechanism.dataset.points_on_curves.values(), lambda one: {one.name: _on_curve(one, mechanism)}
+    ) | of_each(mechanism.dataset.curves_on_curves.values(), lambda pair: _touching(pair, mechanism))
 
 
 def touching_bodies(mechanism: Mechanism) -> dict[str, Any]:
     """Return the auxiliary bodies of curve-to-curve contacts by name."""
-    return of_each(_pairs(mechanism), lambda pair: {pair.name + TOUCH: _body(pair, mechanism)})
+    return of_each(
+        mechanism.dataset.curves_on_curves.values(), lambda pair: {pair.name + TOUCH: _body(pair, mechanism)}
+    )
 
 
 def notes(mechanism: Mechanism) -> Iterator[str]:
     """Yield a sentence that lists the curves interpolated by cubic splines."""
-    labels = ", ".join(one.label for one in (*_points(mechanism), *_pairs(mechanism)))
+    labels = ", ".join(
+        one.label
+        for one in (*mechanism.dataset.points_on_curves.values(), *mechanism.dataset.curves_on_curves.values())
+    )
     if labels:
         yield f"{labels}: the curve is a cubic spline through the points of its MATRIX, which Adams may lay otherwise between them"
-
-
-def _points(mechanism: Mechanism) -> list[PointOnCurve]:
-    return list(mechanism.dataset.statements.get("PTCV", {}).values())
-
-
-def _pairs(mechanism: Mechanism) -> list[CurveOnCurve]:
-    return list(mechanism.dataset.statements.get("CVCV", {}).values())
 
 
 def _on_curve(one: PointOnCurve, mechanism: Mechanism) -> dict[str, Any]:

@@ -6,7 +6,7 @@ from functools import singledispatchmethod
 from operator import mul
 from typing import Any
 
-from ...describe.spatial.number_format import plain, vector
+from ...elements.spatial.number_format import plain, vector
 from ..functions.expression import parse
 from ..functions.function import Function
 from ..functions.translate import Translation
@@ -14,20 +14,14 @@ from ..statements.constraints import TRANSLATIONAL
 from ..statements.elastic import Beam, Elastic, SpringDamper
 from ..statements.fault import of_each
 from ..statements.forces import SingleForce, VectorForce
-from .mechanism import Mechanism, Place
+from .mechanism import Mechanism
 
 TORQUE = "_torque"
 """Name suffix for the torque of a GFORCE, a separate element of the scene."""
 
 
 class Forces:
-    """Builder of the scene's forces.
-
-    Parameters
-    ----------
-    mechanism : Mechanism
-    translation : Translation
-    """
+    """Builder of the scene's forces."""
 
     def __init__(self, mechanism: Mechanism, translation: Translation) -> None:
         self._mechanism, self._translation = mechanism, translation
@@ -37,9 +31,6 @@ class Forces:
         """Return the forces by name, ordered by kind of statement."""
         return of_each(self._mechanism.dataset.forces, self._made)
 
-    def _ends(self, force: SingleForce | SpringDamper | Elastic | Beam) -> tuple[Place, Place]:
-        return self._mechanism.place(force.i, force, "I"), self._mechanism.place(force.j, force, "J")
-
     @singledispatchmethod
     def _made(self, force: Any) -> dict[str, Any]:
         raise TypeError(f"no force of the scene for {force!r}")
@@ -47,7 +38,7 @@ class Forces:
     @_made.register
     def _single(self, force: SingleForce) -> dict[str, Any]:
         """Return a line force that pushes the markers apart, a torque about z of J, or an action-only force on I."""
-        i, j = self._ends(force)
+        i, j = self._mechanism.ends(force)
         linear = force.sort == TRANSLATIONAL
         unit = self._units.of(force=1, length=0 if linear else 1)
         law = self._translation.formula(force.function, unit)
@@ -80,7 +71,7 @@ class Forces:
     @_made.register
     def _spring(self, spring: SpringDamper) -> dict[str, Any]:
         """Return a spring-damper. Adams' preload pushes the markers apart; here it is a tension."""
-        i, j = self._ends(spring)
+        i, j = self._mechanism.ends(spring)
         linear = spring.sort == TRANSLATIONAL
         free, kind = ("free_length", "spring_damper") if linear else ("free_angle", "torsion_spring")
         numbers = {
@@ -93,7 +84,7 @@ class Forces:
     def _elastic(self, force: Elastic) -> dict[str, Any]:
         if not force.has_potential:
             return self._without_potential(force)
-        i, j = self._ends(force)
+        i, j = self._mechanism.ends(force)
         kind = force.keyword.lower()
         made: dict[str, Any] = {"type": kind, "i": i.reference, "j": j.reference}
         for name, rows in (("stiffness", force.stiffness), ("damping", force.damping)):
@@ -111,7 +102,7 @@ class Forces:
 
     def _without_potential(self, force: Elastic) -> dict[str, Any]:
         """Return a field with unsymmetric matrices as formula components at marker I, in the axes of J."""
-        i, j = self._ends(force)
+        i, j = self._mechanism.ends(force)
         ends = f"({force.i},{force.j},{force.j})"
         length, time = self._units.length, self._units.time
         ways = [(f"D{axis}{ends}", length) for axis in "XYZ"] + [
@@ -140,7 +131,7 @@ class Forces:
 
     @_made.register
     def _beam(self, beam: Beam) -> dict[str, Any]:
-        i, j = self._ends(beam)
+        i, j = self._mechanism.ends(beam)
         section = {
             "length": beam.length, "young": beam.young, "shear_modulus": beam.shear_modulus, "area": beam.area,
             "torsion": beam.torsion, "iyy": beam.iyy, "izz": beam.izz, "asy": beam.shear[0], "asz": beam.shear[1],

@@ -10,18 +10,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from ...describe.forces.friction import TINY
-from ..functions.expression import parse
-from ..functions.function import Function
+from ...elements.forces.friction import TINY
 from ..functions.translate import Translation
 from ..statements.constraints import TRANSLATIONAL, Joint
 from ..statements.fault import of_each
 from ..statements.friction import JointFriction
 from .coordinates import initial_displacement
+from .forces import TORQUE
 from .mechanism import Mechanism, Place
 
 AXES = "XYZ"
-TORQUE = "_torque"
 SLOW = 1e-6
 """Fraction of the stiction velocity that regularises the sliding direction at rest."""
 
@@ -75,21 +73,16 @@ class _Rubbing:
 
     def __init__(self, friction: JointFriction, joint: Joint, mechanism: Mechanism, translation: Translation) -> None:
         self._f, self._joint, self._mechanism, self._translation = friction, joint, mechanism, translation
-        i, j = mechanism.place(joint.i, joint, "I"), mechanism.place(joint.j, joint, "J")
+        i, j = mechanism.ends(joint)
         self._places = i, j
         self._ends = {"i": i.reference, "j": j.body}
 
     def made(self) -> dict[str, Any]:
         """Return the elements of the scene."""
         makers = {
-            "REVOLUTE": self._pin,
-            "TRANSLATIONAL": self._guide,
-            "CYLINDRICAL": self._sleeve,
-            "SPHERICAL": self._ball,
-            "UNIVERSAL": self._cross,
-            "HOOKE": self._cross,
-        }
-        return makers[self._joint.kind]()
+            "REVOLUTE": self._pin, "TRANSLATIONAL": self._guide, "CYLINDRICAL": self._sleeve, "SPHERICAL": self._ball,
+        }  # fmt: skip
+        return makers.get(self._joint.kind, self._cross)()
 
     def _pin(self) -> dict[str, Any]:
         return self._torque([None, None, self._about("Z", self._joint.j)], self._f.name)
@@ -118,7 +111,7 @@ class _Rubbing:
         return f"-({self._coefficient(speed)})*({load}) - {self._preload(f.torque)}*({self._direction(speed)})"
 
     def _guide(self) -> dict[str, Any]:
-        f, speed = self._f, self._sliding("Z")
+        f, speed = self._f, self._sliding
         load = self._sum(
             ("REACTION_FORCE", self._across("F")),
             ("BENDING_MOMENT", f"{self._across('T')}/{self._overlap()}"),
@@ -128,7 +121,7 @@ class _Rubbing:
         return self._force([None, None, law], f.name)
 
     def _sleeve(self) -> dict[str, Any]:
-        f, along, about = self._f, self._sliding("Z"), f"({self._f.pin!r}*{self._turning('Z')})"
+        f, along, about = self._f, self._sliding, f"({self._f.pin!r}*{self._turning('Z')})"
         speed = self._speed(along, about)
         load = self._sum(
             ("REACTION_FORCE", self._across("F")), ("BENDING_MOMENT", f"{self._across('T')}/{self._overlap()}")
@@ -142,7 +135,7 @@ class _Rubbing:
         f = self._f
         parts = [f"({f.ball!r}*{self._turning(axis)})" for axis in AXES]
         speed = self._speed(*parts)
-        load = self._sum(("REACTION_FORCE", f"{f.ball!r}*{self._whole('F')}"))
+        load = self._sum(("REACTION_FORCE", f"{f.ball!r}*{self._root('F', AXES, self._joint.j)}"))
         size = (
             f"(({self._of_magnitude(speed)})*({load}) + {self._preload(f.torque)}*({self._direction(speed)}))/{speed}"
         )
@@ -156,21 +149,18 @@ class _Rubbing:
 
     def _coefficient(self, speed: str) -> str:
         """Return mu as a function of a signed speed."""
-        return self._held(speed) + self._fallen(speed, "-") + self._fallen(f"-({speed})", "+")
+        return self._of_magnitude(speed) + self._fallen(f"-({speed})", "+")
 
     def _of_magnitude(self, speed: str) -> str:
         """Return mu as a function of a non-negative speed."""
-        return self._held(speed) + self._fallen(speed, "-")
-
-    def _held(self, speed: str) -> str:
-        f = self._f
-        return f"STEP5({speed}, {-f.stiction_velocity!r}, {-f.static!r}, {f.stiction_velocity!r}, {f.static!r})"
+        f, slow = self._f, self._f.stiction_velocity
+        return f"STEP5({speed}, {-slow!r}, {-f.static!r}, {slow!r}, {f.static!r})" + self._fallen(speed, "-")
 
     def _fallen(self, speed: str, sign: str) -> str:
         """Return the drop from the static to the dynamic coefficient with increasing speed."""
         f = self._f
         less = f.static - f.dynamic
-        return f" {sign} STEP5({speed}, {f.stiction_velocity!r}, 0, {f.sliding_velocity!r}, {less!r})" if less else ""
+        return f" {sign} STEP5({speed}, {f.stiction_velocity!r}, 0, {f.friction_velocity!r}, {less!r})" if less else ""
 
     def _direction(self, speed: str) -> str:
         slow = self._f.stiction_velocity
@@ -193,16 +183,14 @@ class _Rubbing:
         i, j = self._joint.i, self._joint.j
         return f"W{axis}({i},{j},{along or j})"
 
-    def _sliding(self, axis: str) -> str:
+    @property
+    def _sliding(self) -> str:
         i, j = self._joint.i, self._joint.j
-        return f"V{axis}({i},{j},{j},{j})"
+        return f"VZ({i},{j},{j},{j})"
 
     def _part(self, letter: str, axis: str, along: int | None = None) -> str:
         component = 4 * (letter == "T") + "MXYZ".index(axis) + 1
         return f"JOINT({self._joint.ident},0,{component},{along or self._joint.j})"
-
-    def _whole(self, letter: str) -> str:
-        return self._root(letter, AXES, self._joint.j)
 
     def _across(self, letter: str, axis: str = "Z", along: int | None = None) -> str:
         """Return the load normal to an axis of a marker (default J)."""
@@ -214,16 +202,12 @@ class _Rubbing:
         return f"SQRT({' + '.join(f'{self._part(letter, axis, along)}**2' for axis in axes)} + {tiny!r})"
 
     def _force(self, laws: list[str | None], name: str) -> dict[str, Any]:
-        frame = self._places[1].reference
-        return {name: {"type": "force", **self._ends, "frame": frame, "force": [self._formula(law, 0) for law in laws]}}
+        return {name: self._element("force", laws, self._places[1])}
 
     def _torque(self, laws: list[str | None], name: str, place: Place | None = None) -> dict[str, Any]:
-        frame = (place or self._places[1]).reference
-        torque = [self._formula(law, 1) for law in laws]
-        return {name: {"type": "torque", **self._ends, "frame": frame, "torque": torque}}
+        return {name: self._element("torque", laws, place or self._places[1])}
 
-    def _formula(self, law: str | None, arm: int) -> str | int:
-        if law is None:
-            return 0
-        function = Function(law, parse(law), self._f.line, self._f.label)
-        return self._translation.formula(function, self._translation.units.of(force=1, length=arm))
+    def _element(self, kind: str, laws: list[str | None], place: Place) -> dict[str, Any]:
+        arm = int(kind == "torque")
+        formulas = [0 if law is None else self._translation.law(law, self._f, arm=arm) for law in laws]
+        return {"type": kind, **self._ends, "frame": place.reference, kind: formulas}

@@ -13,13 +13,12 @@ from typing import Any
 import numpy as np
 
 from ..functions.trees import difference, measured, number, product, times, total
-from ..statements.constraints import ROTATIONAL, Joint, Numbered
+from ..statements.arguments import Numbered
+from ..statements.constraints import ROTATIONAL, Joint
+from ..statements.geometry import ROUNDING
 from .coordinates import SORTS, initial_displacement
 from .mechanism import Mechanism, Place
 from .relations import coupled_joint
-
-HELD = 1e-9
-"""Relative threshold below which a joint's tooth motion is zero: of the arm, or of 1."""
 
 
 def gears(mechanism: Mechanism) -> dict[str, Any]:
@@ -63,7 +62,7 @@ class _Wheel:
 
     def __init__(self, user: Numbered, ident: int, contact: Place, mechanism: Mechanism) -> None:
         joint = coupled_joint(user, ident, mechanism)
-        i, j = mechanism.place(joint.i, joint, "I"), mechanism.place(joint.j, joint, "J")
+        i, j = mechanism.ends(joint)
         if contact.body not in (i.body, j.body):
             raise user.fault(
                 f"found the marker CV on {contact.body}, expected it on the carrier, which {joint.label} joins too"
@@ -72,14 +71,14 @@ class _Wheel:
         self._contact, self._mechanism = contact, mechanism
         self._along = self.seat.initial.axes.T @ contact.initial.axes[:, 2]
         self._arm = self.seat.initial.axes.T @ (contact.initial.point - self.own.initial.point)
-        self._massless = HELD * float(np.linalg.norm(self._arm))
+        self._massless = ROUNDING * float(np.linalg.norm(self._arm))
         self._slides = SORTS.get(joint.kind) != ROTATIONAL
         self._check(user, joint)
 
     def _check(self, user: Numbered, joint: Joint) -> None:
         turning = float(np.cross(self._arm, self._along)[2]) if joint.kind != "TRANSLATIONAL" else 0.0
         sliding = float(self._along[2]) if self._slides else 0.0
-        if abs(turning) <= self._massless and abs(sliding) <= HELD:
+        if abs(turning) <= self._massless and abs(sliding) <= ROUNDING:
             raise user.fault(
                 f"found the z axis of the marker CV across the motion that {joint.label} allows there, expected it along the "
                 "motion of the teeth"

@@ -13,17 +13,15 @@ from typing import Any
 
 import numpy as np
 
-from ...describe.spatial.number_format import plain
+from ...elements.spatial.number_format import plain
 from ..statements.bodies import Part, Vector
+from ..statements.changes import Key
 from ..statements.constraints import ROTATIONAL, Joint
 from ..statements.dataset import Dataset
-from ..statements.geometry import IDENTITY
+from ..statements.geometry import IDENTITY, PRECISION
 from .coordinates import coordinate, initial_displacement
 from .mechanism import Mechanism, Place
 
-CONSISTENT = 1e-6
-"""Tolerance between the initial conditions of a joint and of its parts, in m, rad, and per s."""
-Key = tuple[bool, int]
 Twist = tuple[np.ndarray, np.ndarray]
 """Velocity of the centre of mass and angular velocity of a part, in ground axes."""
 
@@ -31,7 +29,7 @@ Twist = tuple[np.ndarray, np.ndarray]
 def set_in_motion(mechanism: Mechanism) -> Dataset:
     """Return the dataset with joint initial velocities assigned to parts without velocities."""
     dataset = mechanism.dataset
-    known = {_key(part): _stated(mechanism, part) for part in mechanism.parts.values() if _states(part)}
+    known = {key: _stated(mechanism, part) for key, part in mechanism.parts.items() if _states(part)}
     told = set(known)
     waiting = [joint for joint in _stating(dataset) if any(velocity is not None for _, _, velocity in joint.start)]
     while waiting:
@@ -45,8 +43,7 @@ def set_in_motion(mechanism: Mechanism) -> Dataset:
     statements = {keyword: dict(numbered) for keyword, numbered in dataset.statements.items()}
     for key, twist in known.items():
         if key not in told:
-            part = mechanism.parts[key]
-            statements["POINT_MASS" if part.point else "PART"][part.ident] = _moving(mechanism, part, twist)
+            statements[key[0]][key[1]] = _moving(mechanism, mechanism.parts[key], twist)
     return replace(dataset, statements=statements)
 
 
@@ -73,18 +70,18 @@ def _stating(dataset: Dataset) -> list[Joint]:
 
 def _differs(mechanism: Mechanism, joint: Joint) -> bool:
     """Return True if a joint's initial conditions differ from those of its parts."""
-    i, j = mechanism.place(joint.i, joint, "I"), mechanism.place(joint.j, joint, "J")
+    i, j = mechanism.ends(joint)
     known = {key: _stated(mechanism, mechanism.parts[key]) for key in _joined(mechanism, joint)}
     pairs = []
     for sort, displacement, velocity in joint.start:
         pairs += [(displacement, initial_displacement(sort, i, j))] if displacement is not None else []
         pairs += [(velocity, _relative(mechanism, joint, sort, known))] if velocity is not None else []
-    return any(abs(stated - found) > CONSISTENT * max(1.0, abs(found)) for stated, found in pairs)
+    return any(abs(stated - found) > PRECISION * max(1.0, abs(found)) for stated, found in pairs)
 
 
 def _relative(mechanism: Mechanism, joint: Joint, sort: str, known: dict[Key, Twist]) -> float:
     """Return the velocity of a joint from the velocities of its parts."""
-    i, j = mechanism.place(joint.i, joint, "I"), mechanism.place(joint.j, joint, "J")
+    i, j = mechanism.ends(joint)
     one, other = _joined(mechanism, joint)
     if sort == ROTATIONAL:
         found = known[one][1] - known[other][1]
@@ -104,10 +101,6 @@ def _driven(dataset: Dataset) -> set[int | None]:
     return {motion.joint for motion in dataset.motions.values()}
 
 
-def _key(part: Part) -> Key:
-    return part.point, part.ident
-
-
 def _states(part: Part) -> bool:
     return part.ground or part.velocity is not None or part.omega is not None
 
@@ -123,14 +116,13 @@ def _stated(mechanism: Mechanism, part: Part) -> Twist:
 
 def _joined(mechanism: Mechanism, joint: Joint) -> tuple[Key, Key]:
     """Return the parts of markers I and J."""
-    mechanism.place(joint.i, joint, "I"), mechanism.place(joint.j, joint, "J")
-    i, j = (mechanism.part_of(mechanism.dataset.markers[ident]) for ident in (joint.i, joint.j))
-    return _key(i), _key(j)
+    mechanism.ends(joint)
+    return mechanism.dataset.markers[joint.i].owner, mechanism.dataset.markers[joint.j].owner
 
 
 def _move(mechanism: Mechanism, joint: Joint, known: dict[Key, Twist]) -> None:
     """Add the motion of the second part of a joint if only one is known."""
-    i, j = mechanism.place(joint.i, joint, "I"), mechanism.place(joint.j, joint, "J")
+    i, j = mechanism.ends(joint)
     one, other = _joined(mechanism, joint)
     axis = j.initial.axes[:, 2]
     rates = {sort == ROTATIONAL: velocity or 0.0 for sort, _, velocity in joint.start}

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ...describe.spatial.number_format import plain, quaternion, vector
+from ...elements.spatial.number_format import plain, quaternion, vector
 from ..functions.translate import ANGULAR_VELOCITIES as TURNING
 from ..functions.translate import VELOCITIES, Translation
 from ..statements.constraints import GeneralConstraint, Joint
@@ -51,8 +51,8 @@ def joints(mechanism: Mechanism, translation: Translation) -> dict[str, Any]:
 def held(mechanism: Mechanism) -> dict[str, Any]:
     """Return orientation joints that hold point masses."""
     return {
-        f"{mechanism.body_name(part)}_axes": {
-            "type": "orientation", "i": mechanism.body_name(part), "j": _on_ground(mechanism.center(part).within(part.frame)),
+        f"{part.name}_axes": {
+            "type": "orientation", "i": part.name, "j": _on_ground(mechanism.center(part).within(part.frame)),
         }
         for part in mechanism.moving
         if part.point
@@ -66,7 +66,7 @@ def _on_ground(frame: Frame) -> Any:
 
 
 def _joint(joint: Joint, mechanism: Mechanism) -> dict[str, Any]:
-    i, j = mechanism.place(joint.i, joint, "I"), mechanism.place(joint.j, joint, "J")
+    i, j = mechanism.ends(joint)
     match joint.kind:
         case "HOOKE":
             return {"type": "universal", "i": turned(i, Z_ALONG_X), "j": turned(j, Z_ALONG_Y)}

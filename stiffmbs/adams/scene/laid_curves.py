@@ -11,14 +11,11 @@ from typing import Any
 
 import numpy as np
 
-from ...describe.spatial.number_format import plain, quaternion, vector
-from ..statements.constraints import Numbered
-from ..statements.geometry import IDENTITY, Frame
+from ...elements.spatial.number_format import plain, quaternion, vector
+from ..statements.arguments import Numbered
+from ..statements.geometry import IDENTITY, PRECISION, Frame
+from ..statements.outputs import FEWEST_POINTS
 from .mechanism import Mechanism, Place
-
-FLAT = 1e-6
-"""Largest deviation from a plane of a flat curve, as a fraction of its size."""
-FEWEST = 4
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,7 +28,6 @@ class LaidCurve:
         The marker RM in whose axes the points are given.
     frame : Frame
         Axes of the curve in those of RM, x and y in the curve's plane.
-    closed : bool
     arguments, values : ndarray
         x and y, or angle and radius, of the points.
     off : ndarray or None
@@ -89,28 +85,27 @@ def laid_curve(user: Numbered, number: int, owner: Place, mechanism: Mechanism) 
     points, closed = _points(user, number, mechanism)
     frame = _plane(points, closed)
     seen = (points - frame.point) @ frame.axes
-    flat = np.max(np.abs(seen[:, 2])) <= FLAT * np.max(np.ptp(points, axis=0))
+    flat = np.max(np.abs(seen[:, 2])) <= PRECISION * np.max(np.ptp(points, axis=0))
     arguments, values, off = _round(user, seen) if closed else _across_its_way(user, seen)
     return LaidCurve(owner, frame, closed, arguments, values, None if flat else off)
 
 
 def _points(user: Numbered, number: int, mechanism: Mechanism) -> tuple[np.ndarray, bool]:
     """Return the points of a curve in the axes of marker RM, m; a closed curve repeats its first point at the end."""
-    statements = mechanism.dataset.statements
-    curve = statements.get("CURVE", {}).get(number)
+    curve = mechanism.dataset.curves.get(number)
     if curve is None:
         raise user.fault(f"found CURVE = {number}, expected the number of a CURVE")
     if curve.unread:
         raise user.fault(f"{curve.label}: {curve.unread}; expected CURVE_POINTS of order 4 in a MATRIX")
-    matrix = statements.get("MATRIX", {}).get(curve.matrix)
+    matrix = mechanism.dataset.matrices.get(curve.matrix)
     points = np.array(matrix.rows if matrix else []) * mechanism.dataset.units.length
-    if points.ndim != 2 or points.shape[1] != 3 or len(points) < FEWEST:
+    if points.ndim != 2 or points.shape[1] != 3 or len(points) < FEWEST_POINTS:
         raise user.fault(
-            f"found MATRIX = {curve.matrix} of {curve.label}, expected {FEWEST} rows or more of x, y and z"
+            f"found MATRIX = {curve.matrix} of {curve.label}, expected {FEWEST_POINTS} rows or more of x, y and z"
         )
     size = float(np.max(np.ptp(points, axis=0)))
     ends = float(np.max(np.abs(points[0] - points[-1])))
-    if curve.closed and ends > FLAT * size:
+    if curve.closed and ends > PRECISION * size:
         raise user.fault(
             f"found a first and a last point {ends:.6g} m apart in the closed {curve.label}, expected one point"
         )
@@ -123,10 +118,10 @@ def _plane(points: np.ndarray, closed: bool) -> Frame:
     middle = own.mean(axis=0)
     _, sizes, ways = np.linalg.svd(own - middle)
     x = ways[0] if closed else (points[-1] - points[0]) / (np.linalg.norm(points[-1] - points[0]) or 1.0)
-    if np.max(np.abs(own[:, 2] - middle[2])) <= FLAT * np.max(np.ptp(points, axis=0)):
+    if np.max(np.abs(own[:, 2] - middle[2])) <= PRECISION * np.max(np.ptp(points, axis=0)):
         normal = IDENTITY[2]
     else:
-        normal = ways[2] if sizes[1] > FLAT * sizes[0] else _across(x)
+        normal = ways[2] if sizes[1] > PRECISION * sizes[0] else _across(x)
     y = np.cross(normal, x)
     y /= np.linalg.norm(y)
     x = np.cross(y, normal) if closed else x
@@ -156,7 +151,7 @@ def _round(user: Numbered, seen: np.ndarray) -> tuple[np.ndarray, np.ndarray, np
     if angles[-1] < angles[0]:
         angles, radii, off = angles[::-1], radii[::-1], off[::-1]
     turned = angles[-1] - angles[0]
-    if np.any(np.diff(angles) <= 0) or abs(turned - 2 * np.pi) > 1e-6:
+    if np.any(np.diff(angles) <= 0) or abs(turned - 2 * np.pi) > PRECISION:
         raise user.fault(
             "found a closed curve that a line from its middle meets more than once, expected a convex or nearly convex one"
         )

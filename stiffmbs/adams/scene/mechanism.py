@@ -7,31 +7,23 @@ initial angular velocities refer. The part's own axes do not occur in the scene.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
-from ...describe.marker import GROUND
-from ...describe.spatial.massless import MASSLESS
-from ...describe.spatial.number_format import plain
+from ...elements.spatial.massless import MASSLESS
+from ...elements.spatial.number_format import plain
+from ...reading.marker import GROUND
+from ..functions.function import Function
+from ..statements.arguments import Numbered
 from ..statements.bodies import Marker, Part
+from ..statements.constraints import Joint
 from ..statements.dataset import Dataset
-from ..statements.fault import DatasetFault
+from ..statements.elastic import Beam, Elastic, SpringDamper
+from ..statements.forces import SingleForce
 from ..statements.geometry import IDENTITY, Frame
-from .massless import lightest, weighed
-
-
-class Named(Protocol):
-    """Statement named in error messages."""
-
-    @property
-    def line(self) -> int: ...
-
-    @property
-    def label(self) -> str: ...
-
 
 ORIGIN = Frame(np.zeros(3), IDENTITY)
 
@@ -66,10 +58,6 @@ class Place:
 class Mechanism:
     """Parts and markers of a dataset by number.
 
-    Parameters
-    ----------
-    dataset : Dataset
-
     Attributes
     ----------
     least : float
@@ -95,30 +83,32 @@ class Mechanism:
         self.tables: dict[str, dict[str, Any]] = {}
         self.variables: dict[str, str] = {}
         self.inputs: dict[str, float] = {}
-        self.least = lightest(dataset.parts)
-        self.parts = {(part.point, part.ident): weighed(part, self.least) for part in dataset.parts}
+        self.least = min((part.mass for part in dataset.parts if part.mass > 0), default=0.0)
+        self.parts = {(part.keyword, part.ident): self._weighed(part) for part in dataset.parts}
         grounds = [part for part in dataset.parts if part.ground]
         if len(grounds) > 1:
-            raise DatasetFault(grounds[1].line, grounds[1].label, f"found GROUND, which {grounds[0].label} is already")
+            raise grounds[1].fault(f"found GROUND, which {grounds[0].label} is already")
         for marker in dataset.markers.values():
-            if (marker.on_point_mass, marker.owner) not in self.parts:
-                kind = "POINT_MASS" if marker.on_point_mass else "PART"
-                raise DatasetFault(
-                    marker.line, marker.label, f"found {kind} = {marker.owner}, which the dataset does not have"
-                )
+            if marker.owner not in self.parts:
+                kind, ident = marker.owner
+                raise marker.fault(f"found {kind} = {ident}, which the dataset does not have")
         for part in self.moving:
             self._check(part)
+
+    def _weighed(self, part: Part) -> Part:
+        """Return the part, with a small mass if it has none, which Adams allows where joints make it irrelevant."""
+        return part if part.ground or part.mass != 0 else replace(part, mass=MASSLESS * self.least)
 
     def _check(self, part: Part) -> None:
         if not part.mass > 0:
             found = f"MASS = {plain(part.mass)!r} kg" if part.mass else "no part with a MASS"
-            raise DatasetFault(part.line, part.label, f"found {found}, expected a mass above zero")
+            raise part.fault(f"found {found}, expected a mass above zero")
         if part.center is None and part.mass >= self.least:
-            raise DatasetFault(part.line, part.label, "found no CM, expected the marker at its centre of mass")
+            raise part.fault("found no CM, expected the marker at its centre of mass")
         for name, ident in (("CM", part.center), ("IM", part.inertia_marker)):
             marker = self.dataset.markers.get(ident) if ident is not None else None
             if ident is not None and (marker is None or self.part_of(marker) is not part):
-                raise DatasetFault(part.line, part.label, f"found {name} = {ident}, expected a marker of this part")
+                raise part.fault(f"found {name} = {ident}, expected a marker of this part")
 
     def tip(self, place: Place, axis: str = "z") -> str:
         """Return the reference of a marker 1 m along an axis of another one.
@@ -148,14 +138,7 @@ class Mechanism:
 
     def part_of(self, marker: Marker) -> Part:
         """Return the part that carries a marker."""
-        return self.parts[marker.on_point_mass, marker.owner]
-
-    @staticmethod
-    def body_name(part: Part) -> str:
-        """Return a part's name in the scene."""
-        if part.ground:
-            return GROUND
-        return f"{'POINT_MASS' if part.point else 'PART'}_{part.ident}"
+        return self.parts[marker.owner]
 
     def center(self, part: Part) -> Frame:
         """Return a part's centre-of-mass marker in the part's axes; the origin if it has none."""
@@ -175,7 +158,7 @@ class Mechanism:
         if exact:
             yield f"EXACT of {', '.join(exact)} is left out: assembly may move every part"
 
-    def place(self, ident: int, user: Named, name: str = "I") -> Place:
+    def place(self, ident: int, user: Numbered | Function, name: str = "I") -> Place:
         """Return a marker that a statement refers to.
 
         Raises
@@ -185,8 +168,12 @@ class Mechanism:
         """
         marker = self.dataset.markers.get(ident)
         if marker is None:
-            raise DatasetFault(user.line, user.label, f"found {name} = {ident}, expected the number of a marker")
+            raise user.fault(f"found {name} = {ident}, expected the number of a marker")
         return self.placed(marker)
+
+    def ends(self, user: Joint | SingleForce | SpringDamper | Elastic | Beam) -> tuple[Place, Place]:
+        """Return markers I and J of a joint or a force."""
+        return self.place(user.i, user, "I"), self.place(user.j, user, "J")
 
     def placed(self, marker: Marker) -> Place:
         """Return a marker on its body and in ground axes; a floating marker is placed at the body's origin."""
@@ -194,6 +181,6 @@ class Mechanism:
         center = self.center(part)
         if part.ground:
             on_ground = marker.frame.within(part.frame)
-            return Place(GROUND, f"MARKER_{marker.ident}", on_ground, on_ground)
+            return Place(GROUND, marker.name, on_ground, on_ground)
         on_body = ORIGIN if marker.floating else marker.frame.seen_from(center)
-        return Place(self.body_name(part), f"MARKER_{marker.ident}", on_body, on_body.within(center.within(part.frame)))
+        return Place(part.name, marker.name, on_body, on_body.within(center.within(part.frame)))

@@ -8,12 +8,10 @@ import numpy as np
 
 from ..functions.motion_law import Law
 from ..functions.translate import Translation
-from ..statements.constraints import ROTATIONAL, TRANSLATIONAL, Joint, Motion
+from ..statements.constraints import COMPONENTS, ROTATIONAL, TRANSLATIONAL, Joint, Motion
 from ..statements.fault import of_each
 from .coordinates import SORTS, coordinate, initial_displacement
 from .mechanism import Mechanism
-
-LENGTHS = ("X", "Y", "Z")
 
 
 def motions(mechanism: Mechanism, translation: Translation) -> dict[str, Any]:
@@ -35,7 +33,7 @@ def _of_joint(motion: Motion, mechanism: Mechanism, translation: Translation) ->
     if joint is None:
         raise motion.fault(f"found JOINT = {motion.joint}, expected the number of a JOINT")
     sort = _sort(motion, joint)
-    i, j = mechanism.place(joint.i, joint, "I"), mechanism.place(joint.j, joint, "J")
+    i, j = mechanism.ends(joint)
     law = Law(motion, translation, sort)
     initial = initial_displacement(sort, i, j)
     return {"type": "drive", "joint": coordinate(joint, sort), **law.over_time(initial)}
@@ -60,9 +58,9 @@ def _between_markers(motion: Motion, mechanism: Mechanism, translation: Translat
     relative = i.initial.seen_from(j.initial)
     component = motion.component
     drive = {"type": "drive", "i": i.reference, "j": j.reference}
-    if component in LENGTHS:
+    if component in COMPONENTS[:3]:
         way = f"d{component.lower()}({i.reference}, {j.reference}, {j.reference})"
-        initial = float(relative.point[LENGTHS.index(component)])
+        initial = float(relative.point[COMPONENTS[:3].index(component)])
         return {**drive, "coordinate": way, **Law(motion, translation, TRANSLATIONAL).over_time(initial)}
     A = relative.axes  # Rx(b1) Ry(b2) Rz(b3): AX gives b1, and AZ of J against I gives -b3
     angle, initial = {

@@ -13,19 +13,15 @@ from typing import Any
 import numpy as np
 
 from ..statements.constraints import Joint
+from ..statements.geometry import PRECISION, ROUNDING
 from .gears import meshed
 from .mechanism import Mechanism, Place
 
 ACROSS = 1e-3
-"""Distance from the pinion's axis below which a rack's line passes through it, relative to the pitch radius."""
-ON_PITCH_LINE = 1e-9
-"""Distance from the pitch line below which a rack's own line is used for it, relative to the pitch diameter."""
+"""Distance from the pinion's axis below which a rack's line passes through it, and from the pitch line above which it is
+reported, relative to the pitch radius."""
 SKEWED = 0.1
 """Cosine of the angle between z of marker I and the rack above which z is not the pinion's axis."""
-PARALLEL = 1e-6
-"""Sine of the largest angle between axes that count as parallel."""
-VISIBLE = 1e-3
-"""Distance between drawn and actual pitch line that is reported, relative to the pitch radius."""
 
 
 def rolling(joint: Joint, mechanism: Mechanism) -> dict[str, Any]:
@@ -38,7 +34,7 @@ def rolling(joint: Joint, mechanism: Mechanism) -> dict[str, Any]:
     DatasetFault
         If neither the rack's position nor marker I defines the side of the pinion.
     """
-    i, j = mechanism.place(joint.i, joint, "I"), mechanism.place(joint.j, joint, "J")
+    i, j = mechanism.ends(joint)
     outward = _outward(joint, i, j)
     off = joint.diameter / 2 - float(_beside(i, j) @ outward)
     carried = _carried(joint, i, j, mechanism)
@@ -49,7 +45,7 @@ def rolling(joint: Joint, mechanism: Mechanism) -> dict[str, Any]:
         contact = mechanism.moved(seat, f"{seat.name}_teeth_{joint.ident}", touched - seat.initial.point)
         return meshed(joint, (hinge.ident, guide.ident), contact, mechanism) | {"i": i.reference, "j": j.reference}
     line_marker = (
-        mechanism.moved(j, f"{j.name}_pitch", off * outward) if abs(off) > ON_PITCH_LINE * abs(joint.diameter) else j
+        mechanism.moved(j, f"{j.name}_pitch", off * outward) if abs(off) > ROUNDING * abs(joint.diameter) else j
     )
     I, J = i.reference, line_marker.reference
     turning = f"(wx({I}, ground, {J}) * dy({J}, {I}, {J}) - wy({I}, ground, {J}) * dx({J}, {I}, {J}))"
@@ -72,15 +68,14 @@ def _carried(joint: Joint, i: Place, j: Place, mechanism: Mechanism) -> tuple[Jo
 
 
 def _alike(one: np.ndarray, other: np.ndarray) -> bool:
-    """Return True if two axes are parallel or antiparallel."""
-    return bool(np.linalg.norm(np.cross(one, other)) < PARALLEL)
+    return bool(np.linalg.norm(np.cross(one, other)) < PRECISION)
 
 
 def _joints_of(body: str, kind: str, mechanism: Mechanism) -> Iterator[tuple[Joint, Place, Place]]:
     """Yield the joints of a kind on a body, with their markers on it and on the other body."""
     for joint in mechanism.dataset.joints.values():
         if joint.kind == kind:
-            ends = mechanism.place(joint.i, joint, "I"), mechanism.place(joint.j, joint, "J")
+            ends = mechanism.ends(joint)
             for own, seat in (ends, ends[::-1]):
                 if own.body == body:
                     yield joint, own, seat
@@ -125,7 +120,7 @@ def notes(mechanism: Mechanism) -> Iterator[str]:
     for joint in mechanism.dataset.joints.values():
         if joint.kind != "RACKPIN":
             continue
-        i, j = mechanism.place(joint.i, joint, "I"), mechanism.place(joint.j, joint, "J")
+        i, j = mechanism.ends(joint)
         gap, radius = _beside(i, j), abs(joint.diameter) / 2
         distance = float(np.linalg.norm(gap))
         if _crosses(joint, gap):
@@ -133,7 +128,7 @@ def notes(mechanism: Mechanism) -> Iterator[str]:
                 f"{joint.label}: the rack's line goes through the pinion's axis, and the rack is taken to be at -y of "
                 f"MARKER/{joint.i}, half the pitch diameter away"
             )
-        elif abs(distance - radius) > VISIBLE * radius:
+        elif abs(distance - radius) > ACROSS * radius:
             yield (
                 f"{joint.label}: the rack's line is drawn {distance:.6g} m from the pinion's axis, and its teeth are taken to "
                 f"be where PD says, {radius:.6g} m from it"

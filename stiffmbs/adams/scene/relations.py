@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from ...describe.spatial.number_format import plain
-from ..statements.constraints import ROTATIONAL, Coupler, Joint, Numbered
+from ...elements.spatial.number_format import plain
+from ..statements.arguments import Numbered
+from ..statements.constraints import ROTATIONAL, Coupler, Joint
 from .coordinates import SORTS, coordinate, initial_displacement
 from .mechanism import Mechanism
 
@@ -31,7 +32,7 @@ def _tied(tied: list[Joint], sorts: list[str], scales: list[float], mechanism: M
         return {"type": "coupler", "joint_1": first, "joint_2": second, "scale": plain(-scales[1])}
     terms, at_start = [], 0.0
     for joint, sort, scale in zip(tied, sorts, scales, strict=True):
-        i, j = mechanism.place(joint.i, joint, "I"), mechanism.place(joint.j, joint, "J")
+        i, j = mechanism.ends(joint)
         I, J = i.reference, j.reference
         measure = f"az({I}, {J})" if sort == ROTATIONAL else f"dz({I}, {J}, {J})"
         terms.append(f"{plain(scale)!r} * {measure}")
@@ -60,7 +61,6 @@ def coupled_joint(user: Numbered, ident: int, mechanism: Mechanism) -> Joint:
 
 
 def _sort(user: Numbered, joint: Joint, sort: str | None) -> str:
-    """Return the coupled displacement of a joint."""
     own = SORTS.get(joint.kind, sort)
     if own is None or (sort is not None and sort != own):
         raise user.fault(f"found {sort or 'no TYPE'} of {joint.label}, {joint.kind}, expected {own or 'T or R'}")

@@ -8,7 +8,7 @@ from typing import Any
 
 from ..functions.function import Function
 from ..functions.reactions import COMPONENTS
-from ..functions.translate_output import OutputTranslation
+from ..functions.translate_output import ANGLES, OutputTranslation
 from ..functions.trees import measured
 from ..statements.fault import DatasetFault
 from ..statements.outputs import Request
@@ -51,7 +51,7 @@ class Requests:
             formula = self._formula(variable.function, variable.label)
             if formula is not None:
                 found[variable.name] = formula
-        for sensor in self._mechanism.dataset.sensors:
+        for sensor in self._mechanism.dataset.active_sensors:
             found[sensor.name] = self._translation.formula(sensor.function)
             if sensor.evaluated is not None:
                 found[sensor.name + EVALUATED] = self._translation.formula(sensor.evaluated)
@@ -61,34 +61,21 @@ class Requests:
     def _between_markers(self, request: Request) -> dict[str, str]:
         """Return displacement, velocity, acceleration or force of marker I relative to J in the axes of RM, in SI."""
         assert request.sort is not None and request.i is not None
-        if request.sort == "FORCE":
-            return self._force(request)
-        idents = (request.i, request.j, request.axes)
-        function = Function(request.sort, ast.Constant(0), request.line, request.label)
+        idents = request.i, request.j or 0, request.axes or 0
+        function, translation = Function(request.sort, ast.Constant(0), request.line, request.label), self._translation
         try:
-            i, j, axes = (self._translation.reference(ident, function) if ident else "" for ident in idents)
+            if request.sort == "FORCE":
+                trees = {name.lower(): translation.between(name, *idents, function) for name in COMPONENTS}
+            else:
+                i, j, axes = (translation.reference(ident, function) if ident else "" for ident in idents)
+                trees = {
+                    CALLED.get(name, name.lower()): measured(name.lower(), i, j, "" if name in ANGLES else axes)
+                    for name in MARKED[request.sort]
+                }
         except DatasetFault as fault:
             self.notes.append(f"{fault}; the request is left out")
             return {}
-        names = MARKED[request.sort]
-        return {
-            CALLED.get(name, name.lower()): ast.unparse(
-                measured(name.lower(), i, j, "" if name in ("PSI", "THETA", "PHI") else axes)
-            )
-            for name in names
-        }
-
-    def _force(self, request: Request) -> dict[str, str]:
-        function = Function("FORCE", ast.Constant(0), request.line, request.label)
-        found = {}
-        for name in COMPONENTS:
-            try:
-                tree = self._translation.between(name, request.i or 0, request.j or 0, request.axes or 0, function)
-            except DatasetFault as fault:
-                self.notes.append(f"{fault}; the request is left out")
-                return {}
-            found[name.lower()] = ast.unparse(tree)
-        return found
+        return {name: ast.unparse(tree) for name, tree in trees.items()}
 
     def _functions(self, request: Request) -> dict[str, str]:
         """Return the functions of a request, in the dataset's units."""

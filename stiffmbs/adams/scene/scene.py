@@ -7,7 +7,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-from ...describe.spatial.number_format import vector
+from ...elements.spatial.number_format import vector
 from ..functions.inputs import input_values
 from ..functions.states import states
 from ..functions.translate import Translation
@@ -38,7 +38,7 @@ RUN = {"duration": 5, "output": 0.01}
 
 
 def scene(dataset: Dataset) -> dict[str, Any]:
-    """Return the scene of a dataset for `stiffmbs.describe.reading.read_scene`.
+    """Return the scene of a dataset for `stiffmbs.model.read_scene.read_scene`.
 
     Raises
     ------
@@ -92,5 +92,5 @@ def scene(dataset: Dataset) -> dict[str, Any]:
     found["bodies"] = bodies(mechanism) | touching_bodies(mechanism)
     found["markers"] = ground_markers(mechanism)  # includes markers added for formulas
     found["tables"] = mechanism.tables
-    found["stages"] = [{"until": conditions(dataset, mechanism.inputs)}] if dataset.sensors else []
+    found["stages"] = [{"until": conditions(dataset, mechanism.inputs)}] if dataset.active_sensors else []
     return {key: value for key, value in found.items() if value or key == "bodies"}

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from ...describe.spatial.number_format import plain
+from ...elements.spatial.number_format import plain
 from ..statements.dataset import Dataset
 from ..statements.sensor import Sensor
 from ..statements.units import Units
@@ -16,7 +16,7 @@ EVALUATED = "_evaluate"
 
 def conditions(dataset: Dataset, inputs: Mapping[str, float]) -> dict[str, Any]:
     """Return the end conditions by name; each watches the request of its name and may set inputs of the scene."""
-    return {sensor.name: _condition(sensor, inputs, dataset.units) for sensor in dataset.sensors}
+    return {sensor.name: _condition(sensor, inputs, dataset.units) for sensor in dataset.active_sensors}
 
 
 def _condition(sensor: Sensor, inputs: Mapping[str, float], units: Units) -> dict[str, Any]:
@@ -33,7 +33,7 @@ def _condition(sensor: Sensor, inputs: Mapping[str, float], units: Units) -> dic
 
 def notes(dataset: Dataset) -> Iterator[str]:
     """Yield one sentence for each sensor or argument without effect."""
-    for sensor in dataset.statements.get("SENSOR", {}).values():
+    for sensor in dataset.sensors.values():
         listed = ", ".join(sensor.left_out)
         if sensor.then and listed:
             yield f"{sensor.label}: {listed} left out: no effect on results"

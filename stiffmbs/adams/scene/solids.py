@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ...describe.spatial.number_format import plain
+from ...elements.spatial.number_format import plain
 from ..statements.contact import BOX, CYLINDER, ELLIPSOID, PLANE, SPHERE, Contact, Shape
 from ..statements.units import Units
 from .mechanism import Mechanism
@@ -82,7 +82,6 @@ def _sizes(shape: Shape, with_sphere: bool) -> dict[str, float]:
 
 
 def _middle(shape: Shape, contact: Contact, mechanism: Mechanism) -> str:
-    """Return the marker at a solid's centre."""
     place = mechanism.place(shape.marker, contact, "the marker of GRAPHICS")
     half = {BOX: shape.sizes, CYLINDER: (0.0, 0.0, *shape.sizes[1:])}.get(shape.sort)
     if half is None:
@@ -92,7 +91,6 @@ def _middle(shape: Shape, contact: Contact, mechanism: Mechanism) -> str:
 
 
 def _law(contact: Contact, units: Units) -> dict[str, float]:
-    """Return the parameters of IMPACT and friction in SI units."""
     speed, friction = units.of(length=1, time=-1), contact.friction
     law = {
         "stiffness": contact.stiffness * units.force / units.length**contact.exponent,

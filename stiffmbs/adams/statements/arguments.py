@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from ...describe.files.quoted import quoted
-from ...describe.files.requested import Fields
+from ...reading.files.quoted import quoted
+from ...reading.files.requested import Fields
 from .fault import DatasetFault
 from .text import Statement, Subsystem
 
@@ -24,6 +24,29 @@ class Argument:
     name: str
     values: tuple[str, ...]
     line: int
+
+
+@dataclass(frozen=True)
+class Numbered:
+    """Statement with a number."""
+
+    ident: int
+    line: int
+    alias: str
+    keyword: str
+
+    @property
+    def label(self) -> str:
+        return f"{self.keyword}/{self.ident}"
+
+    @property
+    def name(self) -> str:
+        """Name of its element in the scene."""
+        return f"{self.keyword}_{self.ident}"
+
+    def fault(self, reason: str) -> DatasetFault:
+        """Return the error for a fault of the statement in its dataset."""
+        return DatasetFault(self.line, self.label, reason)
 
 
 class Arguments:
@@ -53,7 +76,6 @@ class Arguments:
         for line, pieces in statement.changes:
             self.label += f" (changed in line {line} of the command file)"
             found |= self._read(pieces)
-        statement.read_as({name: (one.line, one.values) for name, one in found.items()})
         self._found = Fields(keyword, self.label, found)
         statement.requests.append(self._found)
 
@@ -120,9 +142,16 @@ class Arguments:
         """Return the line of an argument; that of the statement if it is missing."""
         return self._found[name].line if self._found.has(name) else self.statement.line
 
-    def ident(self) -> int:
-        """Return the statement's number."""
-        return _integer(self, self.statement.ident, "after the slash", self.statement.line)
+    def head(self) -> tuple[int, int, str, str]:
+        """Return the fields of `Numbered`."""
+        ident = _integer(self, self.statement.ident, "after the slash", self.statement.line)
+        return ident, self.statement.line, self.statement.alias, self.keyword
+
+    def refuse(self, names: Iterable[str], expected: str) -> None:
+        """Raise the error for arguments that are not supported, if any is given."""
+        for name in names:
+            if name in self:
+                raise self.fault(f"found {name}, expected {expected}", self.line(name))
 
     def one_of(self, *words: str) -> str | None:
         """Return the one of the given words that occurs in the statement; None if none does."""
@@ -155,6 +184,20 @@ class Arguments:
         """Return an argument's only number; None if it is missing."""
         values = self.numbers(name, 1)
         return None if values is None else values[0]
+
+    def positive(self, name: str) -> float | None:
+        """Return an argument's number, which must be positive; None if it is missing."""
+        value = self.number(name)
+        if value is not None and not value > 0:
+            raise self.fault(f"found {name} = {self.text(name)}, expected a number above zero", self.line(name))
+        return value
+
+    def needed(self, name: str) -> float:
+        """Return the number of a required argument, which must be positive."""
+        value = self.number(name)
+        if value is None or not value > 0:
+            raise self.fault(f"found no {name}, expected a number above zero", self.line(name))
+        return value
 
     def idents(self, name: str, *counts: int) -> tuple[int, ...]:
         """Return the statement identifiers in an argument; empty if it is missing."""

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from .arguments import Arguments
+from ...reading.marker import GROUND
+from .arguments import Arguments, Numbered
 from .geometry import Frame, read_frame
 from .text import Statement
 from .units import Units
@@ -13,21 +14,15 @@ Vector = tuple[float, float, float]
 
 
 @dataclass(frozen=True)
-class Part:
+class Part(Numbered):
     """Rigid body, point mass or ground, in SI units.
 
     Attributes
     ----------
-    ident, line, alias
-        Number, line, and name in Adams/View.
     frame : Frame
         The part's axes at the start, in ground axes.
-    ground, point : bool
-        True for the ground part, or a point mass.
-    mass : float
     center : int or None
         Centre-of-mass marker.
-    inertia_marker : int or None
     moments : tuple of float
         Ixx, Iyy, Izz and the products Ixy, Ixz, Iyz (positive integrals) in the axes of the inertia marker, about its
         origin.
@@ -39,12 +34,8 @@ class Part:
         True if assembly must not move some of its coordinates.
     """
 
-    ident: int
-    line: int
-    alias: str
     frame: Frame
     ground: bool = False
-    point: bool = False
     mass: float = 0.0
     center: int | None = None
     inertia_marker: int | None = None
@@ -56,25 +47,22 @@ class Part:
     exact: bool = False
 
     @property
-    def label(self) -> str:
-        return f"{'POINT_MASS' if self.point else 'PART'}/{self.ident}"
+    def point(self) -> bool:
+        """True for a point mass."""
+        return self.keyword == "POINT_MASS"
+
+    @property
+    def name(self) -> str:
+        return GROUND if self.ground else super().name
 
 
 @dataclass(frozen=True)
-class Marker:
-    """Point and axes on a part; in SI units, in the part's axes."""
+class Marker(Numbered):
+    """Point and axes on a part, given by keyword and number; in SI units, in the part's axes."""
 
-    ident: int
-    line: int
-    alias: str
-    owner: int
-    on_point_mass: bool
+    owner: tuple[str, int]
     frame: Frame
     floating: bool = False
-
-    @property
-    def label(self) -> str:
-        return f"MARKER/{self.ident}"
 
 
 _FRAME = ("QG", "REULER", "XG", "ZG")
@@ -95,7 +83,7 @@ def read_part(statement: Statement, units: Units) -> Part:
     moments = found.numbers("IP", 3, 6) or (0.0,) * 6
     of_inertia = units.of(mass=1, length=2)
     return Part(
-        found.ident(), statement.line, statement.alias, frame, ground="GROUND" in found,
+        *found.head(), frame, ground="GROUND" in found,
         mass=(found.number("MASS") or 0.0) * units.mass, center=found.reference("CM"),
         inertia_marker=found.reference("IM"),
         moments=tuple(moment * of_inertia for moment in (*moments, *(0.0,) * (6 - len(moments)))),
@@ -110,7 +98,7 @@ def read_point_mass(statement: Statement, units: Units) -> Part:
     """Read a point mass: a part that does not rotate."""
     found = Arguments(statement, "POINT_MASS", ("MASS", "CM", *_FRAME, "VX", "VY", "VZ", "EXACT"))
     return Part(
-        found.ident(), statement.line, statement.alias, read_frame(found, "QG", "XG", "ZG", units.length), point=True,
+        *found.head(), read_frame(found, "QG", "XG", "ZG", units.length),
         mass=(found.number("MASS") or 0.0) * units.mass, center=found.reference("CM"),
         velocity=_rates(found, ("VX", "VY", "VZ"), units.of(length=1, time=-1)), exact="EXACT" in found,
     )  # fmt: skip
@@ -129,10 +117,10 @@ def read_marker(statement: Statement, units: Units, before: Part | None = None) 
     found = Arguments(statement, "MARKER", names)
     owner = found.one_of("PART", "POINT_MASS")
     if owner is not None:
-        carrier, on_point_mass = found.required(owner), owner == "POINT_MASS"
+        carrier = owner, found.required(owner)
     elif before is not None:
-        carrier, on_point_mass = before.ident, before.point
+        carrier = before.keyword, before.ident
     else:
         raise found.fault("found neither PART nor POINT_MASS, expected the part that carries the marker")
     frame = read_frame(found, "QP", "XP", "ZP", units.length)
-    return Marker(found.ident(), statement.line, statement.alias, carrier, on_point_mass, frame, "FLOATING" in found)
+    return Marker(*found.head(), carrier, frame, "FLOATING" in found)

@@ -6,8 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from ..functions.function import Function, required_function
-from .arguments import Arguments, number
-from .fault import DatasetFault
+from .arguments import Arguments, Numbered, number
 from .text import Statement
 from .units import Units
 
@@ -26,29 +25,6 @@ COMPONENTS = ("X", "Y", "Z", "B1", "B2", "B3")
 ROTATIONAL, TRANSLATIONAL = "ROTATIONAL", "TRANSLATIONAL"
 Start = tuple[str, float | None, float | None]
 """Initial condition of a joint: sort, displacement, velocity."""
-
-
-@dataclass(frozen=True)
-class Numbered:
-    """Statement with a number."""
-
-    ident: int
-    line: int
-    alias: str
-    keyword: str
-
-    @property
-    def label(self) -> str:
-        return f"{self.keyword}/{self.ident}"
-
-    @property
-    def name(self) -> str:
-        """Name of its element in the scene."""
-        return f"{self.keyword}_{self.ident}"
-
-    def fault(self, reason: str) -> DatasetFault:
-        """Return the error for a fault of the statement in its dataset."""
-        return DatasetFault(self.line, self.label, reason)
 
 
 @dataclass(frozen=True)
@@ -91,10 +67,8 @@ class Motion(Numbered):
 
     Attributes
     ----------
-    joint : int or None
     sort : str or None
         Rotational or translational, if given.
-    i, j : int or None
     component : str or None
         One of `COMPONENTS`.
     order : int
@@ -145,24 +119,22 @@ def read_joint(statement: Statement, units: Units) -> Joint:
         if kind == wanted and not value:
             raise found.fault(f"found no {name}, expected a number other than zero", found.line(name))
     return Joint(
-        found.ident(), statement.line, statement.alias, "JOINT", kind, found.required("I"), found.required("J"),
+        *found.head(), kind, found.required("I"), found.required("J"),
         (pitch or 0.0) * units.length, (diameter or 0.0) * units.length, tuple(_starts(found, kind, units)),
     )  # fmt: skip
 
 
 def _refuse_friction(found: Arguments) -> None:
     """Refuse friction of old Adams versions, whose law is not published."""
-    if (found.text("FRICTION") or "").strip().upper() == "OFF":
-        found.without_effect(*WITHOUT_FRICTION)
-        return
+    found.without_effect(*WITHOUT_FRICTION)
+    is_off = (found.text("FRICTION") or "").strip().upper() == "OFF"
     for name in COEFFICIENTS:
-        if found.number(name):
+        if not is_off and found.number(name):
             raise found.fault(
                 f"found {name} = {found.text(name)}, friction of old versions whose law is not published, expected a "
                 "FRICTION statement",
                 found.line(name),
             )
-    found.without_effect(*WITHOUT_FRICTION)
 
 
 _STARTS = {
@@ -206,16 +178,14 @@ def read_primitive(statement: Statement, units: Units) -> Joint:
     kind = found.one_of(*PRIMITIVES)
     if kind is None:
         raise found.fault(f"found no kind of primitive, expected one of {', '.join(PRIMITIVES)}")
-    return Joint(
-        found.ident(), statement.line, statement.alias, "JPRIM", kind, found.required("I"), found.required("J")
-    )
+    return Joint(*found.head(), kind, found.required("I"), found.required("J"))
 
 
 def read_general_constraint(statement: Statement, units: Units) -> GeneralConstraint:
     """Read an expression that stays zero."""
     found = Arguments(statement, "GCON", ("I", "FUNCTION", "ROUTINE"), ("FUNCTION",))
     function = required_function(found, "FUNCTION")
-    return GeneralConstraint(found.ident(), statement.line, statement.alias, "GCON", function, found.reference("I"))
+    return GeneralConstraint(*found.head(), function, found.reference("I"))
 
 
 _MOTION = (
@@ -233,7 +203,7 @@ def read_motion(statement: Statement, units: Units) -> Motion:
     if joint is None and None in (i, j, component):
         raise found.fault(f"found no JOINT, expected JOINT, or I and J with one of {', '.join(COMPONENTS)}")
     return Motion(
-        found.ident(), statement.line, statement.alias, "MOTION", required_function(found, "FUNCTION"),
+        *found.head(), required_function(found, "FUNCTION"),
         ("DISPLACEMENT", "VELOCITY", "ACCELERATION").index(order), joint, found.one_of(ROTATIONAL, TRANSLATIONAL),
         i, j, component, (found.number("ICDISP"), found.number("ICVEL")),
     )  # fmt: skip
@@ -252,9 +222,7 @@ def read_coupler(statement: Statement, units: Units) -> Coupler:
     sorts = tuple(_sort(found, letter) for letter in (found.text("TYPE") or "").split(":") if letter.strip())
     if sorts and len(sorts) != len(joints):
         raise found.fault(f"found TYPE = {found.text('TYPE')}, expected T or R for every joint", found.line("TYPE"))
-    return Coupler(
-        found.ident(), statement.line, statement.alias, "COUPLER", joints, sorts or (None,) * len(joints), scales
-    )
+    return Coupler(*found.head(), joints, sorts or (None,) * len(joints), scales)
 
 
 def _sort(found: Arguments, letter: str) -> str:
@@ -270,4 +238,4 @@ def read_gear(statement: Statement, units: Units) -> Gear:
     joints = found.idents("JOINTS", 2) or (*found.idents("J1", 1), *found.idents("J2", 1))
     if len(joints) != 2:
         raise found.fault("found no JOINTS, expected the two joints that the gear ties")
-    return Gear(found.ident(), statement.line, statement.alias, "GEAR", (joints[0], joints[1]), found.required("CV"))
+    return Gear(*found.head(), (joints[0], joints[1]), found.required("CV"))

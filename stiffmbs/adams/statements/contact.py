@@ -5,16 +5,14 @@ from __future__ import annotations
 import itertools
 from dataclasses import dataclass, replace
 
-from .arguments import Arguments
-from .constraints import Numbered
+from .arguments import Arguments, Numbered
 from .fault import DatasetFault
+from .geometry import ROUNDING
 from .text import Statement
 from .units import Units
 
 SPHERE, PLANE, ELLIPSOID, CYLINDER, BOX = "SPHERE", "PLANE", "ELLIPSOID", "CYLINDER", "BOX"
 SOLIDS = "SOLID_TO_SOLID"
-ROUND = 1e-9
-"""Relative difference of an ellipsoid's axes below which it is a sphere."""
 _SHAPES = ("ELLIPSOID", "PLANE", "CYLINDER", "BOX", "FRUSTUM", "TORUS", "CIRCLE", "ARC", "EXTERNAL", "OUTLINE", "FORCE", "SPRINGDAMPER", "CURVE")  # fmt: skip
 
 
@@ -42,7 +40,6 @@ class Contact(Numbered):
         Number of the pair: 0 for the first, then 2, 3, ...
     stiffness, damping, exponent, depth : float
         K, C, e, and the penetration at which full damping applies.
-    friction : Friction or None
     """
 
     shapes: tuple[int, int]
@@ -76,7 +73,6 @@ class Shape:
 
     Attributes
     ----------
-    sort : str
     marker : int
         Centre of a sphere or an ellipsoid, centre of one end of a cylinder about z, or a corner of a box.
     sizes : tuple of float
@@ -103,9 +99,7 @@ _NOT_READ = (
 def read_contact(statement: Statement, units: Units) -> Contact:
     """Read a contact between two primitives with stiffness and damping."""
     found = Arguments(statement, "CONTACT", _CONTACT)
-    for name in _NOT_READ:
-        if name in found:
-            raise found.fault(f"found {name}, expected a contact by IMPACT between primitives", found.line(name))
+    found.refuse(_NOT_READ, "a contact by IMPACT between primitives")
     if (kind := (found.text("TYPE") or SOLIDS).strip().upper()) and not SOLIDS.startswith(kind):
         raise found.fault(f"found TYPE = {kind}, expected {SOLIDS}", found.line("TYPE"))
     sides = found.idents("IGEOM"), found.idents("JGEOM")
@@ -113,15 +107,9 @@ def read_contact(statement: Statement, units: Units) -> Contact:
         raise found.fault("found no IGEOM or no JGEOM, expected one or more GRAPHICS for each")
     found.without_effect("IMPACT", "NO_FRICTION")
     first, *others = itertools.product(*sides)
-    needed = {name: found.number(name) for name in ("STIFFNESS", "EXPONENT", "DMAX")}
-    for name, value in needed.items():
-        if not (value or 0.0) > 0:
-            raise found.fault(f"found no {name}, expected a number above zero", found.line(name))
-    stiffness, exponent, depth = (value or 0.0 for value in needed.values())
-    return Contact(
-        found.ident(), statement.line, statement.alias, "CONTACT", first, stiffness,
-        found.number("DAMPING") or 0.0, exponent, depth, _friction(found), tuple(others),
-    )  # fmt: skip
+    stiffness, exponent, depth = (found.needed(name) for name in ("STIFFNESS", "EXPONENT", "DMAX"))
+    damping = found.number("DAMPING") or 0.0
+    return Contact(*found.head(), first, stiffness, damping, exponent, depth, _friction(found), tuple(others))
 
 
 def _friction(found: Arguments) -> Friction | None:
@@ -162,7 +150,7 @@ def read_shape(statement: Statement) -> Shape:
             raise found.fault(f"found no {name}, expected a number above zero", found.line(name))
     if sort == ELLIPSOID:
         sizes = tuple(size / 2 for size in sizes)
-        if max(sizes) - min(sizes) <= ROUND * max(sizes):
+        if max(sizes) - min(sizes) <= ROUNDING * max(sizes):
             return Shape(SPHERE, found.required(at), sizes[:1])
     return Shape(sort, found.required(at), sizes)
 

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from .arguments import Arguments
-from .constraints import Numbered
+from .arguments import Arguments, Numbered
 from .fault import DatasetFault
 from .text import Statement
 from .units import Units
@@ -17,6 +16,7 @@ _STARTS = ("DISPLACEMENT", "ICM")
 _PAIR_STARTS = tuple(side + name for side in "IJ" for name in _STARTS)
 _VELOCITIES = ("VELOCITY", "VX", "VY", "VZ")
 _PAIR_VELOCITIES = tuple(side + name for side in "IJ" for name in _VELOCITIES)
+UNSUPPORTED = "the velocities of the parts instead"
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,7 @@ def read_curve(statement: Statement, units: Units) -> SpaceCurve:
     except DatasetFault as fault:
         found = Arguments(replace(statement, pieces=()), "CURVE", ())
         matrix, closed, unread = 0, False, fault.reason
-    return SpaceCurve(found.ident(), statement.line, statement.alias, "CURVE", matrix, closed, unread)
+    return SpaceCurve(*found.head(), matrix, closed, unread)
 
 
 _CURVE = (
@@ -89,9 +89,9 @@ def _unread(found: Arguments) -> str:
 def read_point_on_curve(statement: Statement, units: Units) -> PointOnCurve:
     """Read a point-on-curve constraint."""
     found = Arguments(statement, "PTCV", ("CURVE", "I", "JFLOAT", "RM", *WITHOUT_EFFECT, *_STARTS, *_VELOCITIES))
-    _refuse(found, _VELOCITIES)
+    found.refuse(_VELOCITIES, UNSUPPORTED)
     return PointOnCurve(
-        found.ident(), statement.line, statement.alias, "PTCV", found.required("CURVE"), found.required("I"),
+        *found.head(), found.required("CURVE"), found.required("I"),
         found.required("JFLOAT"), found.required("RM"), _first_contact(found, "", found.required("RM"), units),
     )  # fmt: skip
 
@@ -100,12 +100,10 @@ def read_curve_on_curve(statement: Statement, units: Units) -> CurveOnCurve:
     """Read a curve-to-curve constraint."""
     names = tuple(side + name for name in ("CURVE", "FLOAT", "RM") for side in "IJ")
     found = Arguments(statement, "CVCV", (*names, *_PAIR_STARTS, *_PAIR_VELOCITIES))
-    _refuse(found, _PAIR_VELOCITIES)
+    found.refuse(_PAIR_VELOCITIES, UNSUPPORTED)
     first, second, i, j, own, other = (found.required(name) for name in names)
     starts = _first_contact(found, "I", own, units), _first_contact(found, "J", other, units)
-    return CurveOnCurve(
-        found.ident(), statement.line, statement.alias, "CVCV", (first, second), (own, other), i, j, starts
-    )
+    return CurveOnCurve(*found.head(), (first, second), (own, other), i, j, starts)
 
 
 def _first_contact(found: Arguments, side: str, axes: int, units: Units) -> FirstContact | None:
@@ -114,9 +112,3 @@ def _first_contact(found: Arguments, side: str, axes: int, units: Units) -> Firs
     if point is None:
         return None
     return FirstContact(tuple(x * units.length for x in point), found.reference(f"{side}ICM") or axes)
-
-
-def _refuse(found: Arguments, names: tuple[str, ...]) -> None:
-    for name in names:
-        if name in found:
-            raise found.fault(f"found {name}, expected the velocities of the parts instead", found.line(name))

@@ -4,30 +4,42 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
-from typing import Any, TypeVar
+from dataclasses import dataclass
+from typing import Any, Generic, TypeVar
 
-from ...describe.files.requested import unused_notes
 from ...errors import InputError
+from ...reading.files.requested import unused_notes
+from .arguments import Numbered
 from .bodies import Marker, Part, read_marker
 from .changes import Changes, Key, key_of
-from .constraints import Coupler, Gear, GeneralConstraint, Joint, Motion, Numbered
+from .constraints import Coupler, Gear, GeneralConstraint, Joint, Motion
 from .contact import Contact
+from .curves import CurveOnCurve, PointOnCurve, SpaceCurve
 from .elastic import Beam, Elastic, SpringDamper
-from .fault import DatasetFault, raise_all
+from .fault import MOST_TOLD, DatasetFault, raise_all
 from .forces import SingleForce, VectorForce, read_gravity
 from .friction import JointFriction
 from .keywords import LEFT_OUT, READERS, REFUSED, SINGLE, keyword
 from .left_out import LEFT_OUT_ARGUMENTS, TEXT, UNREAD_SYSTEM, is_unread_system
 from .outputs import Array, Request, Spline, Variable
 from .sensor import Sensor
+from .systems import Differential, Matrix
 from .text import ZERO_BYTE, Statement, statements, untitled
 from .units import Units, read_units
 
-MOST_LISTED = 8
 NO_CHANGES = Changes()
 Found = TypeVar("Found", bound=Numbered)
 Force = SingleForce | VectorForce | SpringDamper | Elastic | Beam
+
+
+class _Section(Generic[Found]):
+    """Statements of one keyword in a dataset, by number."""
+
+    def __init__(self, keyword: str) -> None:
+        self._keyword = keyword
+
+    def __get__(self, dataset: Dataset, owner: object = None) -> Mapping[int, Found]:
+        return dataset.statements.get(self._keyword, {})
 
 
 @dataclass(frozen=True)
@@ -38,7 +50,6 @@ class Dataset:
     ----------
     title : str
         Its first line.
-    units : Units
     gravity : tuple of float
         m/s^2.
     statements : mapping of str to (mapping of int to data)
@@ -52,12 +63,12 @@ class Dataset:
     """
 
     title: str
-    units: Units = field(default_factory=Units)
-    gravity: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    statements: Mapping[str, Mapping[int, Any]] = field(default_factory=dict)
-    notes: tuple[str, ...] = ()
-    inactive: frozenset[Key] = frozenset()
-    graphics: Mapping[int, Statement] = field(default_factory=dict)
+    units: Units
+    gravity: tuple[float, float, float]
+    statements: Mapping[str, Mapping[int, Any]]
+    notes: tuple[str, ...]
+    inactive: frozenset[Key]
+    graphics: Mapping[int, Statement]
 
     def _all(self, kind: type[Any]) -> tuple[Any, ...]:
         return tuple(x for numbered in self.statements.values() for x in numbered.values() if isinstance(x, kind))
@@ -68,67 +79,34 @@ class Dataset:
         return self._all(Part)
 
     @property
-    def markers(self) -> Mapping[int, Marker]:
-        return self.statements.get("MARKER", {})
-
-    @property
-    def joints(self) -> Mapping[int, Joint]:
-        """Joints without primitives, which are numbered separately."""
-        return self.statements.get("JOINT", {})
-
-    @property
-    def primitives(self) -> Mapping[int, Joint]:
-        return self.statements.get("JPRIM", {})
-
-    @property
-    def general_constraints(self) -> Mapping[int, GeneralConstraint]:
-        return self.statements.get("GCON", {})
-
-    @property
-    def motions(self) -> Mapping[int, Motion]:
-        return self.statements.get("MOTION", {})
-
-    @property
-    def couplers(self) -> Mapping[int, Coupler]:
-        return self.statements.get("COUPLER", {})
-
-    @property
-    def gears(self) -> Mapping[int, Gear]:
-        return self.statements.get("GEAR", {})
-
-    @property
     def forces(self) -> tuple[Force, ...]:
         """All forces except gravity, ordered by kind of statement."""
         return self._all(Force)  # type: ignore[arg-type]
 
     @property
-    def contacts(self) -> Mapping[int, Contact]:
-        return self.statements.get("CONTACT", {})
-
-    @property
-    def frictions(self) -> Mapping[int, JointFriction]:
-        return self.statements.get("FRICTION", {})
-
-    @property
-    def requests(self) -> Mapping[int, Request]:
-        return self.statements.get("REQUEST", {})
-
-    @property
-    def sensors(self) -> tuple[Sensor, ...]:
+    def active_sensors(self) -> tuple[Sensor, ...]:
         """Sensors that end or change a simulation."""
-        return tuple(sensor for sensor in self._all(Sensor) if sensor.then)
+        return tuple(sensor for sensor in self.sensors.values() if sensor.then)
 
-    @property
-    def variables(self) -> Mapping[int, Variable]:
-        return self.statements.get("VARIABLE", {})
-
-    @property
-    def splines(self) -> Mapping[int, Spline]:
-        return self.statements.get("SPLINE", {})
-
-    @property
-    def arrays(self) -> Mapping[int, Array]:
-        return self.statements.get("ARRAY", {})
+    markers = _Section[Marker]("MARKER")
+    joints = _Section[Joint]("JOINT")
+    primitives = _Section[Joint]("JPRIM")
+    general_constraints = _Section[GeneralConstraint]("GCON")
+    motions = _Section[Motion]("MOTION")
+    couplers = _Section[Coupler]("COUPLER")
+    gears = _Section[Gear]("GEAR")
+    points_on_curves = _Section[PointOnCurve]("PTCV")
+    curves_on_curves = _Section[CurveOnCurve]("CVCV")
+    contacts = _Section[Contact]("CONTACT")
+    frictions = _Section[JointFriction]("FRICTION")
+    requests = _Section[Request]("REQUEST")
+    sensors = _Section[Sensor]("SENSOR")
+    variables = _Section[Variable]("VARIABLE")
+    differentials = _Section[Differential]("DIFF")
+    splines = _Section[Spline]("SPLINE")
+    arrays = _Section[Array]("ARRAY")
+    curves = _Section[SpaceCurve]("CURVE")
+    matrices = _Section[Matrix]("MATRIX")
 
 
 def read_dataset(text: str, changes: Changes = NO_CHANGES) -> Dataset:
@@ -148,7 +126,7 @@ def read_dataset(text: str, changes: Changes = NO_CHANGES) -> Dataset:
     units, gravity = _single(named)
     data, faults = _data(named, units)
     if unread:
-        raise InputError("; ".join([unread, *map(str, faults[:MOST_LISTED])]))
+        raise InputError("; ".join([unread, *map(str, faults[:MOST_TOLD])]))
     raise_all(faults)
     graphics = {key_of(statement)[1]: statement for name, statement in named if name == "GRAPHICS"}
     solids = {number for contact in data.get("CONTACT", {}).values() for number in contact.graphics}
@@ -246,8 +224,8 @@ def _unread(named: list[tuple[str | None, Statement]]) -> str:
     ]
     if not unread:
         return ""
-    listed = ", ".join(f"{label} (line {line})" for label, line in unread[:MOST_LISTED])
-    more = f" and {len(unread) - MOST_LISTED} more" if len(unread) > MOST_LISTED else ""
+    listed = ", ".join(f"{label} (line {line})" for label, line in unread[:MOST_TOLD])
+    more = f" and {len(unread) - MOST_TOLD} more" if len(unread) > MOST_TOLD else ""
     return (
         f"found statements that are not read here: {listed}{more}; expected {', '.join((*SINGLE, *READERS))}, or "
         "graphics, output and analysis settings, which are left out"
@@ -278,8 +256,8 @@ def _notes(named: list[tuple[str | None, Statement]], ended: bool, without_title
         if name in LEFT_OUT or name in REFUSED:  # only a GSE reaches this point
             kinds.setdefault(name or "", []).append(statement.line)
     for name, lines in kinds.items():
-        listed = ", ".join(map(str, lines[:MOST_LISTED]))
-        more = f" and {len(lines) - MOST_LISTED} more" if len(lines) > MOST_LISTED else ""
+        listed = ", ".join(map(str, lines[:MOST_TOLD]))
+        more = f" and {len(lines) - MOST_TOLD} more" if len(lines) > MOST_TOLD else ""
         yield f"{name} (line{'s' if len(lines) > 1 else ''} {listed}{more}) is left out: {LEFT_OUT.get(name, UNREAD_SYSTEM)}"
     if not ended:
         yield "the dataset has no END, and may have been cut off"

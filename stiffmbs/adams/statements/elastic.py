@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
+import numpy as np
+
 from ..functions.function import read_function
-from .arguments import Arguments
-from .constraints import ROTATIONAL, TRANSLATIONAL, Numbered
+from .arguments import Arguments, Numbered
+from .constraints import ROTATIONAL, TRANSLATIONAL
 from .text import Statement
 from .units import Units
 
@@ -94,10 +97,7 @@ def read_spring_damper(statement: Statement, units: Units) -> SpringDamper:
     )  # fmt: skip
     values = ((found.number(name) or 0.0) * unit for name, unit in zip(names, dimensions, strict=True))
     k, c, length, preload = values
-    return SpringDamper(
-        found.ident(), statement.line, statement.alias, "SPRINGDAMPER", found.required("I"), found.required("J"), sort,
-        k, c, length, preload,
-    )  # fmt: skip
+    return SpringDamper(*found.head(), found.required("I"), found.required("J"), sort, k, c, length, preload)
 
 
 def read_bushing(statement: Statement, units: Units) -> Elastic:
@@ -107,11 +107,9 @@ def read_bushing(statement: Statement, units: Units) -> Elastic:
         [value for name in pair for value in found.numbers(name, 3) or (0.0,) * 3]
         for pair in (("K", "KT"), ("C", "CT"), ("FORCE", "TORQUE"))
     )
-    of_force = _six(units)
     return Elastic(
-        found.ident(), statement.line, statement.alias, "BUSHING", found.required("I"), found.required("J"),
-        _in_si(_diagonal(stiffness), units, 0), _in_si(_diagonal(damping), units, 1), (0.0,) * 6,
-        tuple(value * unit for value, unit in zip(preload, of_force, strict=True)),
+        *found.head(), found.required("I"), found.required("J"), _in_si(np.diag(stiffness), units, 0),
+        _in_si(np.diag(damping), units, 1), (0.0,) * 6, _scaled(preload, _forces(units)),
     )  # fmt: skip
 
 
@@ -120,16 +118,16 @@ def read_field(statement: Statement, units: Units) -> Elastic:
     names = ("I", "J", "KMATRIX", "CMATRIX", "CRATIO", "LENGTH", "FORCE", "FUNCTION", "ROUTINE")
     found = Arguments(statement, "FIELD", names, ("FUNCTION",))
     read_function(found, "FUNCTION")  # refuses a user subroutine
-    stiffness = _columns(found.numbers("KMATRIX", 36) or (0.0,) * 36)
-    ratio = found.number("CRATIO")
-    damping = [[part * ratio for part in row] for row in stiffness] if ratio else None
-    damping = damping or _columns(found.numbers("CMATRIX", 36) or (0.0,) * 36)
-    lengths = (*(units.length,) * 3, 1.0, 1.0, 1.0)
+    stiffness, ratio = _columns(found, "KMATRIX"), found.number("CRATIO")
+    damping = stiffness * ratio if ratio else _columns(found, "CMATRIX")
     return Elastic(
-        found.ident(), statement.line, statement.alias, "FIELD", found.required("I"), found.required("J"),
-        _in_si(stiffness, units, 0), _in_si(damping, units, 1), _scaled(found, "LENGTH", lengths),
-        _scaled(found, "FORCE", _six(units)),
+        *found.head(), found.required("I"), found.required("J"), _in_si(stiffness, units, 0), _in_si(damping, units, 1),
+        _scaled(found.numbers("LENGTH", 6), _lengths(units)), _scaled(found.numbers("FORCE", 6), _forces(units)),
     )  # fmt: skip
+
+
+def _columns(found: Arguments, name: str) -> np.ndarray:
+    return np.reshape(found.numbers(name, 36) or (0.0,) * 36, (6, 6)).T
 
 
 _SECTION = (("LENGTH", 1), ("AREA", 2), ("IXX", 4), ("IYY", 4), ("IZZ", 4))
@@ -144,52 +142,33 @@ def read_beam(statement: Statement, units: Units) -> Beam:
             f"found FORMULATION = {found.text('FORMULATION')}, expected LINEAR: the laws of the others are not published; several linear beams in a row bend as far",
             found.line("FORMULATION"),
         )
-    for name in (*(name for name, _ in _SECTION), "EMODULUS", "GMODULUS"):
-        if not (found.number(name) or 0.0) > 0:
-            raise found.fault(f"found no {name}, expected a number above zero", found.line(name))
-    length, area, ixx, iyy, izz = ((found.number(name) or 0.0) * units.length**power for name, power in _SECTION)
-    young, shear = ((found.number(name) or 0.0) * units.of(force=1, length=-2) for name in ("EMODULUS", "GMODULUS"))
-    matrix = found.numbers("CMATRIX", 21)
-    damping = (found.number("CRATIO") or 0.0) * units.time
+    length, area, ixx, iyy, izz = (found.needed(name) * units.length**power for name, power in _SECTION)
+    young, shear = (found.needed(name) * units.of(force=1, length=-2) for name in ("EMODULUS", "GMODULUS"))
+    half, damping = np.zeros((6, 6)), (found.number("CRATIO") or 0.0) * units.time
+    if matrix := found.numbers("CMATRIX", 21):  # lower triangle by columns, which are rows of the upper one
+        half[np.triu_indices(6)] = matrix
     return Beam(
-        found.ident(), statement.line, statement.alias, "BEAM", found.required("I"), found.required("J"), length, area,
+        *found.head(), found.required("I"), found.required("J"), length, area,
         ixx, iyy, izz, young, shear, (found.number("ASY") or 0.0, found.number("ASZ") or 0.0),
-        _in_si(_from_half(matrix), units, 1) if matrix else damping,
+        _in_si(half + np.triu(half, 1).T, units, 1) if matrix else damping,
     )  # fmt: skip
 
 
-def _six(units: Units) -> Six:
+def _forces(units: Units) -> np.ndarray:
     """Return the units of three forces and three torques."""
-    return (*(units.force,) * 3, *(units.of(force=1, length=1),) * 3)
+    return np.repeat([units.force, units.of(force=1, length=1)], 3)
 
 
-def _scaled(found: Arguments, name: str, factors: Six) -> Six:
-    values = found.numbers(name, 6) or (0.0,) * 6
-    return tuple(value * factor for value, factor in zip(values, factors, strict=True))
+def _lengths(units: Units) -> np.ndarray:
+    return np.repeat([units.length, 1.0], 3)
 
 
-def _diagonal(values: list[float]) -> list[list[float]]:
-    return [[value if k == row else 0.0 for k in range(6)] for row, value in enumerate(values)]
+def _scaled(values: Sequence[float] | None, factors: np.ndarray) -> Six:
+    return tuple((np.array(values) * factors).tolist()) if values else (0.0,) * 6
 
 
-def _columns(values: tuple[float, ...]) -> list[list[float]]:
-    return [[values[6 * column + row] for column in range(6)] for row in range(6)]
-
-
-def _from_half(values: tuple[float, ...]) -> list[list[float]]:
-    """Return a symmetric matrix from its lower triangle stored by columns."""
-    matrix = [[0.0] * 6 for _ in range(6)]
-    places = [(row, column) for column in range(6) for row in range(column, 6)]
-    for (row, column), value in zip(places, values, strict=True):
-        matrix[row][column] = matrix[column][row] = value
-    return matrix
-
-
-def _in_si(matrix: list[list[float]], units: Units, time: int) -> Matrix:
+def _in_si(matrix: np.ndarray, units: Units, time: int) -> Matrix:
     """Return a stiffness matrix (or damping, with one power of time) in SI units."""
-    lengths = (*(units.length,) * 3, 1.0, 1.0, 1.0)
-    rows = _six(units)
-    return tuple(
-        tuple(part * row / length * units.time**time for part, length in zip(parts, lengths, strict=True))
-        for parts, row in zip(matrix, rows, strict=True)
-    )
+    with np.errstate(over="ignore", invalid="ignore"):
+        scaled = matrix * _forces(units)[:, None] / _lengths(units) * units.time**time
+    return tuple(map(tuple, scaled.tolist()))

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ..functions.function import Function, read_function, required_function
-from .arguments import Arguments
-from .constraints import ROTATIONAL, TRANSLATIONAL, Numbered
+from .arguments import Arguments, Numbered
+from .constraints import ROTATIONAL, TRANSLATIONAL
 from .text import Statement
 from .units import Units
 
@@ -59,7 +59,7 @@ def read_single_force(statement: Statement, units: Units) -> SingleForce:
     if sort is None:
         raise found.fault("found no kind of force, expected TRANSLATIONAL or ROTATIONAL")
     return SingleForce(
-        found.ident(), statement.line, statement.alias, "SFORCE", found.required("I"), found.required("J"), sort,
+        *found.head(), found.required("I"), found.required("J"), sort,
         "ACTIONONLY" in found, required_function(found, "FUNCTION"),
     )  # fmt: skip
 
@@ -77,7 +77,7 @@ def read_vector_force(statement: Statement, units: Units, keyword: str) -> Vecto
     if "FUNCTION" in found or (missing and keyword != "GFORCE"):
         raise found.fault(f"found no {', no '.join(missing)}, expected an expression for each of {', '.join(names)}")
     return VectorForce(
-        found.ident(), statement.line, statement.alias, keyword, found.required("I"), found.required("JFLOAT"),
+        *found.head(), found.required("I"), found.required("JFLOAT"),
         found.reference("RM"), *(tuple(_function_or_none(found, n, names) for n in kind) for kind in (_FORCE, _TORQUE)),
     )  # fmt: skip
 

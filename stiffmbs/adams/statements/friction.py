@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from .arguments import Arguments
-from .constraints import Numbered
+from .arguments import Arguments, Numbered
 from .text import Statement
 from .units import Units
 
@@ -20,10 +19,9 @@ class JointFriction(Numbered):
 
     Attributes
     ----------
-    joint : int
     static, dynamic : float
         Coefficients.
-    stiction_velocity, sliding_velocity : float
+    stiction_velocity, friction_velocity : float
         Sliding speeds at which the static coefficient is reached, and the dynamic one.
     inputs : frozenset of str
         Those of `INPUTS` that contribute to the normal force.
@@ -41,7 +39,7 @@ class JointFriction(Numbered):
     static: float
     dynamic: float
     stiction_velocity: float
-    sliding_velocity: float
+    friction_velocity: float
     inputs: frozenset[str]
     pin: float
     ball: float
@@ -62,57 +60,32 @@ _ABOVE_ZERO = {
 """Positive numbers with Adams' defaults."""
 FROM_ZERO = ("MU_STATIC", "MU_DYNAMIC", "FRICTION_FORCE_PRELOAD", "FRICTION_TORQUE_PRELOAD")
 LEFT_OUT = ("MAX_STICTION_DEFORMATION", "INACTIVE", "INACTIVE_DURING")
-_NOT_READ = (
-    "MAX_FRICTION_FORCE",
-    "MAX_FRICTION_TORQUE",
-    "BRISTLE_STIFFNESS",
-    "BRISTLE_DAMPING",
-    "VISCOUS_DAMPING",
-)
-ARGUMENTS = (
-    *FROM_ZERO,
-    *_ABOVE_ZERO,
-    "JOINT",
-    "FORMULATION",
-    "OVERLAP_DELTA",
-    "EFFECT",
-    "INPUTS",
-    "YOKE",
-    *LEFT_OUT,
-    *_NOT_READ,
-)
+_NOT_READ = ("MAX_FRICTION_FORCE", "MAX_FRICTION_TORQUE", "BRISTLE_STIFFNESS", "BRISTLE_DAMPING", "VISCOUS_DAMPING")
+_WORDS = ("JOINT", "FORMULATION", "OVERLAP_DELTA", "EFFECT", "INPUTS", "YOKE")
+ARGUMENTS = (*FROM_ZERO, *_ABOVE_ZERO, *_WORDS, *LEFT_OUT, *_NOT_READ)
 
 
 def read_friction(statement: Statement, units: Units) -> JointFriction:
     """Read joint friction of Adams' ORIGINAL formulation, with stiction."""
     found = Arguments(statement, "FRICTION", ARGUMENTS)
-    for name in _NOT_READ:
-        if name in found:
-            raise found.fault(f"found {name}, expected friction without it", found.line(name))
+    found.refuse(_NOT_READ, "friction without it")
     _one_word(found, "FORMULATION", ("ORIGINAL",))
     for name in ("INACTIVE", "INACTIVE_DURING"):
         _one_word(found, name, ("STATICS",))
     effect = _effect(found)
-    numbers = {name: _number(found, name, usual) for name, usual in _ABOVE_ZERO.items()}
+    numbers = {name: found.positive(name) or usual for name, usual in _ABOVE_ZERO.items()}
     static, dynamic, force, torque = (_from_zero(found, name) for name in FROM_ZERO)
     if numbers["TRANSITION_VELOCITY_COEFFICIENT"] <= 1:
         raise found.fault("found TRANSITION_VELOCITY_COEFFICIENT up to 1, expected a larger number")
     slow = numbers["STICTION_TRANSITION_VELOCITY"]
     return JointFriction(
-        found.ident(), statement.line, statement.alias, "FRICTION", found.required("JOINT"),
+        *found.head(), found.required("JOINT"),
         dynamic if effect == "SLIDING" else static, dynamic, slow, slow * numbers["TRANSITION_VELOCITY_COEFFICIENT"],
         _inputs(found), numbers["PIN_RADIUS"], numbers["BALL_RADIUS"], numbers["FRICTION_ARM"],
         numbers["BENDING_REACTION_ARM"], numbers["REACTION_ARM"], numbers["INITIAL_OVERLAP"],
         OVERLAP[_one_word(found, "OVERLAP_DELTA", tuple(OVERLAP))], force, torque,
         YOKES[_one_word(found, "YOKE", tuple(YOKES))],
     )  # fmt: skip
-
-
-def _number(found: Arguments, name: str, usual: float) -> float:
-    value = found.number(name)
-    if value is not None and not value > 0:
-        raise found.fault(f"found {name} = {found.text(name)}, expected a number above zero", found.line(name))
-    return usual if value is None else value
 
 
 def _from_zero(found: Arguments, name: str) -> float:

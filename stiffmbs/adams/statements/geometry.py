@@ -10,6 +10,10 @@ import numpy as np
 from .arguments import Arguments
 
 IDENTITY = np.eye(3)
+ROUNDING = 1e-9
+"""Relative difference of lengths, and sine or cosine of an angle, that counts as rounding."""
+PRECISION = 1e-6
+"""Relative precision of a dataset's numbers, which are often written with few digits."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,7 +107,7 @@ def _from_z(z: np.ndarray | None, x: np.ndarray | None) -> np.ndarray | None:
         x = IDENTITY[0] if abs(z[0]) < 0.999 * np.linalg.norm(z) else IDENTITY[1]
     z = z / np.linalg.norm(z)
     y = np.cross(z, x)
-    if not np.linalg.norm(y) > 1e-9 * np.linalg.norm(x):
+    if not np.linalg.norm(y) > ROUNDING * np.linalg.norm(x):
         return None
     y = y / np.linalg.norm(y)
     return np.column_stack([np.cross(y, z), y, z])
@@ -115,7 +119,7 @@ def _from_x(x: np.ndarray, z: np.ndarray | None) -> np.ndarray | None:
         z = IDENTITY[2]
     x = x / np.linalg.norm(x)
     y = np.cross(z, x)
-    if not np.linalg.norm(y) > 1e-9 * np.linalg.norm(z):
+    if not np.linalg.norm(y) > ROUNDING * np.linalg.norm(z):
         return None
     y = y / np.linalg.norm(y)
     return np.column_stack([x, y, np.cross(x, y)])

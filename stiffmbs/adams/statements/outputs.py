@@ -7,11 +7,12 @@ from dataclasses import dataclass
 
 from ..functions.expression import parse
 from ..functions.function import Function, is_subroutine, read_any_function, read_function, required_function
-from .arguments import Arguments
-from .constraints import Numbered
+from .arguments import Arguments, Numbered
 from .text import Statement
 from .units import Units
 
+FEWEST_POINTS = 4
+"""Smallest number of points of a spline or a curve."""
 SORTS = ("DISPLACEMENT", "VELOCITY", "ACCELERATION", "FORCE")
 COLUMNS = tuple(f"F{k}" for k in range(1, 9))
 FUNCTIONS = (*COLUMNS, "FUNCTION")
@@ -31,7 +32,6 @@ class Request(Numbered):
         Columns computed by a user subroutine, which are ignored.
     names : tuple of str
         Column names, if given.
-    comment : str
     """
 
     sort: str | None
@@ -50,6 +50,11 @@ class Variable(Numbered):
 
     function: Function
     start: float = 0.0
+
+    @property
+    def state(self) -> str:
+        """Name of its state in the scene if it depends on itself."""
+        return f"{self.name}_value"
 
 
 @dataclass(frozen=True)
@@ -89,7 +94,7 @@ def read_request(statement: Statement, units: Units) -> Request:
     if sort is not None and i is None:
         raise found.fault(f"found no I, expected the marker whose {sort.lower()} is asked for")
     return Request(
-        found.ident(), statement.line, statement.alias, "REQUEST", sort, i, j, axes,
+        *found.head(), sort, i, j, axes,
         functions, computed, tuple(text.strip().strip("\"'") for text in found.texts("CNAMES")), found.text("COMMENT") or "",
     )  # fmt: skip
 
@@ -103,12 +108,8 @@ def _of_variable(found: Arguments, ident: int) -> tuple[str, Function]:
 def read_variable(statement: Statement, units: Units) -> Variable:
     """Read a named expression."""
     found = Arguments(statement, "VARIABLE", ("IC", "FUNCTION", "ROUTINE"), ("FUNCTION",))
-    if is_subroutine(found, "FUNCTION"):
-        function = read_any_function(found, "FUNCTION")
-    else:
-        function = required_function(found, "FUNCTION")
-    start = found.number("IC") or 0.0
-    return Variable(found.ident(), statement.line, statement.alias, "VARIABLE", function, start)
+    reader = read_any_function if is_subroutine(found, "FUNCTION") else required_function
+    return Variable(*found.head(), reader(found, "FUNCTION"), found.number("IC") or 0.0)
 
 
 def read_spline(statement: Statement, units: Units) -> Spline:
@@ -119,19 +120,16 @@ def read_spline(statement: Statement, units: Units) -> Spline:
     x, y = found.numbers("X"), found.numbers("Y")
     if x is None or y is None or len(x) != len(y):
         raise found.fault(f"found {len(x or ())} X and {len(y or ())} Y, expected as many of each")
-    if len(x) < 4 or any(after <= before for before, after in itertools.pairwise(x)):
+    if len(x) < FEWEST_POINTS or any(after <= before for before, after in itertools.pairwise(x)):
         raise found.fault("found less than four X or such that do not increase, expected four or more increasing ones")
-    return Spline(found.ident(), statement.line, statement.alias, "SPLINE", x, y, "LINEAR_EXTRAPOLATE" in found)
+    return Spline(*found.head(), x, y, "LINEAR_EXTRAPOLATE" in found)
 
 
 def read_array(statement: Statement, units: Units) -> Array:
     """Read a list of numbers, or the states, inputs or outputs of a system."""
     found = Arguments(statement, "ARRAY", ("IC", "SIZE", "NUMBERS", "X", "Y", "U", "VARIABLES"))
     return Array(
-        found.ident(),
-        statement.line,
-        statement.alias,
-        "ARRAY",
+        *found.head(),
         found.numbers("NUMBERS") or (),
         found.idents("VARIABLES"),
     )

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from .arguments import Arguments
-from .constraints import Numbered
+from .arguments import Arguments, Numbered
 from .text import Statement
 from .units import Units
 
@@ -23,4 +22,4 @@ def read_plant(statement: Statement, units: Units, keyword: str) -> Plant:
     variables = found.idents("VARIABLES")
     if not variables:
         raise found.fault("found no VARIABLES, expected the numbers of VARIABLE statements")
-    return Plant(found.ident(), statement.line, statement.alias, keyword, variables)
+    return Plant(*found.head(), variables)

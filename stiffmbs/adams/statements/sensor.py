@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ..functions.function import Function, read_function, required_function
-from .arguments import Arguments
-from .constraints import Numbered
+from .arguments import Arguments, Numbered
 from .text import Statement
 from .units import Units
 
@@ -25,7 +24,6 @@ class Sensor(Numbered):
 
     Attributes
     ----------
-    function : Function
     relation : str
         ``equals``, ``at_least`` or ``at_most``.
     value, error : float
@@ -53,18 +51,8 @@ class Sensor(Numbered):
 
 def read_sensor(statement: Statement, units: Units) -> Sensor:
     """Read a sensor."""
-    names = (
-        "FUNCTION",
-        "VALUE",
-        "ERROR",
-        "ANGULAR",
-        *RELATIONS,
-        *ENDS,
-        *RECORDS,
-        *WITHOUT_EFFECT,
-        "ROUTINE",
-        "EVAL_ROUTINE",
-    )
+    own = ("FUNCTION", "VALUE", "ERROR", "ANGULAR", "ROUTINE", "EVAL_ROUTINE")
+    names = (*own[:4], *RELATIONS, *ENDS, *RECORDS, *WITHOUT_EFFECT, *own[4:])
     found = Arguments(statement, "SENSOR", names, ("FUNCTION", "EVALUATE"))
     value, error = found.number("VALUE"), found.number("ERROR")
     if value is None:
@@ -73,12 +61,10 @@ def read_sensor(statement: Statement, units: Units) -> Sensor:
         raise found.fault(f"found ERROR = {found.text('ERROR')}, expected no number below zero", found.line("ERROR"))
     relation = RELATIONS[found.one_of(*RELATIONS) or "EQ"]
     ends = found.one_of(*ENDS)
-    interval = found.number("DT")
-    if interval is not None and not interval > 0:
-        raise found.fault(f"found DT = {found.text('DT')}, expected a number above zero", found.line("DT"))
+    interval = found.positive("DT")
     then = ENDS[ends] if ends else "on" if any(name in found for name in RECORDS) else ""
     return Sensor(
-        found.ident(), statement.line, statement.alias, "SENSOR", required_function(found, "FUNCTION"), relation, value,
+        *found.head(), required_function(found, "FUNCTION"), relation, value,
         USUAL_ERROR if error is None else error, then, interval, read_function(found, "EVALUATE"),
         tuple(name for name in WITHOUT_EFFECT if name in found),
     )  # fmt: skip

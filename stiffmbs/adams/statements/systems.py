@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ..functions.function import Function, required_function
-from .arguments import Arguments
-from .constraints import Numbered
+from .arguments import Arguments, Numbered
 from .text import Statement
 from .units import Units
 
@@ -19,8 +18,6 @@ class Differential(Numbered):
     ----------
     function : Function
         Rate per unit of time of the dataset; for an implicit equation a residual with the rate as DIF1.
-    start : float
-    implicit : bool
     start_of_rate : float
         Initial guess of the rate of an implicit equation.
     """
@@ -29,6 +26,11 @@ class Differential(Numbered):
     start: float
     implicit: bool = False
     start_of_rate: float = 0.0
+
+    @property
+    def rate(self) -> str:
+        """Name of the rate of an implicit equation in the scene."""
+        return f"{self.name}_rate"
 
 
 @dataclass(frozen=True)
@@ -68,7 +70,7 @@ def read_differential(statement: Statement, units: Units) -> Differential:
     found = Arguments(statement, "DIFF", ("IC", "FUNCTION", "ROUTINE", "IMPLICIT", "STATIC_HOLD"), ("FUNCTION",))
     start = (*(found.numbers("IC", 1, 2) or (0.0,)), 0.0)
     return Differential(
-        found.ident(), statement.line, statement.alias, "DIFF", required_function(found, "FUNCTION"), start[0],
+        *found.head(), required_function(found, "FUNCTION"), start[0],
         "IMPLICIT" in found, start[1],
     )  # fmt: skip
 
@@ -81,14 +83,14 @@ def read_matrix(statement: Statement, units: Units) -> Matrix:
         raise found.fault("found FILE, expected the numbers in VALUES", found.line("FILE"))
     values = found.numbers("VALUES") or ()
     if found.one_of("FULL", "SPARSE") == "SPARSE":
-        return Matrix(found.ident(), statement.line, statement.alias, "MATRIX", _from_entries(found, values))
+        return Matrix(*found.head(), _from_entries(found, values))
     rows, columns = (int(found.number(name) or 0) for name in ("M", "N"))
     if rows < 1 or columns < 1 or len(values) != rows * columns:
         raise found.fault(f"found {len(values)} VALUES of {rows} rows and {columns} columns, expected as many of each")
     by_rows = (found.text("FULL") or "RORDER").strip().upper().startswith("R")
     at = (lambda i, j: i * columns + j) if by_rows else (lambda i, j: j * rows + i)
     whole = tuple(tuple(values[at(i, j)] for j in range(columns)) for i in range(rows))
-    return Matrix(found.ident(), statement.line, statement.alias, "MATRIX", whole)
+    return Matrix(*found.head(), whole)
 
 
 def _from_entries(found: Arguments, values: tuple[float, ...]) -> tuple[tuple[float, ...], ...]:
@@ -107,7 +109,7 @@ def read_linear_system(statement: Statement, units: Units) -> LinearSystem:
     u, y, b, c, d, start = (found.reference(name) for name in ("U", "Y", "B", "C", "D", "IC"))
     if (u is None) != (b is None):
         raise found.fault("found one of U and B alone, expected both or neither")
-    return LinearSystem(found.ident(), statement.line, statement.alias, "LSE", x, u, y, a, b, c, d, start)
+    return LinearSystem(*found.head(), x, u, y, a, b, c, d, start)
 
 
 def read_transfer_function(statement: Statement, units: Units) -> TransferFunction:
@@ -119,6 +121,6 @@ def read_transfer_function(statement: Statement, units: Units) -> TransferFuncti
             "found no proper transfer function, expected NUMERATOR and at least as many numbers of DENOMINATOR, the last not zero"
         )
     return TransferFunction(
-        found.ident(), statement.line, statement.alias, "TFSISO", found.required("X"), found.required("U"),
+        *found.head(), found.required("X"), found.required("U"),
         found.required("Y"), numerator, denominator,
     )  # fmt: skip

@@ -8,12 +8,12 @@ pieces; ``\\`` ends a function.  MSC Adams/Solver, "Using statements to define y
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
-from ...describe.files.requested import Fields
-from ...describe.files.text_file import lines
+from ...reading.files.requested import Fields
+from ...reading.files.text_file import lines
 
 _HEAD = re.compile(r"\s*([A-Za-z_]\w*)\s*(?:/\s*((?:\w+(?=\s*(?:[,\x00]|\Z)))?))?\s*(.*)", re.DOTALL)
 """Name, optional number after the slash, and rest of a statement."""
@@ -31,7 +31,6 @@ class Subsystem:
 
     Attributes
     ----------
-    text : str
     line : int
         First line in the file.
     on_new_line : bool
@@ -56,8 +55,6 @@ class Statement:
         Text before the slash, in capitals.
     ident : str
         Text after the slash.
-    pieces : tuple of Subsystem
-    line : int
     alias : str
         Name in Adams/View, from a comment before the statement.
     changes : tuple of (int, tuple of Subsystem)
@@ -73,9 +70,6 @@ class Statement:
     alias: str = ""
     changes: tuple[tuple[int, tuple[Subsystem, ...]], ...] = ()
     requests: list[Fields[Any]] = field(default_factory=list, compare=False)
-
-    def read_as(self, arguments: Mapping[str, tuple[int, tuple[str, ...]]]) -> None:
-        """Receive the arguments by full name, with lines and values, when they are read; a hook for listings."""
 
 
 def statements(text: str) -> tuple[str, tuple[Statement, ...], bool]:

@@ -2,33 +2,36 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from ...reading.units.quantity import quantity
 from .arguments import Arguments
 from .text import Statement
 
-POUND, G, FOOT = 0.45359237, 9.80665, 0.3048
-_FORCES = {
-    "NEWTON": 1.0, "KNEWTON": 1e3, "MEGANEWTON": 1e6, "CENTINEWTON": 1e-2, "MILLINEWTON": 1e-3, "MICRONEWTON": 1e-6,
-    "NANONEWTON": 1e-9, "DYNE": 1e-5, "KILOGRAM_FORCE": G, "POUND_FORCE": POUND * G, "KPOUND_FORCE": 1e3 * POUND * G,
-    "OUNCE_FORCE": POUND * G / 16, "POUNDAL": POUND * FOOT,
+_KINDS = {
+    "FORCE": {
+        "NEWTON": "N", "KNEWTON": "kN", "MEGANEWTON": "MN", "CENTINEWTON": "cN", "MILLINEWTON": "mN",
+        "MICRONEWTON": "1e-6 N", "NANONEWTON": "1e-9 N", "DYNE": "1e-5 N", "KILOGRAM_FORCE": "kgf",
+        "POUND_FORCE": "lbf", "KPOUND_FORCE": "1e3 lbf", "OUNCE_FORCE": "0.0625 lbf", "POUNDAL": "1 lb*ft/s^2",
+    },
+    "MASS": {
+        "KILOGRAM": "kg", "GRAM": "g", "MILLIGRAM": "mg", "MICROGRAM": "1e-9 kg", "NANOGRAM": "1e-12 kg",
+        "TONNE": "tonne", "POUND_MASS": "lb", "KPOUND_MASS": "1e3 lb", "OUNCE_MASS": "oz", "SLUG": "slug",
+        "SLINCH": "12 slug", "US_TON": "2e3 lb",
+    },
+    "LENGTH": {
+        "METER": "m", "MILLIMETER": "mm", "CENTIMETER": "cm", "KILOMETER": "km", "MICROMETER": "um",
+        "NANOMETER": "1e-9 m", "ANGSTROM": "1e-10 m", "INCH": "inch", "FOOT": "ft", "YARD": "yd", "MILE": "mile",
+        "MILS": "1e-3 inch", "MICROINCH": "1e-6 inch",
+    },
+    "TIME": {
+        "SECOND": "s", "MILLISECONDS": "ms", "MICROSECOND": "us", "NANOSECOND": "1e-9 s", "MINUTE": "min", "HOUR": "h",
+        "DAY": "day",
+    },
 }  # fmt: skip
-_MASSES = {
-    "KILOGRAM": 1.0, "GRAM": 1e-3, "MILLIGRAM": 1e-6, "MICROGRAM": 1e-9, "NANOGRAM": 1e-12, "TONNE": 1e3,
-    "POUND_MASS": POUND, "KPOUND_MASS": 1e3 * POUND, "OUNCE_MASS": POUND / 16, "SLUG": POUND * G / FOOT,
-    "SLINCH": 12 * POUND * G / FOOT, "US_TON": 2e3 * POUND,
-}  # fmt: skip
-_LENGTHS = {
-    "METER": 1.0, "MILLIMETER": 1e-3, "CENTIMETER": 1e-2, "KILOMETER": 1e3, "MICROMETER": 1e-6, "NANOMETER": 1e-9,
-    "ANGSTROM": 1e-10, "INCH": FOOT / 12, "FOOT": FOOT, "YARD": 3 * FOOT, "MILE": 5280 * FOOT, "MILS": FOOT / 12e3,
-    "MICROINCH": FOOT / 12e6,
-}  # fmt: skip
-_TIMES = {
-    "SECOND": 1.0, "MILLISECONDS": 1e-3, "MICROSECOND": 1e-6, "NANOSECOND": 1e-9, "MINUTE": 60.0, "HOUR": 3600.0,
-    "DAY": 86400.0,
-}  # fmt: skip
-_KINDS = {"FORCE": _FORCES, "MASS": _MASSES, "LENGTH": _LENGTHS, "TIME": _TIMES}
+"""Units in those of scenes."""
 
 
 @dataclass(frozen=True)
@@ -46,11 +49,11 @@ class Units:
 
 
 _SYSTEMS = {
-    "MKS": Units(),
-    "CGS": Units(1e-5, 1e-3, 1e-2, 1.0),
-    "FPS": Units(POUND * G, POUND, FOOT, 1.0),
-    "IPS": Units(POUND * G, POUND, FOOT / 12, 1.0),
-    "NONE": Units(),
+    "MKS": ("N", "kg", "m", "s"),
+    "CGS": ("1e-5 N", "g", "cm", "s"),
+    "FPS": ("lbf", "lb", "ft", "s"),
+    "IPS": ("lbf", "lb", "inch", "s"),
+    "NONE": ("N", "kg", "m", "s"),
 }
 
 
@@ -64,20 +67,20 @@ def read_units(statement: Statement) -> Units:
     """
     found = Arguments(statement, "UNITS", (*_KINDS, "SYSTEM", "UCF"))
     if found.one_of("SYSTEM", "UCF") == "SYSTEM":
-        return _named(found, "SYSTEM", _SYSTEMS)
+        return Units(*map(_factor, _named(found, "SYSTEM", _SYSTEMS)))
     if "UCF" in found:
-        factor = found.number("UCF")
-        if not factor or factor < 0:
-            raise found.fault(f"found UCF = {found.text('UCF')}, expected a number above zero", found.line("UCF"))
-        return Units(force=factor)
+        return Units(force=found.positive("UCF") or 1.0)
     missing = [kind for kind in _KINDS if kind not in found]
     if missing:
         raise found.fault(f"found no {', no '.join(missing)}, expected {', '.join(_KINDS)}, or SYSTEM, or UCF")
-    force, mass, length, time = (_named(found, kind, units) for kind, units in _KINDS.items())
-    return Units(force, mass, length, time)
+    return Units(*(_factor(_named(found, kind, units)) for kind, units in _KINDS.items()))
 
 
-def _named(found: Arguments, kind: str, known: dict[str, Any]) -> Any:
+def _factor(text: str) -> float:
+    return quantity(text if text[0].isdigit() else f"1 {text}").value
+
+
+def _named(found: Arguments, kind: str, known: Mapping[str, Any]) -> Any:
     """Return the value of a possibly abbreviated name."""
     word = (found.text(kind) or "").upper()
     for name, unit in known.items():

@@ -7,30 +7,19 @@ from typing import Any
 
 import numpy as np
 
-from ...describe.model_data import ModelData
-from ...describe.settings import RunSettings
+from ...dynamics.algebraic_states import failure
+from ...dynamics.dynamics import Dynamics
 from ...errors import SolverError
+from ...model.model_data import ModelData
+from ...model.settings import RunSettings
 from ...redundancy.redundancy import Redundancy
-from ...solve.algebraic_states import failure
-from ...solve.dynamics import Dynamics
 from ..job import Runnable, prepare
 from ..start_from import StartFrom
 
 
 @dataclass(frozen=True)
 class AtState:
-    """Model whose state satisfies the constraints, with accelerations and multipliers.
-
-    Attributes
-    ----------
-    data : ModelData
-    redundancy : Redundancy
-    dynamics : Dynamics
-        Dynamics whose state has q, u and lam.
-    t : float
-        Time, s.
-    acceleration : ndarray, shape (n_u,)
-    """
+    """Model at a time, s, with accelerations; the state of its dynamics has q, u and lam that satisfy the constraints."""
 
     data: ModelData
     redundancy: Redundancy
@@ -46,18 +35,7 @@ def at_state(
     start_from: StartFrom | None = None,
     **changes: Any,
 ) -> AtState:
-    """Return a model at its start, or at a time of its motion.
-
-    Parameters
-    ----------
-    model : Model, Scene, str or Path
-    settings : RunSettings, optional
-    at : float, optional
-        Time, s; the start of the run by default.
-    start_from : Solution, str, Path or SavedState, optional
-        As for `stiffmbs.run`.
-    **changes
-        Fields of the settings to change.
+    """Return a model at its start, or at a time of its motion, s; `start_from` and changes of settings as for `stiffmbs.run`.
 
     Raises
     ------

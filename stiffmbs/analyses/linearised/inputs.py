@@ -8,13 +8,14 @@ from pathlib import Path
 from typing import Any
 
 from ...compile.bodies import BODY_KINDS
-from ...describe.building.model_builder import ModelBuilder
-from ...describe.element import Force
-from ...describe.model_data import ModelData
-from ...describe.parts.names import Names
-from ...describe.states.amount import Amount
-from ...describe.table import Table
+from ...elements.element import Force
+from ...elements.states.amount import Amount
 from ...errors import InputError
+from ...model.model_builder import ModelBuilder
+from ...model.model_data import ModelData
+from ...reading.did_you_mean import did_you_mean
+from ...reading.names import Names
+from ...reading.table import Table
 from ..load_scene import load_scene
 
 Parameterised = Callable[[float], ModelBuilder[Any, Any, Any] | ModelData]
@@ -26,17 +27,8 @@ FORCE = "input_"
 def force_on(model: ModelBuilder[Any, Any, Any] | ModelData, name: str) -> Parameterised:
     """Return a model as a function of an added force or torque.
 
-    Parameters
-    ----------
-    model : Model or Scene
-    name : str
-        An input of the model, or ``BODY.COMPONENT`` at the centre of mass, or ``BODY.MARKER.COMPONENT`` at a marker:
-        ``chassis.fy``, ``bar.end.fx``; in ground axes, N or N m.
-
-    Raises
-    ------
-    InputError
-        If there is no such body or component.
+    The name is an input of the model, or ``BODY.COMPONENT`` at the centre of mass, or ``BODY.MARKER.COMPONENT`` at a marker:
+    ``chassis.fy``, ``bar.end.fx``; in ground axes, N or N m.  Raise an InputError if there is no such body or component.
     """
     data: ModelData = model.data() if isinstance(model, ModelBuilder) else model
     if name in data.inputs:
@@ -45,8 +37,9 @@ def force_on(model: ModelBuilder[Any, Any, Any] | ModelData, name: str) -> Param
     body, marker = Names(frozenset(data.bodies)).body_and_marker(at)
     components = BODY_KINDS[data.dimensions].reactions
     if body not in data.bodies or component not in components:
+        known = (*data.inputs, *(f"{each}.{part}" for each in data.bodies for part in components))
         raise InputError(
-            f"input '{name}': found no such force, expected BODY.COMPONENT or BODY.MARKER.COMPONENT with one of "
+            f"input '{name}': found no such force{did_you_mean(name, known)}, expected BODY.COMPONENT or BODY.MARKER.COMPONENT with one of "
             f"{', '.join(components)}, or a parameter of the scene"
         )
 
@@ -55,16 +48,7 @@ def force_on(model: ModelBuilder[Any, Any, Any] | ModelData, name: str) -> Param
 
 @dataclass(frozen=True)
 class ForceOnBody:
-    """Model as a function of a force or torque on a body.
-
-    Attributes
-    ----------
-    data : ModelData
-    place : dict
-        Marker at which the force acts.
-    component : int
-        Index among the components of a reaction.
-    """
+    """Model as a function of a force or torque on a marker: a component, by its index, of a reaction."""
 
     data: ModelData
     place: dict[str, Any]
@@ -98,10 +82,10 @@ def _applied(dimensions: int, at: dict[str, Any], loads: list[float]) -> Force:
     """Return the applied force or torque with the given components, of which at most one is nonzero."""
     force, torque = tuple(loads[:dimensions]), tuple(loads[dimensions:])
     if dimensions == 2:
-        from ...describe.forces.applied import AppliedForce, AppliedTorque
+        from ...elements.forces.applied import AppliedForce, AppliedTorque
 
         return AppliedTorque(i=at, torque=torque[0]) if any(torque) else AppliedForce(i=at, force=force)  # type: ignore[arg-type]
-    from ...describe.spatial.forces import applied as in_space
+    from ...elements.spatial.forces import applied as in_space
 
     if any(torque):
         return in_space.AppliedTorque(i=at, torque=torque)  # type: ignore[arg-type]
@@ -109,23 +93,11 @@ def _applied(dimensions: int, at: dict[str, Any], loads: list[float]) -> Force:
 
 
 def parameter_of(path: str | Path, name: str, changes: list[tuple[str, str]]) -> Parameterised:
-    """Return a scene as a function of the change of one of its parameters.
-
-    Parameters
-    ----------
-    path : str or Path
-    name : str
-    changes : list of (str, str)
-        As for `load_scene`.
-
-    Raises
-    ------
-    InputError
-        If the scene has no such parameter.
-    """
+    """Return a scene as a function of the change of one of its parameters; raise an InputError if it has no such parameter."""
     found = load_scene(path, changes).parameters
     if name not in found:
         known = ", ".join(found) or "none"
-        raise InputError(f"input '{name}': found no such parameter, expected one of {known}, or BODY.COMPONENT")
+        near = did_you_mean(name, found)
+        raise InputError(f"input '{name}': found no such parameter{near}, expected one of {known}, or BODY.COMPONENT")
     value = float(found[name])
     return lambda shift: load_scene(path, [*changes, (f"parameters.{name}", repr(value + shift))])

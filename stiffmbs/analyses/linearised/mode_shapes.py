@@ -7,14 +7,12 @@ from dataclasses import replace
 import numpy as np
 from scipy.sparse import csr_array
 
-from ...describe.requests.order import units
+from ...dynamics.algebraic_states import failure
 from ...errors import SolverError
 from ...linear_analysis.modes import Mode, Motion
-from ...results.channels import channels_of, turns_of
 from ...results.energy_balance import energy_balance
 from ...results.solution import Solution
-from ...solve.algebraic_states import failure
-from ...solve.trajectory import History, Outcome
+from ..solution_at_rest import solution_of_rows
 from .at_state import AtState
 
 UNHURRIED = 1.0
@@ -22,25 +20,9 @@ UNHURRIED = 1.0
 
 
 def mode_shape(found: AtState, own_axes: csr_array, mode: Mode, number: int, amplitude: float, points: int) -> Solution:
-    """Return one period of a mode about a state, at constant amplitude.
+    """Return one period of a mode about a state, at constant amplitude; parameters and errors as for `Modes.shape`.
 
-    Parameters
-    ----------
-    found : AtState
-    own_axes : sparse array, shape (n_u, n_u)
-        Transformation from ground axes to the axes of u.
-    mode : Mode
-    number : int
-        Number of the mode in the name of the results.
-    amplitude : float
-        Largest displacement, or rotation times the mechanism's size, relative to that size.
-    points : int
-        Number of instants, both ends included.
-
-    Raises
-    ------
-    SolverError
-        If the mechanism cannot move so far.
+    `own_axes` transforms from ground axes to the axes of u.
     """
     dynamics, state = found.dynamics, found.dynamics.state
     system = dynamics.system
@@ -59,11 +41,11 @@ def mode_shape(found: AtState, own_axes: csr_array, mode: Mode, number: int, amp
             f"mode {number} cannot be shown with an amplitude of {amplitude:g} of the mechanism's size: "
             f"{failure(dynamics, rows.status, found.t)}; expected a smaller amplitude"
         )
-    channels = channels_of(found.data, system, rows)
-    return Solution(
-        name=f"{found.data.name or 'model'}, mode {number}", time=time, channels=channels, outcome=Outcome.DONE,
-        message=f"one period of mode {number}, {mode.natural_frequency:.6g} Hz" if oscillates else f"mode {number}, to and fro",
-        notes=(), solver={"name": "modes", "steps": 0}, history=History(np.empty(0), np.empty(0, dtype=int)),
-        balance=energy_balance(system, replace(rows, t=time), np.empty(0)), not_unique=found.redundancy.not_unique,
-        requested=units(found.data.outputs()), turns=turns_of(system, rows.q),
+    message = (
+        f"one period of mode {number}, {mode.natural_frequency:.6g} Hz" if oscillates else f"mode {number}, to and fro"
+    )
+    solution = solution_of_rows(
+        f"{found.data.name or 'model'}, mode {number}", found.data, system, rows, found.redundancy.not_unique, message, (),
+        {"name": "modes", "steps": 0},
     )  # fmt: skip
+    return replace(solution, time=time, balance=energy_balance(system, replace(rows, t=time), np.empty(0)))

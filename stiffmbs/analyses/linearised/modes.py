@@ -9,11 +9,11 @@ from typing import Any, Unpack
 import numpy as np
 from scipy.sparse import csr_array
 
-from ...describe.settings import RunSettings, Settings, takes_settings
 from ...errors import InputError
 from ...linear_analysis.modes import Mode, natural_modes
 from ...linear_analysis.state_space import StateMatrix, state_matrix
 from ...linear_analysis.tangent_space import linearised
+from ...model.settings import RunSettings, Settings, takes_settings
 from ...results.solution import Solution
 from ..job import Runnable
 from ..start_from import StartFrom

@@ -45,15 +45,7 @@ MOVES = Moves()
 
 @dataclass(frozen=True)
 class Kink:
-    """A breakpoint at the state.
-
-    Attributes
-    ----------
-    where : str
-        The velocity or state whose equation has the breakpoint, such as ``b.vx``.
-    sides : tuple of Linearised
-        The equations on both sides of the breakpoint.
-    """
+    """Breakpoint at a state: the velocity or state whose equation has it, such as ``b.vx``, and the equations on both sides."""
 
     where: str
     sides: tuple[Linearised, Linearised]
@@ -62,18 +54,7 @@ class Kink:
 def kink_at(found: AtState, state: StateMatrix, linear: Linearised, moves: Moves = MOVES) -> Kink | None:
     """Return the breakpoint of a force or rate at a state, or None.
 
-    Parameters
-    ----------
-    found : AtState
-    state : StateMatrix
-    linear : Linearised
-        At that state.
-    moves : Moves, optional
-
-    Raises
-    ------
-    SolverError
-        If a force is discontinuous at the state, so that no linearisation exists.
+    Raise a SolverError if a force is discontinuous at the state, so that no linearisation exists.
     """
     if not len(state.matrix):
         return None

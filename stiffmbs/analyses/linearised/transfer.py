@@ -8,16 +8,17 @@ from typing import Unpack
 
 import numpy as np
 
-from ...describe.model_data import ModelData
-from ...describe.requests.order import reading
-from ...describe.requests.output import Term
-from ...describe.settings import RunSettings, Settings, takes_settings
+from ...dynamics.dynamics import Dynamics
+from ...elements.requests.order import reading
+from ...elements.requests.output import Term
 from ...errors import InputError, SolverError
 from ...linear_analysis.state_space import StateMatrix, state_matrix
 from ...linear_analysis.tangent_space import Linearised, linearised
 from ...linear_analysis.transfer import Input, Transfer, effect
+from ...model.model_data import ModelData
+from ...model.settings import RunSettings, Settings, takes_settings
+from ...reading.did_you_mean import did_you_mean
 from ...results.channels import channels_of
-from ...solve.dynamics import Dynamics
 from ..job import Runnable, prepare
 from ..start_from import StartFrom
 from .at_state import AtState, at_state
@@ -186,7 +187,8 @@ def _channels(
     for name in outputs:
         if name not in channels:
             raise InputError(
-                f"output '{name}': found no such channel, expected one such as {', '.join(list(channels)[:6])}"
+                f"output '{name}': found no such channel{did_you_mean(name, channels)}, expected one such as "
+                f"{', '.join(list(channels)[:6])}"
             )
     return np.column_stack([channels[name] for name in outputs]).reshape(len(x), len(outputs))
 

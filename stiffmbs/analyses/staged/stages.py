@@ -7,10 +7,10 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from ...describe.files.stages import OWN_SETTINGS, Stage
-from ...describe.scene import Scene, notes_of
-from ...describe.settings import RunSettings
 from ...errors import InputError, StiffmbsError
+from ...model.files.stages import OWN_SETTINGS, Stage
+from ...model.scene import Scene, notes_of
+from ...model.settings import RunSettings
 from ...results.joined import joined
 from ...results.saved_state import SavedState
 from ...results.solution import Solution

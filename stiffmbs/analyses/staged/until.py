@@ -1,7 +1,8 @@
 """Runs that end or change where a request reaches a value.
 
-The whole time span is solved once, with the solver's own steps as output.  The first step in which a condition becomes
-true is solved again on finer points, until linear interpolation gives the instant.  Then the run is solved up to it.
+The whole time span is solved once, with the solver's own steps as output, or with even points if the steps are few.  The
+first interval in which a condition becomes true is solved again on finer points, until linear interpolation gives the
+instant.  Then the run is solved up to it.
 """
 
 from __future__ import annotations
@@ -12,8 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from ...describe.files.until import Until
 from ...errors import InputError
+from ...model.files.stages import Until
 from ...results.joined import joined
 from ...results.solution import Solution
 from ...solve.trajectory import IN_DOUBT
@@ -21,6 +22,8 @@ from ..given_inputs import Given
 
 POINTS, LEVELS = 33, 3
 """Points in a refined step, and number of refinements: the last points are 1/32768 of the step apart."""
+LEAST = 1000
+"""Number of intervals below which a condition might hold only within one of them."""
 MOST = 500
 """Number of times that conditions may become true in one stage."""
 SAME = 1e-9
@@ -31,16 +34,7 @@ Run = Callable[..., Solution]
 
 @dataclass(frozen=True)
 class Ended:
-    """Result of a stage.
-
-    Attributes
-    ----------
-    solution : Solution
-    by : str
-        Condition that ended the stage; empty if none did.
-    inputs : mapping of str to value
-        Inputs set by conditions.
-    """
+    """Result of a stage: the condition that ended it, empty if none did, and the inputs set by conditions."""
 
     solution: Solution
     by: str = ""
@@ -78,19 +72,9 @@ def run_until(
     inputs: Mapping[str, Given] | None,
     **changes: Any,
 ) -> Ended:
-    """Solve up to the condition that ends the stage, or over the whole time.
+    """Solve up to the condition that ends the stage, or over the whole time, with changes of settings and ``start_from``.
 
-    Parameters
-    ----------
-    run : callable
-        Function that solves the scene.
-    conditions : mapping of str to Until
-    interval : float or None
-        Time between output points, s; None for the solver's own steps.
-    inputs : mapping, optional
-        Inputs of the run.
-    **changes
-        Changes of settings, and ``start_from``.
+    `interval` is the time between output points, s; None for the solver's own steps.
 
     Raises
     ------
@@ -126,6 +110,8 @@ def _up_to_the_first(
 ) -> tuple[Solution, str, float]:
     """Return the run up to the first condition, the name of the condition (empty for none), and the remaining time."""
     whole = run(**{**changes, "points": "steps", "output": None})
+    if len(whole.time) <= LEAST:
+        whole = run(**{**changes, "points": LEAST + 1, "output": None})
     margins = {name: _margin_of(name, condition, whole, fresh) for name, condition in conditions.items()}
     for name, margin in margins.items():
         if fresh and margin(whole)[0] >= 0:

@@ -6,11 +6,10 @@ import sys
 
 import click
 
-from ...describe.files.files_read import content_of
-from ...errors import InputError, StiffmbsError
-from ..scene import refuse
-
-DIFFERENT = 1
+from ...errors import InputError
+from ...reading.files.files_read import content_of
+from ..process import Status
+from ..scene import refusing
 
 
 @click.command(short_help="Results beside another program's listing.")
@@ -40,10 +39,8 @@ def diff(results: str, listing: str, mapped: tuple[str, ...], tolerance: float, 
     """
     from ...results.listings.differences import differences
 
-    try:
+    with refusing(results, as_json):
         found = differences(results, listing, _pairs(mapped))
-    except StiffmbsError as error:
-        refuse(results, error, as_json)
     far = [one for one in found if not one.relative <= tolerance]
     if as_json:
         from ...show.summary import json_line
@@ -57,7 +54,7 @@ def diff(results: str, listing: str, mapped: tuple[str, ...], tolerance: float, 
                 f"{one.channel} - {one.column}: {one.largest:.3g} at t = {one.t:.6g} s, relative {one.relative:.2e}{mark}"
             )
         click.echo(f"{len(found) - len(far)} of {len(found)} channels are within {tolerance:g}")
-    sys.exit(DIFFERENT if far else 0)
+    sys.exit(Status.FAILED if far else Status.DONE)
 
 
 def _pairs(mapped: tuple[str, ...]) -> dict[str, str]:

@@ -6,15 +6,12 @@ from pathlib import Path
 
 import click
 
-from ...errors import StiffmbsError
-from ..scene import file_beside, refuse, refuse_own_input
+from ..scene import file_beside, output_option, refuse_own_input, refusing
 
 
 @click.command(short_help="An FMU for co-simulation.")
 @click.argument("scene")
-@click.option(
-    "-o", "--output", type=click.Path(path_type=Path), help="The FMU, .fmu; SCENE.fmu in the working folder without it."
-)
+@output_option("The FMU, .fmu; SCENE.fmu in the working folder without it.")
 @click.option(
     "--channel",
     "outputs",
@@ -33,10 +30,8 @@ def fmu(scene: str, output: Path | None, outputs: tuple[str, ...], as_json: bool
     from ...studies.fmu.build import build_fmu
 
     target = output or file_beside(scene, ".fmu")
-    try:
+    with refusing(scene, as_json):
         refuse_own_input("-o", scene, target)
         names = build_fmu(scene, target, outputs)
-    except StiffmbsError as error:
-        refuse(scene, error, as_json)
     told = f"fmu: {target}, {len(names)} outputs"
     click.echo(json_line({"scene": scene, "output": str(target), "outputs": list(names)}) if as_json else told)

@@ -4,16 +4,13 @@ from __future__ import annotations
 
 import json
 import shutil
-import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 
 import click
 
 from ...errors import InputError
 from ..run import run
-from ..scene import WRONG_INPUT
+from ..scene import refusing
 from .shipped import examples_folder, first_words, scene_file, scene_files
 
 
@@ -26,7 +23,7 @@ def examples() -> None:
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line.")
 def list_all(as_json: bool) -> None:
     """List the examples, each with its subject."""
-    with _refused():
+    with refusing("examples"):
         found = {name: first_words(path) for name, path in scene_files().items()}
         folder = examples_folder()
     if as_json:
@@ -46,7 +43,7 @@ def copy(names: tuple[str, ...], folder: Path) -> None:
 
     Existing files are not overwritten.
     """
-    with _refused():
+    with refusing("examples"):
         scenes, source = set(scene_files().values()), examples_folder()
         chosen = [scene_file(name) for name in names] or sorted(scenes)
         read_by_scenes = [path for path in sorted(source.rglob("*")) if path.is_file() and path not in scenes]
@@ -66,17 +63,7 @@ def copy(names: tuple[str, ...], folder: Path) -> None:
 @click.pass_context
 def run_one(context: click.Context, name: str, options: tuple[str, ...]) -> None:
     """Run the example NAME; all options of ``stiffmbs run`` can follow."""
-    with _refused():
+    with refusing("examples"):
         path = scene_file(name)
     with run.make_context("run", [str(path), *options], parent=context) as own:
         run.invoke(own)
-
-
-@contextmanager
-def _refused() -> Iterator[None]:
-    """End the command with the message of an invalid input."""
-    try:
-        yield
-    except InputError as error:
-        click.echo(f"stiffmbs: {error}", err=True)
-        sys.exit(WRONG_INPUT)

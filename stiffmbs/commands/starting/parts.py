@@ -6,6 +6,8 @@ import json
 
 import click
 
+from ...reading.did_you_mean import did_you_mean
+
 
 @click.command(short_help="The parts of vehicles that come with the package.")
 @click.argument("name", required=False)
@@ -15,8 +17,8 @@ def parts(name: str | None, as_json: bool) -> None:
 
     Exit status: 0 done, 2 there is no such part.
     """
-    from ...describe.files.scene_text import scene_text
-    from ...describe.parts.library import about, shipped_part, shipped_parts
+    from ...model.parts.definitions import about, shipped_part, shipped_parts
+    from ...reading.files.scene_text import scene_text
 
     if name is None:
         known = {part: about(part) for part in shipped_parts()}
@@ -25,5 +27,6 @@ def parts(name: str | None, as_json: bool) -> None:
         return
     found = shipped_part(name)
     if found is None:
-        raise click.UsageError(f"found '{name}', expected one of {', '.join(shipped_parts())}")
+        near = did_you_mean(name, shipped_parts())
+        raise click.UsageError(f"found '{name}'{near}, expected one of {', '.join(shipped_parts())}")
     click.echo(json.dumps({name: found}) if as_json else scene_text({"parts": {name: found}}), nl=as_json)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from ...errors import InputError
+from ...reading.did_you_mean import did_you_mean
 
 INSTALLED_IN = ("share", "stiffmbs", "examples")
 """Folder of the examples in an installed wheel, relative to the prefix of its Python."""
@@ -53,7 +54,7 @@ def scene_file(name: str) -> Path:
     found = scene_files()
     path = found.get(name.removesuffix(".yaml"))
     if path is None:
-        raise InputError(f"found no example '{name}', expected one of {', '.join(found)}")
+        raise InputError(f"found no example '{name}'{did_you_mean(name, found)}, expected one of {', '.join(found)}")
     return path
 
 

@@ -8,6 +8,8 @@ import string
 
 import click
 
+from ...comparison.machine import installed
+
 PACKAGE = "stiffmbs"
 LETTERS = f"{string.ascii_letters}{string.digits}-_."
 """Characters of a package name, with which a requirement begins."""
@@ -28,16 +30,6 @@ def show_version(as_json: bool) -> None:
         return
     for name, value in found.items():
         click.echo(f"{name:20} {value or 'not installed'}")
-
-
-def installed(package: str) -> str | None:
-    """Return the version of an installed package, or None."""
-    from importlib.metadata import PackageNotFoundError, version
-
-    try:
-        return version(package)
-    except PackageNotFoundError:
-        return None
 
 
 def dependencies() -> list[str]:

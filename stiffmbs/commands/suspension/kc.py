@@ -9,8 +9,9 @@ from pathlib import Path
 import click
 
 from ...analyses.load_scene import load_scene
-from ...errors import InputError, StiffmbsError
-from ..scene import CHANGES, STOPPED_EARLY, in_file, is_written, refuse
+from ...errors import InputError
+from ..process import Status
+from ..scene import CHANGES, in_file, is_written, output_option, refusing
 
 
 @click.command(short_help="Kinematics and compliance of an axle.")
@@ -21,7 +22,7 @@ from ..scene import CHANGES, STOPPED_EARLY, in_file, is_written, refuse
 @click.option("--steering", help="The prismatic joint that steers; the only one named guide by default.")
 @click.option("--case", "cases", multiple=True, metavar="NAME=SIZE", help="How far a load case goes; 0 leaves it out.")
 @click.option("--figure", type=click.Path(path_type=Path), help="Draw the curves: .png, .svg or .pdf.")
-@click.option("-o", "--output", type=click.Path(path_type=Path), help="Write the curves: .csv.")
+@output_option("Write the curves: .csv.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line instead of a table.")
 @CHANGES
 def kc(
@@ -41,19 +42,17 @@ def kc(
     from ...show.kinematics_and_compliance import draw_kc, kc_csv, kc_text
     from ...studies.suspension.kinematics_and_compliance import kinematics_and_compliance
 
-    try:
+    with refusing(scene, as_json):
         if figure is not None:
             check_figure("--figure", figure)
         loaded = load_scene(scene, changes)
         with in_file(scene):
             found = kinematics_and_compliance(loaded, axle, points, body, steering, **_sizes(cases))
-    except StiffmbsError as error:
-        refuse(scene, error, as_json)
     written = output is None or is_written(output, lambda: write_text(output, kc_csv(found)))
     if figure is not None:
         written = is_written(figure, lambda: draw_kc(figure, found)) and written
     click.echo(json.dumps(found.as_dict(scene)) if as_json else kc_text(scene, found))
-    sys.exit(0 if written else STOPPED_EARLY)
+    sys.exit(0 if written else Status.FAILED)
 
 
 def _sizes(cases: tuple[str, ...]) -> dict[str, float]:

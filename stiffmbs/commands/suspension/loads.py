@@ -7,8 +7,8 @@ import json
 import click
 
 from ...analyses.load_scene import load_scene
-from ...errors import InputError, StiffmbsError
-from ..scene import CHANGES, in_file, refuse
+from ...errors import InputError
+from ..scene import CHANGES, in_file, refusing
 
 
 @click.command(short_help="Peaks of all bushings' loads over load cases.")
@@ -29,7 +29,7 @@ def loads(scene: str, cases: tuple[str, ...], as_json: bool, changes: list[tuple
     from ...show.road_loads import road_loads_text
     from ...studies.suspension.road_loads import road_loads
 
-    try:
+    with refusing(scene, as_json):
         runs = {}
         for name, own in [_case(text) for text in cases] or [("run", [])]:
             loaded = load_scene(scene, [*changes, *own])
@@ -37,8 +37,6 @@ def loads(scene: str, cases: tuple[str, ...], as_json: bool, changes: list[tuple
                 runs[name] = run(loaded)
         with in_file(scene):
             found = road_loads(loaded, runs)
-    except StiffmbsError as error:
-        refuse(scene, error, as_json)
     stopped = {name: each.message for name, each in runs.items() if not each.success}
     told = {"scene": scene, "status": "stopped" if stopped else "done", "message": "; ".join(stopped.values())}
     click.echo(json.dumps({**told, "loads": found.as_dict()}) if as_json else road_loads_text(scene, found))

@@ -1,69 +1,60 @@
-"""Constructors of Python expressions with zeros dropped; None stands for zero."""
+"""Expressions of a kernel's source with the operators of Python; zeros are dropped."""
 
 from __future__ import annotations
 
 import ast
+from dataclasses import dataclass
 
-Part = ast.expr | None
+
+@dataclass(frozen=True)
+class Part:
+    """Part of an expression; without a node it is zero, and false."""
+
+    node: ast.expr | None = None
+
+    def __bool__(self) -> bool:
+        return self.node is not None
+
+    def __neg__(self) -> Part:
+        return Part(ast.UnaryOp(ast.USub(), self.node)) if self.node else self
+
+    def __add__(self, other: Part) -> Part:
+        return self._joined(ast.Add(), other) if self and other else self or other
+
+    def __sub__(self, other: Part) -> Part:
+        return self._joined(ast.Sub(), other) if self and other else self or -other
+
+    def __mul__(self, other: Part) -> Part:
+        return self._joined(ast.Mult(), other) if self and other else Part()
+
+    def __truediv__(self, other: Part) -> Part:
+        return self._joined(ast.Div(), other) if self else self
+
+    def __pow__(self, other: Part) -> Part:
+        return self._joined(ast.Pow(), other)
+
+    def _joined(self, operator: ast.operator, other: Part) -> Part:
+        return Part(ast.BinOp(self.whole, operator, other.whole))
+
+    @property
+    def whole(self) -> ast.expr:
+        """Expression, or a literal zero."""
+        return self.node or ast.Constant(0.0)
+
+    @property
+    def literal(self) -> int:
+        """Value of an integer literal with or without a sign; `ValueError` for others."""
+        return int(ast.literal_eval(self.whole))
 
 
-def number(value: float) -> ast.expr:
+ZERO = Part()
+
+
+def number(value: float) -> Part:
     """Return a literal."""
-    return ast.Constant(value)
+    return Part(ast.Constant(value))
 
 
-def literal(node: ast.expr) -> int:
-    """Return the value of an integer literal with or without a sign.
-
-    Raises
-    ------
-    ValueError
-        If the expression is not a literal.
-    """
-    return int(ast.literal_eval(node))
-
-
-def whole(part: Part) -> ast.expr:
-    """Return the expression, or a literal zero."""
-    return number(0.0) if part is None else part
-
-
-def added(*parts: Part) -> Part:
-    """Return a sum."""
-    total: Part = None
-    for part in parts:
-        if part is not None:
-            total = part if total is None else ast.BinOp(total, ast.Add(), part)
-    return total
-
-
-def negated(part: Part) -> Part:
-    """Return the negative."""
-    return None if part is None else ast.UnaryOp(ast.USub(), part)
-
-
-def difference(a: Part, b: Part) -> Part:
-    """Return a - b."""
-    if a is None or b is None:
-        return negated(b) if a is None else a
-    return ast.BinOp(a, ast.Sub(), b)
-
-
-def multiplied(a: Part, b: Part) -> Part:
-    """Return a b."""
-    return None if a is None or b is None else ast.BinOp(a, ast.Mult(), b)
-
-
-def divided(a: Part, b: Part) -> Part:
-    """Return a / b; b must not be the zero expression."""
-    return None if a is None else ast.BinOp(a, ast.Div(), whole(b))
-
-
-def squared(a: ast.expr) -> ast.expr:
-    """Return a a."""
-    return ast.BinOp(a, ast.Mult(), a)
-
-
-def called(name: str, *arguments: Part) -> ast.expr:
+def called(name: str, *arguments: Part) -> Part:
     """Return a function call."""
-    return ast.Call(ast.Name(name), [whole(argument) for argument in arguments], [])
+    return Part(ast.Call(ast.Name(name), [argument.whole for argument in arguments], []))

@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterator
 
 from ...errors import InputError
 from ..terms import KERNEL_ARGUMENTS, KERNEL_SIGNATURE
-from .expressions import Part, added, difference, divided, multiplied, negated, number
+from .expressions import ZERO, Part, called, number
 from .rules import RULES
 
 STATE = ("t", "q", "turn", "u", "a", "lam", "mu")
@@ -63,67 +63,59 @@ class _Forward:
             (target,) = statement.targets
             moved = self._derivative(statement.value)
             if isinstance(target, ast.Subscript):  # an output value: replaced by its derivative
-                yield f"{ast.unparse(target)} = {ast.unparse(moved or number(0.0))}"
+                yield f"{ast.unparse(target)} = {ast.unparse(moved.whole)}"
                 continue
             assert isinstance(target, ast.Name)
             yield ast.unparse(statement)
             self._moving.discard(target.id)
-            if moved is not None:
+            if moved:
                 self._moving.add(target.id)
-                yield f"{target.id}_d = {ast.unparse(moved)}"
+                yield f"{target.id}_d = {ast.unparse(moved.whole)}"
 
     def _derivative(self, node: ast.expr) -> Part:
         match node:
             case ast.Constant() | ast.Compare() | ast.BoolOp():
-                return None
+                return ZERO
             case ast.Name(name):
-                return ast.Name(f"{name}_d") if name in self._moving else None
+                return Part(ast.Name(f"{name}_d")) if name in self._moving else ZERO
             case ast.Subscript(ast.Name(array), index):
-                return ast.Subscript(ast.Name(f"{array}_d"), index) if array in self._along else None
+                return Part(ast.Subscript(ast.Name(f"{array}_d"), index)) if array in self._along else ZERO
             case ast.UnaryOp(ast.USub(), operand):
-                return negated(self._derivative(operand))
+                return -self._derivative(operand)
             case ast.UnaryOp(ast.UAdd(), operand):
                 return self._derivative(operand)
             case ast.BinOp(left, operator, right):
-                return self._of_operation(node, left, operator, right)
+                return self._of_operation(node, operator, left, right)
             case ast.IfExp(condition, then, otherwise):
-                return self._of_choice(condition, then, otherwise)
+                a, b = self._derivative(then), self._derivative(otherwise)
+                return Part(ast.IfExp(condition, a.whole, b.whole)) if a or b else ZERO
             case ast.Call(ast.Name(name), arguments) if name in RULES:
-                return RULES[name](arguments, [self._derivative(argument) for argument in arguments])
-        raise InputError(f"found '{ast.unparse(node)}' in an equation, which has no rule of differentiation here")
+                return RULES[name](list(map(Part, arguments)), list(map(self._derivative, arguments)))
+        raise _without_rule(node)
 
-    def _of_operation(self, node: ast.expr, left: ast.expr, operator: ast.operator, right: ast.expr) -> Part:
-        a, b = self._derivative(left), self._derivative(right)
+    def _of_operation(self, node: ast.expr, operator: ast.operator, left: ast.expr, right: ast.expr) -> Part:
+        a, b, x, y = self._derivative(left), self._derivative(right), Part(left), Part(right)
         match operator:
             case ast.Add():
-                return added(a, b)
+                return a + b
             case ast.Sub():
-                return difference(a, b)
+                return a - b
             case ast.Mult():
-                return added(multiplied(a, right), multiplied(left, b))
+                return a * y + x * b
             case ast.Div():
-                return divided(difference(a, multiplied(node, b)), right)
+                return (a - Part(node) * b) / y
             case ast.Pow():
-                return self._of_power(node, left, right, a, b)
-        raise InputError(f"found '{ast.unparse(node)}' in an equation, which has no rule of differentiation here")
-
-    @staticmethod
-    def _of_power(node: ast.expr, base: ast.expr, exponent: ast.expr, a: Part, b: Part) -> Part:
-        lower = ast.BinOp(base, ast.Pow(), _one_less(exponent))
-        by_base = multiplied(multiplied(exponent, lower), a)
-        by_exponent = multiplied(multiplied(node, ast.Call(ast.Name("log"), [base], [])), b)
-        return added(by_base, by_exponent)
-
-    def _of_choice(self, condition: ast.expr, then: ast.expr, otherwise: ast.expr) -> Part:
-        a, b = self._derivative(then), self._derivative(otherwise)
-        if a is None and b is None:
-            return None
-        return ast.IfExp(condition, a or number(0.0), b or number(0.0))
+                return y * x ** _one_less(right) * a + Part(node) * called("log", x) * b
+        raise _without_rule(node)
 
 
-def _one_less(exponent: ast.expr) -> ast.expr:
+def _without_rule(node: ast.expr) -> InputError:
+    return InputError(f"found '{ast.unparse(node)}' in an equation, which has no rule of differentiation here")
+
+
+def _one_less(exponent: ast.expr) -> Part:
     """Return the exponent minus one, as a literal if possible: integer powers become products."""
     try:
         return number(ast.literal_eval(exponent) - 1)
     except ValueError:
-        return ast.BinOp(exponent, ast.Sub(), number(1.0))
+        return Part(exponent) - number(1.0)

@@ -12,14 +12,11 @@ from functools import partial
 
 import numpy as np
 
-from ...describe.formula.functions import EACH, IN_FORMULAS, Breakpoints
-from ...describe.formula.nodes import TIME, reading_order
 from ...errors import InputError
+from ...reading.formula.functions import EACH, IN_FORMULAS, Breakpoints
+from ...reading.formula.nodes import TIME, reading_order
 from .of_time import Input
-from .zeros import FIRST_STRETCHES, ZERO, TooMany, zeros
-
-LEAST_DISTANCE = 1e-12
-"""Smallest distance of two breakpoints relative to their times."""
+from .zeros import FIRST_STRETCHES, SHORTEST_STRETCH, ZERO, TooMany, zeros
 
 
 def breakpoint_times(inputs: Sequence[Input], start: float, end: float) -> np.ndarray:
@@ -33,7 +30,7 @@ def breakpoint_times(inputs: Sequence[Input], start: float, end: float) -> np.nd
     """
     found = np.concatenate([np.empty(0), *(times for each in inputs for times in _of_input(each, start, end))])
     found = np.sort(found[(found > start) & (found < end)])
-    apart = LEAST_DISTANCE * max(abs(start), abs(end), 1e-300)
+    apart = SHORTEST_STRETCH * max(abs(start), abs(end), np.finfo(float).tiny)
     return found[np.diff(found, prepend=-np.inf) > apart]
 
 
@@ -82,7 +79,6 @@ def _breakpoints(call: ast.Call, breakpoints: Breakpoints) -> Iterator[ast.expr]
 
 
 def _range(given: Input, part: ast.expr, start: float, end: float) -> tuple[float, float]:
-    """Return bounds of a part of an input."""
     edges = np.linspace(start, end, FIRST_STRETCHES + 1)
     with np.errstate(all="ignore"):
         low, high = given.within(edges[:-1], edges[1:], part=part).value

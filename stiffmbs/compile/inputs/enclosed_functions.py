@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from math import factorial
 from typing import Any
 
 import numpy as np
 
-from ...describe.formula.functions import IN_FORMULAS, FormulaFunction, step5_value, step_value
-from ...describe.formula.text import evaluate, parse
+from ...reading.formula.functions import IN_FORMULAS, FormulaFunction, step5_value, step_value
+from ...reading.formula.text import evaluate, parse
 from .enclosure import (  # noqa: F401 (the table of functions names them)
     Enclosure,
     absolute,
@@ -23,65 +24,13 @@ from .enclosure import (  # noqa: F401 (the table of functions names them)
 )
 from .ranges import EVERYWHERE, Range, between_turns, hull, power_range, product, real_power_range, wave
 
-FACTORIALS = (1.0, 1.0, 2.0, 6.0)
-
 
 def _turned(phase: float) -> Callable[[Enclosure], Enclosure]:
     """Return the cosine wave with its maximum at `phase`; each derivative shifts it by a quarter period."""
-    return lambda x: x.composed(lambda k: wave(x.value, phase - k * np.pi / 2) / FACTORIALS[k])
+    return lambda x: x.composed(lambda k: wave(x.value, phase - k * np.pi / 2) / factorial(k))
 
 
 sin, cos = _turned(np.pi / 2), _turned(0.0)
-
-
-def _hyperbolic(even: bool) -> Callable[[Enclosure], Enclosure]:
-    """Return cosh or sinh, which are each other's derivatives."""
-
-    def of(x: Enclosure) -> Enclosure:
-        """Return the enclosure of the function at an enclosed argument."""
-
-        def outer(k: int) -> Range:
-            """Return the range of the k-th Taylor coefficient."""
-            return (between_turns(np.cosh, x.value, (0.0,)) if even == (k % 2 == 0) else np.sinh(x.value)) / FACTORIALS[
-                k
-            ]
-
-        return x.composed(outer)
-
-    return of
-
-
-def tanh(x: Enclosure) -> Enclosure:
-    """Return tanh: T' = 1 - T^2, T''/2 = -T T', T'''/6 = -T' (1 - 3 T^2)/3."""
-    T = np.tanh(x.value)
-    rate = between_turns(lambda z: 1 / np.cosh(z) ** 2, x.value, (0.0,))
-
-    def outer(k: int) -> Range:
-        """Return the range of the k-th Taylor coefficient."""
-        third = scaled(1 / 3, 3 * power_range(T, 2) - 1)
-        return (T, rate, -product(T, rate)[::-1], product(rate, third))[k]
-
-    return x.composed(outer)
-
-
-def atan(x: Enclosure) -> Enclosure:
-    """Return the arctangent; with D = 1/(1 + x^2) its coefficients are D, -x D^2, (4 x^2 D - 1) D^2 / 3."""
-
-    def outer(k: int) -> Range:
-        """Return the range of the k-th Taylor coefficient."""
-        if k == 0:
-            return np.arctan(x.value)
-        # x = tan(a): derivatives cos^2 a, -sin a cos^3 a, -(1 - 4 sin^2 a) cos^4 a / 3 have extrema at fixed angles
-        angle = np.arctan(x.value)
-        return (
-            lambda: between_turns(lambda a: np.cos(a) ** 2, angle, (0.0,)),
-            lambda: between_turns(lambda a: -np.sin(a) * np.cos(a) ** 3, angle, (-np.pi / 6, np.pi / 6)),
-            lambda: between_turns(
-                lambda a: (4 * np.sin(a) ** 2 - 1) * np.cos(a) ** 4 / 3, angle, (-np.pi / 4, 0.0, np.pi / 4)
-            ),
-        )[k - 1]()
-
-    return x.composed(outer)
 
 
 def asin(x: Enclosure) -> Enclosure:
@@ -91,7 +40,6 @@ def asin(x: Enclosure) -> Enclosure:
     P = 1.0 - squared[::-1]
 
     def outer(k: int) -> Range:
-        """Return the range of the k-th Taylor coefficient."""
         if k == 0:
             return np.where((x.value[1] < -1) | (x.value[0] > 1), np.nan, np.arcsin(inside))
         if k == 1:
@@ -120,7 +68,6 @@ def _cubic_ramp(z: Enclosure) -> Enclosure:
     inside, crosses, beyond = _within(z.value)
 
     def outer(k: int) -> Range:
-        """Return the range of the k-th Taylor coefficient."""
         if k == 0:
             return inside**2 * (3 - 2 * inside)
         if k == 1:
@@ -137,7 +84,6 @@ def _quintic_ramp(z: Enclosure) -> Enclosure:
     turn = np.sqrt(3) / 6
 
     def outer(k: int) -> Range:
-        """Return the range of the k-th Taylor coefficient."""
         if k == 0:
             return inside**3 * (10 - 15 * inside + 6 * inside**2)
         if k == 1:
@@ -180,9 +126,6 @@ def sqrt(x: Enclosure) -> Enclosure:
 
 def acos(x: Enclosure) -> Enclosure:
     return np.pi / 2 - asin(x)
-
-
-sinh, cosh = _hyperbolic(False), _hyperbolic(True)
 
 
 def _by_derivative(function: FormulaFunction) -> Callable[[Enclosure], Enclosure]:

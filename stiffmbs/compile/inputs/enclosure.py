@@ -8,24 +8,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from math import factorial
 from typing import Any
 
 import numpy as np
 
-from .ranges import (  # fmt: skip
-    EVERYWHERE,
-    Range,
-    around_zero,
-    hull,
-    power_range,
-    product,
-    real_binomial,
-    real_power_range,
-    total,
-)
+from .ranges import EVERYWHERE, Range, around_zero, hull, power_range, product, real_binomial, real_power_range, total
 
-ROUNDING_AT_MIDDLE = 1e-15
-"""Relative rounding error of a value at the middle of an interval."""
+ROUNDING = 1e-15
+"""Relative rounding error of a value."""
 Outer = Callable[[int], Range]
 """Function that returns the range of the k-th Taylor coefficient of a function over the range of its argument."""
 
@@ -43,7 +34,7 @@ class Enclosure:
     """
 
     coefficients: tuple[Range, ...]
-    order: int = 1
+    order: int
 
     __array_ufunc__ = None  # NumPy scalars leave arithmetic to the enclosure
 
@@ -152,7 +143,7 @@ class Enclosure:
         """Narrow the values by the mean value form, from the values at interval midpoints and the half lengths."""
         low, high = self.value
         reach = half * np.abs(self.slope).max(axis=0)
-        rounding = ROUNDING_AT_MIDDLE * np.abs(middle)
+        rounding = ROUNDING * np.abs(middle)
         narrower = np.array([np.fmax(low, middle - reach - rounding), np.fmin(high, middle + reach + rounding)])
         return Enclosure((narrower, *self.coefficients[1:]), self.order)
 
@@ -184,14 +175,13 @@ def either(parts: list[Enclosure], jumps: bool) -> Enclosure:
 def exp(x: Enclosure) -> Enclosure:
     """Return the exponential; its Taylor coefficients are exp(x)/k!."""
     values = np.exp(x.value)
-    return x.composed(lambda k: values / (1.0, 1.0, 2.0, 6.0)[k])
+    return x.composed(lambda k: values / factorial(k))
 
 
 def log(x: Enclosure) -> Enclosure:
     """Return the natural logarithm; NaN where the whole range is negative."""
 
     def outer(k: int) -> Range:
-        """Return the range of the k-th Taylor coefficient."""
         if k == 0:
             return np.log(np.where(x.value[1] < 0, np.nan, np.maximum(x.value, 0.0)))
         return scaled((-1.0) ** (k + 1) / k, real_power_range(x.value, -k))

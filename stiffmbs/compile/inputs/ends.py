@@ -8,25 +8,22 @@ that of sin(t)/t at zero.
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from typing import NamedTuple
 
 import numpy as np
 
-from ...describe.element import Element
-from ...describe.formula.formula import Formula
-from ...describe.formula.functions import EVERYWHERE, IN_FORMULAS
-from ...describe.formula.nodes import TIME, is_named, reading_order
-from ...describe.formula.text import UNIT, evaluate
+from ...elements.element import Element
+from ...reading.formula.functions import EVERYWHERE, IN_FORMULAS
+from ...reading.formula.nodes import TIME, parts_of
+from ...reading.table import Table
 from ..system import System
-from .enclosed_functions import FUNCTIONS
-from .enclosure import Enclosure
-from .of_time import Input
+from .of_time import Input, expressions_of
+from .table_ranges import TableRanges
+from .zeros import FIRST_STRETCHES, SHORTEST_STRETCH
 
-PARTS_OF_A_STRETCH, MOST_DIVISIONS = 32, 500
-"""Parts of a subdivided interval, and limit of subdivisions, after which solvers have to find the end."""
-SHORTEST_DIVIDED = 1e-13
-"""Length, relative to the times, of an interval that is not subdivided further."""
+MOST_DIVISIONS = 500
+"""Limit of subdivisions, after which solvers have to find the end."""
 FARTHER_SIDE, NEARER_SIDE = 1e-6, 1e-10
 """Distances, relative to the times, at which values on both sides are compared."""
 GROWS = 3.0
@@ -88,44 +85,20 @@ def first_input_end(system: System, start: float, end: float) -> InputEnd | None
 
 
 def _of_element(name: str, element: Element, start: float, end: float) -> Iterator[InputEnd]:
-    for _, formula in element.parts(Formula):
-        for part in _parts_of_time(formula):
-            for node in reading_order(part):
-                if _is_risky(node):
-                    yield from _of_node(name, formula, part, node, start, end)
+    for expression, text, values, tables in expressions_of(element):
+        risky = [node for node in _outside_tables(expression, tables) if _is_risky(node)]
+        given = Input(expression, text, values, {table: TableRanges(tables[table]) for table in tables if risky})
+        yield from filter(None, (_of_node(name, given, node, start, end) for node in risky))
 
 
-def _parts_of_time(formula: Formula) -> list[ast.expr]:
-    """Return the largest parts that depend on time only, except table arguments: tables extrapolate linearly."""
-    if not formula.uses_time:
-        return []
-    return [part for part in _divided(formula.tree, formula)[1] if isinstance(part, ast.expr)]
-
-
-def _divided(node: ast.AST, formula: Formula) -> tuple[bool, list[ast.AST]]:
-    """Return whether a part depends on time only, and its largest parts that do."""
-    of_time, found = not _is_of_state(node, formula), list[ast.AST]()
-    for child in ast.iter_child_nodes(node):
-        child_of_time, parts = _divided(child, formula)
-        of_time = of_time and child_of_time
-        found += parts
-    if of_time:
-        return True, [node]
-    return False, [] if isinstance(node, ast.Call) and (is_named(node) or _is_table(node, formula)) else found
-
-
-def _is_of_state(node: ast.AST, formula: Formula) -> bool:
-    """Return True if a node is a coordinate, state, measure, reaction, table or variable of its field."""
-    match node:
-        case ast.Attribute():
-            return f"{UNIT}.{node.attr}" not in formula.values
-        case ast.Name():
-            return node.id in formula.variables or node.id in formula.tables or node.id in formula.states
-    return is_named(node)
-
-
-def _is_table(node: ast.Call, formula: Formula) -> bool:
-    return isinstance(node.func, ast.Name) and node.func.id in formula.tables
+def _outside_tables(expression: ast.expr, tables: Mapping[str, Table]) -> Iterator[ast.expr]:
+    """Yield the nodes of an expression without tables and their arguments: tables extrapolate linearly."""
+    if not (
+        isinstance(expression, ast.Call) and isinstance(expression.func, ast.Name) and expression.func.id in tables
+    ):
+        yield expression
+        for part in parts_of(expression):
+            yield from _outside_tables(part, tables)
 
 
 def _is_risky(node: ast.expr) -> bool:
@@ -144,28 +117,24 @@ def _is_risky(node: ast.expr) -> bool:
     return any(isinstance(each, ast.Name) and each.id == TIME for each in ast.walk(part))
 
 
-def _of_node(
-    name: str, formula: Formula, part: ast.expr, node: ast.expr, start: float, end: float
-) -> Iterator[InputEnd]:
-    """Yield the first end of a part of a formula caused by one of its nodes."""
-
-    evaluated = Input(part, formula.text, formula.values, {})
+def _of_node(name: str, given: Input, node: ast.expr, start: float, end: float) -> InputEnd | None:
+    """Return the first end of an input caused by one of its nodes, or None."""
 
     def value(t: float) -> float | None:
         with np.errstate(all="ignore"):  # cosh may overflow in a denominator
-            found = float(evaluated.at(np.array([t]))[0])
+            found = float(given.at(np.array([t]))[0])
         return found if np.isfinite(found) else None
 
-    for low, high in _without_bound(formula, node, start, end):
+    for low, high in _without_bound(given, node, start, end):
         size = max(abs(low), abs(high), end - start)
         pole = _is_pole(value, low, high, size)
-        if pole or _has_no_value_beyond(value, high, size):
+        if pole or all(value(high + distance * size) is None for distance in (NEARER_SIDE, 10 * NEARER_SIDE)):
             near = _pole_distance(value, low, size) if pole else NEARER_SIDE * size
-            yield InputEnd(low, near, name, ast.unparse(node), pole)
-            return
+            return InputEnd(low, near, name, ast.unparse(node), pole)
+    return None
 
 
-def _without_bound(formula: Formula, node: ast.expr, start: float, end: float) -> Iterator[tuple[float, float]]:
+def _without_bound(given: Input, node: ast.expr, start: float, end: float) -> Iterator[tuple[float, float]]:
     """Yield the shortest intervals over which a node is unbounded, in ascending order and separated."""
     waiting, divisions, passed = [(start, end)], 0, start
     while waiting and divisions < MOST_DIVISIONS:
@@ -173,20 +142,20 @@ def _without_bound(formula: Formula, node: ast.expr, start: float, end: float) -
         size = max(abs(first), abs(last), end - start)
         if last < passed:
             continue
-        if last - first <= SHORTEST_DIVIDED * size:
+        if last - first <= SHORTEST_STRETCH * size:
             yield first, last
             passed = last + FARTHER_SIDE * size
             continue
-        edges = np.linspace(first, last, PARTS_OF_A_STRETCH + 1)
+        edges = np.linspace(first, last, FIRST_STRETCHES + 1)
         with np.errstate(all="ignore"):
-            bounded = _is_bounded(formula, node, edges[:-1], edges[1:])
+            bounded = _is_bounded(given, node, edges[:-1], edges[1:])
         divisions += 1
         waiting += [(float(edges[k]), float(edges[k + 1])) for k in np.flatnonzero(~bounded)[::-1]]
 
 
-def _is_bounded(formula: Formula, node: ast.expr, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+def _is_bounded(given: Input, node: ast.expr, low: np.ndarray, high: np.ndarray) -> np.ndarray:
     """Return True for intervals with a bounded range and with arguments inside the node's domain."""
-    bounded = np.isfinite(_range(formula, node, low, high)).all(axis=0)
+    bounded = np.isfinite(given.within(low, high, part=node).value).all(axis=0)
     match node:
         case ast.Call(ast.Name(name), [argument]) if name in DOMAINS:
             least, most = DOMAINS[name]
@@ -194,21 +163,8 @@ def _is_bounded(formula: Formula, node: ast.expr, low: np.ndarray, high: np.ndar
             least, most = 0.0, np.inf
         case _:
             return bounded
-    inside = _range(formula, argument, low, high)
+    inside = given.within(low, high, part=argument).value
     return bounded & (inside[0] >= least) & (inside[1] <= most)
-
-
-def _range(formula: Formula, node: ast.expr, low: np.ndarray, high: np.ndarray) -> np.ndarray:
-    """Return the ranges of a node over time intervals, shape (2, n)."""
-    t = Enclosure.of_time(low, high)
-
-    def constant(number: float) -> Enclosure:
-        return t.constant(number)
-
-    def names(name: str) -> Enclosure:
-        return t if name == TIME else constant(formula.values[name])
-
-    return evaluate(node, names, FUNCTIONS, constant).value
 
 
 def _is_pole(value: Values, low: float, high: float, size: float) -> bool:
@@ -218,10 +174,6 @@ def _is_pole(value: Values, low: float, high: float, size: float) -> bool:
         if far is not None and near is not None and abs(near) > GROWS * abs(far) > 0.0:
             return True
     return False
-
-
-def _has_no_value_beyond(value: Values, high: float, size: float) -> bool:
-    return all(value(high + distance * size) is None for distance in (NEARER_SIDE, 10 * NEARER_SIDE))
 
 
 def _pole_distance(value: Values, t: float, size: float) -> float:

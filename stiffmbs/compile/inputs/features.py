@@ -7,7 +7,7 @@ feature hides between samples. A step is limited to a few lengths of the pieces 
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 
@@ -59,23 +59,10 @@ class InputFeatures:
             h = min(h, max(float(self.longest[k]), float(self.starts[k]) - t))
         return h
 
-    @cached_property
-    def _last_within(self) -> dict[tuple[float, float], InputFeatures]:
-        """Cache of the last request; the runs of one job request the same."""
-        return {}
-
     def within(self, start: float, end: float) -> InputFeatures:
         """Return the features between two times."""
         if not len(self.starts) and not len(self.breakpoints):
             return self
-        found = self._last_within.get((start, end))
-        if found is None:
-            found = self._cut(start, end)
-            self._last_within.clear()
-            self._last_within[start, end] = found
-        return found
-
-    def _cut(self, start: float, end: float) -> InputFeatures:
         inside = (self.starts < end) & (self.ends > start)
         breakpoints = self.breakpoints[(self.breakpoints > start) & (self.breakpoints < end)]
         return InputFeatures(breakpoints, self.starts[inside], self.longest[inside], self.note)
@@ -107,8 +94,6 @@ class InputFeatures:
 
 INSTANTS = 8
 """Times that resolve a narrow feature."""
-REMEMBERED = 16
-"""Number of scenes whose features are cached."""
 NO_FEATURES = InputFeatures()
 """Features of a system without formulas and tables of time."""
 
@@ -121,22 +106,11 @@ def input_features(system: System, start: float, end: float) -> InputFeatures:
     InputError
         If an input has too many breakpoints.
     """
-    inputs = tuple(inputs_of(system))
-    return _features(_Inputs(tuple((given.text, given.says) for given in inputs), inputs), start, end)
+    return _features(tuple(inputs_of(system)), start, end)
 
 
-@dataclass(frozen=True)
-class _Inputs:
-    """Inputs, compared by content."""
-
-    say: tuple[Hashable, ...]
-    each: tuple[Input, ...] = field(compare=False)
-
-
-@lru_cache(maxsize=REMEMBERED)
-def _features(given: _Inputs, start: float, end: float) -> InputFeatures:
-    """Return the features of inputs, cached for runs with the same inputs."""
-    inputs = given.each
+@lru_cache
+def _features(inputs: tuple[Input, ...], start: float, end: float) -> InputFeatures:
     breakpoints = breakpoint_times(inputs, start, end)
     pieces = [InputPieces(each, np.concatenate([[start], breakpoints, [end]])) for each in inputs]
     bounds = [each.bounds() for each in pieces]

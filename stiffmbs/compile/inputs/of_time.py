@@ -11,13 +11,13 @@ from typing import Any, get_args
 
 import numpy as np
 
-from ...describe.element import Element
-from ...describe.formula.field import FormulaOf
-from ...describe.formula.formula import Formula
-from ...describe.formula.functions import IN_FORMULAS
-from ...describe.formula.nodes import TIME, is_named, parts_of
-from ...describe.formula.text import BINARY, UNARY, UNIT
-from ...describe.table import Table
+from ...elements.element import Element
+from ...reading.formula.field import FormulaOf
+from ...reading.formula.formula import Formula
+from ...reading.formula.functions import IN_FORMULAS
+from ...reading.formula.nodes import TIME, is_named, parts_of
+from ...reading.formula.text import BINARY, UNARY, UNIT
+from ...reading.table import Table
 from ..system import System
 from .enclosed_functions import FUNCTIONS as ENCLOSED
 from .enclosure import Enclosure
@@ -25,13 +25,15 @@ from .table_ranges import TableRanges
 
 WRITTEN = "written"
 """Node attribute that caches its dump."""
+OF_TIME = "of_time"
+"""Node attribute that caches the parts of a formula that use time alone."""
 TABLE = "table"
 """Function name of a field's own table of time."""
 
 
 @dataclass(frozen=True, eq=False)
 class Input:
-    """Expression of time only.
+    """Expression of time only, compared by content.
 
     Attributes
     ----------
@@ -49,10 +51,15 @@ class Input:
     tables: Mapping[str, TableRanges]
 
     @cached_property
-    def says(self) -> tuple[Hashable, ...]:
-        """Content for comparison; tables are compared by identity, valid while the input exists."""
+    def _says(self) -> tuple[Hashable, ...]:
         tables = tuple((name, id(ranges.table)) for name, ranges in sorted(self.tables.items()))
-        return _written(self.tree), tuple(sorted(self.values.items())), tables
+        return self.text, _written(self.tree), tuple(sorted(self.values.items())), tables
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Input) and self._says == other._says
+
+    def __hash__(self) -> int:
+        return hash(self._says)
 
     def at(self, t: np.ndarray, part: ast.expr | None = None) -> np.ndarray:
         """Return the values of the expression, or of a part of it, at given times, shape (n,)."""
@@ -134,7 +141,7 @@ def _number(value: Any) -> Any:
 
 def inputs_of(system: System) -> list[Input]:
     """Return the distinct time inputs of all elements."""
-    found: dict[Hashable, Input] = {}
+    found: dict[Input, None] = {}
     known: dict[int, TableRanges] = {}
 
     def ranges_of(table: Table) -> TableRanges:
@@ -142,11 +149,10 @@ def inputs_of(system: System) -> list[Input]:
 
     for group in system.groups:
         for element in group.elements if group.has_inputs else ():
-            for written, text, values, tables in _expressions(element):
+            for expression, text, values, tables in expressions_of(element):
                 ranges = {name: ranges_of(table) for name, table in tables.items()}
-                given = Input(_without_roots(written), text, values, ranges)
-                found.setdefault(given.says, given)
-    return list(found.values())
+                found.setdefault(Input(expression, text, values, ranges))
+    return list(found)
 
 
 def _without_roots(tree: ast.expr) -> ast.expr:
@@ -178,7 +184,6 @@ class _WithoutRoots(ast.NodeTransformer):
 
 
 def _squared(node: ast.expr) -> ast.expr | None:
-    """Return the base of a square; None for other nodes."""
     match node:
         case ast.BinOp(x, ast.Pow(), ast.Constant(2)):
             return x
@@ -187,10 +192,10 @@ def _squared(node: ast.expr) -> ast.expr | None:
     return None
 
 
-def _expressions(element: Element) -> Iterator[tuple[ast.expr, str, Mapping[str, float], Mapping[str, Table]]]:
+def expressions_of(element: Element) -> Iterator[tuple[ast.expr, str, Mapping[str, float], Mapping[str, Table]]]:
+    """Yield the expressions of time of an element with their text, values and tables."""
     for _, formula in element.parts(Formula):
-        for part in _of_time_alone(formula):
-            names = [node.func.id for node in ast.walk(part) if isinstance(node, ast.Call)]  # type: ignore[attr-defined]
+        for part, names in _of_time_alone(formula) if formula.uses_time else ():
             used = {name: formula.tables[name] for name in names if name in formula.tables}
             yield part, formula.text, formula.values, used
     for name, table in element.parts(Table):
@@ -213,9 +218,21 @@ def _marks(metadata: list[object], annotation: object) -> Iterator[object]:
         yield from _marks([], part)
 
 
-def _of_time_alone(formula: Formula) -> list[ast.expr]:
-    """Return the largest parts of a formula that use time and no state."""
-    return _largest_parts(formula.tree, {*formula.variables, *formula.states})[2] if formula.uses_time else []
+def _of_time_alone(formula: Formula) -> list[tuple[ast.expr, list[str]]]:
+    """Return the largest parts of a formula that use time and no state, and the functions that they call.
+
+    They are kept in the tree: every run needs them.
+    """
+    of_state = frozenset((*formula.variables, *formula.states))
+    known: dict[frozenset[str], list[tuple[ast.expr, list[str]]]] = vars(formula.tree).setdefault(OF_TIME, {})
+    if of_state not in known:
+        parts = _largest_parts(formula.tree, of_state)[2]
+        known[of_state] = [(_without_roots(part), _called(part)) for part in parts]
+    return known[of_state]
+
+
+def _called(tree: ast.expr) -> list[str]:
+    return [node.func.id for node in ast.walk(tree) if isinstance(node, ast.Call)]  # type: ignore[attr-defined]
 
 
 def _largest_parts(node: ast.expr, of_state: Set[str]) -> tuple[bool, bool, list[ast.expr]]:

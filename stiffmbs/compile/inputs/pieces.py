@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from .enclosure import ROUNDING
 from .of_time import Input
 
 OF_CHANGE = 3e-3
@@ -18,8 +19,8 @@ SHORTEST_PIECE = 1e-11
 """Length, relative to the times, of a piece that is not subdivided further."""
 MOST_PIECES, MANY_PIECES = 2**13, 512
 """Number of open pieces above which only urgent ones are subdivided, and of pieces that need a second pass."""
-ROUNDING_OF_PARTS, ROUNDING_OF_SAMPLES = 1e-15, 100.0
-"""Rounding relative to the first ranges of an input, and factor by which samples may differ more."""
+ROUNDING_OF_SAMPLES = 100.0
+"""Difference of samples, in roundings of the first ranges of an input, up to which it is constant."""
 SAMPLE, QUANTILE = 64, 0.1
 """Size of the sample of pieces used for all others if they are too many, and quantile of its bounds."""
 URGENT = 64
@@ -129,7 +130,7 @@ class InputPieces:
         found = self._given.within(pieces.low + inner, pieces.high - inner, order=3)
         if not self._rounding:
             largest = np.abs(found.value[np.isfinite(found.value)]).max(initial=0.0)
-            self._rounding = max(ROUNDING_OF_PARTS * largest, np.finfo(float).tiny)
+            self._rounding = max(ROUNDING * largest, np.finfo(float).tiny)
         allowed = np.maximum(
             OF_CHANGE * np.maximum(pieces.change, LEAST_PART * self.change), ALWAYS_ALLOWED * self.size
         )

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ...describe.table import Table
+from ...reading.table import Table
 from ..table_values import curve, parts_of
 from .enclosure import Enclosure
 from .ranges import EVERYWHERE, Range, between_turns, hull
@@ -32,14 +32,14 @@ class TableRanges:
     def __init__(self, table: Table) -> None:
         self.table = table
         self._values = curve(table)
-        _, self._x, self._pieces = parts_of(table)
+        self._x, self._pieces = parts_of(table)
         self._smooth = {"lines": 1, "spline": 3}.get(table.interpolation, 2)
         self.period = self._x[-1] - self._x[0] if table.ends == "periodic" else 0.0
         self.breakpoints = _breakpoints(table, self._x)
         h = np.diff(self._x)
         whole = np.array([np.zeros_like(h), h])
         with np.errstate(all="ignore"):
-            self._most = [_Most(self._of_pieces(np.arange(len(h)), whole, k)) for k in range(4)]
+            self._whole = [self._of_pieces(np.arange(len(h)), whole, k) for k in range(4)]
 
     def values(self, arguments: np.ndarray) -> np.ndarray:
         """Return the values as computed by kernels."""
@@ -92,12 +92,9 @@ class TableRanges:
         beyond = (b <= x[0]) | (a >= x[-1])
 
         def outer(k: int) -> Range:
-            """Return the range of the k-th Taylor coefficient."""
             found = hull(self._of_pieces(first, z_first, k), self._of_pieces(last, z_last, k))
-            between = last > first + 1
-            found = np.where(
-                between, hull(found, self._most[k].over(first + 1, np.where(between, last, first + 2))), found
-            )
+            between = np.flatnonzero(last > first + 1)
+            found[:, between] = hull(found[:, between], _hulls(self._whole[k], first[between] + 1, last[between]))
             if k > self._smooth:
                 found = np.where(same, found, EVERYWHERE)
             if k == 0:
@@ -142,24 +139,8 @@ FLAT = 1e-12
 """Change between two points of a table, relative to its largest value, below which it is flat."""
 
 
-class _Most:
-    """Hulls of successive ranges from hulls of 1, 2, 4, ... ranges (sparse table)."""
-
-    def __init__(self, ranges: Range) -> None:
-        self._levels = [ranges]
-        while 2 * (reach := 2 ** (len(self._levels) - 1)) <= ranges.shape[1]:
-            before = self._levels[-1]
-            self._levels.append(hull(before[:, :-reach], before[:, reach:]))
-
-    def over(self, first: np.ndarray, end: np.ndarray) -> Range:
-        """Return the hulls from each first index to before each end; ends beyond the last range are clipped."""
-        count = self._levels[0].shape[1]
-        end = np.clip(end, 1, count)
-        first = np.clip(first, 0, end - 1)
-        level = np.frexp(end - first)[1] - 1
-        found = np.empty((2, len(first)))
-        for k in np.unique(level):
-            here = level == k
-            ranges = self._levels[k]
-            found[:, here] = hull(ranges[:, first[here]], ranges[:, end[here] - 2**k])
-        return found
+def _hulls(ranges: Range, first: np.ndarray, end: np.ndarray) -> Range:
+    """Return the hulls of successive ranges from each first index to before each end."""
+    places = np.stack([first, end], axis=1).ravel()
+    low, high = np.pad(ranges, ((0, 0), (0, 1)))  # an end may be beyond the last range
+    return np.array([np.minimum.reduceat(low, places)[::2], np.maximum.reduceat(high, places)[::2]])

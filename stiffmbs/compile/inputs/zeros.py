@@ -6,18 +6,18 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from .enclosure import Enclosure
+from .enclosure import ROUNDING, Enclosure
 
 FIRST_STRETCHES = 64
 """Initial number of intervals of the search."""
 SHORTEST_STRETCH = 1e-12
-"""Length, relative to the times, of an interval with at most one crossing."""
+"""Length, relative to the times, of an interval with at most one crossing: the smallest distance of breakpoints."""
 MOST_STRETCHES = 1_000_000
 """Number of intervals at which the search is given up."""
-MANY_STRETCHES = 256
+MANY_STRETCHES = 4 * FIRST_STRETCHES
 """Number of intervals above which those are dropped where the formula equals a level up to rounding."""
-SAMPLE_ROUNDING, RANGE_ROUNDING = 1e-14, 3e-16
-"""Rounding of samples and of ranges of a formula, relative to its values."""
+RANGE_ROUNDING = 3e-16
+"""Rounding of ranges of a formula, relative to its values."""
 
 Values = Callable[[np.ndarray], np.ndarray]
 Ranges = Callable[[np.ndarray, np.ndarray], Enclosure]
@@ -117,7 +117,7 @@ def _stands(values: Values, low: np.ndarray, high: np.ndarray, levels: np.ndarra
         at = values(low + part * (high - low))
         k = np.clip(np.searchsorted(levels, at), 1, len(levels) - 1) if len(levels) > 1 else 0
         miss = np.minimum(np.abs(at - levels[k]), np.abs(at - levels[np.maximum(k - 1, 0)]))
-        standing &= miss <= SAMPLE_ROUNDING * size
+        standing &= miss <= 10 * ROUNDING * size
     return standing
 
 

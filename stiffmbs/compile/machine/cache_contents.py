@@ -8,16 +8,16 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ...cache.entries import PART, SECRET, cache_directory
-from ...describe.files.folder import folder_of_files
-from ...describe.files.read_before import FILE
-from ...describe.files.scenes_read_before import SCENE
+from ...flexible_bodies.reduced import BODY, folder_of_bodies
+from ...model.files.scenes_read_before import SCENE
+from ...reading.files.read_before import FILE, folder_of_files
 from .cache import FOLDER, KERNEL, RECORD, ROUTINE, own_directory
 
-KINDS = (RECORD, KERNEL, ROUTINE, FILE, SCENE)
+KINDS = (RECORD, KERNEL, ROUTINE, FILE, SCENE, BODY)
 OTHERS = "other"
 _ENTRY = re.compile(rf"({'|'.join(KINDS)})-[0-9a-f]{{40}}|{re.escape(PART)}.*|[0-9a-f]{{40}}")
 """Names of entries, of partially written files, and of entries of earlier versions."""
-_DIRECTORY = re.compile(rf"({FOLDER}|{folder_of_files().kind})-[0-9a-f]{{12}}")
+_DIRECTORY = re.compile(rf"({FOLDER}|{folder_of_files().kind}|{folder_of_bodies().kind})-[0-9a-f]{{12}}")
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,7 @@ class Stored:
 
 def stored() -> dict[str, Stored]:
     """Return the cache contents by kind; `OTHERS` are entries unused by this version on this machine."""
-    folders = (own_directory(), folder_of_files().path)
+    folders = (own_directory(), folder_of_files().path, folder_of_bodies().path)
     sizes: dict[str, list[int]] = {kind: [] for kind in (*KINDS, OTHERS)}
     for path in _files():
         kind = path.name.partition("-")[0]

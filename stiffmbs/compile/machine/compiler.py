@@ -7,7 +7,7 @@ import importlib
 import logging
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 from threading import RLock
@@ -16,7 +16,6 @@ from typing import Any, NamedTuple
 from ...cache.source_files import digest_of, modules_within, python_files
 from ...interrupts import uncollected
 from . import cache as store
-from .description import Description
 
 LOGGER = logging.getLogger(__name__)
 _CTYPES: dict[str, Any] = {"int32": ctypes.c_int32, "int64": ctypes.c_int64, "float64": ctypes.c_double, "void": None}
@@ -27,6 +26,13 @@ GEOMETRY = f"{__package__}.geometry"
 SERIES = "rotation_vector("
 """Call in generated sources with a short loop that should be unrolled to a polynomial (bushings)."""
 _SIGNATURE = re.compile(r"^(\w+)\((.*)\)$")
+
+
+@dataclass(frozen=True)
+class Description:
+    """Text for the log that compares equal to any other, so that cached functions ignore it."""
+
+    words: str = field(default="", compare=False)
 
 
 class Compiled(NamedTuple):
@@ -92,7 +98,7 @@ def _compiled_source(source: str, name: str, signature: str, of: Description) ->
 def _called(with_geometry: bool) -> str:
     """Return a digest of the modules that generated sources call."""
     here = Path(__file__).parent
-    names = ("nonsmooth", "continuous_angle", "spline", "rotation_vector", "python_call")
+    names = ("nonsmooth", "spline", "rotation_vector", "python_call")
     files = [here / "native" / f"{name}.py" for name in names]
     return digest_of(files + python_files(here / "geometry") * with_geometry)
 
@@ -118,11 +124,11 @@ def _language() -> str:
 
 @cache
 def _native(package: str) -> str:
-    """Return a digest of the memory layout and the native modules of stiffmbs and of a package that calls them."""
+    """Return a digest of the native modules of stiffmbs and of a package that calls them, and of what they read."""
     here = Path(__file__).parent
     folders = {here.parents[1], Path(importlib.import_module(package).__path__[0])}
     files = [file for folder in sorted(folders) for file in modules_within(folder, "native")]
-    return digest_of([*files, here / "layout.py"])
+    return digest_of([*files, here / "layout.py", here.parent / "bodies.py"])
 
 
 def _loaded(entry: str, source: _Source) -> dict[str, Compiled]:
@@ -220,7 +226,6 @@ def _linked(code: bytes, entry: str, signatures: Signatures) -> dict[str, Compil
 
 
 def _prototype(signature: str) -> list[Any]:
-    """Return the ctypes types of the result and of the arguments."""
     arguments, result = _c_types(signature)
     return [_CTYPES[result], *(ctypes.c_void_p if "*" in kind else _CTYPES[kind] for kind in arguments)]
 

@@ -12,7 +12,7 @@ from collections.abc import Mapping
 from functools import cached_property
 from hashlib import blake2b
 from typing import Any
-from weakref import WeakValueDictionary
+from weakref import WeakValueDictionary, finalize
 
 import numpy as np
 
@@ -45,6 +45,8 @@ class Layout(dict[str, str]):
         return np.array([*found.values()], dtype=np.intp), tuple(found), tuple(types)
 
 
+QUAD = 4
+"""Doubles of a SIMD vector."""
 INTS, INDICES, FLOATS, INT = "ints", "indices", "floats", "int"
 FLOAT_CELL, INT_CELL = "float cell", "int cell"
 CELLS = {FLOAT_CELL: "float", INT_CELL: "int"}
@@ -60,11 +62,33 @@ def packed(layout: Layout, values: Mapping[str, Any]) -> np.ndarray:
     """Return the table for a layout: addresses of arrays, numbers, and cells, zero if no value is given.
 
     The arrays must be contiguous, of the layout's type, and live as long as the table is used. Arrays owned by compiled
-    code are empty at first (`stiffmbs.compile.machine.own_memory`).
+    code are empty at first (`packed_with_memory`).
     """
     table = np.zeros(len(layout), dtype=np.int64)
     fill(table, layout, values)
     return table
+
+
+RELEASE = ctypes.pythonapi.PyMem_RawFree
+"""Frees the memory of `stiffmbs.compile.machine.native.memory`."""
+
+
+def packed_with_memory(layout: Layout, values: Mapping[str, Any]) -> np.ndarray:
+    """Return a table as `packed`; compiled code's own arrays are freed with it.
+
+    Users of the table's address must keep the returned array.
+    """
+    words = packed(layout, values)
+    own = [column for column, kind in enumerate(layout.values()) if kind in OWN]
+    table = words.view()
+    finalize(table, _free, words, own).atexit = False
+    return table
+
+
+def _free(words: np.ndarray, columns: list[int]) -> None:
+    for column in columns:
+        RELEASE(ctypes.c_void_p(int(words[column])))
+        words[column] = 0
 
 
 def arrays_of(layout: Layout, lists: Mapping[str, Any]) -> dict[str, np.ndarray]:

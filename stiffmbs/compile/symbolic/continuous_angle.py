@@ -21,7 +21,6 @@ the half turn made there must cost no steps."""
 class ContinuousAngle(sp.Function):  # type: ignore[misc]
     """Angle with a given sine and cosine (or multiples of both) that is nearest to a counter."""
 
-    nargs = 3
     is_real = True
 
     def fdiff(self, argindex: int = 1) -> sp.Expr:

@@ -13,9 +13,8 @@ from functools import partial
 
 import sympy as sp
 
-from ...describe.element import Force, Joint
-from ...describe.requests.angle_counter import AngleCounter
-from ...describe.states.equation import Reported, StateEquation
+from ...elements.element import Force, Joint
+from ...elements.states.equation import AngleCounter, Reported, StateEquation
 from ...errors import InputError
 from ..kind import Kind
 from .continuous_angle import away_from_pole
@@ -54,25 +53,14 @@ class LateEntry:
 
 @dataclass(frozen=True)
 class Derived:
-    """Terms of a kind, each a list of its non-zero entries in row order.
+    """Terms of a kind; for all other fields see `stiffmbs.compile.record.KindRecord`.
 
     Attributes
     ----------
-    n_equations, n_holonomic : int
-        Number of constraint equations of one element, and of those with a position form, which come first.
     symbols : Symbols
         Symbols of the expressions.
     terms : dict
-        By the names of `stiffmbs.compile.terms.TERM_AXES`.
-    losses : list of int or None
-        Numbers of an element that must be zero for it to conserve energy (`stiffmbs.compile.symbolic.losses`); None if
-        unknown.
-    variation : list of list of Summand
-        Dependencies of each entry of C_q.
-    removable : list of bool
-        True for position equations that may be eliminated where their derivatives are constant.
-    timed : list of bool
-        True for equations that depend on time or states.
+        Non-zero entries of each term in row order, by the names of `stiffmbs.compile.terms.TERM_AXES`.
     """
 
     n_equations: int
@@ -110,7 +98,7 @@ def _derived_joint(kind: Kind, symbols: Symbols) -> Derived:
     e, stated = symbols.element, stated_by_joint(kind, symbols)
     C, rates = sp.Matrix(stated.position), sp.Matrix(stated.velocity)
     V = sp.Matrix([*(e.rate(equation) for equation in C), *rates])
-    J = e.by_velocities(V)
+    J = e.by_u.matrix(V)
     _refuse_rates_by_velocities(e, C)
     for row in range(J.rows):
         if J[row, :].is_zero_matrix:
@@ -122,35 +110,34 @@ def _derived_joint(kind: Kind, symbols: Symbols) -> Derived:
                 f"{kind.element.__name__}: found equation {row + 1} of {J.rows} with products or powers of velocities, expected one that is linear "
                 "in velocities"
             )
-    pressed = [symbol for joint in symbols.joint_lam for symbol in joint]
-    if any(e.depends(entry, pressed) for entry in V):
+    if any(e.depends(entry, symbols.pressed) for entry in V):
         raise InputError(
             f"{kind.element.__name__}: found a reaction in its equations, expected formulas without reactions"
         )
     lam, mu = multipliers("lam", V.rows), multipliers("mu", V.rows)
-    force = e.work_by_velocities(zip(lam, V, strict=True))
+    force = e.by_u.work(zip(lam, V, strict=True))
     turning = e.rate(V)
     in_space = kind.dimensions == 3  # in the plane `turning` has fewer products
     second = [*(map(e.second_rate, C) if in_space else turning[: len(C), :]), *turning[len(C) :, :]]
     power = power_of_joint(e, V, lam)
     terms = {
-        "C": sp.Matrix([*C, *sp.zeros(len(rates), 1)]), "C_q": e.by_coordinates(C), "V": V, "J": J, "V_q": e.by_coordinates(V),
+        "C": sp.Matrix([*C, *sp.zeros(len(rates), 1)]), "C_q": e.by_q.matrix(C), "V": V, "J": J, "V_q": e.by_q.matrix(V),
         "gamma": -sp.Matrix(second),
-        "G_lam": e.by_coordinates(force), "G_mu": _symmetric(e.by_coordinates(e.work_by_coordinates(zip(mu, C, strict=False)))),
-        "gamma_u": -e.by_velocities(turning),
+        "G_lam": e.by_q.matrix(force), "G_mu": _symmetric(e.by_q.matrix(e.by_q.work(zip(mu, C, strict=False)))),
+        "gamma_u": -e.by_u.matrix(turning),
         "reaction": _reaction(stated, e, -force),
         "event_function": sp.Matrix(stated.event_functions), "power": sp.Matrix([power]),
-        "argument": _arguments(symbols),
+        "argument": symbols.arguments,
     }  # fmt: skip
     entries: dict[str, Sequence[Entry | LateEntry]] = {name: _entries(matrix) for name, matrix in terms.items()}
-    first_state = e.n_coordinates - len(e.states)  # states are given: reactions and projections do not act on them
+    first_state = len(e.by_q.ways) - len(e.states)  # states are given: reactions and projections do not act on them
     entries["C_x"] = [entry for entry in entries["C_q"] if entry.column >= first_state]
     entries["C_q"] = [entry for entry in entries["C_q"] if entry.column < first_state]
     entries["G_mu"] = [entry for entry in entries["G_mu"] if entry.row < first_state]
     entries["A_q"] = [
-        LateEntry(partial(e.by_coordinate, row, column), r, column)
+        LateEntry(partial(e.by_q.derivative, row, column), r, column)
         for r, row in enumerate(e.by_accelerations(equation) + rest for equation, rest in zip(V, second, strict=True))
-        for column in e.columns_of(row)
+        for column in e.by_q.of(row)
     ]
     for name in ("C", "V"):  # complete, including zeros: solvers find them by row
         entries[name] = [Entry(terms[name][row], row) for row in range(V.rows)]
@@ -175,31 +162,51 @@ def _refuse_rates_by_velocities(e: SymbolicElement, C: sp.Matrix) -> None:
 
 def _derived_force(kind: Kind, symbols: Symbols) -> Derived:
     e, stated = symbols.element, stated_by_force(kind, symbols)
-    f = e.work_by_velocities(stated.powers)
-    joint_lam = [symbol for joint in symbols.joint_lam for symbol in joint]
+    f = e.by_u.work(stated.powers)
+    joint_lam = symbols.pressed
     power, losses = power_of_force(stated, symbols, kind.element.may_keep_energy)  # type: ignore[attr-defined]
     terms = {
-        "f": f, "f_q": e.by_coordinates(f), "f_u": e.by_velocities(f),
+        "f": f, "f_q": e.by_q.matrix(f), "f_u": e.by_u.matrix(f),
         "f_lam": e.by(f, joint_lam) if joint_lam else sp.zeros(0, 0),
         "reaction": _reaction(stated, e, f), "potential": sp.Matrix([stated.potential]),
         "event_function": sp.Matrix(stated.event_functions), "limit": sp.Matrix(stated.limits),
-        "argument": _arguments(symbols), "power": sp.Matrix([power]), "measured": sp.Matrix(stated.measured),
+        "argument": symbols.arguments, "power": sp.Matrix([power]), "measured": sp.Matrix(stated.measured),
     }  # fmt: skip
     if kind.element.turns:  # type: ignore[attr-defined]
         terms |= _turning(e)
     entries: dict[str, Sequence[Entry | LateEntry]] = {name: _entries(matrix) for name, matrix in terms.items()}
     entries |= _rates(e, sp.Matrix(stated.rates), e.own, joint_lam)
+    entries |= _condensed(e, stated)
     for name, of in (("f_alg", "f_q"), ("rate_alg", "rate_q")):
         entries[name] = _of_algebraic(kind, e, entries[of])
     return Derived(0, 0, symbols, entries, losses)
+
+
+def _condensed(e: SymbolicElement, stated: Stated) -> dict[str, Sequence[Entry | LateEntry]]:
+    """Return the efforts of a stiff force, the derivatives of its rates by velocities, and those of the efforts."""
+    efforts = [effort for effort, _ in stated.condensed]
+    return {
+        "effort": [Entry(effort, row) for row, effort in enumerate(efforts)],
+        "lever": _entries(e.by_u.matrix(rate for _, rate in stated.condensed)),
+        "effort_q": [
+            LateEntry(partial(e.by_q.derivative, effort, column), row, column)
+            for row, effort in enumerate(efforts)
+            for column in e.by_q.of(effort)
+        ],
+        "effort_u": [
+            LateEntry(partial(e.by_u.derivative, effort, column), row, column)
+            for row, effort in enumerate(efforts)
+            for column in e.by_u.of(effort)
+        ],
+    }
 
 
 def _rates(
     e: SymbolicElement, rates: sp.Matrix, states: Sequence[sp.Symbol], joint_lam: Sequence[sp.Symbol]
 ) -> dict[str, Sequence[Entry | LateEntry]]:
     """Return the rates of states and their derivatives, in the rows of the states."""
-    rows = [e.n_coordinates - len(e.states) + e.states.index(state) for state in states]
-    terms = {"rate": rates, "rate_q": e.by_coordinates(rates), "rate_u": e.by_velocities(rates)}
+    rows = [len(e.by_q.ways) - len(e.states) + e.states.index(state) for state in states]
+    terms = {"rate": rates, "rate_q": e.by_q.matrix(rates), "rate_u": e.by_u.matrix(rates)}
     terms["rate_lam"] = e.by(rates, joint_lam) if joint_lam else sp.zeros(0, 0)
     return {name: [replace(entry, row=rows[entry.row]) for entry in _entries(matrix)] for name, matrix in terms.items()}
 
@@ -209,8 +216,8 @@ def _derived_state(kind: Kind, symbols: Symbols) -> Derived:
     e, element = symbols.element, kind.element
     formula = sp.sympify(element.rate(e) if issubclass(element, StateEquation) else e.formula)
     value = sp.Matrix([formula])
-    joint_lam = [symbol for joint in symbols.joint_lam for symbol in joint]
-    terms = {"signal": value, "event_function": sp.Matrix(symbols.event_functions), "argument": _arguments(symbols)}
+    joint_lam = symbols.pressed
+    terms = {"signal": value, "event_function": sp.Matrix(symbols.event_functions), "argument": symbols.arguments}
     entries: dict[str, Sequence[Entry | LateEntry]] = {name: _entries(matrix) for name, matrix in terms.items()}
     entries["signal"] = [Entry(formula, 0)]
     if issubclass(element, StateEquation):
@@ -221,13 +228,8 @@ def _derived_state(kind: Kind, symbols: Symbols) -> Derived:
 
 def _of_algebraic(kind: Kind, e: SymbolicElement, entries: Sequence[Entry | LateEntry]) -> list[Entry | LateEntry]:
     """Return the entries of a matrix in the columns of algebraic states."""
-    first = e.n_coordinates - len(e.states)
+    first = len(e.by_q.ways) - len(e.states)
     return [entry for entry in entries if entry.column - first in kind.algebraic]
-
-
-def _arguments(symbols: Symbols) -> sp.Matrix:
-    """Return the arguments of laws; each depends on the state, so none is dropped as zero."""
-    return sp.Matrix([law.argument for law in symbols.laws])
 
 
 def _turning(e: SymbolicElement) -> dict[str, sp.Matrix]:
@@ -236,14 +238,14 @@ def _turning(e: SymbolicElement) -> dict[str, sp.Matrix]:
     Z, rates = sp.zeros(len(body.q), len(body.u)), sp.zeros(len(body.q), 1)
     Z[3:, 3:] = body.quaternion_rates(sp.Matrix(body.q[3:])) * sp.Matrix(body.followed).jacobian(body.u[3:])
     rates[3:, :] = Z[3:, 3:] * sp.Matrix(body.u[3:])
-    return {"Z": Z, "Z_q": e.by_coordinates(rates)}
+    return {"Z": Z, "Z_q": e.by_q.matrix(rates)}
 
 
 def _counting(e: SymbolicElement) -> dict[str, list[Entry]]:
     """Return the counted angles and their rates, in rows after the bodies' coordinates."""
-    first = e.n_coordinates
+    first = len(e.by_q.ways)
     rates, bounded = sp.Matrix([e.rate(angle) for angle in e.angles]), [away_from_pole(angle, e) for angle in e.angles]
-    of_rates = {"angle_rate": rates, "Z": e.by_velocities(rates), "Z_q": e.by_coordinates(rates)}
+    of_rates = {"angle_rate": rates, "Z": e.by_u.matrix(rates), "Z_q": e.by_q.matrix(rates)}
     entries = {
         name: [replace(entry, expression=bounded[entry.row](entry.expression)) for entry in _entries(matrix)]
         for name, matrix in of_rates.items()

@@ -6,7 +6,7 @@ SymPy's `diff` traverses every subexpression for each derivative, which is slow 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import sympy as sp
 
@@ -118,8 +118,12 @@ class Derivatives:
     def along(self, x: sp.Expr, rates: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr:
         """Return the rate of x for given symbol rates; rates of symbols are named to keep second rates short."""
         match x:
+            case sp.Symbol() if x in rates:
+                return rates[x]
+            case sp.Symbol() if x in self._chain or x not in self.meanings:
+                return self.named(self._by_all(x, rates))
             case sp.Symbol():
-                return rates[x] if x in rates else self._rate_of_symbol(x, rates)
+                return self.named(self.along(self.meanings[x], rates))
             case sp.Add():
                 return sp.Add(*(self.along(part, rates) for part in x.args))
             case sp.Mul():
@@ -128,11 +132,6 @@ class Derivatives:
                 )
             case _:
                 return self._by_all(x, rates)
-
-    def _rate_of_symbol(self, x: sp.Symbol, rates: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr:
-        if x in self._chain or x not in self.meanings:
-            return self.named(self._by_all(x, rates))
-        return self.named(self.along(self.meanings[x], rates))
 
     def _by_all(self, x: sp.Expr, rates: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr:
         return sp.Add(*(rate * self.partial(x, symbol) for symbol, rate in rates.items()))
@@ -162,7 +161,7 @@ class Derivatives:
             case sp.Add():
                 return sp.Add(*(self.partial(part, v) for part in x.args))
             case sp.Mul():
-                return sp.Add(*(self._with_one_factor_changed(x, k, v) for k in range(len(x.args))))
+                return sp.Add(*(sp.Mul(*x.args[:k], part, *x.args[k + 1 :]) for k, part in self._changed(x, v)))
             case sp.Pow() if isinstance(x.base, sp.cosh) and x.exp.is_negative:
                 (argument,) = x.base.args  # sinh(a)/cosh(a)^2 would overflow to NaN
                 return x.exp * x * sp.tanh(argument) * self.partial(argument, v)
@@ -177,14 +176,12 @@ class Derivatives:
             case NonsmoothBase():
                 return x.by_parts(lambda part: self.partial(part, v))
             case sp.Function():
-                return sp.Add(*(self._through_argument(x, k, v) for k in range(len(x.args))))
+                return sp.Add(*(x.fdiff(k + 1) * part for k, part in self._changed(x, v)))
             case _:
                 return sp.diff(x, v)
 
-    def _with_one_factor_changed(self, x: sp.Mul, k: int, v: sp.Symbol) -> sp.Expr:
-        changed = self.partial(x.args[k], v)
-        return changed if changed is sp.S.Zero else sp.Mul(*x.args[:k], changed, *x.args[k + 1 :])
-
-    def _through_argument(self, x: sp.Function, k: int, v: sp.Symbol) -> sp.Expr:
-        changed = self.partial(x.args[k], v)
-        return changed if changed is sp.S.Zero else x.fdiff(k + 1) * changed
+    def _changed(self, x: sp.Expr, v: sp.Symbol) -> Iterator[tuple[int, sp.Expr]]:
+        """Yield the position and the derivative of each argument that depends on v."""
+        for k, part in enumerate(x.args):
+            if (changed := self.partial(part, v)) is not sp.S.Zero:
+                yield k, changed

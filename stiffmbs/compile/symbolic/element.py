@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
-from ...describe.element import IN_EQUATIONS
+from ...elements.element import IN_EQUATIONS
 from ...errors import InputError
 from .common_normal import common_normal
 from .continuous_angle import ContinuousAngle, counter
 from .differentiate import Derivatives, Way
+from .logarithm import PlanarLogarithm, SpatialLogarithm, logarithm
 from .read import read
 from .relative_rotation import RelativeRotation, ShortestRotation, product
 from .spline import integral
@@ -26,6 +28,40 @@ COINCIDENT = sp.Float("1e-200")
 
 Work = tuple[sp.Expr, sp.Expr]
 """Effort, and the quantity it does work on: a function of the pose, or its rate."""
+
+
+@dataclass(frozen=True)
+class Variables:
+    """Coordinates or velocities of an element, by which expressions are differentiated."""
+
+    element: SymbolicElement
+    ways: list[list[Way]]
+
+    def matrix(self, column: Iterable[sp.Expr]) -> sp.Matrix:
+        """Return the matrix of derivatives of a column."""
+        rows = [[self.derivative(x, k) for k in range(len(self.ways))] for x in column]
+        return sp.Matrix(len(rows), len(self.ways), [entry for row in rows for entry in row])
+
+    def work(self, pairs: Iterable[Work]) -> sp.Matrix:
+        """Return the generalised force: the column of sums of efforts times derivatives of their quantities."""
+        known = list(pairs)
+        return sp.Matrix([self._change(known, way) for way in self.ways])
+
+    def derivative(self, x: sp.Expr, k: int) -> sp.Expr:
+        """Return the derivative by one variable."""
+        return self._change([(sp.Integer(1), x)], self.ways[k])
+
+    def of(self, x: sp.Expr) -> list[int]:
+        """Return the variables that an expression depends on."""
+        return [k for k, way in enumerate(self.ways) if self.element.depends(x, (symbol for symbol, _ in way))]
+
+    def _change(self, pairs: list[Work], way: list[Way]) -> sp.Expr:
+        """Return the sum of efforts times derivatives by one variable; shared parts are named."""
+        partial, changes = self.element.derivatives.partial, []
+        for symbol, much in way:
+            whole = sp.Add(*(effort * partial(x, symbol) for effort, x in pairs))
+            changes.append(whole if much == 1 else self.element.named(whole) * much)
+        return sp.Add(*changes)
 
 
 class SymbolicElement:
@@ -68,6 +104,7 @@ class SymbolicElement:
         self.breakpoints: list[sp.Expr] = []
         self.derivatives = derivatives
         self._rotations: dict[tuple[Any, Any], RelativeRotation] = {}
+        self._logarithms: dict[tuple[Any, Any], SpatialLogarithm | PlanarLogarithm] = {}
         self.__dict__.update(fields)
 
     def __getattr__(self, name: str) -> Any:
@@ -129,7 +166,7 @@ class SymbolicElement:
     def _accelerations(self) -> dict[sp.Symbol, sp.Expr]:
         """Rates of the symbols in `velocities` due to accelerations."""
         rates: dict[sp.Symbol, sp.Expr] = {}
-        for a, way in zip(self.a, self._by_velocity, strict=True):
+        for a, way in zip(self.a, self.by_u.ways, strict=True):
             for symbol, much in way:
                 rates[symbol] = rates.get(symbol, sp.Integer(0)) + a * much
         return {symbol: self.named(rate) for symbol, rate in rates.items()}
@@ -181,65 +218,31 @@ class SymbolicElement:
         own = self.named([i.x, i.y, i.z][axis])
         return ShortestRotation(axis, sp.Matrix(self.named([own.dot(self.named(other)) for other in (j.x, j.y, j.z)])))
 
+    def logarithm(self, i: Any, j: Any) -> SpatialLogarithm | PlanarLogarithm:
+        """Return the logarithm of the displacement of a marker from one of another body."""
+        if (i, j) not in self._logarithms:
+            self._logarithms[i, j] = logarithm(self, i, j)
+        return self._logarithms[i, j]
+
     @property
     def meanings(self) -> dict[sp.Symbol, sp.Expr]:
         """Expressions of the named symbols, each after those it uses."""
         return self.derivatives.meanings
 
-    def by_coordinates(self, column: Iterable[sp.Expr]) -> sp.Matrix:
-        """Return the matrix d(column)/dq."""
-        return self._matrix(([(sp.Integer(1), x)] for x in column), self._by_coordinate)
-
-    def by_velocities(self, column: Iterable[sp.Expr]) -> sp.Matrix:
-        """Return the matrix d(column)/du."""
-        return self._matrix(([(sp.Integer(1), x)] for x in column), self._by_velocity)
-
-    def work_by_coordinates(self, pairs: Iterable[Work]) -> sp.Matrix:
-        """Return the column of sums of efforts times derivatives by q of their quantities."""
-        return self._matrix([list(pairs)], self._by_coordinate).T
-
-    def work_by_velocities(self, pairs: Iterable[Work]) -> sp.Matrix:
-        """Return the generalised force: the column of sums of efforts times derivatives by u of the rates."""
-        return self._matrix([list(pairs)], self._by_velocity).T
-
-    def by_coordinate(self, x: sp.Expr, column: int) -> sp.Expr:
-        """Return the derivative by one coordinate."""
-        return self._change([(sp.Integer(1), x)], self._by_coordinate[column])
-
-    def columns_of(self, x: sp.Expr) -> list[int]:
-        """Return the coordinates that an expression depends on."""
-        ways = enumerate(self._by_coordinate)
-        return [column for column, way in ways if self.depends(x, (symbol for symbol, _ in way))]
-
     @cached_property
-    def _by_coordinate(self) -> list[list[Way]]:
+    def by_q(self) -> Variables:
+        """Coordinates of the bodies, then states; turn counters follow them."""
         of_states: list[list[Way]] = [[(symbol, sp.Integer(1))] for symbol in self.states]
-        return [*(way for frame in self.frames for way in frame.by_coordinate), *of_states]
-
-    @property
-    def n_coordinates(self) -> int:
-        """Number of coordinates of the bodies and states; turn counters follow them."""
-        return len(self._by_coordinate)
+        return Variables(self, [*(way for frame in self.frames for way in frame.by_coordinate), *of_states])
 
     @cached_property
-    def _by_velocity(self) -> list[list[Way]]:
-        return [way for frame in self.frames for way in frame.by_velocity]
-
-    def _matrix(self, rows: Iterable[list[Work]], ways: list[list[Way]]) -> sp.Matrix:
-        entries = [[self._change(row, way) for way in ways] for row in rows]
-        return sp.Matrix(len(entries), len(ways), [entry for row in entries for entry in row])
-
-    def _change(self, row: list[Work], way: list[Way]) -> sp.Expr:
-        """Return the sum of efforts times derivatives by one coordinate or velocity; shared parts are named."""
-        partial, changes = self.derivatives.partial, []
-        for symbol, much in way:
-            whole = sp.Add(*(effort * partial(x, symbol) for effort, x in row))
-            changes.append(whole if much == 1 else self.named(whole) * much)
-        return sp.Add(*changes)
+    def by_u(self) -> Variables:
+        """Velocities of the bodies."""
+        return Variables(self, [way for frame in self.frames for way in frame.by_velocity])
 
     def reaction(self, joint: ReferredJoint, on: Any) -> dict[str, sp.Expr]:
         """Return the reaction of a joint on one of its bodies about the joint's point, by component: -J^T lam."""
-        force = -self.work_by_velocities(zip(joint.lam, joint.velocity_level, strict=True))
+        force = -self.by_u.work(zip(joint.lam, joint.velocity_level, strict=True))
         first = sum(len(frame.u) for frame in self.frames[: self.frames.index(on)])
         wrench = on.wrench(force[first : first + len(on.u), :], sp.Matrix(joint.point))
         names = ("fx", "fy", "tz") if len(wrench) == 3 else ("fx", "fy", "fz", "tx", "ty", "tz")

@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 import sympy as sp
+from sympy.core.exprtools import decompose_power
+from sympy.core.sorting import default_sort_key
 from sympy.printing.precedence import precedence
 from sympy.printing.pycode import PythonCodePrinter
 
-from ...describe.formula.functions import FUNCTIONS
+from ...reading.formula.functions import FUNCTIONS
 from ..machine import compiler
 from ..terms import KERNEL_ARGUMENTS, TERM_SETS
 from .common_normal import CommonNormal, CommonNormalSlope
@@ -16,7 +18,6 @@ from .continuous_angle import ContinuousAngle, counter
 from .derive import Derived
 from .differentiate import Derivatives
 from .nonsmooth import NonsmoothBase, Step
-from .ordered_terms import ordered_terms
 from .python_call import PythonCall
 from .relative_rotation import RotationVector
 from .spline import Spline
@@ -33,8 +34,7 @@ def _imported(module: str, names: Iterable[str]) -> str:
 
 NATIVE = "stiffmbs.compile.machine.native"
 HEADER = (
-    _imported(f"{NATIVE}.nonsmooth", _natives(NonsmoothBase))
-    + _imported(f"{NATIVE}.continuous_angle", ["continuous_angle"])
+    _imported(f"{NATIVE}.nonsmooth", ["continuous_angle", *_natives(NonsmoothBase)])
     + _imported(f"{NATIVE}.spline", ["spline"])
     + _imported(f"{NATIVE}.rotation_vector", ["rotation_vector"])
     + _imported("math", ["copysign", *(name for name, function in FUNCTIONS.items() if function.in_c)])
@@ -45,6 +45,23 @@ PYTHON = "from stiffmbs.compile.machine.native.python_call import python_call\n"
 """Import of kernels that call Python functions."""
 GEOMETRY = f"from {compiler.GEOMETRY}.common_normal import common_normal, common_normal_slope\n"
 """Import of kernels for contacts between solids."""
+
+
+def ordered_terms(x: sp.Add) -> list[sp.Expr] | None:
+    """Return the terms of a sum in SymPy's order: by monomials, highest first.
+
+    SymPy also compares coefficients, which is slow. They do not matter where monomials differ, as in all sums simplified by
+    SymPy. The result is None if they do not, or for a number plus one other term.
+    """
+    if len(x.args) == 2 and any(term.is_number for term in x.args):
+        return None
+    monomials = [
+        (term, dict(decompose_power(factor) for factor in sp.Mul.make_args(term) if not factor.is_number))
+        for term in x.args
+    ]
+    bases = sorted({base for _, monomial in monomials for base in monomial}, key=default_sort_key)
+    powers = {tuple(-monomial.get(base, 0) for base in bases): term for term, monomial in monomials}
+    return [powers[power] for power in sorted(powers)] if len(powers) == len(x.args) else None
 
 
 class _Printer(PythonCodePrinter):

@@ -55,14 +55,10 @@ def power_of_force(stated: Stated, symbols: Symbols, may_keep: bool = True) -> t
     if not may_keep:
         return work if potential == 0 else work + e.rate(potential), None
     if potential == 0:
-        return (sp.Integer(0), []) if _vanishes(work) else (work, None)
+        vanishes = not work.has(sp.Function) and sp.expand(work) == 0  # products cancel, as in a gyroscopic torque
+        return (sp.Integer(0), []) if vanishes else (work, None)
     losses = _losses(symbols, [Q for Q, _ in powers])
     return (sp.Integer(0) if losses == [] else work + e.rate(potential)), losses
-
-
-def _vanishes(work: sp.Expr) -> bool:
-    """Return True if products cancel, as in a gyroscopic torque; other functions are too slow to expand."""
-    return not work.has(sp.Function) and sp.expand(work) == 0
 
 
 def _losses(symbols: Symbols, efforts: list[sp.Expr]) -> list[int] | None:
@@ -75,7 +71,7 @@ def _losses(symbols: Symbols, efforts: list[sp.Expr]) -> list[int] | None:
     at_rest = [without(e, Q, velocities) for Q in efforts]
     lost = _numbers_in(symbols, efforts) - _numbers_in(symbols, at_rest)
     kept = [without(e, Q, lost) for Q in efforts]
-    changing = [e.t, *velocities, *e.states, *(symbol for lam in symbols.joint_lam for symbol in lam)]
+    changing = [e.t, *velocities, *e.states, *symbols.pressed]
     if any(Q.has(*NO_VALUE) or e.depends(Q, changing) for Q in kept):
         return None
     return [k for k, number in enumerate(symbols.numbers) if number in lost]

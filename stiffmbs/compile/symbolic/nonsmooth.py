@@ -7,6 +7,7 @@ exponentially.
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import reduce
 from typing import Any, ClassVar
 
 import sympy as sp
@@ -39,7 +40,6 @@ class Chosen(NonsmoothBase):
     """One of three expressions by the sign of the first: Chosen(x, below, at, above)."""
 
     native = "chosen"
-    nargs = 4
 
     @classmethod
     def eval(cls, x: sp.Expr, below: sp.Expr, at: sp.Expr, above: sp.Expr) -> sp.Expr | None:
@@ -56,7 +56,6 @@ class Sign(NonsmoothBase):
     """Sign of x, -1 or 1, with zero derivative."""
 
     native = "sign"
-    nargs = 1
 
     @classmethod
     def eval(cls, x: sp.Expr) -> sp.Expr | None:
@@ -70,7 +69,6 @@ class Magnitude(NonsmoothBase):
     """Absolute value."""
 
     native = "magnitude"
-    nargs = 1
 
     @classmethod
     def eval(cls, x: sp.Expr) -> sp.Expr | None:
@@ -82,19 +80,9 @@ class Magnitude(NonsmoothBase):
 
 
 class Extreme(NonsmoothBase):
-    """Extremum of two expressions, the first if equal, with its derivative.
+    """Extremum of two expressions, the first if equal, with its derivative; `of_numbers` is SymPy's equivalent."""
 
-    Attributes
-    ----------
-    of_numbers : callable
-        SymPy's equivalent.
-    direction : int
-        1 for the greater, -1 for the smaller.
-    """
-
-    nargs = 2
     of_numbers: ClassVar[Callable[..., sp.Expr]]
-    direction: ClassVar[int]
 
     @classmethod
     def eval(cls, a: sp.Expr, b: sp.Expr) -> sp.Expr | None:
@@ -102,7 +90,7 @@ class Extreme(NonsmoothBase):
 
     def by_parts(self, partial: Partial) -> sp.Expr:
         a, b = self.args
-        return Chosen(self.direction * (a - b), partial(b), partial(a), partial(a))
+        return Chosen(a - b if self.of_numbers is sp.Max else b - a, partial(b), partial(a), partial(a))
 
 
 class Greater(Extreme):
@@ -110,7 +98,6 @@ class Greater(Extreme):
 
     native = "greater"
     of_numbers = sp.Max
-    direction = 1
 
 
 class Less(Extreme):
@@ -118,14 +105,12 @@ class Less(Extreme):
 
     native = "less"
     of_numbers = sp.Min
-    direction = -1
 
 
 class Inside(NonsmoothBase):
     """Value for x between two bounds, zero elsewhere: Inside(x, x0, x1, value)."""
 
     native = "inside"
-    nargs = 4
 
     @classmethod
     def eval(cls, x: sp.Expr, x0: sp.Expr, x1: sp.Expr, value: sp.Expr) -> sp.Expr | None:
@@ -140,7 +125,6 @@ class Step(NonsmoothBase):
     """Adams' STEP, or a derivative of it by x: Step(x, x0, h0, x1, h1, order), a cubic with zero end slopes."""
 
     native = "step"
-    nargs = 6
 
     def by_parts(self, partial: Partial) -> sp.Expr:
         """Differentiate (h1 - h0) p^(k)(z)/(x1 - x0)^k with z = (x - x0)/(x1 - x0), linear in h0 and h1."""
@@ -171,13 +155,9 @@ def step5(x: Any, x0: Any, h0: Any, x1: Any, h1: Any) -> sp.Expr:
 
 def greater(first: sp.Expr, *others: sp.Expr) -> sp.Expr:
     """Return the greatest argument, with its derivative."""
-    for other in others:
-        first = Greater(first, other)
-    return first
+    return reduce(Greater, others, first)
 
 
 def less(first: sp.Expr, *others: sp.Expr) -> sp.Expr:
     """Return the smallest argument, with its derivative."""
-    for other in others:
-        first = Less(first, other)
-    return first
+    return reduce(Less, others, first)

@@ -7,7 +7,7 @@ a kernel form are refused.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from functools import lru_cache
 from typing import Any
 
@@ -15,8 +15,8 @@ import sympy as sp
 from sympy.core.function import AppliedUndef
 from sympy.core.relational import Relational
 
-from ...describe.formula.functions import FUNCTIONS
 from ...errors import InputError
+from ...reading.formula.functions import FUNCTIONS
 from .nonsmooth import Chosen, Magnitude, NonsmoothBase, Sign, greater, less
 
 KNOWN: tuple[type[sp.Basic], ...] = (
@@ -87,13 +87,6 @@ def _is_plain(part: sp.Basic) -> bool:
     )
 
 
-def _functions(x: sp.Basic) -> Iterator[sp.Basic]:
-    """Yield SymPy's functions in an expression, outermost first."""
-    for part in sp.preorder_traversal(x):
-        if isinstance(part, sp.Function | sp.Max | sp.Min) and not _is_own(part):
-            yield part
-
-
 def _is_own(part: sp.Basic) -> bool:
     """Return True if a function belongs to this package."""
     return isinstance(part, NonsmoothBase) or type(part).__module__.startswith("stiffmbs.")
@@ -123,7 +116,8 @@ def _by_others(x: sp.Function, note: Callable[[sp.Expr], None]) -> sp.Expr:
     """Rewrite a function by others that kernels support."""
     for way in () if isinstance(x, AppliedUndef) else BY_OTHERS:
         written = x.rewrite(way)
-        if not written.has(sp.I) and all(isinstance(part, (*KNOWN, *NONSMOOTH)) for part in _functions(written)):
+        functions = (part for part in sp.preorder_traversal(written) if isinstance(part, sp.Function | sp.Max | sp.Min))
+        if not written.has(sp.I) and all(isinstance(part, (*KNOWN, *NONSMOOTH)) or _is_own(part) for part in functions):
             return _read(written, note)
     names = ", ".join(sorted({part.__name__ for part in (*KNOWN, *NONSMOOTH)}))
     raise InputError(f"found the function {x.func}, expected one of {names}")

@@ -12,7 +12,6 @@ import sympy as sp
 class RotationVector(sp.Function):  # type: ignore[misc]
     """Factor from a quaternion's vector part to the rotation vector, or a derivative: RotationVector(h, order)."""
 
-    nargs = 2
     is_real = True
 
     def fdiff(self, argindex: int = 1) -> sp.Expr:

@@ -21,9 +21,6 @@ from ..bodies import SPACE
 from .differentiate import Derivatives, Way
 from .relative_rotation import product
 
-TURNS = ((0, 1, 2), (1, 2, 0), (2, 0, 1))
-"""An axis, and the two axes rotated into each other about it."""
-
 
 @dataclass(frozen=True)
 class SpatialBodyFrame:
@@ -48,7 +45,7 @@ class SpatialBodyFrame:
         """Define the derivatives of a body-fixed vector: a rotation phi changes it by phi x vector."""
         parts = list(vector)
         changes: list[dict[sp.Symbol, sp.Expr]] = [{}, {}, {}]
-        for about, first, second in TURNS:
+        for about, first, second in ((k, (k + 1) % 3, (k + 2) % 3) for k in range(3)):
             changes[first][self.phi[about]] = -parts[second]
             changes[second][self.phi[about]] = parts[first]
         for part, change, stands_for in zip(parts, changes, meaning, strict=True):

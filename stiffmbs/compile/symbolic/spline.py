@@ -10,7 +10,6 @@ import sympy as sp
 class Spline(sp.Function):  # type: ignore[misc]
     """Value, or a derivative, of the table at an offset: Spline(x, offset, order); order -1 is its integral."""
 
-    nargs = 3
     is_real = True
 
     def fdiff(self, argindex: int = 1) -> sp.Expr:

@@ -8,7 +8,7 @@ from typing import Any
 
 import sympy as sp
 
-from ...describe.element import Force, Joint
+from ...elements.element import Force, Joint
 from ...errors import InputError
 from ..kind import Kind
 from .symbols import Symbols, symbols_of
@@ -33,6 +33,8 @@ class Stated:
     measured : tuple of Expr
     rates : tuple of Expr
         Rates of a force's own states.
+    condensed : tuple of (Expr, Expr)
+        Efforts and rates of a force that may be very stiff, along its own directions.
     """
 
     point: tuple[sp.Expr, ...]
@@ -44,6 +46,7 @@ class Stated:
     limits: tuple[sp.Expr, ...] = ()
     measured: tuple[sp.Expr, ...] = ()
     rates: tuple[sp.Expr, ...] = ()
+    condensed: tuple[tuple[sp.Expr, sp.Expr], ...] = ()
 
 
 def stated_by_joint(kind: Kind, symbols: Symbols) -> Stated:
@@ -74,7 +77,7 @@ def stated_by_force(kind: Kind, symbols: Symbols) -> Stated:
         If it is invalid; names the class.
     """
     asked = _Asked(kind.element, symbols)
-    powers = asked.pairs()
+    powers, condensed = asked.pairs(), asked.condensed()
     (potential,) = asked.column("potential")
     limits, measured = asked.column("limits"), asked.column("measured")
     if len(measured) != len(kind.element.channels):  # type: ignore[attr-defined]
@@ -87,35 +90,21 @@ def stated_by_force(kind: Kind, symbols: Symbols) -> Stated:
         raise InputError(
             f"{kind.element.__name__}.rates: found {len(rates)} expressions, expected {kind.n_own}, one for each of its own_states"
         )
-    point, events = asked.column("point"), asked.event_functions()
-    found = Stated(point, events, powers=powers, potential=potential, limits=limits, measured=measured, rates=rates)
-    return asked.known(found)
+    return asked.known(
+        Stated(
+            asked.column("point"), asked.event_functions(), powers=powers, potential=potential, limits=limits,
+            measured=measured, rates=rates, condensed=condensed,
+        )
+    )  # fmt: skip
 
 
 def text_of(kind: Kind) -> str:
     """Return a text that determines all derived terms of a kind: its equations and the expressions of their symbols."""
     symbols = symbols_of(kind)
     stated = (stated_by_joint if issubclass(kind.element, Joint) else stated_by_force)(kind, symbols)
-    meanings = [f"{symbol} = {sp.srepr(meaning)}" for symbol, meaning in symbols.element.meanings.items()]
-    numbers = [str(symbol) for symbol in symbols.numbers]
-    laws = [(sp.srepr(law.argument), law.of) for law in symbols.laws]
-    angles = [sp.srepr(angle) for angle in symbols.element.angles]
-    equations = [
-        sp.srepr(sp.Tuple(*part) if isinstance(part, tuple) else part)
-        for part in (
-            stated.point,
-            stated.event_functions,
-            stated.position,
-            stated.velocity,
-            stated.potential,
-            stated.limits,
-            stated.measured,
-            stated.rates,
-        )
-    ]
-    powers = [(sp.srepr(effort), sp.srepr(rate)) for effort, rate in stated.powers]
-    turns = getattr(kind.element, "turns", False)
-    return repr((equations, powers, meanings, numbers, laws, angles, symbols.joint_lam, turns))
+    e, laws = symbols.element, [(law.argument, *law.of) for law in symbols.laws]
+    parts = (*vars(stated).values(), list(e.meanings.items()), symbols.numbers, laws, e.angles, symbols.joint_lam)
+    return repr((sp.srepr(parts), getattr(kind.element, "turns", False)))
 
 
 class _Asked:
@@ -133,7 +122,8 @@ class _Asked:
 
     def pairs(self) -> tuple[tuple[sp.Expr, sp.Expr], ...]:
         """Return pairs of an effort and a rate from `powers`, or from `efforts` on coordinates."""
-        name = "powers" if "powers" in _own_names(self.element) else "efforts"
+        owners = (owner for owner in self.element.__mro__ if owner not in (Force, Joint))
+        name = "powers" if any("powers" in vars(owner) for owner in owners) else "efforts"
         try:
             pairs = [(effort, works_on) for effort, works_on in self._called(name)]
         except (TypeError, ValueError):
@@ -143,6 +133,13 @@ class _Asked:
         found = [(self._read(name, effort), self._read(name, works_on)) for effort, works_on in pairs]
         return tuple((effort, x if name == "powers" else self.e.rate(x)) for effort, x in found)
 
+    def condensed(self) -> tuple[tuple[sp.Expr, sp.Expr], ...]:
+        """Return pairs of an effort and a rate from `condensed_powers`; none for forces that depend on reactions."""
+        if self.symbols.joint_lam:
+            return ()
+        name = "condensed_powers"
+        return tuple((self._read(name, effort), self._read(name, rate)) for effort, rate in self._called(name))
+
     def event_functions(self) -> tuple[sp.Expr, ...]:
         """Return the breakpoints of formulas, and those stated by the class, or else those of its equations."""
         named = issubclass(self.element, Force) and self.element.event_functions is not Force.event_functions
@@ -151,17 +148,7 @@ class _Asked:
 
     def known(self, stated: Stated) -> Stated:
         """Return the equations after a check that all symbols are defined."""
-        columns = (
-            stated.point,
-            stated.event_functions,
-            stated.position,
-            stated.velocity,
-            (stated.potential,),
-            stated.limits,
-            stated.measured,
-            stated.rates,
-        )
-        parts = [x for column in (*columns, *stated.powers) for x in column]
+        parts = sp.flatten(vars(stated).values())
         meant = self.symbols.known()
         for symbol in sorted({symbol for x in parts for symbol in self.e.derivatives.variables(x)} - meant, key=str):
             raise InputError(
@@ -182,7 +169,3 @@ class _Asked:
             return self.e.read(x)
         except (InputError, sp.SympifyError) as error:
             raise InputError(f"{self.element.__name__}.{name}: {error}") from None
-
-
-def _own_names(element: type[Any]) -> set[str]:
-    return {name for owner in element.__mro__ if owner not in (Force, Joint) for name in vars(owner)}

@@ -11,16 +11,16 @@ from typing import Any
 
 import sympy as sp
 
-from ...describe.formula.functions import EACH, FUNCTIONS, IN_FORMULAS, Breakpoints, FormulaFunction
-from ...describe.formula.nodes import TIME
-from ...describe.formula.text import evaluate
+from ...reading.formula.functions import EACH, FUNCTIONS, IN_FORMULAS, Breakpoints, FormulaFunction
+from ...reading.formula.nodes import TIME
+from ...reading.formula.text import evaluate
 from ..bodies import SPACE
 from ..formula_shape import OWN, REACTION, STATE, Shape
 from ..kind import Kind
 from . import nonsmooth, planar_frames, spatial_frames
 from .continuous_angle import counter
 from .differentiate import Derivatives
-from .element import SymbolicElement
+from .element import COINCIDENT, SymbolicElement
 from .measures import measure, own_coordinate
 from .python_call import python_law
 from .referred import ReferredJoint, SymbolicComponent
@@ -32,8 +32,8 @@ NARROW: dict[type[sp.Basic], str] = {
 """Functions with narrow features where their argument is steep, and the names of their intervals."""
 
 
-STEEP, LEAST_SQUARE = 10, 1e-200
-"""Integer power from which on it is treated as exp(n log |x|), as is a variable power; square of the least |x|."""
+STEEP = 10
+"""Integer power from which on it is treated as exp(n log |x|), as is a variable power."""
 
 
 INTERNAL = re.compile(
@@ -82,13 +82,24 @@ class Symbols:
     event_functions: list[sp.Expr] = field(default_factory=list)
     laws: list[Law] = field(default_factory=list)
 
+    @property
+    def pressed(self) -> list[sp.Symbol]:
+        """Multipliers of all joints referred to."""
+        return [symbol for lam in self.joint_lam for symbol in lam]
+
+    @property
+    def arguments(self) -> sp.Matrix:
+        """Arguments of laws; each depends on the state, so none is dropped as zero."""
+        return sp.Matrix([law.argument for law in self.laws])
+
     def known(self) -> frozenset[sp.Symbol]:
         """Return all defined symbols."""
         e = self.element
         of_bodies = (s for f in e.frames for s in (*f.q, *f.u, *f.a, *f.turn, *f.pose, *f.velocities))
-        of_joints = (symbol for lam in self.joint_lam for symbol in lam)
         counters = map(counter, range(len(e.angles)))
-        return frozenset((e.t, *self.numbers, *of_bodies, *e.states, *of_joints, *counters)) | e.derivatives.defined()
+        return (
+            frozenset((e.t, *self.numbers, *of_bodies, *e.states, *self.pressed, *counters)) | e.derivatives.defined()
+        )
 
     def note_event_function(self, breakpoint: sp.Expr) -> None:
         """Record an event function if it depends on the state."""
@@ -111,7 +122,7 @@ class Symbols:
             elif isinstance(part, sp.Pow) and part.exp.is_Number and part.exp < 0:
                 self.note_law(part.base, "reciprocal")
             elif isinstance(part, sp.Pow) and not (part.exp.is_Number and part.exp < STEEP):
-                self.note_law(part.exp * sp.log(part.base**2 + sp.Float(LEAST_SQUARE)) / 2, "exp")
+                self.note_law(part.exp * sp.log(part.base**2 + COINCIDENT) / 2, "exp")
 
 
 def symbols_of(kind: Kind) -> Symbols:

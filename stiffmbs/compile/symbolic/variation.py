@@ -74,7 +74,7 @@ class Variation:
         It then depends only on coordinates by which it has derivatives.
         """
         timeless = not self._e.depends(C, [self._e.t])
-        return timeless and not self._nonsmooth and set(self._e.columns_of(C)) <= set(differentiated)
+        return timeless and not self._nonsmooth and set(self._e.by_q.of(C)) <= set(differentiated)
 
     def _sum(self, x: sp.Expr) -> _Sum:
         if x not in self._known:
@@ -94,14 +94,14 @@ class Variation:
                 return {((self._number[x],),): (frozenset(), True)}
             case sp.Symbol() if x in self._vector and all(own in self._number for own in self._vector[x]):
                 own = tuple(self._number[number] for number in self._vector[x])
-                return {(own,): (frozenset(self._e.columns_of(x)), True)}
+                return {(own,): (frozenset(self._e.by_q.of(x)), True)}
             case sp.Symbol() if x in self._e.meanings:
                 return self._sum(self._e.meanings[x])
         return {} if x == 0 else self._whole(x)
 
     def _whole(self, x: sp.Expr) -> _Sum:
         bounded = x in self._bounded or isinstance(x, sp.sin | sp.cos) or (x.is_number and abs(x) <= ORDER_ONE)
-        return {(): (frozenset(self._e.columns_of(x)), bool(bounded))}
+        return {(): (frozenset(self._e.by_q.of(x)), bool(bounded))}
 
     def _multiplied(self, x: sp.Expr, parts: Iterable[sp.Expr]) -> _Sum:
         product: _Sum = {(): (frozenset(), True)}

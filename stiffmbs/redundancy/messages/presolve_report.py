@@ -9,7 +9,7 @@ import numpy as np
 
 from ...compile.coordinates import FIXED, Coordinates
 from ...compile.system import System
-from ...solve.dynamics import Dynamics
+from ...dynamics.dynamics import Dynamics
 from ...solve.subsystems import Subsystem
 from ..overconstraint import listed
 

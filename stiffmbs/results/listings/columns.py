@@ -9,16 +9,15 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from ...describe.files.files_read import content_of
-from ...describe.files.quoted import quoted
 from ...errors import InputError
+from ...reading.files.files_read import content_of
+from ...reading.files.quoted import quoted
 from ..damaged import readable
 from ..saved_state import READERS
 
 Columns = dict[str, np.ndarray]
 """Columns by name; time is ``time``."""
 TIME = "time"
-FEWEST_ROWS = 2
 _SPLIT = re.compile(r"\s*[,;\t]\s*|\s+")
 _WORDS = re.compile(r'"[^"]*"|[^\s,;"]+')
 
@@ -49,7 +48,7 @@ def read_columns(path: str | Path) -> Columns:
     except ValueError as error:
         raise InputError(f"{quoted(str(path))}: found no table of numbers over time ({error})") from None
     time = found.get(TIME)
-    if time is None or len(time) < FEWEST_ROWS or np.any(np.diff(time) < 0):
+    if time is None or len(time) < 2 or np.any(np.diff(time) < 0):
         raise InputError(f"{quoted(str(path))}: found no times that increase, expected two rows or more over time")
     return {name: values for name, values in found.items() if values.shape == time.shape}
 
@@ -61,13 +60,9 @@ def _reader(file: Path) -> Callable[[Path], Columns]:
         return lambda path: {
             name: np.asarray(values, dtype=float)
             for name, values in READERS[path.suffix](path).items()
-            if _numeric(values)
+            if values.dtype.kind == "f" and values.ndim == 1
         }
     return _table
-
-
-def _numeric(values: np.ndarray) -> bool:
-    return values.dtype.kind == "f" and values.ndim == 1
 
 
 def _table(path: Path) -> Columns:
@@ -75,7 +70,7 @@ def _table(path: Path) -> Columns:
     lines = content_of(path).decode(errors="replace").splitlines()
     rows = [_numbers(line) for line in lines]
     first, last = _longest_block([len(row) for row in rows])
-    if last - first < FEWEST_ROWS:
+    if last - first < 2:
         raise ValueError("no lines of numbers")
     table = np.array(rows[first:last]).T
     found = {str(k): column for k, column in enumerate(table, start=1)}
@@ -124,7 +119,7 @@ def _adams_xml(path: Path) -> Columns:
             case "Entity":
                 entity = element.get("name") or ""
                 for component in element:
-                    names[int(component.get("id") or 0)] = _joined(entity, component.get("name") or "")
+                    names[int(component.get("id") or 0)] = ".".join(filter(None, (entity, component.get("name"))))
             case "Step":
                 if element.get("type") != "initialConditions":
                     rows.append([float(text) for text in (element.text or "").split()])
@@ -140,7 +135,3 @@ def _elements(path: Path) -> Iterator[ElementTree.Element]:
     with path.open("rb") as file:
         for _, element in ElementTree.iterparse(file):
             yield element
-
-
-def _joined(entity: str, component: str) -> str:
-    return f"{entity}.{component}" if entity and component else entity or component

@@ -9,17 +9,16 @@ from typing import TypeAlias
 
 import numpy as np
 
-from ...describe.parts.names import owner_of
 from ...errors import InputError
+from ...reading.did_you_mean import did_you_mean
+from ...reading.names import owner_of
+from ..scales import ROUNDING
 from ..solution import Solution
 from .columns import TIME, Columns, read_columns
 
 Listed: TypeAlias = Solution | str | Path | Mapping[str, np.ndarray]
-ROUNDING_OF_A_CHANNEL = 1e-9
 NOT_COMPARED = (TIME, "constraint.")
 """Prefixes of channels that are equal in all runs, or noise."""
-SAME_TIME = 1e-9
-"""Difference up to which two times are equal, relative to the whole time."""
 
 
 @dataclass(frozen=True)
@@ -28,7 +27,6 @@ class Difference:
 
     Attributes
     ----------
-    channel, column : str
     largest : float
         Largest magnitude of the difference, in the column's units.
     t : float
@@ -79,7 +77,7 @@ def differences(found: Listed, other: Listed, columns: Mapping[str, str] | None 
             f"found no channel that is called like a column, expected --map CHANNEL=COLUMN; the columns are {_some(listed)}"
         )
     t, begin, end = listed[TIME], own[TIME][0], own[TIME][-1]
-    slack = SAME_TIME * max(abs(begin), abs(end), end - begin)
+    slack = ROUNDING * max(abs(begin), abs(end), end - begin)
     common = (t >= begin - slack) & (t <= end + slack)
     if not common.any():
         raise InputError(
@@ -92,7 +90,7 @@ def differences(found: Listed, other: Listed, columns: Mapping[str, str] | None 
     for channel, both in values.items():
         sizes[owner_of(channel)] = max(sizes.get(owner_of(channel), 0.0), *(_size(one) for one in both))
     return tuple(
-        _difference(channel, column, *values[channel], t[common], ROUNDING_OF_A_CHANNEL * sizes[owner_of(channel)])
+        _difference(channel, column, *values[channel], t[common], ROUNDING * sizes[owner_of(channel)])
         for channel, column in pairs.items()
     )
 
@@ -109,12 +107,12 @@ def _columns(found: Listed) -> Columns:
 def _at(own: Columns, channel: str, t: np.ndarray) -> np.ndarray:
     """Return a channel at other instants; of two values at one instant, the later one."""
     if channel not in own:
-        raise InputError(f"found no channel '{channel}', expected one such as {_some(own)}")
+        raise InputError(f"found no channel '{channel}'{did_you_mean(channel, own)}, expected one such as {_some(own)}")
     later = np.append(np.diff(own[TIME]) > 0, True)
     times, values = own[TIME][later], own[channel][later]
     nearest = np.clip(np.searchsorted(times, t), 1, max(len(times) - 1, 1))
     nearest = np.where(np.abs(times[nearest - 1] - t) <= np.abs(times[nearest % len(times)] - t), nearest - 1, nearest)
-    if np.allclose(times[nearest], t, rtol=0, atol=SAME_TIME * max(abs(times[-1]), times[-1] - times[0])):
+    if np.allclose(times[nearest], t, rtol=0, atol=ROUNDING * max(abs(times[-1]), times[-1] - times[0])):
         return np.asarray(values[nearest])
     from scipy.interpolate import CubicSpline
 
@@ -126,7 +124,7 @@ def _column(listed: Columns, text: str) -> np.ndarray:
     name, _, factor = text.rpartition("*") if text not in listed else (text, "", "")
     name, factor = (name, factor) if name else (text, "")
     if name not in listed:
-        raise InputError(f"found no column '{name}', expected one of {_some(listed)}")
+        raise InputError(f"found no column '{name}'{did_you_mean(name, listed)}, expected one of {_some(listed)}")
     try:
         return listed[name] * (float(factor) if factor else 1.0)
     except ValueError:

@@ -9,9 +9,7 @@ import numpy as np
 
 from ..robot import RobotFault, Transmission
 from .disabled import Disabled
-
-MOST_GROUPS = 31
-"""Number of groups that can be disabled."""
+from .fields import name_of
 
 
 def transmissions(m: Any, disabled: Disabled) -> Iterator[Transmission]:
@@ -28,22 +26,18 @@ def disabled_actuators(m: Any, disabled: Disabled) -> Iterator[str]:
     count = m.nactuator if hasattr(m, "nactuator") else m.nu
     off = [k for k in range(count) if disabled("ACTUATION") or _in_disabled_group(m, k)]
     if off:
-        yield f"disabled actuators are ignored: {', '.join(_actuator_name(m, k) for k in off)}"
+        yield f"disabled actuators are ignored: {', '.join(name_of(m, 'actuator', k) for k in off)}"
 
 
 def _in_disabled_group(m: Any, k: int) -> bool:
     group = int(m.actuator_group[k])
-    return 0 <= group < MOST_GROUPS and bool(int(m.opt.disableactuator) >> group & 1)
-
-
-def _actuator_name(m: Any, k: int) -> str:
-    return m.actuator(k).name or f"actuator_{k}"
+    return group >= 0 and bool(int(m.opt.disableactuator) >> group & 1)
 
 
 def _actuator(m: Any, k: int, disabled: Disabled) -> Transmission:
     import mujoco
 
-    name = _actuator_name(m, k)
+    name = name_of(m, "actuator", k)
     gain, bias, dynamics = (
         mujoco.mjtGain(m.actuator_gaintype[k]),
         mujoco.mjtBias(m.actuator_biastype[k]),
@@ -92,7 +86,7 @@ def _tendon_of(m: Any, k: int) -> dict[str, Any]:
     if mujoco.mjtTrn(m.actuator_trntype[k]) != mujoco.mjtTrn.mjTRN_TENDON:
         return {}
     total = bounds(m.tendon_actfrclimited[tendon], m.tendon_actfrcrange[tendon])
-    return {"tendon": m.tendon(tendon).name or f"tendon_{tendon}", "total": total} if total else {}
+    return {"tendon": name_of(m, "tendon", tendon), "total": total} if total else {}
 
 
 def bounds(limited: Any, ends: Any) -> tuple[float, float] | None:
@@ -117,7 +111,7 @@ def _gears(m: Any, k: int, name: str) -> dict[str, float]:
 
 def _tendon(m: Any, k: int, disabled: Disabled) -> Iterator[Transmission]:
     """Yield the linear spring and damper of a tendon; a nonlinear one or a dead band raises `RobotFault`."""
-    name = m.tendon(k).name or f"tendon_{k}"
+    name = name_of(m, "tendon", k)
     stiffness = 0.0 if disabled("SPRING") else float(m.tendon_stiffness[k])
     damping = 0.0 if disabled("DAMPER") else float(m.tendon_damping[k])
     for key in ("stiffnesspoly", "dampingpoly", "springyield", "armature", "frictionloss"):
@@ -148,7 +142,7 @@ def _fixed(m: Any, tendon: int, where: str) -> dict[str, float]:
 def _of_one_coordinate(m: Any, joint: int, where: str) -> str:
     import mujoco
 
-    name: str = m.joint(joint).name or f"joint_{joint}"
+    name = name_of(m, "joint", joint)
     if mujoco.mjtJoint(m.jnt_type[joint]) not in (mujoco.mjtJoint.mjJNT_HINGE, mujoco.mjtJoint.mjJNT_SLIDE):
         raise RobotFault(f"{where}: found that it acts on {name}, expected a hinge or slide")
     return name

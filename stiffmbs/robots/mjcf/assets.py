@@ -7,14 +7,13 @@ from contextlib import suppress
 from pathlib import Path
 from xml.etree import ElementTree
 
-from ...describe.files.files_read import check_regular
-from ...describe.files.quoted import quoted
-from ...describe.files.text_file import file_text
+from ...reading.files.files_read import check_regular
+from ...reading.files.quoted import quoted
+from ...reading.files.text_file import file_text
 from ..robot import RobotFault
 
 FILE, INCLUDE = "file", "include"
 FOLDERS = ("assetdir", "meshdir", "texturedir")
-MOST_INCLUDED = 100
 
 
 def check_assets(path: Path) -> None:
@@ -27,7 +26,7 @@ def check_assets(path: Path) -> None:
         If an included file cannot be read as text.
     """
     waiting, seen = [path], set[Path]()
-    while waiting and len(seen) < MOST_INCLUDED:
+    while waiting:
         file = waiting.pop()
         if file in seen:
             continue

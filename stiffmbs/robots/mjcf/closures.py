@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from ...describe.spatial.orientation import conjugate, product, rotated
+from ...elements.spatial.marker import ORIGIN
+from ...elements.spatial.orientation import conjugate, product, rotated
 from ..robot import Connection, Relation, RobotFault
-
-WORLD = 0
+from .fields import name_of
 
 
 def relations(m: Any) -> Iterator[Relation]:
@@ -19,7 +19,7 @@ def relations(m: Any) -> Iterator[Relation]:
         if mujoco.mjtEq(m.eq_type[k]) == mujoco.mjtEq.mjEQ_JOINT:
             other = int(m.eq_obj2id[k])
             yield Relation(
-                _name(m, k),
+                name_of(m, "equality", k),
                 m.joint(int(m.eq_obj1id[k])).name,
                 m.joint(other).name if other >= 0 else None,
                 tuple(map(float, m.eq_data[k, :5])),
@@ -36,17 +36,13 @@ def connections(m: Any) -> Iterator[Connection]:
             continue
         if kind not in (mujoco.mjtEq.mjEQ_CONNECT, mujoco.mjtEq.mjEQ_WELD):
             raise RobotFault(
-                f"equality {_name(m, k)}: found the kind {kind.name.split('_')[1].lower()}, expected connect, weld or joint"
+                f"equality {name_of(m, 'equality', k)}: found the kind {kind.name.split('_')[1].lower()}, expected connect, weld or joint"
             )
         yield _of_sites(m, k) if mujoco.mjtObj(m.eq_objtype[k]) == mujoco.mjtObj.mjOBJ_SITE else _of_bodies(m, k)
 
 
 def _active(m: Any) -> Iterator[int]:
     return (k for k in range(m.neq) if m.eq_active0[k])
-
-
-def _name(m: Any, k: int) -> str:
-    return m.equality(k).name or f"equality_{k}"
 
 
 def _is_weld(m: Any, k: int) -> bool:
@@ -60,8 +56,8 @@ def _of_bodies(m: Any, k: int) -> Connection:
     first, second = int(m.eq_obj1id[k]), int(m.eq_obj2id[k])
     data = [tuple(map(float, m.eq_data[k, a:b])) for a, b in ((0, 3), (3, 6), (6, 10))]
     if _is_weld(m, k):
-        return Connection(_name(m, k), _body(m, first), _body(m, second), data[1], (0.0, 0.0, 0.0), data[2])
-    return Connection(_name(m, k), _body(m, first), _body(m, second), data[0], data[1], None)
+        return Connection(name_of(m, "equality", k), _body(m, first), _body(m, second), data[1], ORIGIN, data[2])
+    return Connection(name_of(m, "equality", k), _body(m, first), _body(m, second), data[0], data[1], None)
 
 
 def _of_sites(m: Any, k: int) -> Connection:
@@ -70,11 +66,11 @@ def _of_sites(m: Any, k: int) -> Connection:
     point, other_point = (tuple(map(float, m.site_pos[site])) for site in (a, b))
     link, other = (_body(m, int(m.site_bodyid[site])) for site in (a, b))
     if not _is_weld(m, k):
-        return Connection(_name(m, k), link, other, point, other_point, None)
+        return Connection(name_of(m, "equality", k), link, other, point, other_point, None)
     turned = product(m.site_quat[a], conjugate(m.site_quat[b]))
     origin = tuple(float(x) for x in point - rotated(turned, other_point))
-    return Connection(_name(m, k), link, other, origin, (0.0, 0.0, 0.0), turned)
+    return Connection(name_of(m, "equality", k), link, other, origin, ORIGIN, turned)
 
 
 def _body(m: Any, body: int) -> str | None:
-    return None if body == WORLD else m.body(body).name or f"body_{body}"
+    return name_of(m, "body", body) if body else None  # body 0 is the world

@@ -4,19 +4,14 @@ from __future__ import annotations
 
 from typing import Any
 
-from ...describe.files.requested import Fields
+from ...reading.files.requested import Fields
 
 OF_PASSIVE = ("SPRING", "DAMPER")
 """Flags that older versions of MuJoCo combine as PASSIVE."""
 
 
 class Disabled:
-    """Disable flags of a compiled model by name, with a record of the requested ones.
-
-    Parameters
-    ----------
-    m : RequestedModel
-    """
+    """Disable flags of a compiled model by name, with a record of the requested ones."""
 
     def __init__(self, m: Any) -> None:
         import mujoco

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ...describe.files.requested import Fields
+from ...reading.files.requested import Fields
 
 LISTS = {
     "joint": "joints", "body": "bodies", "geom": "geoms", "site": "sites", "actuator": "actuators", "tendon": "tendons",
@@ -100,6 +100,11 @@ class RequestedModel:
     def plain(self) -> Any:
         """MuJoCo's own object."""
         return self._model
+
+
+def name_of(m: Any, kind: str, k: int) -> str:
+    """Return the name of a body, joint or other element of a model, or a generated one."""
+    return getattr(m, kind)(k).name or f"{kind}_{k}"
 
 
 class _Options:

@@ -8,18 +8,17 @@ from typing import Any
 
 import numpy as np
 
-from ...describe.files.requested import unused_notes
-from ...describe.spatial.orientation import matrix
+from ...elements.spatial.orientation import matrix
+from ...reading.files.requested import unused_notes
 from ..robot import JointKind, Link, LinkJoint, Robot, RobotFault
 from .actuators import bounds, disabled_actuators, transmissions
 from .assets import check_assets
 from .closures import connections, relations
 from .disabled import Disabled
-from .fields import REASONS, RequestedModel, model_fields
+from .fields import REASONS, RequestedModel, model_fields, name_of
 
 KINDS: tuple[JointKind, ...] = ("free", "ball", "slide", "hinge")
 """Joint kinds in the order of MuJoCo's numbers."""
-WORLD = 0
 
 
 def read_mjcf(path: str | Path) -> Robot:
@@ -52,7 +51,6 @@ def read_mjcf(path: str | Path) -> Robot:
 
 
 def _compiled(path: str | Path) -> tuple[Any, Any]:
-    """Return MuJoCo's specification and model of a file."""
     try:
         import mujoco
     except ImportError:
@@ -73,8 +71,8 @@ def _link(m: Any, body: int, disabled: Disabled) -> Link:
     tensor = turned @ np.diag(m.body_inertia[body]) @ turned.T
     first = m.body_jntadr[body]
     return Link(
-        name=m.body(body).name or f"body_{body}",
-        parent=None if parent == WORLD else m.body(parent).name or f"body_{parent}",
+        name=name_of(m, "body", body),
+        parent=name_of(m, "body", parent) if parent else None,
         position=tuple(map(float, m.body_pos[body])),
         orientation=tuple(map(float, m.body_quat[body])),
         mass=float(m.body_mass[body]),
@@ -85,13 +83,8 @@ def _link(m: Any, body: int, disabled: Disabled) -> Link:
     )
 
 
-def joint_name(m: Any, joint: int) -> str:
-    """Return the name of a joint, or a generated one."""
-    return m.joint(joint).name or f"joint_{joint}"
-
-
 def _joint(m: Any, joint: int, disabled: Disabled) -> LinkJoint:
-    name, kind = joint_name(m, joint), KINDS[m.jnt_type[joint]]
+    name, kind = name_of(m, "joint", joint), KINDS[m.jnt_type[joint]]
     dof, coordinate = m.jnt_dofadr[joint], m.jnt_qposadr[joint]
     for what, values in (
         ("a stiffness that is no constant", getattr(m, "jnt_stiffnesspoly", ())),
@@ -121,7 +114,7 @@ def _joint(m: Any, joint: int, disabled: Disabled) -> LinkJoint:
 
 def _loose(m: Any, joint: int, kind: JointKind, disabled: Disabled) -> LinkJoint:
     """Return a ball joint, or that of a free body."""
-    name, dof = joint_name(m, joint), m.jnt_dofadr[joint]
+    name, dof = name_of(m, "joint", joint), m.jnt_dofadr[joint]
     count = 6 if kind == "free" else 3
     start, spring = m.jnt_qposadr[joint], 0.0 if disabled("SPRING") else float(m.jnt_stiffness[joint])
     same = np.array_equal(m.qpos_spring[start : start + count + 1], m.qpos0[start : start + count + 1])
@@ -139,7 +132,6 @@ def _loose(m: Any, joint: int, kind: JointKind, disabled: Disabled) -> LinkJoint
 
 
 def _notes(m: Any, disabled: Disabled) -> Iterator[str]:
-    """Yield one sentence for each ignored feature."""
     if not disabled("CONTACT", "CONSTRAINT") and (
         np.any(m.geom_contype[: m.ngeom] | m.geom_conaffinity[: m.ngeom]) or m.npair
     ):
@@ -148,6 +140,6 @@ def _notes(m: Any, disabled: Disabled) -> Iterator[str]:
         yield "the forces of the fluid around the bodies are left out"
     if m.nflex:
         raise RobotFault("found flexible bodies, expected rigid ones")
-    limited = [m.tendon(k).name or f"tendon_{k}" for k in range(m.ntendon) if m.tendon_limited[k]]
+    limited = [name_of(m, "tendon", k) for k in range(m.ntendon) if m.tendon_limited[k]]
     if limited:
         yield f"the limits of tendons are left out: {', '.join(limited)}"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
-from ...describe.spatial.number_format import plain
+from ...elements.spatial.number_format import plain
 from ..robot import Robot, RobotFault, Transmission
 from .joints import along_axis
 from .mechanism import Hold, Mechanism

@@ -6,15 +6,13 @@ from typing import Any
 
 import numpy as np
 
-from ...describe.spatial.massless import MASSLESS, filled, lacks_inertia, massless_moment
-from ...describe.spatial.number_format import plain, vector
-from ...describe.spatial.orientation import conjugate, rotated
+from ...elements.spatial.body import MOMENT_ROUNDING
+from ...elements.spatial.massless import MASSLESS, breaks_triangle, filled, lacks_inertia, massless_moment
+from ...elements.spatial.number_format import plain, vector
+from ...elements.spatial.orientation import conjugate, rotated
 from ..pose import Placed
 from ..robot import Link, Robot, RobotFault
 from .mechanism import Mechanism
-
-TRIANGLE = 1e-9
-"""Relative excess of a principal moment over the sum of the other two allowed for rounding."""
 
 
 class Masses:
@@ -44,7 +42,7 @@ def bodies(mechanism: Mechanism, masses: Masses) -> dict[str, Any]:
 def notes(mechanism: Mechanism) -> list[str]:
     """Return a note on inertias that no distribution of mass has."""
     own = {name: link for name, (link, _) in mechanism.bodies.items() if name not in mechanism.between}
-    odd = [name for name, link in own.items() if _breaks_triangle(link.inertia)]
+    odd = [name for name, link in own.items() if breaks_triangle(link.inertia)]
     return (
         [f"the largest moment of inertia of {', '.join(odd)} is greater than the sum of the other two"] if odd else []
     )
@@ -62,7 +60,7 @@ def _heavy(link: Link, masses: Masses) -> dict[str, Any]:
     if not np.all(np.isfinite(tensor)):
         raise RobotFault(f"link {link.name}: found moments of inertia above 1e308 kg m^2, expected finite values")
     moments = np.linalg.eigvalsh(tensor)
-    if moments[0] < -TRIANGLE * max(moments[-1], masses.moment) or not np.all(np.isfinite(moments)):
+    if moments[0] < -MOMENT_ROUNDING * max(moments[-1], masses.moment) or not np.all(np.isfinite(moments)):
         raise RobotFault(
             f"link {link.name}: found the principal moments of inertia {', '.join(f'{x:g}' for x in moments)} kg m^2, expected none below 0"
         )
@@ -70,11 +68,11 @@ def _heavy(link: Link, masses: Masses) -> dict[str, Any]:
     if moments[0] < 0:  # rounding error
         axes = np.linalg.eigh(tensor)[1]
         tensor = (axes * np.maximum(moments, 0.0)) @ axes.T
-    if moments[-1] <= TRIANGLE * masses.moment:
+    if moments[-1] <= MOMENT_ROUNDING * masses.moment:
         tensor = masses.moment * np.eye(3)
     elif lacks_inertia(tensor):
         tensor = filled(tensor, masses.moment)
-    if _breaks_triangle(tensor):
+    if breaks_triangle(tensor):
         body["any_moments"] = True
     diagonal = not np.any(tensor - np.diag(np.diag(tensor)))
     body["inertia"] = vector(np.diag(tensor)) if diagonal else [vector(row) for row in tensor]
@@ -83,13 +81,7 @@ def _heavy(link: Link, masses: Masses) -> dict[str, Any]:
     return body
 
 
-def _breaks_triangle(tensor: np.ndarray) -> bool:
-    a, b, c = np.linalg.eigvalsh(tensor)
-    return bool(c > (a + b) * (1 + TRIANGLE))
-
-
 def _motion(frame: Placed, center_of_mass: tuple[float, ...]) -> dict[str, Any]:
-    """Return the initial pose, and non-zero velocities."""
     found: dict[str, Any] = {"position": vector(frame.position)}
     if frame.orientation != (1.0, 0.0, 0.0, 0.0):
         found["orientation"] = vector(frame.orientation)

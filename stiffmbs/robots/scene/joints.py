@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from ...describe.spatial.number_format import plain
-from ..robot import ORIGIN, Connection, Link, LinkJoint, Relation, Robot
+from ...elements.spatial.marker import ORIGIN
+from ...elements.spatial.number_format import plain
+from ...elements.spatial.orientation import IDENTITY
+from ..robot import Connection, Link, LinkJoint, Relation, Robot
 from .mechanism import Hold, Mechanism
 
 KINDS = {"hinge": "revolute", "slide": "prismatic", "ball": "spherical"}
@@ -82,6 +84,6 @@ def _relation(mechanism: Mechanism, relation: Relation) -> Iterator[tuple[str, d
 
 def _connection(mechanism: Mechanism, connection: Connection) -> Iterator[tuple[str, dict[str, Any]]]:
     name = mechanism.names.take(connection.name)
-    i = mechanism.mark(connection.link, name, connection.point, connection.orientation or (1.0, 0.0, 0.0, 0.0))
+    i = mechanism.mark(connection.link, name, connection.point, connection.orientation or IDENTITY)
     j = mechanism.mark(connection.other, f"{name}_j", connection.other_point)
     yield name, {"type": "spherical" if connection.orientation is None else "fixed", "i": i, "j": j}

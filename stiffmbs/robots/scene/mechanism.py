@@ -2,17 +2,39 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from ...describe.spatial.number_format import vector
-from ...describe.spatial.orientation import from_matrix, product, rotated
+from ...elements.spatial.marker import ORIGIN
+from ...elements.spatial.number_format import vector
+from ...elements.spatial.orientation import IDENTITY, from_matrix, product, rotated
+from ...reading.formula.functions import FUNCTIONS
+from ...reading.marker import GROUND
+from ...reading.units.units import UNITS
 from ..pose import Placed, frames
-from ..robot import SAME_AXES, Link, LinkJoint, Robot
-from .names import GROUND, Names
+from ..robot import Link, LinkJoint, Robot
+
+
+class Names:
+    """Registry of unique scene names of letters, digits and _."""
+
+    def __init__(self) -> None:
+        self._taken = {GROUND, "t", "pi", *UNITS, *FUNCTIONS}
+
+    def take(self, wanted: str, what: str = "") -> str:
+        """Return the name if valid and free, else a similar one with a suffix: `what`, or a number."""
+        name = re.sub(r"[^0-9A-Za-z_]", "_", wanted) or "_"
+        name = f"_{name}" if name[0].isdigit() else name
+        name = f"{name}_{what}" if what and name in self._taken else name
+        found, k = name, 2
+        while found in self._taken:
+            found, k = f"{name}_{k}", k + 1
+        self._taken.add(found)
+        return found
 
 
 @dataclass(frozen=True)
@@ -20,8 +42,8 @@ class Seat:
     """Frame fixed on a body of the scene: position (m) and orientation in the body's axes."""
 
     body: str
-    position: tuple[float, ...] = (0.0, 0.0, 0.0)
-    orientation: tuple[float, ...] = SAME_AXES
+    position: tuple[float, ...] = ORIGIN
+    orientation: tuple[float, ...] = IDENTITY
 
     def on(self, position: tuple[float, ...], orientation: tuple[float, ...]) -> Seat:
         """Return a frame given relative to this one."""
@@ -35,7 +57,6 @@ class Hold:
 
     Attributes
     ----------
-    joint : LinkJoint
     name : str
         Name of the scene's joint.
     i, j : str
@@ -139,13 +160,13 @@ class Mechanism:
         placement: dict[str, Any] = {}
         if any(seat.position):
             placement["point"] = vector(seat.position)
-        if seat.orientation != SAME_AXES:
+        if seat.orientation != IDENTITY:
             placement["orientation"] = vector(seat.orientation)
         self.markers.setdefault(seat.body, {})[name] = placement
         return f"{seat.body}.{name}"
 
     def mark(
-        self, link: str | None, name: str, point: tuple[float, ...], orientation: tuple[float, ...] = SAME_AXES
+        self, link: str | None, name: str, point: tuple[float, ...], orientation: tuple[float, ...] = IDENTITY
     ) -> str:
         """Add a marker in the frame of a link (None: the world); return its reference in the scene."""
         return self._mark(self.seats[link].on(point, orientation), name)
@@ -155,7 +176,7 @@ def along_z(axis: tuple[float, ...]) -> tuple[float, ...]:
     """Return an orientation whose z axis is a given direction."""
     z = np.array(axis)
     if z[2] == 1:
-        return SAME_AXES
+        return IDENTITY
     x = np.eye(3)[np.argmin(np.abs(z))]
     x = x - (x @ z) * z
     x /= np.linalg.norm(x)

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from ...describe.spatial.number_format import plain, vector
+from ...elements.spatial.number_format import plain, vector
 from ..robot import LinkJoint, Robot, RobotFault
 from .bodies import Masses
 from .mechanism import Mechanism, along_z
@@ -53,7 +53,6 @@ def _rate(joint: LinkJoint, rate: float, robot: Robot) -> dict[str, Any]:
 
 
 def _across(gravity: tuple[float, ...]) -> tuple[float, ...]:
-    """Return a unit vector perpendicular to gravity."""
     g = np.array(gravity)
     direction = np.eye(3)[np.argmin(np.abs(g))]
     if np.any(g):

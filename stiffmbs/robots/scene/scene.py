@@ -7,14 +7,14 @@ from typing import Any
 
 import numpy as np
 
-from ...describe.spatial.number_format import plain, vector
+from ...elements.spatial.number_format import plain, vector
+from ...reading.marker import GROUND
 from ..robot import Robot, RobotFault
 from .actuators import actuators
 from .bodies import Masses, bodies
 from .bodies import notes as body_notes
 from .joints import joints, passive
 from .mechanism import Mechanism
-from .names import GROUND
 from .rotors import add_rotors
 
 RUN = {"duration": 1, "output": 0.01}
@@ -22,7 +22,7 @@ RUN = {"duration": 1, "output": 0.01}
 
 
 def scene(robot: Robot, coordinates: Mapping[str, float], rates: Mapping[str, float]) -> dict[str, Any]:
-    """Return the scene of a robot for `stiffmbs.describe.reading.read_scene`.
+    """Return the scene of a robot for `stiffmbs.model.read_scene.read_scene`.
 
     Parameters
     ----------

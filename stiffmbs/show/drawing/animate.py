@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -11,15 +10,14 @@ import numpy as np
 
 from ...analyses.job import data_of
 from ...analyses.run import run
-from ...describe.marker import MarkerReference
-from ...describe.model_data import ModelData
-from ...errors import InputError
+from ...errors import InputError, refuse_missing
+from ...model.model_data import ModelData
+from ...reading.marker import MarkerReference
 from ...results.files import refuse_path, written_whole
 from ...results.solution import Solution
 from ..page.data import page_data
 from ..page.moving import moving_page
 from .derive import drawing_of
-from .draw import need_matplotlib
 from .film import Pace, need_encoder, pictures, write_gif, write_mp4
 from .picture import Shown
 from .poses import placed, poses_of
@@ -39,32 +37,21 @@ def check_animation(path: Path) -> None:
     """
     refuse_path("-o", path, (*FILMS, ".html"))
     if path.suffix == ".html":
-        if find_spec("jinja2") is None:
-            raise InputError(f"-o {path}: found no jinja2, expected it installed: pip install 'stiffmbs[report]'")
+        refuse_missing("jinja2", "'stiffmbs[report]'", f"-o {path}: ")
         return
-    need_matplotlib(f"-o {path}")
+    refuse_missing("matplotlib", "'stiffmbs[plot]'", f"-o {path}: ")
     need_encoder(path)
 
 
 def check_pace(pace: Pace) -> None:
-    """Check that speed and picture rate are positive.
-
-    Raises
-    ------
-    InputError
-    """
+    """Check that speed and picture rate are positive."""
     for option, value in (("--speed", pace.speed), ("--rate", pace.rate)):
         if not (np.isfinite(value) and value > 0):
             raise InputError(f"{option}: found {value:g}, expected a number greater than 0")
 
 
 def traced(data: ModelData, names: Sequence[str]) -> list[Anchor]:
-    """Return the points of named markers, such as ``coupler.tip``, or of bodies.
-
-    Raises
-    ------
-    InputError
-    """
+    """Return the points of named markers, such as ``coupler.tip``, or of bodies."""
     found = []
     for name in names:
         body, _, marker = (name, "", "") if name in data.bodies else name.rpartition(".")
@@ -87,7 +74,6 @@ def write_animation(
     ----------
     path : Path
         Name in .gif, .mp4 or .html.
-    data : ModelData
     runs : mapping of str to Solution
         Runs by their names in the legend; the first one is drawn in full colors.
     view, pace, shown

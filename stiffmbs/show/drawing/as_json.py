@@ -6,20 +6,16 @@ from typing import Any
 
 import numpy as np
 
-from .palette import EDGES, LOAD, MARKS, ROLES
+from .palette import LOAD, edge_color, face_color
 from .poses import Poses
-from .scene_graph import Drawing, Line, Link, Part, Solid
-from .triangles import triangles
+from .scene_graph import Drawing, Link, Part
+from .solids import triangles
 
 DIGITS = 6
 
 
 def drawing_json(drawing: Drawing) -> dict[str, Any]:
     """Return the drawables: vertices and triangles, lines, stretched profiles, names, colors.
-
-    Parameters
-    ----------
-    drawing : Drawing
 
     Returns
     -------
@@ -61,42 +57,23 @@ def _numbers(values: np.ndarray, size: float) -> list[Any]:
     return [[float(f"{x:.7g}") for x in row] if isinstance(row, list) else float(f"{row:.7g}") for row in rounded]
 
 
-def _color(part: Part, drawing: Drawing) -> str:
-    mark = drawing.marks.get(part.owner)
-    if mark and part.role in ("joint", "drive"):
-        return MARKS[mark]
-    return part.color or (drawing.bodies.get(part.owner, "") if part.role == "body" else "") or ROLES[part.role]
-
-
-def _edge(owner: str, role: Any, drawing: Drawing) -> str:
-    mark = drawing.marks.get(owner)
-    return MARKS[mark] if mark else EDGES[role]
-
-
 def _part(part: Part, drawing: Drawing) -> dict[str, Any]:
     return {
-        "owner": part.owner, "role": part.role, "body": part.body, "color": _color(part, drawing),
-        "edge": _edge(part.owner, part.role, drawing),
-        "solids": [_solid(solid, drawing.size) for solid in part.solids],
-        "lines": [_line(line, drawing.size) for line in part.lines],
+        "owner": part.owner, "role": part.role, "body": part.body, "color": face_color(drawing, part),
+        "edge": edge_color(drawing, part.owner, part.role),
+        "solids": [
+            {"vertices": _numbers(solid.vertices, drawing.size), "triangles": triangles(solid).tolist(), "edges": solid.edges[:, :2].tolist()}
+            for solid in part.solids
+        ],
+        "lines": [
+            {"points": _numbers(line.points, drawing.size), "width": line.width, "dashed": line.dashed} for line in part.lines
+        ],
     }  # fmt: skip
-
-
-def _solid(solid: Solid, size: float) -> dict[str, Any]:
-    return {
-        "vertices": _numbers(solid.vertices, size),
-        "triangles": triangles(solid).tolist(),
-        "edges": solid.edges[:, :2].tolist(),
-    }
-
-
-def _line(line: Line, size: float) -> dict[str, Any]:
-    return {"points": _numbers(line.points, size), "width": line.width, "dashed": line.dashed}
 
 
 def _link(link: Link, drawing: Drawing) -> dict[str, Any]:
     return {
-        "owner": link.owner, "role": link.role, "edge": _edge(link.owner, link.role, drawing), "width": link.width,
+        "owner": link.owner, "role": link.role, "edge": edge_color(drawing, link.owner, link.role), "width": link.width,
         "dashed": link.dashed, "i": {"body": link.i.body, "point": _numbers(link.i.point, drawing.size)},
         "j": {"body": link.j.body, "point": _numbers(link.j.point, drawing.size)},
         "profiles": [profile.tolist() for profile in link.profiles],

@@ -134,15 +134,11 @@ def _block(body: Any, dimensions: int, size: float) -> Shapes:
 
 def _planar(points: np.ndarray, thick: float) -> Shapes:
     """Return a bar or plate with round corners: the hull of circles about the points."""
-    around = np.vstack([point + solids.circle(thick, corners=16)[:-1] for point in points])
-    corners = around[_hull_in_plane(around[:, :2])]
-    return (solids.flat(corners),), (solids.outline(corners),)
-
-
-def _hull_in_plane(points: np.ndarray) -> np.ndarray:
     from scipy.spatial import ConvexHull
 
-    return np.asarray(ConvexHull(points).vertices)
+    around = np.vstack([point + solids.circle(thick, corners=16)[:-1] for point in points])
+    corners = around[ConvexHull(around[:, :2]).vertices]
+    return (solids.flat(corners),), (solids.outline(corners),)
 
 
 def _spatial(points: np.ndarray, thick: float) -> Shapes:

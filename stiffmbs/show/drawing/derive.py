@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from ...describe.element import Element, Joint
-from ...describe.formula.formula import Formula
-from ...describe.joint_name import JointName
-from ...describe.marker import GROUND, MarkerReference
-from ...describe.model_data import ModelData
+from ...elements.element import Element, Joint
+from ...model.model_data import ModelData
+from ...reading.formula.formula import Formula
+from ...reading.joint_name import JointName
+from ...reading.marker import GROUND, MarkerReference
 from .bodies import derived_shape, given_shapes
 from .draft import Draft, Site
 from .palette import body_colors
@@ -34,7 +34,6 @@ def drawing_of(data: ModelData, marks: Mapping[str, Mark] | None = None, scale: 
 
     Parameters
     ----------
-    data : ModelData
     marks : mapping of str to Mark, optional
         Joints to mark.
     scale : float
@@ -56,7 +55,8 @@ def drawing_of(data: ModelData, marks: Mapping[str, Mark] | None = None, scale: 
     having = {part.body for part in parts if part.role == "body"}
     points = sites.on_bodies()
     for name, body in data.bodies.items():
-        if not shaped[name] and not (name in having and len(_apart(points[name], 1e-3 * size)) <= 1):
+        places = {tuple(np.round(point / (1e-3 * size)).astype(int)) for point in points[name]}
+        if not shaped[name] and not (name in having and len(places) <= 1):
             shaped[name] = [derived_shape(name, body, data.dimensions, points[name], size, THICK * unit / scale)]
     bodies = [part for found in shaped.values() for part in found]
     gravity = np.zeros(3)
@@ -65,8 +65,8 @@ def drawing_of(data: ModelData, marks: Mapping[str, Mark] | None = None, scale: 
     heaviest = max(data.bodies, key=lambda name: data.bodies[name].mass, default="")
     loads = {
         draft.owner: draft.i.anchor
-        for draft in drafts
-        if draft.i is not None and not _is_reported_elsewhere(draft.element)
+        for draft in drafts  # an element drawn at a joint's point may act on its body as a whole
+        if draft.i is not None and not (isinstance(draft.element, Joint) and any(draft.element.parts(JointName)))
     }
     return Drawing(
         data.name, data.dimensions, size, unit, colors, (*bodies, *parts), tuple(link for d in drafts for link in d.links),
@@ -77,11 +77,6 @@ def drawing_of(data: ModelData, marks: Mapping[str, Mark] | None = None, scale: 
 def _elements(data: ModelData) -> Iterator[tuple[str, Element]]:
     yield from data.joints.items()
     yield from data.forces.items()
-
-
-def _is_reported_elsewhere(element: Element) -> bool:
-    """Return True if an element is drawn at a joint's point, but acts on its body as a whole."""
-    return isinstance(element, Joint) and any(element.parts(JointName))
 
 
 class _Sites:
@@ -117,10 +112,6 @@ class _Sites:
             ]
             + [self.poses.pose(name, 0)[0] for name in self.data.bodies]
         )
-
-
-def _apart(points: Iterable[np.ndarray], near: float) -> set[tuple[int, ...]]:
-    return {tuple(np.round(point / near).astype(int)) for point in points}
 
 
 def _size(data: ModelData, sites: _Sites, shaped: Mapping[str, list[Part]]) -> float:

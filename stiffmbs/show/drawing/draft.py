@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
-from ...describe.marker import GROUND
+from ...reading.marker import GROUND
 from . import solids
 from .scene_graph import Anchor, Line, Link, Part, Role, Solid
 
@@ -19,7 +19,6 @@ class Site:
 
     Attributes
     ----------
-    body : str
     point : ndarray, shape (3,)
         Position relative to the body's centre of mass, m.
     axes : ndarray, shape (3, 3)
@@ -65,8 +64,6 @@ class Draft:
 
     Attributes
     ----------
-    owner : str
-    element : Element
     u : float
         Unit of symbols, m.
     size : float
@@ -114,3 +111,27 @@ class Draft:
     def joint_site(self, field_name: str) -> Site | None:
         """Return marker i of the joint that a field of the element names."""
         return self.joints.get(getattr(self.element, field_name).joint, (None, None, None))[1]
+
+
+Symbol = Callable[[Draft], None]
+"""Function that draws an element."""
+
+
+def at_first(draw: Callable[[Draft, Site], None]) -> Symbol:
+    """Return a symbol that is drawn if the element has a first marker."""
+
+    def symbol(draft: Draft) -> None:
+        if draft.i is not None:
+            draw(draft, draft.i)
+
+    return symbol
+
+
+def at_both(draw: Callable[[Draft, Site, Site], None]) -> Symbol:
+    """Return a symbol that is drawn if the element has two markers."""
+
+    def symbol(draft: Draft) -> None:
+        if draft.i is not None and draft.j is not None:
+            draw(draft, draft.i, draft.j)
+
+    return symbol

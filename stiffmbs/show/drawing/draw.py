@@ -3,22 +3,24 @@
 from __future__ import annotations
 
 import json
-from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ...analyses.check import check
+import numpy as np
+
+from ...analyses.check import Report, check
 from ...analyses.job import data_of
-from ...errors import InputError
+from ...analyses.linearised.at_state import at_state
+from ...errors import refuse_missing
+from ...reading.names import owner_of
+from ...results.channels import channels_of
 from ...results.files import refuse_path, written_whole
 from .as_json import drawing_json, poses_json
 from .derive import drawing_of
-from .marks import marks_of
 from .painted import largest_force
 from .picture import Shown, picture
-from .poses import Poses, described_poses
-from .scene_graph import Drawing
-from .states import poses_at
+from .poses import Poses, described_poses, poses_of
+from .scene_graph import Drawing, Mark
 from .view import check_view, view_named
 
 if TYPE_CHECKING:
@@ -37,18 +39,7 @@ def check_drawing(path: Path) -> None:
     """
     refuse_path("-o", path, ENDINGS)
     if path.suffix != ".json":
-        need_matplotlib(f"-o {path}")
-
-
-def need_matplotlib(what: str) -> None:
-    """Raise an error if matplotlib is missing.
-
-    Raises
-    ------
-    InputError
-    """
-    if find_spec("matplotlib") is None:
-        raise InputError(f"{what}: found no matplotlib, expected it installed: pip install 'stiffmbs[plot]'")
+        refuse_missing("matplotlib", "'stiffmbs[plot]'", f"-o {path}: ")
 
 
 def state_drawn(
@@ -77,8 +68,17 @@ def state_drawn(
     if described:
         data = data_of(model)
         return drawing_of(data, marks), described_poses(data)
-    data, poses = poses_at(model, at=at, **changes)
-    return drawing_of(data, marks), poses
+    found = at_state(model, None, at, **changes)
+    state, time = found.dynamics.state, np.array([found.t])
+    rows = found.dynamics.report(time, state.q[None].copy(), state.u[None].copy(), project=False)
+    channels = channels_of(found.data, found.dynamics.system, rows)
+    return drawing_of(found.data, marks), poses_of(found.data, time, channels)
+
+
+def marks_of(report: Report) -> dict[str, Mark]:
+    """Return joints with redundant equations, and joints whose forces are not unique."""
+    marks: dict[str, Mark] = {owner_of(channel): "not unique" for channel in report.not_unique}
+    return marks | {joint: "redundant" for joint, _ in report.redundant}
 
 
 def write_drawing(path: Path, drawing: Drawing, poses: Poses, view: str, names: bool, forces: bool) -> None:
@@ -132,7 +132,7 @@ def draw(
     """
     check_view(view)
     if path is None:
-        need_matplotlib("draw")
+        refuse_missing("matplotlib", "'stiffmbs[plot]'", "draw: ")
     else:
         check_drawing(Path(path))
     drawing, poses = state_drawn(model, at, described, checked, **changes)

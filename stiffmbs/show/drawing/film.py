@@ -14,18 +14,15 @@ import numpy as np
 
 from ...errors import InputError
 from ..style import COLORS
-from .following import followed_body, seen_from, way_of
-from .painted import Patch, extent, largest_force, painted
-from .picture import Shown, empty_sheet, explain, paint, prepare, write_names
-from .poses import Poses
+from .painted import extent, largest_force, painted
+from .picture import Shown, empty_sheet, explain, paint, prepare, widened, write_names
+from .poses import Poses, followed_body, seen_from, way_of
 from .scene_graph import Anchor, Drawing
 from .view import View
 
 MOST_FRAMES = 3_000
 FAINT = 0.4
 """Opacity of the bodies of other runs."""
-INCH = 90
-"""Dots per inch of a film's pictures."""
 
 
 @dataclass(frozen=True)
@@ -60,12 +57,7 @@ class Pace:
 
 
 def need_encoder(path: Path) -> None:
-    """Check that a film can be encoded, before anything is solved.
-
-    Raises
-    ------
-    InputError
-    """
+    """Check that a film can be encoded, before anything is solved."""
     if path.suffix == ".gif" and find_spec("PIL") is None:
         raise InputError(f"-o {path}: found no Pillow, expected it installed: pip install 'stiffmbs[plot]'")
     if path.suffix == ".mp4" and _ffmpeg() is None:
@@ -90,12 +82,8 @@ def pictures(
 
     Parameters
     ----------
-    drawing : Drawing
     runs : mapping of str to Poses
         Runs drawn over each other, by their names in the legend; the first one in full colors.
-    view : View
-    pace : Pace
-    shown : Shown
     traces : sequence of Anchor
         Points whose paths are drawn.
     """
@@ -112,12 +100,12 @@ def pictures(
     ]
     low, high = np.min([c[0] for c in corners], axis=0), np.max([c[1] for c in corners], axis=0)
     margin = 0.05 * float(np.linalg.norm(high - low))
-    low, high = _wide(low - margin, high + margin)
+    low, high = widened(low - margin, high + margin)
     sheet, axes = empty_sheet(low, high)
     canvas: Any = FigureCanvasAgg(sheet)
     axes.set_title(drawing.name or "mechanism", fontsize=11, parse_math=False)
     clock = axes.text(0.01, 0.01, "", transform=axes.transAxes, fontsize=9, family="monospace")
-    sheet.set_dpi(INCH)
+    sheet.set_dpi(90)
     _name_runs(axes, drawing, list(known), largest)
     for number, (poses, anchor) in enumerate((poses, anchor) for anchor in traces for poses in known.values()):
         path = view.seen(poses.path(anchor))
@@ -137,29 +125,17 @@ def pictures(
             artist.remove()
 
 
-def _wide(low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    middle, half = (low + high) / 2, (high - low) / 2
-    half = np.maximum(half, 0.35 * half.max())
-    return middle - half, middle + half
-
-
 def _frame(axes: Any, drawing: Drawing, samples: Sequence[Poses], k: int, view: View, largest: float) -> list[Any]:
     """Draw one instant: the other runs faint and in one color each, the first run over them."""
     artists = []
     for number in range(len(samples) - 1, 0, -1):
-        artists += paint(
-            axes, _in_one_color(painted(drawing, samples[number], k, view), COLORS[number % len(COLORS)]), FAINT
-        )
+        color, patches = COLORS[number % len(COLORS)], painted(drawing, samples[number], k, view)
+        in_color = [replace(p, face=color if p.face else "", edge="#333333" if p.face else color) for p in patches]
+        artists += paint(axes, in_color, FAINT)
     over = paint(axes, painted(drawing, samples[0], k, view, largest))
     for artist in over:
         artist.set_zorder(artist.get_zorder() + 2)
     return artists + over
-
-
-def _in_one_color(patches: Sequence[Patch], color: str) -> list[Patch]:
-    return [
-        replace(patch, face=color if patch.face else "", edge="#333333" if patch.face else color) for patch in patches
-    ]
 
 
 def _name_runs(axes: Any, drawing: Drawing, names: Sequence[str], largest: float) -> None:

@@ -6,12 +6,13 @@ from pathlib import Path
 
 import numpy as np
 
-from ...describe.files.files_read import content_of
 from ...errors import InputError
+from ...reading.files.files_read import content_of
 from .scene_graph import Solid
 
-HEAD, FACET = 84, 50
-"""Number of bytes before the first facet of a binary STL, and of each facet."""
+HEAD = np.dtype([("text", "S80"), ("facets", "<u4")])
+FACET = np.dtype([("floats", "<f4", 12), ("rest", "<u2")])
+"""Layout of a binary STL."""
 
 
 def read_mesh(path: Path, where: str) -> Solid:
@@ -43,9 +44,9 @@ def read_mesh(path: Path, where: str) -> Solid:
 
 
 def _stl(data: bytes) -> Solid:
-    count = int.from_bytes(data[80:HEAD], "little") if len(data) >= HEAD else -1
-    if len(data) == HEAD + FACET * count:
-        facets = np.frombuffer(data, dtype=np.dtype([("floats", "<f4", 12), ("rest", "<u2")]), offset=HEAD)
+    count = int(np.frombuffer(data, HEAD, 1)["facets"][0]) if len(data) >= HEAD.itemsize else -1
+    if len(data) == HEAD.itemsize + FACET.itemsize * count:
+        facets = np.frombuffer(data, FACET, offset=HEAD.itemsize)
         corners = facets["floats"][:, 3:].reshape(-1, 3).astype(float)
     else:
         words = [line.split() for line in data.decode("utf-8").splitlines()]

@@ -7,10 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...results.scales import ROUNDING
 from .frames import across
-from .palette import EDGES, LOAD, LOAD_NOT_UNIQUE, MARKS, ROLES, shaded
+from .palette import LOAD, LOAD_NOT_UNIQUE, edge_color, face_color, shaded
 from .poses import Poses
-from .scene_graph import Drawing, Line, Link, Part, Role, Solid
+from .scene_graph import Drawing, Line, Link, Part, Solid
 from .solids import face_normal
 from .view import View
 
@@ -20,8 +21,6 @@ SYMBOLS_BEFORE = 0.05
 """Distance of symbols in front of the bodies around them, relative to the size."""
 FOREMOST = 0.004
 """Distance of lines in front of faces at the same place, relative to the size."""
-NEGLIGIBLE = 1e-9
-"""Force that counts as rounding, relative to the weight of all bodies."""
 LONGEST_ARROW = 0.22
 """Length of the longest force arrow, relative to the size."""
 HEAD = 1.25
@@ -41,8 +40,6 @@ class Patch:
         Colors; empty for none.
     width : float
         Width of its line.
-    dashed : bool
-    opacity : float
     """
 
     points: np.ndarray
@@ -59,10 +56,6 @@ def painted(drawing: Drawing, poses: Poses, k: int, view: View, longest: float =
 
     Parameters
     ----------
-    drawing : Drawing
-    poses : Poses
-    k : int
-    view : View
     longest : float
         Force of the longest arrow, N; no arrows are drawn for 0.
     """
@@ -76,23 +69,15 @@ def painted(drawing: Drawing, poses: Poses, k: int, view: View, longest: float =
     return sorted(found, key=lambda patch: patch.depth)
 
 
-def _edge(drawing: Drawing, owner: str, role: Role) -> tuple[str, float]:
-    """Return the color of lines, and the factor on their width."""
-    mark = drawing.marks.get(owner)
-    return (MARKS[mark], 2.2) if mark else (EDGES[role], 1.0)
-
-
-def _face(drawing: Drawing, part: Part) -> str:
-    mark = drawing.marks.get(part.owner)
-    if mark and part.role in ("joint", "drive"):
-        return MARKS[mark]
-    return part.color or (drawing.bodies.get(part.owner, "") if part.role == "body" else "") or ROLES[part.role]
+def _wider(drawing: Drawing, owner: str) -> float:
+    """Return the factor on the width of an element's lines."""
+    return 2.2 if owner in drawing.marks else 1.0
 
 
 def _part(drawing: Drawing, part: Part, poses: Poses, k: int, view: View) -> Iterator[Patch]:
     origin, axes = poses.pose(part.body, k)
-    face = _face(drawing, part)
-    edge, wider = _edge(drawing, part.owner, part.role)
+    face, edge = face_color(drawing, part), edge_color(drawing, part.owner, part.role)
+    wider = _wider(drawing, part.owner)
     nearer = np.zeros(3)
     nearer[2] = 0.0 if part.role == "body" or drawing.dimensions == 2 else SYMBOLS_BEFORE * drawing.size
     for solid in part.solids:
@@ -128,7 +113,7 @@ def _line(seen: np.ndarray, line: Line, color: str, wider: float, lift: float) -
 
 def _link(drawing: Drawing, link: Link, poses: Poses, k: int, view: View) -> Iterator[Patch]:
     ends = [poses.pose(end.body, k)[0] + poses.pose(end.body, k)[1] @ end.point for end in (link.i, link.j)]
-    edge, wider = _edge(drawing, link.owner, link.role)
+    edge, wider = edge_color(drawing, link.owner, link.role), _wider(drawing, link.owner)
     for profile in link.profiles:
         seen = view.seen(stretched(profile, *ends))
         yield Patch(
@@ -177,17 +162,14 @@ def largest_force(drawing: Drawing, poses: Poses) -> float:
     """Return the largest force of any drawn element, N; zero if all are rounding."""
     sizes = [np.linalg.norm(poses.forces[name], axis=1) for name in drawing.loads if name in poses.forces]
     largest = max((float(np.nanmax(size)) for size in sizes if np.isfinite(size).any()), default=0.0)
-    return largest if largest > NEGLIGIBLE * drawing.weight else 0.0
+    return largest if largest > ROUNDING * drawing.weight else 0.0
 
 
 def extent(drawing: Drawing, poses: Poses, view: View, longest: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
     """Return the lower left and upper right corners of the drawing over all instants; parameters as for `painted`."""
     low, high = np.full(2, np.inf), np.full(2, -np.inf)
-    for k in _rows(len(poses.time)):
+    count = len(poses.time)
+    for k in np.unique(np.linspace(0, count - 1, min(count, 24)).astype(int)):
         for patch in painted(drawing, poses, k, view, longest):
             low, high = np.minimum(low, patch.points.min(axis=0)), np.maximum(high, patch.points.max(axis=0))
     return low, high
-
-
-def _rows(count: int) -> np.ndarray:
-    return np.unique(np.linspace(0, count - 1, min(count, 24)).astype(int))

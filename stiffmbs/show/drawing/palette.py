@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
-from .scene_graph import Mark, Role
+from .scene_graph import Drawing, Mark, Part, Role
 
 BODIES = ("#56b4e9", "#e6c229", "#2f9e8f", "#d48fb5", "#8fb339", "#c9733a", "#8da0cb", "#b7a57a")
 """Colors of bodies, in turn."""
@@ -22,6 +22,20 @@ PAPER = "#ffffff"
 def body_colors(bodies: Iterable[str]) -> dict[str, str]:
     """Return a color for each body, in turn."""
     return {body: BODIES[k % len(BODIES)] for k, body in enumerate(bodies)}
+
+
+def edge_color(drawing: Drawing, owner: str, role: Role) -> str:
+    """Return the color of the lines of an element."""
+    mark = drawing.marks.get(owner)
+    return MARKS[mark] if mark else EDGES[role]
+
+
+def face_color(drawing: Drawing, part: Part) -> str:
+    """Return the color of the faces of a part."""
+    mark = drawing.marks.get(part.owner)
+    if mark and part.role in ("joint", "drive"):
+        return MARKS[mark]
+    return part.color or (drawing.bodies.get(part.owner, "") if part.role == "body" else "") or ROLES[part.role]
 
 
 def shaded(color: str, brightness: float) -> str:

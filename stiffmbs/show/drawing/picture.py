@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..style import new_sheet
 from .painted import Patch, extent, largest_force, painted
 from .palette import EDGES, LOAD, MARKS, PAPER
 from .poses import Poses
@@ -33,7 +34,6 @@ class Shown:
 
     Attributes
     ----------
-    names : bool
     forces : bool
         True for arrows of the forces of joints and force elements, to scale.
     """
@@ -60,14 +60,7 @@ def empty_sheet(low: np.ndarray, high: np.ndarray, on_screen: bool = False) -> t
     """Return a sheet with the aspect ratio of the drawing, and its axes without ticks."""
     width, height = high - low
     size = (WIDTH, float(np.clip(WIDTH * height / width, 2.0, 9.0)) + 0.5)
-    if on_screen:
-        from matplotlib import pyplot
-
-        sheet = pyplot.figure(figsize=size, layout="constrained")
-    else:
-        from matplotlib.figure import Figure as Sheet
-
-        sheet = Sheet(figsize=size, layout="constrained")
+    sheet = new_sheet(size, on_screen)
     axes = sheet.add_subplot()
     prepare(axes, low, high)
     return sheet, axes
@@ -77,9 +70,13 @@ def framed(drawing: Drawing, poses: Poses, view: View, largest: float) -> tuple[
     """Return the corners of the picture, with a margin for names and arrows."""
     low, high = extent(drawing, poses, view, largest)
     margin = 0.08 * max(float(np.linalg.norm(high - low)), 1e-9)
-    low, high = low - margin, high + margin
-    middle, least = (low + high) / 2, 0.35 * (high - low).max()
-    half = np.maximum(high - low, least) / 2
+    return widened(low - margin, high + margin)
+
+
+def widened(low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the corners of a frame that is at least about a third as wide as high, and as high as wide."""
+    middle, half = (low + high) / 2, (high - low) / 2
+    half = np.maximum(half, 0.35 * half.max())
     return middle - half, middle + half
 
 

@@ -5,18 +5,20 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from importlib import import_module
 from typing import Any
 
 import numpy as np
 
-from ...describe.marker import GROUND, MarkerReference
-from ...describe.model_data import ModelData
 from ...errors import InputError
+from ...model.model_data import ModelData
+from ...reading.marker import GROUND, MarkerReference
+from ...results.marker_motion import place
 from .frames import rotation
-from .scene_graph import Anchor
+from .scene_graph import Anchor, Drawing
 
 Channels = Mapping[str, np.ndarray]
+FAR = 3.0
+"""Displacement of the heaviest body, relative to the mechanism's size, above which the view follows it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,8 +93,7 @@ class Poses:
 
 def placed(data: ModelData, marker: MarkerReference) -> tuple[np.ndarray, np.ndarray]:
     """Return the position of a marker relative to the centre of mass, and its axes in the body's, shape (3, 3)."""
-    family = import_module(f"stiffmbs.results.{'planar' if data.dimensions == 2 else 'spatial'}_motion")
-    point, orientation = family.place(data, marker)
+    point, orientation = place(data, marker)
     return point, rotation(orientation)
 
 
@@ -114,7 +115,6 @@ def poses_of(data: ModelData, time: np.ndarray, channels: Channels) -> Poses:
 
     Parameters
     ----------
-    data : ModelData
     time : ndarray, shape (n,)
     channels : mapping of str to ndarray, shape (n,)
 
@@ -155,3 +155,22 @@ def _channel(channels: Channels, channel: str) -> Any:
     if channel not in channels:
         raise InputError(f"found results without the channel '{channel}', expected those of a run of this scene")
     return channels[channel]
+
+
+def followed_body(drawing: Drawing, poses: Poses) -> str:
+    """Return the body that the view follows, or an empty string."""
+    if drawing.heaviest not in poses.points:
+        return ""
+    way = way_of(drawing.heaviest, poses)
+    return drawing.heaviest if np.nanmax(np.linalg.norm(way, axis=1)) > FAR * drawing.size else ""
+
+
+def way_of(body: str, poses: Poses) -> np.ndarray:
+    """Return the displacement of a body from its first position, shape (n, 3), m."""
+    return np.asarray(poses.points[body] - poses.points[body][0])
+
+
+def seen_from(body: str, poses: Poses) -> Poses:
+    """Return the poses relative to a body's displacement, without its rotation."""
+    way = way_of(body, poses)
+    return Poses(poses.time, {name: p - way for name, p in poses.points.items()}, poses.orientations, poses.forces)

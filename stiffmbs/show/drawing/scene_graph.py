@@ -48,7 +48,6 @@ class Line:
     points : ndarray, shape (n, 3)
     width : float
         Width relative to an ordinary line.
-    dashed : bool
     """
 
     points: np.ndarray
@@ -64,7 +63,6 @@ class Part:
     ----------
     owner : str
         Body, joint or force that it represents.
-    role : Role
     body : str
         Body that it moves with; ``ground`` does not move.
     solids, lines : tuples
@@ -95,14 +93,10 @@ class Link:
 
     Attributes
     ----------
-    owner : str
-    role : Role
-    i, j : Anchor
     profiles : tuple of ndarray, shape (n, 3)
         Lines: the fraction of the distance from i to j, and two distances across it, m.
     width : float
         Width of the lines, relative to an ordinary one.
-    dashed : bool
     """
 
     owner: str
@@ -129,7 +123,6 @@ class Drawing:
 
     Attributes
     ----------
-    name : str
     dimensions : int
         2: drawn as seen along z.
     size : float

@@ -68,13 +68,8 @@ def view_named(text: str, dimensions: int, gravity: np.ndarray) -> View:
     text : str
         ``front``, ``back``, ``side``, ``top``, ``isometric``, a plane such as ``xz``, ``AZIMUTH,ELEVATION`` in degrees,
         or empty: along z in the plane, isometric in space.
-    dimensions : int
     gravity : ndarray, shape (3,)
         If it is along y, y is the upright axis of views by angles.
-
-    Raises
-    ------
-    InputError
     """
     if text in NAMED or (not text and dimensions == 2):
         right, up = NAMED[text or "xy"]
@@ -94,10 +89,5 @@ def view_named(text: str, dimensions: int, gravity: np.ndarray) -> View:
 
 
 def check_view(text: str) -> None:
-    """Check that a text names a view, before anything is solved.
-
-    Raises
-    ------
-    InputError
-    """
+    """Check that a text names a view, before anything is solved."""
     view_named(text, 3, np.zeros(3))

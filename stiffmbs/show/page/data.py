@@ -13,9 +13,8 @@ import numpy as np
 
 from ...results.solution import Solution
 from ..drawing.as_json import drawing_json
-from ..drawing.following import followed_body
 from ..drawing.painted import LONGEST_ARROW, largest_force
-from ..drawing.poses import Poses
+from ..drawing.poses import Poses, followed_body
 from ..drawing.scene_graph import Anchor, Drawing
 
 MOST_POSES = 1200
@@ -25,7 +24,7 @@ POSE_VALUES = 240_000
 CHANNEL_VALUES = 450_000
 """Largest number of values of channels."""
 MOST_INSTANTS = 2000
-LEVELS = 65535
+LEVELS = int(np.iinfo(np.uint16).max)
 
 
 @dataclass
@@ -65,7 +64,6 @@ def page_data(
 
     Parameters
     ----------
-    drawing : Drawing
     runs : mapping of str to Poses
         Runs drawn over each other, by their names in the legend; the first one in full colors.
     solution : Solution, optional

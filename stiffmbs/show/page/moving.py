@@ -3,13 +3,20 @@
 from __future__ import annotations
 
 from importlib.resources import files
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ..escaped import page_text
-from .parts import page_parts
 
 if TYPE_CHECKING:
     from jinja2 import Environment
+
+
+PARTS = {"three": "three.min.js", "viewer": "viewer.js", "style": "viewer.css"}
+
+
+def page_parts() -> dict[str, str]:
+    """Return the scripts and styles of a page with a moving mechanism."""
+    return {name: files(__package__).joinpath(file).read_text(encoding="utf-8") for name, file in PARTS.items()}
 
 
 def moving_page(title: str, data: dict[str, str]) -> str:
@@ -17,11 +24,11 @@ def moving_page(title: str, data: dict[str, str]) -> str:
 
     Parameters
     ----------
-    title : str
     data : mapping
         Result of `stiffmbs.show.page.data.page_data`.
     """
-    return rendered("moving.html", title=title or "Mechanism", **data, **page_parts())
+    template = environment().from_string(files(__package__).joinpath("moving.html").read_text(encoding="utf-8"))
+    return template.render(title=title or "Mechanism", **data, **page_parts())
 
 
 def environment() -> Environment:
@@ -29,10 +36,3 @@ def environment() -> Environment:
     from jinja2 import Environment
 
     return Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True, finalize=page_text)
-
-
-def rendered(template: str, **content: Any) -> str:
-    """Return a rendered template of this folder, with escaped text."""
-    return (
-        environment().from_string(files(__package__).joinpath(template).read_text(encoding="utf-8")).render(**content)
-    )

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...compile.system import System
-from ...describe.settings import RunSettings
+from ...model.settings import RunSettings
 from .tolerances import absolute_tolerances
 
 

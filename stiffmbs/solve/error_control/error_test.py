@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...compile.equations import Equations
-from ...describe.settings import RunSettings
+from ...model.settings import RunSettings
 from .tolerances import independent_tolerances
 
 
@@ -21,8 +21,6 @@ class ErrorControl(NamedTuple):
     multipliers : float
         Absolute tolerance of multipliers.  A huge one excludes them from the error test, which fails for index-2
         problems, and from Newton's convergence test.
-    suppressed : bool
-        If True, IDASetSuppressAlg excludes multipliers from the error test but not from Newton's convergence test.
     newton : float or None
         Coefficient of Newton's convergence test (IDASetNonlinConvCoef); None to choose it by the stiffness of the
         scene (`stiffmbs.solve.error_control.newton`).
@@ -33,13 +31,12 @@ class ErrorControl(NamedTuple):
         Least factor by which a step is enlarged (IDASetEtaFixedStepBounds).  With IDA's default 2, the steps of an
         even motion keep the size that the start has given them.
     predicted_residual : bool
-        If True, use the convergence test of `stiffmbs.solve.native.iteration`: the convergence rate worsens with
+        If True, use the convergence test of `stiffmbs.solve.ida.native.iteration`: the convergence rate worsens with
         the age of the iteration matrix, and short steps may leave a larger residual.
     """
 
     margin: float = 0.3
     multipliers: float = 1e15
-    suppressed: bool = False
     newton: float | None = None
     renewal: float = 0.05
     growth: float = 2.0
@@ -52,14 +49,6 @@ class ErrorControl(NamedTuple):
         atol[equations.independent[tested]] = of_independent[tested]
         correction = self.margin * np.sqrt(equations.n / max(int(tested.sum()), 1))
         return settings.rtol * correction, atol * correction
-
-    def untested(self, equations: Equations) -> np.ndarray | None:
-        """Return a mask of the unknowns that IDASetSuppressAlg excludes; None if it is not used."""
-        if not self.suppressed:
-            return None
-        kept = np.zeros(equations.n, dtype=bool)
-        kept[equations.independent[self._tested(equations)]] = True
-        return ~kept
 
     @staticmethod
     def _tested(equations: Equations) -> np.ndarray:

@@ -8,23 +8,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ...compile.system import System, Term
-from ...describe.settings import RunSettings
-from ..dynamics import Dynamics
-
-LOOSEST, TIGHTEST = 0.03, 1e-6
-"""Bounds of the part of the error tolerance that Newton's iteration may leave; IDA's own is 0.33.  A tighter tolerance
-fails where the constraints are nearly dependent."""
-SOFT = 1.5e4
-"""Squared fastest rate, 1/s^2, times the part of the tolerance that may be left.  A position error makes a force, and
-thereby a velocity error that has to stay below the tolerance too."""
-NUMBERS_END = 1e-13
-"""Least relative change of a coordinate that the iteration can resolve with an ill-conditioned iteration matrix."""
-
-
-UNBALANCED = 0.3
-"""Allowed imbalance of the forces on a body between steps, relative to the largest force and to rtol."""
-AMPLIFIED = 400.0
-"""Ratio of forces by an error between steps to forces by its rates in a step, above which states are corrected."""
+from ...dynamics.dynamics import Dynamics
+from ...model.settings import RunSettings
+from .native.parameters import NEWTON, POLISHING
 
 
 class Stiffness(NamedTuple):
@@ -47,15 +33,20 @@ class Stiffness(NamedTuple):
         return max(self.of_positions, self.of_velocities * self.of_velocities)  # infinite where a power would raise
 
     @property
+    def damping_ratio(self) -> float:
+        """Return the damping ratio of the stiffest vibration; infinite without stiffness."""
+        return self.of_velocities / (2.0 * math.sqrt(self.of_positions)) if self.of_positions > 0 else math.inf
+
+    @property
     def allowed_residual(self) -> float:
         """Return the part of the error tolerance that causes no significant force."""
-        return SOFT / self.fastest if self.fastest > 0 else np.inf
+        return NEWTON.soft / self.fastest if self.fastest > 0 else np.inf
 
     @property
     def long_step(self) -> float:
         """Return the step size, s, above which states within a step must be corrected; may be infinite."""
-        by_position = math.sqrt(AMPLIFIED / self.of_positions) if self.of_positions > 0 else math.inf
-        by_velocity = AMPLIFIED / self.of_velocities if self.of_velocities > 0 else math.inf
+        by_position = math.sqrt(POLISHING.amplified / self.of_positions) if self.of_positions > 0 else math.inf
+        by_velocity = POLISHING.amplified / self.of_velocities if self.of_velocities > 0 else math.inf
         return min(by_position, by_velocity)
 
 
@@ -81,7 +72,7 @@ def _row_sums(system: System) -> tuple[RowSums, RowSums]:
 
 def newton_tolerance(stiffness: Stiffness, settings: RunSettings) -> float:
     """Return the part of the error tolerance that Newton's iteration may leave."""
-    return max(min(LOOSEST, stiffness.allowed_residual), TIGHTEST, NUMBERS_END / settings.rtol)
+    return max(min(NEWTON.loosest, stiffness.allowed_residual), NEWTON.tightest, NEWTON.precision / settings.rtol)
 
 
 class RowSums(NamedTuple):

@@ -3,19 +3,35 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from ...compile.system import System
-from ...describe.settings import RunSettings
-from ..dynamics import Dynamics
+from ...dynamics.dynamics import Dynamics
+from ...model.settings import RunSettings
 
-NOISE = 1e-3, 0.05
-"""Rounding of an angle and of a position, relative to the absolute tolerance, above which differences of order 5 are
-rounding only.  The tolerance of a position grows with it."""
-SLOW, FAILED = 20_000, 0.2
-"""Steps after which a run is checked, and the fraction of failed error tests that indicates rounding."""
+
+@dataclass(frozen=True)
+class PrecisionParameters:
+    """Parameters that decide when a tolerance is finer than the rounding of a coordinate.
+
+    Source: ``tests/solve/test_precision.py``.
+    """
+
+    noise_of_angles: float = 1e-3
+    """Rounding of an angle, relative to the absolute tolerance, above which differences of order 5 are rounding
+    only."""
+    noise_of_positions: float = 0.05
+    """The same for a position, whose tolerance grows with it."""
+    slow: int = 20_000
+    """Steps after which a run is checked."""
+    failed: float = 0.2
+    """Fraction of failed error tests that indicates rounding."""
+
+
+PRECISION = PrecisionParameters()
 
 
 def too_fine(dynamics: Dynamics, settings: RunSettings, t: float, q: np.ndarray) -> str:
@@ -75,8 +91,8 @@ def _known_too_little(system: System, settings: RunSettings, q: np.ndarray) -> s
     if of_body.dimensions == 3:
         turning = turning[:, :0]  # quaternions have unit length
     name, tolerance = _tolerance(settings)
-    of_positions = np.spacing(np.abs(straight)) / 2 / (NOISE[1] * tolerance * min(1.0, system.size))
-    of_angles = np.spacing(np.abs(turning)) / 2 / (NOISE[0] * tolerance)
+    of_positions = np.spacing(np.abs(straight)) / 2 / (PRECISION.noise_of_positions * tolerance * min(1.0, system.size))
+    of_angles = np.spacing(np.abs(turning)) / 2 / (PRECISION.noise_of_angles * tolerance)
     excess = np.hstack([of_positions, of_angles])
     body, k = np.unravel_index(int(np.argmax(excess)), excess.shape)
     if not system.n_c or not excess[body, k] > 1.0:
@@ -92,4 +108,4 @@ def _known_too_little(system: System, settings: RunSettings, q: np.ndarray) -> s
 def governed_by_rounding(statistics: Mapping[str, Any]) -> bool:
     """Return True if a long run fails the error test so often that rounding governs it."""
     steps, rejected = int(statistics["steps"]), int(statistics.get("rejected", 0))
-    return steps > SLOW and rejected > FAILED * steps
+    return steps > PRECISION.slow and rejected > PRECISION.failed * steps

@@ -2,24 +2,40 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
 from ...compile.system import System
-from ...describe.settings import RunSettings
-from ..dynamics import Dynamics, OutputRows
+from ...dynamics.dynamics import Dynamics, OutputRows
+from ...dynamics.storage import blocks, release
+from ...model.settings import RunSettings
 from ..events.restart import INDISTINCT
-from ..storage import blocks, release
 from ..trajectory import Trajectory
 from .tolerances import absolute_tolerances
 
-POSITION_CREEP, VELOCITY_CREEP = 1e-9, 1e-12
-"""Relaxation times of position and velocity constraints at rtol 1e-8, s."""
-SHORT = 100
-"""Number of bodies beyond which relaxations decrease with the square of that number: drift accumulates along chains."""
-TIGHTEST, LOOSEST = 1e-3, 1e3
-"""Bounds of the factor by which a tolerance other than 1e-8 scales the relaxations."""
+
+@dataclass(frozen=True)
+class RelaxationParameters:
+    """Parameters of the relaxed constraints.
+
+    Source: ``tests/solve/ida/test_relaxation.py`` and ``docs/formulations.md``.
+    """
+
+    of_positions: float = 1e-9
+    """Relaxation time of position constraints at rtol 1e-8, s."""
+    of_velocities: float = 1e-12
+    """Relaxation time of velocity constraints at rtol 1e-8, s."""
+    short_chain: int = 100
+    """Number of bodies beyond which relaxations decrease with the square of that number: drift accumulates along
+    chains."""
+    tightest: float = 1e-3
+    loosest: float = 1e3
+    """Bounds of the factor by which a tolerance other than 1e-8 scales the relaxations."""
+
+
+RELAXATION = RelaxationParameters()
 
 
 class Creep(NamedTuple):
@@ -72,12 +88,12 @@ def relax(dynamics: Dynamics, settings: RunSettings, t: float) -> None:
 
 def creep_of_positions(settings: RunSettings) -> float:
     """Return E_mu of a row of C_q with a single entry 1."""
-    return POSITION_CREEP * _factor(settings)
+    return RELAXATION.of_positions * _factor(settings)
 
 
 def creep_of_velocities(settings: RunSettings, system: System) -> float:
     """Return E_lam of a row of J with a single entry 1, for an inverse mass of 1."""
-    return VELOCITY_CREEP * _factor(settings) * min(1.0, (SHORT / len(system.bodies)) ** 2)
+    return RELAXATION.of_velocities * _factor(settings) * min(1.0, (RELAXATION.short_chain / len(system.bodies)) ** 2)
 
 
 def lightness(dynamics: Dynamics) -> np.ndarray:
@@ -86,7 +102,7 @@ def lightness(dynamics: Dynamics) -> np.ndarray:
 
 
 def _factor(settings: RunSettings) -> float:
-    return min(max(settings.rtol / 1e-8, TIGHTEST), LOOSEST)
+    return min(max(settings.rtol / 1e-8, RELAXATION.tightest), RELAXATION.loosest)
 
 
 def _heaviest(system: System) -> np.ndarray:

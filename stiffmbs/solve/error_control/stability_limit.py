@@ -12,6 +12,7 @@ derivative of the cubic predicts.  A vibration of a few tolerances is damped wit
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -19,7 +20,8 @@ import numpy as np
 from ...compile.equations import Equations
 from ...compile.machine.layout import addresses
 from ...compile.machine.routines import Routine
-from ...describe.settings import RunSettings
+from ...model.settings import RunSettings
+from ..ida.native.parameters import LOOP
 from .tolerances import independent_tolerances
 
 CUBIC = Routine(
@@ -27,62 +29,122 @@ CUBIC = Routine(
     "cubic",
     "void(int64, int64, float64*, float64, float64*, int64, int64*, float64, float64*, float64*)",
 )
-STATES_LOOKED_AT, STEPS_APART = 16, 4
-"""States in a check, and steps between them.  Motions resolved by order 3 to 5 are much further from a cubic."""
-FAR_APART = np.array([0, 4, 8, 12, 15], dtype=np.int64)
-"""States compared first; they usually suffice to show that the motion is far from a cubic."""
-NEGLIGIBLE = 150.0
-"""Distance from the cubic, in tolerances, up to which a vibration is negligible; higher orders damp it too."""
-STUCK, STEADY = 0.5, 3.0
-"""Distance from the cubic below which, and ratio of the mean to the current step above which, steps have another
-limit."""
-FAINT, DAMPED_AWAY = 4.0, 100
-"""Distance up to which a vibration is faint, and steps of order 2 that damp a faint vibration."""
-WITHIN_PERIODS = 12.0
-"""Longest step, times a bound of the fastest rate, that stability may limit; a restart with longer ones would excite
-vibrations that are already damped."""
-FIRST_LOOK, LATER = 2000, 1.5
-"""Steps before the first check, and growth factor of that number for later ones."""
-RELAPSE, STRETCH, LONGER = 2000, 2000, 4
-"""Steps between checks while the order is limited; steps of the first limitation, and growth factor for later ones."""
-GAIN = 3.0
-"""Factor by which the limited order must lengthen steps: predicted beforehand, measured afterwards.  It pays for the
-larger errors of order 2."""
-NO_LOSS = 1.5
-"""Predicted factor required for a faint vibration: steps become longer after it is damped."""
-MARGIN, ERROR_CONSTANT = 0.1, 2 / 9
-"""Error of a step that the integrator aims at, relative to the tolerance, and error constant of BDF of order 2."""
-TIGHTEST_HELD = 1e-7
-"""Relative tolerance below which the order is limited only briefly, because order 2 would be too inaccurate."""
-HELD, HIGHEST = 2, 5
+FIRST_COMPARED = np.array([0, 4, 8, 12, 15], dtype=np.int64)
+"""Samples compared first; they usually suffice to show that the motion is far from a cubic."""
+A_STABLE_ORDER, HIGHEST_ORDER = 2, 5
 """Highest A-stable order, and highest order of BDF."""
+ERROR_CONSTANT = 2 / 9
+"""Error constant of BDF of order 2."""
 
 
-def cubic_fit(samples: np.ndarray, rtol: float, atol: np.ndarray) -> tuple[float, float, float]:
-    """Return the distances of states from the best-fitting cubics, in units of the tolerance.
+@dataclass(frozen=True)
+class StabilityLimitParameters:
+    """Parameters that decide when the order of BDF is limited.
+
+    Source: numbers of steps of ``tests/solve/ida/test_order_watch.py`` and of the stress tests ``order_collapse``.
+    """
+
+    interval: int = 2000
+    """Steps before the first check, steps of a limitation, and steps to the next check after it."""
+    growth: float = 1.5
+    """Ratio of the numbers of steps at successive checks without a limitation."""
+    least_distance: float = 0.5
+    """Distance of the samples from the best-fitting cubics, in tolerances, below which no vibration is present: another
+    bound, such as `max_step`, limits the steps."""
+    faint: float = 4.0
+    """Distance, in tolerances, below which a vibration is faint: few steps of order 2 damp it."""
+    negligible: float = 150.0
+    """Distance, in tolerances, below which a vibration is negligible; higher orders damp it too."""
+    damping_steps: int = 100
+    """Steps of order 2 that damp a faint vibration."""
+    gain: float = 3.0
+    """Factor by which the limited order must lengthen steps: predicted beforehand, measured afterwards. It pays for the
+    larger errors of order 2."""
+    gain_if_faint: float = 1.5
+    """Predicted factor required for a faint vibration: steps become longer after it is damped."""
+    step_error: float = 0.1
+    """Error of a step that the integrator aims at, relative to the tolerance."""
+
+
+STABILITY_LIMIT = StabilityLimitParameters()
+
+
+@dataclass(frozen=True)
+class CubicFit:
+    """Comparison of the last states with the best-fitting cubics, in units of the tolerance.
+
+    Attributes
+    ----------
+    least : float
+        Distance shown by the samples `FIRST_COMPARED`.
+    distance : float
+        Largest RMS distance of one state; not computed if `least` is not negligible.
+    third : float
+        RMS of the cubic coefficients, with times scaled to -1 to 1; not computed either in that case.
+    """
+
+    least: float
+    distance: float
+    third: float
+
+
+@dataclass(frozen=True)
+class Limitation:
+    """Limitation of the order.
+
+    Attributes
+    ----------
+    t : float
+        Time of its beginning, s.
+    steps : int
+        Steps of the run up to there.
+    step : float
+        Mean step before, s.
+    faint : bool
+        True if the vibration was faint.
+    """
+
+    t: float
+    steps: int
+    step: float
+    faint: bool
+
+
+def cubic_fit(samples: np.ndarray, rtol: float, atol: np.ndarray, negligible: float) -> CubicFit:
+    """Return the distances of states from the best-fitting cubics.
 
     Parameters
     ----------
-    samples : ndarray, shape (`STATES_LOOKED_AT`, 1 + n)
+    samples : ndarray, shape (`LOOP.samples`, 1 + n)
         Times and states.
     rtol : float
     atol : ndarray, shape (n,)
-
-    Returns
-    -------
-    least : float
-        Distance shown by the states `FAR_APART`.
-    distance : float
-        Largest RMS distance of one state; not computed if `least` exceeds `NEGLIGIBLE`.
-    highest : float
-        RMS of the cubic coefficients, with times scaled to -1 to 1; not computed either in that case.
+    negligible : float
+        Distance up to which all samples are compared.
     """
     count, n = len(samples), samples.shape[1] - 1
     samples, work, found = np.ascontiguousarray(samples), np.empty(n + 6 * count + 8), np.zeros(3)
-    rows, at_atol, few, at_work, at_found = addresses(samples, atol, FAR_APART, work, found)
-    CUBIC.short_call(count, n, rows, rtol, at_atol, len(FAR_APART), few, NEGLIGIBLE, at_work, at_found)
-    least, distance, highest = found.tolist()
-    return least, distance, highest
+    rows, at_atol, first, at_work, at_found = addresses(samples, atol, FIRST_COMPARED, work, found)
+    CUBIC.short_call(count, n, rows, rtol, at_atol, len(FIRST_COMPARED), first, negligible, at_work, at_found)
+    return CubicFit(*found.tolist())
+
+
+def predicted_gain(fit: CubicFit, parameters: StabilityLimitParameters) -> float:
+    """Return the ratio of steps of order 2 to the current steps, from the third derivative of the cubics."""
+    steps = LOOP.steps_apart * (LOOP.samples - 1) / 2  # in a unit of the cubic's variable
+    derivative = 6 * fit.third / steps**3
+    if not derivative > 0:
+        return math.inf
+    return (parameters.step_error / (ERROR_CONSTANT * derivative)) ** (1 / 3)
+
+
+def limits_steps(fit: CubicFit, parameters: StabilityLimitParameters) -> bool:
+    """Return True if a negligible vibration limits the steps by stability, and order 2 would lengthen them enough."""
+    if fit.least > parameters.negligible:
+        return False
+    required = parameters.gain_if_faint if fit.distance < parameters.faint else parameters.gain
+    vibrates = parameters.least_distance < fit.distance < parameters.negligible
+    return vibrates and predicted_gain(fit, parameters) > required
 
 
 class StabilityLimitDetection:
@@ -92,6 +154,8 @@ class StabilityLimitDetection:
     ----------
     equations : Equations
     settings : RunSettings
+    parameters : StabilityLimitParameters, optional
+        By default `STABILITY_LIMIT`.
 
     Attributes
     ----------
@@ -99,11 +163,18 @@ class StabilityLimitDetection:
         Highest order allowed.
     """
 
-    def __init__(self, equations: Equations, settings: RunSettings) -> None:
-        self._rtol, self._highest = settings.rtol, settings.max_order or HIGHEST
-        self._watches, self._holds = settings.max_order is None, settings.rtol >= TIGHTEST_HELD
+    def __init__(
+        self, equations: Equations, settings: RunSettings, parameters: StabilityLimitParameters | None = None
+    ) -> None:
         self._equations, self._settings = equations, settings
-        self.forget()
+        self._parameters = parameters or STABILITY_LIMIT
+        self._is_active = settings.max_order is None
+        self._highest = settings.max_order or HIGHEST_ORDER
+        self.order = self._highest
+        self._next_check = self._parameters.interval  # in steps of the run
+        self._limitations: list[Limitation] = []
+        self._limited_steps = 0  # without those for faint vibrations
+        self._since = 0.0, 0  # time and steps at the last start or check
 
     @cached_property
     def _atol(self) -> np.ndarray:
@@ -111,11 +182,8 @@ class StabilityLimitDetection:
 
     def forget(self) -> None:
         """Begin a new run."""
-        self.order, self._next, self._stretch = self._highest, FIRST_LOOK, STRETCH
-        self._held: list[tuple[float, int]] = []
-        self._held_steps = 0
-        self._briefly = False
-        self._mark, self._pace, self._fastest = (0.0, 0), 0.0, 0.0
+        self.order, self._next_check = self._highest, self._parameters.interval
+        self._limitations, self._limited_steps, self._since = [], 0, (0.0, 0)
 
     @property
     def held(self) -> bool:
@@ -123,16 +191,16 @@ class StabilityLimitDetection:
         return self.order < self._highest
 
     def begin(self, t: float, steps: int, fastest: float) -> None:
-        """Note a start or restart of the integrator, with vibrations of rates up to `fastest`, 1/s."""
-        self._mark, self._fastest = (t, steps), fastest
+        """Note a start or restart of the integrator at t, s; `fastest` is not used."""
+        self._since = t, steps
 
     def due(self, steps: int) -> bool:
         """Return True if a check is due after `steps` steps of the run."""
-        return steps >= self._next and self._watches
+        return self._is_active and steps >= self._next_check
 
     def wait(self, steps: int) -> int:
         """Return the number of steps until the next check is due."""
-        return self._next - steps if self._watches and self._next > steps else FIRST_LOOK
+        return self._next_check - steps if self._is_active and self._next_check > steps else self._parameters.interval
 
     def changed(self, samples: np.ndarray, steps: int) -> bool:
         """Check the last steps; return True if the highest order changes.
@@ -144,59 +212,43 @@ class StabilityLimitDetection:
         steps : int
             Number of steps of the run.
         """
-        if len(samples) < STATES_LOOKED_AT:
+        if len(samples) < LOOP.samples:
             return False
-        t, (since, before) = float(samples[-1, 0]), self._mark
-        pace, self._mark = (t - since) / (steps - before), (t, steps)
+        t, (t_before, steps_before) = float(samples[-1, 0]), self._since
+        step, self._since = (t - t_before) / (steps - steps_before), (t, steps)
         if self.held:
-            return self._frees(pace, t, steps)
-        local = float(samples[-1, 0] - samples[0, 0]) / (STEPS_APART * (len(samples) - 1))
-        steady = pace < STEADY * local and local * self._fastest < WITHIN_PERIODS
-        distance, longer = self._fit(samples) if steady else (0.0, 0.0)
-        faint = distance < FAINT
-        creeping = STUCK < distance < NEGLIGIBLE and (longer > (NO_LOSS if faint else GAIN)) and (faint or self._holds)
-        if not creeping:
-            self._next = int(LATER * steps)
+            self._free(step, steps)
+            return True
+        fit = cubic_fit(samples, self._settings.rtol, self._atol, self._parameters.negligible)
+        if not limits_steps(fit, self._parameters):
+            self._next_check = int(self._parameters.growth * steps)
             return False
-        self.order, self._pace, self._briefly = HELD, pace, faint
-        self._next = steps + (DAMPED_AWAY if faint else RELAPSE)
-        if not faint:
-            self._held.append((t, steps))
+        self._limit(Limitation(t, steps, step, fit.distance < self._parameters.faint))
         return True
 
-    def _frees(self, pace: float, t: float, steps: int) -> bool:
-        """Return True if the order is to be freed: the limit has not paid, or has lasted long enough."""
-        pays = not self._briefly and pace > GAIN * self._pace
-        if pays and steps < self._held[-1][1] + self._stretch:
-            self._next = steps + RELAPSE
-            return False
-        if not self._briefly:
-            self._stretch *= LONGER
-            self._held_steps += steps - self._held[-1][1]
-        self.order, self._next = self._highest, steps + (RELAPSE if pays or self._briefly else steps)
-        return True
+    def _limit(self, limitation: Limitation) -> None:
+        self.order = A_STABLE_ORDER
+        self._limitations.append(limitation)
+        duration = self._parameters.damping_steps if limitation.faint else self._parameters.interval
+        self._next_check = limitation.steps + duration
 
-    def _fit(self, samples: np.ndarray) -> tuple[float, float]:
-        """Return the distance from the best-fitting cubic, in tolerances, and the predicted factor in step size.
-
-        The second is 0 if a few samples show that the motion is far from a cubic.
-        """
-        least, distance, highest = cubic_fit(samples, self._rtol, self._atol)
-        if least > NEGLIGIBLE:
-            return least, 0.0
-        half = STEPS_APART * (len(samples) - 1) / 2  # steps in a unit of the cubic's variable
-        third = 6 * highest / half**3
-        longer = (MARGIN / (ERROR_CONSTANT * third)) ** (1 / 3) if third > 0 else math.inf
-        return distance, longer
+    def _free(self, step: float, steps: int) -> None:
+        """Free the order; if its limitation has not paid, the next check is due after twice as many steps."""
+        last = self._limitations[-1]
+        self.order = self._highest
+        self._limited_steps += 0 if last.faint else steps - last.steps
+        pays = last.faint or step > self._parameters.gain * last.step
+        self._next_check = steps + (self._parameters.interval if pays else steps)
 
     def note(self, steps: int) -> str:
         """Return a sentence on the limited order for the user, after `steps` steps; empty if it was never limited."""
-        if not self._held:
+        reported = [limitation for limitation in self._limitations if not limitation.faint]
+        if not reported:
             return ""
-        held = self._held_steps + (steps - self._held[-1][1] if self.held and not self._briefly else 0)
-        first, before = self._held[0]
+        first, last = reported[0], self._limitations[-1]
+        limited = self._limited_steps + (steps - last.steps if self.held and not last.faint else 0)
         return (
-            f"from t = {first:.4g} s on BDF's order was held at {HELD} for {held} of {steps} steps: orders 3 to 5 had crept along "
-            f"a stiff, little damped vibration of less than {NEGLIGIBLE:g} tolerances, {before} steps up to there; it is now damped "
-            "away, also in forces; a smaller rtol, or max_order: 5, keeps it"
+            f"from t = {first.t:.4g} s on BDF's order was held at {A_STABLE_ORDER} for {limited} of {steps} steps: orders 3 to 5 "
+            f"had crept along a stiff, little damped vibration of less than {self._parameters.negligible:g} tolerances, {first.steps} "
+            "steps up to there; it is now damped away, also in forces; a smaller rtol, or max_order: 5, keeps it"
         )

@@ -6,7 +6,7 @@ import numpy as np
 
 from ...compile.equations import Equations
 from ...compile.system import System
-from ...describe.settings import RunSettings
+from ...model.settings import RunSettings
 
 WHICH_TURN = 1e-3
 """Absolute tolerance of the revolution counters, rad: far below the half turn that they must resolve."""

@@ -4,25 +4,46 @@ from __future__ import annotations
 
 import math
 from collections import deque
+from dataclasses import dataclass
 
 import numpy as np
 
 from ...compile.written_values import writer
+from ...dynamics.dynamics import Dynamics
 from ...errors import ChatteringError, SolverError
-from ..dynamics import Dynamics
-from .discontinuity import LARGER_MOVE, jumping, sliding
+from .discontinuity import JUMP, jumping, sliding
 
-WINDOW, TRUSTED_EVENTS = 250, 1000
-"""Events over which their rate is measured, and number of events above which its growth is trusted."""
-TOO_MANY, AT_LEAST = 1e6, 1e4
-"""Expected further events at which a run is stopped, and their least number at which growth is considered."""
-LEAST_POWER, LARGEST_POWER = 0.8, 2.0
-"""Bounds of the power of the number of events with which their rate grows in an exponentially driven motion.  Bounces
-of a ball that comes to rest have larger powers, and end."""
-STEPS_SEEN, STEPS_AHEAD = 500_000, 2e8
-"""Steps over which the rate of a run is measured, and expected further steps at which it is stopped."""
-STAYS_WITHIN, STAYS_WITHIN_AT_MOST = 1e3, 1e-2
-"""Distance from a jump at which a state is taken to stay there: relative to rtol, and its upper bound."""
+
+@dataclass(frozen=True)
+class ChatteringParameters:
+    """Parameters that decide when a run would not end.
+
+    Source: ``tests/events/test_chattering.py`` and the stress tests of bouncing balls and sticking friction.
+    """
+
+    window: int = 250
+    """Events over which their rate is measured."""
+    trusted_events: int = 1000
+    """Number of events above which the growth of their rate is trusted."""
+    too_many: float = 1e6
+    """Expected further events at which a run is stopped."""
+    at_least: float = 1e4
+    """Their least number at which growth is considered."""
+    least_power: float = 0.8
+    largest_power: float = 2.0
+    """Bounds of the power of the number of events with which their rate grows in an exponentially driven motion.
+    Bounces of a ball that comes to rest have larger powers, and end."""
+    steps_seen: int = 500_000
+    """Steps over which the rate of a run is measured."""
+    steps_ahead: float = 2e8
+    """Expected further steps at which it is stopped."""
+    stays_within: float = 1e3
+    """Distance from a jump at which a state is taken to stay there, relative to rtol."""
+    stays_within_at_most: float = 1e-2
+    """Upper bound of that distance."""
+
+
+CHATTERING = ChatteringParameters()
 
 
 class Chattering:
@@ -39,9 +60,9 @@ class Chattering:
 
     def __init__(self, dynamics: Dynamics, end: float, rtol: float) -> None:
         self._dynamics, self._end = dynamics, end
-        self._reach = min(max(LARGER_MOVE, STAYS_WITHIN * rtol), STAYS_WITHIN_AT_MOST)
+        self._reach = min(max(JUMP.larger_move, CHATTERING.stays_within * rtol), CHATTERING.stays_within_at_most)
         self._any = dynamics.system.n_event_functions > 0
-        self._events: deque[float] = deque(maxlen=2 * WINDOW + 1)
+        self._events: deque[float] = deque(maxlen=2 * CHATTERING.window + 1)
         self._count = 0
         self._mark: tuple[float, int] | None = None
 
@@ -69,15 +90,15 @@ class Chattering:
         if self._any:
             self.refuse(t, sliding(self._dynamics, t, q, u, self._reach))
         since, before = self._mark or (t, steps)
-        if steps - before < STEPS_SEEN:
+        if steps - before < CHATTERING.steps_seen:
             self._mark = since, before
             return
         self._mark = t, steps
         pace = (t - since) / (steps - before)
-        if self._end - t > STEPS_AHEAD * pace:
+        if self._end - t > CHATTERING.steps_ahead * pace:
             raise SolverError(
                 f"stopped at t = {t:.9g} s: the last {steps - before} steps have covered {t - since:.3g} s, and at least "
-                f"{STEPS_AHEAD:.0e} more would follow to the end: expected a motion without singularities (a force that divides by "
+                f"{CHATTERING.steps_ahead:.0e} more would follow to the end: expected a motion without singularities (a force that divides by "
                 "a velocity at rest, a jump without a breakpoint, a mechanism that jams)"
             )
 
@@ -91,10 +112,10 @@ class Chattering:
         """
         self._count += 1
         self._events.append(t)
-        if self._count % WINDOW or len(self._events) <= 2 * WINDOW:
+        if self._count % CHATTERING.window or len(self._events) <= 2 * CHATTERING.window:
             return
-        first, middle, last = (self._events[k] for k in (0, WINDOW, 2 * WINDOW))
-        if self._to_come(middle - first, last - middle) > TOO_MANY:
+        first, middle, last = (self._events[k] for k in (0, CHATTERING.window, 2 * CHATTERING.window))
+        if self._to_come(middle - first, last - middle) > CHATTERING.too_many:
             self.refuse(t, jumping(self._dynamics, t, q, u))
             name = (
                 f"'{writer(self._dynamics.system, 'event_function', event_function)}'"
@@ -103,7 +124,7 @@ class Chattering:
             )
             raise ChatteringError(
                 f"stopped at t = {t:.9g} s: {name} changes its law back and forth ever faster, {self._count} times so far and once in "
-                f"{(last - middle) / WINDOW:.3g} s: the run would come to no end; expected a force without a jump where the motion comes "
+                f"{(last - middle) / CHATTERING.window:.3g} s: the run would come to no end; expected a force without a jump where the motion comes "
                 "to rest, a switch with hysteresis, or a force that does not drive the motion beyond all bounds"
             )
 
@@ -112,11 +133,13 @@ class Chattering:
 
         With a rate f ~ N of events N, their number grows as exp(f t/N).
         """
-        steady = (self._end - self._events[-1]) / max(last, 1e-300) * WINDOW
-        if steady < AT_LEAST or self._count < TRUSTED_EVENTS or last <= 0.0:
+        steady = (self._end - self._events[-1]) / max(last, 1e-300) * CHATTERING.window
+        if steady < CHATTERING.at_least or self._count < CHATTERING.trusted_events or last <= 0.0:
             return steady
-        power = math.log(before / last) / math.log((self._count - 0.5 * WINDOW) / (self._count - 1.5 * WINDOW))
-        growing = LEAST_POWER < power < LARGEST_POWER
+        power = math.log(before / last) / math.log(
+            (self._count - 0.5 * CHATTERING.window) / (self._count - 1.5 * CHATTERING.window)
+        )
+        growing = CHATTERING.least_power < power < CHATTERING.largest_power
         return self._count * math.exp(min(steady / self._count, 100.0)) if growing else steady
 
     def refuse(self, t: float, event_functions: np.ndarray) -> None:
@@ -130,5 +153,5 @@ def jump_sentence(dynamics: Dynamics, event_function: int) -> str:
     return (
         f"'{writer(dynamics.system, 'event_function', event_function)}' jumps back and forth, as a force does that changes its "
         "sign where the motion comes to rest: no motion follows it from there on; expected a force that is steep "
-        "there, without a jump: joint_friction with its smooth_velocity, or tanh(v/0.001) in place of sign(v)"
+        "there, without a jump: joint_friction with its stiction_velocity, or tanh(v/0.001) in place of sign(v)"
     )

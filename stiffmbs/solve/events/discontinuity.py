@@ -2,30 +2,41 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
 from ...compile.machine.layout import address, addresses
 from ...compile.machine.routines import together
-from ..dynamics import Dynamics
+from ...dynamics.dynamics import Dynamics
+from .native.parameters import SEARCH
+
+
+@dataclass(frozen=True)
+class JumpParameters:
+    """Parameters of the comparison of both sides of a state."""
+
+    larger_move: float = 1e-6
+    smaller_move: float = 1e-9
+    """Sizes of moves to both sides, relative to the state and to at least 1 m, rad, m/s or rad/s."""
+    jumps: float = 0.1
+    """Least jump of accelerations over the smaller move, relative to that over the larger one."""
+    least_jump: float = 1e-9
+    """Least jump, m/s^2, rad/s^2."""
+    rate_interval: float = 1e-4
+    """Time over which the rate of an event function is computed, s."""
+
+
+JUMP = JumpParameters()
 
 SWITCHES, CROSSED, BY_VELOCITIES, SIDE = together(
-    "stiffmbs.solve.native.event_search.sides",
+    "stiffmbs.solve.events.native.sides",
     switches="void(float64, float64, float64*, float64*, float64*, float64*, int64, float64*, int64*)",
     crossed="int64(float64, float64, float64*, float64*, float64*, float64*, int64, int64*, int64*)",
     by_velocities="void(float64, float64, float64*, float64*, float64*, int64, float64*, int64*)",
     side="int64(float64, float64, float64, float64*, float64*, float64*, float64*, float64*, int64, float64*, float64*, float64*, int64*)",
 )
-
-LARGER_MOVE, SMALLER_MOVE = 1e-6, 1e-9
-"""Sizes of moves to both sides of a state, relative to the state and to at least 1 m, rad, m/s or rad/s."""
-JUMPS, LEAST_JUMP = 0.1, 1e-9
-"""Least jump of accelerations over the smaller move, relative to that over the larger one, and in m/s^2, rad/s^2."""
-BISECTIONS = 30
-"""Bisections of a move in search of the zero of an event function."""
-RATE_INTERVAL = 1e-4
-"""Time, s, over which the rate of an event function is computed."""
 
 
 class _Side(NamedTuple):
@@ -68,7 +79,7 @@ class _Beside:
         """Return the event functions, accelerations and rates after a move of a size."""
         values, rates, acceleration = np.empty(self._count), np.full(self._count, np.nan), np.full(len(self.u), np.nan)
         SIDE.short_call(
-            self.t, size, RATE_INTERVAL, *self._at, address(self._there), self._count,
+            self.t, size, JUMP.rate_interval, *self._at, address(self._there), self._count,
             *addresses(values, acceleration, rates), self._table,
         )  # fmt: skip
         return _Side(values, acceleration, rates)  # NaN if accelerations are undetermined: not a jump
@@ -77,7 +88,7 @@ class _Beside:
         """Return both sides of a move."""
         return self.side(size), self.side(-size)
 
-    def crossed(self, reach: float = SMALLER_MOVE) -> np.ndarray:
+    def crossed(self, reach: float = JUMP.smaller_move) -> np.ndarray:
         """Return the event functions that differ in sign between the two sides of a move."""
         found = np.empty(self._count, dtype=np.int64)
         count = CROSSED.short_call(self.t, reach, *self._at, self._count, address(found), self._table)
@@ -94,7 +105,7 @@ class _Beside:
         """Return the states near the zero of an event function, by bisection between moves of -reach and reach."""
         low, high = -reach, reach
         above = self.values(high)[event_function] > 0.0
-        for _ in range(BISECTIONS):
+        for _ in range(SEARCH.bisections):
             middle = 0.5 * (low + high)
             if (self.values(middle)[event_function] > 0.0) == above:
                 high = middle
@@ -128,12 +139,12 @@ def jumping(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> np.nd
             return crossed
         far, near = (
             float(np.max(np.abs(a.acceleration - b.acceleration), initial=0.0))
-            for a, b in (beside.sides(size) for size in (LARGER_MOVE, SMALLER_MOVE))
+            for a, b in (beside.sides(size) for size in (JUMP.larger_move, JUMP.smaller_move))
         )
-    return crossed if near > max(JUMPS * far, LEAST_JUMP) else crossed[:0]
+    return crossed if near > max(JUMP.jumps * far, JUMP.least_jump) else crossed[:0]
 
 
-def sliding(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, reach: float = LARGER_MOVE) -> np.ndarray:
+def sliding(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, reach: float = JUMP.larger_move) -> np.ndarray:
     """Return the event functions whose zero the motion is driven to from both sides by a discontinuous force.
 
     There is no classical solution then, but a sliding mode, as with sign(v) at rest (Filippov, Differential Equations
@@ -142,7 +153,7 @@ def sliding(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, reach: f
     Parameters
     ----------
     reach : float
-        Size of the move, as `LARGER_MOVE`, within which a jump is searched for.
+        Size of the move, as `JumpParameters.larger_move`, within which a jump is searched for.
     """
     with dynamics.state.unchanged():
         beside = _Beside(dynamics, t, q, u)
@@ -169,7 +180,6 @@ def _returns(side: _Side, event_functions: np.ndarray) -> np.ndarray:
 
 
 def _driven_back(sides: tuple[_Side, _Side], event_functions: np.ndarray) -> np.ndarray:
-    """Return a mask of the event functions whose zero the motion returns to from both sides."""
     return np.logical_and(*(_returns(side, event_functions) for side in sides))
 
 
@@ -181,14 +191,14 @@ def _slides(beside: _Beside, reach: float, event_function: int) -> bool:
     """
     at_zero = beside.at_zero(reach, event_function)
     values, rates = [], []
-    for size in (LARGER_MOVE, SMALLER_MOVE):
+    for size in (JUMP.larger_move, JUMP.smaller_move):
         sides = at_zero.sides(size)
         if not _driven_back(sides, np.array([event_function]))[0]:
             return False
         values.append(abs(sides[0].values[event_function] - sides[1].values[event_function]))
         rates.append(abs(sides[0].rates[event_function] - sides[1].rates[event_function]))
-    continuous = values[1] <= JUMPS * values[0]
-    return bool(continuous and rates[1] > max(JUMPS * rates[0], LEAST_JUMP))
+    continuous = values[1] <= JUMP.jumps * values[0]
+    return bool(continuous and rates[1] > max(JUMP.jumps * rates[0], JUMP.least_jump))
 
 
 def direction_of(dynamics: Dynamics) -> tuple[np.ndarray, np.ndarray]:

@@ -10,7 +10,7 @@ from ...compile.state import State
 from ...compile.system import System
 from ...compile.terms import TERM_SETS
 from ...compile.written_values import writer
-from ..native.tables.steps import EVENT_SEARCH
+from .native.layouts import EVENT_SEARCH
 
 MOST_STEPS = 1_000_000
 """Steps that periodic laws may require of a run; more are reported."""
@@ -28,7 +28,7 @@ class EventSearch:
     Attributes
     ----------
     table : ndarray of int
-        Addresses for compiled code (`stiffmbs.solve.native.tables.steps.EVENT_SEARCH`).
+        Addresses for compiled code (`stiffmbs.solve.events.native.layouts.EVENT_SEARCH`).
     n : int
         Number of event functions, including those of laws.
     n_event_functions : int

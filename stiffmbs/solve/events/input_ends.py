@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from ...compile.inputs.ends import InputEnd
-from ..dynamics import Dynamics
+from ...dynamics.dynamics import Dynamics
 from ..trajectory import Grid, Outcome, Trajectory
 
 NEAR_INPUT_END = 1e-3

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -10,19 +11,34 @@ from numpy.polynomial.chebyshev import chebder, chebvander
 from ...compile.equations import Equations
 from ...compile.machine.layout import packed
 from ...compile.system import System
-from ..dynamics import Dynamics
-from ..native.tables.steps import LONG_STEPS
+from ...dynamics.dynamics import Dynamics
+from .native.layouts import LONG_STEPS
 
-FROM_MIDDLE = 1e-4
-"""Distance from the middle of a step, relative to the step, of two stored states; they give the state and its rate."""
-MIDDLE = np.array([0.5 - FROM_MIDDLE, 0.5 + FROM_MIDDLE])
+
+@dataclass(frozen=True)
+class LongStepParameters:
+    """Parameters that decide which steps are stored to be checked after the run.
+
+    Python functions are checked in these steps only; other laws are searched for events as well.
+    """
+
+    from_middle: float = 1e-4
+    """Distance from the middle of a step, relative to the step, of two stored states."""
+    for_others: tuple[float, float] = (4.0, 8.0)
+    for_functions: tuple[float, float] = (2.0, 64.0)
+    """Ratio of a long step to the usual one, and number of steps over which the usual one is averaged."""
+    most_steps: int = 1000
+    """Largest number of steps stored of one run."""
+    most_values: int = 1_000_000
+    """Largest number of values stored of one run."""
+
+
+LONG_STEP = LongStepParameters()
+
+MIDDLE = np.array([0.5 - LONG_STEP.from_middle, 0.5 + LONG_STEP.from_middle])
+"""Nodes of a step that give the state at its middle and its rate."""
 WHOLE = 0.5 - 0.5 * np.cos(np.arange(8) * np.pi / 7)
 """Nodes that represent a whole step: the interpolant of DOP853 has degree 7, that of BDF at most 5."""
-LONG, LONG_FOR_FUNCTIONS = (4.0, 8.0), (2.0, 64.0)
-"""Ratio of a long step to the usual one, and number of steps over which the usual one is averaged.  Python functions
-are checked in these steps only; other laws are searched for events as well."""
-MOST_STEPS, MOST_VALUES = 1000, 1_000_000
-"""Largest numbers of steps and of values stored of one run."""
 
 
 class Motion(NamedTuple):
@@ -76,7 +92,7 @@ class LongSteps(NamedTuple):
     def middles(self, steps: np.ndarray) -> Motion:
         """Return the middles of some steps; for steps that are stored at `MIDDLE`."""
         begin, end, q, u = self.begin[steps], self.end[steps], self.q[steps], self.u[steps]
-        rate = (u[:, 1] - u[:, 0]) / (2.0 * FROM_MIDDLE * (end - begin))[:, None]
+        rate = (u[:, 1] - u[:, 0]) / (2.0 * LONG_STEP.from_middle * (end - begin))[:, None]
         return Motion(0.5 * (begin + end), q.mean(axis=1), u.mean(axis=1), rate)
 
     def at(self, step: np.ndarray, part: np.ndarray) -> Motion:
@@ -103,13 +119,14 @@ class LongStepLog:
     Attributes
     ----------
     table : ndarray of int
-        Addresses for compiled code (`stiffmbs.solve.native.tables.steps.LONG_STEPS`).
+        Addresses for compiled code (`stiffmbs.solve.events.native.layouts.LONG_STEPS`).
     """
 
     def __init__(self, system: System, width: int) -> None:
-        places, (ratio, remembered) = (WHOLE, LONG_FOR_FUNCTIONS) if system.has_functions else (MIDDLE, LONG)
+        places = WHOLE if system.has_functions else MIDDLE
+        ratio, remembered = LONG_STEP.for_functions if system.has_functions else LONG_STEP.for_others
         row = 2 + len(places) * width
-        room = min(MOST_STEPS, MOST_VALUES // row) if system.has_laws else 0
+        room = min(LONG_STEP.most_steps, LONG_STEP.most_values // row) if system.has_laws else 0
         self._rows, self._shape = np.empty((room, row)), (len(places), width)
         self._arrays = {"n_nodes": len(places), "node": places, "width": width, "row": self._rows}
         self.table = packed(LONG_STEPS, {**self._arrays, "ratio": ratio, "remembered": remembered, "room": room})

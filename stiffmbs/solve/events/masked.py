@@ -7,20 +7,35 @@ force, the integrator may ignore the breakpoint.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from ..dynamics import Dynamics
+from ...dynamics.dynamics import Dynamics
 from .chattering import Chattering, jump_sentence
 from .discontinuity import jumping
 
-FEW_STEPS, TIMES_THE_WAIT = 4, 4
-"""Steps after a start, and multiple of the preceding wait, within which an event is attributed to rounding."""
-FIRST_WAIT, LONGER, MOST_IN_SUCCESSION = 8, 4, 5
-"""Steps for which an event function is masked after its second such event, factor for each further event, and largest
-count.  A single repetition may be an event that is detected twice, because the start is projected onto constraints."""
-TELLING = 3
-"""Successive events from which a force is checked for a jump; the first may be those of a start at zero."""
+
+@dataclass(frozen=True)
+class MaskingParameters:
+    """Parameters that decide when an event function is masked, and for how many steps."""
+
+    few_steps: int = 4
+    """Steps after a start within which an event is attributed to rounding."""
+    times_the_wait: int = 4
+    """The same as a multiple of the preceding wait."""
+    first_wait: int = 8
+    """Steps for which an event function is masked after its second such event. A single repetition may be an event that
+    is detected twice, because the start is projected onto constraints."""
+    longer: int = 4
+    """Factor of the wait for each further event."""
+    most_in_succession: int = 5
+    """Largest number of events that count."""
+    telling: int = 3
+    """Successive events from which a force is checked for a jump; the first may be those of a start at zero."""
+
+
+MASKING = MaskingParameters()
 
 
 class MaskedEvents:
@@ -58,18 +73,20 @@ class MaskedEvents:
             If a force keeps chattering; names the element.
         """
         since, self._steps = steps - self._steps, steps
-        if self._quiet and since > FEW_STEPS:  # none is masked, and the event is not soon after the last
+        if self._quiet and since > MASKING.few_steps:  # none is masked, and the event is not soon after the last
             return
-        left_behind = since > TIMES_THE_WAIT * self.steps + FEW_STEPS
+        left_behind = since > MASKING.times_the_wait * self.steps + MASKING.few_steps
         self._in_succession[left_behind] = 0
         again = np.array(
             [event_function for event_function in fired if not left_behind[event_function]], dtype=np.int64
         )
-        self._in_succession[again] = np.minimum(self._in_succession[again] + 1, MOST_IN_SUCCESSION)
-        telling = again[self._in_succession[again] >= TELLING]
+        self._in_succession[again] = np.minimum(self._in_succession[again] + 1, MASKING.most_in_succession)
+        telling = again[self._in_succession[again] >= MASKING.telling]
         if len(telling):
             self._chattering.refuse(t, np.intersect1d(telling, jumping(self._dynamics, t, q, u)))
-        self.steps = np.where(self._in_succession > 1, FIRST_WAIT * LONGER ** np.maximum(self._in_succession - 2, 0), 0)
+        self.steps = np.where(
+            self._in_succession > 1, MASKING.first_wait * MASKING.longer ** np.maximum(self._in_succession - 2, 0), 0
+        )
         self._quiet = not self._in_succession.any()
 
     def failed(self, t: float, q: np.ndarray, u: np.ndarray) -> str:

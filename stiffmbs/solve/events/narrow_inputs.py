@@ -3,18 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from ...compile.inputs.features import InputFeatures
 from ...compile.inputs.of_time import Input
 
-HIDDEN = 0.05
-"""Height of a peak between output times, relative to the input's change, above which it is reported."""
-LOOKS, MOST_LOOKS = 8, 5000
-"""Samples of an input between two output times, and in all of its narrow features."""
-STANDS = 1e-9
-"""Change of an input, relative to its values, that may be rounding."""
+
+@dataclass(frozen=True)
+class NarrowInputParameters:
+    """Parameters of the warnings on narrow features of inputs."""
+
+    hidden: float = 0.05
+    """Height of a peak between output times, relative to the input's change, above which it is reported."""
+    samples: int = 8
+    """Samples of an input between two output times."""
+    most_samples: int = 5000
+    """Samples in all of its narrow features."""
+    stands: float = 1e-9
+    """Change of an input, relative to its values, that may be rounding."""
+
+
+NARROW_INPUTS = NarrowInputParameters()
 
 
 def narrower_than_output(features: InputFeatures, spacing: float) -> str:
@@ -30,8 +41,10 @@ def narrower_than_output(features: InputFeatures, spacing: float) -> str:
 
 def hidden_peak(inputs: Sequence[Input], features: InputFeatures, times: np.ndarray) -> str:
     """Return a sentence on an input with a peak between output times; empty if there is none."""
-    parts = times[:-1, None] + np.diff(times)[:, None] * np.arange(LOOKS) / LOOKS
-    narrow = features.instants(times[0], times[-1], float(np.max(np.diff(times), initial=0.0)), MOST_LOOKS)
+    parts = times[:-1, None] + np.diff(times)[:, None] * np.arange(NARROW_INPUTS.samples) / NARROW_INPUTS.samples
+    narrow = features.instants(
+        times[0], times[-1], float(np.max(np.diff(times), initial=0.0)), NARROW_INPUTS.most_samples
+    )
     between = np.concatenate([parts.ravel(), narrow, features.breakpoints])
     for given in inputs:
         with np.errstate(all="ignore"):
@@ -42,7 +55,7 @@ def hidden_peak(inputs: Sequence[Input], features: InputFeatures, times: np.ndar
         change, size = max(high, np.max(values)) - min(low, np.min(values)), np.max(np.abs(values))
         beyond = np.maximum(values - high, low - values)
         k = int(np.argmax(beyond))
-        if beyond[k] > HIDDEN * change and change > STANDS * size:
+        if beyond[k] > NARROW_INPUTS.hidden * change and change > NARROW_INPUTS.stands * size:
             return (
                 f"'{given.text}' has a peak of {values[k]:.3g} at t = {between[k]:.6g} s, between output points, which show "
                 f"it from {low:.3g} to {high:.3g}: shorter output spacing or --verify shows it"

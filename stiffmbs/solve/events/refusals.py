@@ -2,30 +2,43 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from ...compile.system import System
 from ...compile.written_values import beyond
+from ...dynamics.dynamics import Dynamics
 from ...errors import SolverError
-from ..dynamics import Dynamics
 from ..suspect import suspect
 from ..trajectory import Rows
 
+
+@dataclass(frozen=True)
+class DivergenceParameters:
+    """Parameters that decide when a motion has diverged."""
+
+    unbounded: float = 1e4
+    """Largest displacement of a motion that grows exponentially, in sizes of the mechanism or rad."""
+    decades: tuple[float, float, float] = (1e-4, 1e-2, 1.0)
+    """Fractions of the largest displacement between which times are compared."""
+    faster: float = 2.5
+    """Largest ratio of these times that indicates exponential growth. It is 10 for a constant force, 3.2 for a force
+    that grows as time squared, and 1 for an exponential."""
+    followed_steps: int = 100_000
+    """Steps before a motion is checked."""
+    instants: int = 2000
+    """Largest number of stored states from which growth is estimated."""
+
+
+DIVERGENCE = DivergenceParameters()
+
 SPEED_OF_LIGHT = 299_792_458.0
 """Speed of light, m/s."""
-UNBOUNDED_MOTION = 1e4
-"""Largest displacement of a motion that grows exponentially, in sizes of the mechanism or rad."""
-DECADES, FASTER = (1e-4, 1e-2, 1.0), 2.5
-"""Fractions of the largest displacement, and the largest ratio of the times between them that indicates exponential
-growth.  The ratio is 10 for a constant force, 3.2 for a force that grows as time squared, and 1 for an exponential."""
-FOLLOWED_STEPS = 100_000
-"""Steps before a motion is checked for divergence."""
-INSTANTS = 2000
-"""Largest number of stored states from which growth is estimated."""
 
 
 def refuse_beyond_sense(dynamics: Dynamics, rows: Rows, t: float, q: np.ndarray, u: np.ndarray) -> None:
-    """Stop a run that has diverged; to be called only after `FOLLOWED_STEPS`.
+    """Stop a run that has diverged; to be called only after `DivergenceParameters.followed_steps`.
 
     Parameters
     ----------
@@ -40,7 +53,7 @@ def refuse_beyond_sense(dynamics: Dynamics, rows: Rows, t: float, q: np.ndarray,
     Raises
     ------
     SolverError
-        If a body is faster than light, or the motion grows exponentially beyond `UNBOUNDED_MOTION`; names the body
+        If a body is faster than light, or the motion grows exponentially beyond all bounds; names the body
         and the element with the largest force.
     """
     system = dynamics.system
@@ -50,9 +63,11 @@ def refuse_beyond_sense(dynamics: Dynamics, rows: Rows, t: float, q: np.ndarray,
             _sentence(dynamics, t, q, u, f"body '{body}' comes to {speed:.3g} m/s, beyond the speed of light")
         )
     times, places, _ = rows.stored
-    few = slice(None, None, 1 + len(times) // INSTANTS)
+    few = slice(None, None, 1 + len(times) // DIVERGENCE.instants)
     far = np.max(np.abs(np.vstack([places[few], q]) - places[0]) * reaches(system), axis=1, initial=0.0)
-    if far[-1] > UNBOUNDED_MOTION * system.size and exponential(np.append(times[few], t), np.maximum.accumulate(far)):
+    if far[-1] > DIVERGENCE.unbounded * system.size and exponential(
+        np.append(times[few], t), np.maximum.accumulate(far)
+    ):
         what = f"body '{body}' has moved by {far[-1]:.3g} m, and ever faster, in a mechanism of {system.size:.3g} m"
         raise SolverError(_sentence(dynamics, t, q, u, what))
 
@@ -90,10 +105,10 @@ def exponential(t: np.ndarray, reached: np.ndarray) -> bool:
     reached : ndarray, shape (n,)
         Largest displacement up to each time.
     """
-    first, second, last = (int(np.argmax(reached >= part * reached[-1])) for part in DECADES)
+    first, second, last = (int(np.argmax(reached >= part * reached[-1])) for part in DIVERGENCE.decades)
     if not first < second - 1 < last:
         return False
-    return bool(t[last] - t[second - 1] < FASTER * (t[second - 1] - t[first]))
+    return bool(t[last] - t[second - 1] < DIVERGENCE.faster * (t[second - 1] - t[first]))
 
 
 def refuse_beyond_limits(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> None:

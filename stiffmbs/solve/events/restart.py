@@ -2,29 +2,41 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from ...compile.machine.layout import addresses
 from ...compile.machine.routines import Routine
 from ...compile.state import LEFT_OPEN
+from ...dynamics.algebraic_states import failure
+from ...dynamics.dynamics import Dynamics
+from ...dynamics.initial import InitialValues
 from ...errors import SolverError
-from ..algebraic_states import failure
-from ..dynamics import Dynamics
-from ..initial import InitialValues
+
+
+@dataclass(frozen=True)
+class RestartParameters:
+    """Parameters of the extrapolation after an event."""
+
+    hidden: float = 1e-11
+    """Interval, relative to the time, in which rounding may hide a sign change of an event function, as at an
+    extremum."""
+    passed: float = 1e-2
+    """Fraction of the last step, times rtol, by which the motion is extrapolated."""
+    largest_rtol: float = 1e-4
+    """Upper bound of that rtol."""
+
+
+RESTARTS = RestartParameters()
 
 GONE_PAST = Routine(
-    "stiffmbs.solve.native.event_search.past",
+    "stiffmbs.solve.events.native.past",
     "gone_past",
     "float64(float64, float64, int64, float64*, float64*, int64*)",
 )
 INDISTINCT = 4 * float(np.finfo(float).eps)
 """Relative difference up to which two times are the same, for IDA and for breakpoints, whose rounding is as large."""
-
-
-HIDDEN = 1e-11
-"""Interval, relative to the time, in which rounding may hide a sign change of an event function, as at an extremum."""
-PASSED, LARGEST_RTOL = 1e-2, 1e-4
-"""Extrapolation after an event: fraction of the last step, times rtol, and an upper bound of that rtol."""
 
 
 def just_before(t: float) -> float:
@@ -39,7 +51,7 @@ def just_after(t: float) -> float:
 
 def straight_on(t: float, step: float, rtol: float) -> float:
     """Return the time, s, of extrapolation after an event at t; at least the interval that rounding may hide."""
-    return max(PASSED * min(rtol, LARGEST_RTOL) * step, HIDDEN * abs(t))
+    return max(RESTARTS.passed * min(rtol, RESTARTS.largest_rtol) * step, RESTARTS.hidden * abs(t))
 
 
 def restarted(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, project: bool = True) -> InitialValues:
@@ -103,12 +115,11 @@ def _take(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, project: b
 
 
 def _at_hand(dynamics: Dynamics, t: float) -> InitialValues:
-    """Return the current state with its accelerations and multipliers."""
     state = dynamics.state
     state.count_anew(t)
     status, acceleration = dynamics.accelerate(t)
     _go_on(dynamics, status, t)
-    return InitialValues(state.q.copy(), state.u.copy(), acceleration, state.lam.copy(), ())
+    return InitialValues(state.q.copy(), state.u.copy(), acceleration, state.lam.copy(), (), dynamics.system.size)
 
 
 def _go_on(dynamics: Dynamics, status: int, t: float, clause: str = "") -> None:

@@ -6,11 +6,11 @@ import numpy as np
 
 from ...compile.inputs.features import NO_FEATURES, InputFeatures
 from ...compile.machine.layout import fill
-from ..native.tables.steps import STEP_BOUND
+from .native.layouts import STEP_BOUND
 
 
 class StepBound:
-    """Table of step bounds for compiled code (`stiffmbs.solve.native.step_bound`), which may be updated.
+    """Table of step bounds for compiled code (`stiffmbs.solve.events.native.step_bound`), which may be updated.
 
     Attributes
     ----------

@@ -2,14 +2,24 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from ..dynamics import Dynamics
+from ...dynamics.dynamics import Dynamics
 
-MOST_MESSAGES = 3
-"""Largest number of jumps reported one by one."""
-WORTH_TELLING = 1e-2
-"""Velocity change at a breakpoint, relative to the largest velocity, above which it is a jump."""
+
+@dataclass(frozen=True)
+class VelocityJumpParameters:
+    """Parameters of the report."""
+
+    least: float = 1e-2
+    """Velocity change at a breakpoint, relative to the largest velocity, above which it is a jump."""
+    most_messages: int = 3
+    """Largest number of jumps reported one by one."""
+
+
+VELOCITY_JUMP = VelocityJumpParameters()
 
 
 class VelocityJumps:
@@ -26,10 +36,10 @@ class VelocityJumps:
 
     def note(self, t: float, change: np.ndarray) -> None:
         """Note a change of velocities at a breakpoint; the state of the dynamics is that after it."""
-        if not (np.abs(change) > WORTH_TELLING).any():
+        if not (np.abs(change) > VELOCITY_JUMP.least).any():
             return
         k = int(np.argmax(np.abs(change)))
-        if abs(change[k]) > WORTH_TELLING * max(1.0, float(np.max(np.abs(self._dynamics.state.u)))):
+        if abs(change[k]) > VELOCITY_JUMP.least * max(1.0, float(np.max(np.abs(self._dynamics.state.u)))):
             system = self._dynamics.system
             name = system.name_of(k, system.of_body.velocities)
             self._messages.append(
@@ -42,5 +52,7 @@ class VelocityJumps:
 
     def sentence(self) -> str:
         """Return a sentence on the jumps for the user; empty if there are none."""
-        more = len(self._messages) - MOST_MESSAGES
-        return "; ".join([*self._messages[:MOST_MESSAGES], *([f"and {more} more such jumps"] if more > 0 else [])])
+        more = len(self._messages) - VELOCITY_JUMP.most_messages
+        return "; ".join(
+            [*self._messages[: VELOCITY_JUMP.most_messages], *([f"and {more} more such jumps"] if more > 0 else [])]
+        )

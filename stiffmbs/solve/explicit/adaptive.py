@@ -3,37 +3,46 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
-from ...describe.settings import RunSettings
+from ...compile.machine.native.statuses import AT_END, AT_EVENT, NO_STATE, PAUSED, UNSTABLE
+from ...dynamics.algebraic_states import no_value_ahead
+from ...dynamics.dynamics import Dynamics
+from ...dynamics.initial import InitialValues
 from ...errors import SolverError
-from ..algebraic_states import no_value_ahead
-from ..dynamics import Dynamics
+from ...model.settings import RunSettings
 from ..events.chattering import Chattering
-from ..events.refusals import FOLLOWED_STEPS, refuse_beyond_limits, refuse_beyond_sense
+from ..events.refusals import DIVERGENCE, refuse_beyond_limits, refuse_beyond_sense
 from ..events.restart import just_after, just_before, restarted
 from ..events.velocity_jumps import VelocityJumps
-from ..initial import InitialValues
-from ..native.statuses import AT_END, AT_EVENT, NO_STATE, PAUSED, UNSTABLE
 from ..step_logging import is_logged, log_step
 from ..suspect import suspect
 from ..trajectory import Ending, Grid, History, Outcome, ProgressCallback, Rows, Trajectory
 from .integration import Integration
+from .memory import ADVANCE
+from .native.parameters import CONTROL
 from .rounding import Rounding
-from .routines import ADVANCE
 from .scheme import Scheme
 from .sentences import REASONS, stiff_sentence
 from .stable_step import StableStep
 
-WORTH_TELLING = 0.1
-"""Fraction of steps limited by stability from which on the summary recommends bdf."""
-MOST_LOOKS_APART = 16
-SOON_AGAIN, NOW_AND_THEN = 4, 8
-"""Steps of a segment up to which its end is checked for chattering, and events of which one is always checked."""
-SOON = 8
-"""An early check is due when stability has limited one in this number of the steps up to it."""
+
+@dataclass(frozen=True)
+class CheckParameters:
+    """Parameters of the checks between compiled calls."""
+
+    most_apart: int = 16
+    """Largest interval between two decisions to leave a run, in first intervals."""
+    soon_again: int = 4
+    """Steps of a segment up to which its end is checked for chattering."""
+    now_and_then: int = 8
+    """Events of which one is always checked, and part of the steps that stability must limit for an early decision."""
+
+
+CHECKS = CheckParameters()
 
 
 class Leaving(NamedTuple):
@@ -93,7 +102,7 @@ class AdaptiveRun:
         if status < 0:
             self.left = True
             ending.stop(f"stopped at t = {work.t:.9g} s: {self._reason(status)}")
-        elif work.count("stiff_steps") > WORTH_TELLING * work.count("steps"):
+        elif work.count("stiff_steps") > CONTROL.stiff_part * work.count("steps"):
             ending.message = f"{ending.message}; {stiff_sentence(work)}"
         history = History(np.concatenate([*work.step_times, np.empty(0)]), np.empty(0, dtype=int))
         statistics = {**self._statistics(), "seconds": ending.seconds}
@@ -110,7 +119,6 @@ class AdaptiveRun:
         )
 
     def _reason(self, status: int) -> str:
-        """Return the reason why the run cannot go on."""
         state = self.work.t, self.work.q.copy(), self.work.u.copy()
         missing = no_value_ahead(self._dynamics, *state) if status == NO_STATE else ""
         return missing or REASONS[status] + suspect(self._dynamics, *state)
@@ -119,7 +127,7 @@ class AdaptiveRun:
         """Integrate from consistent values to `stop`, to an event, or until the run is left; return the last status."""
         work, advance, status = self.work, ADVANCE.call, PAUSED
         most = min(leaving.first, work.capacity) if leaving else work.capacity
-        if work.count("steps") - self._begun <= SOON_AGAIN or self._events % NOW_AND_THEN == 0:
+        if work.count("steps") - self._begun <= CHECKS.soon_again or self._events % CHECKS.now_and_then == 0:
             self._chattering.begin(work.t, self._start.q, self._start.u)
         self._begun = work.count("steps")
         stable_step = self._stable_step
@@ -135,7 +143,7 @@ class AdaptiveRun:
             if is_logged():
                 log_step(work.t, work.h)
             self._watch(work.t)
-            if work.t < self._grid.end and work.count("steps") >= FOLLOWED_STEPS:
+            if work.t < self._grid.end and work.count("steps") >= DIVERGENCE.followed_steps:
                 refuse_beyond_sense(self._dynamics, self._rows, work.t, work.q, work.u)
             if status == UNSTABLE:
                 stable_step.ask(work, self._grid.end)
@@ -148,7 +156,7 @@ class AdaptiveRun:
                     stable_step.look(work, self._grid.end)
                     if work.count("steps") < look_at and work.count("stiff_steps") < held_at and leaving:
                         continue
-            most = min(2 * most, MOST_LOOKS_APART * leaving.first, work.capacity) if leaving else most
+            most = min(2 * most, CHECKS.most_apart * leaving.first, work.capacity) if leaving else most
             if bounds:
                 look_at, held_at = self._looks(most, leaving)
             if status == PAUSED and leaving and leaving.pays(work):
@@ -175,7 +183,7 @@ class AdaptiveRun:
     @staticmethod
     def _held(most: int, leaving: Leaving | None) -> int:
         """Return the number of steps limited by stability that makes an early check due."""
-        return max(1, most // SOON) if leaving else most
+        return max(1, most // CHECKS.now_and_then) if leaving else most
 
     def _go_past(self, breakpoint: float) -> None:
         """Restart after a breakpoint, where min(2*t, 1) has its new slope; output at it is the state before."""
@@ -194,7 +202,6 @@ class AdaptiveRun:
         return work.begin(self._start)
 
     def _store_rows(self) -> None:
-        """Store the output rows up to the current time."""
         work, status = self.work, PAUSED
         while status == PAUSED:
             status = ADVANCE.call(work.t, 1, 1, self._grid.times is None, work.at)

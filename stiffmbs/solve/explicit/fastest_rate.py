@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..algebraic_states import rates_by_states
-from ..dynamics import Dynamics
-from .routines import FASTEST_RATE
+from ...dynamics.algebraic_states import rates_by_states
+from ...dynamics.dynamics import Dynamics
+from .memory import FASTEST_RATE
 
 
 def fastest_rate(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> float:

@@ -5,34 +5,50 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
 from ...compile.machine.routines import Routine
-from ...describe.settings import RunSettings
+from ...dynamics.dynamics import POSITION_TOLERANCE, Dynamics
+from ...dynamics.initial import InitialValues
 from ...errors import SolverError
-from ..dynamics import POSITION_TOLERANCE, Dynamics
+from ...model.settings import RunSettings
 from ..events.chattering import jump_sentence
-from ..events.discontinuity import LARGER_MOVE, sliding
+from ..events.discontinuity import JUMP, sliding
 from ..events.narrow_inputs import narrower_than_steps
 from ..events.refusals import refuse_beyond_limits
-from ..initial import InitialValues
 from ..trajectory import Ending, Grid, ProgressCallback, Rows, Trajectory
 from .integration import Integration
 from .scheme import Scheme
 from .sentences import REASONS
 
+
+@dataclass(frozen=True)
+class FixedStepParameters:
+    """Parameters of explicit steps of fixed length."""
+
+    checks: int = 50
+    """Checks of a run for chattering forces."""
+    largest_chatter: float = 0.1
+    """Largest velocity change in a step that counts as chattering, m/s and rad/s."""
+    rounding: float = 1e-9
+    """Largest deviation of an output time from a whole number of steps, in steps."""
+    cut: float = 1e-6
+    """Relative reduction of the step from which on it is reported."""
+
+
+FIXED_STEP = FixedStepParameters()
+
 EULER_CROMER = Routine(
-    "stiffmbs.solve.native.euler_cromer", "euler_cromer", "int64(float64, float64, int64, int64, float64, int64*)"
+    "stiffmbs.solve.explicit.native.euler_cromer",
+    "euler_cromer",
+    "int64(float64, float64, int64, int64, float64, int64*)",
 )
-FIXED_STEPS = Routine("stiffmbs.solve.native.runge_kutta", "fixed_steps", "int64(float64, float64, int64, int64*)")
-LOOKS, LARGEST_CHATTER = 50, 0.1
-"""Checks of a run for chattering forces, and the largest velocity change in a step that counts as chattering."""
-STEP_ROUNDING = 1e-9
-"""Largest deviation of an output time from a whole number of steps, in steps."""
-CUT = 1e-6
-"""Relative reduction of the step from which on it is reported."""
+FIXED_STEPS = Routine(
+    "stiffmbs.solve.explicit.native.runge_kutta", "fixed_steps", "int64(float64, float64, int64, int64*)"
+)
 
 
 class Stepper(NamedTuple):
@@ -88,10 +104,10 @@ def solve_with_fixed_steps(
     rows = Rows(len(stepper.q), len(stepper.u), len(times))
     rows.append(times[0], stepper.q, stepper.u)
     steps, longest, note = 0, 0.0, ""
-    apart = max(1, len(times) // LOOKS)
+    apart = max(1, len(times) // FIXED_STEP.checks)
     with Ending() as ending:
         for row, (t, end) in enumerate(itertools.pairwise(times), 1):
-            count = max(1, math.ceil((end - t) / settings.step - STEP_ROUNDING))
+            count = max(1, math.ceil((end - t) / settings.step - FIXED_STEP.rounding))
             longest = max(longest, (end - t) / count)
             status = stepper.take(t, (end - t) / count, count)
             if status < 0:
@@ -117,18 +133,18 @@ def _jumps(dynamics: Dynamics, stepper: Stepper, t: float, step: float) -> str:
     q, u = stepper.q.copy(), stepper.u.copy()
     dynamics.state.q[:], dynamics.state.u[:] = q, u
     change = 2.0 * step * float(np.max(np.abs(dynamics.accelerate(t)[1]), initial=0.0))
-    found = sliding(dynamics, t, q, u, min(max(change, LARGER_MOVE), LARGEST_CHATTER))
+    found = sliding(dynamics, t, q, u, min(max(change, JUMP.larger_move), FIXED_STEP.largest_chatter))
     stepper.q[:], stepper.u[:] = q, u
     return f"at t = {t:.6g} s and before, {jump_sentence(dynamics, int(found[0]))}" if len(found) else ""
 
 
 def _cut(longest: float, settings: RunSettings) -> str:
     """Return a sentence if every step is shorter than the given one, else an empty string."""
-    if "step" not in settings.model_fields_set or longest >= settings.step * (1 - CUT):
+    if "step" not in settings.model_fields_set or longest >= settings.step * (1 - FIXED_STEP.cut):
         return ""
     return f"step = {settings.step:.6g} s was cut to {longest:.6g} s, the longest that divides the time between output points"
 
 
 def _own_steps(grid: Grid, step: float) -> np.ndarray:
-    count = max(1, math.ceil((grid.end - grid.start) / step - STEP_ROUNDING))
+    count = max(1, math.ceil((grid.end - grid.start) / step - FIXED_STEP.rounding))
     return grid.start + (grid.end - grid.start) * np.arange(count + 1) / count

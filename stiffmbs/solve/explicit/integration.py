@@ -5,19 +5,17 @@ from __future__ import annotations
 import numpy as np
 
 from ...compile.machine.layout import address, addresses
-from ...describe.settings import RunSettings
-from ..dynamics import Dynamics
+from ...dynamics.dynamics import Dynamics
+from ...dynamics.initial import InitialValues
+from ...model.settings import RunSettings
 from ..error_control.tolerances import absolute_tolerances
 from ..events.event_functions import EventSearch
 from ..events.long_steps import LongStepLog, LongSteps
 from ..events.step_bound import StepBound
-from ..initial import InitialValues
 from ..trajectory import Grid, Rows
 from .memory import StepMemory
+from .native.parameters import CONTROL
 from .scheme import Scheme
-
-SHORTEST_PART = 1e-12
-"""Shortest step, as a fraction of the run."""
 
 
 class Integration:
@@ -67,7 +65,7 @@ class Integration:
         self._cells = cells = memory.cells
         cells["project"], cells["rtol"] = settings.projection, settings.rtol
         cells["longest"], cells["stable"] = settings.max_step or np.inf, np.inf
-        cells["shortest"] = SHORTEST_PART * (grid.end - grid.start)
+        cells["shortest"] = CONTROL.shortest * (grid.end - grid.start)
         cells["t"] = cells["t_before"] = grid.start
         cells["h"], cells["repeats"] = settings.step, 1.0
         self.begin(start)

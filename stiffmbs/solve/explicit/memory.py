@@ -5,11 +5,18 @@ from __future__ import annotations
 import numpy as np
 
 from ...compile.machine.layout import packed
-from ..dynamics import POSITION_TOLERANCE, Dynamics
-from ..native.tables.steps import ACCUMULATED_ERRORS, EXPLICIT
-from .routines import END_AT_EVENT
+from ...compile.machine.routines import together
+from ...dynamics.dynamics import POSITION_TOLERANCE, Dynamics
+from ..error_control.native.layouts import ACCUMULATED_ERRORS
+from .native.layouts import EXPLICIT
 from .scheme import Scheme
 
+ADVANCE, END_AT_EVENT, FASTEST_RATE = together(
+    "stiffmbs.solve.explicit.native.runge_kutta",
+    advance="int64(float64, int64, int64, int64, int64*)",
+    end_at_event="int32(int64*)",
+    fastest_rate="float64(float64, int64, float64*, float64*, int64*, int64*)",
+)
 MOST_STEPS, MOST_VALUES = 1024, 300_000
 """Limits of one call of compiled code: steps, and numbers in the stored rows."""
 WATCH, STEP_BOUND, LONG_STEPS = (list(EXPLICIT).index(name) for name in ("watch", "step_bound", "long_steps"))
@@ -34,10 +41,10 @@ class StepMemory:
         Current state, its rates, and multipliers at a start.
     atol, times : ndarrays, shapes (n_q + n_u,), (n_times,)
     displaced : ndarray, shape (n_u,)
-        Estimated position errors (`stiffmbs.solve.native.accumulated_errors`).
+        Estimated position errors (`stiffmbs.solve.error_control.native.accumulated_errors`).
     row_t, row_y, ends : ndarrays, shapes (capacity,), (capacity, n_q + n_u), (capacity,)
     table : ndarray of int
-        Addresses and cells (`stiffmbs.solve.native.tables.steps.EXPLICIT`).
+        Addresses and cells (`stiffmbs.solve.explicit.native.layouts.EXPLICIT`).
     cells : record
         Cells of the table by name.
     """

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from ...describe.settings import RunSettings
-from ..dynamics import Dynamics
-from ..initial import InitialValues
+from ...dynamics.dynamics import Dynamics
+from ...dynamics.initial import InitialValues
+from ...model.settings import RunSettings
 from ..solver import Traits
 from ..trajectory import Grid, ProgressCallback, Trajectory
 from . import SCHEMES

@@ -10,29 +10,45 @@ jump. The error control shortens steps until a jump within one satisfies the tol
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
 from ...compile.machine.layout import address
-from ..dynamics import Dynamics
-from ..linear.eliminated import ACCELERATE
+from ...dynamics.dynamics import Dynamics
+from ...dynamics.elimination.eliminated import ACCELERATE
 from ..suspect import acceleration_name, suspect
 from .integration import Integration
 
-SOON, APART = 1000, 20_000
-"""Steps between two checks: of the elimination, and for jumps."""
-FEW, INSTANTS, WITHIN = 4, 64, 0.01
-"""Sample times of both checks, within this fraction of a step, over which a resolved force law is linear."""
-LOSES = 0.05
-"""Velocity change over a step by errors of the elimination, in tolerances, from which on the LU replaces it."""
-STEPS_AHEAD = 1e6
-"""Remaining steps from which on jumps are checked."""
-JUMPS = 8
-"""Rank of the second difference that must be large; a breakpoint of a force law causes two."""
-PART = 1e-3
-"""Smallest jump, relative to the largest acceleration, so that rounding of large accelerations is excluded."""
-GOVERNS = 0.03
-"""Velocity change over a step by a jump of its acceleration, in tolerances, from which on jumps govern the steps."""
+
+@dataclass(frozen=True)
+class RoundingParameters:
+    """Parameters of the checks for rounding that shortens explicit steps."""
+
+    soon: int = 1000
+    """Steps between two checks of the elimination."""
+    apart: int = 20_000
+    """Steps between two checks for jumps."""
+    few: int = 4
+    """Sample times of the check of the elimination."""
+    instants: int = 64
+    """Sample times of the check for jumps."""
+    within: float = 0.01
+    """Fraction of a step that contains the sample times, over which a resolved force law is linear."""
+    loses: float = 0.05
+    """Velocity change over a step by errors of the elimination, in tolerances, from which on the LU replaces it."""
+    steps_ahead: float = 1e6
+    """Remaining steps from which on jumps are checked."""
+    jumps: int = 8
+    """Rank of the second difference that must be large; a breakpoint of a force law causes two."""
+    part: float = 1e-3
+    """Smallest jump, relative to the largest acceleration, so that rounding of large accelerations is excluded."""
+    governs: float = 0.03
+    """Velocity change over a step by a jump of its acceleration, in tolerances, from which on jumps govern the
+    steps."""
+
+
+ROUNDING = RoundingParameters()
 
 
 class Rounding:
@@ -49,7 +65,7 @@ class Rounding:
 
     def __init__(self, dynamics: Dynamics, rtol: float, start: float, end: float) -> None:
         self._dynamics, self._rtol, self._end = dynamics, rtol, end
-        self._soon, self._later = _Stretch(start, SOON), _Stretch(start, APART)
+        self._soon, self._later = _Stretch(start, ROUNDING.soon), _Stretch(start, ROUNDING.apart)
 
     def look(self, work: Integration) -> str:
         """Check the current state if a check is due; return why the run ends there, or an empty string.
@@ -61,39 +77,39 @@ class Rounding:
         if pace and work.eliminates and self._loses_digits(work, pace):
             work.eliminates = False
         pace = self._later.pace(work)
-        return self._jumping(work, pace) if pace and self._end - work.t > STEPS_AHEAD * pace else ""
+        return self._jumping(work, pace) if pace and self._end - work.t > ROUNDING.steps_ahead * pace else ""
 
     def _loses_digits(self, work: Integration, pace: float) -> bool:
         """Return True if errors of the elimination are large enough to shorten the steps."""
         found, off = np.empty(len(work.u)), []
-        for t in self._along(work, WITHIN * pace, FEW):
+        for t in self._along(work, ROUNDING.within * pace, ROUNDING.few):
             if ACCELERATE.call(t, address(found), address(self._dynamics.eliminated.table)):
                 off.append(np.abs(found - self._dynamics.accelerate(t)[1]))
         self._dynamics.forget_pivots()
-        return bool(off) and bool(np.any(pace * np.max(off, axis=0) > LOSES * self._tolerance(work)))
+        return bool(off) and bool(np.any(pace * np.max(off, axis=0) > ROUNDING.loses * self._tolerance(work)))
 
     def _jumping(self, work: Integration, pace: float) -> str:
         """Return a sentence on the acceleration whose jumps govern the steps, or an empty string."""
-        jumps, tolerance = self._jumps(work, WITHIN * pace), self._tolerance(work)
+        jumps, tolerance = self._jumps(work, ROUNDING.within * pace), self._tolerance(work)
         k = int(np.argmax(jumps / tolerance))
-        if not jumps[k] * pace > GOVERNS * tolerance[k]:
+        if not jumps[k] * pace > ROUNDING.governs * tolerance[k]:
             return ""
         likely = suspect(self._dynamics, work.t, work.q.copy(), work.u.copy())
         return (
-            f"rounding governs the steps, {APART} of which cover {APART * pace:.3g} s: the last digits of the coordinates change "
+            f"rounding governs the steps, {ROUNDING.apart} of which cover {ROUNDING.apart * pace:.3g} s: the last digits of the coordinates change "
             f"{acceleration_name(self._dynamics.system, k)} by {jumps[k]:.2g}{likely}; expected constraints that either repeat each "
             "other exactly or differ clearly, or solver bdf"
         )
 
     def _jumps(self, work: Integration, span: float) -> np.ndarray:
         """Return the size of repeated jumps of each acceleration on a short displacement ahead, shape (n_u,)."""
-        accelerations = np.zeros((INSTANTS, len(work.u)))
-        for row, t in zip(accelerations, self._along(work, span, INSTANTS), strict=True):
+        accelerations = np.zeros((ROUNDING.instants, len(work.u)))
+        for row, t in zip(accelerations, self._along(work, span, ROUNDING.instants), strict=True):
             status, acceleration = self._dynamics.accelerate(t)
             if status == 0:
                 row[:] = acceleration
-        jumps = np.sort(np.abs(np.diff(accelerations, 2, axis=0)), axis=0)[-JUMPS]
-        return np.where(jumps > PART * np.abs(accelerations).max(), jumps, 0.0)
+        jumps = np.sort(np.abs(np.diff(accelerations, 2, axis=0)), axis=0)[-ROUNDING.jumps]
+        return np.where(jumps > ROUNDING.part * np.abs(accelerations).max(), jumps, 0.0)
 
     def _along(self, work: Integration, span: float, count: int) -> Iterator[float]:
         """Yield times on a short displacement ahead, with the state set to each in turn."""
@@ -103,7 +119,6 @@ class Rounding:
             yield work.t + ahead
 
     def _tolerance(self, work: Integration) -> np.ndarray:
-        """Return the tolerances of velocities, shape (n_u,)."""
         tolerance: np.ndarray = work.atol[len(work.q) :] + self._rtol * np.abs(work.u)
         return tolerance
 

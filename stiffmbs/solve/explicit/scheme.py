@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ...compile.machine.layout import packed
-from ..native.tables.steps import SCHEME
+from .native.layouts import SCHEME
 
 Row = Mapping[int, float]
 """Nonzero coefficients of a sum over stages, by stage."""
@@ -37,7 +37,7 @@ class Scheme:
         Differences to embedded schemes; empty for a fixed-step scheme. With two, the estimate is
         h |e_1|^2 / sqrt(|e_1|^2 + 0.01 |e_2|^2) (Hairer's for orders 5 and 3).
     dense : tuple of Row
-        Coefficients of the interpolant after the third (`stiffmbs.solve.native.explicit.interpolant`).
+        Coefficients of the interpolant after the third (`stiffmbs.solve.explicit.native.interpolant`).
     free : tuple of Row
         The same of an interpolant without additional stages; empty if `dense` needs none.
     free_error : Row
@@ -78,7 +78,6 @@ class Scheme:
 
     @cached_property
     def _arrays(self) -> dict[str, Any]:
-        """Contents of the table."""
         return {
             "order": self.order, "stages": self.stages, "extended": self.extended, "n_errors": len(self.errors),
             "n_dense": len(self.dense), "n_free": len(self.free), "error_needs_end": self.error_needs_end,
@@ -90,7 +89,7 @@ class Scheme:
 
     @cached_property
     def table(self) -> np.ndarray:
-        """Addresses for compiled code (`stiffmbs.solve.native.tables.steps.SCHEME`)."""
+        """Addresses for compiled code (`stiffmbs.solve.explicit.native.layouts.SCHEME`)."""
         return packed(SCHEME, self._arrays)
 
     def matrix(self, rows: tuple[Row, ...]) -> np.ndarray:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from ..failures import FAILURES
-from ..native.statuses import NOT_FINITE, STEP_TOO_SMALL, STIFF
+from ...compile.machine.native.statuses import NOT_FINITE, STEP_TOO_SMALL, STIFF
+from ...dynamics.failures import FAILURES
 from .integration import Integration
 
 _USE_BDF = "the scene is stiff, and solver bdf would be the choice"

@@ -8,21 +8,38 @@ at a step's end indicate that the limit is far exceeded, or that it has limited 
 
 from __future__ import annotations
 
-from ..dynamics import Dynamics
+from dataclasses import dataclass
+
+from ...dynamics.dynamics import Dynamics
 from .fastest_rate import fastest_rate
 from .integration import Integration
 from .scheme import Scheme
 
-SOON, LONGER, MOST_APART = 8, 8, 512
-"""Steps between the first two checks of a bound, the factor on the next intervals, and their limit."""
-WORTH = 128
-"""Smallest number of remaining steps that justifies the cost of the rate."""
-HELD_BACK = 16
-"""Steps limited by stability since the last computation, at which the bound is computed."""
-CONTRADICTED = 0.4
-"""Bound, relative to a step limited by stability, that contradicts it: asymmetric force derivatives give no bound."""
-STEEP = 8
-"""Lowest order at which too long a step amplifies rounding considerably."""
+
+@dataclass(frozen=True)
+class StabilityBoundParameters:
+    """Parameters that decide when the stability bound of explicit steps is computed.
+
+    Source: ``tests/solve/explicit/test_stable_step.py``.
+    """
+
+    soon: int = 8
+    """Steps between the first two checks of a bound, and factor on the next intervals."""
+    most_apart: int = 512
+    """Largest interval."""
+    worth: int = 128
+    """Smallest number of remaining steps that justifies the cost of the rate."""
+    held_back: int = 16
+    """Steps limited by stability since the last computation, at which the bound is computed."""
+    contradicted: float = 0.4
+    """Bound, relative to a step limited by stability, that contradicts it: asymmetric force derivatives give no
+    bound."""
+    steep: int = 8
+    """Lowest order at which too long a step amplifies rounding considerably."""
+
+
+STABILITY_BOUND = StabilityBoundParameters()
+
 NOT_ASKED, UNBOUNDED = 0.0, float("inf")
 
 
@@ -37,8 +54,8 @@ class StableStep:
 
     def __init__(self, scheme: Scheme, dynamics: Dynamics) -> None:
         self._stability, self._dynamics = scheme.stability, dynamics
-        self._serves = scheme.order >= STEEP
-        self._next, self._apart, self._held_before = 0, SOON, 0
+        self._serves = scheme.order >= STABILITY_BOUND.steep
+        self._next, self._apart, self._held_before = 0, STABILITY_BOUND.soon, 0
 
     def begin(self, work: Integration, events: int) -> bool:
         """Restart; return True if the bound is used, up to the first event, as later restarts are too many."""
@@ -60,7 +77,7 @@ class StableStep:
         return self._left(work) if work.stable == NOT_ASKED else work.capacity
 
     def _left(self, work: Integration) -> int:
-        return HELD_BACK - (work.count("stiff_steps") - self._held_before)
+        return STABILITY_BOUND.held_back - (work.count("stiff_steps") - self._held_before)
 
     def look(self, work: Integration, end: float) -> None:
         """Update the bound if due: after limited steps, or if steps have grown to the last bound."""
@@ -79,8 +96,8 @@ class StableStep:
     def _ask_as_held(self, work: Integration, end: float) -> None:
         """Compute the bound after limited steps, which are near the limit and must not contradict it."""
         self.ask(work, end)
-        if work.stable < CONTRADICTED * work.h:
-            work.stable, self._next = UNBOUNDED, work.count("steps") + MOST_APART
+        if work.stable < STABILITY_BOUND.contradicted * work.h:
+            work.stable, self._next = UNBOUNDED, work.count("steps") + STABILITY_BOUND.most_apart
 
     def ask(self, work: Integration, end: float) -> None:
         """Compute the bound at the current state, unless few steps remain.
@@ -88,8 +105,8 @@ class StableStep:
         Near a pose where branches of the motion meet, the rate is that of the pose only: no bound is used there.
         """
         bound, work.stable = work.stable or UNBOUNDED, UNBOUNDED
-        self._next = work.count("steps") + WORTH
-        if end - work.t < WORTH * min(work.h, bound) or work.count("uncertain"):
+        self._next = work.count("steps") + STABILITY_BOUND.worth
+        if end - work.t < STABILITY_BOUND.worth * min(work.h, bound) or work.count("uncertain"):
             return
         rate = fastest_rate(self._dynamics, work.t, work.q.copy(), work.u.copy())
         if rate > 0:
@@ -99,4 +116,4 @@ class StableStep:
     def _wait(self, work: Integration) -> None:
         """Set the next check, at an interval that grows each time."""
         self._next = work.count("steps") + self._apart
-        self._apart = min(LONGER * self._apart, MOST_APART)
+        self._apart = min(STABILITY_BOUND.soon * self._apart, STABILITY_BOUND.most_apart)

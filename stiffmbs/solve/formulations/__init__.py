@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from ...compile.formulation import Formulation
-from ...describe.settings import RunSettings
+from ...model.settings import RunSettings
 from .i3 import I3
 from .index1 import index1
 from .si1 import SI1

@@ -2,117 +2,104 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from ...compile.equations import Equations
-from ...describe.settings import RunSettings
-from ..dynamics import Dynamics
+from ...dynamics.dynamics import Dynamics
+from ...model.settings import RunSettings
+from ...sparse.elimination_order import EliminationOrder, elimination_order
 from ..error_control.error_test import ErrorControl
 from ..formulations import FORMULATIONS
-from ..linear.elimination_order import EliminationOrder, elimination_order
-from .block_lu import BlockLU
+from ..linear_solvers.block_lu import BlockLU
+from ..linear_solvers.fixed_order import FixedOrder
 from .engine import Engine
-from .fixed_order import FixedOrder
 from .libraries import Unavailable, ida_libraries
-from .matrices import Banded, Dense, Matrix, Sparse
+from .matrices import Dense, Matrix, Sparse
 from .native_engine import NativeEngine
 from .operations import replaceable
-from .ordering import narrowed
-from .paired_columns import PairedColumns
 from .sundae import SundaeEngine
 
-SOLUTIONS = 8
-"""Solutions for one factorisation."""
-DENSE = (0.045, 1.0, 0.24, 10.0)
-"""ns for a multiplication of the dense LU, an entry cleared and filled, an entry and an unknown of a solution."""
-BANDED = (0.15, 0.5, 0.45)
-"""ns for a multiplication of the banded LU, an entry cleared and filled, an entry of a solution."""
-FIXED = (1.2, 1.5, 0.5, 1.0)
-"""ns for an update in a fixed order, for an entry of the factors that is cleared and scaled; for an entry and an
-unknown of a solution.  All costs were fitted on the examples with 10 to 1000 unknowns."""
-PAIRED = (0.25, 3.0, 0.75, 1.0)
-"""ns as in `FIXED`, for two-column supernodes."""
-BLOCKS = (0.05, 50.0, 0.04, 5.0, 11.0)
-"""ns for an update in blocks, for a node; for an entry of full blocks, an unknown and a node of a solution."""
-NEAR, FAR = 3000, 450.0
-"""Number of nodes whose blocks fit into a processor's own cache, and additional ns for each further node."""
-WORTH_COMPILING = 200.0
-"""ns that blocks must save per factorisation and its solutions to be worth compiling on a machine's first run."""
-WITH_ZEROS = 8
-"""Upper bound of the numbers stored in the blocks, relative to the entries of a triangle of full blocks."""
-SUPERLU = (0.5, 0.75, 600.0, 8.0)
-"""ns of SuperLU_MT for an update, for an entry of a solution; for an unknown in a factorisation and in a solution."""
-WORTH_A_BAND = 50
-"""Number of unknowns below which a search for a band is not worth its cost."""
-FILLED, UPDATED = 1.1, 0.3
-"""Ratios of the actual entries and updates to those of full blocks."""
+
+@dataclass(frozen=True)
+class LinearSolverCosts:
+    """Times of one factorisation with its eight solutions, ns.
+
+    Source: measured on examples with 10 to 1000 unknowns (`tests.bench`, problem ``linear_algebra``).
+    """
+
+    dense: tuple[float, float, float] = (0.045, 2.92, 80.0)
+    """For a multiplication of the LU, an entry, an unknown."""
+    superlu: tuple[float, float, float] = (0.15, 6.6, 664.0)
+    """For an update of full blocks, an entry of their factors, an unknown, of SuperLU_MT."""
+    fixed: tuple[float, float, float] = (0.36, 6.05, 8.0)
+    """The same in a fixed order."""
+    blocks: tuple[float, float, float, float] = (0.05, 0.32, 40.0, 138.0)
+    """The same, and for a node."""
+    cached_nodes: int = 3000
+    """Number of nodes whose blocks fit into a processor's own cache."""
+    far_node: float = 450.0
+    """Additional time for each further node."""
+    worth_compiling: float = 200.0
+    """Time that blocks must save to be worth compiling on a machine's first run."""
+    with_zeros: int = 8
+    """Upper bound of the numbers stored in the blocks, relative to the entries of a triangle of full blocks."""
+
+
+COSTS = LinearSolverCosts()
+"""Costs of every run."""
 
 
 def dense_cost(n: int) -> float:
-    """Return the estimated ns of a factorisation of a dense matrix and its solutions."""
-    update, entry, solution, unknown = DENSE
-    return update * n**3 / 3 + (entry + SOLUTIONS * solution) * n**2 + SOLUTIONS * unknown * n
+    """Return the estimated cost of a dense matrix."""
+    update, entry, unknown = COSTS.dense
+    return update * n**3 / 3 + entry * n**2 + unknown * n
 
 
-def banded_cost(n: int, lower: int, upper: int) -> float:
-    """Return the estimated ns of a factorisation of a banded matrix and its solutions."""
-    update, entry, solution = BANDED
-    height = 2 * lower + upper + 1
-    return n * (update * lower * (lower + upper) + (entry + SOLUTIONS * solution) * height)
-
-
-def fixed_cost(n: int, order: EliminationOrder, costs: tuple[float, float, float, float]) -> float:
-    """Return the estimated ns of an elimination in a fixed order, by entries or by two-column supernodes."""
-    update, entry, solution, unknown = costs
-    entries, updates = FILLED * order.fill, UPDATED * order.updates
-    return update * updates + (entry + SOLUTIONS * solution) * entries + SOLUTIONS * unknown * n
+def sparse_cost(n: int, order: EliminationOrder, costs: tuple[float, float, float]) -> float:
+    """Return the estimated cost of a sparse matrix without blocks."""
+    update, entry, unknown = costs
+    return update * order.updates + entry * order.fill + unknown * n
 
 
 def block_cost(n: int, order: EliminationOrder, n_nodes: int) -> float:
-    """Return the estimated ns of an elimination by blocks; infinite if they are too many for 32-bit indices."""
-    if WITH_ZEROS * order.fill > np.iinfo(np.int32).max:
+    """Return the estimated cost of an elimination by blocks; infinite if they are too many for 32-bit indices."""
+    if COSTS.with_zeros * order.fill > np.iinfo(np.int32).max:
         return np.inf
-    update, node, entry, unknown, of_node = BLOCKS
-    nodes = node * n_nodes + FAR * max(n_nodes - NEAR, 0)
-    return update * order.updates + nodes + SOLUTIONS * (entry * order.fill + unknown * n + of_node * n_nodes)
+    *costs, node = COSTS.blocks
+    far = COSTS.far_node * max(n_nodes - COSTS.cached_nodes, 0)
+    return sparse_cost(n, order, (costs[0], costs[1], costs[2])) + node * n_nodes + far
 
 
-def superlu_cost(n: int, order: EliminationOrder) -> float:
-    """Return the estimated ns of SuperLU_MT."""
-    update, solution, start, unknown = SUPERLU
-    return (
-        update * UPDATED * order.updates
-        + SOLUTIONS * solution * FILLED * order.fill
-        + (start + SOLUTIONS * unknown) * n
-    )
+def cost_of(matrix: Matrix) -> float:
+    """Return the estimated cost of a linear solver."""
+    match matrix:
+        case BlockLU():
+            return block_cost(matrix.n, matrix.order, len(matrix.nodes))
+        case FixedOrder():
+            return sparse_cost(matrix.n, matrix.order, COSTS.fixed)
+        case Dense():
+            return dense_cost(matrix.n)
+        case Sparse():
+            entries = len(matrix.rows)
+            return sparse_cost(matrix.n, EliminationOrder(np.arange(matrix.n), entries, entries), COSTS.superlu)
+    raise TypeError(f"found {matrix.sentence()}, expected one of the linear solvers of this module")
 
 
 def chosen(equations: Equations) -> tuple[Equations, Matrix, float]:
-    """Return the equations ordered for the linear solver of the least estimated cost, that solver, and its cost, ns.
-
-    A banded order is searched for only if a band as wide as the longest row would be the least expensive.
-
-    Parameters
-    ----------
-    equations : Equations
-        Equations in their natural order.
-    """
-    n, pattern = equations.n, equations.pattern
-    order = elimination_order(equations)
-    offers: list[tuple[float, Equations, Matrix]] = [(dense_cost(n), equations, Dense(n, *pattern))]
+    """Return the equations, the linear solver of the least estimated cost, and that cost, ns."""
+    n, pattern, order = equations.n, equations.pattern, elimination_order(equations)
+    offers: list[tuple[float, Matrix]] = [
+        (dense_cost(n), Dense(n, *pattern)),
+        (sparse_cost(n, order, COSTS.superlu), Sparse(n, *pattern)),
+    ]
     if replaceable(ida_libraries()):
-        offers.append((fixed_cost(n, order, FIXED), equations, FixedOrder(n, *pattern, order)))
-        offers.append((fixed_cost(n, order, PAIRED), equations, PairedColumns(n, *pattern, order)))
         blocks = BlockLU.of(equations, order)
-        offers.append((block_cost(n, order, len(blocks.nodes)) + WORTH_COMPILING, equations, blocks))
-    offers.append((superlu_cost(n, order), equations, Sparse(n, *pattern)))
-    half = int(np.bincount(pattern[0]).max()) // 2
-    if n >= WORTH_A_BAND and banded_cost(n, half, half) < min(cost for cost, *_ in offers):
-        ordered = narrowed(equations)
-        band = Banded(n, *ordered.pattern)
-        offers.append((banded_cost(n, band.lower, band.upper), ordered, band))
+        offers.append((sparse_cost(n, order, COSTS.fixed), FixedOrder(n, *pattern, order)))
+        offers.append((block_cost(n, order, len(blocks.nodes)) + COSTS.worth_compiling, blocks))
     cheapest_first = sorted(offers, key=lambda offer: offer[0])
-    return next((ordered, matrix, cost) for cost, ordered, matrix in cheapest_first if _served(matrix))
+    return next((equations, matrix, cost) for cost, matrix in cheapest_first if _served(matrix))
 
 
 def _served(matrix: Matrix) -> bool:
@@ -128,17 +115,17 @@ def driven_natively(
     dynamics: Dynamics, settings: RunSettings, control: ErrorControl
 ) -> tuple[Equations, Engine, float]:
     """Return the equations, their native driver and the cost of its linear solver, ns."""
-    equations, matrix, cost = chosen(_natural(dynamics, settings))
+    equations, matrix, cost = chosen(natural(dynamics, settings))
     return equations, NativeEngine(equations, dynamics, matrix, settings, control), cost
 
 
 def driven_by_callbacks(dynamics: Dynamics, settings: RunSettings) -> tuple[Equations, Engine]:
     """Return the equations and their driver by scikit-sundae's callbacks."""
-    equations = _natural(dynamics, settings)
+    equations = natural(dynamics, settings)
     tolerances = ErrorControl(margin=1.0).tolerances(equations, settings)  # with IDA's own Newton tolerance
     return equations, SundaeEngine(equations, dynamics.state, *tolerances, settings.max_step, settings.max_order or 5)
 
 
-def _natural(dynamics: Dynamics, settings: RunSettings) -> Equations:
+def natural(dynamics: Dynamics, settings: RunSettings) -> Equations:
     """Return the equations with their unknowns in the natural order."""
     return Equations(FORMULATIONS[settings.formulation](settings), dynamics.system, dynamics.coordinates)

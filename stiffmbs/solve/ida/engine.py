@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -12,8 +13,8 @@ from ..error_control.newton import Stiffness
 from ..trajectory import History
 
 if TYPE_CHECKING:
-    from ..initial import InitialValues
-    from .starting.anew import Begun
+    from ...dynamics.initial import InitialValues
+    from .starting.after_event import Begun
 
 
 class Reached(NamedTuple):
@@ -44,18 +45,22 @@ class Reached(NamedTuple):
     passed: int = 0
 
 
-class Engine(Protocol):
-    """A driver of IDA."""
+class Engine(ABC):
+    """A driver of IDA; methods with a body suit drivers without the feature."""
 
+    @abstractmethod
     def forget(self) -> None:
         """Forget counters, history and pivots of an earlier run."""
 
+    @abstractmethod
     def see_inputs(self, features: InputFeatures, duration: float) -> None:
         """Resolve the features of inputs by sufficiently short steps from the next start."""
 
+    @abstractmethod
     def leave_out(self, masked: np.ndarray) -> None:
         """Ignore each event function for a number of steps from the next start."""
 
+    @abstractmethod
     def begin(self, t: float, y: np.ndarray, yp: np.ndarray, newton: float, stiffness: Stiffness) -> None:
         """Start or restart at consistent values.
 
@@ -65,39 +70,51 @@ class Engine(Protocol):
 
     def begin_at(self, start: InitialValues, t: float) -> bool:
         """Start by one compiled call that finds these values; return False, without a start, if it does not apply."""
+        return False
 
     def begin_anew(self, q: np.ndarray, u: np.ndarray, t: float, ahead: float) -> Begun | None:
         """Restart at consistent values after a state and events within `ahead` (s); None if not applicable."""
+        return None
 
+    @abstractmethod
     def to_times(self, times: np.ndarray, stops: Sequence[float]) -> Iterator[Reached]:
         """Integrate to the first stop or a later one, and report at output times; end early at an event or a failure.
 
         `Reached.passed` counts the stops at which it has restarted.
         """
 
+    @abstractmethod
     def by_steps(self, stop: float) -> Iterator[Reached]:
         """Integrate to `stop` and report each step; ends early at an event or a failure."""
 
+    @abstractmethod
     def pause_after(self, steps: int) -> None:
         """Return from integration after about so many steps at the latest."""
 
     def note(self) -> str:
         """Return a sentence on the integration for the user; empty if there is none."""
+        return ""
 
+    @abstractmethod
     def steps(self) -> int:
         """Return the number of steps since the first start."""
 
+    @abstractmethod
     def statistics(self) -> dict[str, int | float | str]:
         """Return the name of the linear solver, and counters since the first start."""
 
     def last_step(self) -> tuple[float, int] | None:
         """Return the size, s, and order of the last step, if known."""
+        return None
 
     def long_steps(self) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
         """Return begins, ends and interior values of steps much longer than their predecessors; None if not stored."""
+        return None
 
     def displaced(self) -> np.ndarray | None:
         """Return estimated errors of positions as displacements along velocities, shape (n_u,); None if unknown."""
+        return None
 
+    @abstractmethod
     def history(self) -> History:
         """Return the ends of the steps, and their orders if known."""

@@ -1,4 +1,4 @@
-"""Memory of the norm of error estimates (`stiffmbs.solve.native.error_norm`)."""
+"""Memory of the norm of error estimates (`stiffmbs.solve.ida.native.error_norm`)."""
 
 from __future__ import annotations
 
@@ -6,13 +6,13 @@ import numpy as np
 
 from ...compile.machine.layout import fill
 from ...compile.machine.routines import Routine
-from ..native.tables.steps import ERROR_NORM
 from .libraries import Unavailable
 from .matrices import Assembled
+from .native.layouts import ERROR_NORM
 from .operations import take_norm
 from .session import Session
 
-NORM = Routine("stiffmbs.solve.native.error_norm", "error_norm", "float64(int64*, int64)")
+NORM = Routine("stiffmbs.solve.ida.native.error_norm", "error_norm", "float64(int64*, int64)")
 
 
 class ErrorNorm:
@@ -26,7 +26,7 @@ class ErrorNorm:
     Attributes
     ----------
     table : ndarray of int
-        Table for compiled code (`stiffmbs.solve.native.tables.steps.ERROR_NORM`).
+        Table for compiled code (`stiffmbs.solve.ida.native.layouts.ERROR_NORM`).
     """
 
     def __init__(self, n: int) -> None:
@@ -53,7 +53,7 @@ class ErrorNorm:
         assembled : Assembled
             Iteration matrix of IDA and its solver.
         iteration : ndarray
-            Table of Newton's iteration (`stiffmbs.solve.native.iteration`).
+            Table of Newton's iteration (`stiffmbs.solve.ida.native.iteration`).
         """
         libraries, (state, equations) = session.libraries, tables
         functions = {

@@ -3,46 +3,40 @@
 from __future__ import annotations
 
 import weakref
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ...compile.equations import Equations
 from ...compile.inputs.features import InputFeatures
 from ...compile.machine.layout import address, addresses
+from ...compile.machine.native.statuses import ROOT_RETURN, STOP_RETURN
 from ...compile.machine.routines import Routine
 from ...compile.state import State
-from ...describe.settings import RunSettings
-from ..dynamics import Dynamics
+from ...dynamics.dynamics import Dynamics
+from ...model.settings import RunSettings
 from ..error_control.error_test import ErrorControl
-from ..events.long_steps import LongStepLog
-from ..native.statuses import ROOT_RETURN, STOP_RETURN
-from ..native.tables.steps import MOST_STEPS
-from .connection import MODULE, Connection
+from .connection import BDF, MODULE, Connection, Formula
 from .matrices import Matrix
+from .native.parameters import LOOP
 from .session import Session
 from .statistics import Statistics
 from .status import Status, failure_sentence
-from .step_log import StepLog
 
 if TYPE_CHECKING:
-    from .starting.anew import StartsAnew
+    from .starting.after_event import StartsAnew
     from .starting.starts import Starts
 
 ADVANCE = Routine(MODULE, "advance", "int32(int64, float64*, float64, int64, float64*, int64, int64*)")
 ADVANCE_PAST = Routine(
-    "stiffmbs.solve.ida.native.passing",
+    "stiffmbs.solve.ida.starting.native.breakpoints",
     "advance_past",
     "int32(int64, float64*, int64, float64*, int64, int64, float64*, int64*, int64*)",
 )
 STEPS = Routine(MODULE, "steps", "int32(int64, float64, float64*, float64*, int64*)")
 
-LONGEST_CALL, STEP_TIME = 0.1, 1e-7
-"""Time, s, of a call, for progress and interruption; estimated time, s, of a step per unknown.  A clock would make
-results depend on the load of the machine, because calls affect Newton's iteration."""
 
-
-class NativeIda:
+class NativeIda(Connection):
     """IDA memory of one formulation of one system, for any number of starts.
 
     Only one thread at a time may use an instance.  Several threads may use their own instances and states: the
@@ -64,17 +58,14 @@ class NativeIda:
         Largest step, s; 0 for none.
     max_order : int
         Highest order of BDF, 1 to 5.
-    suppressed : ndarray of bool, shape (n,), optional
-        Unknowns excluded from the error test but not from Newton's convergence test (IDASetSuppressAlg).
     newton : float, optional
         Part of the error tolerance that Newton's iteration may leave (IDASetNonlinConvCoef); 0.33 by default.
     renewal : float, optional
         Relative change of cj that causes a linear solver setup (IDASetDeltaCjLSetup); 0.25 by default.
     growth : float
         Least factor by which a step is enlarged (IDASetEtaFixedStepBounds); IDA's own by default.
-    predicted_residual : bool
-        If True, the convergence rate of Newton's iteration worsens with the age of the iteration matrix
-        (`stiffmbs.solve.native.iteration`).  IDA's own test keeps it until cj changes.
+    formula : Formula, optional
+        BDF with IDA's own convergence test by default.
     reported : ndarray of int, optional
         Unknowns returned at output times; all by default.
 
@@ -82,11 +73,8 @@ class NativeIda:
     ----------
     y, yp : ndarrays, shape (n,)
         Solution at `t`, overwritten by every call.
-    n_event_functions : int
-        Number of event functions of the system; `advance` returns at their sign changes.
-    matrix : Matrix
-    connection : Connection
-        Connection to IDA, for compiled code.
+    begun : bool
+        True if IDA was started since it was created or reset.
 
     Raises
     ------
@@ -110,70 +98,40 @@ class NativeIda:
         *,
         max_step: float = 0.0,
         max_order: int = 5,
-        suppressed: np.ndarray | None = None,
         newton: float | None = None,
         renewal: float | None = None,
         growth: float = 2.0,
-        predicted_residual: bool = False,
+        formula: Formula | None = None,
         reported: np.ndarray | None = None,
     ) -> None:
-        n = equations.n
-        self.matrix = matrix
-        session = Session(self.matrix.libraries())
+        n, formula = equations.n, formula or BDF(matrix)
+        session = Session(formula.libraries())
         self._finalizer = weakref.finalize(self, session.close)
-        self.connection = self._ida = ida = Connection(
-            equations, state, self.matrix, np.arange(n) if reported is None else reported, session
-        )
-        self.y, self.yp, self.n_event_functions = ida.y, ida.yp, ida.n_event_functions
-        self._statistics = Statistics(session.libraries, ida.memory)
-        self._flag, self._begun = 0, False
-        self._pace = int(np.clip(LONGEST_CALL / (STEP_TIME * n), 1, MOST_STEPS))
+        super().__init__(equations, state, matrix, np.arange(n) if reported is None else reported, session, formula)
+        self._statistics = Statistics(session.libraries, self.memory)
+        self._flag, self.begun = 0, False
+        self._pace = int(np.clip(LOOP.longest_call / (LOOP.step_time * n), 1, LOOP.most_steps))
         self._look = self._usual_pace = self._pace
         self._trace = np.empty((0, 2 + 2 * n))
-        ida.set_tolerances(rtol, atol)
-        self._tested = np.ones(n, dtype=bool) if suppressed is None else ~np.asarray(suppressed, dtype=bool)
-        if suppressed is not None:
-            ida.suppress(~self._tested)
-        ida.ask("IDASetMaxStep", max_step)
-        ida.ask("IDASetMaxOrd", max_order)
+        self._set_tolerances(rtol, atol)
+        self.ask("IDASetMaxStep", max_step)
+        self.ask("IDASetMaxOrd", max_order)
         if newton is not None:
-            ida.ask("IDASetNonlinConvCoef", newton)
+            self.ask("IDASetNonlinConvCoef", newton)
         if renewal is not None:
-            ida.ask("IDASetDeltaCjLSetup", renewal)
+            self.ask("IDASetDeltaCjLSetup", renewal)
         self._growth = growth
-        if predicted_residual:
-            ida.take_own_convergence_test()
-
-    @property
-    def begun(self) -> bool:
-        """Return True if IDA was started since it was created or reset."""
-        return self._begun
 
     @property
     def t(self) -> float:
         """Return the time of the solution in `y`, s."""
-        return float(self._ida.cells["returned"])
-
-    @property
-    def history(self) -> StepLog:
-        """Return the log of time, order and size of each step."""
-        return self._ida.history
-
-    @property
-    def long_steps(self) -> LongStepLog | None:
-        """Return the log of steps much longer than their predecessors; None for scenes without laws."""
-        return self._ida.long_steps
-
-    @property
-    def furthest(self) -> np.ndarray:
-        """Return the estimated accumulated displacement error along each independent velocity."""
-        return self._ida.furthest
+        return float(self.cells["returned"])
 
     @property
     def samples(self) -> np.ndarray:
         """Return time and reported unknowns after every fourth of the last 64 steps, in order of time."""
-        newest = int(self._ida.cells["next_sample"])
-        rows = np.concatenate([self._ida.samples[newest:], self._ida.samples[:newest]])
+        newest = int(self.cells["next_sample"])
+        rows = np.concatenate([self._samples[newest:], self._samples[:newest]])
         return rows[~np.isnan(rows[:, 0])]
 
     def pause_after(self, steps: int) -> None:
@@ -183,20 +141,20 @@ class NativeIda:
     def keep_steps(self, kept: bool) -> None:
         """Enable or disable storage of time, order, y and y' of each step for `kept_steps`."""
         width = 2 + 2 * len(self.y)
-        self._trace = np.empty((MOST_STEPS if kept else 0, width))
-        self._ida.cells["trace"] = self._trace.ctypes.data if kept else 0
-        self._ida.cells["traced"] = 0
+        self._trace = np.empty((LOOP.most_steps if kept else 0, width))
+        self.cells["trace"] = self._trace.ctypes.data if kept else 0
+        self.cells["traced"] = 0
 
     def kept_steps(self) -> np.ndarray:
         """Return time, order, y and y' of the stored steps, one in each row, and clear them."""
-        rows: np.ndarray = self._trace[: int(self._ida.cells["traced"])].copy()
-        self._ida.cells["traced"] = 0
+        rows: np.ndarray = self._trace[: int(self.cells["traced"])].copy()
+        self.cells["traced"] = 0
         return rows
 
     @property
     def may_pass(self) -> bool:
         """Return True if `advance_past` applies: no steps are stored, and states within long steps can be corrected."""
-        return self._ida.output_correction.ready and not len(self._trace)
+        return self._polished and not len(self._trace)
 
     def look_after(self, steps: int) -> None:
         """Make the next call of `advance` or `steps` return after this number of steps at the latest."""
@@ -204,39 +162,27 @@ class NativeIda:
 
     def leave_out(self, masked: np.ndarray) -> None:
         """Ignore each event function for a number of steps from the next start."""
-        self._ida.masked[:] = masked
+        self.masked[:] = masked
 
     def see_inputs(self, features: InputFeatures, duration: float) -> None:
         """Resolve the features of inputs by sufficiently short steps."""
-        self._ida.step_bound.follow(features)
-        self._ida.watch.resolve(duration)
+        self.step_bound.follow(features)
+        self.watch.resolve(duration)
 
     def unresolved(self) -> str:
         """Return a sentence on periodic laws that steps do not resolve; empty if there are none."""
-        return self._ida.watch.note()
+        return self.watch.note()
 
     def leave_to_newton(self, part: float) -> None:
         """Set the part of the error tolerance that Newton's iteration may leave, as `newton` does."""
-        self._ida.ask("IDASetNonlinConvCoef", part)
-
-    def correct_outputs(self, dynamics: Dynamics, long_step: float, part: float, balanced: float) -> None:
-        """Correct states within steps longer than `long_step`, s, up to a part of the error tolerance.
-
-        States stay unchanged if the forces on each body balance up to the part `balanced` of the largest.  The same
-        must hold after the `dynamics` of the same state has closed the joints.
-        """
-        self._ida.correct_outputs(dynamics, long_step, part, balanced)
-
-    def filter_always(self, asked: bool) -> None:
-        """Filter all error estimates (`stiffmbs.solve.native.error_norm`), or only those after many failures."""
-        self._ida.error_norm.filter_always(asked)
+        self.ask("IDASetNonlinConvCoef", part)
 
     def forget(self) -> None:
         """Reset counters, history and pivots, as before the first start."""
-        self._begun, self._look = False, self._usual_pace
-        self._ida.ask("IDAReInit", 0.0, self._ida.y_vector, self._ida.yp_vector)  # resets IDA's counters
+        self.begun, self._look = False, self._usual_pace
+        self.ask("IDAReInit", 0.0, self.y_vector, self.yp_vector)  # resets IDA's counters
         self._statistics.forget()
-        self._ida.forget()
+        super().forget()
 
     def begin(
         self, t: float, y: np.ndarray, yp: np.ndarray, first_step: float = 0.0, highest_order: int | None = None
@@ -252,22 +198,22 @@ class NativeIda:
         highest_order : int, optional
             Highest order from here on; IDA cannot lower it within a run.
         """
-        if self._begun:
+        if self.begun:
             self._statistics.keep()
         self.y[:], self.yp[:] = y, yp
-        self._ida.ask("IDAReInit", t, self._ida.y_vector, self._ida.yp_vector)
-        self._ida.ask("IDASetInitStep", first_step)
+        self.ask("IDAReInit", t, self.y_vector, self.yp_vector)
+        self.ask("IDASetInitStep", first_step)
         if highest_order is not None:
-            self._ida.ask("IDASetMaxOrd", highest_order)
-        self._ida.ask("IDASetEtaFixedStepBounds", 1.0, self._growth)
-        self._ida.error_norm.begin(self._growth)
-        self._ida.begin(t)
-        self._begun, self._flag = True, 0
+            self.ask("IDASetMaxOrd", highest_order)
+        self.ask("IDASetEtaFixedStepBounds", 1.0, self._growth)
+        self.error_norm.begin(self._growth)
+        self._forget_step(t)
+        self.begun, self._flag = True, 0
 
     def begun_at(self, t: float) -> None:
         """Note a start or restart by compiled code."""
         self.history.begin(t)
-        self._begun, self._flag = True, 0
+        self.begun, self._flag = True, 0
 
     def starts(
         self, dynamics: Dynamics, equations: Equations, settings: RunSettings, control: ErrorControl
@@ -277,7 +223,7 @@ class NativeIda:
 
         if not Starts.serve(dynamics):
             return None
-        return Starts(dynamics, equations, self.connection, self._statistics, settings, control)
+        return Starts(dynamics, equations, self, self._statistics, settings, control)
 
     def advance(
         self, times: np.ndarray, stop: float, y_out: np.ndarray, yp_out: np.ndarray | None = None
@@ -304,10 +250,12 @@ class NativeIda:
         times = np.ascontiguousarray(times, dtype=float)
         for rows in (y_out,) if yp_out is None else (y_out, yp_out):
             self._check_rows(rows, len(times))
-        self._ida.ask("IDASetStopTime", stop)
+        self.ask("IDASetStopTime", stop)
         derivatives = 0 if yp_out is None else address(yp_out)
-        self._run(ADVANCE, len(times), address(times), stop, min(self._pace, self._look), address(y_out), derivatives)
-        return int(self._ida.cells["served"]), self._status()
+        self._flag = self.run(
+            ADVANCE, len(times), address(times), stop, min(self._pace, self._look), address(y_out), derivatives
+        )
+        return int(self.cells["served"]), self._status()
 
     def advance_past(
         self, anew: StartsAnew, times: np.ndarray, stops: np.ndarray, highest_order: int, y_out: np.ndarray
@@ -317,8 +265,10 @@ class NativeIda:
         self._check_rows(y_out, len(times))
         most = min(self._pace, self._look)
         at_times, at_stops, at_rows = addresses(times, stops, y_out)
-        self._run(ADVANCE_PAST, len(times), at_times, len(stops), at_stops, most, highest_order, at_rows, anew.table)
-        return int(self._ida.cells["served"]), self._status()
+        self._flag = self.run(
+            ADVANCE_PAST, len(times), at_times, len(stops), at_stops, most, highest_order, at_rows, anew.table
+        )
+        return int(self.cells["served"]), self._status()
 
     def steps(self, stop: float, t_out: np.ndarray, y_out: np.ndarray) -> tuple[int, Status]:
         """Integrate towards `stop` and report each step of IDA; return as `advance` does, or if `t_out` is full.
@@ -330,17 +280,16 @@ class NativeIda:
         y_out : ndarray, shape (rows, number of reported unknowns)
         """
         self._check_rows(y_out, len(t_out))
-        self._ida.ask("IDASetStopTime", stop)
-        self._run(STEPS, min(self._pace, self._look, len(t_out)), stop, t_out.ctypes.data, y_out.ctypes.data)
-        return int(self._ida.cells["served"]), self._status()
+        self.ask("IDASetStopTime", stop)
+        self._flag = self.run(
+            STEPS, min(self._pace, self._look, len(t_out)), stop, t_out.ctypes.data, y_out.ctypes.data
+        )
+        return int(self.cells["served"]), self._status()
 
     def _check_rows(self, rows: np.ndarray, count: int) -> None:
-        expected = (count, len(self._ida.reported))
+        expected = (count, len(self.reported))
         if rows.shape != expected or rows.dtype != np.float64 or not rows.flags.c_contiguous:
             raise ValueError(f"output rows: found {rows.dtype} of shape {rows.shape}, expected float64 of {expected}")
-
-    def _run(self, loop: Routine, *arguments: Any) -> None:
-        self._flag = self._ida.run(loop, *arguments)
 
     def _status(self) -> Status:
         if self._flag < 0:
@@ -354,13 +303,13 @@ class NativeIda:
     def roots(self) -> np.ndarray:
         """Return, after `Status.ROOT`, nonzero values for the event functions that have changed their signs.
 
-        All are zero if the step has passed an interval of a law (`stiffmbs.solve.native.event_search.within_step`).
+        All are zero if the step has passed an interval of a law (`stiffmbs.solve.events.native.within_step`).
         """
-        if self._ida.cells["within"]:
-            return self._ida.watch.found[: self.n_event_functions].astype(np.intc)
+        if self.cells["within"]:
+            return self.watch.found[: self.n_event_functions].astype(np.intc)
         found = np.zeros(self.n_event_functions, dtype=np.intc)
-        self._ida.ask("IDAGetRootInfo", address(found))
-        return found * self._ida.signs.astype(np.intc)
+        self.ask("IDAGetRootInfo", address(found))
+        return found * self.signs.astype(np.intc)
 
     def interpolate(self, t: float, derivative: int = 0) -> np.ndarray:
         """Return the solution, or a derivative of it up to the last order, at a time within the last step.
@@ -370,7 +319,7 @@ class NativeIda:
         ValueError
             If the time is outside the last step, or the derivative above its order.
         """
-        return self._ida.answer("IDAGetDky", t, derivative)
+        return self.answer("IDAGetDky", t, derivative)
 
     def counted(self) -> dict[str, int]:
         """Return the counters since the first start (`stiffmbs.solve.ida.statistics.COUNTERS`)."""
@@ -382,8 +331,8 @@ class NativeIda:
 
     def worst(self) -> tuple[int, float]:
         """Return the unknown with the largest estimated error in the last step, and that error in tolerances."""
-        errors, weights = (self._ida.answer(name) for name in ("IDAGetEstLocalErrors", "IDAGetErrWeights"))
-        weighted = np.abs(errors) * weights * self._tested
+        errors, weights = (self.answer(name) for name in ("IDAGetEstLocalErrors", "IDAGetErrWeights"))
+        weighted = np.abs(errors) * weights
         k = int(np.argmax(weighted))
         return k, float(weighted[k])
 

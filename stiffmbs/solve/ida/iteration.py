@@ -1,4 +1,4 @@
-"""Memory of the convergence test of Newton's iteration (`stiffmbs.solve.native.iteration`)."""
+"""Memory of the convergence test of Newton's iteration (`stiffmbs.solve.ida.native.iteration`)."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ import numpy as np
 
 from ...compile.machine.layout import fill
 from ...compile.machine.routines import Routine
-from ..native.tables.steps import ITERATION
+from .native.layouts import ITERATION
 from .session import Session
 
 CONVERGED = Routine(
-    "stiffmbs.solve.native.iteration", "converged", "int32(int64, int64, int64, float64, int64, int64*)"
+    "stiffmbs.solve.ida.native.iteration", "converged", "int32(int64, int64, int64, float64, int64, int64*)"
 )
 
 
@@ -27,7 +27,7 @@ class Iteration:
     Attributes
     ----------
     table : ndarray of int
-        Table for compiled code (`stiffmbs.solve.native.tables.steps.ITERATION`).
+        Table for compiled code (`stiffmbs.solve.ida.native.layouts.ITERATION`).
     """
 
     def __init__(self, n: int, by_reactions: bool) -> None:

@@ -51,7 +51,6 @@ class Libraries:
 
     @cached_property
     def _declared(self) -> dict[str, tuple[Any, list[Any]]]:
-        """Return the declarations of all functions."""
         return declared(self.index)
 
     def _found(self, name: str) -> Any:
@@ -72,7 +71,6 @@ class Libraries:
 
     @cached_property
     def _addresses(self) -> dict[str, int]:
-        """Return the cache of addresses."""
         return {}
 
     @cached_property
@@ -116,7 +114,7 @@ def available() -> tuple[bool, str]:
 
 @cache
 def ida_libraries() -> Libraries:
-    """Load IDA with vectors, dense and banded matrices.
+    """Load IDA with vectors, and dense matrices.
 
     Raises
     ------

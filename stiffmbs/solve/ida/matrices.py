@@ -1,4 +1,4 @@
-"""Iteration matrices with their linear solvers: dense, banded, sparse."""
+"""Iteration matrices with their linear solvers: dense, sparse."""
 
 from __future__ import annotations
 
@@ -76,40 +76,6 @@ class Dense(NamedTuple):
         return Assembled(
             matrix, solver, s.SUNDenseMatrix_Data(matrix), self.columns * self.n + self.rows, _no_pattern()
         )
-
-
-class Banded(NamedTuple):
-    """Banded matrix; Gaussian elimination with partial pivoting within the band."""
-
-    n: int
-    rows: np.ndarray
-    columns: np.ndarray
-
-    @property
-    def upper(self) -> int:
-        """Return the number of diagonals above the main one."""
-        return max(0, int((self.columns - self.rows).max()))
-
-    @property
-    def lower(self) -> int:
-        """Return the number of diagonals below the main one."""
-        return max(0, int((self.rows - self.columns).max()))
-
-    def libraries(self) -> Libraries:
-        return ida_libraries()
-
-    def sentence(self) -> str:
-        return f"banded, {self.n} unknowns wide {self.lower + self.upper + 1}"
-
-    def assembled(self, session: Session, y: int) -> Assembled:
-        """Create a SUNBandMatrix with SUNLinSol_Band."""
-        s = session.libraries
-        made = s.SUNBandMatrix(self.n, self.upper, self.lower, session.context)
-        matrix = session.keep(made, s.SUNMatDestroy, "a matrix")
-        solver = session.keep(s.SUNLinSol_Band(y, matrix, session.context), s.SUNLinSolFree, "a linear solver")
-        height, diagonal = s.SUNBandMatrix_LDim(matrix), s.SUNBandMatrix_StoredUpperBandwidth(matrix)
-        slots = self.columns * height + self.rows - self.columns + diagonal
-        return Assembled(matrix, solver, s.SUNBandMatrix_Data(matrix), slots, _no_pattern())
 
 
 class Sparse(NamedTuple):

@@ -4,40 +4,50 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from functools import cached_property, partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
 from ...compile.equations import Equations
 from ...compile.inputs.features import InputFeatures
-from ...describe.settings import RunSettings
-from ..dynamics import Dynamics
+from ...dynamics.dynamics import Dynamics
+from ...dynamics.storage import allocated, blocks, release
+from ...model.settings import RunSettings
 from ..error_control.error_test import ErrorControl
-from ..error_control.newton import NUMBERS_END, UNBALANCED, Stiffness
+from ..error_control.native.parameters import NEWTON, POLISHING
+from ..error_control.newton import Stiffness
 from ..error_control.stability_limit import StabilityLimitDetection
 from ..events.restart import just_after
-from ..storage import allocated, blocks, release
 from ..trajectory import History
-from .engine import Reached
+from .connection import BDF, Formula
+from .engine import Engine, Reached
 from .ida import NativeIda
-from .matrices import Matrix, Sparse
+from .matrices import Matrix
+from .native.parameters import LOOP
 from .status import Status
 
 if TYPE_CHECKING:
-    from ..initial import InitialValues
-    from .starting.anew import Begun, StartsAnew
+    from ...dynamics.initial import InitialValues
+    from .starting.after_event import Begun, StartsAnew
     from .starting.restarts import Restarts
     from .starting.starts import Starts
 
-ROWS_OF_STEPS = 1000
-"""Number of rows for one call that reports every step."""
-MANY_FAILURES, EASED, EASIEST = 0.2, 100.0, 0.33
-"""Fraction of steps with a failed Newton iteration above which its tolerance is relaxed, factor, and upper bound."""
-RENEWED_UP_TO = 2000
-"""Number of unknowns up to which SuperLU_MT follows `ErrorControl.renewal`; other linear solvers always do."""
+
+class OrderLimit(Protocol):
+    """Highest order of a formula, checked every few steps."""
+
+    order: int
+    held: bool
+
+    def forget(self) -> None: ...
+    def begin(self, t: float, steps: int, fastest: float) -> None: ...
+    def due(self, steps: int) -> bool: ...
+    def wait(self, steps: int) -> int: ...
+    def changed(self, samples: np.ndarray, steps: int) -> bool: ...
+    def note(self, steps: int) -> str: ...
 
 
-class NativeEngine:
+class NativeEngine(Engine):
     """IDA through its C interface (`NativeIda`); implements `stiffmbs.solve.ida.engine.Engine`.
 
     Parameters
@@ -49,6 +59,10 @@ class NativeEngine:
     matrix : Matrix
     settings : RunSettings
     control : ErrorControl
+    formula : Formula, optional
+        BDF by default.
+    order : OrderLimit, optional
+        Limit of the order of BDF; detected by default.
 
     Attributes
     ----------
@@ -56,69 +70,63 @@ class NativeEngine:
     """
 
     def __init__(
-        self, equations: Equations, dynamics: Dynamics, matrix: Matrix, settings: RunSettings, control: ErrorControl
-    ) -> None:
+        self, equations: Equations, dynamics: Dynamics, matrix: Matrix, settings: RunSettings, control: ErrorControl,
+        formula: Formula | None = None, order: OrderLimit | None = None,
+    ) -> None:  # fmt: skip
         tolerances, reported = control.tolerances(equations, settings), equations.independent
         self._ida = NativeIda(
             equations, dynamics.state, matrix, *tolerances, max_step=settings.max_step,
-            suppressed=control.untested(equations), reported=reported, growth=control.growth,
-            predicted_residual=control.predicted_residual,
-            renewal=None if isinstance(matrix, Sparse) and equations.n > RENEWED_UP_TO else control.renewal,
+            reported=reported, growth=control.growth,
+            formula=formula or BDF(matrix, control.predicted_residual),
+            renewal=control.renewal,
         )  # fmt: skip
         self._width, self._equations, self.matrix = len(reported), equations, matrix
         self._rtol = settings.rtol
         self._make_starts = partial(self._ida.starts, dynamics, equations, settings, control)
         self._dynamics = dynamics
         self._started = False
-        self._order = StabilityLimitDetection(equations, settings)
+        self._order = order or StabilityLimitDetection(equations, settings)
         self.forget()
 
     def forget(self) -> None:
-        """Forget counters, history and pivots of an earlier run."""
         self._ida.forget()
         self._order.forget()
         self._newton = 0.0
         self._counted = {"steps": 0, "convergence_failures": 0}
 
     def see_inputs(self, features: InputFeatures, duration: float) -> None:
-        """Resolve the features of inputs by sufficiently short steps."""
         self._ida.see_inputs(features, duration)
 
     def leave_out(self, masked: np.ndarray) -> None:
-        """Ignore each event function for a number of steps."""
         self._ida.leave_out(masked)
 
     def begin(self, t: float, y: np.ndarray, yp: np.ndarray, newton: float, stiffness: Stiffness) -> None:
-        """Start or restart at consistent values."""
         self._newton, self._stiffness = newton, stiffness
         self._ida.leave_to_newton(newton)
-        self._ida.filter_always(self._order.held)
+        self._ida.error_norm.filter_always(self._order.held)
         self._follow_stiffness(t)
         self._ida.begin(t, y, yp, highest_order=self._order.order)
 
     def begin_at(self, start: InitialValues, t: float) -> bool:
-        """Start or restart at consistent values by one compiled call."""
         if not self._started or self._starts is None:  # not worth their preparation for one start
             self._started = True
             return False
-        self._ida.filter_always(self._order.held)
+        self._ida.error_norm.filter_always(self._order.held)
         if not self._starts.begin(start, t, self._ida.begun, self._order.order):
             return False
         self._take_up(self._starts, t)
         return True
 
     def begin_anew(self, q: np.ndarray, u: np.ndarray, t: float, ahead: float) -> Begun | None:
-        """Restart at consistent values after a state by one compiled call."""
         if self._starts is None or self._starts_anew is None:
             return None
-        self._ida.filter_always(self._order.held)
+        self._ida.error_norm.filter_always(self._order.held)
         found = self._starts_anew.begin((q, u), t, ahead, self._ida.begun, self._order.order)
         if found:
             self._take_up(self._starts, found.t)
         return found
 
     def _take_up(self, starts: Starts, t: float) -> None:
-        """Continue after a compiled start."""
         self._ida.begun_at(t)
         self._stiffness, self._newton = starts.found()
         self._follow_stiffness(t)
@@ -129,8 +137,8 @@ class NativeEngine:
         self._ida.correct_outputs(
             self._dynamics,
             stiffness.long_step,
-            max(stiffness.allowed_residual, NUMBERS_END / self._rtol),
-            UNBALANCED * self._rtol,
+            max(stiffness.allowed_residual, NEWTON.precision / self._rtol),
+            POLISHING.unbalanced * self._rtol,
         )
         self._order.begin(t, self._ida.history.count, float(np.sqrt(stiffness.of_positions)))
 
@@ -149,14 +157,13 @@ class NativeEngine:
         steps = counted["steps"] - self._counted["steps"]
         failures = counted["convergence_failures"] - self._counted["convergence_failures"]
         self._counted = counted
-        if failures > MANY_FAILURES * steps and self._newton < EASIEST:
-            eased = min(EASIEST, EASED * self._newton)
+        if failures > NEWTON.many_failures * steps and self._newton < NEWTON.easiest:
+            eased = min(NEWTON.easiest, NEWTON.eased * self._newton)
             self.begin(
                 self._ida.t, self._ida.y.copy(), self._ida.yp.copy(), eased, self._stiffness
             )  # IDA reads it only at a start
 
     def to_times(self, times: np.ndarray, stops: Sequence[float]) -> Iterator[Reached]:
-        """Integrate to the first stop or a later one, and report at output times; end early at an event or failure."""
         status, served, passed = Status.GOING, 0, 0
         anew = self._starts_anew if len(stops) > 1 else None
         if anew is None or not (anew.may_pass and self._ida.may_pass):
@@ -189,10 +196,9 @@ class NativeEngine:
         return served, status, passed
 
     def by_steps(self, stop: float) -> Iterator[Reached]:
-        """Integrate to `stop` and report each step; end early at an event or a failure."""
         status = Status.GOING
         while status is Status.GOING:
-            times, rows = np.empty(ROWS_OF_STEPS), np.empty((ROWS_OF_STEPS, self._width))
+            times, rows = np.empty(LOOP.rows), np.empty((LOOP.rows, self._width))
             served, status = self._ida.steps(stop, times, rows)
             yield self._reached(times[:served], rows[:served], status)
             if status is Status.GOING:
@@ -218,21 +224,19 @@ class NativeEngine:
         """Return compiled restarts of this integrator from the state q and u; None if they do not apply."""
         from .starting.restarts import Restarts
 
-        if self._starts is None or not Restarts.serve(dynamics.system, self._ida.connection):
+        if self._starts is None or not Restarts.serve(dynamics.system, self._ida):
             return None
         return Restarts(self._starts, (q, u))
 
     @cached_property
     def _starts(self) -> Starts | None:
-        """Return compiled starts; None if they do not apply."""
         return self._make_starts()
 
     @cached_property
     def _starts_anew(self) -> StartsAnew | None:
-        """Return compiled restarts within a run; None if they do not apply."""
-        from .starting.anew import StartsAnew
+        from .starting.after_event import StartsAnew
 
-        least = NUMBERS_END / self._rtol
+        least = NEWTON.precision / self._rtol
         return StartsAnew(self._starts, self._dynamics, least) if self._starts else None
 
     def at(self, t: float) -> np.ndarray:
@@ -240,7 +244,6 @@ class NativeEngine:
         return self._ida.interpolate(t)
 
     def pause_after(self, steps: int) -> None:
-        """Report after this number of steps at the latest."""
         self._ida.pause_after(steps)
 
     def keep_steps(self, kept: bool) -> None:
@@ -256,36 +259,29 @@ class NativeEngine:
         return np.concatenate([[self._ida.t, 1.0], self._ida.y, self._ida.yp])
 
     def note(self) -> str:
-        """Return a sentence on the integration for the user; empty if there is none."""
         return "; ".join(filter(None, (self._order.note(self._ida.history.count), self._ida.unresolved())))
 
     def steps(self) -> int:
-        """Return the number of steps since the first start."""
         return self._ida.history.count
 
     def statistics(self) -> dict[str, int | float | str]:
-        """Return the name of the linear solver, and counters since the first start."""
         return {"linear_solver": self.matrix.sentence(), **self._ida.statistics()}
 
     def last_step(self) -> tuple[float, int] | None:
-        """Return the size, s, and order of the last step, if known."""
         return self._ida.history.last
 
     def end_steps_at_kinks(self) -> None:
         """End steps at the kinks of tables from now on, and restart IDA there."""
-        self._ida.connection.watch.end_steps_at_kinks()
+        self._ida.watch.end_steps_at_kinks()
 
     def long_steps(self) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
-        """Return begins, ends and interior values of steps much longer than their predecessors; None without laws."""
         log = self._ida.long_steps
         return log.kept() if log else None
 
     def displaced(self) -> np.ndarray:
-        """Return estimated errors of positions as displacements along velocities, shape (n_u,)."""
         along = self._equations.along_motion
         found: np.ndarray = np.abs(along.ratio) * self._ida.furthest[along.follows]
         return found
 
     def history(self) -> History:
-        """Return the ends of the steps and their orders."""
-        return History(*self._ida.history.ends())
+        return History(self._ida.history.t, self._ida.history.order)

@@ -9,7 +9,7 @@ from itertools import takewhile
 
 import numpy as np
 
-from ..native.statuses import CONTENT, NORM_TABLE, OPERATIONS
+from ...compile.machine.native.statuses import CONTENT, NORM_TABLE, OPERATIONS
 from .libraries import Libraries, Unavailable
 from .session import Session
 

@@ -1,4 +1,4 @@
-"""Memory of Newton's iteration on interpolated states (`stiffmbs.solve.native.output_correction`)."""
+"""Memory of Newton's iteration on interpolated states (`stiffmbs.solve.ida.native.output_correction`)."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ import numpy as np
 
 from ...compile.equations import ABSENT, Equations
 from ...compile.machine.layout import fill
-from ..dynamics import Dynamics
-from ..native.tables.steps import OUTPUT_CORRECTION
+from ...dynamics.dynamics import Dynamics
 from .matrices import Assembled, Matrix
+from .native.layouts import OUTPUT_CORRECTION
 from .session import Session
 
 VECTORS = "y", "yp", "defect", "correction", "weight", "size"
@@ -24,7 +24,7 @@ class OutputCorrection:
     Attributes
     ----------
     table : ndarray of int
-        Table for compiled code (`stiffmbs.solve.native.tables.steps.OUTPUT_CORRECTION`), filled by `make_ready`.
+        Table for compiled code (`stiffmbs.solve.ida.native.layouts.OUTPUT_CORRECTION`), filled by `make_ready`.
     """
 
     def __init__(self, equations: Equations) -> None:

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from ..linear_solvers.when_needed import WhenNeeded
 from .libraries import Libraries
-from .when_needed import WhenNeeded
 
 
 class Session:

@@ -10,7 +10,7 @@ from ...compile.machine.layout import address, addresses
 from ...compile.machine.routines import Routine
 from .libraries import Libraries
 
-_COUNT = Routine("stiffmbs.solve.ida.native.counters", "count", "void(int64, int64*, int64, int64*, int64*)")
+_COUNT = Routine("stiffmbs.solve.ida.starting.native.counters", "count", "void(int64, int64*, int64, int64*, int64*)")
 
 COUNTERS = {
     "steps": "IDAGetNumSteps",
@@ -37,7 +37,7 @@ class Statistics:
     Attributes
     ----------
     arrays : dict
-        Arrays for compiled code (`stiffmbs.solve.native.tables.steps.START`): counter functions, space for one
+        Arrays for compiled code (`stiffmbs.solve.ida.native.layouts.START`): counter functions, space for one
         number, and the counts before the last start.
     """
 

@@ -50,7 +50,7 @@ FAILURES = {
     -101: "the steps have shrunk to the precision of time: no solution was found beyond this instant, as where the "
     f"motion has a pole or a mechanism locks, or {_UNDEFINED}; look at the last rows, or end the run before",
 }
-"""Messages for IDA's negative flags (ida.h) and for `stiffmbs.solve.native.ida_loop.STALLED`, with cause and remedy."""
+"""Messages for IDA's negative flags (ida.h) and for `stiffmbs.solve.ida.native.ida_loop.STALLED`, with cause and remedy."""
 
 
 def failure_sentence(flag: int) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,33 +12,41 @@ import numpy as np
 from ...compile.equations import Equations
 from ...compile.inputs.features import InputFeatures
 from ...compile.machine.layout import packed
+from ...compile.machine.native.statuses import ROOT_RETURN
 from ...compile.machine.routines import Routine
 from ...compile.state import State
 from ..error_control.newton import Stiffness
-from ..native.tables.steps import IDA
 from ..trajectory import History
-from .engine import Reached
+from .engine import Engine, Reached
+from .native.layouts import IDA
+
+
+@dataclass(frozen=True)
+class FallbackParameters:
+    """Parameters of IDA by scikit-sundae's callbacks."""
+
+    most_ends: int = 200_000
+    """Largest number of stored step ends."""
+    dense_up_to: int = 90
+    """Number of unknowns up to which the dense linear solver is used."""
+    steps_at_once: int = 20_000
+    """Steps after which a call returns."""
+    together: int = 20
+    """Number of output times reported together, because a report costs more than a step."""
+
+
+FALLBACK = FallbackParameters()
 
 if TYPE_CHECKING:
-    from ..initial import InitialValues
+    pass
 
-_MODULE = "stiffmbs.solve.native.ida_callbacks"
+_MODULE = "stiffmbs.solve.ida.native.ida_callbacks"
 RESIDUAL = Routine(_MODULE, "residual", "void(float64, int64, int64, int64, int64*)")
 JACOBIAN = Routine(_MODULE, "jacobian", "void(float64, int64, int64, float64, int64, int64*)")
 SWITCHES = Routine(_MODULE, "event_functions", "void(float64, int64, int64, int64, int64*)")
 
-MOST_ENDS = 200_000
-"""Largest number of stored step ends."""
-DENSE_UP_TO = 90
-"""Number of unknowns up to which the dense linear solver is used."""
-STEPS_AT_ONCE = 20_000
-"""Steps after which a call returns."""
 TOO_MUCH_WORK = -1
 """Status of IDA after the largest number of steps in a call; the next call continues."""
-TOGETHER = 20
-"""Number of output times reported together, because a report costs more than a step."""
-ROOT_FOUND = 2
-"""Status of IDA after a step that ended at a root."""
 
 
 class Callbacks:
@@ -53,7 +62,7 @@ class Callbacks:
     Attributes
     ----------
     masked : ndarray of int
-        Remaining steps for which each event function is masked (`stiffmbs.solve.native.event_search.event_signs`).
+        Remaining steps for which each event function is masked (`stiffmbs.solve.events.native.event_signs`).
     """
 
     def __init__(self, equations: Equations, state: State, dense: bool = True) -> None:
@@ -62,49 +71,22 @@ class Callbacks:
         state.load("event_function")
         rows, columns = equations.pattern
         slots = rows * equations.n + columns if dense else None
-        self._ends = np.zeros(MOST_ENDS)
+        self._ends = np.zeros(FALLBACK.most_ends)
         n_event_functions = state.system.n_event_functions
         self._signs, self.masked = np.zeros(n_event_functions), np.zeros(n_event_functions, dtype=np.int64)
         self._equations_table, slot_of_entry = equations.table(slots)
         fields = {
-            "state": state.table, "equations": self._equations_table, "n_ends": MOST_ENDS, "ends": self._ends,
+            "state": state.table, "equations": self._equations_table, "n_ends": FALLBACK.most_ends, "ends": self._ends,
             "array_header": object.__basicsize__, "n_event_functions": n_event_functions, "signs": self._signs, "masked": self.masked,
         }  # fmt: skip
         table = packed(IDA, fields)
         self._kept, self._cells = (state, equations, slot_of_entry, table), table.view(IDA.cells)[0]
         at = table.ctypes.data
-        self.residual, self.jacobian, self.event_functions = (
-            self._residual(at),
-            self._jacobian(at),
-            self._event_functions(at),
-        )
-
-    @staticmethod
-    def _residual(table: int) -> Any:
-        call = RESIDUAL.call
-
-        def residual(t: float, y: np.ndarray, yp: np.ndarray, r: np.ndarray) -> None:
-            call(t, id(y), id(yp), id(r), table)  # .ctypes.data costs more than the residual
-
-        return residual
-
-    @staticmethod
-    def _jacobian(table: int) -> Any:
-        call = JACOBIAN.call
-
-        def jacobian(t: float, y: np.ndarray, yp: np.ndarray, r: np.ndarray, cj: float, a: np.ndarray) -> None:
-            call(t, id(y), id(yp), cj, id(a), table)
-
-        return jacobian
-
-    @staticmethod
-    def _event_functions(table: int) -> Any:
-        call = SWITCHES.call
-
-        def event_functions(t: float, y: np.ndarray, yp: np.ndarray, values: np.ndarray) -> None:
-            call(t, id(y), id(yp), id(values), table)
-
-        return event_functions
+        residual, jacobian, event_functions = RESIDUAL.call, JACOBIAN.call, SWITCHES.call
+        # `id`, because .ctypes.data costs more than the residual
+        self.residual = lambda t, y, yp, r: residual(t, id(y), id(yp), id(r), at)
+        self.jacobian = lambda t, y, yp, r, cj, a: jacobian(t, id(y), id(yp), cj, id(a), at)
+        self.event_functions = lambda t, y, yp, values: event_functions(t, id(y), id(yp), id(values), at)
 
     def begin(self, t: float) -> None:
         """Continue the history at a restart of IDA, and determine the signs of the event functions again."""
@@ -123,11 +105,11 @@ class Callbacks:
 
     @property
     def step_times(self) -> np.ndarray:
-        """Return the ends of the accepted steps, up to the first `MOST_ENDS`."""
+        """Return the ends of the accepted steps, up to a largest number."""
         return self._ends[: self.steps].copy()
 
 
-class SundaeEngine:
+class SundaeEngine(Engine):
     """IDA through scikit-sundae; implements `stiffmbs.solve.ida.engine.Engine`.
 
     Parameters
@@ -151,7 +133,7 @@ class SundaeEngine:
 
         self.equations = equations
         self._reported = equations.independent
-        dense = equations.n <= DENSE_UP_TO
+        dense = equations.n <= FALLBACK.dense_up_to
         self._linear_solver = f"{'dense' if dense else 'SuperLU_MT'}, {equations.n} unknowns"
         self.callbacks = Callbacks(equations, state, dense)
         options: dict[str, Any] = {"linsolver": "dense"} if dense else self._sparse()
@@ -162,7 +144,7 @@ class SundaeEngine:
             warnings.filterwarnings("ignore", message="Custom sparse Jacobian")  # issued for any jacfn with sparsity
             self._ida = SundialsIda(
                 self.callbacks.residual, jacfn=self.callbacks.jacobian, rtol=rtol, atol=atol,
-                max_num_steps=STEPS_AT_ONCE, max_step=max_step, max_order=max_order, **options,
+                max_num_steps=FALLBACK.steps_at_once, max_step=max_step, max_order=max_order, **options,
             )  # fmt: skip
         self._before = {"residuals": 0, "jacobians": 0}
         self._since = {"residuals": 0, "jacobians": 0}
@@ -179,6 +161,9 @@ class SundaeEngine:
     def forget(self) -> None:
         """Do nothing: each run has its own driver."""
 
+    def pause_after(self, steps: int) -> None:
+        """Do nothing: every few output times are reported anyway."""
+
     def see_inputs(self, features: InputFeatures, duration: float) -> None:
         """Limit steps to resolve the features of inputs; IDA continues at such stops with its history."""
         self._features = features
@@ -194,20 +179,13 @@ class SundaeEngine:
         self.callbacks.begin(t)
         self._last, self._near = self._ida.init_step(t, y, yp), t
 
-    def begin_at(self, start: InitialValues, t: float) -> bool:
-        """Return False: scikit-sundae has no such call."""
-        return False
-
-    def begin_anew(self, q: np.ndarray, u: np.ndarray, t: float, ahead: float) -> None:
-        """Return None: scikit-sundae has no such call."""
-
     def to_times(self, times: np.ndarray, stops: Sequence[float]) -> Iterator[Reached]:
         """Integrate to the first stop and report at output times; end early at an event or a failure."""
         stop = stops[0]
         times = times[times <= stop]
         ends_there, served = len(times) > 0 and times[-1] == stop, 0
         while served < len(times):
-            reached = self._several(times[served : served + TOGETHER], stop)
+            reached = self._several(times[served : served + FALLBACK.together], stop)
             served += len(reached.times)
             yield reached
             if self._interrupted:
@@ -226,7 +204,7 @@ class SundaeEngine:
         try:
             for time in times:
                 last = self._to(time, stop)
-                if last.status < 0 or last.status == ROOT_FOUND:
+                if last.status < 0 or last.status == ROOT_RETURN:
                     break
                 rows[served] = last.y[self._reported]
                 served += 1
@@ -239,7 +217,7 @@ class SundaeEngine:
         while self._near < time:
             if self._last.t < self._near:
                 self._last = self._ida.step(self._near, method="normal", tstop=self._near)
-                if self._last.status < 0 or self._last.status == ROOT_FOUND:
+                if self._last.status < 0 or self._last.status == ROOT_RETURN:
                     return self._last
             self._near = self._next_stop(stop)
         self._last = self._ida.step(time, method="normal", tstop=self._near)
@@ -264,17 +242,10 @@ class SundaeEngine:
         self._since = {"residuals": result.nfev, "jacobians": result.njev}
         failed = result.status < 0 and result.status != TOO_MUCH_WORK
         failure = result.message.rstrip(".").lower() if failed else ""
-        fired = tuple(map(int, np.flatnonzero(result.i_events[-1]))) if result.status == ROOT_FOUND else ()
+        fired = tuple(map(int, np.flatnonzero(result.i_events[-1]))) if result.status == ROOT_RETURN else ()
         rows = 1 if asked_for and not failure and not fired else 0
         times, y = np.array([result.t])[:rows], np.asarray(result.y)
         return Reached(times, y[None, self._reported][:rows], result.t, y, fired, failure)
-
-    def pause_after(self, steps: int) -> None:
-        """Do nothing: every few output times are reported anyway."""
-
-    def note(self) -> str:
-        """Return an empty sentence: IDA alone selects the orders."""
-        return ""
 
     def steps(self) -> int:
         """Return the number of steps since the first start."""
@@ -289,16 +260,6 @@ class SundaeEngine:
             "rejected": self.callbacks.rejected,
             **calls,
         }
-
-    def last_step(self) -> tuple[float, int] | None:
-        """Return None: scikit-sundae provides neither size nor order of the last step."""
-        return None
-
-    def long_steps(self) -> None:
-        """Return None: long steps are not stored."""
-
-    def displaced(self) -> None:
-        """Return None: scikit-sundae does not provide IDA's error estimates."""
 
     def history(self) -> History:
         """Return the ends of the steps, with unknown orders."""

@@ -14,13 +14,15 @@ from pathlib import Path
 from typing import Any
 
 from ...analyses.load_scene import load_scene
-from ...describe.files.scene_text import scene_text
-from ...describe.scene import Scene
 from ...errors import InputError, needs
+from ...model.scene import Scene
+from ...reading.did_you_mean import did_you_mean
+from ...reading.files.scene_text import scene_text
 from ...results.files import refuse_path, written_whole
-from .stepping import CommunicationSteps, parameters_of
+from ..simulation import simulation
 
 ABOUT, SCENE = "model.json", "scene.yaml"
+"""Files among the FMU's resources: its variables, and the scene."""
 ENDING, BUILT = ".fmu", "built.fmu"
 _NOT_IN_XML = re.compile("[^\t\n\r -\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 USED = ("SceneSlave", "hold")
@@ -115,7 +117,9 @@ def _about(scene: Scene, copied: Path, outputs: Sequence[str]) -> dict[str, Any]
     from ... import __version__
 
     try:
-        steps = CommunicationSteps(copied)
+        alone = load_scene(copied)
+        if alone.stages:
+            raise InputError("found a scene with stages, expected a scene of one run")
     except InputError as error:
         raise InputError(
             f"alone in an FMU, without files beside it: {str(error).replace(f'{copied.parent}/', '')}"
@@ -124,20 +128,22 @@ def _about(scene: Scene, copied: Path, outputs: Sequence[str]) -> dict[str, Any]
     tables = [name for name in scene.inputs if name not in inputs]
     if tables:
         raise InputError(f"found a table for the input '{tables[0]}', expected a number")
-    values = steps.values({})
-    given = {**inputs, **parameters_of(scene)}
+    values = simulation(alone).channels
+    parameters = {name: value for name, value in scene.parameters.items() if isinstance(value, float | int)}
+    given = {**inputs, **parameters}
     free = tuple(name for name in values if name not in given)
     chosen = tuple(outputs) or tuple(name for name in free if name in scene.outputs()) or free
     if taken := [name for name in chosen if name in given]:
         raise InputError(f"found the output '{taken[0]}', which is an input or parameter of the FMU, expected another")
     unknown = [name for name in chosen if name not in values]
     if unknown:
-        raise InputError(f"found no channel '{unknown[0]}', expected one such as {', '.join(list(values)[:12])}")
+        near = did_you_mean(unknown[0], values)
+        raise InputError(f"found no channel '{unknown[0]}'{near}, expected one such as {', '.join(list(values)[:12])}")
     run = scene.run
     return {
         "description": _NOT_IN_XML.sub("?", scene.name), "version": __version__, "start": run.start, "stop": run.start + run.duration,
         "step": run.output or run.duration / 1000, "tolerance": run.rtol,
         "inputs": {name: float(value) for name, value in inputs.items()},
-        "parameters": {name: float(value) for name, value in parameters_of(scene).items()},
+        "parameters": {name: float(value) for name, value in parameters.items()},
         "outputs": {name: values[name] for name in chosen},
     }  # fmt: skip

@@ -13,11 +13,10 @@ from xml.etree.ElementTree import Element, SubElement
 
 from pythonfmu import DefaultExperiment, Fmi2Causality, Fmi2Slave, Fmi2Variability, Real
 
+from ...analyses.load_scene import load_scene
 from ...errors import StiffmbsError
-from .stepping import CommunicationSteps
-
-ABOUT, SCENE = "model.json", "scene.yaml"
-"""Files among the FMU's resources: its variables, and the scene."""
+from ..simulation import Simulation, simulation
+from .build import ABOUT, SCENE
 
 
 def hold(names: dict[str, Any]) -> None:
@@ -41,12 +40,12 @@ class SceneSlave(Fmi2Slave):  # type: ignore[misc]
         about = json.loads((folder / ABOUT).read_text(encoding="utf-8"))
         self.description, self.version = about["description"], about["version"]
         self.default_experiment = DefaultExperiment(*(about[name] for name in ("start", "stop", "step", "tolerance")))
-        self._steps = CommunicationSteps(folder / SCENE)
+        self._path, self._rtol = folder / SCENE, float(about["tolerance"])
         self._inputs: dict[str, float] = dict(about["inputs"])
         self._parameters: dict[str, float] = dict(about["parameters"])
         self._start: float = about["start"]
         self._tolerance: float | None = None
-        self._begun = True  # with the values of the scene's file
+        self._simulation: Simulation | None = None
         self._channels: dict[str, float] | None = dict(about["outputs"])
         self._register(self._inputs, Fmi2Causality.input, Fmi2Variability.continuous)
         self._register(self._parameters, Fmi2Causality.parameter, Fmi2Variability.fixed)
@@ -73,7 +72,8 @@ class SceneSlave(Fmi2Slave):  # type: ignore[misc]
             def put(number: float, name: str = name) -> None:
                 values[name] = number
                 self._channels = None
-                self._begun = self._begun and causality == Fmi2Causality.input
+                if causality != Fmi2Causality.input:
+                    self._simulation = None
 
             self.register_variable(
                 Real(
@@ -89,32 +89,41 @@ class SceneSlave(Fmi2Slave):  # type: ignore[misc]
 
     def _value(self, name: str) -> float:
         if self._channels is None:
-            self._begin()
-            self._channels = self._steps.values(self._inputs)
+            running = self._running()
+            running.set_inputs(self._inputs)
+            self._channels = running.channels
         return self._channels[name]
 
     def setup_experiment(self, start_time: float, stop_time: float | None, tolerance: float | None) -> None:
         """Store the start time, and the tolerance, which is used if it is finer than the scene's."""
         self._start, self._tolerance = start_time, tolerance
-        self._begun, self._channels = False, None
+        self._simulation = self._channels = None
 
     def exit_initialization_mode(self) -> None:
         """Read the scene with the parameters and inputs that were set."""
-        self._begun, self._channels = False, None
-        self._begin()
+        self._simulation = self._channels = None
+        self._running()
 
-    def _begin(self) -> None:
-        """Read the scene with the values that were set, unless it has been read."""
-        if not self._begun:
-            finer = self._tolerance and min(self._tolerance, self._steps.scene.run.rtol)
-            self._steps.begin(self._start, self._parameters, self._inputs, finer or None)
-            self._begun = True
+    def _running(self) -> Simulation:
+        """Return the simulation, of the scene with the values that were set."""
+        if self._simulation is None:
+            rtol = min(self._tolerance or self._rtol, self._rtol)
+            values = {f"parameters.{name}": value for name, value in self._parameters.items()}
+            values |= {f"inputs.{name}": value for name, value in self._inputs.items()}
+            values |= {"run.start": self._start} | ({"run.rtol": rtol} if self._tolerance else {})
+            self._simulation = simulation(
+                load_scene(self._path, [(path, repr(value)) for path, value in values.items()])
+            )
+        return self._simulation
 
     def do_step(self, current_time: float, step_size: float) -> bool:
-        """Advance to the next communication point; inputs are constant over the step."""
+        """Advance to the next communication point; inputs are constant over the step.
+
+        The integrator keeps its history while the inputs do not change.
+        """
         self._channels = None
         try:
-            self._steps.step(step_size, self._inputs)
+            self._running().step(step_size, self._inputs)
         except StiffmbsError as error:
             self.log(str(error))
             return False

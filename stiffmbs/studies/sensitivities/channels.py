@@ -10,12 +10,11 @@ from ...analyses.job import Job
 from ...compile.directional.direction import Numbers
 from ...compile.reactions import reactions
 from ...compile.system import System
+from ...dynamics.dynamics import OutputRows
 from ...results.body_axes import in_own_axes
-from ...results.channels import counters
+from ...results.channels import counters, state_channels
 from ...results.requests import requested
-from ...results.states import state_channels
-from ...solve.dynamics import OutputRows
-from ...solve.variations.block_system import Change
+from ...sensitivity_equations.block_system import Change
 from .set_up import SetUp
 
 
@@ -26,7 +25,6 @@ def changed_channels(
 
     Parameters
     ----------
-    system : System
     u : ndarray, shape (instants, n_u)
     numbers : sequence of Numbers
         Numbers of the directions.
@@ -63,9 +61,7 @@ def changed_requests(
 
     Parameters
     ----------
-    job : Job
     set_ups : sequence of SetUp
-    rows : OutputRows
     channels : mapping of str to ndarray
         Channels that formulas read, shape (n,).
     slopes : mapping of str to ndarray

@@ -8,8 +8,8 @@ import numpy as np
 
 from ...analyses.job import Job, prepare
 from ...analyses.renumber import renumbered
-from ...describe.files.written_scene import WrittenScene
-from ...describe.settings import RunSettings
+from ...model.files.written_scene import WrittenScene
+from ...model.settings import RunSettings
 from ..parameters import Sought
 from .parameters import Scenes
 from .sensitivities import DifferentiatedRun, differentiable
@@ -20,11 +20,8 @@ class Gradients:
 
     Parameters
     ----------
-    written : WrittenScene
-    ranges : Sought
     texts : sequence of str
         Outputs, formulas of channels.
-    settings : RunSettings
     times : ndarray, optional
         Output instants that replace those of the settings.
     """

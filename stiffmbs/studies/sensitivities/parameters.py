@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-import copy
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
 from ...analyses.job import data_of
-from ...describe.files.other_forces import OtherForces
-from ...describe.files.unchanged import Unchanged
-from ...describe.files.written_scene import WrittenScene
-from ...describe.reading import made_scene
-from ...describe.scene import Scene
 from ...errors import InputError
-from ..case_solver import written_scene
+from ...model.files.other_forces import OtherForces
+from ...model.files.written_scene import WrittenScene
+from ...model.scene import Scene
+from ...reading.did_you_mean import did_you_mean
+from ...reading.files.unchanged import Unchanged
+from ..case_solver import read_changed, written_scene
 
 STEP = 1e-4
 """Step of a parameter for set-up differences, relative to it; absolute, SI units, for a zero parameter."""
@@ -29,7 +28,6 @@ class Scenes:
 
     Parameters
     ----------
-    written : WrittenScene
     unchanged : Unchanged, optional
         Data that has been validated before.
 
@@ -43,7 +41,7 @@ class Scenes:
         self._written, self._unchanged = written, unchanged or Unchanged()
         self._other_forces: dict[tuple[str, ...], OtherForces] = {}
         as_read = self._unchanged.scene
-        self.known = as_read if as_read and as_read.written is written else self._read(())
+        self.known = as_read if as_read and as_read.written is written else read_changed(written, (), self._unchanged)
 
     @classmethod
     def of_model(cls, model: Any) -> Scenes:
@@ -72,25 +70,14 @@ class Scenes:
             found = self._other_forces[tuple(names)].scene(values)
             if found is not None:
                 return found
-        return self._read(changes)
-
-    def _read(self, changes: Sequence[tuple[str, Any]]) -> Scene:
-        written = self._written
-        content, all_changes = copy.deepcopy(dict(written.content)), (*written.changes, *changes)
-        return made_scene(content, all_changes, written.source, lambda _: None, written.folder, self._unchanged)
+        return read_changed(self._written, changes, self._unchanged)
 
 
 class Parameter:
     """Number in a scene: a parameter, or a path such as ``forces.spring.stiffness`` or ``bodies.bar.position.0``.
 
-    Parameters
-    ----------
-    scenes : Scenes
-    name : str
-
     Attributes
     ----------
-    name : str
     value : float
         Value in the scene, SI units.
 
@@ -149,7 +136,8 @@ def _found(scene: Scene, name: str) -> tuple[str, tuple[int, ...], Any]:
     if len(parts) < 2 or parts[0] == "run":
         known = ", ".join(scene.parameters) or "none"
         raise InputError(
-            f"to: found '{name}', expected a parameter of the scene ({known}) or a path such as forces.spring.stiffness"
+            f"to: found '{name}'{did_you_mean(name, scene.parameters)}, expected a parameter of the scene ({known}) or a path such as "
+            "forces.spring.stiffness"
         )
     at: Any = scene
     k = 0

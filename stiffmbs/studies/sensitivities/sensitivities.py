@@ -10,17 +10,17 @@ from typing import Any
 import numpy as np
 
 from ...analyses.job import Job, Runnable, prepare
-from ...describe.settings import RunSettings
+from ...dynamics.dynamics import OutputRows
 from ...errors import InputError, SolverError
+from ...model.settings import RunSettings
 from ...results.channels import channels_of
+from ...sensitivity_equations.along_run import AlongRun, Instant, Side
+from ...sensitivity_equations.jumps import NO_JUMP
+from ...sensitivity_equations.recorded import Recorder
 from ...solve.bdf import integrated
-from ...solve.dynamics import OutputRows
 from ...solve.missing_rows import reported
 from ...solve.settings import changed
 from ...solve.trajectory import Grid, Outcome
-from ...solve.variations.along_run import AlongRun, Instant, Side
-from ...solve.variations.jumps import NO_JUMP
-from ...solve.variations.recorded import Recorder
 from ..outputs import outputs_of
 from .channels import changed_channels, changed_requests
 from .formulas import Formula
@@ -32,7 +32,7 @@ TIGHTER, TIGHTEST = 1e-6, 1e-12
 
 Derivatives of forces in stiff bushings and of vibrations are less accurate than the motion.
 """
-NUMBERS_OF_STEPS = (200, 1600, 12_800, 102_400)
+NUMBERS_OF_STEPS = tuple(200 * 8**k for k in range(4))
 """Least numbers of steps of a run.
 
 The error control does not see variations: a motion at rest, or a steady one, takes steps of any length.
@@ -179,7 +179,6 @@ class DifferentiatedRun:
 
     Parameters
     ----------
-    scenes : Scenes
     names : sequence of str
         Names of the parameters.
     job : Job
@@ -200,6 +199,10 @@ class DifferentiatedRun:
     def __init__(self, scenes: Scenes, names: Sequence[str], job: Job, times: np.ndarray | None = None) -> None:
         parameters = [Parameter(scenes, name) for name in names]
         self._job = job
+        if job.dynamics.system.has_coupled_inertia:
+            raise InputError(
+                "bodies: found a flexible body, expected rigid ones: sensitivities do not include flexible bodies"
+            )
         self._set_ups = [SetUp(job, parameter) for parameter in parameters]
         self._numbers = [set_up.numbers for set_up in self._set_ups]
         self._recorder = Recorder(job.dynamics, job.settings)

@@ -20,16 +20,15 @@ from ...compile.directional.direction import Numbers
 from ...compile.inputs.features import input_features
 from ...compile.kind import sorted_out
 from ...compile.system import System
-from ...describe.scene import Scene
+from ...dynamics.dynamics import Dynamics
 from ...errors import InputError, SolverError
-from ...solve.dynamics import Dynamics
-from ...solve.variations.jumps import BreakpointRates
+from ...model.scene import Scene
+from ...results.scales import ROUNDING
+from ...sensitivity_equations.jumps import BreakpointRates
 from .parameters import Parameter
 
 HELD = ("dimensions", "gravity", "markers", "states", "inputs", "roads")
 """Sections on which every element may depend."""
-SAME_TIME = 1e-9
-"""Largest distance of corresponding breakpoints, as a part of the run."""
 
 
 class SetUp:
@@ -39,7 +38,6 @@ class SetUp:
     ----------
     job : Job
         Job of the unchanged scene.
-    parameter : Parameter
 
     Raises
     ------
@@ -165,7 +163,11 @@ class SetUp:
             return np.zeros(system.n_q), np.zeros(system.n_u)
         if self._described and not (system.n_c or system.n_counters or system.algebraic.any()):  # no assembly
             return self.derivative([s.q for s in self._systems]), self.derivative([s.u for s in self._systems])
-        starts = [self._started(scene, other) for scene, other in zip(self.scenes, self._systems, strict=True)]
+        others = [Dynamics(replace(other, active=system.active)) for other in self._systems]
+        starts = [
+            start_of_job(replace(self._job, data=scene, dynamics=dynamics))
+            for scene, dynamics in zip(self.scenes, others, strict=True)
+        ]
         return self.derivative([start.q for start in starts]), self.derivative([start.u for start in starts])
 
     def _start_follows(self, numbers: Numbers) -> bool:
@@ -180,16 +182,12 @@ class SetUp:
         """Return True if a run starts as described, apart from the projection onto the constraints."""
         return bool(getattr(self._job.data, "start", "described") == "described")
 
-    def _started(self, scene: Scene, system: System) -> Any:
-        dynamics = Dynamics(replace(system, active=self._job.dynamics.system.active))
-        return start_of_job(replace(self._job, data=scene, dynamics=dynamics))
-
     def has_breakpoint(self, t: float) -> bool:
         """Return True if an input has a breakpoint at t; a run also restarts for narrow features of laws."""
         return bool(self._near(t).any())
 
     def _near(self, t: float) -> np.ndarray:
-        return np.abs(self._breakpoints[0] - t) <= SAME_TIME * (self._job.grid.end - self._job.grid.start)
+        return np.abs(self._breakpoints[0] - t) <= ROUNDING * (self._job.grid.end - self._job.grid.start)
 
     def breakpoint_rate(self, t: float, needed: bool) -> float:
         """Return the derivative of the breakpoint in time at t.

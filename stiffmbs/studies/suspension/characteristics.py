@@ -11,10 +11,10 @@ from collections.abc import Mapping
 import numpy as np
 
 from ...compile.quaternions import rotated
-from ...describe.forces.spring_damper import LineSpring
-from ...describe.marker import GROUND
-from ...describe.model_data import ModelData
-from ...describe.spatial.marker import Marker
+from ...elements.forces.spring_damper import LineSpring
+from ...elements.spatial.marker import Marker
+from ...model.model_data import ModelData
+from ...results.marker_motion import Motions
 from .rig import SIDES, Axle
 
 UNITS = {
@@ -46,9 +46,11 @@ def characteristics(
         ``left.travel``, ``left.toe`` ... ``right.camber``, in the units of `UNITS`.
     """
     found: dict[str, np.ndarray] = {}
+    count = len(next(iter(channels.values())))
+    motions = Motions(model, channels, count)
     for side, sign in zip(SIDES, (1.0, -1.0), strict=True):
-        wheel, patch = (point(model, channels, axle.at(side, name)) for name in ("spindle", "patch"))
-        along = direction(model, channels, axle.at(side, "spindle"), 1)
+        spindle, patch = motions.of(axle.at(side, "spindle")), motions.of(axle.at(side, "patch")).point
+        wheel, along = spindle.point, rotated(spindle.orientation, np.tile([0.0, 1.0, 0.0], (count, 1)))
         travel, load = wheel[:, 2] - wheel[centre, 2], channels[f"kc.{side}.pad.fz"]
         found |= {
             f"{side}.travel": 1e3 * travel,
@@ -61,7 +63,7 @@ def characteristics(
         if lifted:
             found[f"{side}.wheel_rate"] = 1e-3 * np.gradient(load, travel)
             for name, spring in springs_of(model, getattr(axle, side)):
-                ends = [point(model, channels, marker) for marker in (spring.i, spring.j)]
+                ends = [motions.of(marker).point for marker in (spring.i, spring.j)]
                 length = np.linalg.norm(ends[0] - ends[1], axis=1)
                 found[f"{side}.motion_ratio.{name}"] = -np.gradient(length, travel)
     return found
@@ -74,30 +76,3 @@ def springs_of(model: ModelData, suspension: str) -> list[tuple[str, LineSpring[
         for name, force in model.forces.items()
         if name.startswith((f"{suspension}.", f"{suspension}_")) and isinstance(force, LineSpring)
     ]
-
-
-def point(model: ModelData, channels: Mapping[str, np.ndarray], marker: Marker) -> np.ndarray:
-    """Return the position of a marker over time, in ground axes, m, shape (n, 3)."""
-    place = model.place(marker)
-    if marker.body == GROUND:
-        return np.broadcast_to(place.point, (len(next(iter(channels.values()))), 3))
-    body = model.bodies[marker.body]
-    arm = np.subtract(place.point, body.center_of_mass)  # channels refer to the centre of mass
-    centre = np.stack([channels[f"{marker.body}.{axis}"] for axis in "xyz"], axis=1)
-    return np.asarray(centre + turned(channels, marker.body, arm))
-
-
-def direction(model: ModelData, channels: Mapping[str, np.ndarray], marker: Marker, axis: int) -> np.ndarray:
-    """Return the direction of an axis (0, 1, 2) of a marker over time, in ground axes, shape (n, 3)."""
-    from ...describe.spatial.orientation import matrix
-
-    own = matrix(model.place(marker).orientation)[:, axis]
-    if marker.body == GROUND:
-        return np.broadcast_to(own, (len(next(iter(channels.values()))), 3))
-    return turned(channels, marker.body, own)
-
-
-def turned(channels: Mapping[str, np.ndarray], body: str, vector: np.ndarray) -> np.ndarray:
-    """Transform a vector from a body's own axes to ground axes over time, shape (n, 3)."""
-    quaternions = np.stack([channels[f"{body}.q{k}"] for k in range(4)], axis=1)
-    return np.asarray(rotated(quaternions, np.broadcast_to(vector, (len(quaternions), 3))))

@@ -9,8 +9,9 @@ import numpy as np
 
 from ...analyses.job import Runnable, data_of
 from ...analyses.quasi_static import quasi_static
-from ...describe.table import Table
 from ...errors import InputError
+from ...reading.did_you_mean import did_you_mean
+from ...reading.table import Table
 from .characteristics import characteristics
 from .rig import INPUTS, SIDES, Axle, axle_of, design_height, on_rig
 
@@ -28,6 +29,10 @@ class LoadCase:
         SI value of one unit of the abscissa.
     inputs : mapping of str to float
         Value of each input for an abscissa of 1 in SI units.
+    amplitude : float
+        Default amplitude, in the unit of the abscissa.
+    opposite : bool
+        True if the right wheel follows the left one with opposite sign.
     """
 
     name: str
@@ -35,26 +40,24 @@ class LoadCase:
     unit: str
     scale: float
     inputs: dict[str, float]
+    amplitude: float
+    opposite: bool = False
 
 
 CASES = (
-    LoadCase("bump", "travel of both wheels", "mm", 1e-3, {"kc_left": 1.0, "kc_right": 1.0}),
-    LoadCase("roll", "travel, left up and right down", "mm", 1e-3, {"kc_left": 1.0, "kc_right": -1.0}),
-    LoadCase("steer", "travel of the rack to the left", "mm", 1e-3, {"kc_rack": 1.0}),
-    LoadCase("lateral", "force outwards at both patches", "kN", 1e3, {"kc_lateral": 1.0}),
-    LoadCase("lateral_parallel", "force to the left at both patches", "kN", 1e3, {"kc_parallel": 1.0}),
-    LoadCase("brake", "braking force at both patches", "kN", 1e3, {"kc_brake": 1.0}),
-    LoadCase("traction", "driving force at both wheels' centres", "kN", 1e3, {"kc_traction": 1.0}),
-    LoadCase("aligning", "torque that turns both wheels inwards", "N m", 1.0, {"kc_torque": 1.0}),
-    LoadCase("aligning_parallel", "torque that turns both wheels to the left", "N m", 1.0, {"kc_turn": 1.0}),
+    LoadCase("bump", "travel of both wheels", "mm", 1e-3, {"kc_left": 1.0, "kc_right": 1.0}, 50.0),
+    LoadCase("roll", "travel, left up and right down", "mm", 1e-3, {"kc_left": 1.0, "kc_right": -1.0}, 30.0, True),
+    LoadCase("steer", "travel of the rack to the left", "mm", 1e-3, {"kc_rack": 1.0}, 30.0, True),
+    LoadCase("lateral", "force outwards at both patches", "kN", 1e3, {"kc_lateral": 1.0}, 2.0),
+    LoadCase("lateral_parallel", "force to the left at both patches", "kN", 1e3, {"kc_parallel": 1.0}, 2.0, True),
+    LoadCase("brake", "braking force at both patches", "kN", 1e3, {"kc_brake": 1.0}, 2.0),
+    LoadCase("traction", "driving force at both wheels' centres", "kN", 1e3, {"kc_traction": 1.0}, 2.0),
+    LoadCase("aligning", "torque that turns both wheels inwards", "N m", 1.0, {"kc_torque": 1.0}, 100.0),
+    LoadCase(
+        "aligning_parallel", "torque that turns both wheels to the left", "N m", 1.0, {"kc_turn": 1.0}, 100.0, True
+    ),
 )
-AMPLITUDES = {
-    "bump": 50.0, "roll": 30.0, "steer": 30.0, "lateral": 2.0, "lateral_parallel": 2.0, "brake": 2.0, "traction": 2.0,
-    "aligning": 100.0, "aligning_parallel": 100.0,
-}  # fmt: skip
-"""Default amplitudes, in the units of the cases."""
-ONE_SIDED = ("roll", "steer", "lateral_parallel", "aligning_parallel")
-"""Cases in which the right wheel follows the left one with opposite sign."""
+AMPLITUDES = {case.name: case.amplitude for case in CASES}
 
 
 @dataclass(frozen=True)
@@ -102,11 +105,11 @@ class KinematicsAndCompliance:
     def asymmetry(self) -> float:
         """Return the largest difference between left and right, relative to the largest value of the curve or 1.
 
-        In the `ONE_SIDED` cases the order of the right curve is reversed.
+        In cases of opposite signs the order of the right curve is reversed.
         """
         worst = 0.0
-        for name, sweep in self.sweeps.items():
-            order = slice(None, None, -1) if name in ONE_SIDED else slice(None)
+        for sweep in self.sweeps.values():
+            order = slice(None, None, -1) if sweep.case.opposite else slice(None)
             for left in (each for each in sweep.channels if each.startswith("left.")):
                 a, b = sweep.channels[left], sweep.channels[f"right.{left.removeprefix('left.')}"][order]
                 worst = max(worst, float(np.max(np.abs(a - b)) / max(1.0, np.max(np.abs(a)))))
@@ -170,7 +173,10 @@ def kinematics_and_compliance(
         raise InputError(f"points: found {points}, expected an odd number, 5 or more")
     for name, amplitude in amplitudes.items():
         if name not in AMPLITUDES or not np.isfinite(amplitude) or amplitude < 0:
-            raise InputError(f"{name}={amplitude!r}: found no such case or amplitude, expected {', '.join(AMPLITUDES)}")
+            near = did_you_mean(name, AMPLITUDES)
+            raise InputError(
+                f"{name}={amplitude!r}: found no such case or amplitude{near}, expected {', '.join(AMPLITUDES)}"
+            )
     data = data_of(model)
     if data.dimensions != 3:
         raise InputError("found a scene in the plane, expected one in space")

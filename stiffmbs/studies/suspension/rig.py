@@ -10,19 +10,20 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
-from ...describe.element import Element, Force, Joint
-from ...describe.formula.formula import Formula
-from ...describe.joints.constraint_equation import ConstraintEquation
-from ...describe.joints.drive import Drive
-from ...describe.marker import GROUND, MarkerReference
-from ...describe.model_data import ModelData
-from ...describe.spatial.forces.applied import AppliedForce, AppliedTorque
-from ...describe.spatial.joints.fixed import Fixed
-from ...describe.spatial.marker import Marker
-from ...describe.spatial.model import Model
-from ...describe.spatial.tyre import Tyre
-from ...describe.table import Table
+from ...elements.element import Element, Force, Joint
+from ...elements.joints.constraint_equation import ConstraintEquation
+from ...elements.joints.drive import Drive
+from ...elements.spatial.forces.applied import AppliedForce, AppliedTorque
+from ...elements.spatial.joints.fixed import Fixed
+from ...elements.spatial.marker import Marker
+from ...elements.spatial.tyre import Tyre
 from ...errors import InputError
+from ...model.model_data import ModelData
+from ...model.spatial_model import Model
+from ...reading.did_you_mean import did_you_mean
+from ...reading.formula.formula import Formula
+from ...reading.marker import GROUND, MarkerReference
+from ...reading.table import Table
 
 INPUTS = (
     "kc_left", "kc_right", "kc_rack", "kc_lateral", "kc_parallel", "kc_brake", "kc_traction", "kc_torque", "kc_turn"
@@ -96,7 +97,8 @@ def axle_of(model: ModelData, name: str, body: str | None = None, steering: str 
     for side in SIDES:
         _check_carrier(model, axle, side)
     if axle.body != GROUND and axle.body not in model.bodies:
-        raise InputError(f"found no body '{axle.body}' to clamp, expected one of {', '.join(model.bodies)}")
+        near = did_you_mean(axle.body, model.bodies)
+        raise InputError(f"found no body '{axle.body}'{near} to clamp, expected one of {', '.join(model.bodies)}")
     return replace(axle, steering=_steering(model, steering))
 
 
@@ -131,7 +133,8 @@ def _check_carrier(model: ModelData, axle: Axle, side: str) -> None:
 def _steering(model: ModelData, given: str | None) -> str | None:
     slides = [name for name, joint in model.joints.items() if joint.kind == "prismatic"]
     if given is not None and given not in slides:
-        raise InputError(f"found no prismatic joint '{given}', expected one of {', '.join(slides) or 'none'}")
+        near = did_you_mean(given, slides)
+        raise InputError(f"found no prismatic joint '{given}'{near}, expected one of {', '.join(slides) or 'none'}")
     guides = [name for name in slides if name.rpartition(".")[2] == "guide"]
     return given or (guides[0] if len(guides) == 1 else None)
 
@@ -142,7 +145,13 @@ def on_rig(scene: ModelData, axle: Axle, tables: dict[str, Table]) -> ModelData:
     bodies = _bodies_of(scene, axle)
     model = Model(f"{scene.name}, {axle.left} and {axle.right} on a rig", scene.gravity)
     model.markers.update(scene.markers)
-    model.bodies.update({name: _at_rest(body) for name, body in scene.bodies.items() if name in bodies})
+    model.bodies.update(
+        {
+            name: body.model_copy(update={"velocity": (0.0, 0.0, 0.0), "omega": (0.0, 0.0, 0.0)})
+            for name, body in scene.bodies.items()
+            if name in bodies
+        }
+    )
     for section, elements in ((model.joints, scene.joints), (model.forces, scene.forces)):
         section.update({name: each for name, each in elements.items() if _stays(each, bodies)})
     for name, table in tables.items():
@@ -174,24 +183,16 @@ def _hold_wheel(model: Any, axle: Axle, side: str) -> None:
         model.add(f"kc.{side}.{name}", part)
 
 
-def _at_rest(body: Any) -> Any:
-    return body.model_copy(update={"velocity": (0.0, 0.0, 0.0), "omega": (0.0, 0.0, 0.0)})
-
-
 def _bodies_of(scene: ModelData, axle: Axle) -> set[str]:
     """Return the bodies connected to the uprights other than through the body that carries them."""
-    ends = [set(_bodies_at(each)) - {axle.body, GROUND} for each in _elements(scene) if not _depends_on_more(each)]
+    elements = (*scene.joints.values(), *scene.forces.values())
+    ends = [set(_bodies_at(each)) - {axle.body, GROUND} for each in elements if not _depends_on_more(each)]
     found: set[str] = set()
     grown = {axle.carrier(side) for side in SIDES}
     while grown != found:
         found = grown
         grown = found.union(*(each for each in ends if each & found))
     return found | ({axle.body} - {GROUND})
-
-
-def _elements(scene: ModelData) -> Iterator[Element]:
-    yield from scene.joints.values()
-    yield from scene.forces.values()
 
 
 def _bodies_at(element: Element) -> Iterator[str]:

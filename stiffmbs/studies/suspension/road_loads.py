@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 
 from ...analyses.job import Runnable, data_of
-from ...describe.marker import GROUND
-from ...describe.model_data import ModelData
-from ...describe.spatial.forces.elastic import Elastic
+from ...elements.spatial.forces.elastic import Elastic
 from ...errors import InputError
+from ...model.model_data import ModelData
+from ...reading.marker import GROUND
+from ...results.marker_motion import Motions
 from ...results.solution import Solution
-from .characteristics import direction
 
 COMPONENTS = ("fx", "fy", "fz", "tx", "ty", "tz")
 
@@ -97,6 +97,7 @@ def road_loads(model: Runnable, cases: Mapping[str, Solution]) -> RoadLoads:
 
 def _in_own_axes(model: ModelData, names: list[str], case: str, solution: Solution) -> dict[str, np.ndarray]:
     found: dict[str, np.ndarray] = {}
+    motions = Motions(model, solution, len(solution.time))
     for name in names:
         marker = model.forces[name].j  # type: ignore[attr-defined]
         needed = [f"{name}.{part}" for part in COMPONENTS]
@@ -104,12 +105,10 @@ def _in_own_axes(model: ModelData, names: list[str], case: str, solution: Soluti
         for channel in needed:
             if channel not in solution:
                 raise InputError(f"{case}: found no channel '{channel}', expected a run of this model")
-        along = [direction(model, solution, marker, axis) for axis in range(3)]
+        motion = motions.of(marker)
         for kind in "ft":
             vector = np.stack([solution[f"{name}.{kind}{axis}"] for axis in "xyz"], axis=1)
-            found |= {
-                f"{name}.{kind}{axis}": np.sum(vector * unit, axis=1) for axis, unit in zip("xyz", along, strict=True)
-            }
+            found |= {f"{name}.{kind}{axis}": part for axis, part in zip("xyz", motion.along(vector).T, strict=True)}
     return found
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from stiffmbs.solve.native.eliminated import accelerate
+from stiffmbs.dynamics.elimination.native.eliminated import accelerate
 
 
 def accelerate_often(count, t, acceleration, eliminated):

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stiffmbs.describe.marker import Marker
-from stiffmbs.describe.model_data import ModelData
+from stiffmbs.model.model_data import ModelData
+from stiffmbs.reading.marker import Marker
 
 from ..by_hand import half_car
 

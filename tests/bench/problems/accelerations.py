@@ -11,7 +11,7 @@ import numpy as np
 
 from stiffmbs.analyses.job import Job, prepare
 from stiffmbs.compile.machine.routines import Routine
-from stiffmbs.describe.model_data import ModelData
+from stiffmbs.model.model_data import ModelData
 
 from ..benchmark import Row
 from ..by_hand.chain_minimal import accelerations

@@ -9,7 +9,7 @@ import numpy as np
 
 from stiffmbs import spatial
 from stiffmbs.analyses.job import prepare
-from stiffmbs.describe.model_data import ModelData
+from stiffmbs.model.model_data import ModelData
 from stiffmbs.solve.trajectory import Outcome, Trajectory
 
 from ..contestant import Contestant, Failed, Solve

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from stiffmbs.studies.variation import Range
+from stiffmbs.reading.variation import Range
 
 from ..intervals import IntervalRuns
 

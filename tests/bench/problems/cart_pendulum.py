@@ -6,7 +6,7 @@ from functools import partial
 
 import numpy as np
 
-from stiffmbs.describe.reading import read_scene
+from stiffmbs.model.read_scene import read_scene
 
 from ..by_hand import cart_pendulum as hand
 from ..contestant import Contestant, auto, bdf, bdf_of_all, by_hand, converged, dop853, minimal

@@ -9,8 +9,8 @@ from functools import partial
 
 import numpy as np
 
-from stiffmbs.describe.model_data import ModelData
-from stiffmbs.describe.reading import read_scene
+from stiffmbs.model.model_data import ModelData
+from stiffmbs.model.read_scene import read_scene
 
 from ..by_hand import chain as hand
 from ..by_hand import chain_minimal

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from stiffmbs.analyses.job import prepare
-from stiffmbs.describe.model_data import ModelData
-from stiffmbs.describe.reading import read_scene
+from stiffmbs.model.model_data import ModelData
+from stiffmbs.model.read_scene import read_scene
 
 from ..benchmark import Row
 

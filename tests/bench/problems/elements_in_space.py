@@ -15,8 +15,8 @@ from stiffmbs.analyses.usual_elements import usual_elements
 from stiffmbs.cache.entries import DIRECTORY_VARIABLE
 from stiffmbs.compile.compile_model import compile_model
 from stiffmbs.compile.group import Group
-from stiffmbs.compile.kernels import compile_usual
 from stiffmbs.compile.kind import sorted_out
+from stiffmbs.compile.record import compile_usual
 from stiffmbs.compile.state import State
 from stiffmbs.compile.system import System
 

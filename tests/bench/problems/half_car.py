@@ -6,7 +6,7 @@ from functools import partial
 
 import numpy as np
 
-from stiffmbs.describe.reading import read_scene
+from stiffmbs.model.read_scene import read_scene
 
 from ..by_hand import half_car as hand
 from ..by_hand.runge_kutta import half_car_rows

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import partial
 
-from stiffmbs.describe.reading import read_scene
+from stiffmbs.model.read_scene import read_scene
 
 from ..gradients import GradientRuns
 from .half_car import SCENE

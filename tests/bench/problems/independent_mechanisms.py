@@ -12,8 +12,8 @@ import numpy as np
 
 from stiffmbs.analyses.job import prepare
 from stiffmbs.comparison.turns import Timed, take_turns
-from stiffmbs.describe.model_data import ModelData
-from stiffmbs.describe.reading import read_scene
+from stiffmbs.model.model_data import ModelData
+from stiffmbs.model.read_scene import read_scene
 
 from ..benchmark import Row
 from ..drives import SOLVERS

@@ -14,15 +14,15 @@ from stiffmbs.analyses.job import Job, prepare
 from stiffmbs.compile.equations import Equations
 from stiffmbs.compile.machine.routines import TERMS
 from stiffmbs.compile.terms import TERM_SETS
-from stiffmbs.describe.model_data import ModelData
+from stiffmbs.model.model_data import ModelData
 from stiffmbs.solve.error_control.error_test import CHOSEN
 from stiffmbs.solve.formulations import FORMULATIONS
-from stiffmbs.solve.ida.choice import PAIRED, fixed_cost
+from stiffmbs.solve.ida.choice import COSTS, sparse_cost
 from stiffmbs.solve.ida.native_engine import NativeEngine
-from stiffmbs.solve.ida.paired_columns import PairedColumns
 from stiffmbs.solve.integrator import Integrator
-from stiffmbs.solve.linear.elimination_order import elimination_order
+from stiffmbs.solve.linear_solvers.fixed_order import PairedColumns
 from stiffmbs.solve.trajectory import Trajectory
+from stiffmbs.sparse.elimination_order import elimination_order
 
 from ..benchmark import Row
 from ..error_control import scene
@@ -39,7 +39,7 @@ def with_pivots(job: Job) -> Job:
     equations = Equations(FORMULATIONS[job.settings.formulation](job.settings), dynamics.system, dynamics.coordinates)
     order = elimination_order(equations)
     matrix = PairedColumns(equations.n, *equations.pattern, order)
-    cost = fixed_cost(equations.n, order, PAIRED)
+    cost = sparse_cost(equations.n, order, COSTS.fixed)
     engine = NativeEngine(equations, dynamics, matrix, job.settings, control)
     dynamics.kept("bdf", (job.settings, control), lambda: (equations, engine, cost))
     return job

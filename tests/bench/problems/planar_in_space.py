@@ -13,7 +13,7 @@ from stiffmbs.analyses.in_space import in_space
 from stiffmbs.analyses.job import Job, prepare
 from stiffmbs.analyses.load_scene import load_scene
 from stiffmbs.compile.bodies import BODY_KINDS
-from stiffmbs.describe.model import PlanarData
+from stiffmbs.model.model import PlanarData
 
 from ..benchmark import Row
 from ..scenes.examples import example_scenes

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import partial
 
-from stiffmbs.describe.reading import read_scene
+from stiffmbs.model.read_scene import read_scene
 
 from ..benchmark import Row
 from ..by_hand import half_car as hand

@@ -9,8 +9,8 @@ from typing import Any
 
 from stiffmbs.analyses.job import prepare
 from stiffmbs.comparison.turns import seconds_of
-from stiffmbs.describe.model_data import ModelData
-from stiffmbs.describe.reading import read_scene
+from stiffmbs.model.model_data import ModelData
+from stiffmbs.model.read_scene import read_scene
 
 from ..benchmark import Row
 from ..drives import CARS, SOLVERS, Seen, converged, seen

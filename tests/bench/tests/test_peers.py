@@ -10,10 +10,10 @@ import pytest
 from click.testing import CliRunner
 
 from stiffmbs.compile.compile_model import compile_model
-from stiffmbs.solve.dynamics import Dynamics
+from stiffmbs.dynamics.dynamics import Dynamics
+from stiffmbs.dynamics.initial import initial_values
 from stiffmbs.solve.explicit.projected import TRAITS
 from stiffmbs.solve.formulations import FORMULATIONS
-from stiffmbs.solve.initial import initial_values
 from tests.bench.__main__ import bench
 from tests.bench.benchmark import Row, families
 from tests.bench.contestant import Contestant, Failed

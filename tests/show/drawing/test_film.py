@@ -13,12 +13,11 @@ from stiffmbs.commands.main import main
 from stiffmbs.show.drawing.animate import traced
 from stiffmbs.show.drawing.derive import drawing_of
 from stiffmbs.show.drawing.film import Pace, _ffmpeg, pictures
-from stiffmbs.show.drawing.following import followed_body
 from stiffmbs.show.drawing.picture import Shown
-from stiffmbs.show.drawing.poses import Poses, poses_of
+from stiffmbs.show.drawing.poses import Poses, followed_body, poses_of
 from stiffmbs.show.drawing.view import view_named
-from stiffmbs.show.figure import drawn
-from stiffmbs.show.plot import figure_of, plotted_runs
+from stiffmbs.show.figure import drawn, figure_of
+from stiffmbs.show.plot import plotted_runs
 
 from ...conftest import EXAMPLES
 

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 from stiffmbs import Body, InputError, Model, read_scene, spatial
-from stiffmbs.describe.spatial.body import Body as SpatialBody
+from stiffmbs.elements.spatial.body import Body as SpatialBody
 from stiffmbs.show.drawing import solids
 from stiffmbs.show.drawing.bodies import given_shapes
 from stiffmbs.show.drawing.mesh_file import read_mesh
 from stiffmbs.show.drawing.scene_graph import Solid
-from stiffmbs.show.drawing.triangles import triangles
+from stiffmbs.show.drawing.solids import triangles
 
 SHAPES = """
       - {type: box, size: [100 mm, 0.2], point: [0.3, 0], angle: 90 deg}
@@ -203,7 +203,7 @@ use: {{right: {{part: p}}, left: {{part: p, mirror: x}}}}
 
 def spatial_axes(body):
     if hasattr(body, "orientation"):
-        from stiffmbs.describe.spatial.orientation import matrix
+        from stiffmbs.elements.spatial.orientation import matrix
 
         return matrix(body.orientation)
     c, s = math.cos(body.angle), math.sin(body.angle)

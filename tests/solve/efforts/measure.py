@@ -12,7 +12,7 @@ import numpy as np
 
 import stiffmbs
 from stiffmbs.analyses.run import prepare
-from stiffmbs.solve.equilibria.equilibrium import find_equilibrium
+from stiffmbs.equilibria.equilibrium import find_equilibrium
 from tests.stress.random_statics import random_statics
 
 ROOT = Path(__file__).parents[3]

@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 import stiffmbs
 from stiffmbs import Body, Model
 from stiffmbs.analyses.job import prepare
+from stiffmbs.dynamics.elimination.eliminated import ACCELERATE
 from stiffmbs.solve.explicit import SCHEMES
-from stiffmbs.solve.linear.eliminated import ACCELERATE
 from stiffmbs.solve.trajectory import Outcome
 from tests.stress.mechanisms.parallelogram import parallelogram, swing_error
 from tests.stress.random_tree import random_tree

@@ -6,7 +6,7 @@ from scipy.integrate import solve_ivp
 
 import stiffmbs
 from stiffmbs import Body, Model, Prismatic, Revolute, TorsionSpring, spatial
-from stiffmbs.solve.dynamics import Dynamics
+from stiffmbs.dynamics.dynamics import Dynamics
 from tests.stress.families.stiffness.light_bodies import sprung as sprung_at
 
 G = 9.81

@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
-import yaml
 
 import stiffmbs
 from stiffmbs.analyses.run import prepare
+from stiffmbs.reading.files.scene_text import scene_text
+from stiffmbs.reading.files.yaml_text import read_yaml
 from stiffmbs.solve.events.restart import restarted
 from stiffmbs.solve.ida.ida import NativeIda
 from stiffmbs.solve.ida.native_engine import NativeEngine
@@ -30,7 +31,7 @@ def left_behind(job, integrator, start, t, compiled):
         assert engine.begin_at(start, t)
     else:
         integrator._begin_step_by_step(start, t)
-    connection = engine._ida.connection
+    connection = engine._ida
     tables = connection.cells, connection.output_correction._cells, connection.error_norm._cells
     relaxed = [
         values[-1 - 2 * job.dynamics.system.n_c :] for name, values in state.values.items() if values is not None
@@ -180,13 +181,14 @@ def test_an_output_time_a_rounding_behind_a_breakpoint_is_left_to_python(monkeyp
 @pytest.mark.long
 def test_rows_before_a_breakpoint_keep_the_offsets_of_their_start(examples, monkeypatch):
     """Projections change what stands still by rounding."""
-    scene = yaml.safe_load((examples / "spatial_slider_crank.yaml").read_text())
+    scene = read_yaml((examples / "spatial_slider_crank.yaml").read_text(), "scene")
     corners = "10*(max(0, min(t - 0.1, 0.2)) - 2*max(0, min(t - 0.45, 0.3)) + max(0, t - 0.8))"
     last = [*scene["bodies"]][-1]
     scene.setdefault("forces", {}).update(
         push={"type": "force", "i": last, "force": [corners, "0", "0"]},
         hold={"type": "force", "i": last, "force": [f"-3*vx({last}) - 20*dx({last})", "0", "0"]},
     )
-    text = yaml.safe_dump(scene, sort_keys=False)
-    found, _ = both_ways(prepare(stiffmbs.read_scene(text), solver="bdf", duration=1.5, rtol=1e-5), monkeypatch)
+    found, _ = both_ways(
+        prepare(stiffmbs.read_scene(scene_text(scene)), solver="bdf", duration=1.5, rtol=1e-5), monkeypatch
+    )
     assert found.statistics["breakpoints"] == 5

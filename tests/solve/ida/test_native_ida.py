@@ -4,6 +4,7 @@ import gc
 import os
 import threading
 import weakref
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -16,25 +17,23 @@ from stiffmbs.compile.state import State
 from stiffmbs.solve.error_control.newton import Stiffness
 from stiffmbs.solve.formulations.si2 import SI2_EXACT
 from stiffmbs.solve.ida import choice, libraries, operations
-from stiffmbs.solve.ida.block_lu import BlockLU
 from stiffmbs.solve.ida.choice import chosen
-from stiffmbs.solve.ida.fixed_order import FixedOrder
 from stiffmbs.solve.ida.ida import NativeIda
-from stiffmbs.solve.ida.matrices import Banded, Dense, Sparse
-from stiffmbs.solve.ida.ordering import narrowed
-from stiffmbs.solve.ida.paired_columns import PairedColumns
+from stiffmbs.solve.ida.matrices import Dense, Sparse
 from stiffmbs.solve.ida.status import Status
-from stiffmbs.solve.ida.sundae import DENSE_UP_TO, SundaeEngine
-from stiffmbs.solve.linear.elimination_order import EliminationOrder, elimination_order
+from stiffmbs.solve.ida.sundae import FALLBACK, SundaeEngine
+from stiffmbs.solve.linear_solvers.block_lu import BlockLU
+from stiffmbs.solve.linear_solvers.fixed_order import FixedOrder, PairedColumns
+from stiffmbs.sparse.elimination_order import EliminationOrder, elimination_order
 
 
 class Problem:
     """A model's consistent start, its SI2 equations and its tolerances, multipliers out of the error test."""
 
-    def __init__(self, model, rtol=1e-6, order=lambda equations: equations):
+    def __init__(self, model, rtol=1e-6):
         job = prepare(model)
         self.system, start = job.dynamics.system, job.start
-        self.equations = order(Equations(SI2_EXACT, self.system))
+        self.equations = Equations(SI2_EXACT, self.system)
         n, at = self.equations.n, self.equations.at
         self.rtol, self.atol = rtol, np.full(n, 1e15)
         self.atol[at["q"]] = self.atol[at["u"]] = rtol
@@ -44,7 +43,7 @@ class Problem:
         self.yp[at["q"]], self.yp[at["u"]] = start.u, start.acceleration
 
     def native(self, **options):
-        kind = Dense if self.equations.n <= DENSE_UP_TO else Sparse
+        kind = Dense if self.equations.n <= FALLBACK.dense_up_to else Sparse
         matrix = options.pop("matrix", kind(self.equations.n, *self.equations.pattern))
         atol, state = options.pop("atol", self.atol), options.pop("state", None) or State(self.system)
         return NativeIda(self.equations, state, matrix, self.rtol, atol, **options)
@@ -124,7 +123,7 @@ def in_fixed_order(equations, kind=FixedOrder):
     return BlockLU.of(equations, order) if kind is BlockLU else kind(equations.n, *equations.pattern, order)
 
 
-KINDS = ["banded", "SuperLU_MT", "fixed order", "fixed order, columns in pairs", "blocks in a fixed order"]
+KINDS = ["SuperLU_MT", "fixed order", "fixed order, columns in pairs", "blocks in a fixed order"]
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -132,7 +131,6 @@ def test_all_matrices_give_the_same_motion(chain, kind):
     equations = chain.equations
     n, pattern = equations.n, equations.pattern
     matrix = {
-        "banded": Banded(n, *pattern),
         "SuperLU_MT": Sparse(n, *pattern),
         "fixed order": in_fixed_order(equations),
         "fixed order, columns in pairs": in_fixed_order(equations, PairedColumns),
@@ -147,29 +145,18 @@ def test_all_matrices_give_the_same_motion(chain, kind):
     np.testing.assert_allclose(rows[:, at], expected[:, at], atol=1e-7)
 
 
-def test_a_band_is_found_in_a_chain(chain):
-    ordered = Problem(hanging_chain(), order=narrowed)
-    band = Banded(ordered.equations.n, *ordered.equations.pattern)
-    assert band.lower == band.upper == 10
-    ida, times = ordered.native(matrix=band), np.array([0.2, 0.4])
-    rows, _ = ordered.through(ida, times)
-    expected, _ = chain.through(chain.native(), times)
-    for unknown in ("q", "u"):
-        at, natural = ordered.equations.at[unknown], chain.equations.at[unknown]
-        np.testing.assert_allclose(rows[:, at], expected[:, natural], atol=1e-5)
-
-
 def test_the_linear_solver_is_that_of_the_least_estimated_cost(chain, squeezer, monkeypatch):
-    monkeypatch.setattr(choice, "WORTH_COMPILING", np.inf)
+    monkeypatch.setattr(choice, "COSTS", replace(choice.COSTS, worth_compiling=np.inf))
     assert type(chosen(chain.equations)[1]) is FixedOrder, "blocks would save too little to be compiled"
-    monkeypatch.setattr(choice, "WORTH_COMPILING", 0.0)
+    monkeypatch.setattr(choice, "COSTS", replace(choice.COSTS, worth_compiling=0.0))
     assert isinstance(chosen(chain.equations)[1], BlockLU)
     monkeypatch.setattr(choice, "block_cost", lambda *_: np.inf)
     assert type(chosen(chain.equations)[1]) is FixedOrder
     monkeypatch.setattr(choice, "replaceable", lambda libraries: False)
-    _, matrix, _ = chosen(chain.equations)
-    assert isinstance(matrix, Banded)
-    assert (matrix.rows.size, matrix.lower) == (chain.equations.pattern[0].size, 10)
+    monkeypatch.setattr(choice, "dense_cost", lambda n: np.inf)
+    assert isinstance(chosen(chain.equations)[1], Sparse)
+    monkeypatch.undo()
+    monkeypatch.setattr(choice, "replaceable", lambda libraries: False)
     assert isinstance(chosen(squeezer.equations)[1], Dense)
 
 
@@ -179,7 +166,7 @@ def test_blocks_of_a_long_chain_come_from_memory():
     def cost(rods):
         n, nodes = 10 * rods, 3 * rods
         order = EliminationOrder(np.arange(n), fill=10 * n, updates=100 * n)
-        return choice.block_cost(n, order, nodes) / choice.fixed_cost(n, order, choice.FIXED)
+        return choice.block_cost(n, order, nodes) / choice.sparse_cost(n, order, choice.COSTS.fixed)
 
     assert cost(100) < 1 < cost(3000)
 
@@ -188,7 +175,7 @@ def test_without_superlu_another_linear_solver_is_chosen(chain, monkeypatch):
     def missing():
         raise libraries.Unavailable("no SuperLU_MT")
 
-    monkeypatch.setattr(choice, "superlu_cost", lambda *_: 0.0)
+    monkeypatch.setattr(choice, "COSTS", replace(choice.COSTS, superlu=(0.0, 0.0, 0.0)))
     assert isinstance(chosen(chain.equations)[1], Sparse)
     monkeypatch.setattr("stiffmbs.solve.ida.matrices.sparse_libraries", missing)
     assert isinstance(chosen(chain.equations)[1], FixedOrder)
@@ -275,20 +262,6 @@ def test_it_begins_again_as_new(pendulum):
     again, _ = pendulum.through(ida, times)
     np.testing.assert_array_equal(first, again)
     assert ida.statistics()["steps"] == ida.history.count == 2 * steps
-
-
-def test_suppressed_multipliers_are_out_of_the_error_test_alone(pendulum, cart_pendulum_reference):
-    times = np.linspace(0, 10, 101)[1:]
-    steps, at = {}, pendulum.equations.at["q"]
-    for name, suppressed in (("huge tolerance", None), ("suppressed", pendulum.multipliers)):
-        atol = pendulum.atol if suppressed is None else np.full(pendulum.equations.n, pendulum.rtol)
-        ida = pendulum.native(atol=atol, suppressed=suppressed)
-        rows, status = pendulum.through(ida, times)
-        assert status is Status.STOP
-        np.testing.assert_allclose(rows[:, at[0]], cart_pendulum_reference(times)[0], atol=2e-6)
-        steps[name] = ida.statistics()["steps"]
-        assert not pendulum.multipliers[ida.worst()[0]]
-    assert steps["suppressed"] < 0.8 * steps["huge tolerance"]
 
 
 def test_the_worst_unknown_is_the_one_with_the_tightest_tolerance(pendulum):

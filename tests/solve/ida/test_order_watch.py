@@ -1,12 +1,15 @@
 """Orders 3 to 5 are given up where they creep along a vibration below the tolerance, and nowhere else."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import stiffmbs
 from stiffmbs import Body, Bushing, Model
 from stiffmbs.analyses.job import prepare
-from stiffmbs.solve.error_control import stability_limit as order_watch
+from stiffmbs.solve.error_control import stability_limit
+from stiffmbs.solve.ida.native.parameters import LOOP
 from stiffmbs.solve.integrator import Integrator
 from stiffmbs.solve.trajectory import Grid
 
@@ -21,6 +24,12 @@ def rod_on_bushing(stiffness):
     return model
 
 
+def check_first_after(monkeypatch, steps):
+    """The first check comes after that many steps."""
+    changed = replace(stability_limit.STABILITY_LIMIT, interval=steps)
+    monkeypatch.setattr(stability_limit, "STABILITY_LIMIT", changed)
+
+
 def solved(model, **settings):
     return stiffmbs.run(model, solver="bdf", duration=0.3, points=101, **settings)
 
@@ -28,7 +37,7 @@ def solved(model, **settings):
 @pytest.mark.parametrize(("stiffness", "rtol"), [(1e9, 1e-5), (1e10, 1e-6)])
 def test_a_vibration_below_the_tolerance_is_not_followed(stiffness, rtol, monkeypatch):
     mended = solved(rod_on_bushing(stiffness), rtol=rtol)
-    monkeypatch.setattr(order_watch, "FIRST_LOOK", 10**9)
+    check_first_after(monkeypatch, 10**9)
     creeping = solved(rod_on_bushing(stiffness), rtol=rtol)
     assert mended.solver["steps"] < 0.7 * creeping.solver["steps"]
     assert any("order was held at 2" in note and "steps" in note for note in mended.notes)
@@ -39,7 +48,7 @@ def test_a_faint_vibration_is_damped_away_and_the_order_free_again(examples, mon
     """Rounding decides when it is seen, so the median of tolerances that are nearly the same counts."""
     scene, tolerances = stiffmbs.load_scene(examples / "half_car.yaml"), (0.98e-7, 1e-7, 1.02e-7)
     mended = [stiffmbs.run(scene, solver="bdf", rtol=rtol) for rtol in tolerances]
-    monkeypatch.setattr(order_watch, "FIRST_LOOK", 10**9)
+    check_first_after(monkeypatch, 10**9)
     creeping = [stiffmbs.run(scene, solver="bdf", rtol=rtol) for rtol in tolerances]
     ratios = [ours.solver["steps"] / other.solver["steps"] for ours, other in zip(mended, creeping, strict=True)]
     assert np.median(ratios) < 0.8
@@ -58,9 +67,9 @@ def test_a_pendulum_on_a_stiff_undamped_bushing_swings_as_on_a_pin():
 @pytest.mark.parametrize("name", ["cart_pendulum", "chain", "andrews"])
 def test_scenes_without_such_a_vibration_are_solved_as_before(examples, name, monkeypatch):
     scene = stiffmbs.load_scene(examples / f"{name}.yaml")
-    monkeypatch.setattr(order_watch, "FIRST_LOOK", 100)
+    check_first_after(monkeypatch, 100)
     watched = stiffmbs.run(scene, solver="bdf", rtol=1e-7)
-    monkeypatch.setattr(order_watch, "FIRST_LOOK", 10**9)
+    check_first_after(monkeypatch, 10**9)
     unwatched = stiffmbs.run(scene, solver="bdf", rtol=1e-7)
     assert watched.solver["steps"] == unwatched.solver["steps"]
     assert watched.notes == unwatched.notes
@@ -68,18 +77,19 @@ def test_scenes_without_such_a_vibration_are_solved_as_before(examples, name, mo
 
 def test_states_are_compared_with_the_cubics_of_least_squares():
     random, n = np.random.default_rng(2), 5
-    t = 3.0 + np.cumsum(0.5 + random.random(order_watch.STATES_LOOKED_AT))
+    t = 3.0 + np.cumsum(0.5 + random.random(LOOP.samples))
     rows = np.vander(t - 9.0, 4) @ random.normal(size=(4, n)) + 1e-4 * random.normal(size=(len(t), n))
     atol = 1e-6 * (1.0 + random.random(n))
     x, scale = (2 * t - t[0] - t[-1]) / (t[-1] - t[0]), 1e-5 * np.abs(rows[-1]) + atol
     best = np.polyfit(x, rows, 3)
     off = (rows - np.vander(x, 4) @ best) / scale
     expected = np.sqrt((off**2).mean(axis=1).max()), np.sqrt(((best[0] / scale) ** 2).mean())
-    least, *found = order_watch.cubic_fit(np.column_stack([t, rows]), 1e-5, atol)
-    np.testing.assert_allclose(found, expected, rtol=1e-7)
-    assert 0 < least < found[0]
+    negligible = stability_limit.STABILITY_LIMIT.negligible
+    fit = stability_limit.cubic_fit(np.column_stack([t, rows]), 1e-5, atol, negligible)
+    np.testing.assert_allclose((fit.distance, fit.third), expected, rtol=1e-7)
+    assert 0 < fit.least < fit.distance
     rows[:, 0] += 1e3 * np.cos(3.0 * t)
-    assert order_watch.cubic_fit(np.column_stack([t, rows]), 1e-5, atol)[0] > order_watch.NEGLIGIBLE
+    assert stability_limit.cubic_fit(np.column_stack([t, rows]), 1e-5, atol, negligible).least > negligible
 
 
 def test_ida_is_not_started_where_it_is_to_stop(monkeypatch):
@@ -90,9 +100,20 @@ def test_ida_is_not_started_where_it_is_to_stop(monkeypatch):
         pass
     engine, starts = integrator.engine, []
     monkeypatch.setattr(engine, "begin", lambda *given: starts.append(given))
-    monkeypatch.setattr(order_watch.StabilityLimitDetection, "due", lambda *_: True)
-    monkeypatch.setattr(order_watch.StabilityLimitDetection, "changed", lambda *_: True)
+    monkeypatch.setattr(stability_limit.StabilityLimitDetection, "due", lambda *_: True)
+    monkeypatch.setattr(stability_limit.StabilityLimitDetection, "changed", lambda *_: True)
     engine._adapt(0.1)
     assert not starts
     engine._adapt(0.2)
     assert len(starts) == 1
+
+
+def test_steps_that_max_step_limits_keep_their_order(examples):
+    """They are as close to a cubic as rounding allows; steps of order 2 would move the cart by 5e-4 m."""
+    scene = stiffmbs.load_scene(examples / "cart_pendulum.yaml")
+    limited, exact = (
+        stiffmbs.run(scene, solver="bdf", duration=2.0, points=21, **how)
+        for how in ({"rtol": 1e-6, "max_step": 1e-4}, {"rtol": 1e-11})
+    )
+    assert limited.solver["steps"] < 20_100
+    np.testing.assert_allclose(limited["cart.x"], exact["cart.x"], atol=1e-6)

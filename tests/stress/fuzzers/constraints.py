@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from stiffmbs.analyses.run import run
-from stiffmbs.describe.reading import read_scene
-from stiffmbs.describe.scene import Scene
 from stiffmbs.errors import StiffmbsError
+from stiffmbs.model.read_scene import read_scene
+from stiffmbs.model.scene import Scene
 from stiffmbs.results.solution import Solution
 from stiffmbs.solve.trajectory import Outcome as Ending
 

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from stiffmbs.analyses.run import run
-from stiffmbs.describe.reading import read_scene
 from stiffmbs.errors import StiffmbsError
+from stiffmbs.model.read_scene import read_scene
 from stiffmbs.solve.trajectory import Outcome as Ending
 
 from ..case import Outcome, Verdict, measured
@@ -22,7 +22,7 @@ STEP, COARSE, CHANGE = 5e-6, 2e-5, 1e-7
 WITHIN, SENSITIVE, CHAOTIC = 1e-3, 1e3, 0.05
 """Error that is right beside the motion's size; tolerances by which a start may differ from it; sensitivity that says nothing."""
 SOLVERS: tuple[dict[str, Any], ...] = (
-    {"solver": "bdf"}, {"solver": "projected", "scheme": "dop853"}, {"solver": "projected", "scheme": "dopri5"}, {"solver": "auto"},
+    {"solver": "bdf"}, {"solver": "radau"}, {"solver": "projected", "scheme": "dop853"}, {"solver": "projected", "scheme": "dopri5"}, {"solver": "auto"},
 )  # fmt: skip
 
 

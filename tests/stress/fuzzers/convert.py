@@ -15,9 +15,9 @@ from stiffmbs.adams.load import read_adams
 from stiffmbs.adams.statements.dataset import read_dataset
 from stiffmbs.analyses.in_space import in_space
 from stiffmbs.analyses.run import run
-from stiffmbs.describe.reading import read_scene
-from stiffmbs.describe.spatial.scene import SpatialScene
 from stiffmbs.errors import StiffmbsError, needs
+from stiffmbs.model.read_scene import read_scene
+from stiffmbs.model.spatial_scene import SpatialScene
 from stiffmbs.results.solution import Solution
 from stiffmbs.robots.load import load_robot
 from stiffmbs.solve.trajectory import Outcome as Ending

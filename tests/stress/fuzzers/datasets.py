@@ -14,8 +14,8 @@ from stiffmbs.adams.listing import listed_statements
 from stiffmbs.adams.load import convert_file, load_adams
 from stiffmbs.analyses.check import check
 from stiffmbs.analyses.run import run
-from stiffmbs.describe.reading import read_scene
 from stiffmbs.errors import StiffmbsError
+from stiffmbs.model.read_scene import read_scene
 from stiffmbs.results.solution import Solution
 from stiffmbs.solve.trajectory import Outcome as Ending
 

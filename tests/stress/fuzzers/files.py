@@ -16,10 +16,10 @@ import numpy as np
 from stiffmbs.adams.load import ENCODING, read_adams
 from stiffmbs.analyses.check import check
 from stiffmbs.analyses.run import run
-from stiffmbs.describe.files.text_file import decoded
-from stiffmbs.describe.reading import read_scene
-from stiffmbs.describe.scene import Scene
 from stiffmbs.errors import StiffmbsError
+from stiffmbs.model.read_scene import read_scene
+from stiffmbs.model.scene import Scene
+from stiffmbs.reading.files.text_file import decoded
 from stiffmbs.results.solution import Solution
 from stiffmbs.show.summary import as_json, check_as_json, print_summary
 from stiffmbs.solve.trajectory import Outcome as Ending

@@ -401,10 +401,10 @@ def _prepared() -> Path:
     environment = {DIRECTORY_VARIABLE: str(folder / "cache")}
     for command in (["run", "in.yaml", "-o", "state.npz"], ["modes", "in.yaml"], ["equilibrium", "in.yaml"]):
         _run(Session(folder, command, environment))
+    from stiffmbs.reading.variation import read_variation
     from stiffmbs.studies.sweep import study_of
-    from stiffmbs.studies.variation import read_variation
 
-    study = study_of(str(folder / "in.yaml"), [read_variation(STUDY[3])], None, 0, (STUDY[5],), {})
+    study = study_of(str(folder / "in.yaml"), [read_variation(STUDY[3], "--vary")], None, 0, (STUDY[5],), {})
 
     def stop(done: int, *_: Any) -> None:
         if done == 2:

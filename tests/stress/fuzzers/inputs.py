@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from stiffmbs.analyses.run import run
-from stiffmbs.describe.reading import read_scene
-from stiffmbs.describe.scene import Scene
 from stiffmbs.errors import StiffmbsError
+from stiffmbs.model.read_scene import read_scene
+from stiffmbs.model.scene import Scene
 from stiffmbs.solve.trajectory import Outcome as Ending
 
 from ..case import Outcome, Verdict, measured, told
@@ -59,7 +59,7 @@ def _pushed(rng: np.random.Generator) -> Verdict:
     size = IMPULSE / impulse
     made.parameters["size"] = size
     text = f"size*({made.text})"
-    solver = str(rng.choice(["bdf", "auto", "dop853", "dopri5"]))
+    solver = str(rng.choice(["bdf", "radau", "auto", "dop853", "dopri5"]))
     how: dict[str, Any] = {"solver": "projected", "scheme": solver} if solver.startswith("dop") else {"solver": solver}
     rtol = float(10.0 ** rng.integers(-9, -4))
     detail = f"{solver}, rtol {rtol:.0e}: {text} {_given(made)}"

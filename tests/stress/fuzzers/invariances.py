@@ -44,7 +44,7 @@ FREE = ("with an idle body",)
 """Transformations that add undriven degrees of freedom."""
 SOLVERS: tuple[dict[str, Any], ...] = (
     {"solver": "bdf"}, {"solver": "bdf", "formulation": "SI1"}, {"solver": "bdf", "formulation": "I3"},
-    {"solver": "bdf", "formulation": "index1"}, {"solver": "auto"}, {"solver": "projected", "scheme": "dop853"},
+    {"solver": "bdf", "formulation": "index1"}, {"solver": "radau"}, {"solver": "auto"}, {"solver": "projected", "scheme": "dop853"},
     {"solver": "projected", "scheme": "dopri5"}, {"solver": KINEMATIC},
 )  # fmt: skip
 

@@ -6,8 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from stiffmbs.describe.spatial.model import FORCES, JOINTS, Body, Model
+from stiffmbs.elements.spatial.spatial_kinds import FORCES, JOINTS
 from stiffmbs.errors import StiffmbsError
+from stiffmbs.model.spatial_model import Body, Model
 from stiffmbs.studies.suspension.kinematics_and_compliance import (
     AMPLITUDES,
     KinematicsAndCompliance,

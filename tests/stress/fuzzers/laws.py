@@ -10,15 +10,15 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from stiffmbs.analyses.run import run
-from stiffmbs.describe.reading import read_scene
 from stiffmbs.errors import StiffmbsError
+from stiffmbs.model.read_scene import read_scene
 from stiffmbs.solve.trajectory import Outcome as Ending
 
 from ..case import Verdict, measured, told
 
 WHAT = "force laws over a displacement, angle, velocity or state (windows, periods, starts on breakpoints), against their integrals"
 SOLVERS: tuple[dict[str, Any], ...] = (
-    {"solver": "bdf"}, {"solver": "projected", "scheme": "dop853"}, {"solver": "projected", "scheme": "dopri5"}, {"solver": "auto"},
+    {"solver": "bdf"}, {"solver": "radau"}, {"solver": "projected", "scheme": "dop853"}, {"solver": "projected", "scheme": "dopri5"}, {"solver": "auto"},
 )  # fmt: skip
 LEAST, OF_TOLERANCE, MOST = 2e-4, 200.0, 0.01
 """Error of an impulse or work that is right: the least one, in relative tolerances (or one for each step), and the most besides twice that."""

@@ -8,8 +8,9 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from stiffmbs.analyses.quasi_static import quasi_static
-from stiffmbs.describe.spatial.model import FORCES, Body, Model
+from stiffmbs.elements.spatial.spatial_kinds import FORCES
 from stiffmbs.errors import StiffmbsError
+from stiffmbs.model.spatial_model import Body, Model
 from stiffmbs.studies.suspension.road_loads import COMPONENTS, road_loads
 
 from ..case import Verdict, measured, told

@@ -12,10 +12,10 @@ from stiffmbs.analyses.equilibrium import equilibrium
 from stiffmbs.analyses.job import Runnable, prepare
 from stiffmbs.analyses.linearised.at_state import AtState
 from stiffmbs.analyses.linearised.modes import Modes, modes
-from stiffmbs.describe.reading import read_scene
 from stiffmbs.errors import SolverError, StiffmbsError
 from stiffmbs.linear_analysis.state_space import StateMatrix
 from stiffmbs.linear_analysis.tangent_space import Linearised, linearised
+from stiffmbs.model.read_scene import read_scene
 from stiffmbs.results.solution import Solution
 from stiffmbs.solve.trajectory import Outcome as Ending
 

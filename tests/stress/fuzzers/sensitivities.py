@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from stiffmbs.analyses.run import run
-from stiffmbs.describe.reading import read_scene
 from stiffmbs.errors import InputError, StiffmbsError
+from stiffmbs.model.read_scene import read_scene
 from stiffmbs.results.solution import Solution
 from stiffmbs.solve.trajectory import Outcome as Ending
 from stiffmbs.studies.outputs import Output, outputs_of

@@ -9,8 +9,8 @@ import numpy as np
 from stiffmbs.analyses.equilibrium import equilibrium
 from stiffmbs.analyses.linearised.modes import modes
 from stiffmbs.analyses.run import run
-from stiffmbs.describe.model import FORCES
-from stiffmbs.describe.spatial.model import FORCES as SPATIAL_FORCES
+from stiffmbs.elements.planar_kinds import FORCES
+from stiffmbs.elements.spatial.spatial_kinds import FORCES as SPATIAL_FORCES
 from stiffmbs.errors import StiffmbsError
 from stiffmbs.solve.trajectory import Outcome as Ending
 

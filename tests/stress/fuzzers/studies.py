@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from stiffmbs.analyses.run import run
-from stiffmbs.describe.reading import read_scene
 from stiffmbs.errors import StiffmbsError
+from stiffmbs.model.read_scene import read_scene
 from stiffmbs.solve.trajectory import Outcome as Ending
 from stiffmbs.studies.simulation import simulation
 from stiffmbs.studies.sweep import sweep

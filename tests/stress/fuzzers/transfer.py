@@ -13,15 +13,15 @@ from stiffmbs.analyses.linearised.modes import modes
 from stiffmbs.analyses.linearised.transfer import transfer
 from stiffmbs.analyses.run import run
 from stiffmbs.compile.bodies import BODY_KINDS
-from stiffmbs.describe.element import Force
-from stiffmbs.describe.model import FORCES
-from stiffmbs.describe.reading import read_scene
-from stiffmbs.describe.scene import Scene
-from stiffmbs.describe.spatial.model import FORCES as SPATIAL_FORCES
-from stiffmbs.describe.spatial.orientation import conjugate, matrix, product
+from stiffmbs.elements.element import Force
+from stiffmbs.elements.planar_kinds import FORCES
+from stiffmbs.elements.spatial.orientation import conjugate, matrix, product
+from stiffmbs.elements.spatial.spatial_kinds import FORCES as SPATIAL_FORCES
 from stiffmbs.errors import StiffmbsError
 from stiffmbs.linear_analysis.state_space import StateMatrix
 from stiffmbs.linear_analysis.transfer import Transfer
+from stiffmbs.model.read_scene import read_scene
+from stiffmbs.model.scene import Scene
 from stiffmbs.results.saved_state import SavedState
 
 from ..case import Outcome, Verdict, measured

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from stiffmbs.describe.spatial.orientation import conjugate, from_matrix, product
+from stiffmbs.elements.spatial.orientation import conjugate, from_matrix, product
 
 from ..random_scenes.draft import GROUND, Content, random_axes
 from .balance import axes_over_time, body_of
@@ -117,7 +117,10 @@ def as_one_body(content: Content, rng: np.random.Generator) -> Change:
 
 
 def _apart_otherwise(content: Content, weld: str, pair: set[str]) -> None:
-    """Raise NotLegitimate where another element acts between two bodies."""
+    """Raise NotLegitimate where another element acts between two bodies, or a part is mounted on one."""
+    for name, part in content.get("use", {}).items():
+        if pair & {body_of(mount) for mount in part.get("mounts", {}).values()}:
+            raise NotLegitimate(f"{name} is mounted on one of {' and '.join(sorted(pair))}")
     for section in ("joints", "forces"):
         for key, element in content.get(section, {}).items():
             ends = {body_of(element[end]) for end in "ij" if end in element}

@@ -7,8 +7,8 @@ import copy
 from collections.abc import Callable, Iterator
 from typing import Any
 
-from stiffmbs.describe.formula.nodes import TIME, is_measure, is_reaction
-from stiffmbs.describe.formula.text import as_written, parse
+from stiffmbs.reading.formula.nodes import TIME, is_measure, is_reaction
+from stiffmbs.reading.formula.text import as_written, parse
 
 from ..random_scenes.draft import Content
 

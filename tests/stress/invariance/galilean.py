@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from stiffmbs.describe.formula.field import FormulaOf
-from stiffmbs.describe.spatial.orientation import from_matrix
+from stiffmbs.elements.spatial.orientation import from_matrix
+from stiffmbs.reading.formula.field import FormulaOf
 
 from ..random_scenes.draft import GROUND, Content, axes_with_z
 from .change import VECTORS, Change, Channels, vector, with_vector

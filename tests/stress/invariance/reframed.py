@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from stiffmbs.describe.formula.field import FormulaOf
-from stiffmbs.describe.spatial.orientation import matrix
+from stiffmbs.elements.spatial.orientation import matrix
+from stiffmbs.reading.formula.field import FormulaOf
 
 from ..random_scenes.draft import GROUND, Content, about_z
 from .formulas import call_of, coordinate_of, replaced, with_other_formulas

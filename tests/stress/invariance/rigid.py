@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from stiffmbs.describe.formula.field import FormulaOf
-from stiffmbs.describe.spatial.orientation import conjugate, from_matrix, matrix, product
+from stiffmbs.elements.spatial.orientation import conjugate, from_matrix, matrix, product
+from stiffmbs.reading.formula.field import FormulaOf
 
 from ..random_scenes.draft import GROUND, Content
 from .change import VECTORS, Change, Channels, vector, with_vector

@@ -7,9 +7,9 @@ import copy
 from dataclasses import dataclass
 from typing import Any
 
-from stiffmbs.describe.fields import Measured
-from stiffmbs.describe.formula.field import FormulaOf
-from stiffmbs.describe.units.units import ANY, DIMENSIONS, Dimension
+from stiffmbs.reading.fields import Measured
+from stiffmbs.reading.formula.field import FormulaOf
+from stiffmbs.reading.units.units import ANY, DIMENSIONS, Dimension
 
 from ..random_scenes.draft import Content
 from .change import Change, Channels
@@ -54,7 +54,7 @@ def scaled(content: Content, units: Units) -> Change:
     ------
     NotLegitimate
         When numbers have a unit that is not declared, or a tyre has relaxation lengths: its damping at rest has a time of its own
-        (`stiffmbs.describe.spatial.relaxation`).
+        (`stiffmbs.elements.spatial.relaxation`).
     """
     if "use" in content:
         raise NotLegitimate("parts have numbers of their own")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import copy
 from typing import Any
 
-from stiffmbs.describe.formula.field import FormulaOf
+from stiffmbs.reading.formula.field import FormulaOf
 
 from ..random_scenes.draft import Content
 from .change import Change

@@ -7,17 +7,17 @@ import typing
 from collections.abc import Iterator
 from typing import Any
 
-from stiffmbs.describe.body import Body
-from stiffmbs.describe.fields import Measured
-from stiffmbs.describe.formula.field import FormulaOf
-from stiffmbs.describe.marker import MarkerReference
-from stiffmbs.describe.model import FORCES, JOINTS
-from stiffmbs.describe.roads.field import kind_of_road
-from stiffmbs.describe.roads.road import Road
-from stiffmbs.describe.spatial.body import Body as SpatialBody
-from stiffmbs.describe.spatial.model import FORCES as SPATIAL_FORCES
-from stiffmbs.describe.spatial.model import JOINTS as SPATIAL_JOINTS
-from stiffmbs.describe.spatial.orientation import OrientationField
+from stiffmbs.elements.body import Body
+from stiffmbs.elements.planar_kinds import FORCES, JOINTS
+from stiffmbs.elements.roads.field import kind_of_road
+from stiffmbs.elements.roads.road import Road
+from stiffmbs.elements.spatial.body import Body as SpatialBody
+from stiffmbs.elements.spatial.orientation import OrientationField
+from stiffmbs.elements.spatial.spatial_kinds import FORCES as SPATIAL_FORCES
+from stiffmbs.elements.spatial.spatial_kinds import JOINTS as SPATIAL_JOINTS
+from stiffmbs.reading.fields import Measured
+from stiffmbs.reading.formula.field import FormulaOf
+from stiffmbs.reading.marker import MarkerReference
 
 from ..random_scenes.draft import Content
 

@@ -12,9 +12,9 @@ import numpy as np
 
 from stiffmbs.analyses.in_space import in_space
 from stiffmbs.analyses.run import run
-from stiffmbs.describe.model import PlanarData
-from stiffmbs.describe.reading import read_scene
 from stiffmbs.errors import InputError, SolverError
+from stiffmbs.model.model import PlanarData
+from stiffmbs.model.read_scene import read_scene
 from stiffmbs.results.solution import Solution
 from stiffmbs.solve.trajectory import Outcome
 from stiffmbs.studies.simulation import simulation

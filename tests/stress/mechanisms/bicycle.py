@@ -8,8 +8,8 @@ import math
 
 import numpy as np
 
-from stiffmbs.describe.reading import read_scene
-from stiffmbs.describe.scene import Scene
+from stiffmbs.model.read_scene import read_scene
+from stiffmbs.model.scene import Scene
 
 GRAVITY = 9.81
 MASS = np.array([[80.81722, 2.31941332208709], [2.31941332208709, 0.29784188199686]])

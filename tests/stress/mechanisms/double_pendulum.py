@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from stiffmbs.describe.body import Body
-from stiffmbs.describe.marker import Marker
-from stiffmbs.describe.model import JOINTS, Model
+from stiffmbs.elements.body import Body
+from stiffmbs.elements.planar_kinds import JOINTS
+from stiffmbs.model.model import Model
+from stiffmbs.reading.marker import Marker
 
 from .pendulum import GRAVITY
 

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from stiffmbs.describe.body import Body
-from stiffmbs.describe.marker import Marker
-from stiffmbs.describe.model import JOINTS, Model
+from stiffmbs.elements.body import Body
+from stiffmbs.elements.planar_kinds import JOINTS
+from stiffmbs.model.model import Model
+from stiffmbs.reading.marker import Marker
 from stiffmbs.results.solution import Solution
 
 from .pendulum import GRAVITY, swing

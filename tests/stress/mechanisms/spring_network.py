@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from stiffmbs.describe import model as plane
-from stiffmbs.describe.body import Body
-from stiffmbs.describe.building.model_builder import ModelBuilder
-from stiffmbs.describe.spatial import model as space
-from stiffmbs.describe.spatial.body import Body as SpatialBody
+from stiffmbs.elements.body import Body
+from stiffmbs.elements.spatial.body import Body as SpatialBody
+from stiffmbs.model import model as plane
+from stiffmbs.model import spatial_model as space
+from stiffmbs.model.model_builder import ModelBuilder
 
 GROUND = -1
 AXES = "xyz"

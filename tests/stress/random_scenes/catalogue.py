@@ -89,6 +89,7 @@ PARTS: tuple[Maker, ...] = tuple(
 WITHOUT: Mapping[str, str] = MappingProxyType(
     {
         "python_force": "a function of Python is no part of a scene file",
+        "exact_beam": "the line body of the type beam creates it, and tests/beams has its scenes",
         "driver": "it needs a car with four wheels on tyres, which examples/car.yaml is",
     }
 )

@@ -53,7 +53,7 @@ def _law(draft: Draft) -> Content:
         "dissipation": draft.uniform(0, 0.5),
     }
     if draft.chance(0.3):
-        law |= {"friction": draft.uniform(0.05, 0.3), "smooth_velocity": draft.uniform(0.05, 0.2)}
+        law |= {"friction": draft.uniform(0.05, 0.3), "stiction_velocity": draft.uniform(0.05, 0.2)}
     return law
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from stiffmbs.describe.spatial.orientation import from_matrix
+from stiffmbs.elements.spatial.orientation import from_matrix
 
 from .features import ALL, Features
 

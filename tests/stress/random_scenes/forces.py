@@ -123,9 +123,9 @@ def add_joint_friction(draft: Draft) -> str:
     joints = draft.content.get("joints", {})
     name = draft.choice(name for name, joint in joints.items() if joint["type"] in rubbing and name not in taken)
     kind = joints[name]["type"]
-    fields: Content = {"friction": draft.uniform(0.05, 0.3), "smooth_velocity": draft.uniform(0.05, 0.2)}
+    fields: Content = {"friction": draft.uniform(0.05, 0.3), "stiction_velocity": draft.uniform(0.05, 0.2)}
     if draft.chance(0.5):
-        fields |= {"static_friction": fields["friction"] + draft.uniform(0.02, 0.1), "stribeck_velocity": 0.5}
+        fields |= {"static_friction": fields["friction"] + draft.uniform(0.02, 0.1), "friction_velocity": 0.5}
     if kind != "prismatic":
         fields["radius"] = draft.uniform(0.02, 0.1)
     if kind == "prismatic" or (draft.in_space and kind != "spherical" and draft.chance(0.5)):

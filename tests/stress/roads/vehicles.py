@@ -7,8 +7,8 @@ from pathlib import Path
 
 from stiffmbs import __file__ as package
 from stiffmbs.analyses.load_scene import load_scene
-from stiffmbs.describe.reading import read_scene
-from stiffmbs.describe.scene import Scene
+from stiffmbs.model.read_scene import read_scene
+from stiffmbs.model.scene import Scene
 
 CAR = Path(package).parent.parent / "examples" / "car.yaml"
 Points = list[list[float]]

@@ -2,7 +2,7 @@
 
 import pytest
 
-from stiffmbs.studies.fmu import stepping
+from stiffmbs.studies.simulation import Simulation
 from tests.stress.case import Outcome
 from tests.stress.fuzzers import fmu, injections
 
@@ -20,8 +20,8 @@ def test_fmus_move_as_runs_do(seed):
 
 def test_an_fmu_that_ignores_its_inputs_is_found(monkeypatch):
     pytest.importorskip("fmpy")
-    step = stepping.CommunicationSteps.step
-    monkeypatch.setattr(stepping.CommunicationSteps, "step", lambda self, length, inputs: step(self, length, {}))
+    step = Simulation.step
+    monkeypatch.setattr(Simulation, "step", lambda self, length, inputs: step(self, length, {}))
     assert fmu.trial(1).outcome is Outcome.WRONG
 
 

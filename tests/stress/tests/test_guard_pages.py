@@ -13,7 +13,8 @@ pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="has no mprotect
 TOO_SHORT = """
 import sys
 import numpy as np
-from stiffmbs.solve.linear import factors, saddle_point
+from stiffmbs.dynamics import saddle_point
+from stiffmbs.sparse import elimination_order as factors
 from tests.stress import guarded
 
 whole = factors.factors_of

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 from stiffmbs.analyses.run import run
-from stiffmbs.describe import model as plane
-from stiffmbs.describe.parts.library import shipped_parts
-from stiffmbs.describe.reading import read_scene
-from stiffmbs.describe.spatial import model as space
-from stiffmbs.describe.states.section import KINDS
+from stiffmbs.elements.states.section import KINDS
 from stiffmbs.errors import StiffmbsError
+from stiffmbs.model import model as plane
+from stiffmbs.model import spatial_model as space
+from stiffmbs.model.parts.definitions import shipped_parts
+from stiffmbs.model.read_scene import read_scene
 from tests.stress.random_scenes.catalogue import WITHOUT, kinds
 from tests.stress.random_scenes.driven import driven_scene
 from tests.stress.random_scenes.features import STATIC, TREE, Features

@@ -11,12 +11,11 @@ from __future__ import annotations
 
 from math import sqrt
 
-from ..native.access import compiled, shifted
+from ..native.access import compiled, room, shifted
 from ..translate.code import Code, constant
 from ..translate.values import Operand, Value, builtin
 from .ellipsoids import POSE, SQUARES, TURN, ellipsoids, reach, support, thinnest, times
 from .on_sphere import across, along, curvature, made_definite, moved, solved, take_unit_length
-from .room import room
 
 THINNER = 0.2
 """Ratio of ellipsoid thickness between stages: each stage starts near its solution."""

@@ -9,10 +9,11 @@ from __future__ import annotations
 
 from math import sqrt
 
-from ..native.access import compiled, shifted
-from .room import room
+from ..native.access import compiled, room, shifted
 
-TURN, SQUARES, POSE = 3, 12, 30
+TURN = 3
+SQUARES = TURN + 9
+POSE = SQUARES + 18
 """Offsets of R and of the squares in a pose, and its length."""
 CORE = 0.5
 """Thickness removed from a solid to form its core, relative to half its smallest dimension."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from ..layout import CELLS, INT, POINTERS, Layout
@@ -39,10 +39,15 @@ def shifted(code: Code, pointer: Value, count: Operand) -> Value:
 
 
 @builtin
+def room(code: Code, count: Operand) -> Value:
+    """Return memory for the given number of doubles, for the duration of the function."""
+    return code.array(int(code.integer(count).text))
+
+
+@builtin
 def call_kernel(code: Code, kernel: Operand, *arguments: Value) -> None:
     """Call a kernel (`stiffmbs.compile.terms.KERNEL_SIGNATURE`) by its address."""
-    function = code.put_value("ints", f"inttoptr {code.integer(kernel).typed} to ptr")
-    code.put(f"call void {function.text}({', '.join(argument.typed for argument in arguments)})")
+    code.put(f"call void {ints.lower(code, kernel).text}({', '.join(argument.typed for argument in arguments)})")
 
 
 @builtin
@@ -66,6 +71,38 @@ def view_of(name: str, layout: Layout) -> Builtin:
         return Record(name, fields)
 
     return Builtin(view)
+
+
+def parts_of(name: str, lengths: Mapping[str, int]) -> Builtin:
+    """Return a function of compiled code that views memory as a record of consecutive vectors of these lengths."""
+
+    def view(code: Code, memory: Value) -> Record:
+        fields, first = {}, 0
+        for field, length in lengths.items():
+            fields[field] = shifted.lower(code, memory, constant(first))
+            first += length
+        return Record(name, fields)
+
+    return Builtin(view)
+
+
+def row_of(kind: type[tuple[int, ...]]) -> Builtin:
+    """Return a function of compiled code, ``row(rows, number)``, that views a row of integers as a record.
+
+    Parameters
+    ----------
+    kind : type
+        `typing.NamedTuple` of integers: the columns of a list whose rows are stored one after the other.
+    """
+    columns: tuple[str, ...] = kind._fields  # type: ignore[attr-defined]
+
+    def row(code: Code, rows: Value, number: Operand) -> Record:
+        start = code.put_value("int", f"mul nsw {code.integer(number).typed}, {len(columns)}")
+        first = shifted.lower(code, rows, start)
+        items = (code.load(code.item(first, constant(column))) for column in range(len(columns)))
+        return Record(kind.__name__, dict(zip(columns, map(code.integer, items), strict=True)))
+
+    return Builtin(row)
 
 
 state_view = view_of("State", STATE)

@@ -2,26 +2,13 @@
 
 from __future__ import annotations
 
-from math import cos, sin
-
 from .access import call_kernel, compiled, floats, ints, shifted, state_view, view_of
-from .orientation import TURN_STRIDE, share_orientation
+from .orientation import TURN_STRIDE
 from .tables import CALL, DIRECTION
 
 CALL_WIDTH = len(CALL) + 1
 
 direction_view = view_of("Direction", DIRECTION)
-
-
-@compiled
-def share_one(s, at):
-    """Compute the shared orientation values of the body whose first coordinate has index `at`."""
-    if s.spatial:
-        share_orientation(shifted(s.q, at + 3), shifted(s.turn, TURN_STRIDE * at))
-    else:
-        angle = s.q[at + 2]
-        s.turn[at] = cos(angle)
-        s.turn[at + 1] = sin(angle)
 
 
 @compiled

@@ -9,7 +9,7 @@ from .orientation import TURN_STRIDE, share_orientation
 from .sine_cosine import share_four
 from .tables import CALL
 
-POSITION, MOTION, TANGENT, ACCELERATION, OUTPUT, SWITCH = range(6)
+POSITION, MOTION, TANGENT, ACCELERATION, OUTPUT, SWITCH, EFFORT, EFFORT_TANGENT = range(8)
 CALL_WIDTH = len(CALL)
 
 
@@ -21,23 +21,26 @@ def evaluate(s, term_set, t):
 
 
 @compiled
-def share_turns(s, turned, count):
-    """Compute the shared orientation values of some bodies, given by their first coordinates."""
+def share_one(s, at):
+    """Compute the shared orientation values of the body whose first coordinate has index `at`."""
     if s.spatial:
-        for k in range(count):
-            at = turned[k]
-            share_orientation(shifted(s.q, at + 3), shifted(s.turn, TURN_STRIDE * at))
-        return
-    k = 0
-    while k < count:
-        if k + 4 <= count and share_four(s.q, shifted(turned, k), s.turn):
-            k += 4
-            continue
-        at = turned[k]
+        share_orientation(shifted(s.q, at + 3), shifted(s.turn, TURN_STRIDE * at))
+    else:
         cosine, sine = cos(s.q[at + 2]), sin(s.q[at + 2])  # both before a store, so that the compiler merges the calls
         s.turn[at] = cosine
         s.turn[at + 1] = sine
-        k += 1
+
+
+@compiled
+def share_turns(s, turned, count):
+    """Compute the shared orientation values of some bodies, given by their first coordinates."""
+    k = 0
+    while k < count:
+        if not s.spatial and k + 4 <= count and share_four(s.q, shifted(turned, k), s.turn):
+            k += 4
+        else:
+            share_one(s, turned[k])
+            k += 1
 
 
 @compiled
@@ -53,7 +56,6 @@ def call_kernels(s, term_set, t):
 
 @compiled
 def _call(s, call, t, values):
-    """Call a kernel with its arguments."""
     call_kernel(
         call[0], call[1], ints(call[2]), floats(call[3]), t, s.q, s.turn, s.u, s.a, s.lam, s.mu, ints(call[4]), values
     )
@@ -124,13 +126,9 @@ def add_sizes(e, values, y, yp, size):
 @compiled
 def add_entries(e, values, cj, a):
     """Assemble the matrix: each value times (constant + cj * cj-part) is added to its slot."""
-    for k in range(e.n_cleared):
+    for k in range(e.n_slots):
         a[k] = 0.0
-    for k in range(e.n_bare):
-        a[e.m_bare[k]] = 0.0
-    for k in range(e.n_first):
-        a[e.m_slot[k]] = values[e.m_source[k]] * e.m_constant[k]
-    for k in range(e.n_first, e.n_constant):
+    for k in range(e.n_constant):
         a[e.m_slot[k]] += values[e.m_source[k]] * e.m_constant[k]
     for k in range(e.n_constant, e.n_entries):
         a[e.m_slot[k]] += values[e.m_source[k]] * (e.m_constant[k] + e.m_cj[k] * cj)

@@ -19,10 +19,7 @@ KEEP_DIAGONAL = 0.1
 TOO_SMALL = 1e-3
 """Smallest accepted previous pivot relative to the largest entry of its column."""
 
-HUGE_LOG = 1e6
-"""Replaces -log(0)."""
-
-DONE, SINGULAR, FULL = 0, 1, 2
+DONE, SINGULAR, FULL = range(3)
 """FULL: no memory for more entries."""
 L_ROW, L, U_ROW, U = (list(FACTORS).index(name) for name in ("l_row", "l", "u_row", "u"))
 
@@ -277,6 +274,6 @@ def log_determinant(f):
     for k in range(f.n):
         product *= abs(f.u[f.u_start[k + 1] - 1]) / (f.scale[k] * f.scale[k])
         if not 1e-100 < product < 1e100:
-            total += log(product) if product > 0.0 else -HUGE_LOG
+            total += log(product)
             product = 1.0
     return total + log(product)

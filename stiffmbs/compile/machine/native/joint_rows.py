@@ -37,7 +37,7 @@ def add_rows(
     width = QUAD * len(lines[0])
     for part in range(len(lines[0])):
         place = code.item(x, constant(QUAD * part)).text
-        total = loaded(code, place)
+        total = loaded(code, QUAD, place)
         for column in COLUMNS:
             total = fused(code, total, forces[column], lines[column][part])
             write(code, code.item(j, constant(column * width + QUAD * part)).text, lines[column][part])
@@ -47,7 +47,7 @@ def add_rows(
         begin = times(code, stride, row)
         for part in range(row // QUAD + 1):
             place = code.item(block, plus(code, begin, QUAD * part)).text
-            total = loaded(code, place)
+            total = loaded(code, QUAD, place)
             for column in COLUMNS:
                 total = fused(code, total, factors[column], lines[column][part])
             write(code, place, total)
@@ -57,11 +57,11 @@ def add_rows(
 def take_rows(code: Code, rows: Operand, j: Operand, x: Operand, a: Operand) -> None:
     """Compute a -= j^T x for three columns; the number of rows is a literal."""
     parts = -(-literal(rows) // QUAD)
-    lines = [loaded(code, code.item(x, constant(QUAD * part)).text) for part in range(parts)]
+    lines = [loaded(code, QUAD, code.item(x, constant(QUAD * part)).text) for part in range(parts)]
     for column in COLUMNS:
         total: Value | None = None
         for part, line in enumerate(lines):
-            own = loaded(code, code.item(j, constant(QUAD * (parts * column + part))).text)
+            own = loaded(code, QUAD, code.item(j, constant(QUAD * (parts * column + part))).text)
             total = fused(code, total, own, line) if total else code.put_value("quad", f"fmul {own.typed}, {line.text}")
         place = code.item(a, constant(column))
         before = code.load(place)

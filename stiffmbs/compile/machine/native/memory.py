@@ -1,20 +1,23 @@
-"""Dynamic memory of compiled routines.
+"""Memory of compiled routines: copies, and arrays of variable size.
 
-It belongs to a table whose layout declares it (`stiffmbs.compile.machine.own_memory`). The table's view must be created
+An array of variable size belongs to a table whose layout declares it (`stiffmbs.compile.machine.layout.packed_with_memory`). The table's view must be created
 again after a reallocation.
 """
 
 from __future__ import annotations
 
+import numpy as np
+
+from ..layout import DTYPES, FLOATS, INDICES, INTS
 from ..translate.code import Code
 from ..translate.values import Operand, Value, builtin
 from .access import compiled
 
 REALLOCATE = "PyMem_RawRealloc"
 """Python's name of the C library's realloc; needs no interpreter lock."""
-INT, INDEX, FLOAT = 8, 4, 8
+INT, INDEX, FLOAT = (np.dtype(DTYPES[kind]).itemsize for kind in (INTS, INDICES, FLOATS))
 """Bytes of a number."""
-MOST_INDICES = 2**31 - 1
+MOST_INDICES = int(np.iinfo(DTYPES[INDICES]).max)
 """Largest number of an array of 32-bit indices."""
 
 
@@ -25,6 +28,13 @@ def _reallocated(code: Code, address: Operand, size: Operand) -> Value:
     before = code.put_value("ints", f"inttoptr {code.integer(address).typed} to ptr")
     after = code.put_value("ints", f"call ptr @{REALLOCATE}({before.typed}, {code.integer(size).typed})")
     return code.put_value("int", f"ptrtoint {after.typed} to i64")
+
+
+@compiled
+def copied(target, source, count):
+    """Copy numbers."""
+    for i in range(count):
+        target[i] = source[i]
 
 
 @compiled

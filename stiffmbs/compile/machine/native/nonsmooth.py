@@ -1,6 +1,8 @@
-"""Nonsmooth functions in kernels (`stiffmbs.compile.symbolic.nonsmooth`)."""
+"""Nonsmooth functions and continuous angles in kernels (`stiffmbs.compile.symbolic`)."""
 
 from __future__ import annotations
+
+from math import atan2, cos, sin
 
 from .access import compiled
 
@@ -102,3 +104,10 @@ def step5(x, x0, h0, x1, h1, order):
     if x <= x0 or x >= x1:
         return _level(x, x0, h0, h1, order)
     return _ramp(h0, h1, x1 - x0, order, _quintic((x - x0) / (x1 - x0), order))
+
+
+@compiled
+def continuous_angle(sine, cosine, counted):
+    """Return the angle with a given sine and cosine that is nearest to `counted`."""
+    c, s = cos(counted), sin(counted)
+    return counted + atan2(sine * c - cosine * s, cosine * c + sine * s)

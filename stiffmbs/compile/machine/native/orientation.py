@@ -8,10 +8,11 @@ from __future__ import annotations
 
 from math import sqrt
 
+from ...bodies import SPACE
 from .access import compiled, shifted
 
-N_Q, N_U, TURN_STRIDE = 7, 6, 2
-"""Coordinates and velocities of a spatial body, and shared values per coordinate (`stiffmbs.compile.bodies.SPACE`)."""
+N_Q, N_U, TURN_STRIDE = SPACE.n_q, SPACE.n_u, SPACE.turn_stride
+"""Coordinates and velocities of a spatial body, and shared values per coordinate."""
 
 
 @compiled

@@ -5,13 +5,13 @@ Results are the same on every machine: products are added with one rounding, in 
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
 
+from ..layout import QUAD
 from ..translate.code import Code, constant
-from ..translate.values import LLVM_TYPES, Operand, Untranslatable, Value, builtin
+from ..translate.values import LLVM_TYPES, Builtin, Operand, Untranslatable, Value, builtin
 
-QUAD = 4
-"""Lanes of a vector."""
 WIDTHS = {QUAD: "quad", 2 * QUAD: "octet"}
 """Kinds of vectors by number of lanes."""
 Lines = tuple[Operand, Operand]
@@ -21,7 +21,7 @@ Lines = tuple[Operand, Operand]
 @builtin
 def quad(code: Code, pointer: Operand, index: Operand) -> Value:
     """Load four floats from `index` on."""
-    return loaded(code, code.item(pointer, index).text)
+    return loaded(code, QUAD, code.item(pointer, index).text)
 
 
 @builtin
@@ -33,8 +33,32 @@ def set_quad(code: Code, pointer: Operand, index: Operand, value: Operand) -> No
 @builtin
 def spread(code: Code, number: Operand) -> Value:
     """Broadcast a float to four lanes."""
-    one = code.put_value("quad", f"insertelement <4 x double> poison, {code.converted(number, 'float').typed}, i32 0")
-    return code.put_value("quad", f"shufflevector {one.typed}, <4 x double> poison, <4 x i32> zeroinitializer")
+    return spread_over(code, QUAD, code.converted(number, "float"))
+
+
+def by_case(
+    function: Builtin, cases: Mapping[int, Sequence[int]], general: Callable[..., Any] | None = None
+) -> Builtin:
+    """Return a function that calls a built-in one with the literals of a case in place of its first argument.
+
+    Others call a general function with the first argument itself; without one, they count as the last case.
+    """
+
+    def lower(code: Code, case: Operand, *arguments: Operand) -> None:
+        end, number = code.name("done"), code.integer(case)
+        for k, (wanted, literals) in enumerate(cases.items(), start=1):
+            here, other = code.name("case"), code.name("other")
+            if k < len(cases) or general:
+                code.choose(code.put_value("bool", f"icmp eq {number.typed}, {wanted}"), here, other)
+                code.label(here)
+            function.lower(code, *map(constant, literals), *arguments)
+            code.branch(end)
+            code.label(other)
+        if general:
+            code.unit.called(code, general, [number, *arguments])
+        code.label(end)
+
+    return Builtin(lower)
 
 
 @builtin
@@ -70,7 +94,7 @@ def product_of(code: Code, a: Operand, b: Operand) -> Value:
 def plus_product(code: Code, total: Operand, a: Operand, b: Operand) -> Value:
     """Return total + a * b of vectors, or of floats, rounded once."""
     if isinstance(total, Value) and total.kind == "float":
-        return plus_product_of_floats(code, total, *(code.converted(factor, "float") for factor in (a, b)))
+        return fused(code, total, *(code.converted(factor, "float") for factor in (a, b)))
     return fused(code, as_quad(total), as_quad(a), as_quad(b))
 
 
@@ -109,7 +133,6 @@ def take_products(
 
 
 def _kept(code: Code, value: Value) -> Value:
-    """Return a variable with a value."""
     variable = code.variable(value.kind)
     code.store(variable, value)
     return variable
@@ -122,10 +145,10 @@ def _change(
     rows, quads = map(literal, shape)
     width = QUAD * quads
     places = [code.item(into[0], times(code, into[1], i)).text for i in range(rows)]
-    sums = [_kept(code, floats_at(code, width, place)) for place in places]
+    sums = [_kept(code, loaded(code, width, place)) for place in places]
 
     def add(at_a: Value, at_b: Value) -> None:
-        line = floats_at(code, width, code.item(b[0], at_b).text)
+        line = loaded(code, width, code.item(b[0], at_b).text)
         for i, total in enumerate(sums):
             number = code.load(code.item(a[0], plus(code, at_a, i)))
             number = number if sign > 0 else code.put_value("float", f"fneg {number.typed}")
@@ -143,7 +166,6 @@ def _change(
 def _loop(
     code: Code, add: Callable[[Value, Value], None], a_stride: Operand, b_stride: Operand, depth: Operand
 ) -> None:
-    """Write a loop over the terms."""
     k, at_a, at_b = (_kept(code, constant(0)) for _ in range(3))
     head, inside, end = code.name("depth"), code.name("product"), code.name("done")
     code.label(head)
@@ -184,17 +206,12 @@ def times(code: Code, stride: Operand, count: int) -> Value:
     return code.put_value("int", f"mul nsw {code.integer(stride).typed}, {count}")
 
 
-def loaded(code: Code, place: str) -> Value:
-    """Load a four-lane vector."""
-    return code.put_value("quad", f"load <4 x double>, ptr {place}, align 8")
-
-
 def write(code: Code, place: str, value: Value) -> None:
     """Store a vector."""
     code.put(f"store {value.typed}, ptr {place}, align 8")
 
 
-def floats_at(code: Code, width: int, place: str) -> Value:
+def loaded(code: Code, width: int, place: str) -> Value:
     """Load four or eight floats."""
     return code.put_value(WIDTHS[width], f"load <{width} x double>, ptr {place}, align 8")
 
@@ -208,18 +225,13 @@ def spread_over(code: Code, width: int, number: Value) -> Value:
 
 
 def fused(code: Code, total: Value, a: Value, b: Value) -> Value:
-    """Return total + a * b of vectors of one width, rounded once."""
-    kind, width = LLVM_TYPES[total.kind], 4 if total.kind == "quad" else 8
-    code.unit.declare(f"declare {kind} @llvm.fma.v{width}f64({kind}, {kind}, {kind})")
-    return code.put_value(total.kind, f"call {kind} @llvm.fma.v{width}f64({a.typed}, {b.typed}, {total.typed})")
-
-
-def plus_product_of_floats(code: Code, total: Value, a: Value, b: Value) -> Value:
-    """Return total + a * b of floats, rounded once."""
-    code.unit.declare("declare double @llvm.fma.f64(double, double, double)")
-    return code.put_value("float", f"call double @llvm.fma.f64({a.typed}, {b.typed}, {total.typed})")
+    """Return total + a * b of floats, or of vectors of one width, rounded once."""
+    kind = LLVM_TYPES[total.kind]
+    name = "llvm.fma." + {"float": "f64", "quad": "v4f64", "octet": "v8f64"}[total.kind]
+    code.unit.declare(f"declare {kind} @{name}({kind}, {kind}, {kind})")
+    return code.put_value(total.kind, f"call {kind} @{name}({a.typed}, {b.typed}, {total.typed})")
 
 
 def minus_product(code: Code, total: Value, a: Value, b: Value) -> Value:
     """Return total - a * b of floats, rounded once."""
-    return plus_product_of_floats(code, total, code.put_value("float", f"fneg {a.typed}"), b)
+    return fused(code, total, code.put_value("float", f"fneg {a.typed}"), b)

@@ -6,18 +6,47 @@ for the Elementary Functions, 1980, ch. 8). The polynomials are those of Sun's f
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from math import cos, pi
+
 from .access import compiled
 from .quads import item_of, nearest_whole, plus_product, product_of, quad_of, spread
 
 FARTHEST = 1e5
 """Largest angle for which two parts of pi/2 suffice, rad."""
-PER_QUARTER = 0.6366197723675814
-QUARTER, QUARTER_REST = 1.5707963267948966, 6.123233995736766e-17
-"""Two parts of pi/2, rad."""
-S1, S2, S3 = -1.66666666666666324348e-01, 8.33333333332248946124e-03, -1.98412698298579493134e-04
-S4, S5, S6 = 2.75573137070700676789e-06, -2.50507602534068634195e-08, 1.58969099521155010221e-10
-C1, C2, C3 = 4.16666666666666019037e-02, -1.38888888888741095749e-03, 2.48015872894767294178e-05
-C4, C5, C6 = -2.75573143513906633035e-07, 2.08757232129817482790e-09, -1.13596475577881948265e-11
+QUARTER = pi / 2
+QUARTER_REST = cos(QUARTER)
+"""Two parts of pi/2, rad: its rounded value, and the rest."""
+PER_QUARTER = 1 / QUARTER
+
+
+@dataclass(frozen=True)
+class Polynomial:
+    """Coefficients of a polynomial in the square of the angle."""
+
+    c1: float
+    c2: float
+    c3: float
+    c4: float
+    c5: float
+    c6: float
+
+
+SINE = Polynomial(
+    -1.66666666666666324348e-01, 8.33333333332248946124e-03, -1.98412698298579493134e-04,
+    2.75573137070700676789e-06, -2.50507602534068634195e-08, 1.58969099521155010221e-10,
+)  # fmt: skip
+COSINE = Polynomial(
+    4.16666666666666019037e-02, -1.38888888888741095749e-03, 2.48015872894767294178e-05,
+    -2.75573143513906633035e-07, 2.08757232129817482790e-09, -1.13596475577881948265e-11,
+)  # fmt: skip
+
+
+@compiled
+def _values(p, z):
+    """Evaluate a polynomial at four squares."""
+    s = plus_product(spread(p.c4), z, plus_product(spread(p.c5), z, spread(p.c6)))
+    return plus_product(spread(p.c1), z, plus_product(spread(p.c2), z, plus_product(spread(p.c3), z, s)))
 
 
 @compiled
@@ -35,14 +64,10 @@ def share_four(q, turned, turn):
     rest = plus_product(plus_product(near, y, minus), back, spread(QUARTER_REST))
     z = product_of(y, y)
 
-    s = plus_product(spread(S4), z, plus_product(spread(S5), z, spread(S6)))
-    s = plus_product(spread(S1), z, plus_product(spread(S2), z, plus_product(spread(S3), z, s)))
-    sine = plus_product(y, plus_product(rest, product_of(z, y), s), one)
-    s = plus_product(spread(C4), z, plus_product(spread(C5), z, spread(C6)))
-    s = plus_product(spread(C1), z, plus_product(spread(C2), z, plus_product(spread(C3), z, s)))
+    sine = plus_product(y, plus_product(rest, product_of(z, y), _values(SINE, z)), one)
     most = plus_product(one, z, spread(-0.5))
     lost = plus_product(plus_product(one, most, minus), z, spread(-0.5))
-    lost = plus_product(plus_product(lost, product_of(z, z), s), product_of(y, rest), minus)
+    lost = plus_product(plus_product(lost, product_of(z, z), _values(COSINE, z)), product_of(y, rest), minus)
     cosine = plus_product(most, lost, one)
 
     half = nearest_whole(plus_product(spread(-0.25), quarters, spread(0.5)))

@@ -30,7 +30,7 @@ the changes of the elements' numbers); derivatives of the values."""
 EQUATIONS = Layout({
     "n": INT, "residual_set": INT, "matrix_set": INT, "n_plain": INT, "n_with_y": INT, "n_with_yp": INT,
     "r_row": INDICES, "r_source": INDICES, "r_operand": INDICES, "r_factor": FLOATS,
-    "n_slots": INT, "n_cleared": INT, "n_bare": INT, "m_bare": INDICES, "n_first": INT, "n_constant": INT, "n_entries": INT,
+    "n_slots": INT, "n_constant": INT, "n_entries": INT,
     "m_slot": INDICES, "m_source": INDICES, "m_constant": FLOATS, "m_cj": FLOATS,
     "n_moving_q": INT, "moving_q": INTS, "q_from": INTS, "offset": FLOATS, "q_ratio": FLOATS,
     "n_moving_u": INT, "moving_u": INTS, "u_from": INTS, "u_ratio": FLOATS,

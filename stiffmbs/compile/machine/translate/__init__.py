@@ -5,4 +5,7 @@ arithmetic, comparisons, loops, conditions, the functions of `math`, and calls. 
 exceptions: division by zero gives infinity, integers have 64 bits, indices are not checked, ``and`` and ``or`` give
 truth values, `floor` a float. A function returns one number or pointer, or nothing. A variable assigned both integers
 and floats is a float.
+
+Numbers of the module are constants, and so are the fields of its frozen dataclasses, such as ``SEARCH.margin``. Modules
+that define them belong to a ``native`` folder: compiled code is cached by the text of these.
 """

@@ -14,8 +14,6 @@ COMPARISONS = {
     ast.LtE: ("ole", "sle"), ast.Gt: ("ogt", "sgt"), ast.GtE: ("oge", "sge"),
 }  # fmt: skip
 """LLVM predicates for floats and integers; a comparison with NaN is false, except !=."""
-LARGEST_POWER = 64
-"""Largest integer power computed by multiplication."""
 
 
 def computed(code: Code, operation: ast.operator, left: Operand, right: Operand) -> Value:
@@ -66,7 +64,7 @@ def _divided(code: Code, a: Value, b: Value) -> tuple[Value, Value, Value]:
 
 def power(code: Code, a: Value, b: Value) -> Value:
     """Return a power: integer powers by squaring, others by `pow`."""
-    if b.kind != "int" or not b.text.lstrip("-").isdigit() or abs(int(b.text)) > LARGEST_POWER:
+    if b.kind != "int" or not b.text.lstrip("-").isdigit():
         return code.unit.called_library(code, "llvm.pow.f64", a, b)
     exponent = int(b.text)
     result: Value | None = None

@@ -7,6 +7,7 @@ import builtins
 from collections.abc import Iterator, Mapping
 from collections.abc import Set as AbstractSet
 from contextlib import contextmanager
+from dataclasses import fields, is_dataclass
 from typing import Any
 
 from .arithmetic import compared, computed, negated
@@ -71,7 +72,6 @@ class Expressions:
         self.values = outer
 
     def _declared(self, name: str, kind: str) -> Value:
-        """Declare a variable for a first value of the given kind."""
         self.variables[name] = self.code.variable(self._wider.get(name, "int" if kind == "int32" else kind))
         return self.variables[name]
 
@@ -146,6 +146,8 @@ class Expressions:
         found = self._outside.get(name)
         if isinstance(found, bool | int | float):
             return constant(found)
+        if is_dataclass(found) and not isinstance(found, type):
+            return Record(name, {field.name: constant(getattr(found, field.name)) for field in fields(found)})
         raise Untranslatable(f"'{name}' is no variable and no number")
 
     def _joined(self, node: ast.Compare | ast.BoolOp) -> Value:

@@ -7,21 +7,21 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from ....describe.formula.functions import FUNCTIONS as FORMULA_FUNCTIONS
+from ....reading.formula.functions import FUNCTIONS as FORMULA_FUNCTIONS
 from .arithmetic import compared, negated, number, selected
 from .code import Code
 from .values import Builtin, Operand, Value, builtin
 
-INTRINSICS = ("sqrt", "sin", "cos", "exp", "log")
+INTRINSICS = ("sqrt", "sin", "cos", "exp", "log", "copysign", "floor")
 """LLVM intrinsics; other functions are called in the C library of the process."""
 OF_THE_LIBRARY = tuple(name for name, function in FORMULA_FUNCTIONS.items() if function.in_c and name not in INTRINSICS)
 
 
-def _library(name: str, *symbols: str) -> dict[Any, Builtin]:
+def _library(symbol: str) -> Builtin:
     def lower(code: Code, *arguments: Operand) -> Value:
-        return code.unit.called_library(code, symbols[0], *map(number, arguments))
+        return code.unit.called_library(code, symbol, *map(number, arguments))
 
-    return {getattr(math, name): Builtin(lower)}
+    return Builtin(lower)
 
 
 @builtin
@@ -66,9 +66,6 @@ def is_finite(code: Code, operand: Operand) -> Value:
 FUNCTIONS: dict[Callable[..., Any], Builtin] = {
     abs: absolute, max: _extreme(ast.Gt()), min: _extreme(ast.Lt()), float: to_float, int: to_int,
     math.isfinite: is_finite, math.fabs: absolute,
+    **{getattr(math, name): _library(f"llvm.{name}.f64") for name in INTRINSICS},
+    **{getattr(math, name): _library(name) for name in OF_THE_LIBRARY},
 }  # fmt: skip
-for _name in INTRINSICS:
-    FUNCTIONS |= _library(_name, f"llvm.{_name}.f64")
-for _name in OF_THE_LIBRARY:
-    FUNCTIONS |= _library(_name, _name)
-FUNCTIONS |= _library("copysign", "llvm.copysign.f64") | _library("floor", "llvm.floor.f64")

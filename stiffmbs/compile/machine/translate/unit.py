@@ -3,19 +3,26 @@
 from __future__ import annotations
 
 import ast
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any
 
-from .assignments import given_once
 from .code import Code, tags
 from .expressions import Expressions
 from .statements import Statements, parameters
 from .values import LLVM_TYPES, Operand, Record, Untranslatable, Value, Wider
 
-KINDS = {"int64": "int", "int32": "int32", "float64": "float", "int64*": "ints", "float64*": "floats"}
+KINDS = {
+    "int64": "int",
+    "int32": "int32",
+    "float64": "float",
+    "int64*": "ints",
+    "float64*": "floats",
+    "int32*": "indices",
+}
 """Kinds of the C argument types."""
 
 
@@ -60,7 +67,7 @@ def assembly(entries: Sequence[Entry], text: str = "") -> str:
         tree = _functions(text)[entry.function.__name__] if text else _tree(entry.function)
         values = [Value(KINDS[kind], "") for kind in entry.arguments]
         wanted = None if entry.result == "void" else KINDS[entry.result]
-        unit.write(tree, entry.function.__globals__, entry.symbol, values, wanted, "")
+        unit.write(tree, entry.function.__globals__, entry.symbol, values, wanted)
     return unit.text()
 
 
@@ -89,7 +96,7 @@ class Unit:
                 raise Untranslatable(f"'{function.__name__}' calls itself")
             self._begun.add(key)
             symbol = f"{function.__name__}.{len(self._begun)}"
-            kind = self.write(_tree(function), function.__globals__, symbol, values, None, "internal ")
+            kind = self.write(_tree(function), function.__globals__, symbol, values, linkage="internal ")
             self._known[key] = symbol, kind
         symbol, kind = self._known[key]
         given = ", ".join(part.typed for value in values for part in _parts(value))
@@ -107,44 +114,27 @@ class Unit:
         return code.put_value("float", f'call double @"{symbol}"({given})')
 
     def write(
-        self,
-        tree: ast.FunctionDef,
-        outside: Mapping[str, Any],
-        symbol: str,
-        values: Sequence[Operand],
-        wanted: str | None,
-        linkage: str,
-    ) -> str | None:
+        self, tree: ast.FunctionDef, outside: Mapping[str, Any], symbol: str, values: Sequence[Operand],
+        wanted: str | None = None, linkage: str = "",
+    ) -> str | None:  # fmt: skip
         """Translate one function for the kinds of `values`; return the kind of its result."""
         wider: dict[str, str] = {}
         while True:
+            code = Code(self)
+            expressions = Expressions(code, outside, wider, _given_once(tree))
+            statements = Statements(code, expressions)
             try:
-                text, kind = self._translated(tree, outside, symbol, values, wanted, wider)
+                declared = parameters([argument.arg for argument in tree.args.args], values, expressions)
+                statements.write(tree.body)
+                kind = statements.finish(wanted)
                 break
             except Wider as found:
                 wider[found.name] = found.kind
             except Untranslatable as error:
                 raise Untranslatable(f"{tree.name}: {error}") from None
-        self._texts.append(f"define {linkage}{text}")
+        head = f'define {linkage}{LLVM_TYPES[kind] if kind else "void"} @"{symbol}"({", ".join(declared)}) nounwind'
+        self._texts.append("\n".join([f"{head} {{", *code.lines(), "}"]))
         return kind
-
-    def _translated(
-        self,
-        tree: ast.FunctionDef,
-        outside: Mapping[str, Any],
-        symbol: str,
-        values: Sequence[Operand],
-        wanted: str | None,
-        wider: Mapping[str, str],
-    ) -> tuple[str, str | None]:
-        code = Code(self)
-        expressions = Expressions(code, outside, wider, given_once(tree))
-        statements = Statements(code, expressions)
-        declared = parameters([argument.arg for argument in tree.args.args], values, expressions)
-        statements.write(tree.body)
-        kind = statements.finish(wanted)
-        head = f'{LLVM_TYPES[kind] if kind else "void"} @"{symbol}"({", ".join(declared)}) nounwind'
-        return "\n".join([f"{head} {{", *code.lines(), "}"]), kind
 
 
 def _kind(value: Operand) -> str:
@@ -157,6 +147,13 @@ def _parts(value: Operand) -> Sequence[Value]:
     if isinstance(value, Record):
         return list(value.fields.values())
     return [value] if isinstance(value, Value) else []
+
+
+def _given_once(tree: ast.FunctionDef) -> set[str]:
+    """Return the parameters never assigned, and the names assigned by one statement, which need no memory."""
+    stored = (node.id for node in ast.walk(tree) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store))
+    counts = Counter([*(argument.arg for argument in tree.args.args), *stored])
+    return {name for name, count in counts.items() if count == 1}
 
 
 def _tree(function: Callable[..., Any]) -> ast.FunctionDef:

@@ -4,8 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-STRAIGHT = ((0, 0, 0), (1, 0, 0))
 TURNS = 6
+
+
+def straight() -> list[tuple[float, float, float]]:
+    """A straight line."""
+    return [(0, 0, 0), (1, 0, 0)]
 
 
 def zigzag(width: float, shift: float = 0.0) -> list[tuple[float, float, float]]:
@@ -42,7 +46,7 @@ def bar(width: float) -> list[list[tuple[float, float, float]]]:
 def arrows(width: float) -> list[list[tuple[float, float, float]]]:
     """A line with a head at each end that points outwards."""
     return [
-        list(STRAIGHT),
+        straight(),
         [(0.12, width, 0), (0, 0, 0), (0.12, -width, 0)],
         [(0.88, width, 0), (1, 0, 0), (0.88, -width, 0)],
     ]

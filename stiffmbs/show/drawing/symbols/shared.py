@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from ....describe.formula.formula import Formula
-from ....describe.formula.text import FormulaError
-from ....describe.formula.value import formula_value
+from ....reading.formula.formula import Formula
+from ....reading.formula.text import FormulaError
+from ....reading.formula.value import formula_value
 from .. import solids
-from ..draft import Draft, Site
+from ..draft import Draft, Site, at_both, at_first
 from ..frames import axes_along
 from ..scene_graph import Line
 from . import profiles
@@ -75,115 +75,136 @@ def components(values: Any) -> np.ndarray | None:
     return found / np.linalg.norm(found) if np.linalg.norm(found) > 0 else None
 
 
-def force(d: Draft) -> None:
+@at_first
+def force(d: Draft, i: Site) -> None:
     """Arrow at the point, in the direction of the force if that is constant."""
-    if d.i is None:
-        return
     direction = components(d.element.force)
-    site = d.i if getattr(d.element, "axes", "body") == "body" else d.i.along_ground()
     if direction is None:
-        d.put(d.i, "force", solids.outline(solids.circle(0.55 * d.u, corners=4)[:-1], 1.6))
+        d.put(i, "force", solids.outline(solids.circle(0.55 * d.u, corners=4)[:-1], 1.6))
         return
+    site = i if getattr(d.element, "axes", "body") == "body" else i.along_ground()
     d.put(site.at(-5 * d.u * direction), "force", *arrow(direction, 4.3 * d.u, 1.1 * d.u))
 
 
-def torque(d: Draft) -> None:
+@at_first
+def torque(d: Draft, i: Site) -> None:
     """Arrow around the point, or around the centre of mass if far away: a torque has no point of application."""
-    if d.i is not None:
-        away = np.linalg.norm(d.i.point) > FAR_OFF * d.size
-        d.put(
-            replace(d.i, point=np.zeros(3)) if away else d.i,
-            "force",
-            *arc_arrow(1.7 * d.u, -0.6 * TURN, 0.12 * TURN, 0.7 * d.u),
-        )
+    site = replace(i, point=np.zeros(3)) if np.linalg.norm(i.point) > FAR_OFF * d.size else i
+    d.put(site, "force", *arc_arrow(1.7 * d.u, -0.6 * TURN, 0.12 * TURN, 0.7 * d.u))
 
 
-def line_force(d: Draft) -> None:
+@at_both
+def line_force(d: Draft, i: Site, j: Site) -> None:
     """A line with two heads."""
-    if d.i is not None and d.j is not None:
-        d.stretch(d.i, d.j, "force", *profiles.arrows(0.6 * d.u))
+    d.stretch(i, j, "force", *profiles.arrows(0.6 * d.u))
 
 
-def spiral(d: Draft) -> None:
+@at_first
+def spiral(d: Draft, i: Site) -> None:
     """A clock spring about z."""
-    if d.i is None:
-        return
     angles = np.linspace(0, 2.5 * TURN, 60)
     radius = np.linspace(0.5, 1.5, 60) * d.u
     points = np.column_stack([radius * np.cos(angles), radius * np.sin(angles), 0.05 * d.u + 0 * angles])
-    d.put(d.i, "force", Line(points, 1.3))
+    d.put(i, "force", Line(points, 1.3))
 
 
 def coupling(d: Draft) -> None:
     """A dashed line between two coupled joints."""
     one, other = d.joint_site("joint_1"), d.joint_site("joint_2")
     if one is not None and other is not None:
-        d.stretch(one, other, "drive", profiles.STRAIGHT, dashed=True)
+        d.stretch(one, other, "drive", profiles.straight(), dashed=True)
 
 
-def rubbing(d: Draft) -> None:
+@at_first
+def rubbing(d: Draft, i: Site) -> None:
     """Short strokes at sliding surfaces."""
-    if d.i is not None:
-        strokes = (
-            Line(np.array([[x - 0.2, -1.5, 0], [x + 0.2, -1.1, 0]]) * d.u, 1.2) for x in (-0.8, -0.4, 0.0, 0.4, 0.8)
-        )
-        d.put(d.i, "force", *strokes)
+    places = (-0.8, -0.4, 0.0, 0.4, 0.8)
+    d.put(i, "force", *(Line(np.array([[x - 0.2, -1.5, 0], [x + 0.2, -1.1, 0]]) * d.u, 1.2) for x in places))
 
 
-def any_joint(d: Draft) -> None:
+def is_damped(d: Draft) -> bool:
+    """Return True if a spring-damper has a damper."""
+    return bool(getattr(d.element, "damping", 0)) or getattr(d.element, "damper_law", None) is not None
+
+
+def drives_a_displacement(d: Draft) -> bool:
+    """Return True if a drive moves its joint along an axis, not about it."""
+    name = d.element.joint
+    if name is None or name.joint not in d.joints:
+        return False
+    return bool(name.coordinate_of(d.joints[name.joint][0]) == "displacement")
+
+
+@at_first
+def any_joint(d: Draft, i: Site) -> None:
     """Diamond at the point of the joint's reaction."""
-    if d.i is not None:
-        d.put(
-            d.i,
-            "joint",
-            solids.flat(solids.circle(0.5 * d.u, corners=4)[:-1]),
-            solids.outline(solids.circle(0.5 * d.u, corners=4)[:-1]),
-        )
-    if d.i is not None and d.j is not None and np.linalg.norm(d.i.in_ground - d.j.in_ground) > d.u:
-        d.stretch(d.i, d.j, "joint", profiles.STRAIGHT, dashed=True)
+    diamond = solids.circle(0.5 * d.u, corners=4)[:-1]
+    d.put(i, "joint", solids.flat(diamond), solids.outline(diamond))
+    if d.j is not None and np.linalg.norm(i.in_ground - d.j.in_ground) > d.u:
+        d.stretch(i, d.j, "joint", profiles.straight(), dashed=True)
 
 
-def any_force(d: Draft) -> None:
+@at_first
+def any_force(d: Draft, i: Site) -> None:
     """A dashed line between the markers, or a diamond at a single marker."""
-    if d.i is not None and d.j is not None and np.linalg.norm(d.i.in_ground - d.j.in_ground) > d.u:
-        d.stretch(d.i, d.j, "force", *profiles.arrows(0.5 * d.u), dashed=True)
-    elif d.i is not None:
-        d.put(d.i, "force", solids.outline(solids.circle(0.6 * d.u, corners=4)[:-1], 1.5))
+    if d.j is not None and np.linalg.norm(i.in_ground - d.j.in_ground) > d.u:
+        d.stretch(i, d.j, "force", *profiles.arrows(0.5 * d.u), dashed=True)
+    else:
+        d.put(i, "force", solids.outline(solids.circle(0.6 * d.u, corners=4)[:-1], 1.5))
 
 
-def curve(d: Draft) -> None:
+def curve(d: Draft, j: Site) -> None:
     """Curve on which a point stays, in the axes of marker j."""
-    if d.j is None:
+    try:
+        d.put(j, "joint", Line(_along_y(d) if d.element.y is not None else _around(d), 1.6))
+    except FormulaError:  # a formula of more than the argument
         return
-    points = _along_y(d) if d.element.y is not None else _around(d)
-    if points is not None:
-        d.put(d.j, "joint", Line(points, 1.6))
 
 
 def _value(law: Any, name: str, x: float) -> float:
-    variables: dict[str, Any] = {name: x}
-    return formula_value(law, **variables) if isinstance(law, Formula) else float(_interpolated(law, x))
-
-
-def _interpolated(table: Any, x: float) -> float:
-    rows = np.array(table.table)
-    period = {"period": rows[-1, 0] - rows[0, 0]} if table.ends == "periodic" else {}
+    if isinstance(law, Formula):
+        variables: dict[str, Any] = {name: x}
+        return formula_value(law, **variables)
+    rows = np.array(law.table)
+    period = {"period": rows[-1, 0] - rows[0, 0]} if law.ends == "periodic" else {}
     return float(np.interp(x, rows[:, 0], rows[:, 1], **period))
 
 
-def _along_y(d: Draft) -> np.ndarray | None:
+def _along_y(d: Draft) -> np.ndarray:
     law = d.element.y
     half = 0.4 * d.size
     ends: tuple[float, float] = (law.table[0][0], law.table[-1][0]) if hasattr(law, "table") else (-half, half)
-    try:
-        return np.array([[x, _value(law, "x", x), 0.0] for x in np.linspace(*ends, 80)])
-    except FormulaError:
-        return None
+    return np.array([[x, _value(law, "x", x), 0.0] for x in np.linspace(*ends, 80)])
 
 
-def _around(d: Draft) -> np.ndarray | None:
-    try:
-        radii = np.array([_value(d.element.radius, "angle", a) for a in np.linspace(0, TURN, 97)])
-    except FormulaError:
-        return None
+def _around(d: Draft) -> np.ndarray:
+    radii = np.array([_value(d.element.radius, "angle", a) for a in np.linspace(0, TURN, 97)])
     return solids.circle(1.0, corners=96) * radii[:, None]
+
+
+def gear(d: Draft) -> None:
+    """Pitch circles, each with a stroke that rotates."""
+    one, two = d.joint_site("joint_1"), d.joint_site("joint_2")
+    if one is None or two is None:
+        return
+    apart = float(np.linalg.norm(one.in_ground - two.in_ground))
+    ratio = d.element.ratio
+    first = apart / abs(1 + ratio) if abs(1 + ratio) > 1e-9 else apart / 2
+    for site, radius in ((one, first), (two, abs(ratio) * first)):
+        _wheel(d, site, radius)
+
+
+def _wheel(d: Draft, site: Site, radius: float) -> None:
+    mark = np.array([[0.75 * radius, 0, 0], [radius, 0, 0]])
+    d.put(site.at((0, 0, d.front)), "joint", Line(solids.circle(radius, corners=48), 1.3, dashed=True), Line(mark, 1.3))
+
+
+def rack_and_pinion(d: Draft) -> None:
+    """Pitch circle of the pinion, and the rack."""
+    pinion, rack = d.joint_site("pinion"), d.joint_site("rack")
+    if pinion is not None:
+        _wheel(d, pinion, abs(d.element.pitch_radius))
+    if rack is not None:
+        ends = np.zeros((2, 3))
+        ends[:, 0 if d.front else 2] = -0.3 * d.size, 0.3 * d.size  # along the axis of the prismatic joint
+        d.put(rack.at((0, 0, d.front)), "joint", Line(ends, 1.5, dashed=True))

@@ -3,171 +3,160 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 
 import numpy as np
 
 from .. import solids
-from ..draft import Draft
+from ..draft import Draft, Site, Symbol, at_both, at_first
 from ..scene_graph import Line
 from . import profiles
-from .gears import gear, rack_and_pinion
 from .pins import DARK, ball, pin, plate, rail, shape
-from .shared import (
+from .shared import (  # fmt: skip
     any_force,
     any_joint,
     arc_arrow,
     arrow,
     coupling,
     curve,
+    drives_a_displacement,
     force,
+    gear,
     ground,
     line_force,
+    rack_and_pinion,
     rubbing,
     spiral,
     torque,
-)  # fmt: skip
+)
 from .spatial_forces import beam, bushing, contact, elastic, spring_damper
 
 
-def revolute(d: Draft) -> None:
+@at_first
+def revolute(d: Draft, i: Site) -> None:
     """A pin along z."""
     ground(d)
-    if d.i is not None:
-        pin(d, d.i)
+    pin(d, i)
 
 
-def spherical(d: Draft) -> None:
+@at_first
+def spherical(d: Draft, i: Site) -> None:
     """A ball."""
     ground(d)
-    if d.i is not None:
-        ball(d, d.i)
+    ball(d, i)
 
 
-def universal(d: Draft) -> None:
+@at_both
+def universal(d: Draft, i: Site, j: Site) -> None:
     """A cross: an arm along the z of each marker."""
     ground(d)
-    for site in (d.i, d.j):
-        if site is not None:
-            pin(d, site, 0.28, 2.2)
+    for site in (i, j):
+        pin(d, site, 0.28, 2.2)
 
 
-def constant_velocity(d: Draft) -> None:
+@at_first
+def constant_velocity(d: Draft, i: Site) -> None:
     """A ball in a ring about the shaft."""
     ground(d)
-    if d.i is not None:
-        ball(d, d.i)
-        d.put(d.i, "joint", Line(solids.circle(0.85 * d.u), 2.0))
+    ball(d, i)
+    d.put(i, "joint", Line(solids.circle(0.85 * d.u), 2.0))
 
 
-def prismatic(d: Draft) -> None:
+@at_both
+def prismatic(d: Draft, i: Site, j: Site) -> None:
     """A block on a rail."""
-    if d.i is not None and d.j is not None:
-        rail(d)
-        _block(d, (1.8, 1.8, 3.2))
+    rail(d, i, j)
+    block = solids.box((1.8 * d.u, 1.8 * d.u, 3.2 * d.u))
+    d.put(i, "body", solids.edged(block), color=d.colors.get(i.body, ""))
 
 
-def _block(d: Draft, size: tuple[float, float, float]) -> None:
-    assert d.i is not None
-    block = solids.box((size[0] * d.u, size[1] * d.u, size[2] * d.u))
-    d.put(d.i, "body", solids.edged(block), color=d.colors.get(d.i.body, ""))
-
-
-def cylindrical(d: Draft) -> None:
+@at_both
+def cylindrical(d: Draft, i: Site, j: Site) -> None:
     """A sleeve on a rail."""
-    if d.i is not None and d.j is not None:
-        rail(d)
-        pin(d, d.i, 0.7, 2.6)
+    rail(d, i, j)
+    pin(d, i, 0.7, 2.6)
 
 
-def screw(d: Draft) -> None:
+@at_both
+def screw(d: Draft, i: Site, j: Site) -> None:
     """A sleeve on a thread."""
-    if d.i is None or d.j is None:
-        return
     cylindrical(d)
     turns = np.linspace(-4, 4, 120)
     thread = np.column_stack([np.cos(2 * math.pi * turns), np.sin(2 * math.pi * turns), turns]) * (0.35, 0.35, 0.8)
-    d.put(d.j, "joint", Line(thread * d.u, 1.0))
+    d.put(j, "joint", Line(thread * d.u, 1.0))
 
 
-def planar(d: Draft) -> None:
+@at_both
+def planar(d: Draft, i: Site, j: Site) -> None:
     """A block on a plane."""
-    if d.i is not None and d.j is not None:
-        plate(d)
-        shape(d, d.i, solids.box((1.4 * d.u, 1.4 * d.u, 0.6 * d.u)))
+    plate(d, j)
+    shape(d, i, solids.box((1.4 * d.u, 1.4 * d.u, 0.6 * d.u)))
 
 
-def point_on_plane(d: Draft) -> None:
+@at_both
+def point_on_plane(d: Draft, i: Site, j: Site) -> None:
     """A ball on a plane."""
-    if d.i is not None and d.j is not None:
-        plate(d)
-        ball(d, d.i, 0.45)
+    plate(d, j)
+    ball(d, i, 0.45)
 
 
-def point_on_line(d: Draft) -> None:
+@at_both
+def point_on_line(d: Draft, i: Site, j: Site) -> None:
     """A ball on a line."""
-    if d.i is not None and d.j is not None:
-        rail(d)
-        ball(d, d.i, 0.45)
+    rail(d, i, j)
+    ball(d, i, 0.45)
 
 
-def point_on_curve(d: Draft) -> None:
+@at_both
+def point_on_curve(d: Draft, i: Site, j: Site) -> None:
     """A ball on a curve."""
-    curve(d)
-    if d.i is not None:
-        ball(d, d.i, 0.4)
+    curve(d, j)
+    ball(d, i, 0.4)
 
 
-def fixed(d: Draft) -> None:
+@at_first
+def fixed(d: Draft, i: Site) -> None:
     """A small dark cube."""
     ground(d)
-    if d.i is not None:
-        shape(d, d.i, solids.box((0.8 * d.u,) * 3), DARK)
+    shape(d, i, solids.box((0.8 * d.u,) * 3), DARK)
 
 
-def directions(d: Draft) -> None:
+@at_both
+def directions(d: Draft, i: Site, j: Site) -> None:
     """Axes with constrained directions, without their points."""
-    for site in (d.i, d.j):
-        if site is not None:
-            d.put(site, "drive", *arrow(np.array([0.0, 0.0, 1.0]), 2.2 * d.u, 0.6 * d.u))
+    for site in (i, j):
+        d.put(site, "drive", *arrow(np.array([0.0, 0.0, 1.0]), 2.2 * d.u, 0.6 * d.u))
 
 
-def distance(d: Draft) -> None:
+@at_both
+def distance(d: Draft, i: Site, j: Site) -> None:
     """A rod with a ball at each end."""
     ground(d)
-    if d.i is not None and d.j is not None:
-        d.stretch(d.i, d.j, "joint", profiles.STRAIGHT, width=2.2)
-        for site in (d.i, d.j):
-            ball(d, site, 0.38)
+    d.stretch(i, j, "joint", profiles.straight(), width=2.2)
+    for site in (i, j):
+        ball(d, site, 0.38)
 
 
-def revolute_spherical(d: Draft) -> None:
+@at_both
+def revolute_spherical(d: Draft, i: Site, j: Site) -> None:
     """A rod from a ball at i to a pin at j."""
     ground(d)
-    if d.i is not None and d.j is not None:
-        d.stretch(d.i, d.j, "joint", profiles.STRAIGHT, width=2.2)
-        ball(d, d.i, 0.5)
-        pin(d, d.j)
+    d.stretch(i, j, "joint", profiles.straight(), width=2.2)
+    ball(d, i, 0.5)
+    pin(d, j)
 
 
-def drive(d: Draft) -> None:
+@at_first
+def drive(d: Draft, i: Site) -> None:
     """An arrow around a driven angle, or along a driven displacement."""
-    site = d.j if d.j is not None and d.j.on_ground else d.i
-    if site is None:
-        return
-    name = d.element.joint
-    straight = (
-        name is not None and name.joint in d.joints and name.coordinate_of(d.joints[name.joint][0]) == "displacement"
-    )
-    shapes = (
-        arrow(np.array([0.0, 0.0, 1.0]), 3.5 * d.u, 0.9 * d.u)
-        if straight
-        else arc_arrow(1.5 * d.u, 0, 1.5 * math.pi, 0.7 * d.u)
-    )
-    d.put(site.at((1.4 * d.u, 0, 0) if straight else (0, 0, 0)), "drive", *shapes)
+    site = d.j if d.j is not None and d.j.on_ground else i
+    if drives_a_displacement(d):
+        d.put(site.at((1.4 * d.u, 0, 0)), "drive", *arrow(np.array([0.0, 0.0, 1.0]), 3.5 * d.u, 0.9 * d.u))
+    else:
+        d.put(site, "drive", *arc_arrow(1.5 * d.u, 0, 1.5 * math.pi, 0.7 * d.u))
 
 
-SYMBOLS: Mapping[str, Callable[[Draft], None]] = {
+SYMBOLS: Mapping[str, Symbol] = {
     "revolute": revolute, "spherical": spherical, "universal": universal, "constant_velocity": constant_velocity,
     "prismatic": prismatic, "cylindrical": cylindrical, "screw": screw, "thread": screw, "planar": planar,
     "point_on_plane": point_on_plane, "point_on_line": point_on_line, "point_on_curve": point_on_curve, "tangent_to_curve": point_on_curve,

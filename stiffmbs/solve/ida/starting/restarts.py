@@ -7,11 +7,11 @@ import numpy as np
 from ....compile.machine.layout import packed
 from ....compile.machine.routines import Routine
 from ....compile.system import System
-from ...native.tables.steps import RESTART
 from ..connection import Connection
+from ..native.layouts import RESTART
 from .starts import Starts
 
-_RESTART = Routine("stiffmbs.solve.ida.native.restart", "restart", "int32(float64, float64, int64*)")
+_RESTART = Routine("stiffmbs.solve.ida.starting.native.restart", "restart", "int32(float64, float64, int64*)")
 
 
 class Restarts:
@@ -27,7 +27,7 @@ class Restarts:
     Attributes
     ----------
     table : ndarray of int
-        Table for compiled code (`stiffmbs.solve.native.tables.steps.RESTART`).
+        Table for compiled code (`stiffmbs.solve.ida.native.layouts.RESTART`).
     """
 
     def __init__(self, starts: Starts, present: tuple[np.ndarray, np.ndarray]) -> None:

@@ -10,19 +10,20 @@ from ....compile.equations import ABSENT, Equations
 from ....compile.machine.layout import packed
 from ....compile.machine.routines import Routine
 from ....compile.state import SETS
-from ....describe.settings import RunSettings
-from ...dynamics import Dynamics
+from ....dynamics.dynamics import Dynamics
+from ....model.settings import RunSettings
 from ...error_control.error_test import ErrorControl
-from ...error_control.newton import LOOSEST, NUMBERS_END, SOFT, TIGHTEST, RowSums, Stiffness, row_sums_of
+from ...error_control.native.parameters import NEWTON
+from ...error_control.newton import RowSums, Stiffness, row_sums_of
 from ...error_control.relaxation import creep_of_positions, creep_of_velocities, lightness
-from ...native.tables.steps import START
 from ..connection import Connection
+from ..native.layouts import START
 from ..statistics import Statistics
 
 if TYPE_CHECKING:
-    from ...initial import InitialValues
+    from ....dynamics.initial import InitialValues
 
-_START = Routine("stiffmbs.solve.ida.native.start", "start", "int32(float64, int64, int64, int64*)")
+_START = Routine("stiffmbs.solve.ida.starting.native.start", "start", "int32(float64, int64, int64, int64*)")
 FUNCTIONS = {
     "set_newton": "IDASetNonlinConvCoef", "start_anew": "IDAReInit", "set_first_step": "IDASetInitStep",
     "set_growth": "IDASetEtaFixedStepBounds", "set_highest_order": "IDASetMaxOrd",
@@ -48,7 +49,7 @@ class Starts:
     Attributes
     ----------
     table : ndarray of int
-        Table for compiled code (`stiffmbs.solve.native.tables.steps.START`).
+        Table for compiled code (`stiffmbs.solve.ida.native.layouts.START`).
     """
 
     def __init__(
@@ -62,8 +63,8 @@ class Starts:
             "dynamics": dynamics.table, "ida": connection.table, "error_norm": connection.error_norm.table, "n_watched": connection.watch.n,
             "rate": np.zeros(system.n_q), "sums": np.zeros(system.n_u),
             **_places(equations), **_creeping(dynamics, settings), **_stiff(dynamics), **statistics.arrays,
-            "soft": SOFT, "loosest": control.newton or LOOSEST,
-            "tightest": control.newton or max(TIGHTEST, NUMBERS_END / settings.rtol), "growth": control.growth,
+            "soft": NEWTON.soft, "loosest": control.newton or NEWTON.loosest,
+            "tightest": control.newton or max(NEWTON.tightest, NEWTON.precision / settings.rtol), "growth": control.growth,
             **{name: connection.address(function) for name, function in FUNCTIONS.items()},
         }  # fmt: skip
         self._kept = values, connection
@@ -101,13 +102,13 @@ class Starts:
 def _places(equations: Equations) -> dict[str, Any]:
     """Return the coordinates and velocities that are unknowns, and their positions in the vector."""
     coordinates = equations.coordinates
-    found: dict[str, Any] = {"leader": _integers(coordinates.independent_of)}
+    found: dict[str, Any] = {"leader": integers(coordinates.independent_of)}
     for name, independent in (("q", coordinates.independent), ("u", coordinates.independent_u)):
         numbers = np.flatnonzero(independent & (equations.at[name] != ABSENT))
         found |= {
             f"n_{name}": len(numbers),
             f"{name}_of": numbers,
-            f"{name}_at": _integers(equations.at[name][numbers]),
+            f"{name}_at": integers(equations.at[name][numbers]),
         }
     return found
 
@@ -118,21 +119,20 @@ def _creeping(dynamics: Dynamics, settings: RunSettings) -> dict[str, Any]:
     positions, velocities = system.term("motion", "C_q"), system.term("motion", "J")
     return {
         "creep": dynamics.state.relaxations,
-        "n_position_entries": len(positions.row), "position_source": _integers(positions.source), "position_row": _integers(positions.row),
+        "n_position_entries": len(positions.row), "position_source": integers(positions.source), "position_row": integers(positions.row),
         "position_creep": creep_of_positions(settings),
-        "n_velocity_entries": len(velocities.row), "velocity_source": _integers(velocities.source), "velocity_row": _integers(velocities.row),
+        "n_velocity_entries": len(velocities.row), "velocity_source": integers(velocities.source), "velocity_row": integers(velocities.row),
         "velocity_creep": creep_of_velocities(settings, system),
         "lightness": np.ascontiguousarray(lightness(dynamics)[velocities.column]) if system.n_c else np.empty(0),
-        "n_sets": len(SETS), "at_relaxations": _integers(np.array([system.constants(term_set)["E_mu"] for term_set in SETS])),
+        "n_sets": len(SETS), "at_relaxations": integers(np.array([system.constants(term_set)["E_mu"] for term_set in SETS])),
     }  # fmt: skip
 
 
 def _stiff(dynamics: Dynamics) -> dict[str, Any]:
-    """Return the entries of the derivatives of forces."""
 
     def of(name: str, sums: RowSums) -> dict[str, Any]:
         return {
-            f"n_{name}": len(sums.row), f"{name}_source": _integers(sums.source), f"{name}_row": _integers(sums.row),
+            f"n_{name}": len(sums.row), f"{name}_source": integers(sums.source), f"{name}_row": integers(sums.row),
             f"{name}_scale": np.ascontiguousarray(sums.scales),
         }  # fmt: skip
 
@@ -140,5 +140,6 @@ def _stiff(dynamics: Dynamics) -> dict[str, Any]:
     return {**of("f_q", of_positions), **of("f_u", of_velocities)}
 
 
-def _integers(numbers: np.ndarray) -> np.ndarray:
+def integers(numbers: np.ndarray) -> np.ndarray:
+    """Return indices for compiled code."""
     return np.ascontiguousarray(numbers, dtype=np.int64)

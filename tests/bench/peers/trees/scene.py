@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from stiffmbs import spatial
-from stiffmbs.describe.model_data import ModelData
+from stiffmbs.model.model_data import ModelData
 
 from .tree import GROUND, Tree
 

@@ -9,7 +9,7 @@ from functools import partial
 
 from stiffmbs.analyses.job import prepare
 from stiffmbs.comparison.turns import seconds_of
-from stiffmbs.describe.model_data import ModelData
+from stiffmbs.model.model_data import ModelData
 from stiffmbs.solve.trajectory import Outcome, ProgressCallback
 
 from ...benchmark import Row

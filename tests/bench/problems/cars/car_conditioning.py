@@ -9,11 +9,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from stiffmbs.analyses.job import Job, prepare
+from stiffmbs.dynamics.dynamics import Dynamics
+from stiffmbs.dynamics.initial import InitialValues
 from stiffmbs.solve.bdf import solve
-from stiffmbs.solve.dynamics import Dynamics
 from stiffmbs.solve.error_control.tolerances import absolute_tolerances
 from stiffmbs.solve.events.restart import restarted
-from stiffmbs.solve.initial import InitialValues
 
 from ...benchmark import Row
 from ...drives import CARS, SOLVERS, Car

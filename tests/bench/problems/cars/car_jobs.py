@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from stiffmbs.analyses.job import Job, prepare
-from stiffmbs.describe.model_data import ModelData
+from stiffmbs.model.model_data import ModelData
 
 from ...benchmark import Row
 from ...drives import CARS, Car

@@ -9,9 +9,9 @@ import numpy as np
 
 from stiffmbs.analyses.linearised.modes import modes
 from stiffmbs.analyses.linearised.transfer import transfer
-from stiffmbs.describe.reading import read_scene
-from stiffmbs.describe.scene import Scene
 from stiffmbs.errors import SolverError
+from stiffmbs.model.read_scene import read_scene
+from stiffmbs.model.scene import Scene
 
 from ...case import Case, Outcome, Verdict, measured, told
 

@@ -6,8 +6,8 @@ from collections.abc import Callable
 from functools import partial
 
 from stiffmbs.analyses.equilibrium import equilibrium
-from stiffmbs.describe.reading import read_scene
-from stiffmbs.describe.scene import Scene
+from stiffmbs.model.read_scene import read_scene
+from stiffmbs.model.scene import Scene
 
 from ...case import Case, Outcome, Verdict, measured, told
 

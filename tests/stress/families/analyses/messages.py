@@ -9,7 +9,7 @@ import numpy as np
 
 from stiffmbs.analyses.equilibrium import equilibrium
 from stiffmbs.analyses.linearised.transfer import transfer
-from stiffmbs.describe.reading import read_scene
+from stiffmbs.model.read_scene import read_scene
 from stiffmbs.studies.fit import fit
 from stiffmbs.studies.sensitivities.sensitivities import sensitivities
 from stiffmbs.studies.sweep import sweep
@@ -95,7 +95,7 @@ CASES = (
         )
     ),
     *(
-        refused(f"study of the unknown {name} in {dimensions}D", "the parameters that there are", partial(sweep, slider(dimensions, "-k*b.x", PARAMETERS), {name: [1.0]}), f"{name}: found no such parameter, expected one of ", "k")
+        refused(f"study of the unknown {name} in {dimensions}D", "the parameters that there are", partial(sweep, slider(dimensions, "-k*b.x", PARAMETERS), {name: [1.0]}), f"{name}: found no such parameter", "expected one of ", "k")
         for dimensions, name in ((2, "kk"), (3, "stiffness"), (2, "K"))
     ),
 )  # fmt: skip

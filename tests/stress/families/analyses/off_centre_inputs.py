@@ -9,7 +9,7 @@ import numpy as np
 
 from stiffmbs import spatial
 from stiffmbs.analyses.linearised.transfer import transfer
-from stiffmbs.describe.spatial.orientation import about, matrix, product
+from stiffmbs.elements.spatial.orientation import about, matrix, product
 
 from ...case import Case, Verdict, measured
 

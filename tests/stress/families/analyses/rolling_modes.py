@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from stiffmbs.analyses.linearised.modes import modes
-from stiffmbs.describe.reading import read_scene
+from stiffmbs.model.read_scene import read_scene
 
 from ...case import Case, Outcome, Verdict, measured
 from ...mechanisms.bicycle import bicycle, published

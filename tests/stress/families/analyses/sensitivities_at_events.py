@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 
 from stiffmbs.analyses.run import run
-from stiffmbs.describe.reading import read_scene
-from stiffmbs.describe.scene import Scene
+from stiffmbs.model.read_scene import read_scene
+from stiffmbs.model.scene import Scene
 from stiffmbs.studies.outputs import outputs_of
 from stiffmbs.studies.sensitivities.sensitivities import sensitivities
 

@@ -10,11 +10,11 @@ import sympy
 
 from stiffmbs import spatial
 from stiffmbs.analyses.run import run
-from stiffmbs.describe.body import Body
-from stiffmbs.describe.element import Force, Joint
-from stiffmbs.describe.marker import Marker
-from stiffmbs.describe.model import Model
-from stiffmbs.describe.units.si import Number
+from stiffmbs.elements.body import Body
+from stiffmbs.elements.element import Force, Joint
+from stiffmbs.model.model import Model
+from stiffmbs.reading.marker import Marker
+from stiffmbs.reading.units.si import Number
 
 from ...variants.answers import compared, refused
 
@@ -62,7 +62,7 @@ def error(kind: str, dimensions: int, names: tuple[str, ...], solver: Any) -> fl
 
 REFUSED = (
     ("spring", 2, "t"), ("spring", 3, "a"), ("pin", 2, "t"), ("pin", 3, "u"), ("spring", 2, "q"), ("pin", 3, "angle"),
-    ("pin", 2, "by_coordinate"), ("spring", 3, "angles"),
+    ("pin", 2, "by_q"), ("spring", 3, "angles"),
 )  # fmt: skip
 ALLOWED_NAMES = (
     ("spring", 2, ("x", "y", "e", "stiffness"), "bdf"), ("pin", 3, ("q0", "time", "self", "speed"), "bdf"),

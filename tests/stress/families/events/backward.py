@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 
 from stiffmbs.analyses.run import run
-from stiffmbs.describe.model import Model
+from stiffmbs.model.model import Model
 
 from ...case import Case, Verdict, measured
 from ...mechanisms.double_pendulum import double_pendulum

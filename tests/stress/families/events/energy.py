@@ -9,10 +9,11 @@ from typing import Any
 import numpy as np
 
 from stiffmbs.analyses.run import run
-from stiffmbs.describe.body import Body
-from stiffmbs.describe.marker import Marker
-from stiffmbs.describe.model import FORCES, JOINTS, Model
-from stiffmbs.describe.spatial import model as spatial
+from stiffmbs.elements.body import Body
+from stiffmbs.elements.planar_kinds import FORCES, JOINTS
+from stiffmbs.model import spatial_model as spatial
+from stiffmbs.model.model import Model
+from stiffmbs.reading.marker import Marker
 from stiffmbs.results.solution import Solution
 
 from ...case import Case, Outcome, Verdict, measured

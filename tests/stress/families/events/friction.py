@@ -6,9 +6,10 @@ from functools import partial
 
 import numpy as np
 
-from stiffmbs.describe.body import Body
-from stiffmbs.describe.marker import Marker
-from stiffmbs.describe.model import FORCES, JOINTS, Model
+from stiffmbs.elements.body import Body
+from stiffmbs.elements.planar_kinds import FORCES, JOINTS
+from stiffmbs.model.model import Model
+from stiffmbs.reading.marker import Marker
 from stiffmbs.results.solution import Solution
 
 from ...mechanisms.pendulum import GRAVITY
@@ -22,7 +23,7 @@ def block(pull: str) -> Model:
     model = Model("Block", gravity=(0, -GRAVITY))
     model.add("block", Body(mass=1, inertia=1))
     model.add("rail", JOINTS["prismatic"](i="block", j="ground"))
-    model.add("rub", FORCES["joint_friction"](joint="rail", friction=MU, smooth_velocity=CREEP))
+    model.add("rub", FORCES["joint_friction"](joint="rail", friction=MU, stiction_velocity=CREEP))
     model.add("pull", FORCES["force"](i="block", force=(f"{MU * GRAVITY}*({pull})", 0)))
     return model
 

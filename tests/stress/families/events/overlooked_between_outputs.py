@@ -9,11 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from stiffmbs.describe.body import Body
-from stiffmbs.describe.forces.python_force import PythonForce
-from stiffmbs.describe.model import FORCES, Model
-from stiffmbs.describe.reading import read_scene
-from stiffmbs.describe.scene import Scene
+from stiffmbs.elements.body import Body
+from stiffmbs.elements.forces.python_force import PythonForce
+from stiffmbs.elements.planar_kinds import FORCES
+from stiffmbs.model.model import Model
+from stiffmbs.model.read_scene import read_scene
+from stiffmbs.model.scene import Scene
 from stiffmbs.results.solution import Solution
 
 from ...case import Case

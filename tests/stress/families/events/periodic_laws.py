@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from stiffmbs.describe.reading import read_scene
+from stiffmbs.model.read_scene import read_scene
 from stiffmbs.results.solution import Solution
 
 from ...case import Case, Outcome

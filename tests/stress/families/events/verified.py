@@ -12,9 +12,10 @@ from typing import Any
 
 import numpy as np
 
-from stiffmbs.describe.body import Body
-from stiffmbs.describe.model import FORCES, JOINTS, Model
-from stiffmbs.describe.spatial import model as spatial
+from stiffmbs.elements.body import Body
+from stiffmbs.elements.planar_kinds import FORCES, JOINTS
+from stiffmbs.model import spatial_model as spatial
+from stiffmbs.model.model import Model
 from stiffmbs.verification.verify import verify
 
 from ...case import Case, Outcome, Verdict

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from stiffmbs.describe.reading import read_scene
-from stiffmbs.describe.scene import Scene
+from stiffmbs.model.read_scene import read_scene
+from stiffmbs.model.scene import Scene
 from stiffmbs.results.solution import Solution
 
 from ...case import Case

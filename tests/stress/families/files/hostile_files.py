@@ -8,9 +8,9 @@ from functools import partial
 import numpy as np
 
 from stiffmbs.adams.load import ENCODING, read_adams
-from stiffmbs.describe.files.text_file import decoded
-from stiffmbs.describe.reading import read_scene
-from stiffmbs.describe.scene import Scene
+from stiffmbs.model.read_scene import read_scene
+from stiffmbs.model.scene import Scene
+from stiffmbs.reading.files.text_file import decoded
 from stiffmbs.results.solution import Solution
 
 from ...case import Case

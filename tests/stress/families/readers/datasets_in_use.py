@@ -11,8 +11,8 @@ from stiffmbs.adams.export.dataset_text import dataset_text
 from stiffmbs.adams.load import read_adams
 from stiffmbs.analyses.load_scene import load_scene
 from stiffmbs.analyses.run import run
-from stiffmbs.describe.reading import read_scene
-from stiffmbs.describe.spatial.model import SpatialData
+from stiffmbs.model.read_scene import read_scene
+from stiffmbs.model.spatial_model import SpatialData
 
 from ...case import Case, Outcome, Verdict, measured, told
 from ...variants.answers import compared, refused, with_files

@@ -9,7 +9,7 @@ from typing import Any
 
 from stiffmbs import spatial
 from stiffmbs.analyses.run import run
-from stiffmbs.describe.tyres.coefficients import TyreProperties
+from stiffmbs.elements.tyres.coefficients import TyreProperties
 
 from ...variants.answers import compared, refused, said, with_files
 

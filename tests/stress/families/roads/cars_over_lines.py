@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from stiffmbs.analyses.run import run
-from stiffmbs.describe.scene import Scene
+from stiffmbs.model.scene import Scene
 from stiffmbs.solve.trajectory import Outcome as Ending
 
 from ...case import Case, Outcome, Verdict, measured

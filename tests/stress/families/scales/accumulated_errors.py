@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from stiffmbs.analyses.run import run
-from stiffmbs.describe.reading import read_scene
+from stiffmbs.model.read_scene import read_scene
 from stiffmbs.results.solution import Solution
 
 from ...case import Case, Outcome, Verdict, measured, told

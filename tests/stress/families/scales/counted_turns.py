@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 
 from stiffmbs import spatial
-from stiffmbs.describe.body import Body
-from stiffmbs.describe.model import JOINTS, Model
+from stiffmbs.elements.body import Body
+from stiffmbs.elements.planar_kinds import JOINTS
+from stiffmbs.model.model import Model
 from stiffmbs.results.solution import Solution
 
 from ...case import Outcome

@@ -11,9 +11,10 @@ from typing import Any
 import numpy as np
 
 from stiffmbs.analyses.run import run
-from stiffmbs.describe.body import Body
-from stiffmbs.describe.model import JOINTS, Model
-from stiffmbs.describe.reading import read_scene
+from stiffmbs.elements.body import Body
+from stiffmbs.elements.planar_kinds import JOINTS
+from stiffmbs.model.model import Model
+from stiffmbs.model.read_scene import read_scene
 from stiffmbs.results.solution import Solution
 
 from ...case import Case, Verdict, measured

@@ -6,8 +6,9 @@ from functools import partial
 
 import numpy as np
 
-from stiffmbs.describe.body import Body
-from stiffmbs.describe.model import FORCES, JOINTS, Model
+from stiffmbs.elements.body import Body
+from stiffmbs.elements.planar_kinds import FORCES, JOINTS
+from stiffmbs.model.model import Model
 from stiffmbs.results.solution import Solution
 
 from ...simulation import simulation

@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from stiffmbs.describe.body import Body
-from stiffmbs.describe.model import FORCES, JOINTS, Model
+from stiffmbs.elements.body import Body
+from stiffmbs.elements.planar_kinds import FORCES, JOINTS
+from stiffmbs.model.model import Model
 from stiffmbs.results.solution import Solution
 
 from ...mechanisms.pendulum import GRAVITY

@@ -8,10 +8,11 @@ from functools import partial
 from stiffmbs import spatial
 from stiffmbs.analyses.check import check
 from stiffmbs.analyses.run import run
-from stiffmbs.describe.body import Body
-from stiffmbs.describe.building.model_builder import ModelBuilder
-from stiffmbs.describe.marker import Marker
-from stiffmbs.describe.model import FORCES, JOINTS, Model
+from stiffmbs.elements.body import Body
+from stiffmbs.elements.planar_kinds import FORCES, JOINTS
+from stiffmbs.model.model import Model
+from stiffmbs.model.model_builder import ModelBuilder
+from stiffmbs.reading.marker import Marker
 
 from ...case import Case, Outcome, Verdict, measured, told
 

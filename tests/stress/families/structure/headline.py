@@ -13,8 +13,8 @@ import numpy as np
 
 from stiffmbs import spatial
 from stiffmbs.analyses.run import run
-from stiffmbs.describe.model import FORCES
-from stiffmbs.describe.reading import read_scene
+from stiffmbs.elements.planar_kinds import FORCES
+from stiffmbs.model.read_scene import read_scene
 from stiffmbs.results.solution import Solution
 from stiffmbs.solve.trajectory import IN_DOUBT
 from stiffmbs.solve.trajectory import Outcome as Ending

@@ -7,8 +7,9 @@ from functools import partial
 import numpy as np
 from scipy.optimize import minimize
 
-from stiffmbs.describe.body import Body
-from stiffmbs.describe.model import JOINTS, Model
+from stiffmbs.elements.body import Body
+from stiffmbs.elements.planar_kinds import JOINTS
+from stiffmbs.model.model import Model
 from stiffmbs.results.solution import Solution
 
 from ...case import Outcome

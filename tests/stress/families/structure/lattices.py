@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 
 from stiffmbs.analyses.check import check
-from stiffmbs.describe.body import Body
-from stiffmbs.describe.marker import Marker
-from stiffmbs.describe.model import JOINTS, Model
+from stiffmbs.elements.body import Body
+from stiffmbs.elements.planar_kinds import JOINTS
+from stiffmbs.model.model import Model
+from stiffmbs.reading.marker import Marker
 
 from ...case import Case, Verdict, measured
 from ...framework import Framework, distance, in_plane, in_space

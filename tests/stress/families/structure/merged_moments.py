@@ -10,7 +10,7 @@ from scipy.integrate import solve_ivp
 
 from stiffmbs import spatial
 from stiffmbs.analyses.run import run
-from stiffmbs.describe.spatial.orientation import about, matrix, product
+from stiffmbs.elements.spatial.orientation import about, matrix, product
 
 from ...variants.answers import compared
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 from functools import partial
 from typing import Any
 
-import yaml
-
 from stiffmbs.analyses.check import check
 from stiffmbs.analyses.run import run
-from stiffmbs.describe.reading import read_scene
+from stiffmbs.model.read_scene import read_scene
+from stiffmbs.reading.files.scene_text import scene_text
+from stiffmbs.reading.files.yaml_text import read_yaml
 
 from ...variants.answers import said
 
@@ -92,9 +92,9 @@ NOTE = "servo acts on a motion that motor prescribes: it changes only the reacti
 def notes(actuator: Actuator, ask: str) -> str:
     """Return the notes of a run with or without presolve, or of a check."""
     text, servo, states = actuator
-    scene = yaml.safe_load(text)
+    scene = read_yaml(text, "scene")
     scene["forces"] = scene.get("forces", {}) | {"servo": servo}
-    model = read_scene(yaml.safe_dump(scene | {"states": states}))
+    model = read_scene(scene_text(scene | {"states": states}))
     return "; ".join(check(model).messages if ask == "check" else run(model, presolve=ask == "run").notes)
 
 

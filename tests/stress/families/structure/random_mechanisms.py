@@ -10,10 +10,11 @@ import numpy as np
 
 from stiffmbs.analyses.job import examined
 from stiffmbs.analyses.run import run
-from stiffmbs.describe.body import Body
-from stiffmbs.describe.marker import Marker
-from stiffmbs.describe.model import JOINTS, Model
+from stiffmbs.elements.body import Body
+from stiffmbs.elements.planar_kinds import JOINTS
 from stiffmbs.errors import StiffmbsError
+from stiffmbs.model.model import Model
+from stiffmbs.reading.marker import Marker
 
 from ...case import Case, Verdict, measured
 from ...exact_rank import Guide, Pin, rank

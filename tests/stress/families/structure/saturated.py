@@ -15,8 +15,8 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.special import expit
 
-from stiffmbs.describe.reading import read_scene
-from stiffmbs.describe.scene import Scene
+from stiffmbs.model.read_scene import read_scene
+from stiffmbs.model.scene import Scene
 from stiffmbs.results.solution import Solution
 
 from ...case import Case, Outcome

@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 
 from stiffmbs.analyses.run import run
-from stiffmbs.describe.body import Body
-from stiffmbs.describe.marker import Marker
-from stiffmbs.describe.model import JOINTS, Model
+from stiffmbs.elements.body import Body
+from stiffmbs.elements.planar_kinds import JOINTS
+from stiffmbs.model.model import Model
+from stiffmbs.reading.marker import Marker
 from stiffmbs.results.solution import Solution
 
 from ...case import Case, Outcome, Verdict, measured

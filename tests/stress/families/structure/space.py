@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 
 from stiffmbs.analyses.run import run
-from stiffmbs.describe.spatial.body import Body
-from stiffmbs.describe.spatial.marker import Marker
-from stiffmbs.describe.spatial.model import FORCES, JOINTS, Model
+from stiffmbs.elements.spatial.body import Body
+from stiffmbs.elements.spatial.marker import Marker
+from stiffmbs.elements.spatial.spatial_kinds import FORCES, JOINTS
+from stiffmbs.model.spatial_model import Model
 from stiffmbs.results.solution import Solution
 
 from ...case import Case, Outcome, Verdict, measured

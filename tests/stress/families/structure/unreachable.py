@@ -6,8 +6,8 @@ import re
 from functools import partial
 
 from stiffmbs.analyses.run import run
-from stiffmbs.describe.reading import read_scene
 from stiffmbs.errors import StiffmbsError
+from stiffmbs.model.read_scene import read_scene
 
 from ...case import Case, Outcome, Verdict, measured, told
 

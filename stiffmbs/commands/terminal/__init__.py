@@ -1,1 +1,0 @@
-"""Messages of a command on standard error during its work."""

@@ -1,1 +1,0 @@
-"""Description of a mechanism: bodies, markers, joints, forces and scenes. Contains no numerical methods."""

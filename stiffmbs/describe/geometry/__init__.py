@@ -1,1 +1,0 @@
-"""Shapes of bodies for drawings; they do not affect the equations."""

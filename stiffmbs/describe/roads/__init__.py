@@ -1,1 +1,0 @@
-"""Roads, one kind per file."""

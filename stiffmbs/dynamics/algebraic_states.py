@@ -1,0 +1,108 @@
+"""Algebraic states: their rates, and messages on missing or non-unique values."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..compile.machine.native.statuses import NO_STATE
+from .dynamics import Dynamics
+from .failures import FAILURES
+
+RATE_INTERVAL = 1e-6
+"""Interval of the difference quotient for rates of algebraic states, s. They only enter the first prediction."""
+BEYOND_LAST_STATE = np.geomspace(1e-9, 1e-5, 3)
+"""Times after the last state, relative to the time, s, at which missing values are searched for."""
+ZERO_SLOPE = 1e-10
+"""Scaled derivative of an algebraic equation by its states below which it counts as zero."""
+
+
+def rates_of_algebraic(
+    dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, acceleration: np.ndarray
+) -> np.ndarray:
+    """Return the rates of the algebraic states along the motion, shape (algebraic states,); zero if they have none."""
+    places = dynamics.system.algebraic_coordinates
+    if not len(places):
+        return np.zeros(0)
+    state = dynamics.state
+    with state.unchanged():
+        there = dynamics.system.of_body.moved(q, RATE_INTERVAL * u)
+        there[dynamics.system.n_pose :] += RATE_INTERVAL * dynamics.position_rates(q, u)[dynamics.system.n_pose :]
+        state.q[:], state.u[:] = there, u + RATE_INTERVAL * acceleration
+        status, _ = dynamics.accelerate(t + RATE_INTERVAL)
+        rates = (state.q[places] - q[places]) / RATE_INTERVAL
+    return rates if status >= 0 and np.all(np.isfinite(rates)) else np.zeros(len(places))
+
+
+def rates_by_states(dynamics: Dynamics) -> np.ndarray:
+    """Return the Jacobian of the rates of differential states by these states, with algebraic states eliminated.
+
+    The term set ``tangent`` must be up to date. Entries are NaN where the algebraic states are not unique.
+    """
+    system = dynamics.system
+    own = slice(system.first_state, None)
+    whole, algebraic = dynamics.state.matrix("tangent", "rate_q")[own, own], system.algebraic
+    rates, follow = whole[~algebraic], whole[algebraic]
+    try:
+        by_others = -np.linalg.solve(follow[:, algebraic], follow[:, ~algebraic])
+    except np.linalg.LinAlgError:
+        return np.full((len(rates), len(rates)), np.nan)
+    found: np.ndarray = rates[:, ~algebraic] + rates[:, algebraic] @ by_others
+    return found
+
+
+def failure(dynamics: Dynamics, status: int, t: float) -> str:
+    """Return a clause on why accelerations have no solution; it names an algebraic state without a value."""
+    return (no_value(dynamics, t) if status == NO_STATE else "") or FAILURES[status]
+
+
+def no_value_ahead(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> str:
+    """Return a clause on the algebraic state that has no value at or just after a state, or an empty string."""
+    system, state = dynamics.system, dynamics.state
+    if not system.algebraic.any():
+        return ""
+    state.q[:], state.u[:] = q, u
+    status, acceleration = dynamics.accelerate(t)
+    if status >= 0:
+        for ahead in BEYOND_LAST_STATE:
+            later = ahead * max(1.0, abs(t))
+            with state.unchanged():
+                rates = dynamics.position_rates(state.q, state.u)
+                state.q[:] = system.of_body.moved(state.q, later * state.u)
+                state.q[system.n_pose :] += later * rates[system.n_pose :]
+                state.u[:] += later * acceleration
+                status, _ = dynamics.accelerate(t + later)
+                if status == NO_STATE:
+                    return no_value(dynamics, t + later)
+    return no_value(dynamics, t)
+
+
+def no_value(dynamics: Dynamics, t: float) -> str:
+    """Return a clause on the algebraic state without a regular solution near its current value, or an empty string."""
+    system, state = dynamics.system, dynamics.state
+    places = system.algebraic_coordinates
+    state.evaluate("tangent", t)
+    state.evaluate("motion", t)
+    slopes = state.matrix("tangent", "rate_q")[np.ix_(places, places)]
+    left = state.vector("motion", "rate")[places]
+    sizes = np.maximum(np.abs(state.q[places]), system.state_scales[system.algebraic])
+    names = [system.states[k] for k in np.flatnonzero(system.algebraic)]
+    at = [f"{name} = {value:.6g}" for name, value in zip(names, state.q[places], strict=True)]
+    undefined = np.flatnonzero(~np.isfinite(left) | ~np.all(np.isfinite(slopes), axis=1))
+    if len(undefined):
+        worst = int(undefined[0])
+        return f"the formula that the state '{names[worst]}' keeps at zero has no finite value at {at[worst]}"
+    values, vectors = np.linalg.eigh((slopes * sizes).T @ (slopes * sizes))
+    if not values[0] > ZERO_SLOPE**2 * max(values[-1], np.finfo(float).tiny):
+        worst = int(np.argmax(np.abs(vectors[:, 0])))
+        return (
+            f"the state '{names[worst]}' has no unique value: the derivative of its formula by the state is zero at {at[worst]}, "
+            "expected one that changes with the state"
+        )
+    moves = np.abs(np.linalg.solve(slopes, left)) / sizes
+    worst = int(np.argmax(moves))
+    if not moves[worst] > ZERO_SLOPE:
+        return ""
+    return (
+        f"the state '{names[worst]}' has no value: Newton's iteration finds no zero of its formula from {at[worst]}, "
+        f"where it is {left[worst]:.3g}; expected a zero near there"
+    )

@@ -1,0 +1,301 @@
+"""Dynamics of a system at a state: assembly, projections, accelerations and output rows."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+from functools import cached_property
+from typing import TYPE_CHECKING, TypeVar, cast
+
+import numpy as np
+
+from ..compile.coordinates import Coordinates, all_independent
+from ..compile.inputs.ends import InputEnd, first_input_end
+from ..compile.inputs.features import NO_FEATURES, InputFeatures, input_features
+from ..compile.machine.layout import address, addresses, packed
+from ..compile.machine.routines import together
+from ..compile.state import State
+from ..compile.system import System
+from .native.layouts import DYNAMICS, POSITION_TOLERANCE
+from .saddle_point import ACCELERATIONS, POSITION_STEP, VELOCITY_STEP, WITH_ALGEBRAIC_STATES, saddle_points
+from .storage import all_finite, allocated, blocks, release
+
+if TYPE_CHECKING:
+    from .elimination.eliminated import Eliminated
+
+T = TypeVar("T")
+ASSEMBLE, CORRECT_VELOCITIES, ACCELERATE, CONTRADICTING, OUTPUT_POINTS, ENERGIES = together(
+    "stiffmbs.dynamics.native.dynamics",
+    assemble="int64(float64, float64, int64, int64*)",
+    correct_velocities="int64(float64, int64*)",
+    accelerate="int64(float64, float64*, int64*)",
+    contradicting="int64(int64, float64*, float64*, float64, float64*, float64*, float64*, float64, float64*, float64, float64, float64*, int64*, int64*)",
+    output_points="int64(int64, float64*, int64, float64, int64, float64*, float64*, float64*, float64*, float64*, float64*, int64*)",
+    energies="void(int64, int64, float64*, float64*, int64, float64*, int64, int64*, int64, int64*, int64, int64*, float64*, float64*, float64*)",
+)
+
+WORTH_ELIMINATING = 10_000
+"""Multiplications of the LU above which output rows and restarts use the elimination, which must be compiled."""
+
+
+@dataclass(frozen=True)
+class OutputRows:
+    """Output rows, one per output time.
+
+    Attributes
+    ----------
+    t, q, u, acceleration, lam : ndarrays
+    values : ndarray
+        Output terms (`stiffmbs.compile.terms`).
+    kinetic, potential, power : ndarrays, shape (n,)
+        Energies, J, and the power of non-conservative forces, W.
+    position_violation, velocity_violation, drift : ndarrays
+        Largest violation of a joint (norm over its equations): of C, of J u + C_t, and of C before projection.
+    log_determinant : ndarray, shape (n,)
+        log |det| of [M J^T; J 0], without the logarithms of units: small near singular poses.
+    status : int
+        Failure after the last row (`stiffmbs.dynamics.failures`), or 0.
+    """
+
+    t: np.ndarray
+    q: np.ndarray
+    u: np.ndarray
+    acceleration: np.ndarray
+    lam: np.ndarray
+    values: np.ndarray
+    kinetic: np.ndarray
+    potential: np.ndarray
+    power: np.ndarray
+    position_violation: np.ndarray
+    velocity_violation: np.ndarray
+    drift: np.ndarray
+    log_determinant: np.ndarray
+    status: int
+
+    def at(self, instants: np.ndarray) -> OutputRows:
+        """Return the rows of some output times, by number."""
+        found = {each.name: getattr(self, each.name) for each in fields(self)}
+        return OutputRows(
+            **{name: each[instants] if isinstance(each, np.ndarray) else each for name, each in found.items()}
+        )
+
+    @property
+    def finite(self) -> bool:
+        """True if all values that enter channels are finite."""
+        return all_finite(
+            self.q, self.u, self.acceleration, self.values, self.kinetic, self.potential, self.position_violation,
+            self.velocity_violation,
+        )  # fmt: skip
+
+
+class Dynamics:
+    """Block systems of one state, and the compiled routines that use them.
+
+    Parameters
+    ----------
+    system : System
+
+    Attributes
+    ----------
+    coordinates : Coordinates
+        Coordinates that integrators may take as unknowns, by default all. The block systems always contain all, so that
+        every reaction is computed.
+    state : State
+        Current q, u and lam.
+    table : ndarray of int
+        Addresses for compiled code.
+    """
+
+    def __init__(self, system: System) -> None:
+        self.system = system
+        self.coordinates: Coordinates = all_independent(system)
+        self.state = State(system)
+        for term_set in ("motion", "output"):
+            self.state.load(term_set)
+        algebraic = system.algebraic_coordinates.astype(np.int64)
+        self._positions, self._velocities, self._accelerations = saddle_points(
+            self.state, POSITION_STEP, VELOCITY_STEP, WITH_ALGEBRAIC_STATES if len(algebraic) else ACCELERATIONS
+        )
+        self._kept: dict[str, tuple[object, object]] = {}
+        counters, states = system.term("acceleration", "angle_rate"), system.term("acceleration", "rate")
+        source, row = np.append(counters.source, states.source), np.append(counters.row, states.row)
+        moving = ~np.isin(row, algebraic)
+        self._behind = source[moving].astype(np.int64), row[moving].astype(np.int64)
+        self._n_output = system.n_values("output")
+        self._potential = np.array(system.term("output", "potential").source, dtype=np.int64)
+        self._power = np.array(system.term("output", "power").source, dtype=np.int64)
+        self._kinetic = np.array(system.term("output", "kinetic").source, dtype=np.int64)
+        self._features = np.inf, -np.inf, NO_FEATURES
+        self._input_end: tuple[float, float, InputEnd | None] = np.nan, np.nan, None
+        for_output = system.turned("output")
+        self._lists = {
+            "algebraic": algebraic,
+            "algebraic_scale": system.state_scales[system.algebraic],
+            "algebraic_before": np.zeros(len(algebraic)),
+            "behind_source": self._behind[0],
+            "behind_row": self._behind[1],
+            "turned_for_output": for_output[~np.isin(for_output, system.turned("acceleration"))].astype(np.int64),
+        }
+        large = system.of_body.dimensions == 3 and self.lu_updates > WORTH_ELIMINATING
+        eliminates = large and self.eliminated.serves
+        self.table = packed(
+            DYNAMICS,
+            {
+                "state": self.state.table,
+                "positions": self._positions.equations_table, "position_factors": self._positions.factors_table,
+                "velocities": self._velocities.equations_table, "velocity_factors": self._velocities.factors_table,
+                "accelerations": self._accelerations.equations_table, "acceleration_factors": self._accelerations.factors_table,
+                **self._lists, "n_behind": len(self._behind[1]), "n_algebraic": len(algebraic),
+                "n_turned_for_output": len(self._lists["turned_for_output"]),
+                "by_reactions": len(algebraic) > 0 or len(system.term("tangent", "rate_lam").row) > 0,
+                "eliminates": eliminates,
+                "eliminated": self.eliminated.within_reach() if eliminates else np.zeros(1, dtype=np.int64),
+            },
+        )  # fmt: skip
+        self._at, self._cells = self.table.ctypes.data, self.table.view(DYNAMICS.cells)[0]
+
+    def kept(self, name: str, settings: object, make: Callable[[], T]) -> T:
+        """Return the object that a solver keeps under a name for these settings, or make it."""
+        key = (settings, self.coordinates)
+        if name not in self._kept or self._kept[name][0] != key:
+            self._kept[name] = (key, make())
+            self.system.known_terms.clear()
+        return cast(T, self._kept[name][1])
+
+    def forget_pivots(self) -> None:
+        """Discard all pivot sequences, so that the rounding of a run does not depend on earlier runs."""
+        for system in (self._positions, self._velocities, self._accelerations):
+            system.forget_pivots()
+        if "eliminated" in self.__dict__:
+            self.eliminated.forget()
+
+    def forget_inputs(self) -> None:
+        """Discard the cached features of inputs after formulas of time were changed in place."""
+        self._features = np.inf, -np.inf, NO_FEATURES
+        self._input_end = np.nan, np.nan, None
+
+    def take_input_features(self, other: Dynamics) -> None:
+        """Copy the features of inputs from another system if both contain the identical elements with inputs."""
+        own, others = ([*dynamics.system.elements_with_inputs()] for dynamics in (self, other))
+        if len(own) == len(others) and all(one is another for one, another in zip(own, others, strict=True)):
+            self._features, self._input_end = other._features, other._input_end
+
+    def return_to_start(self) -> None:
+        """Reset the state to the described start, with zero multipliers and no relaxation."""
+        state, system = self.state, self.system
+        state.q[:], state.u[:] = system.q, system.u
+        for vector in (state.a, state.lam, state.mu):
+            vector[:] = 0.0
+        state.relax(state.mu, state.lam)
+
+    @cached_property
+    def eliminated(self) -> Eliminated:
+        """Elimination for accelerations, faster than the LU; explicit steps use it where it serves."""
+        from .elimination.eliminated import Eliminated
+
+        return Eliminated(self.state, self.lu_updates)
+
+    @property
+    def lu_updates(self) -> int:
+        """Multiplications of the LU of the block system for accelerations."""
+        return self._accelerations.order.updates
+
+    def input_features(self, start: float, end: float) -> InputFeatures:
+        """Return the features of the inputs between two times; they are cached for all runs within them."""
+        if not self.system.has_inputs:
+            return NO_FEATURES
+        first, last, found = self._features
+        if not first <= start <= end <= last:
+            found = input_features(self.system, start, end)
+            self._features = start, end, found
+        return found.within(start, end)
+
+    def input_end(self, start: float, end: float) -> InputEnd | None:
+        """Return the first end of a formula of time between two times, cached for runs over the same interval."""
+        if self.system.has_inputs and self._input_end[:2] != (start, end):
+            self._input_end = start, end, first_input_end(self.system, start, end)
+        return self._input_end[2]
+
+    def assemble(self, t: float, tolerance: float = POSITION_TOLERANCE, most: int = 50) -> int:
+        """Correct positions by minimum-norm Newton moves until |C| <= tolerance; return their number or a failure."""
+        return ASSEMBLE.short_call(t, tolerance, most, self._at)
+
+    def correct_velocities(self, t: float) -> int:
+        """Apply the smallest correction of u in the mass norm with J u + C_t = 0; return 0 or a failure."""
+        return CORRECT_VELOCITIES.short_call(t, self._at)
+
+    def accelerate(self, t: float) -> tuple[int, np.ndarray]:
+        """Return 0 or a failure (`stiffmbs.compile.machine.native.statuses`), and u'. The multipliers are in `state.lam`."""
+        acceleration = np.empty(self.system.n_u)
+        return ACCELERATE.short_call(t, address(acceleration), self._at), acceleration
+
+    def contradicting(
+        self, ends: tuple[np.ndarray, np.ndarray], apart: float, states: tuple[np.ndarray, np.ndarray],
+        tolerances: tuple[float, np.ndarray], bounds: tuple[float, float],
+    ) -> np.ndarray:  # fmt: skip
+        """Return the numbers of the steps whose polynomial contradicts the accelerations at the midpoint.
+
+        Parameters
+        ----------
+        ends : tuple of ndarrays, shape (n,)
+            Begin and end of each step, s.
+        apart : float
+            Distance from the midpoint, as a fraction of the step, at which `states` are given on both sides.
+        states : tuple of ndarrays, shapes (n, 2, n_q), (n, 2, n_u)
+        tolerances : tuple of float and ndarray, shape (n_u,)
+            Of velocities: rtol and atol.
+        bounds : tuple of floats
+            Largest difference: as a fraction of the mass-weighted accelerations, and in tolerances over the step.
+        """
+        (begin, end), (q, u), (rtol, atol) = ends, states, tolerances
+        found, rate = np.empty(len(begin), dtype=np.int64), np.empty(self.system.n_u)
+        arrays = [np.ascontiguousarray(array) for array in (begin, end, q, u, self.system.mass, atol)]
+        at_begin, at_end, at_q, at_u, at_mass, at_atol = (address(array) for array in arrays)
+        count = CONTRADICTING.call(
+            len(begin), at_begin, at_end, apart, at_q, at_u, at_mass, rtol, at_atol, *bounds, address(rate), address(found), self._at
+        )  # fmt: skip
+        return np.flatnonzero(found) if count else np.empty(0, dtype=int)
+
+    def position_rates(self, q: np.ndarray, u: np.ndarray) -> np.ndarray:
+        """Return q' at a state whose accelerations were just computed; that of an algebraic state is zero."""
+        rates = self.system.of_body.position_rates(q, self.system.followed * u)
+        source, row = self._behind
+        if len(row):
+            rates[row] = self.state.values["acceleration"][source]
+        return rates
+
+    def report(self, t: np.ndarray, q: np.ndarray, u: np.ndarray, project: bool) -> OutputRows:
+        """Return the output rows at given times and states, up to the first that has no solution.
+
+        Parameters
+        ----------
+        t, q, u : ndarrays, shapes (n,), (n, n_q), (n, n_u)
+        project : bool
+            Whether to project each state onto the constraints first.
+        """
+        system, count, n_output = self.system, len(t), self._n_output
+        widths = (system.n_q, system.n_u, system.n_u, system.n_c, n_output, 4)
+        rows = [allocated(count, width) for width in widths]
+        kinetic, potential, power = (allocated(count) for _ in range(3))
+        done = 0
+        for block in blocks(count):
+            rows[0][block], rows[1][block] = q[block], u[block]
+            times = np.array(t[block], dtype=float)
+            at_times, *written = addresses(times, *(array[block] for array in (*rows, kinetic, potential, power)))
+            done = block.start + OUTPUT_POINTS.call(
+                len(times), at_times, project, POSITION_TOLERANCE, n_output, *written[:6], self._at
+            )
+            mass, potentials, powers, kinetics = addresses(system.mass, self._potential, self._power, self._kinetic)
+            ENERGIES.call(
+                len(times), system.n_u, written[1], mass, n_output, written[4],
+                len(self._potential), potentials, len(self._power), powers, len(self._kinetic), kinetics, *written[6:],
+            )  # fmt: skip
+            release(*rows, kinetic, potential, power, q, u)
+            if done < block.stop:
+                break
+        q, u, acceleration, lam, values, judged = (array[:done] for array in rows)
+        position, velocity, drift, log_determinant = judged.T
+        return OutputRows(
+            t[:done], q, u, acceleration, lam, values, kinetic[:done], potential[:done], power[:done],
+            position, velocity, drift, log_determinant, int(self._cells["status"]),
+        )  # fmt: skip

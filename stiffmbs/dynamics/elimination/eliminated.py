@@ -1,0 +1,176 @@
+"""Block system of accelerations with u' eliminated, unless bodies have many joints each."""
+
+from __future__ import annotations
+
+import heapq
+
+import numpy as np
+
+from ...compile.equations import ABSENT, Equations
+from ...compile.machine.layout import arrays_of, fill, packed
+from ...compile.machine.routines import together
+from ...compile.state import State
+from ..native.layouts import ELIMINATED
+from ..saddle_point import ACCELERATIONS
+from .joint_blocks import Joints, block_lists
+from .matrix_entries import entry_lists
+from .native.layouts import BLOCK_ELIMINATION, ENTRY_ELIMINATION, PIN_ELIMINATION
+from .pins import pin_lists
+
+ACCELERATE, ATTEMPT, MOVE = together(
+    "stiffmbs.dynamics.elimination.native.eliminated",
+    accelerate="int64(float64, float64*, int64*)",
+    attempt="int32(float64, float64*, int64*)",
+    move="int32(float64*, int64*)",
+)
+MOST_MULTIPLICATIONS = 3
+"""Multiplications of the elimination, relative to an LU of the whole system, up to which it is less expensive: its
+blocks are dense and in order."""
+EVEN = 100.0
+"""Ratio of the square roots of inertias, in units of mass, up to which pivots reflect the geometry."""
+LEAST = 1e-9
+"""Allowed residual of J u' = gamma, m/s^2 or rad/s^2, times the size of mechanisms smaller than 1 m."""
+
+
+class Eliminated:
+    """Schur complement J M^-1 J^T lam = J M^-1 f - gamma, then u' = M^-1 (f - J^T lam), for compiled code.
+
+    The matrix is symmetric and positive definite, so its factors need no pivoting and keep their pattern.  It is
+    factored by dense blocks for spatial models, and by pin blocks or entries for planar models.
+
+    Parameters
+    ----------
+    state : State
+    updates : int
+        Multiplications of the LU of the whole system.
+
+    Attributes
+    ----------
+    serves : bool
+        True if the mass matrix is diagonal, no force depends on multipliers or algebraic states, and the elimination is less expensive.
+    pivots_tell : bool
+        True if it serves, and no inertia is so small that pivots do not show the distance from a singular pose.
+    multiplications : int
+        Multiplications of the elimination.
+    table : ndarray of int
+        Addresses (`stiffmbs.dynamics.native.layouts.ELIMINATED`); zeros if it does not serve.
+    """
+
+    def __init__(self, state: State, updates: int) -> None:
+        system = state.system
+        jacobian = system.term("acceleration", "J")
+        solved = Equations(ACCELERATIONS, system).at["lam"] != ABSENT
+        kept = np.flatnonzero(solved[jacobian.row])
+        joint_of = np.searchsorted(system.joint_start, np.arange(system.n_c), side="right") - 1
+        bodies = _bodies(joint_of[jacobian.row[kept]], jacobian.column[kept] // system.of_body.n_u)
+        rows = [np.flatnonzero(solved & (joint_of == joint)) for joint in range(len(system.joint_start) - 1)]
+        order = [joint for joint in _balanced_order(bodies, len(rows)) if len(rows[joint])]
+        joints = Joints([rows[joint] for joint in order], [bodies.get(joint, []) for joint in order])
+        hanging = len(system.term("acceleration", "f_lam").source) + len(system.term("acceleration", "inertia").source)
+        self.multiplications = joints.updates
+        few = self.multiplications <= MOST_MULTIPLICATIONS * updates
+        self.serves = not hanging and not system.algebraic.any() and few
+        resisting = np.sqrt(system.mass) / system.per_velocity(1.0, system.size)
+        self.pivots_tell = self.serves and bool(resisting.max(initial=0.0) < EVEN * resisting.min(initial=np.inf))
+        self.table = np.zeros(len(ELIMINATED), dtype=np.int64)
+        self._cells = self.table.view(ELIMINATED.cells)[0]
+        if self.serves:
+            by_blocks = system.of_body.dimensions == 3
+            of_pins = None if by_blocks else pin_lists(joints, system, kept)
+            if by_blocks:
+                layout, self._lists = BLOCK_ELIMINATION, block_lists(joints, system, kept)
+            elif of_pins:
+                layout, self._lists = PIN_ELIMINATION, of_pins
+            else:
+                layout, self._lists = ENTRY_ELIMINATION, entry_lists(joints.nodes, system, kept)
+            force = system.term("acceleration", "f")
+            arrays = {
+                "f_source": force.source, "f_row": force.row, "scale": 1.0 / np.sqrt(system.mass), "a": np.zeros(system.n_u + 3),
+                "q_before": np.zeros(system.n_q), "u_before": np.zeros(system.n_u),
+                "left": np.zeros(system.n_u + system.n_c), "sizes": np.zeros(system.n_u + system.n_c),
+                "lists": packed(layout, self._lists),
+            }  # fmt: skip
+            numbers = {
+                "n_u": system.n_u,
+                "n_f": len(force.source),
+                "by_blocks": by_blocks,
+                "by_pins": of_pins is not None,
+                "trees": _are_trees(joints.bodies),
+            }
+            self._arrays = {
+                **arrays_of(ELIMINATED, arrays),
+                "state": state.table,
+                "kept": 1.0,
+                "least": LEAST * min(1.0, system.size),
+                **numbers,
+            }
+            fill(self.table, ELIMINATED, self._arrays)
+
+    def within_reach(self) -> np.ndarray:
+        """Return the table, with the addresses of its routines for compiled code without its own references to them."""
+        self._cells["attempt"], self._cells["move"] = ATTEMPT.address, MOVE.address
+        return self.table
+
+    def forget(self) -> None:
+        """Reset the largest pivots, so that rounding in a run does not depend on earlier runs."""
+        self._cells["most_kept"] = 0.0
+
+
+def _bodies(joint: np.ndarray, body: np.ndarray) -> dict[int, list[int]]:
+    found: dict[int, set[int]] = {}
+    for one, place in zip(joint.tolist(), body.tolist(), strict=True):
+        found.setdefault(one, set()).add(place)
+    return {one: sorted(places) for one, places in found.items()}
+
+
+def _are_trees(bodies_of: list[list[int]]) -> bool:
+    """Return True if no joint closes a loop of bodies or of bodies and ground."""
+    parent: dict[int, int] = {}
+
+    def root(body: int) -> int:
+        while parent.setdefault(body, body) != body:
+            parent[body] = parent[parent[body]]
+            body = parent[body]
+        return body
+
+    for bodies in bodies_of:
+        first, *others = bodies if len(bodies) > 1 else [ABSENT, *bodies]
+        for other in others:
+            if root(first) == root(other):
+                return False
+            parent[root(other)] = root(first)
+    return True
+
+
+def _balanced_order(bodies: dict[int, list[int]], count: int) -> list[int]:
+    """Return an order of the joints with little fill-in: minimum degree on joints that share a body.
+
+    Ties are resolved in favour of the smallest number of successive dependent pivots.  A chain is thus eliminated
+    from both ends, with two independent pivots at a time.
+    """
+    around: list[set[int]] = [set() for _ in range(count)]
+    of_body: dict[int, set[int]] = {}
+    for one, places in bodies.items():
+        for place in places:
+            of_body.setdefault(place, set()).add(one)
+    for meeting in of_body.values():
+        for one in meeting:
+            around[one] |= meeting - {one}
+    level = [0] * count
+    queue = [(len(others), 0, one) for one, others in enumerate(around)]
+    heapq.heapify(queue)
+    order: list[int] = []
+    gone: set[int] = set()
+    while queue:
+        degree, depth, one = heapq.heappop(queue)
+        if one in gone or (degree, depth) != (len(around[one]), level[one]):
+            continue
+        gone.add(one)
+        order.append(one)
+        for other in around[one]:
+            around[other] |= around[one]
+            around[other] -= {one, other}
+            level[other] = max(level[other], depth + 1)
+        for other in around[one]:
+            heapq.heappush(queue, (len(around[other]), level[other], other))
+    return order

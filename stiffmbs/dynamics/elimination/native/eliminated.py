@@ -1,0 +1,97 @@
+"""Accelerations by elimination of u' from the block system: J M^-1 J^T lam = J M^-1 f - gamma.
+
+The mass matrix is diagonal.  The method is far faster than the whole LU if bodies have few joints each.
+"""
+
+from __future__ import annotations
+
+from math import log
+
+from stiffmbs.compile.machine.native.access import compiled, state_view
+from stiffmbs.compile.machine.native.calls import int32
+from stiffmbs.compile.machine.native.evaluate import ACCELERATION, evaluate
+from stiffmbs.dynamics.elimination.native.by_blocks import accelerate_by_blocks, blocks_view, move_by_blocks
+from stiffmbs.dynamics.elimination.native.by_entries import accelerate_by_entries, entries_view, move_by_entries
+from stiffmbs.dynamics.elimination.native.by_pins import accelerate_by_pins, move_by_pins, pins_view
+from stiffmbs.dynamics.native.views import eliminated_view
+
+
+@compiled
+def _scale(r):
+    for k in range(r.n_u):
+        r.a[k] *= r.scale[k]
+
+
+@compiled
+def eliminated_accelerations(r, s, t):
+    """Compute accelerations (in r.a) and multipliers (in lam) at the current state; return True if successful."""
+    values = evaluate(s, ACCELERATION, t)
+    for k in range(r.n_u):
+        r.a[k] = 0.0
+    for k in range(r.n_f):
+        r.a[r.f_row[k]] += values[r.f_source[k]]
+    if r.by_pins:
+        r.ready = accelerate_by_pins(r, pins_view(r.lists), s, values)
+        return r.ready
+    _scale(r)
+    if r.by_blocks:
+        r.ready = accelerate_by_blocks(r, blocks_view(r.lists), s, values)
+    else:
+        r.ready = accelerate_by_entries(r, entries_view(r.lists), s, values)
+    _scale(r)
+    return r.ready
+
+
+@compiled
+def smallest_move(r, s, violations):
+    """Compute in r.a the change of velocities or pose that closes small violations, by the last J and factors.
+
+    Its norm in the mass matrix is minimal.
+    """
+    for k in range(r.n_u):
+        r.a[k] = 0.0
+    if r.by_pins:
+        move_by_pins(r, pins_view(r.lists), violations)
+        return
+    if r.by_blocks:
+        move_by_blocks(r, blocks_view(r.lists), s, violations)
+    else:
+        move_by_entries(r, entries_view(r.lists), s, violations)
+    _scale(r)
+
+
+@compiled
+def log_determinant_by_blocks(r):
+    """Return log |det| of the block matrix [M J^T; J 0], as det M det(J M^-1 J^T)."""
+    b = blocks_view(r.lists)
+    total = 0.0
+    for k in range(b.n_pivots):
+        total += log(b.pivot[k])
+    for k in range(r.n_u):
+        total -= 2.0 * log(r.scale[k])
+    return total
+
+
+def attempt(t, acceleration, eliminated):
+    """Call `eliminated_accelerations` from other compiled code, and copy the accelerations."""
+    r = eliminated_view(eliminated)
+    done = eliminated_accelerations(r, state_view(r.state), t)
+    for k in range(r.n_u):
+        acceleration[k] = r.a[k]
+    return int32(done)
+
+
+def move(violations, eliminated):
+    """Call `smallest_move` from other compiled code."""
+    r = eliminated_view(eliminated)
+    smallest_move(r, state_view(r.state), violations)
+    return int32(0)
+
+
+def accelerate(t, acceleration, eliminated):
+    """Call `eliminated_accelerations` from Python, and copy the accelerations."""
+    r = eliminated_view(eliminated)
+    done = eliminated_accelerations(r, state_view(r.state), t)
+    for k in range(r.n_u):
+        acceleration[k] = r.a[k]
+    return done

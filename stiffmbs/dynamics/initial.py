@@ -1,0 +1,203 @@
+"""Consistent initial values: assembled positions, corrected velocities, accelerations and multipliers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..compile.gaps import position_gap
+from ..compile.machine.native.statuses import NO_BALANCE, NO_CONVERGENCE, NOT_FINITE, SINGULAR
+from ..compile.written_values import values_of
+from ..errors import AssemblyError
+from .algebraic_states import failure
+from .dynamics import POSITION_TOLERANCE, Dynamics
+from .failures import FAILURES
+from .moves import Move, moves, position_words, velocity_words
+from .nearest_turns import take_nearest_turns
+
+MOST_TOLD = 3
+"""Bodies with the largest moves that the note of a run names."""
+
+
+@dataclass(frozen=True)
+class InitialValues:
+    """Consistent initial values.
+
+    Attributes
+    ----------
+    q, u, acceleration, lam : ndarrays
+        Coordinates, velocities, accelerations and multipliers that satisfy the constraints on every level.
+    moved : tuple of Move
+        Noticeable changes of bodies by the assembly.
+    size : float
+        Size of the mechanism as described, m.
+    notes : tuple of str
+        Notes, one sentence each.
+    """
+
+    q: np.ndarray
+    u: np.ndarray
+    acceleration: np.ndarray
+    lam: np.ndarray
+    moved: tuple[Move, ...]
+    size: float
+    notes: tuple[str, ...] = ()
+
+    def sentence(self) -> str:
+        """Return a sentence on the largest moves of bodies and changes of their velocities, or an empty string."""
+        return self._changed(self._levels())
+
+    def _levels(self) -> str:
+        levels = [words(self.moved, self.size, MOST_TOLD) for words in (position_words, velocity_words)]
+        return " and ".join(filter(None, levels))
+
+    def as_asked_by(self, names: Sequence[str]) -> InitialValues:
+        """Replace the moves by a note, where joints that hold at the start only require them."""
+        told = f"to satisfy {', '.join(names)} at the start, assembly changed {self._levels() or 'nothing'}"
+        return replace(self, moved=(), notes=(*self.notes, told))
+
+    def position_sentence(self, most: int) -> str:
+        """Return a sentence on the bodies that were moved, the first `most` by name, or an empty string."""
+        return self._changed(position_words(self.moved, self.size, most))
+
+    def _changed(self, told: str) -> str:
+        return f"to satisfy the joints at the start, assembly changed {told}{self._too_far()}" if told else ""
+
+    @property
+    def moved_far(self) -> tuple[Move, ...]:
+        """Moves too large for a correction of a drawing: an input is wrong, or the scene is not drawn closed."""
+        return tuple(move for move in self.moved if move.is_large(self.size))
+
+    def _too_far(self) -> str:
+        far = self.moved_far
+        if not far:
+            return ""
+        bodies = f"{len(far)} bodies move" if len(far) > 1 else f"{far[0].body} moves"
+        return (
+            f": {bodies} by more than a quarter of the mechanism's size ({self.size:.3g} m) or 45 deg; "
+            "look for a wrong point of a marker, position or angle"
+        )
+
+
+def rates_of(dynamics: Dynamics, t: float, start: InitialValues) -> np.ndarray:
+    """Return q' at consistent values, and set the dynamics' state to them."""
+    state, system = dynamics.state, dynamics.system
+    state.q[:], state.u[:], state.lam[:] = start.q, start.u, start.lam
+    if system.n_q > system.n_pose:
+        state.evaluate("acceleration", t)
+    return dynamics.position_rates(start.q, start.u)
+
+
+def initial_values(dynamics: Dynamics, t: float) -> InitialValues:
+    """Make the described start consistent.
+
+    Positions are corrected by minimum-norm Newton moves. Velocities get the smallest correction in the mass norm, those
+    that are not given first. Accelerations and multipliers follow from [M J^T; J 0][u'; lam] = [f; gamma].
+
+    Raises
+    ------
+    AssemblyError
+        When no assembled position is found (names the joint with the largest gap), the equations are dependent, or
+        friction and reactions have no balance.
+    """
+    if dynamics.system.n_counters:
+        take_nearest_turns(dynamics, t)
+    return consistent_values(dynamics, t)
+
+
+def consistent_values(dynamics: Dynamics, t: float) -> InitialValues:
+    """Make the start consistent as `initial_values` does, without angle unwrapping."""
+    system, state = dynamics.system, dynamics.state
+    q0, u0 = system.q.copy(), system.u.copy()
+    status = dynamics.assemble(t)
+    if status < 0:
+        raise AssemblyError(_sentence(dynamics, NO_CONVERGENCE if status == SINGULAR else status, t))
+    _close_open_rates(dynamics, t)
+    status = dynamics.correct_velocities(t)
+    if status < 0:
+        raise AssemblyError(_sentence(dynamics, status, t))
+    if system.n_counters:
+        state.count_anew(t)
+    status, acceleration = dynamics.accelerate(t)
+    if status < 0 and system.forces_by_reactions:  # the magnitude of a reaction has no derivative at zero
+        state.lam[: system.n_c] = np.max(system.mass)  # of the heaviest body at 1 m/s^2
+        status, acceleration = dynamics.accelerate(t)
+    if status < 0:
+        raise AssemblyError(_sentence(dynamics, status, t))
+    change = np.where(system.open_rates, 0.0, state.u - u0)
+    moved = moves(system, system.move(q0, state.q), change)
+    return InitialValues(
+        state.q.copy(), state.u.copy(), acceleration, state.lam[: system.n_c].copy(), moved, system.size
+    )
+
+
+def _close_open_rates(dynamics: Dynamics, t: float) -> None:
+    """Fit velocities that are not given to J u + C_t = 0 by the smallest change in the mass norm."""
+    system, state = dynamics.system, dynamics.state
+    ways = np.flatnonzero(system.open_rates)
+    if not len(ways):
+        return
+    state.evaluate("motion", t)
+    rows = np.flatnonzero(system.active)
+    by_energy = state.matrix("motion", "J")[np.ix_(rows, ways)] / np.sqrt(system.mass[ways])
+    follow, *_ = np.linalg.lstsq(by_energy, -state.vector("motion", "V")[rows], rcond=None)
+    state.u[ways] += follow / np.sqrt(system.mass[ways])
+
+
+def _sentence(dynamics: Dynamics, status: int, t: float) -> str:
+    if status == NO_CONVERGENCE:
+        return _violation_sentence(dynamics, t)
+    if status == SINGULAR:
+        return _dependent_sentence(dynamics)
+    if status == NO_BALANCE:
+        rubbing = ", ".join(dynamics.system.forces_by_reactions)
+        return f"the start has no accelerations: {FAILURES[NO_BALANCE]}, expected less of it in {rubbing}"
+    if status == NOT_FINITE:
+        return _undefined_sentence(dynamics, t)
+    return f"no consistent start was found: {failure(dynamics, status, t)}"
+
+
+def _violation_sentence(dynamics: Dynamics, t: float) -> str:
+    system, state = dynamics.system, dynamics.state
+    state.evaluate("position", t)
+    gaps = np.abs(state.vector("position", "C"))
+    if not np.all(np.isfinite(gaps)):
+        return _undefined_sentence(dynamics, t)
+    row = int(np.argmax(gaps))
+    joint, equation = system.equations[row]
+    return (
+        f"the scene cannot be assembled: the largest gap is left in joint '{joint}' (equation {equation}, "
+        f"{position_gap(state, t, row)}, expected less than {POSITION_TOLERANCE:g})"
+    )
+
+
+def _dependent_sentence(dynamics: Dynamics) -> str:
+    state, system = dynamics.state, dynamics.system
+    solved_for = np.flatnonzero(system.active)
+    jacobian = state.matrix("motion", "J")[solved_for]
+    joint, equation = system.equations[solved_for[_most_dependent_row(jacobian)]]
+    return (
+        f"the constraint equations depend on each other at the start: joint '{joint}' (equation {equation}) repeats "
+        "what other joints already hold, so its reaction has no unique value"
+    )
+
+
+def _most_dependent_row(jacobian: np.ndarray) -> int:
+    """Return the last row in the pivot order of QR of the transposed matrix."""
+    from scipy.linalg import qr
+
+    *_, order = qr(jacobian.T, mode="economic", pivoting=True)
+    return int(order[-1])
+
+
+def _undefined_sentence(dynamics: Dynamics, t: float) -> str:
+    state, system = dynamics.state, dynamics.system
+    for term_set in ("motion", "acceleration"):
+        state.evaluate(term_set, t)
+        for name in (name for group in system.groups for name in group.names):
+            values = values_of(system, state.values[term_set], term_set, name)
+            if not all(np.all(np.isfinite(part)) for part in values.values()):
+                return f"'{name}' has no finite value at the start, expected equations that are defined there"
+    return "the accelerations at the start are not finite, expected forces and masses of ordinary size"

@@ -1,0 +1,112 @@
+"""Projection of states near the constraints, by elimination of velocities if accurate, otherwise by the whole LU.
+
+The factors of the elimination belong to one pose.  Moves with them converge also nearby, for positions and velocities;
+both violations are checked again.
+"""
+
+from __future__ import annotations
+
+from stiffmbs.compile.machine.native.access import compiled, equations_view, factors_view, floats, shifted
+from stiffmbs.compile.machine.native.calls import call_int
+from stiffmbs.compile.machine.native.evaluate import (
+    ACCELERATION,
+    MOTION,
+    add_entries,
+    add_products,
+    add_sizes,
+    evaluate,
+)
+from stiffmbs.compile.machine.native.memory import copied
+from stiffmbs.compile.machine.native.orientation import add_rates, take_unit_length
+from stiffmbs.dynamics.native.block_systems import (
+    MOST_FROZEN_MOVES,
+    ROUNDING,
+    largest_of,
+    largest_open,
+    to_accelerations,
+    to_position_constraints,
+    to_velocity_constraints,
+)
+from stiffmbs.dynamics.native.views import eliminated_view
+
+KEPT = 1e-3
+"""Least pivot relative to its diagonal for elimination, which then loses at most three of sixteen digits."""
+LEFT = 1e-10
+"""Allowed residual of accelerations relative to the terms of J u' = gamma: forces on light bodies amplify rounding."""
+
+
+@compiled
+def _eliminated(s, m, t):
+    """Compute accelerations (in the factors' `b`) and multipliers (in lam) by elimination; True if accurate."""
+    if not m.eliminates:
+        return False
+    r = eliminated_view(m.eliminated)
+    return call_int(r.attempt, (t, factors_view(m.acceleration_factors).b, m.eliminated)) != 0 and r.kept >= KEPT
+
+
+@compiled
+def _satisfy_joints(s, m):
+    """Return True if accelerations by elimination satisfy J u' = gamma as accurately as those of the LU."""
+    r, e, f = eliminated_view(m.eliminated), equations_view(m.accelerations), factors_view(m.acceleration_factors)
+    values = floats(s.values[ACCELERATION])
+    add_entries(e, values, 0.0, f.a)
+    add_products(e, values, f.previous, f.previous, r.left)
+    add_sizes(e, values, f.previous, f.previous, r.sizes)
+    for column in range(s.n_u):
+        for p in range(f.a_start[column], f.a_start[column + 1]):
+            part = f.a[p] * f.b[column]
+            r.left[f.a_row[p]] -= part
+            r.sizes[f.a_row[p]] += abs(part)
+    beyond = 0
+    for row in range(s.n_u, f.n):
+        beyond += 0 if abs(r.left[row]) <= LEFT * r.sizes[row] + r.least else 1  # also for NaN
+    return beyond == 0
+
+
+@compiled
+def consistent_accelerations(s, m, t):
+    """Compute `stiffmbs.dynamics.native.block_systems.to_accelerations`, by elimination if possible; note the method."""
+    m.by_elimination = 1 if _eliminated(s, m, t) and _satisfy_joints(s, m) else 0
+    if not m.by_elimination:
+        return to_accelerations(s, m, t)
+    if m.by_reactions:
+        evaluate(s, ACCELERATION, t)
+    return 0
+
+
+@compiled
+def _closed(r, s, m, t, tolerance):
+    """Project q and u onto the constraints with the current factors; return True if that converges."""
+    violations = evaluate(s, MOTION, t)
+    close = max(tolerance, ROUNDING * largest_of(s.q, s.n_pose))
+    for _ in range(MOST_FROZEN_MOVES):
+        if largest_open(s, violations) > close:
+            call_int(r.move, (violations, m.eliminated))
+            add_rates(s, r.a, 1.0, s.q)
+            take_unit_length(s)
+            violations = evaluate(s, MOTION, t)
+    if largest_open(s, violations) > close:
+        return False
+    close = max(tolerance, ROUNDING * largest_of(s.u, s.n_u))
+    for _ in range(MOST_FROZEN_MOVES):
+        if largest_open(s, shifted(violations, s.n_c)) > close:
+            call_int(r.move, (shifted(violations, s.n_c), m.eliminated))
+            for k in range(s.n_u):
+                s.u[k] += r.a[k]
+            violations = evaluate(s, MOTION, t)
+    return largest_open(s, shifted(violations, s.n_c)) <= close
+
+
+@compiled
+def to_constraints(s, m, t, tolerance, most):
+    """Project q and u of a state near the constraints; 0 or a negative status."""
+    if _eliminated(s, m, t):
+        r = eliminated_view(m.eliminated)
+        copied(r.q_before, s.q, s.n_q)
+        copied(r.u_before, s.u, s.n_u)
+        if _closed(r, s, m, t, tolerance):
+            return 0
+        copied(s.q, r.q_before, s.n_q)
+        copied(s.u, r.u_before, s.n_u)
+    status = to_position_constraints(s, m, t, tolerance, most)
+    return status if status < 0 else to_velocity_constraints(s, m, t)

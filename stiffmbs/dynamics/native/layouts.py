@@ -1,0 +1,33 @@
+"""Memory layouts of the dynamics and of elimination."""
+
+from __future__ import annotations
+
+from stiffmbs.compile.machine.layout import FLOAT_CELL, FLOATS, INDICES, INT, INT_CELL, INTS, Layout
+
+DYNAMICS = Layout({
+    "state": INTS, "positions": INTS, "position_factors": INTS, "velocities": INTS, "velocity_factors": INTS,
+    "accelerations": INTS, "acceleration_factors": INTS, "status": INT_CELL,
+    "n_behind": INT, "behind_source": INTS, "behind_row": INTS, "by_reactions": INT,
+    "n_algebraic": INT, "algebraic": INTS, "algebraic_scale": FLOATS, "algebraic_before": FLOATS,
+    "n_turned_for_output": INT, "turned_for_output": INTS,
+    "eliminates": INT, "eliminated": INTS, "by_elimination": INT_CELL,
+})  # fmt: skip
+"""Tables of a state and its three block systems.  `status` receives the reason of a failure in output rows.  `behind`
+lists the rates of revolution counters and states among the acceleration terms; `by_reactions` is 1 if any depends on
+multipliers.  `algebraic` lists the algebraic states among the coordinates, with their scales and last values, and
+`turned_for_output` the first coordinates of bodies whose orientation only output terms need.  `eliminates` is 1 if
+elimination is tried first (`stiffmbs.dynamics.native.consistent`), `by_elimination` if it gave the last accelerations."""
+
+ELIMINATED = Layout({
+    "state": INTS, "n_u": INT, "trees": INT, "by_blocks": INT, "by_pins": INT, "lists": INTS,
+    "ready": INT_CELL, "kept": FLOAT_CELL, "most_kept": FLOAT_CELL,
+    "n_f": INT, "f_source": INDICES, "f_row": INDICES, "scale": FLOATS, "a": FLOATS,
+    "attempt": INT_CELL, "move": INT_CELL, "q_before": FLOATS, "u_before": FLOATS, "left": FLOATS, "sizes": FLOATS, "least": FLOAT_CELL,
+})  # fmt: skip
+"""Elimination of J M^-1 J^T (`stiffmbs.dynamics.elimination.eliminated`).  `trees` is 1 if no joint closes a loop; `by_blocks`
+and `by_pins` select the table `lists`.  `ready` is 1 if there are factors; `kept` and `most_kept` are the relative
+sizes of their pivots now and at most.  Then follow forces, M^-1/2, accelerations; addresses of routines; memory of a
+state; residuals of the block system, sizes of their terms, and the least allowed residual."""
+
+POSITION_TOLERANCE = 1e-12
+"""Largest violation after a projection onto the positions, apart from rounding, m or rad."""

@@ -1,0 +1,164 @@
+"""Planar rigid bodies."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from pydantic import Field, field_validator
+
+from ..reading import given
+from ..reading.fields import DOTTED_PATTERN, Described
+from ..reading.files.quoted import written
+from ..reading.formula.names import PLANE
+from ..reading.handle import Handle
+from ..reading.marker import Marker, Placement
+from ..reading.units import si
+from .shape import PlanarGeometry
+
+FLEXIBLE = "flexible"
+"""Type of a flexible body in a scene."""
+
+
+class Body(Described):
+    """Planar rigid body with the coordinates x, y of its centre of mass and its angle phi.
+
+    Parameters
+    ----------
+    mass : float
+        kg, greater than zero.
+    inertia : float
+        About the centre of mass, kg m^2, greater than zero.
+    position, angle : floats
+        Position of the centre of mass (m) and angle (rad) at the start; assembly changes them if joints require it.
+    velocity, omega : floats
+        At the start, m/s, rad/s.
+    markers : mapping of str to Placement
+        Named points and directions on the body.
+    geometry : mappings, optional
+        Shapes shown in drawings; by default derived from the markers and joints of the body.
+    """
+
+    rigid: ClassVar[bool] = True
+    """True for all planar bodies: fixed joints may merge them."""
+
+    mass: si.PositiveMass = Field(description="mass, kg")
+    inertia: si.PositiveInertia = Field(description="moment of inertia about the centre of mass, kg m^2")
+    position: tuple[si.Length, si.Length] = Field((0.0, 0.0), description="centre of mass at the start, m")
+    angle: si.Angle = Field(0.0, description="angle at the start, rad")
+    velocity: tuple[si.Velocity, si.Velocity] = Field(
+        (0.0, 0.0), description="velocity of the centre of mass at the start, m/s"
+    )
+    omega: si.AngularVelocity = Field(0.0, description="angular velocity at the start, rad/s")
+    markers: dict[str, Placement] = Field(default_factory=dict, description="named points and directions on the body")
+    geometry: PlanarGeometry = Field((), description="shapes that drawings show: polyline, box, cylinder, sphere, mesh")
+
+    if TYPE_CHECKING:
+
+        def __init__(
+            self,
+            *,
+            mass: given.Number,
+            inertia: given.Number,
+            position: given.Numbers = (0.0, 0.0),
+            angle: given.Number = 0.0,
+            velocity: given.Numbers = (0.0, 0.0),
+            omega: given.Number = 0.0,
+            markers: given.Markers = {},  # noqa: B006 is never called
+            geometry: given.Geometry = (),
+        ) -> None: ...
+
+    @field_validator("markers")
+    @classmethod
+    def _named(cls, markers: dict[str, Placement]) -> dict[str, Placement]:
+        check_names(markers, "marker")
+        return markers
+
+    def coordinates(self) -> tuple[float, ...]:
+        """Return x, y (m) of the centre of mass and the angle phi (rad) at the start."""
+        return (*self.position, self.angle)
+
+    def rates(self) -> tuple[float, ...]:
+        """Return the rates of `coordinates` at the start, m/s and rad/s."""
+        return (*self.velocity, self.omega)
+
+    def open_rates(self) -> tuple[bool, ...]:
+        """Return for each of `rates` whether it is left open: never in the plane."""
+        return False, False, False
+
+    def masses(self) -> tuple[float, ...]:
+        """Return the diagonal of the body's mass matrix, kg, kg and kg m^2."""
+        return self.mass, self.mass, self.inertia
+
+
+class LineBody(Described):
+    """Base of bodies that stand for several rigid bodies and the forces between them, such as beams."""
+
+    def add_to(self, model: Any, name: str) -> Any:
+        """Add the rigid bodies and forces to a model built in Python, and return a handle."""
+        raise NotImplementedError
+
+
+class BodyHandle(Handle):
+    """Reference to a body of a planar model, returned by `Model.add` (`stiffmbs.reading.handle.Handle`).
+
+    Attributes
+    ----------
+    name : str
+        Name of the body.
+    x, y, angle, vx, vy, omega : SymPy symbol
+        Coordinates and velocities of the body, for formulas.
+    mass, inertia and other fields of the body
+        Values in the model; assignment changes the model.
+    """
+
+    names = PLANE
+    fields = Body.model_fields
+
+    def at(self, xi: given.Number, eta: given.Number, angle: given.Number = 0.0) -> Marker:
+        """Return the marker at a point given in the body's axes, m, rotated by `angle`, rad."""
+        return Marker(body=self.name, point=(xi, eta), angle=angle)
+
+
+@dataclass(frozen=True)
+class BodyNumbers:
+    """Initial values and masses of all bodies, concatenated.
+
+    Attributes
+    ----------
+    coordinates, rates : tuples of float
+        Described values at the start.
+    open_rates : tuple of bool
+        True for each rate that is not given.
+    masses : tuple of float
+        Diagonal of the mass matrix.
+    """
+
+    coordinates: tuple[float, ...]
+    rates: tuple[float, ...]
+    open_rates: tuple[bool, ...]
+    masses: tuple[float, ...]
+
+
+def body_numbers(bodies: Iterable[Any]) -> BodyNumbers:
+    """Return the concatenated numbers of the given bodies."""
+    coordinates: list[float] = []
+    rates: list[float] = []
+    open_rates: list[bool] = []
+    masses: list[float] = []
+    for body in bodies:
+        coordinates += body.coordinates()
+        rates += body.rates()
+        open_rates += body.open_rates()
+        masses += body.masses()
+    return BodyNumbers(tuple(coordinates), tuple(rates), tuple(open_rates), tuple(masses))
+
+
+def check_names(names: Iterable[object], what: str) -> None:
+    """Refuse names that are not valid in formulas and channels."""
+    for name in names:
+        if not isinstance(name, str) or not re.match(DOTTED_PATTERN, name):
+            shown = "no name" if name in (None, "") else f"the name {written(name)}"
+            raise ValueError(f"found {what} with {shown}, expected letters, digits and _ not starting with a digit")

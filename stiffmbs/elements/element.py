@@ -1,0 +1,331 @@
+"""Base classes of joints and forces: fields with units, and equations in SymPy, written once.
+
+An element's equations are static functions of `e`, the element with its markers as symbolic frames
+(`stiffmbs.compile.symbolic.planar_frames.Frame`, in space `stiffmbs.compile.symbolic.spatial_frames.SpatialFrame`) and
+its numbers as symbols. Jacobians, velocity and acceleration terms, reactions and kernels are derived from them.
+"""
+
+from __future__ import annotations
+
+import builtins
+import math
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar, Self
+
+from pydantic import GetJsonSchemaHandler, model_validator
+
+from ..errors import InputError
+from ..reading.fields import Described, typed
+from ..reading.formula.formula import Formula
+from ..reading.marker import MarkerReference
+
+if TYPE_CHECKING:
+    from ..model.model_data import ModelData
+    from .forces.friction import Loads
+    from .initial_pose import InitialPose
+
+Symbolic = Any
+"""Element as its equations see it (`stiffmbs.compile.symbolic.element.SymbolicElement`). Markers are frames, numbers
+symbols, and formulas expressions. Formulas and tables of a variable are functions, and referenced joints are symbolic
+elements. Also ``e.t`` for time, ``e.rate(expression)`` for a total time derivative, and ``e.frames`` for the bodies."""
+
+
+IN_EQUATIONS = frozenset([
+    "a", "angle", "angles", "at_extremum", "breakpoints", "by", "by_accelerations", "by_q", "by_u", "common_normal",
+    "composed", "coordinate", "coordinates", "depends", "derivatives", "distance", "frames", "in_state", "integral",
+    "is_constant", "kind", "lam", "loads", "logarithm", "meanings", "named", "own", "point", "q", "rate", "reaction",
+    "read", "relative_rotation", "second_rate", "shortest_rotation", "slope", "state_rates", "states", "t", "type", "u",
+    "variable", "velocities", "velocity_level", "_accelerations", "_coordinate", "_joint", "_logarithms", "_new_rotation", "_note",
+    "_rotations", "_state",
+])  # fmt: skip
+"""Attributes of the symbolic element `e` in addition to the fields (`stiffmbs.compile.symbolic.element`)."""
+
+
+def _reserved(element: type[Described], base: type[Described]) -> str:
+    """Return the reason why a field of an element class is not allowed, or an empty string.
+
+    Parameters
+    ----------
+    element : type
+        A subclass of joints or forces.
+    base : type
+        The base whose attributes its fields must not hide.
+    """
+    names = IN_EQUATIONS | {name for name in dir(base) if not hasattr(Described, name)}
+    added = {*element.model_fields, *element.__private_attributes__} - {*base.model_fields}
+    if not (found := sorted(added & names)):
+        return ""
+    listed = ", ".join(sorted(name for name in names if not name.startswith("_")))
+    return f"found the field '{found[0]}', expected names other than {listed}"
+
+
+@dataclass(frozen=True)
+class CompiledTerms:
+    """Terms of an element whose kernels are loops over arrays, written by hand instead of derived.
+
+    Attributes
+    ----------
+    patterns : mapping of str to list of (int, int)
+        Row and column of each entry of each term in the element's own block.
+    source : callable
+        Return the source of a kernel with some terms, given their places in it by name.
+    """
+
+    patterns: Mapping[str, list[tuple[int, int]]]
+    source: Callable[[Mapping[str, int]], str]
+
+
+class Component(Described):
+    """Base of structured fields of an element, such as a road, with fields and equations of their own.
+
+    The equations are static functions whose first argument is the component with symbols for its fields.
+    """
+
+    def in_equations(self) -> Mapping[str, Any]:
+        """Return the values that its equations see: its fields, or values derived from them."""
+        return {name: getattr(self, name) for name in type(self).model_fields}
+
+    def notes(self) -> Iterator[str]:
+        """Yield notes about the component for the user."""
+        yield from ()
+
+
+class Element(Described):
+    """Base of joints and forces; a subclass in `joints`, `forces` or user code defines a new kind.
+
+    Attributes
+    ----------
+    kind : str
+        Name of the kind in scenes, its `type`.
+    dimensions : tuple of int
+        Models in which it is available: 2 for the plane, 3 for space; () for the dimension of its markers.
+    forms : tuple of mappings of str to Any
+        Fields of the most common variants, where fields without a default are not enough; ``...`` for any valid value.
+        These variants are compiled in advance (``stiffmbs cache warm``) and tested.
+    reflected : mapping of str to str, optional
+        Transformation of fields in the mirror image of a part; fields that are not listed stay. Each marker's axes X
+        become S X S (`stiffmbs.model.parts.frame.Frame`). None: the element cannot be mirrored. For a
+        number, a law or components along the axes: ``vector``, ``rotations``, ``components`` (of force, then of
+        torque), ``matrix``, ``angle`` (about the last axis), ``pitch`` (along z for each turn), ``x``, ``about x``.
+        Names of fields that name joints: as the product of their coordinates. For a marker: the axis whose direction
+        matters, such as ``z``.
+    symbol : str
+        Kind whose symbol drawings show; by default its own, or a diamond or a dashed line if there is none.
+    """
+
+    kind: ClassVar[str] = ""
+    dimensions: ClassVar[tuple[int, ...]] = ()
+    forms: ClassVar[tuple[Mapping[str, Any], ...]] = ({},)
+    reflected: ClassVar[dict[str, str] | None] = None
+    symbol: ClassVar[str] = ""
+
+    type: str = ""
+
+    @classmethod
+    def __pydantic_init_subclass__(cls, **options: Any) -> None:
+        """Refuse fields with the name of an attribute of the base class or of the symbolic element."""
+        super().__pydantic_init_subclass__(**options)
+        base = next(base for base in cls.__mro__ if base.__module__ == __name__)
+        if reason := _reserved(cls, base):
+            raise InputError(f"{cls.__name__}: {reason}")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _of_its_kind(cls, found: Any) -> Any:
+        return typed(cls.kind, found)
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, core_schema: Any, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        schema = handler(core_schema)
+        handler.resolve_ref_schema(schema)["properties"]["type"] = {
+            "const": cls.kind, "default": cls.kind, "title": "Type", "type": "string",
+        }  # fmt: skip
+        return schema
+
+    def parts(self, part: builtins.type) -> Iterator[tuple[str, Any]]:
+        """Yield the fields of a type, such as markers, formulas or joint names, with field names, in order."""
+        fields = vars(self)  # getattr asks pydantic for each
+        for name in type(self).__pydantic_fields__:
+            value = fields[name]
+            if isinstance(value, tuple):
+                yield from ((name, item) for item in value if isinstance(item, part))
+            elif isinstance(value, part):
+                yield name, value
+
+    def markers(self) -> Iterator[tuple[str, MarkerReference]]:
+        """Yield the element's markers by field name, the first body's first, then the markers in its formulas."""
+        yield from self.parts(MarkerReference)
+        for name, formula in self.parts(Formula):
+            for _, markers in formula.measures():
+                yield from ((name, marker) for marker in markers)
+
+    def equation_names(self) -> tuple[str, ...]:
+        """Return the names of the element's constraint equations; none for a force."""
+        return ()
+
+    def validation_errors(self, joints: Mapping[str, Joint]) -> Iterator[tuple[str, str]]:
+        """Yield each field whose joint does not fit, with the reason, "found ..., expected ..."."""
+        yield from ()
+
+    def invalid_placement(self, pose: InitialPose) -> Iterator[str]:
+        """Yield reasons why the element cannot act at the initial pose."""
+        yield from ()
+
+    def spins_with(self) -> dict[str, str]:
+        """Return the markers whose bodies may spin without changing the equations, by field, with the conditions.
+
+        ``x``, ``y`` or ``z``: the marker's point is on the spin axis, which is parallel to this axis of the marker.
+        ``point``: its point is on the spin axis. ``body``: no condition. A body with any other marker keeps its spin in
+        its quaternion (`stiffmbs.presolve.spinning_bodies`).
+        """
+        return {}
+
+    def at_initial_pose(self, model: ModelData) -> Self:
+        """Return the element with open values taken from the described poses of the bodies."""
+        return self
+
+
+class Joint(Element):
+    """Constraint between bodies.
+
+    Attributes
+    ----------
+    equations : tuple of str
+        Names of the equations that `position`, then `velocity`, return; used in reports.
+    coordinates : tuple of str
+        Names of its coordinates, for drives and couplers: ``angle``, ``displacement``. The joint has a static function
+        of `e` with each of these names.
+    transmits : tuple of str
+        Reaction components in space: forces ``fx fy fz`` along the axes of marker j, and torques ``tx ty tz`` about
+        them at the point of marker i. Components along other directions, such as the torque of a universal joint, are
+        omitted. Redundancy advice proposes such joints in place of joints that transmit more than necessary.
+    elastic : str
+        Kind of the compliant force that can replace the joint.
+    keeps_in_plane : bool
+        True if the spatial joint of the same kind keeps one body in the plane of the other (planar joints with two
+        markers).
+    """
+
+    equations: ClassVar[tuple[str, ...]] = ()
+    coordinates: ClassVar[tuple[str, ...]] = ()
+    transmits: ClassVar[tuple[str, ...]] = ()
+    elastic: ClassVar[str] = ""
+    keeps_in_plane: ClassVar[bool] = False
+
+    @staticmethod
+    def position(e: Symbolic) -> Any:
+        """Return the constraint equations C(q, t) = 0, one expression for each name in `equations`."""
+        return ()
+
+    @staticmethod
+    def velocity(e: Symbolic) -> Any:
+        """Return the constraint equations linear in u without a position form, such as a prescribed rate."""
+        return ()
+
+    @staticmethod
+    def point(e: Symbolic) -> Any:
+        """Return the reference point of the joint's reaction torque."""
+        return e.i.point
+
+    @staticmethod
+    def loads(e: Symbolic) -> Loads:
+        """Return the loads on the joint's surfaces, from its multipliers ``e.lam``; they are required for friction.
+
+        The joint friction is that of a pin with the coordinate ``angle``, of a guide with ``displacement``, and of a
+        sleeve with both. A spatial joint without coordinates has the friction of a ball joint.
+        """
+        raise NotImplementedError
+
+    def equation_names(self) -> tuple[str, ...]:
+        return self.equations
+
+
+class Force(Element):
+    """Applied force: efforts on coordinates or on rates, by virtual power.
+
+    The generalised force is the sum of effort times the derivative of its coordinate. For a spring this is the tension
+    on its length; for a force at a point, its components on the point's coordinates. A force on the rate of no
+    coordinate, such as a torque in space on an angular velocity, defines `powers` in place of `efforts`.
+
+    Attributes
+    ----------
+    channels : tuple of str
+        Names of the values that `measured` returns, reported as channels of the element.
+    may_keep_energy : bool
+        Whether the force is conservative for some values of its fields; its equations are tested for them.
+    turns : bool
+        Whether it represents the rotation of a body in space and contains the body's kinematics, p' = Z(p) w.
+    beyond : str
+        Message if one of its `limits` is exceeded: "found ..., expected ...".
+    doubtful : float
+        Value of its limits below which the motion is doubtful; -inf if only the limits themselves matter.
+    doubt : str
+        Description of the doubt, after the element's name.
+
+    A force can have states of its own, with x' = rate and initial value zero: `own_states` returns their names, `rates`
+    their rates, and the equations see them as ``e.own``.
+    """
+
+    channels: ClassVar[tuple[str, ...]] = ()
+    may_keep_energy: ClassVar[bool] = True
+    turns: ClassVar[bool] = False
+    beyond: ClassVar[str] = ""
+    doubtful: ClassVar[float] = -math.inf
+    doubt: ClassVar[str] = ""
+
+    def valid_ranges(self) -> Mapping[str, tuple[float, float]]:
+        """Return the valid ranges of the channels of the element."""
+        return {}
+
+    def own_states(self) -> tuple[str, ...]:
+        """Return the names of its own states; channels prefix them with the element's name."""
+        return ()
+
+    @classmethod
+    def rates(cls, e: Symbolic) -> Any:
+        """Return the rates of its own states, per second, in their order."""
+        return ()
+
+    @staticmethod
+    def efforts(e: Symbolic) -> list[tuple[Any, Any]]:
+        """Return pairs of an effort and the coordinate on which it does work."""
+        raise NotImplementedError
+
+    @classmethod
+    def powers(cls, e: Symbolic) -> list[tuple[Any, Any]]:
+        """Return pairs of an effort and its conjugate rate, which is linear in the velocities."""
+        return [(effort, e.rate(coordinate)) for effort, coordinate in cls.efforts(e)]
+
+    @classmethod
+    def condensed_powers(cls, e: Symbolic) -> list[tuple[Any, Any]]:
+        """Return `powers` of a force that may be very stiff, resolved along its own directions of deformation.
+
+        Radau methods iterate on these efforts as unknowns of their own; none by default.
+        """
+        return []
+
+    @staticmethod
+    def potential(e: Symbolic) -> Any:
+        """Return the potential energy, J; zero for a force without one."""
+        return 0
+
+    @classmethod
+    def measured(cls, e: Symbolic) -> Any:
+        """Return the reported values in addition to the wrench, one expression for each name in `channels`."""
+        return ()
+
+    @staticmethod
+    def event_functions(e: Symbolic) -> Any:
+        """Return expressions that change sign at the state-dependent breakpoints of the force, such as a gap."""
+        return ()
+
+    @classmethod
+    def limits(cls, e: Symbolic) -> Any:
+        """Return expressions that are positive within the valid range of the force law; otherwise the run stops."""
+        return ()
+
+    @staticmethod
+    def point(e: Symbolic) -> Any:
+        """Return the point on the first body that is the reference of the force's torque."""
+        return e.i.point

@@ -1,0 +1,143 @@
+"""Bushing: stiffness and damping in two directions and in rotation."""
+
+from __future__ import annotations
+
+import itertools
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, WithJsonSchema, field_validator
+
+from ...reading.formula.field import ForceOfDeflection, TorqueOfDeflection
+from ...reading.marker import Marker
+from ...reading.units import si
+from ..element import Force, Symbolic
+
+
+def from_diagonal(found: Any) -> Any:
+    """Return the rows of a diagonal matrix, with None for uncoupled directions; other values are unchanged."""
+    if not isinstance(found, list | tuple) or any(isinstance(part, list | tuple) for part in found):
+        return found
+    return tuple(tuple(part if k == row else None for k in range(len(found))) for row, part in enumerate(found))
+
+
+def check_symmetric(matrix: Any) -> Any:
+    """Return the matrix if it is symmetric.
+
+    Raises
+    ------
+    ValueError
+        If two entries across the diagonal differ.
+    """
+    for row, column in itertools.combinations(range(len(matrix)), 2):
+        one, other = matrix[row][column] or 0.0, matrix[column][row] or 0.0
+        if abs(one - other) > 1e-12 * max(abs(one), abs(other)):
+            raise ValueError(
+                f"found {one:g} in row {row + 1}, column {column + 1} and {other:g} across the diagonal, "
+                "expected a symmetric matrix"
+            )
+    return matrix
+
+
+def times(matrix: Any, vector: Any) -> list[Any]:
+    """Return matrix times vector, skipping entries that are None."""
+    return [sum(k * part for k, part in zip(row, vector, strict=True) if k is not None) for row in matrix]
+
+
+K = si.Stiffness | None
+Kc = si.CouplingStiffness | None
+Kt = si.TorsionalStiffness | None
+C = si.Damping | None
+Cc = si.CouplingDamping | None
+Ct = si.TorsionalDamping | None
+"""Entries of stiffness and damping matrices: of forces, of coupling, of torques."""
+_AS_WRITTEN = WithJsonSchema({"type": "array", "minItems": 3, "maxItems": 3})
+Stiffness = Annotated[tuple[tuple[K, K, Kc], tuple[K, K, Kc], tuple[Kc, Kc, Kt]], _AS_WRITTEN]
+Damping = Annotated[tuple[tuple[C, C, Cc], tuple[C, C, Cc], tuple[Cc, Cc, Ct]], _AS_WRITTEN]
+"""Symmetric 3 x 3 matrix; None for uncoupled directions, for which nothing is computed."""
+
+NONE = (0.0, 0.0, 0.0)
+
+
+class Bushing(Force):
+    """Elastic force and torque between two markers.
+
+    The deformation s = (x, y, angle) of marker i relative to marker j is measured along the axes of j. The force is
+    preload - K s - C s' - law(s), conjugate to the three deformations. It acts on i at its point, and the opposite
+    force acts on j at the same point of space, so linear and angular momentum are conserved.
+
+    With ``axes: ground`` x and y are the ground axes, and the force acts at each body's own marker. Angular momentum is
+    then conserved only if the force is along the line between the two points.
+
+    Stiffness and damping are three numbers (x, y, angle), or a symmetric matrix that couples the directions. A law that
+    is a table or a polynomial in s has a potential. With any other formula the element has none, and energy.total is
+    not conserved.
+
+    The equations are the planar form of the BUSHING and FIELD statements of Adams.
+    """
+
+    kind = "bushing"
+    forms = ({"stiffness": ..., "damping": ...}, {"stiffness": ..., "damping": ..., "axes": "ground"})
+    reflected = {
+        "stiffness": "matrix",
+        "damping": "matrix",
+        "preload": "components",
+        "law_x": "x",
+        "law_y": "y",
+        "law_angle": "angle",
+    }
+
+    i: Marker = Field(description="marker of the first body, on which force and torque are reported")
+    j: Marker = Field(description="marker of the second body, whose direction orients the bushing")
+    stiffness: Stiffness = Field(NONE, validate_default=True, description="K: x, y, angle, or a symmetric matrix")
+    damping: Damping = Field(NONE, validate_default=True, description="C: x, y, angle, or a symmetric matrix")
+    preload: tuple[si.Force, si.Force, si.Torque] = Field(
+        NONE, description="force and torque on i without deformation, N, N, N m"
+    )
+    law_x: ForceOfDeflection | None = Field(None, description="force against the deformation in x added over s (m), N")
+    law_y: ForceOfDeflection | None = Field(None, description="force against the deformation in y added over s (m), N")
+    law_angle: TorqueOfDeflection | None = Field(
+        None, description="moment against the rotation added over s (rad), N m"
+    )
+    axes: Literal["j", "ground"] = Field("j", description="whether x and y are marker j's or the ground's axes")
+
+    _symmetric = field_validator("stiffness", "damping")(check_symmetric)
+
+    @field_validator("stiffness", "damping", mode="before")
+    @classmethod
+    def _rows(cls, found: Any) -> Any:
+        if isinstance(found, list | tuple) and len(found) != 3:
+            raise ValueError(f"found {len(found)} entries, expected 3, or 3 rows of a symmetric matrix")
+        return from_diagonal(found)
+
+    @staticmethod
+    def deformation(e: Symbolic) -> tuple[Any, Any, Any]:
+        """Return x, y and angle of marker i relative to marker j."""
+        d = e.i.point - e.j.point
+        x, y = d if e.axes == "ground" else (d.dot(e.j.axis), d.dot(e.j.normal))
+        return x, y, e.i.angle - e.j.angle
+
+    @staticmethod
+    def efforts(e: Symbolic) -> list[tuple[Any, Any]]:
+        """Return preload - K s - C s' - law(s) for each deformation."""
+        s = Bushing.deformation(e)
+        elastic, viscous = times(e.stiffness, s), times(e.damping, [e.rate(part) for part in s])
+        laws = [law(part) if law is not None else 0 for law, part in zip(_laws(e), s, strict=True)]
+        return [(e.preload[k] - elastic[k] - viscous[k] - laws[k], s[k]) for k in range(3)]
+
+    @classmethod
+    def condensed_powers(cls, e: Symbolic) -> list[tuple[Any, Any]]:
+        return cls.powers(e)
+
+    @staticmethod
+    def potential(e: Symbolic) -> Any:
+        """Return 1/2 s^T K s - preload . s plus integrals of laws; zero if one has no closed-form integral."""
+        s = Bushing.deformation(e)
+        elastic = times(e.stiffness, s)
+        of_laws = [e.integral(law, part) for law, part in zip(_laws(e), s, strict=True) if law is not None]
+        if None in of_laws:
+            return 0
+        return sum(elastic[k] * s[k] / 2 - e.preload[k] * s[k] for k in range(3)) + sum(of_laws)
+
+
+def _laws(e: Symbolic) -> tuple[Any, Any, Any]:
+    return e.law_x, e.law_y, e.law_angle

@@ -1,0 +1,67 @@
+"""Element of a geometrically exact beam in the plane."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Any, ClassVar
+
+from pydantic import Field, WithJsonSchema, field_validator
+
+from ...reading.fields import Measured
+from ...reading.marker import Marker
+from ...reading.units import si
+from ..element import Symbolic
+from .beam_strain import BeamStrain
+from .bushing import check_symmetric, from_diagonal
+
+_Bending = Annotated[float, Measured("bending stiffness")]
+_Forces = tuple[si.Force | None, si.Force | None, si.Torque | None]
+SectionStiffness = Annotated[
+    tuple[_Forces, _Forces, tuple[si.Torque | None, si.Torque | None, _Bending | None]],
+    WithJsonSchema({"type": "array", "minItems": 3, "maxItems": 3}),
+]
+
+
+class ExactBeam(BeamStrain):
+    """Massless beam from marker j to marker i with constant strain, for any displacement and rotation.
+
+    The axes of both markers are tangents without load. The strain Gamma (stretch and shear) and kappa (curvature) is
+    constant along the element, so its axis is an arc. With the position d of i's point from j's in j's axes and the
+    angle theta of i's axis relative to j's::
+
+        L (Gamma + (1, 0)) = T(theta)^-1 d,  L kappa = theta     (logarithm of the rigid displacement)
+        (n, m) = K ((Gamma + (1, 0), kappa) - unloaded) + damping_ratio K (Gamma', kappa')
+
+    n is the axial and the shear force and m the bending moment; they are reported as n1, n2 and m3. The element is
+    objective and free of locking, and exact for a beam under end moments. The run stops where its ends are turned by
+    three quarters of a turn against each other.
+
+    The line body ``beam`` creates such elements together with their nodes (docs: Beams).
+
+    Simo, A finite strain beam formulation, Comput. Methods Appl. Mech. Eng. 49 (1985) 55-70; Sonneville, Cardona, Bruls,
+    Geometrically exact beam finite element formulated on the special Euclidean group SE(3), ibid. 268 (2014) 451-474.
+    """
+
+    kind: ClassVar[str] = "exact_beam"
+    channels: ClassVar[tuple[str, ...]] = ("n1", "n2", "m3")
+    forms: ClassVar[tuple[Mapping[str, Any], ...]] = ({"stiffness": (1, 1, 1)},)
+    reflected: ClassVar[dict[str, str] | None] = {"stiffness": "matrix", "unloaded": "components"}
+
+    i: Marker = Field(description="marker at the end, on whose body force and torque are reported")
+    j: Marker = Field(description="marker at the beginning")
+    stiffness: SectionStiffness = Field(description="K: EA, GA (N), EI (N m^2), or a symmetric 3x3 matrix")
+    unloaded: tuple[si.Number, si.Number, Annotated[float, Measured("curvature")]] = Field(
+        (1.0, 0.0, 0.0), description="strain without load: 1, 0, and the curvature of the axis, rad/m"
+    )
+
+    _diagonal = field_validator("stiffness", mode="before")(from_diagonal)
+    _symmetric = field_validator("stiffness")(check_symmetric)
+
+    @field_validator("damping_ratio")
+    @classmethod
+    def _none_for_zero(cls, found: float | None) -> float | None:
+        return found or None
+
+    @classmethod
+    def powers(cls, e: Symbolic) -> list[tuple[Any, Any]]:
+        return cls.relative_powers(e)

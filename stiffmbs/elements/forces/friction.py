@@ -1,0 +1,81 @@
+"""Dry friction: the friction coefficient as a function of the sliding speed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from pydantic import Field
+
+from ...reading.units import si
+from ..element import Force, Symbolic
+
+TINY = 1e-24
+"""Offset under the root of a reaction's magnitude, N^2 or N^2 m^2, for a finite derivative at zero."""
+AT_REST = 1e-6
+"""Offset of a sliding speed in the same way, relative to the smoothed speed."""
+
+
+def magnitude(*parts: Any, tiny: Any = TINY) -> Any:
+    """Return the magnitude of a vector, with a finite derivative at zero."""
+    from sympy import sqrt
+
+    return sqrt(sum(part**2 for part in parts) + tiny)
+
+
+class Friction(Force):
+    """Base of forces with dry friction: Coulomb's law with the Stribeck effect, smoothed at zero speed.
+
+    mu(v) = (mu_d + (mu_s - mu_d) exp(-(v/v_d)^2)) tanh(v/v_s), with the stiction velocity v_s and the friction velocity
+    v_d. There is no true stiction: below v_s friction is viscous, and a sticking contact creeps.
+
+    Andersson, Soderberg, Bjorklund, Friction models for sliding dry, boundary and mixed lubricated contacts, Tribology
+    International 40 (2007) 580-587.
+    """
+
+    former_names: ClassVar[Mapping[str, str]] = {
+        "smooth_velocity": "stiction_velocity",
+        "stribeck_velocity": "friction_velocity",
+    }
+
+    friction: si.NumberOrZero | None = Field(None, description="mu_d, dynamic coefficient of friction")
+    static_friction: si.NumberOrZero | None = Field(None, description="mu_s, static coefficient; mu_d unless given")
+    friction_velocity: si.PositiveVelocity = Field(
+        0.01, description="v_d, scale of the sliding speeds over which mu_s falls to mu_d, m/s"
+    )
+    stiction_velocity: si.PositiveVelocity = Field(
+        1e-4, description="v_s, scale of the sliding speeds below which friction is viscous, m/s"
+    )
+
+    @classmethod
+    def per_speed(cls, e: Symbolic, *sliding: Any) -> Any:
+        """Return mu / speed, finite at rest, for a sliding velocity of several components."""
+        speed = e.named(magnitude(*sliding, tiny=(AT_REST * e.stiction_velocity) ** 2))
+        return cls.coefficient(e, speed) / speed
+
+    @staticmethod
+    def coefficient(e: Symbolic, v: Any) -> Any:
+        """Return mu at a sliding speed, with the sign of the speed."""
+        from sympy import exp, tanh
+
+        peak = e.static_friction - e.friction if e.static_friction is not None else 0
+        return (e.friction + peak * exp(-((v / e.friction_velocity) ** 2))) * tanh(v / e.stiction_velocity)
+
+
+@dataclass(frozen=True)
+class Loads:
+    """Magnitudes of a joint's reaction on the body of marker i, with the force at i's point.
+
+    Attributes
+    ----------
+    across, thrust : Expr
+        Force normal to the axis of the joint's coordinate (z of j in space) and along it, N.
+    bending, torsion : Expr
+        Moment normal to the axis and about it, N m.
+    """
+
+    across: Any = 0
+    thrust: Any = 0
+    bending: Any = 0
+    torsion: Any = 0

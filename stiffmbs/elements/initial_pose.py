@@ -1,0 +1,118 @@
+"""Numerical evaluation of elements at the described poses of the bodies."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..reading.joint_name import JointName
+from ..reading.marker import MarkerReference
+from .element import Element, Joint
+
+if TYPE_CHECKING:
+    from ..model.model_data import ModelData
+
+
+SAME_POINT = 1e-13
+"""Rounding tolerance for coincident points, relative to the mechanism's size or to the coordinates if they are
+larger."""
+
+
+@dataclass(frozen=True)
+class InitialPose:
+    """Model at its described pose, for checks of the placement of elements.
+
+    Attributes
+    ----------
+    model : ModelData
+    """
+
+    model: ModelData
+
+    def at_one_place(self, i: MarkerReference, j: MarkerReference) -> bool:
+        """Return True if two markers coincide at the start, to rounding, so the line through them has no direction."""
+        a, b = self.model.point(i), self.model.point(j)
+        return math.dist(a, b) <= SAME_POINT * max(self._size, *map(abs, (*a, *b)))
+
+    @cached_property
+    def _size(self) -> float:
+        """Size of the model, cached because it requires all markers."""
+        return self.model.size()
+
+
+@dataclass(frozen=True)
+class InitialMarker:
+    """Marker with numbers in ground axes: numerical form of `stiffmbs.compile.symbolic.planar_frames.Frame`.
+
+    Attributes
+    ----------
+    point : ndarray, shape (2,)
+        m.
+    angle : float
+        rad.
+    """
+
+    point: np.ndarray
+    angle: float
+
+    @property
+    def axis(self) -> np.ndarray:
+        """Unit vector along the marker's axis."""
+        return np.array([math.cos(self.angle), math.sin(self.angle)])
+
+    @property
+    def normal(self) -> np.ndarray:
+        """Unit vector perpendicular to the marker's axis, a quarter turn counter-clockwise."""
+        return np.array([-math.sin(self.angle), math.cos(self.angle)])
+
+
+def initial_element(element: Element, model: ModelData) -> Any:
+    """Return the element as its equations see it, with numbers for markers, fields and referenced joints."""
+    fields = {name: _drawn(getattr(element, name), model) for name in type(element).model_fields}
+    return SimpleNamespace(**fields, angle=math.atan2)
+
+
+def _drawn(value: Any, model: ModelData) -> Any:
+    match value:
+        case MarkerReference():
+            return model.initial_marker(value)
+        case JointName():
+            joint: Joint = model.joints[value.joint]
+            e, name = initial_element(joint, model), value.coordinate_of(joint)
+            e.coordinate = None if name is None else getattr(joint, name)(e)
+            return e
+        case _:
+            return value
+
+
+@dataclass(frozen=True)
+class InitialSpatialMarker:
+    """Marker with numbers, in ground axes.
+
+    Attributes
+    ----------
+    point : ndarray, shape (3,)
+        m.
+    axes : ndarray, shape (3, 3)
+        Its unit axes as columns.
+    """
+
+    point: np.ndarray
+    axes: np.ndarray
+
+    @property
+    def x(self) -> np.ndarray:
+        return self.axes[:, 0]
+
+    @property
+    def y(self) -> np.ndarray:
+        return self.axes[:, 1]
+
+    @property
+    def z(self) -> np.ndarray:
+        return self.axes[:, 2]

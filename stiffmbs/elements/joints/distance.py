@@ -1,0 +1,46 @@
+"""Distance joint: a rigid massless rod, in the plane and in space."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, ClassVar, Generic, TypeVar
+
+from pydantic import Field
+
+from ...reading.fields import Measured
+from ...reading.marker import Marker, MarkerReference
+from ..element import Joint, Symbolic
+
+M = TypeVar("M", bound=MarkerReference)
+
+
+class Rod(Joint, Generic[M]):
+    """Base of the planar and the spatial distance joint."""
+
+    kind = "distance"
+    reflected = {}
+    equations: ClassVar[tuple[str, ...]] = ("length",)
+
+    i: M = Field(description="marker of the first body, on which the reaction is reported")
+    j: M = Field(description="marker of the second body")
+    length: Annotated[float, Measured("length", above=0)] = Field(description="L, from point to point, m")
+
+    def spins_with(self) -> dict[str, str]:
+        return {"i": "point", "j": "point"}
+
+    @staticmethod
+    def position(e: Symbolic) -> Any:
+        d = e.i.point - e.j.point
+        return [(d.dot(d) - e.length**2) / (2 * e.length)]
+
+
+class Distance(Rod[Marker]):
+    """Rod with constant distance between a point of body i and a point of body j, (d . d - L^2)/(2 L) = 0.
+
+    Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), eq. 3.3.7, divided by 2 L. The multiplier
+    is then the tension of the rod in N, and the equation is smooth at every distance. For coincident points use a
+    revolute joint.
+
+    The reaction is a force along the rod, from point to point.
+    """
+
+    elastic = "spring_damper"

@@ -1,0 +1,117 @@
+"""Point on a smooth curve in the axes of a marker: a curved slot, or a cam with a point follower."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Annotated, Any, ClassVar, Generic, Self, TypeVar
+
+import numpy as np
+from pydantic import Field, field_validator, model_validator
+
+from ...reading.fields import exactly_one
+from ...reading.formula.field import FormulaOf
+from ...reading.formula.formula import Formula
+from ...reading.formula.value import formula_value
+from ...reading.marker import Marker, MarkerReference
+from ...reading.table import Table
+from ..element import Joint, Symbolic
+
+M = TypeVar("M", bound=MarkerReference)
+TURN = 2 * math.pi
+CLOSED = 1e-9
+"""Tolerance of the change over a full turn, relative to the largest radius, for a closed cam."""
+
+
+SLOT = {"table": [[0, 0], [1, 0.1], [2, 0]]}
+CAM = {"table": [[0, 0.1], [3, 0.2], [TURN, 0.1]], "ends": "periodic"}
+"""Samples of curves."""
+
+
+class Curve(Joint, Generic[M]):
+    """Base of the planar and the spatial point on a curve."""
+
+    kind = "point_on_curve"
+    equations: ClassVar[tuple[str, ...]] = ("normal",)
+    forms: ClassVar[tuple[Mapping[str, Any], ...]] = ({"y": SLOT}, {"radius": CAM})
+
+    i: M = Field(description="marker of the body with the point, on which the reaction is reported")
+    j: M = Field(description="marker in whose axes the curve is given")
+    y: Annotated[Formula | Table, FormulaOf(("x",), ("length",), "length", time=False, table=True)] | None = Field(
+        None, description="Y(x), m: a formula of x or a table"
+    )
+    radius: Annotated[Formula | Table, FormulaOf(("angle",), ("angle",), "length", time=False, table=True)] | None = (
+        Field(
+            None, description="R(theta), m: a formula of sin(angle) and cos(angle), or a periodic table over one turn"
+        )
+    )
+
+    @field_validator("radius")
+    @classmethod
+    def _closed(cls, radius: Formula | Table | None) -> Formula | Table | None:
+        return repeating(radius)
+
+    @model_validator(mode="after")
+    def _one_curve(self) -> Self:
+        exactly_one(("y", self.y), ("radius", self.radius))
+        return self
+
+
+class PointOnCurve(Curve[Marker]):
+    """Point follower: the point of marker i remains on a curve fixed to marker j.
+
+    In the axes of marker j the point is at (x, y), or at the distance rho in the direction theta (-pi .. pi). The curve
+    is a slot ``y`` = Y(x), with y - Y(x) = 0, or a cam ``radius`` = R(theta), with rho - R(theta) = 0. R must be
+    periodic over a turn, so the jump of the arctangent and the number of turns have no effect. Nikravesh,
+    Computer-Aided Analysis of Mechanical Systems (1988), section 4.2.6.
+
+    The curve should be free of breakpoints. The reaction is normal to the curve, without friction, and bilateral: the
+    point cannot lift off.
+    """
+
+    @staticmethod
+    def position(e: Symbolic) -> Any:
+        """Return y - Y(x) of a slot, rho - R(theta) of a cam, in the axes of marker j."""
+        d = e.i.point - e.j.point
+        if e.y is not None:
+            return [d.dot(e.j.normal) - e.y(d.dot(e.j.axis))]
+        from sympy import atan2
+
+        return [e.distance(e.i.point, e.j.point) - e.radius(atan2(d.dot(e.j.normal), d.dot(e.j.axis)))]
+
+
+def repeating(law: Formula | Table | None) -> Formula | Table | None:
+    """Return a law of the polar angle that is periodic over a turn.
+
+    Raises
+    ------
+    ValueError
+        If it is not periodic.
+    """
+    match law:
+        case Table(ends="periodic", table=((first, _), *_, (last, _))) if abs(last - first - TURN) <= 1e-9 * TURN:
+            return law
+        case Table(ends=ends, table=((first, _), *_, (last, _))):
+            raise ValueError(
+                f"found a table with {ends or 'natural'} ends over {last - first:.9g} rad, expected a periodic one over a full "
+                f"turn, {TURN:.9g} rad"
+            )
+        case Formula():
+            _refuse_open(law)
+    return law
+
+
+def _refuse_open(law: Formula) -> None:
+    """Refuse a formula of the polar angle that differs after one turn, or two turns back."""
+    angles = np.linspace(-TURN, TURN, 50)
+    values = [formula_value(law, angle=angle) for angle in angles]
+    size = max(map(abs, values))
+    for angle, here in zip(angles, values, strict=True):
+        for turns in (-2, 1):
+            there = formula_value(law, angle=angle + turns * TURN)
+            if abs(there - here) > CLOSED * size:
+                raise ValueError(
+                    f"found '{law.text}', which is {here:.6g} at angle {angle:.6g} and {there:.6g} at "
+                    f"{angle + turns * TURN:.6g}, expected a formula that repeats every turn (of sin(angle) and "
+                    "cos(angle)), or a periodic table"
+                )

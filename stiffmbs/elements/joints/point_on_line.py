@@ -1,0 +1,36 @@
+"""Point on a line: a pin in a straight slot."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pydantic import Field
+
+from ...reading.marker import Marker
+from ..element import Joint, Symbolic
+
+
+class PointOnLine(Joint):
+    """Pin in a slot: the point of marker i remains on the line through marker j along j's axis, d . n_j = 0.
+
+    Body i can rotate. Nikravesh, Computer-Aided Analysis of Mechanical Systems (1988), section 4.2.1 (the first of the
+    two equations of a translational joint). The reaction is normal to the line, without friction.
+    """
+
+    kind = "point_on_line"
+    reflected = {}
+    equations = ("normal",)
+    coordinates = ("displacement",)
+    elastic = "bushing"
+
+    i: Marker = Field(description="marker of the body with the pin, on which the reaction is reported")
+    j: Marker = Field(description="marker whose axis is the line")
+
+    @staticmethod
+    def position(e: Symbolic) -> Any:
+        return [(e.i.point - e.j.point).dot(e.j.normal)]
+
+    @staticmethod
+    def displacement(e: Symbolic) -> Any:
+        """Return the displacement of the pin along the line, from marker j."""
+        return (e.i.point - e.j.point).dot(e.j.axis)

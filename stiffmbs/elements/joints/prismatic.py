@@ -1,0 +1,45 @@
+"""Prismatic (translational) joint."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pydantic import Field
+
+from ...reading.marker import InOneTurn, Marker
+from ..element import Joint, Symbolic
+from ..forces.friction import Loads, magnitude
+
+
+class Prismatic(InOneTurn, Joint):
+    """Slider: marker i remains on the line through marker j along j's axis, and keeps j's direction.
+
+    The reaction is a force normal to the line and a torque.
+
+    Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), eq. 3.3.13, with the angle itself in
+    place of its sine.
+    """
+
+    kind = "prismatic"
+    reflected = {}
+    equations = ("normal", "angle")
+    coordinates = ("displacement",)
+    elastic = "bushing"
+    keeps_in_plane = True
+
+    i: Marker = Field(description="marker of the sliding body, on which the reaction is reported")
+    j: Marker = Field(description="marker whose axis is the line to slide along")
+
+    @staticmethod
+    def position(e: Symbolic) -> Any:
+        return [(e.i.point - e.j.point).dot(e.j.normal), e.i.angle - e.j.angle]
+
+    @staticmethod
+    def displacement(e: Symbolic) -> Any:
+        """Return the displacement of marker i along the axis of marker j."""
+        return (e.i.point - e.j.point).dot(e.j.axis)
+
+    @staticmethod
+    def loads(e: Symbolic) -> Loads:
+        normal, moment = e.lam
+        return Loads(across=magnitude(normal), bending=magnitude(moment))

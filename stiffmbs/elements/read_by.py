@@ -1,0 +1,59 @@
+"""Fields whose entries functions read."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from pydantic import BaseModel, GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationInfo
+from pydantic_core import core_schema
+
+from ..errors import InputError
+from ..reading.files.files_read import file_beside
+from ..reading.files.quoted import written
+
+Context = Mapping[str, Any] | None
+JsonSchema = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class ReadBy:
+    """Marker of a field with a reader of its own: ``Annotated[Road, ReadBy(read_road, schema_of_roads)]``.
+
+    Attributes
+    ----------
+    read : callable
+        Returns the value of an entry, given the entry and the validation context.
+    schema : callable
+        Returns the JSON schema of the entries, given a function that returns the schema of a class.
+    """
+
+    read: Callable[[Any, Context], Any]
+    schema: Callable[[Callable[[type[BaseModel]], JsonSchema]], JsonSchema]
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> Any:
+        def read(found: Any, info: ValidationInfo) -> Any:
+            return self.read(found, info.context)
+
+        return core_schema.with_info_plain_validator_function(read)
+
+    def __get_pydantic_json_schema__(self, schema: Any, handler: GetJsonSchemaHandler) -> JsonSchema:
+        return self.schema(lambda kind: handler(core_schema.definitions_schema(kind.__pydantic_core_schema__, [])))
+
+
+def in_file(kind: type[Any], read: Callable[[Path], Any], description: str) -> ReadBy:
+    """Return the marker of a field that takes an object, or the name of a file from which it is read."""
+
+    def found_in_file(found: object, context: Context) -> Any:
+        if isinstance(found, kind):
+            return found
+        if not isinstance(found, str | Path):
+            raise ValueError(f"found {written(found)}, expected the name of a file")
+        try:
+            return read(file_beside(context or {}, found))
+        except InputError as error:
+            raise ValueError(str(error)) from None
+
+    return ReadBy(found_in_file, lambda _: {"type": "string", "description": description})

@@ -1,0 +1,88 @@
+"""Roads as fields of elements, by name or by value, and the section of a scene that names them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from importlib import import_module
+from types import MappingProxyType
+from typing import Annotated, Any
+
+from pydantic import ValidationError as PydanticError
+
+from ...errors import InputError
+from ...reading.did_you_mean import did_you_mean
+from ...reading.fields import named_entries, sentence
+from ...reading.files.quoted import quoted, written
+from ..read_by import Context, JsonSchema, ReadBy
+from .road import Road
+
+ROADS: Mapping[str, str] = MappingProxyType(
+    {
+        "flat": "road:FlatRoad",
+        "formula": "formula:FormulaRoad",
+        "table": "profile:TableRoad",
+        "grid": "grid:GridRoad",
+        "crg": "crg:CrgRoad",
+        "step": "obstacles:StepRoad",
+        "cosine_bump": "obstacles:CosineBump",
+        "sine_sweep": "obstacles:SineSweep",
+        "iso8608": "iso8608:Iso8608Road",
+    }
+)
+"""File and class of each kind of road, imported on demand."""
+
+
+def kind_of_road(kind: str) -> type[Road]:
+    """Return the class of a kind of road."""
+    file, _, name = ROADS[kind].partition(":")
+    road: type[Road] = getattr(import_module(f".{file}", __package__), name)
+    return road
+
+
+def read_road(found: object, context: Context) -> Road:
+    """Return the road of a field."""
+    if isinstance(found, Road):
+        return found
+    if isinstance(found, str):
+        known = (context or {}).get("roads") or {}
+        if found not in known:
+            raise ValueError(
+                f"found the unknown road '{quoted(found)}'{did_you_mean(found, known)}, expected one of {', '.join(known) or 'none'}"
+            )
+        return known[found]  # type: ignore[no-any-return]
+    if not isinstance(found, dict):
+        raise ValueError(f"found {written(found)}, expected the name of a road, or a mapping with its type")
+    kind = found.get("type")
+    if not isinstance(kind, str) or kind not in ROADS:
+        expected = ", ".join(f"'{each}'" for each in ROADS)
+        raise ValueError(
+            f"found the type {written(kind)} of a road{did_you_mean(kind, ROADS)}, expected one of {expected}"
+        )
+    return kind_of_road(kind).model_validate(found, context=dict(context or {}))
+
+
+def _schema(schema_of: Callable[[type[Road]], JsonSchema]) -> JsonSchema:
+    name = {"type": "string", "description": "the name of a road of the scene"}
+    return {"anyOf": [name, *(schema_of(kind_of_road(kind)) for kind in ROADS)]}
+
+
+AnyRoad = Annotated[Road, ReadBy(read_road, _schema)]
+
+
+def read_roads(found: Any, context: Mapping[str, Any]) -> dict[str, Road]:
+    """Read the roads of a scene, which its tyres use by name.
+
+    Raises
+    ------
+    InputError
+        If a name is not an identifier, or a road cannot be read.
+    """
+    roads: dict[str, Road] = {}
+    for name, road in named_entries("roads", found, "roads"):
+        try:
+            roads[name] = read_road(road, context)
+        except PydanticError as error:
+            raise InputError(f"roads.{name}.{sentence(error)}") from None
+        except ValueError as error:
+            raise InputError(f"roads.{name}: {error}") from None
+    return roads

@@ -1,0 +1,98 @@
+"""Level roads with an obstacle: step, cosine bump, sine sweep."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from pydantic import Field
+
+from ...reading.units import si
+from ..element import Symbolic
+from .road import Road, ramp, ramp_at
+
+if TYPE_CHECKING:
+    import numpy as np
+
+
+class Obstacle(Road):
+    """Base of the level roads with an obstacle; scenes use its subclasses."""
+
+    start: si.Length = Field(description="x where it begins, m")
+    if TYPE_CHECKING:
+        length: float
+
+    def extent(self) -> tuple[float, float]:
+        return self.start, self.start + self.length
+
+
+class StepRoad(Obstacle):
+    """Level road with a rise or fall by a cubic with zero slope at both ends: a kerb, a pothole's edge."""
+
+    kind = "step"
+
+    length: si.PositiveLength = Field(description="over which it rises, m")
+    rise: si.Length = Field(description="height behind it, m; below zero it falls")
+
+    @staticmethod
+    def height(r: Symbolic, x: Any, y: Any) -> Any:
+        s = ramp(x, r.start, r.length)
+        return r.rise * s**2 * (3 - 2 * s)
+
+    def profile_heights(self, x: np.ndarray) -> np.ndarray:
+        """Return the heights, m, at positions x, m."""
+        s = ramp_at(x, self.start, self.length)
+        return self.rise * s**2 * (3 - 2 * s)
+
+
+class CosineBump(Obstacle):
+    """Level road with one bump: crest (1 - cos(2 pi (x - start)/length))/2."""
+
+    kind = "cosine_bump"
+
+    length: si.PositiveLength = Field(description="of the bump, m")
+    crest: si.Length = Field(description="its height in the middle, m; below zero it is a hole")
+
+    @staticmethod
+    def height(r: Symbolic, x: Any, y: Any) -> Any:
+        from sympy import Rational, cos, pi
+
+        return r.crest * (1 - cos(2 * pi * ramp(x, r.start, r.length))) * Rational(1, 2)
+
+    def profile_heights(self, x: np.ndarray) -> np.ndarray:
+        """Return the heights, m, at positions x, m."""
+        from numpy import cos, pi
+
+        return self.crest * (1 - cos(2 * pi * ramp_at(x, self.start, self.length))) / 2
+
+
+class SineSweep(Obstacle):
+    """Level road with sine waves of varying wavelength.
+
+    With s = (x - start)/length between 0 and 1 the height is amplitude sin(2 pi length (n0 s + (n1 - n0) s^2/2)). The
+    wavenumbers are n0 = 1/first_wavelength at the start and n1 = 1/last_wavelength at the end. After it the height is
+    constant.
+    """
+
+    kind = "sine_sweep"
+
+    length: si.PositiveLength = Field(description="over which the waves go on, m")
+    amplitude: si.Length = Field(description="of the waves, m")
+    first_wavelength: si.PositiveLength = Field(description="at the start, m")
+    last_wavelength: si.PositiveLength = Field(description="at the end, m; the same: a plain sine wave")
+
+    @staticmethod
+    def height(r: Symbolic, x: Any, y: Any) -> Any:
+        """Return the height of the sine sweep."""
+        from sympy import Rational, pi, sin
+
+        s = ramp(x, r.start, r.length)
+        first, last = 1 / r.first_wavelength, 1 / r.last_wavelength
+        return r.amplitude * sin(2 * pi * r.length * (first * s + (last - first) * s**2 * Rational(1, 2)))
+
+    def profile_heights(self, x: np.ndarray) -> np.ndarray:
+        """Return the heights, m, of the sweep at positions x, m."""
+        from numpy import pi, sin
+
+        s = ramp_at(x, self.start, self.length)
+        first, last = 1 / self.first_wavelength, 1 / self.last_wavelength
+        return self.amplitude * sin(2 * pi * self.length * (first * s + (last - first) * s**2 / 2))

@@ -1,0 +1,145 @@
+"""Base of roads: height and friction factor."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+
+from pydantic import Field, model_validator
+
+from ...reading.fields import typed
+from ...reading.formula.field import FormulaOf
+from ...reading.formula.formula import Formula
+from ...reading.table import Table
+from ...reading.units import si
+from ..element import Component, Symbolic
+
+if TYPE_CHECKING:
+    import numpy as np
+
+
+OF_PLACE = ("x", "y"), ("length", "length")
+"""Variables of a road's formulas with dimensions: along and across, m."""
+Factor = Annotated[Formula, FormulaOf(*OF_PLACE, "number", time=False)]
+
+
+class Road(Component):
+    """Base of roads; a subclass consists of its fields and its `height`.
+
+    Attributes
+    ----------
+    kind : str
+        Name of the kind in scenes, its `type`.
+    level : bool
+        Whether its height is constant.
+    """
+
+    kind: ClassVar[str] = ""
+    level: ClassVar[bool] = False
+
+    rolled: ClassVar[Table | None] = None
+
+    type: str = ""
+    friction: Factor | None = Field(None, description="factor on the tyre's friction, of x and y; 1 by default")
+    filter_radius: si.PositiveLength | None = Field(
+        None, description="of a disc, m: the heights are those that it rolls on; those of the road by default"
+    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _of_its_kind(cls, found: Any) -> Any:
+        return typed(cls.kind, found)
+
+    @model_validator(mode="after")
+    def _may_be_filtered(self) -> Road:
+        if self.filter_radius is not None and not self.level and self.extent() is None:
+            raise ValueError(
+                f"found filter_radius on a road '{self.kind}' without an extent, expected a road that states one"
+            )
+        return self
+
+    def extent(self) -> tuple[float, float] | None:
+        """Return the interval of x, m, outside which the road is straight, for the rolling-radius filter, or None."""
+        return None
+
+    def profile_heights(self, x: np.ndarray) -> np.ndarray:
+        """Return the heights, m, at positions x, m, for the rolling-radius filter; they are independent of y."""
+        raise NotImplementedError
+
+    def in_equations(self) -> dict[str, Any]:
+        """Return its fields, and with `filter_radius` the table ``rolled`` of filtered heights."""
+        own = dict(super().in_equations())
+        radius, extent = own.pop("filter_radius"), self.extent()
+        if radius is None or extent is None:
+            return own
+        from .rolling_filter import rolled_profile
+
+        return {**own, "rolled": rolled_profile(self.profile_heights, extent, radius)}
+
+    @staticmethod
+    def height(r: Symbolic, x: Any, y: Any) -> Any:
+        """Return the height of the road at x along and y across, m."""
+        raise NotImplementedError
+
+    @staticmethod
+    def place(r: Symbolic, e: Symbolic, x: Any, y: Any) -> tuple[Any, Any]:
+        """Return the position of a point along and across the road, m; e is the element on the road."""
+        return x, y
+
+    @staticmethod
+    def surface(r: Symbolic, x: Any, y: Any) -> Any:
+        """Return the height for a wheel, m, filtered if the road has a filter."""
+        return r.height(x, y) if r.rolled is None else r.rolled(x)
+
+    @staticmethod
+    def factor(r: Symbolic, x: Any, y: Any) -> Any:
+        """Return the factor on friction."""
+        return 1 if r.friction is None else r.friction(x, y)
+
+
+def ramp_at(x: np.ndarray, start: float, length: float) -> np.ndarray:
+    """Evaluate `ramp` for numbers."""
+    return ((x - start) / length).clip(0.0, 1.0)
+
+
+def ramp(x: Any, start: Any, length: Any) -> Any:
+    """Return a linear ramp from 0 at `start` to 1 at `start` + `length`, constant outside."""
+    import sympy
+
+    return sympy.Min(sympy.Max((x - start) / length, 0), 1)
+
+
+def clipped(s: Any) -> Any:
+    """Return s limited to 0 .. 1 without events, for functions with zero slope at the limits."""
+    from sympy import Rational
+
+    return (magnitude(s) - magnitude(s - 1) + 1) * Rational(1, 2)
+
+
+def above_zero(x: Any) -> Any:
+    """Return max(x, 0) without an event at zero.
+
+    Name x before if it is a small sum of large terms, because rounding errors would be those of the terms.
+    """
+    from sympy import Rational
+
+    return (x + magnitude(x)) * Rational(1, 2)
+
+
+def magnitude(*parts: Any) -> Any:
+    """Return the absolute value of a number, or the magnitude of a vector, without an event at zero."""
+    from sympy import Float, sqrt
+
+    return sqrt(sum(part**2 for part in parts) + Float("1e-60"))
+
+
+class FlatRoad(Road):
+    """Level road."""
+
+    kind = "flat"
+    level = True
+
+    z: si.Length = Field(0.0, description="its height, m")
+
+    @staticmethod
+    def height(r: Symbolic, x: Any, y: Any) -> Any:
+        return r.z

@@ -1,0 +1,123 @@
+"""Rolling-radius filter: effective road heights for a rigid disc.
+
+A rigid disc of radius R on a profile h has its centre at the height max over s of h(x + s) + sqrt(R^2 - s^2). That
+height minus R is the road height for a tyre with a single contact point. The disc bridges narrow gaps, and a step
+becomes a circular arc. Captain, Boghani, Wormley, Analytical tire models for dynamic vehicle simulation, Vehicle System
+Dynamics 8 (1979) 1-32.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import lru_cache, partial
+from typing import TYPE_CHECKING, Any
+
+from ...errors import InputError
+from ...reading.table import Table
+
+if TYPE_CHECKING:
+    import numpy as np
+
+FINE, COARSE = 50, 20
+"""Points per radius, and the fewest on a long road; the errors are then at most R/20000 and R/3200."""
+BETWEEN = 8
+"""Subdivisions of a step at which the profile of a short road is sampled, for its edges."""
+MOST = 40000
+"""Largest number of points of a profile."""
+BESIDE = 1.5
+"""Distance from a profile, in radii, at which the disc no longer touches it."""
+
+
+def through_filter(table: Table, radius: float | None) -> Table:
+    """Return the filtered heights for a disc of the given radius; the profile itself without one."""
+    return table if radius is None else rolled(table, radius)
+
+
+@lru_cache(maxsize=64)
+def rolled(table: Table, radius: float) -> Table:
+    """Return the filtered heights over x.
+
+    Raises
+    ------
+    InputError
+        If the profile is longer than 2000 radii.
+    """
+    import numpy as np
+
+    points = np.array(table.table)
+    x, centre = _centres(partial(heights_of, table), (points[0, 0], points[-1, 0]), radius)
+    _take_in(centre, x, points, radius)
+    if table.ends == "periodic":
+        centre[-1] = centre[0]
+    return table_of(x, centre - radius, "periodic" if table.ends == "periodic" else None)
+
+
+def rolled_profile(heights: Callable[[np.ndarray], np.ndarray], extent: tuple[float, float], radius: float) -> Table:
+    """Return the filtered heights of a profile given by a function, level outside its extent; errors as `rolled`."""
+    beside = BESIDE * radius
+    x, centre = _centres(heights, (extent[0] - beside, extent[1] + beside), radius)
+    return table_of(x, centre - radius)
+
+
+def _centres(
+    heights: Callable[[np.ndarray], np.ndarray], extent: tuple[float, float], radius: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return positions along an extent, and the height of the disc's centre there."""
+    import numpy as np
+    from scipy.ndimage import grey_dilation
+
+    first, last = extent
+    radii = (last - first) / radius
+    if radii * COARSE > MOST:
+        raise InputError(
+            f"found a road of {last - first:g} m and a filter's radius of {radius:g} m, expected a road of at most "
+            f"{MOST // COARSE} radii"
+        )
+    count = max(int(np.ceil(min(radii * FINE, MOST))), 2)
+    parts = min(max(MOST // count, 1), BETWEEN)
+    x, step = np.linspace(first, last, count * parts + 1, retstep=True)
+    margin = int(np.floor(radius / step))
+    beside = step * np.arange(1, margin + 1)
+    around = heights(np.concatenate([first - beside[::-1], x, last + beside]))
+    disc = _disc(step * np.arange(-margin, margin + 1), radius)
+    centre = grey_dilation(around, footprint=np.ones(len(disc)), structure=disc, mode="nearest")
+    return x[::parts], centre[margin : margin + len(x) : parts]
+
+
+def _take_in(centre: np.ndarray, x: np.ndarray, points: np.ndarray, radius: float) -> None:
+    """Raise the centre of the disc where it touches a point of the table between samples."""
+    import numpy as np
+
+    ends = np.searchsorted(x, points[:, :1] + np.array([-radius, radius]))
+    for (at, height), (begin, end) in zip(points, ends, strict=True):
+        np.maximum(centre[begin:end], height + _disc(x[begin:end] - at, radius), out=centre[begin:end])
+
+
+def heights_of(table: Table, x: np.ndarray) -> np.ndarray:
+    """Return the heights of the profile, with the extrapolation or periodicity of the equations."""
+    import numpy as np
+    from scipy.interpolate import Akima1DInterpolator, CubicSpline, PchipInterpolator
+
+    at, heights = np.array(table.table).T
+    if table.ends == "periodic":
+        x = at[0] + np.mod(x - at[0], at[-1] - at[0])
+        heights = np.append(heights[:-1], heights[0])
+    inside = np.clip(x, at[0], at[-1])
+    if table.lines:
+        slope = np.diff(heights) / np.diff(at)
+        ends = np.where(x < at[0], slope[0], slope[-1])
+        return np.interp(inside, at, heights) + ends * (x - inside)
+    local = {"akima": Akima1DInterpolator, "monotone": PchipInterpolator}.get(table.interpolation)
+    found = local(at, heights) if local else CubicSpline(at, heights, bc_type=table.ends or "natural")
+    return np.asarray(found(inside) + found(inside, 1) * (x - inside))
+
+
+def _disc(s: np.ndarray, radius: float) -> np.ndarray:
+    import numpy as np
+
+    return np.sqrt(np.maximum(radius**2 - s**2, 0.0))
+
+
+def table_of(x: np.ndarray, values: np.ndarray, ends: Any = None) -> Table:
+    """Return the table of arrays, which are not checked again."""
+    return Table.model_construct(table=tuple(zip(x.tolist(), values.tolist(), strict=True)), ends=ends)

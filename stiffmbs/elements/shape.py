@@ -1,0 +1,180 @@
+"""Shapes of bodies: bases in the plane and in space, and the planar ones."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationInfo, field_validator
+from pydantic_core import core_schema
+
+from ..reading.did_you_mean import did_you_mean
+from ..reading.fields import Described
+from ..reading.files.files_read import digest_of_file, file_beside
+from ..reading.files.quoted import quoted, written
+from ..reading.units import si
+from .read_by import Context, ReadBy
+
+COLOR = r"^#[0-9a-fA-F]{6}$"
+ENDINGS = (".stl", ".obj")
+"""Suffixes of supported mesh files."""
+
+
+class Shape(Described):
+    """Shape of a body, in the body's axes.
+
+    Attributes
+    ----------
+    type : str
+        Name of the kind in scenes.
+    """
+
+    type: str
+
+    color: str | None = Field(None, description="such as '#336699'; chosen by the drawing unless given")
+
+    @field_validator("color")
+    @classmethod
+    def _hexadecimal(cls, color: str | None) -> str | None:
+        if color is not None and not re.match(COLOR, color):
+            raise ValueError(f"found {written(color)}, expected a color such as '#336699'")
+        return color
+
+    def placed(self, frame: Any) -> Any:
+        """Return the shape of a mirrored part's body; `frame` is the mirror in the body's axes."""
+        return frame.placed(self)
+
+
+class PolylineShape(Shape):
+    """Base of planar and spatial polylines."""
+
+    type: Literal["polyline"] = "polyline"
+    points: tuple[Any, ...]
+    closed: bool = Field(False, description="whether a line leads back; in the plane the inside is then filled")
+
+    def placed(self, frame: Any) -> Any:
+        return self.model_copy(update={"points": tuple(frame.to_outside(point) for point in self.points)})
+
+
+class OneFor:
+    """Marker of a list field that also accepts a single entry, which is repeated to the length of the list, or once."""
+
+    def __init__(self, times: int | None = None) -> None:
+        self.times = times
+
+    def listed(self, found: Any) -> Any:
+        """Return an entry of a scene as a list."""
+        return found if isinstance(found, list | tuple) else (found,) * (self.times or 1)
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> Any:
+        return core_schema.no_info_before_validator_function(self.listed, handler(source))
+
+    def __get_pydantic_json_schema__(self, schema: Any, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        several = handler(schema)
+        return {"anyOf": [several, several["items"] if "items" in several else several["prefixItems"][0]]}
+
+
+Scale = Annotated[tuple[si.NumberNotZero, si.NumberNotZero, si.NumberNotZero], OneFor(3)]
+
+
+class MeshShape(Shape):
+    """Base of planar and spatial meshes."""
+
+    type: Literal["mesh"] = "mesh"
+    file: str = Field(description="a file .stl or .obj, from the folder of the scene on")
+    scale: Scale = Field(
+        (1.0, 1.0, 1.0), description="metres for one unit of the file, 1e-3 for mm: one number, or along x, y and z"
+    )
+
+    @field_validator("file")
+    @classmethod
+    def _known(cls, file: str, info: ValidationInfo) -> str:
+        if Path(file).suffix.lower() not in ENDINGS:
+            raise ValueError(f"found '{quoted(file)}', expected a file that ends in {' or '.join(ENDINGS)}")
+        if info.context is None:
+            return file
+        path = file_beside(info.context, file)
+        digest_of_file(path)  # records it
+        return str(path)
+
+    def placed(self, frame: Any) -> Any:
+        signs = (*frame.signs, 1.0)[:3]
+        scale = tuple(a * b for a, b in zip(self.scale, signs, strict=True))
+        return frame.placed(self).model_copy(update={"scale": scale})
+
+
+def one_of(expected: str, *kinds: type[Described]) -> ReadBy:
+    """Return the marker of a field that takes one of some entries, selected by its ``type``.
+
+    Parameters
+    ----------
+    expected : str
+        Example for messages.
+    *kinds : types of Described
+    """
+    by_name = {kind.model_fields["type"].default: kind for kind in kinds}
+
+    def read(found: Any, context: Context) -> Any:
+        if isinstance(found, kinds):
+            return found
+        if not isinstance(found, dict):
+            raise ValueError(f"found {written(found)}, expected {expected}")
+        kind = found.get("type")
+        if not isinstance(kind, str) or kind not in by_name:
+            shown = "no type" if kind is None else f"the type {written(kind)}{did_you_mean(kind, by_name)}"
+            raise ValueError(f"found {shown}, expected one of {', '.join(by_name)}")
+        return by_name[kind].model_validate(found, context=context)
+
+    return ReadBy(read, lambda schema_of: {"oneOf": [schema_of(kind) for kind in kinds]})
+
+
+def one_of_shapes(*shapes: type[Shape]) -> ReadBy:
+    """Return the marker of a field that takes a shape."""
+    return one_of("a shape such as {type: sphere, radius: 10 mm}", *shapes)
+
+
+Point = tuple[si.Length, si.Length]
+
+
+class Polyline(PolylineShape):
+    """Polyline; if closed, a filled outline."""
+
+    points: tuple[Point, ...] = Field(min_length=2, description="in the body's own axes, m")
+
+
+class Placed(Shape):
+    """Base of the shapes with a position and a direction."""
+
+    point: Point = Field((0.0, 0.0), description="its middle (of a mesh the origin) in the body's own axes, m")
+    angle: si.Angle = Field(0.0, description="its direction against the body's, rad")
+
+
+class Box(Placed):
+    """Rectangle."""
+
+    type: Literal["box"] = "box"
+    size: tuple[si.PositiveLength, si.PositiveLength] = Field(description="along its x and y, m")
+
+
+class Cylinder(Placed):
+    """Disc: the end view of a cylinder."""
+
+    type: Literal["cylinder"] = "cylinder"
+    radius: si.PositiveLength = Field(description="m")
+
+
+class Sphere(Placed):
+    """Disc: the view of a sphere."""
+
+    type: Literal["sphere"] = "sphere"
+    radius: si.PositiveLength = Field(description="m")
+
+
+class Mesh(MeshShape, Placed):
+    """Triangles from a file; its z axis points out of the plane."""
+
+
+SHAPES = (Polyline, Box, Cylinder, Sphere, Mesh)
+PlanarGeometry = Annotated[tuple[Annotated[Any, one_of_shapes(*SHAPES)], ...], OneFor()]
+"""Shapes of a body; a single one needs no list."""

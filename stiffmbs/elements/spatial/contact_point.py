@@ -1,0 +1,117 @@
+"""Contact point of a wheel with a road, and slip at this point.
+
+The contact point is in the wheel's plane below its centre. It is on the line through the centre that is perpendicular
+to the spin axis and to the wheel's heading (Pacejka, Tire and Vehicle Dynamics, 2012, sec. 2.2 and 9.2).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from ..element import Symbolic
+from ..roads.road import above_zero, magnitude
+from .wrench import along_axes, seen_from, velocity
+
+
+@dataclass(frozen=True)
+class ContactPoint:
+    """Contact of a wheel with a road, in ground axes.
+
+    Attributes
+    ----------
+    point : Matrix
+        Contact point, m.
+    forward, left, normal : Matrix
+        Unit vectors of the ISO axes at the contact: the wheel's heading in the road plane, across it, normal to the
+        road.
+    radius : Expr
+        Loaded radius, from the wheel's centre to the contact point, m.
+    camber : Expr
+        Angle of the wheel's plane to the road normal, rad; positive if the top leans to the right.
+    vx, vy, vz : Expr
+        Velocity of the contact point, which does not rotate with the wheel, along these axes, m/s.
+    spin : Expr
+        Angular velocity of the wheel about its axis, rad/s; positive rolling forward.
+    friction : Expr
+        Friction factor of the road.
+    """
+
+    point: Any
+    forward: Any
+    left: Any
+    normal: Any
+    radius: Any
+    camber: Any
+    vx: Any
+    vy: Any
+    vz: Any
+    spin: Any
+    friction: Any
+
+
+def contact_point(e: Symbolic) -> ContactPoint:
+    """Return the contact of the wheel of marker i, whose y axis is its spin axis, with the road of j."""
+    from sympy import asin
+
+    centre, axis = e.named(e.i.point), e.named(e.i.y)
+    x, y, below, n = _surface(e, centre)
+    forward, up = _heading(e, axis, n)
+    radius = e.named(below / up.dot(n))
+    if not e.road.level:
+        point = e.named(centre - radius * up)
+        x, y, below, n = _surface(e, point)
+        forward, up = _heading(e, axis, n)
+        radius = e.named(radius + below / up.dot(n))
+    left = e.named(n.cross(forward))
+    arm = e.named(-radius * up)
+    spin, v = _motion(e, centre, axis, arm)
+    vx, vy, vz = (e.named(v.dot(along)) for along in (forward, left, n))
+    camber, friction = e.named(asin(axis.dot(n))), e.named(e.road.factor(x, y))
+    return ContactPoint(e.named(centre + arm), forward, left, n, radius, camber, vx, vy, vz, spin, friction)
+
+
+def _surface(e: Symbolic, point: Any) -> tuple[Any, Any, Any, Any]:
+    """Return a point's coordinates along and across the road, its distance from the tangent plane, and the normal."""
+    from sympy import Matrix, sqrt
+
+    local = point if e.j is None else seen_from(point, e.j)
+    x, y = e.variable(local[0]), e.variable(local[1])
+    along, across = e.road.place(e, x, y)
+    height = e.named(e.road.surface(along, across))
+    slopes = e.named([e.slope(height, x), e.slope(height, y)])
+    upright = e.named(1 / sqrt(1 + slopes[0] ** 2 + slopes[1] ** 2))
+    components = Matrix([-slopes[0] * upright, -slopes[1] * upright, upright])
+    n = components if e.j is None else along_axes(components, e.j.axes)
+    return along, across, e.named((local[2] - height) * upright), e.named(n)
+
+
+def _heading(e: Symbolic, axis: Any, n: Any) -> tuple[Any, Any]:
+    """Return the wheel's heading in the road plane, and the direction in the wheel's plane away from the road."""
+    from sympy import sqrt
+
+    across = e.named(axis.cross(n))
+    forward = e.named(across / sqrt(across.dot(across)))
+    return forward, e.named(forward.cross(axis))
+
+
+def _motion(e: Symbolic, centre: Any, axis: Any, arm: Any) -> tuple[Any, Any]:
+    """Return the spin, and the velocity of the contact point, both relative to the road."""
+    omega, v = e.named(e.i.omega), e.rate(e.i.point)
+    if e.j is not None:
+        omega = e.named(omega - e.j.omega)
+        v = v - velocity(e, e.j, centre)
+    spin = e.named(omega.dot(axis))
+    return spin, e.named(v + (omega - spin * axis).cross(arm))
+
+
+def slips(e: Symbolic, contact: ContactPoint, sliding: Any, slow: Any) -> tuple[Any, Any, Any]:
+    """Return the steady-state longitudinal slip, the tangent of the slip angle, and their reference speed.
+
+    kappa = -Vsx/V and tan(alpha) = Vy/V, with the sliding velocity Vsx = Vx - Re Omega and V = abs(Vx). Below the speed
+    `slow` V = (slow^2 + Vx^2)/(2 slow), which is smooth at zero speed.
+    """
+    forward = magnitude(contact.vx)
+    missing = above_zero(e.named(slow - forward))
+    speed = e.named(forward + missing**2 / (2 * slow))
+    return e.named(-sliding / speed), e.named(contact.vy / speed), speed

@@ -1,0 +1,1 @@
+"""Bodies, inertia and interfaces of flexible bodies."""

@@ -1,0 +1,34 @@
+"""Bodies that carry the coordinates of a flexible body: its floating frame, and its modal coordinates."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+from pydantic import Field
+
+from ..body import Body
+
+
+class ModalCoordinates(Body):
+    """Three modal coordinates of a flexible body as x, y and z, without weight; its axes are held by a joint."""
+
+    weighs: ClassVar[bool] = False
+    rigid: ClassVar[bool] = False
+
+
+class FloatingFrame(Body):
+    """Floating frame of a flexible body: mean axes at the centre of mass, with the inertia of the undeformed body.
+
+    Attributes
+    ----------
+    numbers : object with an ndarray `array`
+        Numbers of the body's inertia and elasticity (`stiffmbs.elements.spatial.flexible.native.sums`), with zero
+        gravity.
+    modes : tuple of str
+        Bodies with its modal coordinates.
+    """
+
+    rigid: ClassVar[bool] = False
+
+    numbers: Any = Field(None, exclude=True, repr=False)
+    modes: tuple[str, ...] = ()

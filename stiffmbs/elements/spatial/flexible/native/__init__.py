@@ -1,0 +1,1 @@
+"""Compiled inertia and elasticity of flexible bodies."""

@@ -1,0 +1,139 @@
+"""Forces, mass matrix and energies of a flexible body in a floating frame (`stiffmbs.elements.spatial.flexible.native.sums`)."""
+
+from __future__ import annotations
+
+from stiffmbs.compile.machine.native.access import compiled, room, shifted
+from stiffmbs.elements.spatial.flexible.native.sums import (
+    axial,
+    body_view,
+    centrifugal,
+    coordinate,
+    cross,
+    dot,
+    first_moment,
+    first_rate,
+    mode,
+    mode_view,
+    moment_of_rotation,
+    pair,
+    rate_sum_of_mode,
+    rigid_momentum,
+    second_moments,
+    sum_of_mode,
+    times,
+    trace,
+    transposed_times,
+    velocity,
+)
+
+
+@compiled
+def add_forces(n, number, index, q, A, u, f):
+    """Compute the quadratic velocity terms, elastic and damping forces, and the weight of the first moment."""
+    w = shifted(u, index[1] + 3)
+    d, s, g, x, y, I, K = room(3), room(3), room(3), room(3), room(3), room(9), room(9)
+    first_moment(n, number, index, q, d)
+    first_rate(n, number, index, u, s)
+    transposed_times(A, body_view(number).gravity, g)
+    second_moments(n, number, index, q, u, I, K)
+    for i in range(3):
+        s[i] *= 2.0
+    rigid_momentum(w, d, s, x)
+    cross(w, x, y)
+    times(A, y, f)
+    for i in range(3):
+        f[i] = -f[i]
+    times(I, w, x)
+    cross(w, x, y)
+    moment_of_rotation(K, w, x)
+    cross(d, g, s)
+    for i in range(3):
+        f[3 + i] = -y[i] - 2.0 * x[i] + s[i]
+    N, P = room(9), room(9)
+    for k in range(n):
+        of_mode = mode_view(mode(number, k))
+        sum_of_mode(n, k, number, index, q, N)
+        rate_sum_of_mode(n, k, number, index, u, P)
+        elastic = of_mode.stiffness[0] * q[coordinate(index, k)] + of_mode.damping[0] * u[velocity(index, k)]
+        total = dot(of_mode.S, g) + centrifugal(N, w) - elastic
+        for i in range(3):
+            total -= 2.0 * w[i] * axial(P, i)
+        f[6 + k] = total
+
+
+@compiled
+def add_inertia(n, number, index, q, A, u, m):
+    """Compute the entries of the mass matrix besides its diagonal part, in the order of `FlexibleInertia.compiled_terms`."""
+    d, x, y, I, K, N = room(3), room(3), room(3), room(9), room(9), room(9)
+    first_moment(n, number, index, q, d)
+    for c in range(3):
+        for i in range(3):
+            x[i] = 1.0 if i == c else 0.0
+        cross(x, d, y)
+        times(A, y, x)
+        for i in range(3):
+            m[3 * c + i] = x[i]
+            m[9 + 3 * c + i] = x[i]
+    second_moments(n, number, index, q, u, I, K)
+    for i in range(9):
+        m[18 + i] = I[i]
+    for k in range(n):
+        sum_of_mode(n, k, number, index, q, N)
+        times(A, mode_view(mode(number, k)).S, x)
+        of_mode = shifted(m, 27 + 12 * k)
+        for i in range(3):
+            of_mode[i] = x[i]
+            of_mode[3 + i] = x[i]
+            of_mode[6 + i] = axial(N, i)
+            of_mode[9 + i] = axial(N, i)
+        for l in range(n):
+            m[27 + 12 * n + n * k + l] = modal_mass(n, number, l, k)
+
+
+@compiled
+def modal_mass(n, number, l, k):
+    """Return an entry of the modal mass matrix, less its diagonal part."""
+    return trace(pair(n, number, l, k)) - (body_view(number).modal_mass[0] if l == k else 0.0)
+
+
+@compiled
+def kinetic_energy(n, number, index, q, A, u):
+    """Return the kinetic energy of this part of the mass matrix."""
+    v, w = shifted(u, index[1]), shifted(u, index[1] + 3)
+    d, s, x, y, I, K = room(3), room(3), room(3), room(3), room(9), room(9)
+    first_moment(n, number, index, q, d)
+    first_rate(n, number, index, u, s)
+    second_moments(n, number, index, q, u, I, K)
+    rigid_momentum(w, d, s, x)
+    times(A, x, y)
+    times(I, w, x)
+    total = 0.0
+    for i in range(3):
+        total += v[i] * y[i] + 0.5 * w[i] * x[i] + w[i] * axial(K, i)
+    for k in range(n):
+        for l in range(n):
+            total += 0.5 * u[velocity(index, k)] * u[velocity(index, l)] * modal_mass(n, number, l, k)
+    return total
+
+
+@compiled
+def potential_energy(n, number, index, q, A):
+    """Return the strain energy, and the potential energy of the first moment of mass."""
+    d, x = room(3), room(3)
+    first_moment(n, number, index, q, d)
+    times(A, d, x)
+    total = -dot(body_view(number).gravity, x)
+    for k in range(n):
+        y = q[coordinate(index, k)]
+        total += 0.5 * mode_view(mode(number, k)).stiffness[0] * y * y
+    return total
+
+
+@compiled
+def dissipated_power(n, number, index, u):
+    """Return the power of modal damping."""
+    total = 0.0
+    for k in range(n):
+        rate = u[velocity(index, k)]
+        total -= mode_view(mode(number, k)).damping[0] * rate * rate
+    return total

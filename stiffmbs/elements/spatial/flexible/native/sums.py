@@ -1,0 +1,209 @@
+"""Sums over the mass of a flexible body in a floating frame, from its modal coordinates.
+
+A point x of the body is at r = t + A (x + u) with u = sum_k psi_k q_k. All terms are sums over nodes with the mass
+matrix, contracted beforehand: d0 = sum m x, X = sum m x x^T, S_k = sum m psi_k, Y_k = sum m x psi_k^T and
+Z_lk = sum m psi_l psi_k^T (Zwoelfer & Gerstmayr, Multibody System Dynamics 51, 2021). Each is less the part of the
+rigid frame and of the unit modal masses, which the diagonal of the mass matrix contains.
+
+The numbers of a body are those of `BODY`, of `MODE` for each mode, and Z_lk by l and k. Vectors are in body axes, apart
+from gravity. Matrices have nine entries by rows.
+"""
+
+from __future__ import annotations
+
+from stiffmbs.compile.machine.native.access import compiled, parts_of, room, shifted
+
+BODY = {"gravity": 3, "d0": 3, "X": 9, "moments": 3, "modal_mass": 1}
+MODE = {"stiffness": 1, "damping": 1, "S": 3, "Y": 9}
+"""Names and lengths of consecutive numbers."""
+MODES, OF_MODE = sum(BODY.values()), sum(MODE.values())
+"""Number of the first mode, and numbers of each."""
+
+body_view = parts_of("FlexibleBody", BODY)
+mode_view = parts_of("FlexibleMode", MODE)
+
+
+@compiled
+def mode(number, k):
+    """Return the numbers of a mode."""
+    return shifted(number, MODES + OF_MODE * k)
+
+
+@compiled
+def pair(n, number, l, k):
+    """Return Z_lk."""
+    return shifted(number, MODES + OF_MODE * n + 9 * (n * l + k))
+
+
+@compiled
+def coordinate(index, k):
+    """Return the place of a modal coordinate in q: the modes follow three by three in bodies after the frame."""
+    return index[2 + 2 * (k // 3)] + k % 3
+
+
+@compiled
+def velocity(index, k):
+    """Return the place of a modal velocity in u."""
+    return index[3 + 2 * (k // 3)] + k % 3
+
+
+@compiled
+def cross(a, b, c):
+    """Compute c = a x b."""
+    c[0] = a[1] * b[2] - a[2] * b[1]
+    c[1] = a[2] * b[0] - a[0] * b[2]
+    c[2] = a[0] * b[1] - a[1] * b[0]
+
+
+@compiled
+def times(M, x, y):
+    """Compute y = M x."""
+    for i in range(3):
+        y[i] = M[3 * i] * x[0] + M[3 * i + 1] * x[1] + M[3 * i + 2] * x[2]
+
+
+@compiled
+def transposed_times(M, x, y):
+    """Compute y = M^T x."""
+    for i in range(3):
+        y[i] = M[i] * x[0] + M[3 + i] * x[1] + M[6 + i] * x[2]
+
+
+@compiled
+def dot(a, b):
+    """Return a . b."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+@compiled
+def axial(N, c):
+    """Return entry c of sum m r x psi from sum m r psi^T."""
+    if c == 0:
+        return N[5] - N[7]
+    if c == 1:
+        return N[6] - N[2]
+    return N[1] - N[3]
+
+
+@compiled
+def trace(N):
+    """Return the trace of a matrix."""
+    return N[0] + N[4] + N[8]
+
+
+@compiled
+def sum_of_mode(n, k, number, index, q, N):
+    """Compute N_k = sum m (x + u) psi_k^T from the modal coordinates."""
+    of_mode = mode_view(mode(number, k))
+    for i in range(9):
+        N[i] = of_mode.Y[i]
+    for l in range(n):
+        Z = pair(n, number, l, k)
+        y = q[coordinate(index, l)]
+        for i in range(9):
+            N[i] += y * Z[i]
+
+
+@compiled
+def rate_sum_of_mode(n, k, number, index, rate, P):
+    """Compute sum m u' psi_k^T from modal velocities or accelerations."""
+    for i in range(9):
+        P[i] = 0.0
+    for l in range(n):
+        Z = pair(n, number, l, k)
+        y = rate[velocity(index, l)]
+        for i in range(9):
+            P[i] += y * Z[i]
+
+
+@compiled
+def mode_with_rates(n, l, number, index, rate, P):
+    """Compute sum m psi_l u'^T from modal velocities or accelerations."""
+    for i in range(9):
+        P[i] = 0.0
+    for k in range(n):
+        Z = pair(n, number, l, k)
+        y = rate[velocity(index, k)]
+        for i in range(9):
+            P[i] += y * Z[i]
+
+
+@compiled
+def first_moment(n, number, index, q, d):
+    """Compute the first moment of mass d = d0 + sum S_k q_k."""
+    b = body_view(number)
+    for i in range(3):
+        d[i] = b.d0[i]
+    for k in range(n):
+        of_mode = mode_view(mode(number, k))
+        for i in range(3):
+            d[i] += of_mode.S[i] * q[coordinate(index, k)]
+
+
+@compiled
+def first_rate(n, number, index, rate, s):
+    """Compute sum S_k rate_k of modal velocities or accelerations."""
+    for i in range(3):
+        s[i] = 0.0
+    for k in range(n):
+        of_mode = mode_view(mode(number, k))
+        for i in range(3):
+            s[i] += of_mode.S[i] * rate[velocity(index, k)]
+
+
+@compiled
+def second_moments(n, number, index, q, u, I, K):
+    """Compute the inertia tensor without the moments of the frame, and K = sum m (x + u) u'^T."""
+    b = body_view(number)
+    N, J = room(9), room(9)
+    for i in range(9):
+        J[i] = b.X[i]
+        K[i] = 0.0
+    for k in range(n):
+        sum_of_mode(n, k, number, index, q, N)
+        of_mode = mode_view(mode(number, k))
+        y, rate = q[coordinate(index, k)], u[velocity(index, k)]
+        for i in range(3):
+            for j in range(3):
+                J[3 * i + j] += y * (of_mode.Y[3 * j + i] + N[3 * i + j])
+                K[3 * i + j] += rate * N[3 * i + j]
+    for i in range(3):
+        for j in range(3):
+            I[3 * i + j] = -0.5 * (J[3 * i + j] + J[3 * j + i])
+        I[4 * i] += trace(J) - b.moments[i]
+
+
+@compiled
+def moment_of_rotation(N, w, y):
+    """Compute y = sum m r x (w x psi) = w tr N - N^T w from N = sum m r psi^T."""
+    for i in range(3):
+        y[i] = w[i] * trace(N) - (N[i] * w[0] + N[3 + i] * w[1] + N[6 + i] * w[2])
+
+
+@compiled
+def inertia_by_mode(N, w, y):
+    """Compute the derivative of I w by a modal coordinate: 2 w tr N - (N + N^T) w."""
+    for i in range(3):
+        both = 0.0
+        for j in range(3):
+            both += (N[3 * i + j] + N[3 * j + i]) * w[j]
+        y[i] = 2.0 * trace(N) * w[i] - both
+
+
+@compiled
+def centrifugal(N, w):
+    """Return sum m psi . (w x (w x r)) with opposite sign: w . w tr N - w . N w."""
+    total = 0.0
+    for i in range(3):
+        total += w[i] * w[i] * trace(N)
+        for j in range(3):
+            total -= w[i] * w[j] * N[3 * i + j]
+    return total
+
+
+@compiled
+def rigid_momentum(w, d, s, y):
+    """Compute y = w x d + s."""
+    cross(w, d, y)
+    for i in range(3):
+        y[i] += s[i]

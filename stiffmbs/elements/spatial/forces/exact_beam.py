@@ -1,0 +1,79 @@
+"""Element of a geometrically exact beam in space."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
+
+from pydantic import Field, field_validator
+
+from ....reading.fields import Measured
+from ....reading.units import si
+from ...element import Symbolic
+from ...forces.beam_strain import BeamStrain
+from ...forces.bushing import check_symmetric
+from ..marker import Marker
+from ..wrench import Pairs, along_axes, force_at, torque_on
+from .elastic import AS_WRITTEN, nearest, six_rows, without_zeros
+
+if TYPE_CHECKING:
+    from ....model.model_data import ModelData
+
+_Bending = Annotated[float, Measured("bending stiffness")]
+_Curvature = Annotated[float, Measured("curvature")]
+_Forces = tuple[si.Force | None, si.Force | None, si.Force | None, si.Torque | None, si.Torque | None, si.Torque | None]
+_Moments = tuple[
+    si.Torque | None, si.Torque | None, si.Torque | None, _Bending | None, _Bending | None, _Bending | None
+]
+SectionStiffness = Annotated[tuple[_Forces, _Forces, _Forces, _Moments, _Moments, _Moments], AS_WRITTEN]
+STRAIGHT = (1.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+class ExactBeam(BeamStrain):
+    """Massless beam from marker j to marker i with constant strain, for any displacement and rotation.
+
+    The x axes of both markers are tangents without load. The strain Gamma (stretch and shear) and kappa (torsion and
+    bending) is constant along the element, so its axis is a helix. With the position d of i's point from j's in j's
+    axes and the rotation vector theta of i's axes relative to j's::
+
+        L (Gamma + (1, 0, 0)) = T(theta)^-1 d,  L kappa = theta     (logarithm of the rigid displacement)
+        (n, m) = K ((Gamma + (1, 0, 0), kappa) - unloaded) + damping_ratio K (Gamma', kappa')
+
+    n is the axial force and the two shear forces, m the torque and the two bending moments, along the axes of the
+    section; they are reported as n1, n2, n3, m1, m2, m3. The element is objective and free of locking, and exact for a
+    beam under end moments. The run stops where its ends are turned by three quarters of a turn against each other.
+
+    The line body ``beam`` creates such elements together with their nodes (docs: Beams).
+
+    Simo, A finite strain beam formulation, Comput. Methods Appl. Mech. Eng. 49 (1985) 55-70; Sonneville, Cardona, Bruls,
+    Geometrically exact beam finite element formulated on the special Euclidean group SE(3), ibid. 268 (2014) 451-474.
+    """
+
+    kind: ClassVar[str] = "exact_beam"
+    channels: ClassVar[tuple[str, ...]] = ("n1", "n2", "n3", "m1", "m2", "m3")
+    forms: ClassVar[tuple[Mapping[str, Any], ...]] = ({"stiffness": (1,) * 6},)
+    reflected: ClassVar[dict[str, str] | None] = {"stiffness": "matrix", "unloaded": "components"}
+
+    i: Marker = Field(description="marker at the end, on whose body force and torque are reported")
+    j: Marker = Field(description="marker at the beginning")
+    stiffness: SectionStiffness = Field(
+        description="K: EA, GA2, GA3 (N), GJ, EI2, EI3 (N m^2), or a symmetric 6x6 matrix"
+    )
+    unloaded: tuple[si.Number, si.Number, si.Number, _Curvature, _Curvature, _Curvature] = Field(
+        STRAIGHT, description="strain without load: 1, 0, 0, and the torsion and curvatures of the axis, rad/m"
+    )
+
+    _six_rows = field_validator("stiffness", mode="before")(six_rows)
+    _symmetric = field_validator("stiffness")(check_symmetric)
+    _sparse = field_validator("stiffness", "damping_ratio")(without_zeros)
+
+    def at_initial_pose(self, model: ModelData) -> Self:
+        """Return the element with the sign of marker i's quaternion for an initial rotation below half a turn."""
+        return self.model_copy(update={"i": nearest(model, self.i, self.j)})
+
+    @classmethod
+    def powers(cls, e: Symbolic) -> Pairs:
+        """Return the force on the displacement of i relative to j and the torque on its rotation, in ground axes."""
+        along = [effort for effort, _ in cls.relative_powers(e)]
+        force, torque = (e.named(along_axes(part, e.j.axes)) for part in (along[:3], along[3:]))
+        return [*force_at(e, force, e.i, e.j), *torque_on(torque, e.i, e.j)]

@@ -1,0 +1,137 @@
+"""Base of contacts by Adams' IMPACT function, with smoothed Coulomb friction."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Annotated, Any, ClassVar, Self
+
+from pydantic import Field, model_validator
+
+from ...reading.fields import Measured
+from ...reading.units import si
+from ..element import Force, Symbolic
+from ..forces.friction import AT_REST, magnitude
+from .marker import Marker
+from .wrench import Pairs, velocity
+
+
+@dataclass(frozen=True)
+class Touch:
+    """Possible contact of two solids, in ground axes.
+
+    Attributes
+    ----------
+    gap : Expr
+        Distance of the surfaces, m; negative for a penetration.
+    point : Matrix
+        Contact point, m.
+    normal : Matrix
+        Unit vector towards the solid of marker i.
+    """
+
+    gap: Any
+    point: Any
+    normal: Any
+
+
+class Impact(Force):
+    """Base of contacts by IMPACT; scenes use its subclasses, which define the contact points.
+
+    For a gap g < 0 the normal force is N = max(0, k (-g)^e - c g' step(g, -d, 1, 0, 0)). The friction force is mu(v) N,
+    opposite to the sliding velocity v at the contact point. mu rises from 0 to mu_s at the stiction velocity, and
+    changes to mu_d at the friction velocity, each by a cubic. Without damping and friction there is the potential k
+    (-g)^(e+1)/(e+1).
+
+    MSC Adams/Solver, CONTACT statement and IMPACT function.
+    """
+
+    forms: ClassVar[tuple[Mapping[str, Any], ...]] = ({}, {"friction": 0.2, "static_friction": 0.3})
+
+    i: Marker
+    j: Marker
+    stiffness: Annotated[float, Measured("value", above=0)] = Field(description="k, N/m^e")
+    exponent: Annotated[float, Measured("number", at_least=1)] = Field(1.5, description="e")
+    damping: si.Damping = Field(0.0, description="c, N s/m")
+    depth: si.PositiveLength = Field(1e-4, description="d, penetration from which on all of the damping acts, m")
+    static_friction: si.NumberOrZero | None = Field(None, description="mu_s, static coefficient of friction")
+    friction: si.NumberOrZero | None = Field(None, description="mu_d, dynamic coefficient")
+    stiction_velocity: si.PositiveVelocity = Field(0.01, description="sliding speed at which mu reaches mu_s, m/s")
+    friction_velocity: si.PositiveVelocity = Field(0.1, description="sliding speed from which on mu is mu_d, m/s")
+
+    @model_validator(mode="after")
+    def _rubs(self) -> Self:
+        if (self.static_friction is None) != (self.friction is None):
+            raise ValueError("found one of friction and static_friction, expected both or neither")
+        if self.friction is not None and not self.stiction_velocity < self.friction_velocity:
+            raise ValueError("found a friction_velocity up to the stiction_velocity, expected a larger one")
+        return self
+
+    @classmethod
+    def touches(cls, e: Symbolic) -> list[Touch]:
+        """Return all possible contacts, each with its own force."""
+        raise NotImplementedError
+
+    @classmethod
+    def powers(cls, e: Symbolic) -> Pairs:
+        """Return each force on the relative velocity of the points in contact."""
+        pairs: Pairs = []
+        for touch in cls.touches(e):
+            n, point = e.named(touch.normal), e.named(touch.point)
+            v = e.named(velocity(e, e.i, point) - velocity(e, e.j, point))
+            rate = e.named(v.dot(n))
+            pressure = e.named(_pressure(e, e.named(touch.gap), rate))
+            pairs.append((pressure, rate))
+            if e.friction is not None:
+                sliding = e.named(v - rate * n)
+                drag = e.named(-_per_speed(e, sliding) * pressure)
+                pairs += [(drag * part, along) for part, along in zip(sliding, v, strict=True)]
+        return pairs
+
+    @classmethod
+    def potential(cls, e: Symbolic) -> Any:
+        """Return the sum of k (-g)^(e+1)/(e+1) over all penetrations."""
+        from sympy import Piecewise
+
+        power = e.exponent + 1
+        gaps = [e.named(touch.gap) for touch in cls.touches(e)]
+        return sum(Piecewise((e.stiffness * (-gap) ** power / power, gap < 0), (0, True)) for gap in gaps)
+
+    @classmethod
+    def event_functions(cls, e: Symbolic) -> Any:
+        """Return each gap, and an expression that is positive while N > 0; damping can interrupt N."""
+        from sympy import Max, Min
+
+        found = []
+        for touch in cls.touches(e):
+            gap, n, point = e.named(touch.gap), e.named(touch.normal), e.named(touch.point)
+            rate = (velocity(e, e.i, point) - velocity(e, e.j, point)).dot(n)
+            found += [gap, Min(-gap, _push(e, Max(-gap, 0), rate))]
+        return tuple(found)
+
+
+def _pressure(e: Symbolic, gap: Any, rate: Any) -> Any:
+    from sympy import Piecewise
+
+    force = e.named(_push(e, -gap, rate))
+    return Piecewise((Piecewise((force, force > 0), (0, True)), gap < 0), (0, True))
+
+
+def _push(e: Symbolic, depth: Any, rate: Any) -> Any:
+    """Return the force at a penetration, N; negative if damping exceeds the elastic force."""
+    return e.stiffness * depth**e.exponent - e.damping * rate * _rising(depth / e.depth)
+
+
+def _per_speed(e: Symbolic, sliding: Any) -> Any:
+    speed = e.named(magnitude(*sliding, tiny=(AT_REST * e.stiction_velocity) ** 2))
+    up = e.static_friction * (2 * _rising((speed / e.stiction_velocity + 1) / 2) - 1)
+    down = _rising((speed - e.stiction_velocity) / (e.friction_velocity - e.stiction_velocity))
+    return (up + (e.friction - e.static_friction) * down) / speed
+
+
+def _rising(x: Any) -> Any:
+    """Return Adams' STEP from 0 at 0 to 1 at 1."""
+    from sympy import Max, Min
+
+    z = Min(Max(x, 0), 1)
+    return z**2 * (3 - 2 * z)

@@ -1,0 +1,31 @@
+"""Orientation joint."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+from ...element import Symbolic
+from ..branches import initially_rotated
+from ..primitives import ORIENT, SpatialJoint, orient
+
+
+class Orientation(SpatialJoint):
+    """Joint that keeps the axes of two markers parallel, at any positions.
+
+    The reaction is a torque of any direction. This is Adams' ORIENTATION.
+
+    The equations have seven other solutions (half turns and third turns), so markers drawn 60 degrees or more apart are
+    refused.
+
+    Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), section 9.4 (three dot 1 constraints).
+    """
+
+    kind = "orientation"
+    equations = ORIENT
+    transmits = ("tx", "ty", "tz")
+    elastic = "bushing"
+    initially: ClassVar = staticmethod(initially_rotated)
+
+    @staticmethod
+    def position(e: Symbolic) -> Any:
+        return orient(e.i, e.j)

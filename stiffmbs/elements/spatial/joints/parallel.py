@@ -1,0 +1,28 @@
+"""Parallel axes."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+from ...element import Symbolic
+from ..branches import initially_apart
+from ..primitives import ALIGN, SpatialJoint, align
+
+
+class Parallel(SpatialJoint):
+    """Joint that keeps the z axes of two markers parallel or opposite, at any positions.
+
+    The reaction is a torque normal to the axes. This is Adams' PARALLEL_AXES.
+
+    Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), section 9.4 (parallel 1 constraint).
+    """
+
+    kind = "parallel"
+    equations = ALIGN
+    transmits = ("tx", "ty")
+    elastic = "bushing"
+    initially: ClassVar = staticmethod(initially_apart)
+
+    @staticmethod
+    def position(e: Symbolic) -> Any:
+        return align(e.i, e.j)

@@ -1,0 +1,41 @@
+"""Spatial prismatic (translational) joint."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+from pydantic import Field
+
+from ...element import Symbolic
+from ...forces.friction import Loads, magnitude
+from ..branches import initially_askew
+from ..marker import Marker
+from ..primitives import ON_AXIS, ORIENT, SpatialJoint, along_z, on_axis, orient
+
+
+class Prismatic(SpatialJoint):
+    """Slider: marker i remains on the z axis of marker j and keeps j's orientation.
+
+    The reaction is a force normal to the axis and a torque of any direction.
+
+    Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), section 9.4 (translational joint).
+    """
+
+    kind = "prismatic"
+    equations = (*ON_AXIS, *ORIENT)
+    coordinates = ("displacement",)
+    transmits = ("fx", "fy", "tx", "ty", "tz")
+    elastic = "bushing"
+    initially: ClassVar = staticmethod(initially_askew)
+    displacement: ClassVar = staticmethod(along_z)
+
+    i: Marker = Field(description="marker of the sliding body, on which the reaction is reported")
+    j: Marker = Field(description="marker whose z axis is the line to slide along")
+
+    @staticmethod
+    def position(e: Symbolic) -> Any:
+        return [*on_axis(e.i, e.j), *orient(e.i, e.j)]
+
+    @staticmethod
+    def loads(e: Symbolic) -> Loads:
+        return Loads(across=magnitude(*e.lam[:2]), torsion=magnitude(e.lam[2]), bending=magnitude(*e.lam[3:]))

@@ -1,0 +1,39 @@
+"""Screw joint."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any, ClassVar
+
+from ...element import Symbolic
+from ...initial_pose import InitialPose
+from ..branches import initially_apart
+from ..primitives import ALIGN, ON_AXIS, align, along_z, angle_about_z, on_axis
+from .thread import Thread
+
+
+class Screw(Thread):
+    """Nut on a spindle: marker i remains on the z axis of marker j, parallel to it, and advances by the pitch per turn.
+
+    It is a cylindrical joint with the thread's equation, s - pitch theta/(2 pi) - offset = 0. (Adams' SCREW is the
+    thread's equation alone: `thread`.) The joint leaves one degree of freedom; drives and couplers name one coordinate,
+    ``spindle.displacement`` or ``spindle.angle``.
+
+    The reaction is a force and a torque; the total power of their components along the axis is zero.
+
+    Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), section 9.4 (screw joint).
+    """
+
+    kind = "screw"
+    reflected = {"pitch": "pitch", "offset": "z"}
+    equations = (*ON_AXIS, *ALIGN, *Thread.equations)
+    coordinates = ("displacement", "angle")
+    displacement: ClassVar = staticmethod(along_z)
+    angle: ClassVar = staticmethod(angle_about_z)
+
+    def invalid_placement(self, pose: InitialPose) -> Iterator[str]:
+        yield from initially_apart(pose.model, self.i, self.j)
+
+    @classmethod
+    def position(cls, e: Symbolic) -> Any:
+        return [*on_axis(e.i, e.j), *align(e.i, e.j), *super().position(e)]

@@ -1,0 +1,34 @@
+"""Spherical joint."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ...element import Symbolic
+from ...forces.friction import Loads, magnitude
+from ..primitives import COINCIDE, SpatialJoint, coincide
+
+
+class Spherical(SpatialJoint):
+    """Ball joint: a point of body i and a point of body j coincide.
+
+    The reaction is a force of any direction, without torque.
+
+    Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), section 9.4 (spherical joint).
+    """
+
+    kind = "spherical"
+    equations = COINCIDE
+    transmits = ("fx", "fy", "fz")
+    elastic = "bushing"
+
+    def spins_with(self) -> dict[str, str]:
+        return {"i": "point", "j": "point"}
+
+    @staticmethod
+    def position(e: Symbolic) -> Any:
+        return coincide(e.i, e.j)
+
+    @staticmethod
+    def loads(e: Symbolic) -> Loads:
+        return Loads(across=magnitude(*e.lam))

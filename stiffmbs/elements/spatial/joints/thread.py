@@ -1,0 +1,39 @@
+"""Thread: the equation of a screw."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, ClassVar
+
+from pydantic import Field
+
+from ....reading.units import si
+from ...element import Symbolic
+from ...joints.relation import OffsetConstraint
+from ..marker import Marker
+from ..primitives import along_z, angle_about_z
+
+
+class Thread(OffsetConstraint):
+    """Relation of displacement along the z axis of marker j to the angle about it: s - pitch theta/(2 pi) - offset = 0.
+
+    This is Adams' SCREW, a single equation that requires an additional cylindrical joint. A positive pitch is a
+    right-handed thread. The reaction is a force along z and a torque about it.
+
+    Shabana, Computational Dynamics (2001), p. 434 (screw joint).
+    """
+
+    kind = "thread"
+    reflected = {"pitch": "pitch", "offset": "z"}
+    equations: ClassVar[tuple[str, ...]] = ("pitch",)
+
+    i: Marker = Field(description="marker of the first body, on which the reaction is reported")
+    j: Marker = Field(description="marker whose z axis is the thread's")
+    pitch: si.LengthNotZero = Field(
+        description="advance along z in a full turn, m; below zero for a left-handed thread"
+    )
+    offset: si.Length | None = Field(None, description="s where the angle is zero, m; as drawn unless given")
+
+    @staticmethod
+    def relation(e: Symbolic) -> Any:
+        return along_z(e) - e.pitch / (2 * math.pi) * angle_about_z(e) - e.offset

@@ -1,0 +1,37 @@
+"""Universal joint."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+from pydantic import Field
+
+from ...element import Symbolic
+from ..branches import initially_aligned
+from ..marker import Marker
+from ..primitives import ACROSS, COINCIDE, SpatialJoint, coincide, perpendicular
+
+
+class Universal(SpatialJoint):
+    """Cardan joint: two points coincide, and the z axes of both markers, the arms of its cross, are perpendicular.
+
+    Each body rotates about its own arm. The reaction is a force of any direction, and a torque normal to both arms.
+    This is Adams' UNIVERSAL; its HOOKE, whose markers have z along the shafts, has the arms i.x and j.y.
+
+    Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems (1989), section 9.4 (universal joint).
+    """
+
+    kind = "universal"
+    equations = (*COINCIDE, *ACROSS)
+    transmits = ("fx", "fy", "fz")
+    forms = ({"i": {"body": "a", "orientation": {"z": (1, 0, 0)}}},)
+    initially: ClassVar = staticmethod(initially_aligned)
+
+    i: Marker = Field(
+        description="marker of the first body, z along its arm of the cross; the reaction is reported on it"
+    )
+    j: Marker = Field(description="marker of the second body, z along its arm")
+
+    @staticmethod
+    def position(e: Symbolic) -> Any:
+        return [*coincide(e.i, e.j), perpendicular(e.i.z, e.j.z)]

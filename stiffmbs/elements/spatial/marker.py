@@ -1,0 +1,73 @@
+"""Spatial markers: points and orientations fixed on a body or on ground."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from pydantic import Field
+
+from ...reading.fields import Described
+from ...reading.marker import MarkerReference
+from ...reading.units import si
+from .orientation import IDENTITY, Orientation, matrix
+
+if TYPE_CHECKING:
+    from ...reading import given
+    from ...reading.handle import Handle
+
+Point = tuple[si.Length, si.Length, si.Length]
+ORIGIN = (0.0, 0.0, 0.0)
+
+
+class Placement(Described):
+    """Position and orientation of a named marker on its body."""
+
+    point: Point = Field(ORIGIN, description="position in the body's own axes, from its origin, m")
+    orientation: Orientation = Field(IDENTITY, description="of the marker's axes against the body's")
+
+    if TYPE_CHECKING:
+
+        def __init__(self, *, point: given.Numbers = ORIGIN, orientation: given.Orientation = IDENTITY) -> None: ...
+
+    def numbers(self) -> tuple[float, ...]:
+        """Return the inputs of kernels: the point, the rotation matrix by rows, and the quaternion."""
+        return (*self.point, *(float(part) for part in matrix(self.orientation).ravel()), *self.orientation)
+
+
+class Marker(MarkerReference):
+    """Marker used by an element: a named marker of a body, or an explicit one.
+
+    Written as ``cart`` (the body's origin with its axes), ``bar.end`` (a named marker of the body), ``ground``, or
+    ``{body: bar, point: [-300 mm, 0, 0], orientation: {z: [1, 0, 0]}}``.
+
+    Parameters
+    ----------
+    body : str
+        The body, or ``"ground"``.
+    marker : str, optional
+        Name of a marker of the body; excludes `point` and `orientation`.
+    point : tuple of float
+        Position in the body's axes, from its origin, m.
+    orientation : Orientation
+        Orientation of the marker's axes relative to the body's. The axis of a joint is z.
+    """
+
+    dimensions = 3
+
+    point: Point = Field(ORIGIN, description="position in the body's own axes, from its origin, m")
+    orientation: Orientation = Field(IDENTITY, description="of the axes against the body's; a joint's axis is z")
+
+    if TYPE_CHECKING:
+
+        def __init__(
+            self,
+            *,
+            body: str | Handle,
+            marker: str | None = None,
+            point: given.Numbers = ORIGIN,
+            orientation: given.Orientation = IDENTITY,
+        ) -> None: ...
+
+    def placement(self) -> Placement:
+        """Return the explicit placement on the body."""
+        return Placement.model_construct(point=self.point, orientation=self.orientation)  # checked already

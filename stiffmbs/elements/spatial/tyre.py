@@ -1,0 +1,181 @@
+"""Base of tyres: contact of a wheel with a road, load, and wrench on the wheel."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from pydantic import Field
+
+from ...reading.units import si
+from ..element import Force, Symbolic
+from ..roads.field import AnyRoad
+from ..roads.road import FlatRoad, above_zero
+from .contact_point import ContactPoint, contact_point, slips
+from .marker import Marker
+from .relaxation import lagged
+from .wrench import Pairs, along_axes, velocity
+
+CHANNELS = (
+    "longitudinal", "lateral", "load", "overturning", "rolling", "aligning", "slip", "slip_angle", "camber", "deflection",
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Rolling:
+    """Arguments of the force law of a tyre, one symbol each.
+
+    Attributes
+    ----------
+    load : Symbol
+        Normal force of the road on the tyre, N, zero or positive.
+    slip : Symbol
+        kappa, positive when driving.
+    slip_angle : Symbol
+        alpha, rad; positive if the tyre moves to its left, with a negative lateral force.
+    camber : Symbol
+        gamma, rad; positive if the top leans to the right.
+    speed : Symbol
+        abs(Vx), m/s, the reference speed of slips: never zero.
+    direction : Symbol
+        Vx over `speed`: 1 forward, -1 backward, with a smooth transition near zero speed.
+    friction : Symbol
+        Friction factor of the road.
+    """
+
+    load: Any
+    slip: Any
+    slip_angle: Any
+    camber: Any
+    speed: Any
+    direction: Any
+    friction: Any
+
+
+@dataclass(frozen=True)
+class _Touch:
+    """Contact, radial deflection (m), load (N), slip, tangent of slip angle, reference speed (m/s), state rates."""
+
+    contact: ContactPoint
+    deflection: Any
+    load: Any
+    slip: Any
+    tangent: Any
+    speed: Any
+    rates: tuple[Any, ...] = ()
+
+
+class Tyre(Force):
+    """Base of tyres in space; a subclass defines its fields, its `law`, and optionally its load.
+
+    Marker i is the centre of the wheel on the spinning body, its y axis the spin axis, to the left of its heading. The
+    road meets the wheel in one point (`stiffmbs.elements.spatial.contact_point`). The wrench on the wheel is reported.
+    Further channels are resolved in the ISO axes at that point, x forward, y to the left, z out of the road. They are
+    the forces ``longitudinal``, ``lateral`` and ``load`` (N), the torques ``overturning``, ``rolling`` and ``aligning``
+    (N m), ``slip``, ``slip_angle`` and ``camber`` (rad), and ``deflection`` (m). energy.total does not include the
+    elastic energy of a tyre.
+    """
+
+    channels = CHANNELS
+    may_keep_energy = False
+    reflected = {"j": "z"}
+
+    i: Marker = Field(description="centre of the wheel, its y axis the spin axis, to the left of the heading")
+    j: Marker | None = Field(
+        None, description="whose axes the road's x, y and z are, on a body that carries it; ground by default"
+    )
+    road: AnyRoad = Field(
+        FlatRoad(), description="the name of a road of the scene, or a road; level at z = 0 by default"
+    )
+    slow: si.PositiveVelocity = Field(
+        1.0, description="speed below which slips are not the textbook's, m/s: see the guide on tyres"
+    )
+
+    def spins_with(self) -> dict[str, str]:
+        return {"i": "y"}
+
+    @staticmethod
+    def law(e: Symbolic, rolling: Rolling) -> tuple[Any, Any, Any, Any, Any]:
+        """Return Fx, Fy, Mx, My, Mz on the tyre at the contact point, along the ISO axes, N and N m."""
+        raise NotImplementedError
+
+    @classmethod
+    def relaxation_lengths(cls, e: Symbolic, load: Any, camber: Any) -> tuple[Any, Any]:
+        """Return the longitudinal and lateral relaxation length, m, of a tyre with the `own_states` `DEFLECTIONS`."""
+        raise NotImplementedError
+
+    @staticmethod
+    def unloaded_radius(e: Symbolic) -> Any:
+        """Return the unloaded radius, m."""
+        return e.radius
+
+    @staticmethod
+    def carried(e: Symbolic, deflection: Any, rate: Any) -> Any:
+        """Return the load at a positive deflection, N; negative values are replaced by zero."""
+        return e.stiffness * deflection + e.damping * rate
+
+    @staticmethod
+    def rim_contact(e: Symbolic, deflection: Any, camber: Any) -> tuple[Any, Any] | None:
+        """Return the rim's normal force on the road, N, and its overturning torque, N m, or None."""
+        return None
+
+    @classmethod
+    def rolling_radius(cls, e: Symbolic, deflection: Any) -> Any:
+        """Return the effective rolling radius, m: the unloaded radius less a third of the deflection."""
+        from sympy import Rational
+
+        return cls.unloaded_radius(e) - deflection * Rational(1, 3)
+
+    @classmethod
+    def _touching(cls, e: Symbolic) -> _Touch:
+        from sympy import Max, Piecewise
+
+        contact = contact_point(e)
+        closed = e.named(cls.unloaded_radius(e) - contact.radius)
+        deflection = e.named(above_zero(closed))
+        load = e.read(Piecewise((Max(cls.carried(e, deflection, -contact.vz), 0), closed > 0), (0, True)))
+        sliding = e.named(contact.vx - e.named(cls.rolling_radius(e, deflection)) * contact.spin)
+        slip, tangent, speed = slips(e, contact, sliding, e.slow)
+        if not e.own:
+            return _Touch(contact, deflection, load, slip, tangent, speed)
+        slip, tangent, rates = lagged(e, contact, sliding, cls.relaxation_lengths(e, e.named(load), contact.camber))
+        return _Touch(contact, deflection, load, slip, tangent, speed, rates)
+
+    @classmethod
+    def _acting(cls, e: Symbolic) -> tuple[Any, Rolling, Any, Any]:
+        """Return the contact, the arguments of the law, the deflection, and forces and torques with the rim."""
+        from sympy import atan
+
+        touch = cls._touching(e)
+        contact, angle = touch.contact, e.named(atan(touch.tangent))
+        direction = contact.vx / touch.speed
+        of = (touch.load, touch.slip, angle, contact.camber, touch.speed, direction, contact.friction)
+        rolling = Rolling(*(e.variable(x) if e.in_state(x) else x for x in map(e.read, of)))
+        variables = [x for x in vars(rolling).values() if e.in_state(x)]
+        fx, fy, mx, my, mz = e.composed(cls.law(e, rolling), variables)
+        rim = cls.rim_contact(e, touch.deflection, contact.camber)
+        normal = rolling.load if rim is None else e.read(touch.load + rim[0])
+        return contact, rolling, touch.deflection, (fx, fy, normal, mx if rim is None else mx + rim[1], my, mz)
+
+    @classmethod
+    def rates(cls, e: Symbolic) -> Any:
+        """Return the rates of the contact patch deflections of a tyre with relaxation lengths."""
+        return cls._touching(e).rates
+
+    @classmethod
+    def powers(cls, e: Symbolic) -> Pairs:
+        """Return the wrench at the contact point on the wheel, and the opposite on the road's body."""
+        contact, _, _, (fx, fy, normal, mx, my, mz) = cls._acting(e)
+        axes = contact.forward, contact.left, contact.normal
+        force = e.named(along_axes((fx, fy, normal), axes))
+        torque = e.named(along_axes((mx, my, mz), axes))
+        v, w = velocity(e, e.i, contact.point), e.i.omega
+        if e.j is not None:
+            v, w = v - velocity(e, e.j, contact.point), w - e.j.omega
+        return [*zip(force, v, strict=True), *zip(torque, w, strict=True)]
+
+    @classmethod
+    def measured(cls, e: Symbolic) -> list[Any]:
+        """Return the values of `channels`, in order."""
+        _, rolling, deflection, (fx, fy, normal, mx, my, mz) = cls._acting(e)
+        return [fx, fy, normal, mx, my, mz, rolling.slip, rolling.slip_angle, rolling.camber, deflection]

@@ -1,0 +1,42 @@
+"""Spatial forces and torques as pairs of an effort and a rate, as returned by `Force.powers`.
+
+All vectors are in ground axes; i and j are markers. Action and reaction act at the same point of space, so linear and
+angular momentum of two bodies are conserved.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ..element import Symbolic
+
+Pairs = list[tuple[Any, Any]]
+
+
+def velocity(e: Symbolic, marker: Any, point: Any) -> Any:
+    """Return the velocity of the point of a marker's body that coincides with a point of space."""
+    return e.rate(marker.body.origin) + marker.omega.cross(point - marker.body.origin)
+
+
+def force_at(e: Symbolic, force: Any, i: Any, j: Any = None) -> Pairs:
+    """Return a force at i's point on i's body; with j the opposite on j's body at the same point of space."""
+    rates = e.rate(i.point)
+    return list(zip(force, rates if j is None else rates - velocity(e, j, i.point), strict=True))
+
+
+def torque_on(torque: Any, i: Any, j: Any = None) -> Pairs:
+    """Return a torque on i's body; with j the opposite on j's body."""
+    return list(zip(torque, i.omega if j is None else i.omega - j.omega, strict=True))
+
+
+def along_axes(components: Any, axes: Any) -> Any:
+    """Return the vector with the given components along three axes, such as a marker's."""
+    (x, y, z), (along_x, along_y, along_z) = components, axes
+    return x * along_x + y * along_y + z * along_z
+
+
+def seen_from(point: Any, marker: Any) -> Any:
+    """Return the components of a point relative to a marker, along its axes."""
+    from sympy import Matrix
+
+    return Matrix([(point - marker.point).dot(axis) for axis in (marker.x, marker.y, marker.z)])

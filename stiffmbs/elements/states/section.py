@@ -1,0 +1,166 @@
+"""Section `states` of a model: kinds of entries and their validation."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterable, Mapping
+from graphlib import CycleError, TopologicalSorter
+from typing import Annotated, Any
+
+from ...errors import InputError
+from ...reading.did_you_mean import did_you_mean
+from ...reading.files.quoted import quoted, written
+from ...reading.formula.dimension import UNKNOWN, Known
+from ...reading.formula.formula import Formula
+from ...reading.formula.names import FormulaNames
+from ...reading.joint_name import JointName
+from ...reading.marker import GROUND, check_marker, listed
+from ...reading.units.units import CONSTANTS, UNITS
+from ..read_by import Context, JsonSchema, ReadBy
+from .linear_system import PID, LinearSystem, StateEntry, TransferFunction
+from .state import AlgebraicState, State, dimension_of_state
+
+KINDS: dict[str, type[StateEntry]] = {
+    "rate": State, "zero": AlgebraicState, "numerator": TransferFunction, "denominator": TransferFunction, "a": LinearSystem, "pid": PID,
+}  # fmt: skip
+"""Kinds of entries by a key that only they have."""
+
+
+def _read(found: Any, context: Context) -> StateEntry:
+    """Return an entry of the section, whose keys select its kind."""
+    if isinstance(found, StateEntry):
+        return found
+    if not isinstance(found, dict):
+        raise ValueError(f"found {written(found)}, expected a mapping of keys to values")
+    kind = next((kind for key, kind in KINDS.items() if key in found), None)
+    if kind is None:
+        raise ValueError(f"found none of the keys {', '.join(KINDS)}, expected one of them")
+    if kind is PID:
+        others = [key for key in found if key != "pid"]
+        if others:
+            raise ValueError(f"found the key '{quoted(others[0])}' beside pid, expected it within: pid: {{...}}")
+        found = found["pid"]
+    return kind.model_validate(found, context=context)
+
+
+def _schema(schema_of: Callable[[type[Any]], JsonSchema]) -> JsonSchema:
+    *ways, pid = (schema_of(kind) for kind in dict.fromkeys(KINDS.values()))
+    within = {"type": "object", "additionalProperties": False, "properties": {"pid": pid}, "required": ["pid"]}
+    return {"anyOf": [*ways, within]}
+
+
+AnyState = Annotated[Any, ReadBy(_read, _schema)]
+
+
+def dimensions_of_entry(name: str, entry: Any, parameters: Any) -> dict[str, Known]:
+    """Return the names that an entry defines for formulas, with their known dimensions, before its validation."""
+    outputs = entry.get("outputs") if isinstance(entry, dict) else getattr(entry, "outputs_", None)
+    if isinstance(outputs, list | tuple) and outputs:
+        return {f"{name}.{output}": UNKNOWN for output in outputs}
+    return {name: dimension_of_state(entry, parameters)}
+
+
+def names_in_formulas(states: Mapping[str, StateEntry]) -> set[str]:
+    """Return the names of states and outputs in formulas."""
+    found = {full for name, state in states.items() for full, _ in state.outputs(name)}
+    return found | {name for name, state in states.items() if any(full == name for full, _ in state.values(name))}
+
+
+def refuse_algebraic_loops(outputs: Mapping[str, Formula]) -> None:
+    """Refuse outputs in algebraic loops.
+
+    Raises
+    ------
+    ValueError
+    """
+    needs = {name: [other for other in formula.states if other in outputs] for name, formula in outputs.items()}
+    try:
+        TopologicalSorter(needs).prepare()
+    except CycleError as error:
+        way = error.args[1][::-1]
+        raise ValueError(
+            f"states.{way[0]}: found an output that depends on itself at once ({' -> '.join(way)}), expected a state in the loop"
+        ) from None
+
+
+def refuse_other_meanings(where: str, states: Iterable[str], known: Mapping[str, Collection[str]]) -> None:
+    """Refuse states whose names have another meaning in a scene's formulas.
+
+    Parameters
+    ----------
+    where : str
+        Path in the scene, for messages.
+    states : iterable of str
+    known : mapping of str to collection of str
+        Other names in formulas, by section.
+
+    Raises
+    ------
+    InputError
+    """
+    for name in states:
+        for section, names in known.items():
+            if name in names:
+                raise InputError(f"{where}.{name}: found a name that {section}.{name} has too, expected another")
+
+
+def check_states(
+    states: Mapping[str, Any],
+    bodies: Mapping[str, Any],
+    on_ground: Mapping[str, Any],
+    joints: Mapping[str, Any],
+    names: FormulaNames,
+    known: Collection[str] | None,
+) -> None:
+    """Refuse states whose names already have a meaning, and formulas with unknown references.
+
+    Parameters
+    ----------
+    known : collection of str or None
+        All states of the model; None while others can still be added.
+
+    Raises
+    ------
+    ValueError
+    """
+    for name, state in states.items():
+        if name in UNITS or name in CONSTANTS:
+            raise ValueError(f"states.{name}: found the name of a unit or constant, expected another")
+        for field, formula in state.formulas():
+            where = f"states.{name}.{field}"
+            for _, markers in formula.measures():
+                for marker in markers:
+                    check_marker(where, marker, bodies, on_ground)
+            for body in formula.bodies():
+                if body not in bodies and body != GROUND:
+                    raise ValueError(
+                        f"{where}: found the unknown body '{body}'{did_you_mean(body, bodies)}, expected {listed(bodies)}"
+                    )
+            check_reactions(where, formula, joints)
+            if known is not None:
+                check_states_of(where, formula, known)
+            for reason in names.validation_errors(formula):
+                raise ValueError(f"{where}: {reason}")
+
+
+def check_reactions(where: str, formula: Formula, joints: Mapping[str, Any]) -> None:
+    """Refuse a formula of reactions of unknown joints, or of joints that are not between two markers."""
+    for name, joint in formula.reactions():
+        if joint not in joints:
+            raise ValueError(
+                f"{where}: found '{name}({joint})'{did_you_mean(joint, joints)} in '{formula.text}', expected one of the joints "
+                f"{', '.join(joints) or 'none'}"
+            )
+        if next(joints[joint].parts(JointName), None) or next(joints[joint].parts(Formula), None):
+            raise ValueError(
+                f"{where}: found '{name}({joint})' of the type {joints[joint].kind}, expected a joint between markers without a formula"
+            )
+
+
+def check_states_of(where: str, formula: Formula, states: Collection[str]) -> None:
+    """Refuse a formula with unknown states."""
+    for state in formula.states:
+        if state not in states:
+            raise ValueError(
+                f"{where}: found the unknown name '{state}'{did_you_mean(state, states)} in '{formula.text}', expected t, a body's "
+                f"coordinate such as cart.x, a parameter or a state ({', '.join(sorted(states)) or 'there is none'})"
+            )

@@ -1,0 +1,252 @@
+"""Magic Formula, MF-Tyre 5.2 and PAC2002: forces and torques of steady slip.
+
+The equations accept symbols and numbers: `p` has the coefficients by name, `f` names common subexpressions.
+
+Pacejka, Tire and Vehicle Dynamics (2006), sec. 4.3.2, with slip angle and camber as angles, and the nominal load FNOMIN
+in place of the adapted one, as in MF-Tyre 5.2 and MSC Adams/Tire (PAC2002).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+from sympy import Expr, Float, Rational, atan, cos, exp, pi, sin, sqrt, tan
+
+from ..roads.road import above_zero, magnitude
+
+Name = Callable[[Any], Any]
+LEAST_LOAD = Float("1e-12")
+"""Offset of loads in divisors, N, for a tyre without contact; it is below rounding for a tyre on the road."""
+
+
+COMBINED_MODE = "4"
+OF_MODES = {"0": "", "1": "fx my", "2": "fy mx mz", "3": "fx fy mx my mz"}
+"""Forces and torques by the last digit of USE_MODE, without combined slip."""
+
+
+@dataclass(frozen=True)
+class Slip:
+    """State of slip: load (N), kappa, alpha, gamma (rad), relative speed, direction, road friction factor."""
+
+    load: Expr
+    kappa: Expr
+    alpha: Expr
+    gamma: Expr
+    speed: Expr
+    direction: Expr
+    friction: Expr
+
+    @property
+    def moving(self) -> Expr:
+        """Factor of ply steer, conicity and camber thrust: 1 for a moving wheel, 0 at rest."""
+        return self.direction**2
+
+
+@dataclass(frozen=True)
+class Curve:
+    """Force D sin(C atan(B x - E (B x - atan(B x)))) + Sv in one direction, with its terms for other equations."""
+
+    force: Expr
+    stiffness: Expr
+    B: Expr
+    C: Expr
+    mu: Expr
+    horizontal: Expr
+    vertical: Expr
+
+
+def magic(b: Any, x: Any, c: Any, curvature: Any) -> Any:
+    """Return the argument of sine or cosine: C atan(B x - E (B x - atan(B x)))."""
+    return c * atan(b * x - curvature * (b * x - atan(b * x)))
+
+
+def sign(x: Any) -> Any:
+    """Return the sign of a number, 0 at zero."""
+    return x / magnitude(x)
+
+
+def at_most_one(x: Any) -> Any:
+    """Return min(x, 1)."""
+    return 1 - above_zero(1 - x)
+
+
+def longitudinal(p: Any, s: Slip, dfz: Any, f: Name) -> Curve:
+    """Return the force of pure longitudinal slip."""
+    gamma = s.gamma * p.LGAX
+    shift = f((p.PHX1 + p.PHX2 * dfz) * p.LHX * s.moving)
+    kappa = f(s.kappa + shift)
+    mu = f((p.PDX1 + p.PDX2 * dfz) * (1 - p.PDX3 * gamma**2) * p.LMUX * s.friction)
+    E = f(at_most_one((p.PEX1 + p.PEX2 * dfz + p.PEX3 * dfz**2) * (1 - p.PEX4 * sign(kappa)) * p.LEX))
+    K = f(s.load * (p.PKX1 + p.PKX2 * dfz) * exp(p.PKX3 * dfz) * p.LKX)
+    C = p.PCX1 * p.LCX
+    B = f(K / (C * mu * s.load + LEAST_LOAD))
+    vertical = f(s.load * (p.PVX1 + p.PVX2 * dfz) * p.LVX * p.LMUX * s.friction * s.moving)
+    force = f(mu * s.load * sin(magic(B, kappa, C, E)) + vertical)
+    return Curve(force, K, B, C, mu, shift, vertical)
+
+
+def lateral(p: Any, s: Slip, dfz: Any, f: Name) -> Curve:
+    """Return the force of pure lateral slip."""
+    gamma = f(s.gamma * p.LGAY)
+    shift = f(((p.PHY1 + p.PHY2 * dfz) * p.LHY + p.PHY3 * gamma) * s.moving)
+    alpha = f(s.alpha + shift)
+    mu = f((p.PDY1 + p.PDY2 * dfz) * (1 - p.PDY3 * gamma**2) * p.LMUY * s.friction)
+    E = f(at_most_one((p.PEY1 + p.PEY2 * dfz) * (1 - (p.PEY3 + p.PEY4 * gamma) * sign(alpha)) * p.LEY))
+    nominal = p.FNOMIN * p.LFZO
+    upright = p.PKY1 * p.FNOMIN * sin(2 * atan(s.load / (p.PKY2 * nominal))) * p.LFZO * p.LKY
+    K = f(upright * (1 - p.PKY3 * magnitude(gamma)))
+    C = p.PCY1 * p.LCY
+    B = f(K / (C * mu * s.load + LEAST_LOAD))
+    sideways = f((p.PVY1 + p.PVY2 * dfz) * p.LVY + (p.PVY3 + p.PVY4 * dfz) * gamma)
+    vertical = f(s.load * sideways * p.LMUY * s.friction * s.moving)
+    force = f(mu * s.load * sin(magic(B, alpha, C, E)) + vertical)
+    return Curve(force, K, B, C, mu, shift, vertical)
+
+
+def weight(b: Any, slip: Any, shift: Any, c: Any, curvature: Any, f: Name) -> Any:
+    """Return a weight of combined slip, 1 for zero slip."""
+    return f(cos(magic(b, f(slip + shift), c, curvature)) / cos(magic(b, shift, c, curvature)))
+
+
+def combined(p: Any, s: Slip, x: Curve, y: Curve, dfz: Any, f: Name) -> tuple[Any, Any, Any]:
+    """Return Fx, Fy, and the lateral force induced by longitudinal slip."""
+    over_alpha = f(p.RBX1 * cos(atan(p.RBX2 * s.kappa)) * p.LXAL)
+    E = at_most_one(p.REX1 + p.REX2 * dfz)
+    fx = f(x.force * weight(over_alpha, s.alpha, p.RHX1, p.RCX1, f(E), f))
+    over_kappa = f(p.RBY1 * cos(atan(p.RBY2 * (s.alpha - p.RBY3))) * p.LYKA)
+    E = at_most_one(p.REY1 + p.REY2 * dfz)
+    lessened = weight(over_kappa, s.kappa, f(p.RHY1 + p.RHY2 * dfz), p.RCY1, f(E), f)
+    most = y.mu * s.load * (p.RVY1 + p.RVY2 * dfz + p.RVY3 * s.gamma) * cos(atan(p.RVY4 * s.alpha))
+    induced = f(most * sin(p.RVY5 * atan(p.RVY6 * s.kappa)) * p.LVYKA)
+    return fx, f(y.force * lessened + induced), induced
+
+
+def aligning(p: Any, s: Slip, x: Curve, y: Curve, forces: tuple[Any, Any, Any], dfz: Any, f: Name) -> Any:
+    """Return the aligning torque: pneumatic trail, residual torque, and the arm of Fx."""
+    fx, fy, induced = forces
+    gamma, R = f(s.gamma * p.LGAZ), p.UNLOADED_RADIUS
+    stiffer = p.LKY / p.LMUY
+    B = f((p.QBZ1 + p.QBZ2 * dfz + p.QBZ3 * dfz**2) * (1 + p.QBZ4 * gamma + p.QBZ5 * magnitude(gamma)) * stiffer)
+    D = f(s.load * (p.QDZ1 + p.QDZ2 * dfz) * (1 + p.QDZ3 * gamma + p.QDZ4 * gamma**2) * (R / p.FNOMIN) * p.LTR)
+    of_trail = f(s.alpha + p.QHZ1 + p.QHZ2 * dfz + (p.QHZ3 + p.QHZ4 * dfz) * gamma)
+    of_rest = f(s.alpha + y.horizontal + y.vertical / (y.stiffness + sign(y.stiffness) * LEAST_LOAD + LEAST_LOAD**2))
+    E = f(
+        at_most_one(
+            (p.QEZ1 + p.QEZ2 * dfz + p.QEZ3 * dfz**2)
+            * (1 + (p.QEZ4 + p.QEZ5 * gamma) * (2 / pi) * atan(B * p.QCZ1 * of_trail))
+        )
+    )
+    driving = f((x.stiffness / (y.stiffness + sign(y.stiffness) * LEAST_LOAD + LEAST_LOAD**2) * s.kappa) ** 2)
+    straight = cos(s.alpha) * s.direction  # reversed trail when rolling backward
+    trail = f(D * cos(magic(B, f(equivalent(of_trail, driving)), p.QCZ1, E)) * straight)
+    residual_load = (p.QDZ6 + p.QDZ7 * dfz) * p.LRES + (p.QDZ8 + p.QDZ9 * dfz) * gamma
+    residual_most = f(s.load * residual_load * R * p.LMUY * s.friction)
+    slope = f(p.QBZ9 * stiffer + p.QBZ10 * y.B * y.C)
+    residual = f(residual_most * cos(atan(slope * equivalent(of_rest, driving))) * straight)
+    arm = f((p.SSZ1 + p.SSZ2 * fy / p.FNOMIN + (p.SSZ3 + p.SSZ4 * dfz) * s.gamma) * R * p.LS)
+    return -trail * (fy - induced) + residual + arm * fx
+
+
+def equivalent(alpha: Any, driving: Any) -> Any:
+    """Return the magnitude of the equivalent slip angle of both slips.
+
+    Trail and residual torque are even functions of it, and its sign would cause a discontinuity.
+    """
+    return atan(sqrt(tan(alpha) ** 2 + driving + Float("1e-60")))
+
+
+def wrench(p: Any, s: Slip, f: Name, is_combined: bool = True) -> tuple[Any, Any, Any, Any, Any]:
+    """Return Fx, Fy, Mx, My, Mz at the contact point.
+
+    Parameters
+    ----------
+    is_combined : bool
+        Whether there are weights of combined slip; without them Fx and Fy are limited by the friction ellipse.
+    """
+    dfz = increment(p, s.load, f)
+    x, y = longitudinal(p, s, dfz, f), lateral(p, s, dfz, f)
+    forces = combined(p, s, x, y, dfz, f) if is_combined else on_ellipse(s, x, y, f)
+    return (*forces[:2], *torques(p, s, forces[0], forces[1], f), aligning(p, s, x, y, forces, dfz, f))
+
+
+def uncombined(p: Any, s: Slip, f: Name) -> tuple[Any, Any, Any, Any, Any]:
+    """Return Fx, Fy, Mx, My, Mz of separate slips: Fx, My by the longitudinal, the others by the slip angle."""
+    dfz, none = increment(p, s.load, f), Rational(0)
+    x, y = longitudinal(p, s, dfz, f), lateral(p, s, dfz, f)
+    mx, my = torques(p, s, x.force, y.force, f)
+    return x.force, y.force, mx, my, aligning(p, replace(s, kappa=none), x, y, (none, y.force, none), dfz, f)
+
+
+def of_mode(mode: str, p: Any, s: Slip, f: Name, is_combined: bool) -> tuple[Any, Any, Any, Any, Any]:
+    """Return the forces and torques selected by the last digit of USE_MODE, with zero for the others."""
+    if mode == COMBINED_MODE:
+        return wrench(p, s, f, is_combined)
+    found, wanted = uncombined(p, s, f), OF_MODES[mode].split()
+    return tuple(x if name in wanted else Rational(0) for name, x in zip(OF_MODES["3"].split(), found, strict=True))  # type: ignore[return-value]
+
+
+def relaxation_lengths(p: Any, load: Any, gamma: Any, f: Name) -> tuple[Any, Any]:
+    """Return the longitudinal and lateral relaxation length, m, by the equations of MF-Tyre 5.2."""
+    dfz, R = increment(p, load, f), p.UNLOADED_RADIUS
+    along = load * (p.PTX1 + p.PTX2 * dfz) * exp(-p.PTX3 * dfz) * R / p.FNOMIN * p.LSGKP
+    by_load = sin(2 * atan(load / (p.PTY2 * p.FNOMIN * p.LFZO)))
+    return along, p.PTY1 * by_load * (1 - p.PKY3 * magnitude(gamma * p.LGAY)) * R * p.LFZO * p.LSGAL
+
+
+def increment(p: Any, load: Any, f: Name) -> Any:
+    """Return dfz, the relative deviation from the nominal load."""
+    nominal = p.FNOMIN * p.LFZO
+    return f((load - nominal) / nominal)
+
+
+def torques(p: Any, s: Slip, fx: Any, fy: Any, f: Name) -> tuple[Any, Any]:
+    """Return the overturning and the rolling resistance torque."""
+    R = p.UNLOADED_RADIUS
+    mx = R * s.load * (p.QSX1 * p.LVMX + (-p.QSX2 * s.gamma + p.QSX3 * fy / p.FNOMIN) * p.LMX)
+    resistance = p.QSY1 + p.QSY2 * fx / p.FNOMIN + p.QSY3 * s.speed + p.QSY4 * s.speed**4
+    return mx, -R * s.load * resistance * p.LMY * s.direction
+
+
+def on_ellipse(s: Slip, x: Curve, y: Curve, f: Name) -> tuple[Any, Any, Any]:
+    """Return Fx and Fy of pure slips, scaled down to the ellipse of mu_x N and mu_y N if they exceed it."""
+    most_x, most_y = x.mu * s.load + LEAST_LOAD, y.mu * s.load + LEAST_LOAD
+    beyond = f(magnitude(x.force / most_x, y.force / most_y))
+    less = f(1 / (1 + above_zero(beyond - 1)))
+    return f(x.force * less), f(y.force * less), Rational(0)
+
+
+CHOICES = ("is_combined", "mode", "is_mirrored", "side", "deflection_load", "bottoming")
+"""Properties that are not numbers; `is_combined` is the only one with an effect here."""
+OUTPUTS = ("longitudinal", "lateral", "overturning", "rolling", "aligning")
+
+
+def steady_wrench(
+    numbers: Mapping[str, Any], load: Any, slip: Any, slip_angle: Any, camber: Any, speed: Any, friction: Any
+) -> dict[str, np.ndarray]:
+    """Return forces and torques by the names of a tyre's channels; arguments may be arrays that broadcast."""
+    values = {name: value for name, value in numbers.items() if name not in CHOICES}
+    states = [np.asarray(x, dtype=float) for x in (np.minimum(load, values["FZMAX"]), slip, slip_angle, camber)]
+    function = _function(tuple(values), bool(numbers["is_combined"]))
+    found = function(*values.values(), *states, np.asarray(speed) / values["LONGVL"], friction)
+    shape = np.broadcast_shapes(*(np.shape(x) for x in (*states, speed, friction)))
+    return {name: np.broadcast_to(x, shape).copy() for name, x in zip(OUTPUTS, found, strict=True)}
+
+
+@lru_cache(maxsize=4)
+def _function(names: tuple[str, ...], is_combined: bool) -> Callable[..., Any]:
+    import sympy as sp
+
+    from .magic_formula import Slip, wrench
+
+    numbers = sp.symbols(names, real=True)
+    load, slip, slip_angle, camber, speed, friction = of = sp.symbols("N kappa alpha gamma v mu", real=True)
+    state = Slip(load, slip, slip_angle, camber, speed, sp.Integer(1), friction)
+    coefficients = SimpleNamespace(**dict(zip(names, numbers, strict=True)))
+    expressions = wrench(coefficients, state, lambda x: x, is_combined)
+    function: Callable[..., Any] = sp.lambdify([*numbers, *of], expressions, "numpy", cse=True)
+    return function

@@ -1,0 +1,207 @@
+"""Files of tyre properties (.tir) of Adams/Tire and MF-Tyre: sections of keys and values, with units."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from ...errors import InputError
+from ...reading.files.quoted import quoted
+from ...reading.files.requested import Fields
+from ...reading.files.text_file import file_text, finite_number, lines
+from ...reading.units.units import UNITS as SI
+from .names import DEFAULT_VALUES
+
+_NAMES = {
+    "LENGTH": {"m": "meter m", "mm": "mm millimeter", "cm": "cm centimeter", "km": "km kilometer", "inch": "inch in", "ft": "foot feet ft"},
+    "FORCE": {"N": "newton n", "kN": "kn knewton kilonewton", "kgf": "kg_force kgf", "lbf": "pound_force lbf"},
+    "ANGLE": {"rad": "radian radians rad", "deg": "degree degrees deg"},
+    "MASS": {"kg": "kg kilogram", "g": "gram", "tonne": "tonne", "lb": "pound_mass", "slug": "slug"},
+    "TIME": {"s": "second seconds sec s", "ms": "millisecond", "min": "minute", "h": "hour"},
+}  # fmt: skip
+"""Names in Adams/Tire of the units of scenes."""
+UNITS = {
+    kind: {name: SI[unit].value for unit, names in units.items() for name in names.split()}
+    for kind, units in _NAMES.items()
+}
+"""Units of a file in SI units, by their names in Adams/Tire, case-insensitive."""
+FRACTIONS: Mapping[str, tuple[str, str]] = {
+    "": ("", ""), "length": ("LENGTH", ""), "force": ("FORCE", ""), "angle": ("ANGLE", ""), "velocity": ("LENGTH", "TIME"),
+    "stiffness": ("FORCE", "LENGTH"), "damping": ("FORCE TIME", "LENGTH"),
+}  # fmt: skip
+"""Units whose product makes a dimension, and those that divide it."""
+_KEY = re.compile(r"^\s*([A-Za-z_]\w*)\s*=\s*(.*)$")
+_QUOTED = re.compile(r"^'([^']*)'|^\"([^\"]*)\"")
+
+
+@dataclass(frozen=True)
+class Entry:
+    """Value of a key: text without quotes and comment, line, and section."""
+
+    text: str
+    line: int
+    section: str
+
+    def __str__(self) -> str:
+        return self.text
+
+
+@dataclass(frozen=True)
+class Rows:
+    """Rows of numbers after a heading in braces, and the line of the first row."""
+
+    line: int
+    numbers: tuple[tuple[float, ...], ...]
+
+
+@dataclass(frozen=True)
+class PropertyFile:
+    """Content of a property file.
+
+    Attributes
+    ----------
+    source : str
+        Name of the file in messages.
+    sections : mapping of str to Fields
+        Keys of each section, in capital letters.
+    tables : Fields of Rows
+        Tables by section.
+    """
+
+    source: str
+    sections: Mapping[str, Fields[Entry]]
+    tables: Fields[Rows]
+
+    def entry(self, key: str, home: str = "") -> Entry | None:
+        """Return the entry of a key, or None.
+
+        Parameters
+        ----------
+        key : str
+        home : str
+            Section to which the key belongs; it is used if several sections have the key.
+
+        Raises
+        ------
+        InputError
+            If sections to which the key does not belong give it different values.
+        """
+        having = [section for section in self.sections.values() if section.has(key)]
+        own = [section for section in having if section.kind == f"[{home}]"]
+        found = [section[key] for section in own or having]
+        if not found:
+            return None
+        for other in found[1:]:
+            if other.text != found[0].text:
+                raise InputError(
+                    f"{self.source}, line {other.line}: found {key} in [{other.section}] and in [{found[0].section}] "
+                    f"(line {found[0].line}), expected it in one section" + (f", [{home}]" if home else "")
+                )
+        return found[0]
+
+    def text(self, key: str, home: str = "") -> str:
+        """Return a value in capital letters, or an empty string if there is none."""
+        entry = self.entry(key, home)
+        return entry.text.upper() if entry else ""
+
+    def number(self, key: str, dimension: str = "", home: str = "") -> float:
+        """Return a value in SI units.
+
+        Raises
+        ------
+        InputError
+            If the value is missing or not a number.
+        """
+        entry = self.entry(key, home)
+        if entry is None:
+            raise InputError(f"{self.source}: found no {key}, expected one")
+        return finite_number(entry.text, f"{self.source}, line {entry.line}: {key}") * self.factor(dimension)
+
+    def factor(self, dimension: str) -> float:
+        """Return the file's unit of a dimension in SI units; 1 if the file has no [UNITS].
+
+        Raises
+        ------
+        InputError
+            For an unknown unit.
+        """
+        product, divisor = (self._units(kinds.split()) for kinds in FRACTIONS[dimension])
+        return math.prod(product) * math.prod(unit**-1 for unit in divisor)
+
+    def _units(self, kinds: Sequence[str]) -> Iterator[float]:
+        """Yield the file's units of length, force and so on, SI units."""
+        units: Mapping[str, Entry] = self.sections.get("UNITS", {})
+        for entry, kind in ((units[kind], kind) for kind in kinds if kind in units):
+            known = UNITS[kind]
+            if entry.text.lower() not in known:
+                raise InputError(
+                    f"{self.source}, line {entry.line}: {kind}: found the unit '{quoted(entry.text)}', expected one of "
+                    f"{', '.join(known)}"
+                )
+            yield known[entry.text.lower()]
+
+
+def read_property_file(path: Path) -> PropertyFile:
+    """Read a file of tyre properties.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read, or a line is neither a section, a key with a value, a row of numbers nor a comment.
+    """
+    return parse_properties(file_text(path, otherwise="latin-1"), str(path))
+
+
+def parse_properties(text: str, source: str) -> PropertyFile:
+    """Return the properties in the text of a file; errors as for `read_property_file`."""
+    sections: dict[str, dict[str, Entry]] = {}
+    rows: dict[str, tuple[int, list[tuple[float, ...]]]] = {}
+    section = ""
+    for number, line in enumerate(lines(text), start=1):
+        content = line.strip()
+        where = f"{source}, line {number}"
+        if not content or content[0] in "!$#{(":
+            continue
+        if content.startswith("["):
+            section = _section(content, where)
+        elif key := _KEY.match(content):
+            name, own = key[1].upper(), sections.setdefault(section, {})
+            if name in own:
+                raise InputError(f"{where}: found {name} again, which line {own[name].line} has too, expected it once")
+            own[name] = Entry(_value(key[2], where), number, section)
+        elif section:
+            row = tuple(finite_number(part, where) for part in re.split(r"[\s,]+", _uncommented(content)))
+            rows.setdefault(section, (number, []))[1].append(row)
+        else:
+            raise InputError(
+                f"{where}: found '{quoted(content)}', expected a [SECTION], KEY = value, or a comment (! or $)"
+            )
+    if not sections:
+        raise InputError(f"{source}: found no KEY = value, expected a file of tyre properties")
+    tables = {f"[{name}]": Rows(line, tuple(numbers)) for name, (line, numbers) in rows.items()}
+    found = {name: Fields(f"[{name}]", "", own, DEFAULT_VALUES) for name, own in sections.items()}
+    if "UNITS" in found:
+        found["UNITS"].request(*UNITS)  # including unused dimensions
+    return PropertyFile(source, found, Fields("table", "", tables))
+
+
+def _section(content: str, where: str) -> str:
+    name, bracket, _ = content[1:].partition("]")
+    if not bracket or not name.strip():
+        raise InputError(f"{where}: found '{quoted(content)}', expected a section such as [UNITS]")
+    return name.strip().upper()
+
+
+def _uncommented(text: str) -> str:
+    return re.split(r"[$!]", text)[0].strip()
+
+
+def _value(text: str, where: str) -> str:
+    within = _QUOTED.match(text)
+    value = (within[1] or within[2] or "").strip() if within else _uncommented(text)
+    if not value and not within:
+        raise InputError(f"{where}: found nothing behind '=', expected a value")
+    return value

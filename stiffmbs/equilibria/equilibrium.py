@@ -1,0 +1,225 @@
+"""Static equilibrium by pseudo-transient continuation, which converges from distant poses.
+
+Implicit steps follow a motion in a viscous fluid (Kelley and Keyes, SIAM J. Numer. Anal. 35, 1998), which leads to
+stable equilibria only. From the pose q_n each step solves, at rest,
+
+  s M (q - q_n) + J^T lam = f(q),    C(q) = 0,
+
+by Newton's method with the matrix s M - f_q + d(J^T lam)/dq. s decreases if Newton's moves converge fast, and increases
+if they do not, as where a wheel meets the road. s = 0 is Newton's method for the equilibrium itself. User-defined
+states x are unknowns too: a step solves sqrt(s) (x - x_n) = x'(q, v, x) with v = sqrt(s) (q - q_n), an implicit Euler
+step of length 1/sqrt(s). The equations of algebraic states are those at rest.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import block_array, csc_array, diags_array, hstack
+from scipy.sparse.linalg import splu
+
+from ..dynamics.dynamics import Dynamics
+from ..errors import SolverError
+from .force_balance import Balance, balance_at, moved, way
+from .steady_motion import SteadyMotion, at_rest
+
+MOST_MOVES = 2000
+TRANSLATION, ROTATION = 0.25, 0.5
+"""Longest move of a body, relative to the mechanism's size, and rad (Adams: EQUILIBRIUM/TLIMIT, ALIMIT)."""
+LEAST_SHIFT, LARGEST_SHIFT = 1e-3, 1e15
+"""Bounds of sqrt(s), rad/s. The lower one keeps free directions in place."""
+SHIFT_FALLS, SHIFT_RISES = 0.1, 4.0
+WANTED_RATIO, LAST_MOVE, DIVERGING_MOVE = 0.1, 0.05, 0.6
+"""Ratio of Newton's moves for which s is chosen; moves that end, and that reject, a step, relative to its length."""
+MOST_CORRECTIONS = 8
+WORTH_ANOTHER_MOVE = 0.5
+"""Largest residual ratio of a polishing move that counts as convergence."""
+MOST_MISSES = 2
+"""Successive polishing moves without convergence that are allowed; after more, rounding governs."""
+
+
+@dataclass(frozen=True)
+class Equilibrium:
+    """Pose at rest, or in a steady motion, in which forces balance.
+
+    Attributes
+    ----------
+    q, u, acceleration, lam : ndarrays
+    moves : int
+        Number of Newton moves.
+    imbalance : float
+        Largest residual of a generalised force, relative to the largest force.
+    motion : SteadyMotion
+        With the speeds that were found.
+    """
+
+    q: np.ndarray
+    u: np.ndarray
+    acceleration: np.ndarray
+    lam: np.ndarray
+    moves: int
+    imbalance: float
+    motion: SteadyMotion
+
+
+def find_equilibrium(dynamics: Dynamics, t: float, motion: SteadyMotion | None = None) -> Equilibrium:
+    """Find the stable equilibrium that a system reaches from its pose in overdamped motion; the state is set to it.
+
+    Parameters
+    ----------
+    dynamics : Dynamics
+        At an assembled pose.
+    t : float
+        Time at which forces and drives are evaluated, s.
+    motion : SteadyMotion, optional
+        Steady motion of the equilibrium; at rest by default.
+
+    Raises
+    ------
+    SolverError
+        When none is found; names the body with the largest imbalance.
+    """
+    state = dynamics.state
+    shift, moves = 1.0, 0
+    known = balance_at(dynamics, t, motion or at_rest(dynamics.system.of_body.dimensions))
+    while moves < MOST_MOVES and shift < LARGEST_SHIFT:
+        if known.balanced:
+            known, more = _polished(dynamics, t, known)
+            return as_equilibrium(dynamics, t, known, moves + more)
+        before = state.q.copy()
+        step = _step(dynamics, t, shift, known)
+        moves += step.moves
+        shift = max(LEAST_SHIFT, step.factor * shift)
+        if step.known is None:
+            state.q[:] = before
+            known.motion.put(dynamics, t)
+        else:
+            known = step.known
+    raise SolverError(unbalanced(dynamics, known))
+
+
+@dataclass(frozen=True)
+class _Step:
+    """Result of an implicit step: its balance, or None if it failed, and the factor on sqrt(s)."""
+
+    known: Balance | None
+    factor: float
+    moves: int
+
+
+def _step(dynamics: Dynamics, t: float, shift: float, known: Balance) -> _Step:
+    """Take an implicit step from the current pose and motion; the pose is left where the step ended."""
+    system, state = dynamics.system, dynamics.state
+    of_states = np.maximum(system.state_scales, np.abs(state.q[system.first_state :]))
+    of_speeds = np.zeros(0) if known.speeds is None else TRANSLATION * known.speeds.sizes
+    limits = np.concatenate([system.per_velocity(TRANSLATION * system.size, ROTATION), of_states, of_speeds])
+    start, first, n = state.q.copy(), 0.0, len(known.left)
+    faster = np.zeros(len(of_speeds))
+    for count in range(1, MOST_CORRECTIONS + 1):
+        whole = np.append(way(system, start, state.q), faster)
+        move = newton_move(dynamics, shift, known, whole)
+        if (
+            count == 1 and not system.states and not known.left @ np.nan_to_num(move[:n]) >= 0
+        ):  # towards an unstable equilibrium
+            break
+        longest, longest_of_all = (float(np.max(np.abs(way) / limits, initial=0.0)) for way in (move, whole + move))
+        if longest_of_all > 1.0:
+            return _Step(None, max(2.0, float(np.sqrt(longest_of_all))), count)
+        if count > 1 and longest > DIVERGING_MOVE * longest_of_all:
+            break
+        found = moved_on(dynamics, t, known, state.q, move)
+        if found is None:
+            break
+        known, first, faster = found, first or longest, faster + move[n:]
+        if known.balanced:
+            return _Step(known, 1.0, count)
+        if count > 1 and longest <= LAST_MOVE * longest_of_all:
+            ratio = (longest / first) ** (1 / (count - 1))
+            factor = np.sqrt(np.clip(max(ratio / WANTED_RATIO, longest_of_all), SHIFT_FALLS**2, 1.0))
+            return _Step(known, float(factor), count)
+    return _Step(None, SHIFT_RISES, count)
+
+
+def moved_on(dynamics: Dynamics, t: float, known: Balance, q: np.ndarray, move: np.ndarray) -> Balance | None:
+    """Return the balance after a move of pose and unknown speeds, or None if the pose cannot be assembled."""
+    n = len(known.left)
+    dynamics.state.q[:] = moved(dynamics.system, q, move[:n])
+    if dynamics.assemble(t) < 0:
+        return None
+    return balance_at(dynamics, t, known.motion.faster(move[n:]) if known.speeds else known.motion)
+
+
+def newton_move(dynamics: Dynamics, shift: float, known: Balance, whole: np.ndarray) -> np.ndarray:
+    """Return Newton's move in a step with the displacement `whole` so far; `shift` is sqrt(s), speeds come last."""
+    system, jacobian, n = dynamics.system, known.jacobian, len(known.left)
+    inertia = diags_array(np.append(shift**2 * system.mass, np.where(system.algebraic, 0.0, shift)))
+    if system.states:
+        dragged = block_array(
+            [[csc_array((system.n_u, n))], [hstack([known.dragged, csc_array((n - system.n_u,) * 2)])]]
+        )
+        inertia = csc_array(inertia - shift * dragged)
+    changes, held = inertia + known.stiffness, jacobian
+    if known.speeds is not None:
+        inertia = csc_array(hstack([inertia, shift * known.speeds.momentum]))
+        changes = hstack([changes, known.speeds.effect + shift * known.speeds.momentum])
+        held = block_array([[jacobian, None], [known.speeds.held, csc_array((len(known.speeds.sizes),) * 2)]])
+    matrix = block_array([[changes, known.reactions], [held, None]], format="csc")
+    right = np.concatenate([known.left - inertia @ whole, np.zeros(held.shape[0])])
+    try:
+        found: np.ndarray = splu(matrix).solve(right)[: held.shape[1]]
+    except RuntimeError:  # exactly singular: a larger shift is needed
+        return np.full(held.shape[1], np.inf)
+    return found
+
+
+def _polished(dynamics: Dynamics, t: float, known: Balance) -> tuple[Balance, int]:
+    """Apply Newton's moves to a balanced pose while the residual decreases; return the balance and their number.
+
+    The first moves may increase the residual, as where a stiff body rotates about a soft direction.
+    """
+    state = dynamics.state
+    best, there, misses, moves = known, state.q.copy(), 0, 0
+    while misses < MOST_MISSES and moves < MOST_CORRECTIONS:
+        move = newton_move(dynamics, LEAST_SHIFT, known, at_start(known))
+        found = moved_on(dynamics, t, known, state.q.copy(), move) if np.all(np.isfinite(move)) else None
+        if found is None:
+            break
+        known, moves = found, moves + 1
+        if np.max(np.abs(known.left)) < WORTH_ANOTHER_MOVE * np.max(np.abs(best.left)):
+            best, there, misses = known, state.q.copy(), 0
+        else:
+            misses += 1
+    state.q[:] = there
+    return best, moves
+
+
+def at_start(known: Balance) -> np.ndarray:
+    """Return a zero move with zero speed changes."""
+    return np.zeros(len(known.left) + known.motion.n_found)
+
+
+def as_equilibrium(dynamics: Dynamics, t: float, known: Balance, moves: int) -> Equilibrium:
+    """Return the current pose, which is balanced, with the velocities of the motion."""
+    motion = known.motion
+    motion.put(dynamics, t)
+    q, u = dynamics.state.q.copy(), dynamics.state.u.copy()
+    return Equilibrium(q, u, motion.acceleration(dynamics), known.lam, moves, known.imbalance, motion)
+
+
+def unbalanced(dynamics: Dynamics, known: Balance) -> str:
+    """Return a message on the missing equilibrium, with the body that has the largest imbalance."""
+    system = dynamics.system
+    forces, rates = np.split(known.left, [system.n_u])
+    if system.states and np.all(np.abs(forces) <= known.allowed[: system.n_u]):
+        worst = int(np.argmax(np.abs(rates) / np.maximum(known.allowed[system.n_u :], np.finfo(float).tiny)))
+        return (
+            f"no equilibrium was found: the state {system.states[worst]} goes on changing ({rates[worst]:.3g} per second), "
+            "expected rates of states that can vanish"
+        )
+    worst = int(np.argmax(np.abs(forces)))
+    name = system.name_of(worst, system.of_body.reactions)
+    return (
+        f"no equilibrium was found: the largest imbalance is left in {name} ({forces[worst]:.3g} of "
+        f"{known.largest:.3g}), expected forces that hold every free motion"
+    )

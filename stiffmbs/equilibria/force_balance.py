@@ -1,0 +1,214 @@
+"""Residual of the force balance at rest or in a steady motion, and its derivative by the pose."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.sparse import block_array, csc_array, diags_array, vstack
+from scipy.sparse.linalg import splu
+
+from ..compile.system import System
+from ..compile.terms import TERM_AXES
+from ..dynamics.algebraic_states import failure
+from ..dynamics.dynamics import Dynamics
+from ..errors import SolverError
+from .found_speeds import FoundSpeeds, found_speeds
+from .steady_motion import NO_EFFECT, SteadyMotion
+
+BALANCED, ROUNDING = 1e-10, 8
+"""Imbalance that counts as zero, relative to the largest force; roundings of the coordinates allowed in the forces."""
+SLOWEST = 1e-5
+"""Rate, rad/s. A force is negligible if it moves its body by less than the mechanism's size, or 1 rad, in 1/SLOWEST."""
+SLOW_STATE = 1e-3
+"""Rate of a state relative to itself, 1/s, that scales the allowed residual of its equation."""
+PASSED_ON = 1e-8
+"""Largest allowed rounding transmitted by joints from other bodies, relative to the largest force."""
+
+
+@dataclass(frozen=True)
+class Balance:
+    """Balance of forces at a pose.
+
+    Attributes
+    ----------
+    left : ndarray, shape (n_u + states,)
+        Residual of forces, inertia forces and reactions, and the rates of the user's own states.
+    lam : ndarray
+    largest : float
+        Largest force.
+    allowed : ndarray, shape (n_u + states,)
+        Allowed residual.
+    stiffness : sparse array
+        Negative derivative of the residual with respect to pose and states.
+    jacobian, reactions : sparse arrays
+        J of the independent equations, and the negative derivative of the residual with respect to multipliers.
+    dragged : sparse array
+        Derivative of the rates of states with respect to velocities.
+    motion : SteadyMotion
+        Steady motion of the balance.
+    negligible : ndarray, shape (n_u,)
+        Forces that count as zero if all forces vanish in equilibrium.
+    speeds : FoundSpeeds, optional
+        Speeds of the motion that the forces determine.
+    """
+
+    left: np.ndarray
+    lam: np.ndarray
+    largest: float
+    allowed: np.ndarray
+    stiffness: csc_array
+    jacobian: csc_array
+    reactions: csc_array
+    dragged: csc_array
+    motion: SteadyMotion
+    negligible: np.ndarray | float
+    speeds: FoundSpeeds | None = None
+
+    @property
+    def imbalance(self) -> float:
+        """Largest imbalance of forces that are not negligible, relative to the largest force."""
+        forces = np.abs(self.left[: self.dragged.shape[1]])
+        return float(np.max(np.where(forces > self.negligible, forces, 0.0), initial=0.0) / (self.largest or 1.0))
+
+    @property
+    def balanced(self) -> bool:
+        """True if the residual is within rounding and the tolerance."""
+        return bool(np.all(np.abs(self.left) <= self.allowed))
+
+
+def balance_at(dynamics: Dynamics, t: float, motion: SteadyMotion) -> Balance:
+    """Return the balance of the current pose, with multipliers that minimize the residual in the mass metric.
+
+    Raises
+    ------
+    SolverError
+        When the pose has no accelerations.
+    """
+    state, system = dynamics.state, dynamics.system
+    motion.put(dynamics, t)
+    state.count_anew(t)
+    status, acceleration = dynamics.accelerate(t)
+    if status < 0:
+        raise SolverError(f"no equilibrium was found: {failure(dynamics, status, t)}")
+    rates = dynamics.position_rates(state.q, state.u)[system.first_state :]
+    lam = state.lam[: system.n_c].copy()
+    steady = motion.acceleration(dynamics)
+    state.evaluate("motion", t)
+    entries = state.values["motion"][system.term("motion", "f").source]
+    largest = max(
+        np.max(np.abs(part), initial=0.0) for part in (state.vector("motion", "f"), entries, system.mass * steady)
+    )
+    stiffness, jacobian = _derivatives(dynamics, t, motion, lam)
+    farthest = np.max(np.abs(state.q[system.straight[0]]), initial=system.size)
+    rounding = ROUNDING * np.finfo(float).eps * (abs(stiffness) @ system.per_velocity(float(farthest), 1.0))
+    roots = np.sqrt(system.mass)  # the balance is a projection in this metric, which does not increase rounding
+    passed_on = np.minimum(roots * np.max(rounding / roots, initial=0.0), PASSED_ON * largest)
+    negligible = system.mass * system.per_velocity(system.size, 1.0) * SLOWEST**2
+    left = system.mass * _beside_the_constraints(acceleration - steady, system.mass, jacobian)
+    found = Balance(
+        left,
+        lam,
+        float(largest),
+        np.maximum.reduce([np.full(len(left), BALANCED * largest), rounding, passed_on, negligible]),
+        stiffness,
+        jacobian,
+        jacobian.T,
+        csc_array((0, len(left))),
+        motion,
+        negligible,
+    )
+    if system.states:
+        found = with_states(dynamics, found, rates, motion, t)
+    if not motion.n_found:
+        return found
+    return replace(found, speeds=found_speeds(dynamics, motion, forces_by_velocity(dynamics)))
+
+
+def _beside_the_constraints(acceleration: np.ndarray, mass: np.ndarray, jacobian: csc_array) -> np.ndarray:
+    """Remove accelerations that constraints impose, such as those of a drive that accelerates at the start."""
+    asked = jacobian @ acceleration
+    if np.all(np.abs(asked) <= NO_EFFECT * (abs(jacobian) @ np.abs(acceleration))):
+        return acceleration
+    matrix = block_array([[diags_array(mass), jacobian.T], [jacobian, None]], format="csc")
+    found: np.ndarray = splu(matrix).solve(np.concatenate([mass * acceleration, 0.0 * asked]))
+    return found[: len(mass)]
+
+
+def with_states(dynamics: Dynamics, known: Balance, rates: np.ndarray, motion: SteadyMotion, t: float) -> Balance:
+    """Add the rows and columns of user-defined states to a balance."""
+    system, q = dynamics.system, dynamics.state.q
+    own, active = slice(system.first_state, None), np.flatnonzero(system.active)
+    by_velocity = _position_rates(dynamics)
+    of_rates, of_states = (
+        sparse_term(dynamics, "rate_q")[own],
+        (sparse_term(dynamics, "f_q") - sparse_term(dynamics, "G_lam"))[:, own],
+    )
+    by_pose, of_velocities = -of_rates @ by_velocity, sparse_term(dynamics, "rate_u")[own]
+    if not motion.is_rest:
+        velocity, _ = motion.derivatives(dynamics, t, by_velocity)
+        by_pose = by_pose - of_velocities @ velocity
+    stiffness = [[known.stiffness, -of_states], [by_pose, -of_rates[:, own]]]
+    by_states = sparse_term(dynamics, "C_x")[active][:, own]
+    reactions = [[known.reactions], [-sparse_term(dynamics, "rate_lam")[own][:, active]]]
+    sizes = system.per_coordinate(system.size, 1.0)
+    sizes[own] = system.state_scales
+    allowed = BALANCED * (abs(of_rates) @ np.maximum(sizes, np.abs(q)) + SLOW_STATE * sizes[own])
+    rounding = ROUNDING * np.finfo(float).eps * (abs(of_states) @ np.maximum(sizes, np.abs(q))[own])
+    return replace(
+        known,
+        left=np.append(known.left, rates),
+        allowed=np.append(np.maximum(known.allowed, rounding), allowed),
+        stiffness=block_array(stiffness, format="csc"),
+        jacobian=block_array([[known.jacobian, by_states]], format="csc"),
+        reactions=block_array(reactions, format="csc"),
+        dragged=csc_array(diags_array(np.where(system.algebraic, 0.0, 1.0)) @ of_velocities),
+        negligible=0.0,
+    )
+
+
+def forces_by_velocity(dynamics: Dynamics) -> csc_array:
+    """Return derivatives of forces and rates of states (set ``tangent``) by velocities, shape (n_u + states, n_u)."""
+    of_rates = sparse_term(dynamics, "rate_u")[slice(dynamics.system.first_state, None)]
+    return csc_array(vstack([sparse_term(dynamics, "f_u"), of_rates]))
+
+
+def _position_rates(dynamics: Dynamics) -> csc_array:
+    """Return Z of q' = Z u for all coordinates."""
+    system = dynamics.system
+    q, u = system.straight
+    return sparse_term(dynamics, "Z") + csc_array((np.ones(len(q)), (q, u)), shape=(system.n_q, system.n_u))
+
+
+def way(system: System, start: np.ndarray, there: np.ndarray) -> np.ndarray:
+    """Return the displacement between two poses, followed by the changes of states."""
+    return np.append(system.move(start, there), (there - start)[system.first_state :])
+
+
+def moved(system: System, q: np.ndarray, move: np.ndarray) -> np.ndarray:
+    """Return the pose and states after a displacement."""
+    there = system.of_body.moved(q, move[: system.n_u])
+    there[system.first_state :] += move[system.n_u :]
+    return there
+
+
+def _derivatives(dynamics: Dynamics, t: float, motion: SteadyMotion, lam: np.ndarray) -> tuple[csc_array, csc_array]:
+    """Return the stiffness -f_q + d(J^T lam)/dq with velocity and inertia terms, and J of the independent equations."""
+    system, state = dynamics.system, dynamics.state
+    state.lam[: system.n_c] = lam
+    state.evaluate("tangent", t)
+    rates = _position_rates(dynamics)
+    stiffness = (sparse_term(dynamics, "G_lam") - sparse_term(dynamics, "f_q")) @ rates
+    if not motion.is_rest:
+        velocity, acceleration = motion.derivatives(dynamics, t, rates)
+        stiffness = stiffness - sparse_term(dynamics, "f_u") @ velocity + diags_array(system.mass) @ acceleration
+    return csc_array(stiffness), sparse_term(dynamics, "J")[np.flatnonzero(system.active)]
+
+
+def sparse_term(dynamics: Dynamics, name: str) -> csc_array:
+    """Return a matrix term of the set ``tangent`` from its last evaluation."""
+    system = dynamics.system
+    term = system.term("tangent", name)
+    axes = TERM_AXES[name]
+    shape = system.extent(axes[0]), system.extent(axes[1])
+    return csc_array((dynamics.state.values["tangent"][term.source], (term.row, term.column)), shape=shape)

@@ -1,0 +1,62 @@
+"""Speeds of a steady motion that forces determine, such as that of a car against drag or of a wheel.
+
+Each replaces a displacement that changes no force: of all bodies along the motion, or of the wheel about its axis.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.sparse import csc_array
+
+from ..dynamics.dynamics import Dynamics
+from .steady_motion import NO_EFFECT, SteadyMotion
+
+
+@dataclass(frozen=True)
+class FoundSpeeds:
+    """Derivatives of the balance of forces and rates of states by the unknown speeds.
+
+    Attributes
+    ----------
+    effect : ndarray, shape (n_u + states, speeds)
+        Negative derivative of the residual by each speed.
+    momentum : ndarray, shape (n_u + states, speeds)
+        Momenta by each speed.
+    held : ndarray, shape (speeds, n_u + states)
+        Displacements fixed in place of the speeds.
+    sizes : ndarray, shape (speeds,)
+        Magnitudes of the speeds, m/s and rad/s.
+    """
+
+    effect: np.ndarray
+    momentum: np.ndarray
+    held: np.ndarray
+    sizes: np.ndarray
+
+
+def with_found_spins(dynamics: Dynamics, motion: SteadyMotion, by_velocity: csc_array) -> SteadyMotion:
+    """Return a motion whose spins are unknown if forces or states, but no rolling constraints, depend on them.
+
+    Parameters
+    ----------
+    dynamics : Dynamics
+    motion : SteadyMotion
+    by_velocity : sparse array, shape (n_u + states, n_u)
+        Derivatives of the forces and of the rates of states.
+    """
+    if motion.is_rest or not len(motion.spinning):
+        return motion
+    effects = abs(by_velocity).max(axis=0).toarray().ravel()
+    depends = effects[motion.spinning] > NO_EFFECT * np.max(effects, initial=0.0)
+    return replace(motion, found=np.flatnonzero(depends & ~motion.told_by_rolling(dynamics)))
+
+
+def found_speeds(dynamics: Dynamics, motion: SteadyMotion, by_velocity: csc_array) -> FoundSpeeds:
+    """Return the derivatives of the balance by the unknown speeds; parameters as for `with_found_spins`."""
+    mass, by = dynamics.system.mass[:, None], motion.by_speeds(dynamics)
+    others = np.zeros((by_velocity.shape[0] - len(by), by.shape[1]))
+    inertia = np.concatenate([mass * (motion.by_move(dynamics) @ by), others])
+    momentum = np.concatenate([mass * by, others])
+    return FoundSpeeds(inertia - by_velocity @ by, momentum, momentum.T, motion.speed_sizes(dynamics.system.size))

@@ -1,0 +1,1 @@
+"""Flexible bodies: finite element models reduced to interface and normal modes."""

@@ -1,0 +1,258 @@
+"""Description of a flexible body: mesh or matrices, material, interfaces and number of modes."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any, Literal, Self
+
+import numpy as np
+from pydantic import Field, ValidationError, ValidationInfo, field_validator, model_validator
+
+from ..errors import InputError
+from ..reading.did_you_mean import did_you_mean
+from ..reading.fields import Described, sentence
+from ..reading.files.quoted import written
+from ..reading.units import si
+from .finite_elements import FiniteElements
+from .interfaces import POINT, Interface
+
+Point = tuple[si.Length, si.Length, si.Length]
+Direction = tuple[si.Number, si.Number, si.Number]
+NEAR = 1e-6
+"""Default distance of nodes from a plane, relative to the size of the body."""
+NOT_CYCLES = re.compile(r"\b(rpm|rad|deg|rev)\b")
+
+
+class Units(Described):
+    """Units of the numbers in the files of a flexible body."""
+
+    length: si.PositiveLength = Field(description="unit of length, such as mm")
+    mass: si.PositiveMass = Field(1.0, description="unit of mass in K and M, such as tonne")
+    time: si.PositiveTime = Field(1.0, description="unit of time in K and M")
+
+
+class Material(Described):
+    """Isotropic, linearly elastic material."""
+
+    E: si.PositivePressure = Field(description="Young's modulus, N/m^2")
+    nu: si.Number = Field(description="Poisson's ratio, above -1 and below 0.5")
+    density: si.PositiveDensity = Field(description="kg/m^3")
+
+    @field_validator("nu")
+    @classmethod
+    def _stable(cls, nu: float) -> float:
+        if not -1 < nu < 0.5:
+            raise ValueError(f"found {nu:g}, expected a Poisson's ratio above -1 and below 0.5")
+        return nu
+
+
+class Matrices(Described):
+    """Files of the matrices of a finite element model."""
+
+    stiffness: str = Field(description="Matrix Market file of K")
+    mass: str = Field(description="Matrix Market file of M")
+    nodes: str = Field(description="text file with x, y and z of one node on each line")
+
+
+class Sphere(Described):
+    """Sphere that selects the nodes within it."""
+
+    center: Point = Field(description="m, in the coordinates of the mesh")
+    radius: si.PositiveLength = Field(description="m")
+
+
+class Plane(Described):
+    """Plane that selects the nodes on it."""
+
+    point: Point = Field(description="a point on it, m, in the coordinates of the mesh")
+    normal: Direction = Field(description="direction across it")
+    within: si.PositiveLength | None = Field(None, description="largest distance of a node, m")
+
+    @field_validator("normal")
+    @classmethod
+    def _not_zero(cls, normal: tuple[float, float, float]) -> tuple[float, float, float]:
+        if not any(normal):
+            raise ValueError("found zero, expected a direction")
+        return normal
+
+
+class InterfaceOfNodes(Described):
+    """Interface: nodes of the body that move with a marker."""
+
+    nodes: tuple[int, ...] | None = Field(None, description="numbers of nodes, from 0 in the order of the file")
+    group: str | None = Field(None, description="named group of nodes of the file")
+    sphere: Sphere | None = Field(None, description="all nodes within a sphere")
+    plane: Plane | None = Field(None, description="all nodes on a plane")
+    type: Literal["rigid", "average", "point"] = Field(
+        "rigid",
+        description="rigid: the nodes are a rigid body (RBE2); average: their mean motion (RBE3); point: one node",
+    )
+    point: Point | None = Field(None, description="reference point, m; the mean of the nodes by default")
+
+    @model_validator(mode="after")
+    def _one_selection(self) -> Self:
+        given = [name for name in ("nodes", "group", "sphere", "plane") if getattr(self, name) is not None]
+        if len(given) != 1:
+            found = " and ".join(given) or "none"
+            raise ValueError(f"found {found} of nodes, group, sphere and plane, expected exactly one of them")
+        return self
+
+    def on(self, name: str, model: FiniteElements) -> Interface:
+        """Return the interface on a model.
+
+        Raises
+        ------
+        InputError
+        """
+        nodes = np.unique(np.asarray(self._selected(name, model), dtype=np.int64))
+        if self.point is not None and self.type == POINT:
+            raise InputError(f"interfaces.{name}.point: found a reference point, expected none for type: point")
+        mean = model.nodes[nodes].mean(axis=0) if len(nodes) else np.zeros(3)
+        return Interface(name, self.type, nodes, mean if self.point is None else np.array(self.point))
+
+    def _selected(self, name: str, model: FiniteElements) -> Any:
+        if self.group is not None:
+            if self.group not in model.groups:
+                listed = ", ".join(model.groups) or "none"
+                near = did_you_mean(self.group, model.groups)
+                raise InputError(
+                    f"interfaces.{name}.group: found no group '{self.group}'{near}, expected one of the file ({listed})"
+                )
+            return model.groups[self.group]
+        if self.sphere is not None:
+            return np.flatnonzero(np.linalg.norm(model.nodes - self.sphere.center, axis=1) <= self.sphere.radius)
+        if self.plane is not None:
+            within = self.plane.within or NEAR * np.ptp(model.nodes, axis=0).max()
+            across = np.array(self.plane.normal) / np.linalg.norm(self.plane.normal)
+            return np.flatnonzero(np.abs((model.nodes - self.plane.point) @ across) <= within)
+        assert self.nodes is not None
+        if self.nodes and not 0 <= min(self.nodes) <= max(self.nodes) < len(model.nodes):
+            raise InputError(
+                f"interfaces.{name}.nodes: found node {max(self.nodes) if min(self.nodes) >= 0 else min(self.nodes)}, "
+                f"expected 0 to {len(model.nodes) - 1}"
+            )
+        return self.nodes
+
+
+class UpTo(Described):
+    """Normal modes up to a frequency."""
+
+    up_to: si.PositiveFrequency = Field(description="highest frequency of a mode with the interfaces held, Hz")
+
+    @field_validator("up_to", mode="before")
+    @classmethod
+    def _cycles(cls, found: Any) -> Any:
+        if isinstance(found, str) and NOT_CYCLES.search(found):
+            raise ValueError(f"found '{found}', expected a frequency in Hz")
+        return found
+
+
+class FlexibleBody(Described):
+    """Flexible body: a finite element model with interfaces, reduced by the Hurty-Craig-Bampton method.
+
+    Parameters
+    ----------
+    mesh : str, optional
+        Mesh of solid elements; it needs a material.
+    matrices : str or mapping, optional
+        NumPy archive with nodes, K and M, or Matrix Market files.
+    units : Units
+        Units of the file.
+    material : Material, optional
+    interfaces : mapping of str to InterfaceOfNodes
+    modes : int or UpTo
+        Normal modes with all interfaces held.
+    mass : float, optional
+        Stated mass, kg, compared with that of the model.
+    """
+
+    mesh: str | None = Field(None, description="file of a mesh of tetrahedra or hexahedra")
+    matrices: str | Matrices | None = Field(None, description="NumPy archive (.npz), or Matrix Market files")
+    units: Units = Field(description="units of the file")
+    material: Material | None = Field(None, description="of a mesh")
+    interfaces: dict[str, InterfaceOfNodes] = Field(default_factory=dict, description="nodes that move with markers")
+    modes: int | UpTo = Field(20, description="number of normal modes, or up_to: a frequency")
+    mass: si.PositiveMass | None = Field(None, description="stated mass, kg, to check units and density")
+
+    @field_validator("modes", mode="before")
+    @classmethod
+    def _count_or_frequency(cls, found: Any, info: ValidationInfo) -> Any:
+        if isinstance(found, dict):
+            try:
+                return UpTo.model_validate(found, context=info.context)
+            except ValidationError as error:
+                raise ValueError(sentence(error)) from None
+        if not isinstance(found, UpTo) and (isinstance(found, bool) or not isinstance(found, int) or found < 0):
+            raise ValueError(f"found {written(found)}, expected a number of modes, or up_to: a frequency")
+        return found
+
+    @model_validator(mode="after")
+    def _complete(self) -> Self:
+        if (self.mesh is None) == (self.matrices is None):
+            found = "both" if self.mesh else "neither"
+            raise ValueError(f"found {found} of 'mesh' and 'matrices', expected exactly one of them")
+        if (self.mesh is None) != (self.material is None):
+            found = "no material" if self.mesh else "a material"
+            raise ValueError(
+                f"found {found}, expected {'E, nu and density for a mesh' if self.mesh else 'none: K and M have it'}"
+            )
+        return self
+
+    @property
+    def files(self) -> tuple[str, ...]:
+        """Names of the files of the body."""
+        if isinstance(self.matrices, Matrices):
+            return self.matrices.stiffness, self.matrices.mass, self.matrices.nodes
+        return (self.mesh or self.matrices or "",)
+
+    def model(self, folder: Path) -> FiniteElements:
+        """Return the checked finite element model.
+
+        Parameters
+        ----------
+        folder : Path
+            Folder of relative file names.
+
+        Raises
+        ------
+        InputError
+        """
+        found = self._read(folder)
+        found.check()
+        return found
+
+    def _read(self, folder: Path) -> FiniteElements:
+        from .matrices import from_archive, from_matrix_market
+
+        units = self.units.length, self.units.mass, self.units.time
+        contents = [content_of_file(folder / name) for name in self.files]
+        try:
+            if isinstance(self.matrices, Matrices):
+                stiffness, mass, nodes = contents
+                return from_matrix_market(stiffness, mass, nodes, *units)
+            if self.matrices is not None:
+                return from_archive(contents[0], *units)
+            from .mesh import from_mesh
+
+            assert self.material is not None
+            return from_mesh(folder / self.files[0], units[0], self.material.E, self.material.nu, self.material.density)
+        except InputError as error:
+            raise InputError(f"{self.files[0]}: {error}") from None
+
+
+def content_of_file(path: Path) -> bytes:
+    """Return the content of a file.
+
+    Raises
+    ------
+    InputError
+    """
+    from ..reading.files.files_read import content_of
+
+    try:
+        return content_of(path)
+    except FileNotFoundError:
+        raise InputError(f"{path}: found no such file, expected a mesh or matrices") from None
+    except (OSError, ValueError) as error:
+        raise InputError(f"{path}: the file cannot be read ({getattr(error, 'strerror', None) or error})") from None

@@ -1,0 +1,125 @@
+"""Finite element model of a free body: node positions, stiffness and mass matrix."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import connected_components
+
+from ..errors import InputError
+
+SYMMETRY = 1e-8
+"""Tolerance of symmetry, relative to the largest entry."""
+RIGID = 1e-6
+"""Largest force of a rigid displacement, relative to the force of a displacement of each node alone."""
+
+
+@dataclass(frozen=True, eq=False)
+class FiniteElements:
+    """Free elastic body in SI units with three displacements per node: x, y, z of node 0, then of node 1.
+
+    Attributes
+    ----------
+    nodes : ndarray, shape (n, 3)
+        Positions, m.
+    stiffness, mass : sparse arrays, shape (3 n, 3 n)
+        N/m and kg.
+    groups : mapping of str to ndarray of int
+        Named sets of nodes, numbered from 0.
+    cells : mapping of str to ndarray of int
+        Nodes of the elements by type, in the names and order of meshio, for pictures; may be empty.
+    """
+
+    nodes: np.ndarray
+    stiffness: csr_array
+    mass: csr_array
+    groups: Mapping[str, np.ndarray] = field(default_factory=dict)
+    cells: Mapping[str, np.ndarray] = field(default_factory=dict)
+
+    def rigid_modes(self, about: np.ndarray) -> np.ndarray:
+        """Return displacements by unit translations and rotations about a point, shape (3 n, 6)."""
+        return rigid_displacements(self.nodes - about)
+
+    def check(self) -> None:
+        """Refuse matrices that do not describe one free elastic body.
+
+        Raises
+        ------
+        InputError
+        """
+        size = 3 * len(self.nodes)
+        for name, matrix in (("stiffness", self.stiffness), ("mass", self.mass)):
+            if matrix.shape != (size, size):
+                raise InputError(
+                    f"{name}: found {matrix.shape[0]} x {matrix.shape[1]} entries for {len(self.nodes)} nodes, "
+                    f"expected {size} x {size}: three displacements per node"
+                )
+            if not np.isfinite(matrix.data).all():
+                raise InputError(f"{name}: found an entry that is not finite, expected numbers")
+            largest = np.abs(matrix.data).max(initial=0.0)
+            if largest == 0:
+                raise InputError(f"{name}: found only zeros, expected the matrix of an elastic body")
+            asymmetry = np.abs((matrix - matrix.T).data).max(initial=0.0)
+            if asymmetry > SYMMETRY * largest:
+                raise InputError(
+                    f"{name}: found entries that differ from those across the diagonal by {asymmetry / largest:.2g} "
+                    "of the largest entry, expected a symmetric matrix"
+                )
+        if not np.isfinite(self.nodes).all():
+            raise InputError("nodes: found a position that is not finite, expected numbers")
+        self._check_parts()
+        self._check_diagonals()
+        self._check_rigid_modes()
+
+    def _check_parts(self) -> None:
+        joined = self.stiffness.tocoo()
+        pairs = csr_array((np.ones(joined.nnz), (joined.row // 3, joined.col // 3)), shape=(len(self.nodes),) * 2)
+        count, part = connected_components(pairs, directed=False)
+        if count > 1:
+            smallest = np.bincount(part).argmin()
+            loose = np.flatnonzero(part == smallest)
+            raise InputError(
+                f"nodes: found {count} parts that are not connected, the smallest with {len(loose)} of "
+                f"{len(self.nodes)} nodes (node {loose[0]}), expected one connected body"
+            )
+
+    def _check_diagonals(self) -> None:
+        for name, matrix in (("stiffness", self.stiffness), ("mass", self.mass)):
+            diagonal = matrix.diagonal()
+            if diagonal.min() < 0 or (name == "stiffness" and diagonal.min() == 0):
+                worst = int(diagonal.argmin())
+                raise InputError(
+                    f"{name}: found {diagonal[worst]:.3g} on the diagonal at node {worst // 3}, "
+                    "expected positive numbers; are its elements inverted?"
+                )
+
+    def _check_rigid_modes(self) -> None:
+        centre = self.nodes.mean(axis=0)
+        size = np.abs(self.nodes - centre).max()
+        if size == 0:
+            raise InputError("nodes: found all nodes at one point, expected a body")
+        rigid = self.rigid_modes(centre)
+        rigid[:, 3:] /= size
+        force = np.abs(self.stiffness @ rigid).max(axis=0) / np.abs(self.stiffness.diagonal()).max()
+        if force.max() > RIGID:
+            motions = [f"{motion} {axis}" for motion in ("translation along", "rotation about") for axis in "xyz"]
+            raise InputError(
+                f"stiffness: found a force of {force.max():.2g} of the largest stiffness under a rigid "
+                f"{motions[int(force.argmax())]}, expected none: the matrix must be that of the free body without "
+                "supports"
+            )
+
+
+def rigid_displacements(points: np.ndarray) -> np.ndarray:
+    """Return displacements of points by unit translations, then rotations about the origin, shape (3 n, 6)."""
+    count = len(points)
+    found = np.zeros((count, 3, 6))
+    found[:, :, :3] = np.eye(3)
+    x, y, z = points.T
+    found[:, 0, 4], found[:, 0, 5] = z, -y
+    found[:, 1, 3], found[:, 1, 5] = -z, x
+    found[:, 2, 3], found[:, 2, 4] = y, -x
+    return found.reshape(3 * count, 6)

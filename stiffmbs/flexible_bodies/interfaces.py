@@ -1,0 +1,84 @@
+"""Interfaces of a flexible body: nodes that move with a marker, rigidly or on average."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import InputError
+from .finite_elements import FiniteElements, rigid_displacements
+
+RIGID, AVERAGE, POINT = "rigid", "average", "point"
+FLAT = 1e-6
+"""Extent across a line of nodes below which an interface has no rotation about it, relative to its length."""
+
+
+@dataclass(frozen=True, eq=False)
+class Interface:
+    """Nodes that a marker holds.
+
+    Attributes
+    ----------
+    name : str
+    kind : str
+        ``rigid``: the nodes move as a rigid body with the marker (RBE2). ``average``: the marker takes the mean
+        displacement and rotation of the nodes (RBE3). ``point``: one node, without a rotation.
+    nodes : ndarray of int
+    point : ndarray, shape (3,)
+        Reference point, m.
+    """
+
+    name: str
+    kind: str
+    nodes: np.ndarray
+    point: np.ndarray
+
+    @property
+    def size(self) -> int:
+        """Number of its coordinates: three displacements, and three rotations unless it is a point."""
+        return 3 if self.kind == POINT else 6
+
+    @property
+    def entries(self) -> np.ndarray:
+        """Displacements of its nodes among those of the body."""
+        return (3 * self.nodes[:, None] + np.arange(3)).ravel()
+
+    def rigid(self, model: FiniteElements) -> np.ndarray:
+        """Return the displacements of its nodes by its coordinates, shape (3 nodes, size)."""
+        return rigid_displacements(model.nodes[self.nodes] - self.point)[:, : self.size]
+
+    def mean(self, model: FiniteElements) -> np.ndarray:
+        """Return its coordinates by the displacements of its nodes in the sense of least squares (RBE3)."""
+        return np.linalg.pinv(self.rigid(model))
+
+
+def check_interfaces(interfaces: list[Interface], model: FiniteElements) -> None:
+    """Refuse interfaces without nodes, of nodes on one line, and rigid interfaces that share nodes.
+
+    Raises
+    ------
+    InputError
+    """
+    owner: dict[int, str] = {}
+    for interface in interfaces:
+        name, nodes = interface.name, interface.nodes
+        if len(nodes) == 0:
+            raise InputError(f"interfaces.{name}: found no node there, expected three or more, or one with type: point")
+        if interface.kind == POINT:
+            if len(nodes) > 1:
+                raise InputError(f"interfaces.{name}: found {len(nodes)} nodes, expected one for type: point")
+        else:
+            extent = np.linalg.svd(model.nodes[nodes] - model.nodes[nodes].mean(axis=0), compute_uv=False)
+            if len(nodes) < 3 or extent[1] <= FLAT * extent[0]:
+                count = f"{len(nodes)} node{'s' if len(nodes) > 1 else ''}{' on one line' if len(nodes) > 1 else ''}"
+                raise InputError(
+                    f"interfaces.{name}: found {count}, expected three or more that are not on one line, "
+                    "or one with type: point"
+                )
+        for node in nodes.tolist():
+            if node in owner:
+                raise InputError(
+                    f"interfaces.{name}: found node {node} of interface '{owner[node]}' too, expected it in one interface"
+                )
+            owner[node] = name

@@ -1,0 +1,134 @@
+"""Finite element models given by matrices: NumPy archives, and Matrix Market files."""
+
+from __future__ import annotations
+
+import io
+import re
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from scipy.io import mmread
+from scipy.sparse import csr_array
+
+from ..errors import InputError
+from .finite_elements import FiniteElements
+
+CELL = re.compile(r"^(tetra|tetra10|hexahedron|hexahedron20|hexahedron27)$|^hex(8|20|27)$|^el$")
+CELL_TYPES = {4: "tetra", 10: "tetra10", 8: "hexahedron", 20: "hexahedron20", 27: "hexahedron27"}
+NODES = ("nodes", "X")
+PARTS = {"data": ("_data", "data"), "indices": ("_indices", "ind"), "indptr": ("_indptr", "ptr")}
+"""Suffixes of the arrays of a sparse matrix by rows (CSR), such as ``K_data``."""
+
+
+def from_archive(content: bytes, length: float, mass: float, time: float) -> FiniteElements:
+    """Return the model of a NumPy archive (.npz).
+
+    Parameters
+    ----------
+    content : bytes
+        Archive with ``nodes`` (n, 3), and ``K`` and ``M``: dense, or sparse by rows as ``K_data``, ``K_indices`` and
+        ``K_indptr``. One-dimensional arrays of integers are groups of nodes, two-dimensional ones elements.
+    length, mass, time : float
+        Units of the file in m, kg and s.
+
+    Raises
+    ------
+    InputError
+    """
+    try:
+        with np.load(io.BytesIO(content), allow_pickle=False) as archive:
+            arrays = dict(archive)
+    except Exception as error:  # of zipfile, zlib and NumPy
+        raise InputError(
+            f"found no NumPy archive ({_line(error)}), expected arrays nodes, K and M (numpy.savez)"
+        ) from None
+    name = next((name for name in NODES if name in arrays), None)
+    if name is None:
+        raise InputError(f"found the arrays {', '.join(arrays) or 'none'}, expected nodes, K and M")
+    stiffness, of_mass = (_sparse(letter, arrays) for letter in "KM")
+    nodes = _positions(arrays[name])
+    used = {name, "K", "M", *(f"{letter}{end}" for letter in "KM" for ends in PARTS.values() for end in ends)}
+    groups, cells = {}, {}
+    for key, array in arrays.items():
+        if key in used or not np.issubdtype(array.dtype, np.integer):
+            continue
+        if array.ndim == 1:
+            groups[key] = _node_numbers(key, array, len(nodes))
+        elif array.ndim == 2 and CELL.match(key) and array.shape[1] in CELL_TYPES:
+            cells[CELL_TYPES[array.shape[1]]] = _node_numbers(key, array, len(nodes))
+    return FiniteElements(nodes * length, stiffness * (mass / time**2), of_mass * mass, groups, cells)
+
+
+def from_matrix_market(
+    stiffness: bytes, mass_matrix: bytes, nodes: bytes, length: float, mass: float, time: float
+) -> FiniteElements:
+    """Return the model of two matrices in Matrix Market files and a text file of node positions, one per line.
+
+    Parameters
+    ----------
+    stiffness, mass_matrix, nodes : bytes
+        Contents of the files.
+    length, mass, time : float
+        Units of the files in m, kg and s.
+
+    Raises
+    ------
+    InputError
+    """
+    matrices = []
+    for name, content in (("stiffness", stiffness), ("mass", mass_matrix)):
+        try:
+            matrices.append(csr_array(mmread(io.BytesIO(content))))
+        except Exception as error:  # the reader raises many types
+            raise InputError(
+                f"{name}: found no Matrix Market file ({_line(error)}), expected one that begins with %%MatrixMarket"
+            ) from None
+    try:
+        text = nodes.decode()
+        positions = np.loadtxt(io.StringIO(text), delimiter="," if "," in text else None, ndmin=2)
+    except ValueError as error:
+        raise InputError(f"nodes: found no table ({_line(error)}), expected lines of x, y and z") from None
+    return FiniteElements(_positions(positions) * length, matrices[0] * (mass / time**2), matrices[1] * mass)
+
+
+def _line(error: Exception) -> str:
+    return (str(error).splitlines() or [type(error).__name__])[0]
+
+
+def _positions(nodes: np.ndarray) -> np.ndarray:
+    if nodes.ndim != 2 or nodes.shape[1] != 3 or len(nodes) < 3 or not np.issubdtype(nodes.dtype, np.number):
+        raise InputError(
+            f"nodes: found an array of shape {nodes.shape}, expected three numbers for each of 3 or more nodes"
+        )
+    return nodes.astype(float)
+
+
+def _node_numbers(key: str, array: np.ndarray, count: int) -> np.ndarray:
+    if array.size and not 0 <= array.min() <= array.max() < count:
+        raise InputError(f"{key}: found node {array.max()} of {count} nodes, expected numbers of nodes from 0")
+    return array.astype(np.int64)
+
+
+def _sparse(letter: str, arrays: Mapping[str, Any]) -> csr_array:
+    """Return matrix K or M of an archive."""
+    try:
+        if letter in arrays:
+            dense = np.atleast_2d(arrays[letter].astype(float))
+            if dense.ndim > 2:
+                raise ValueError(f"{dense.ndim} dimensions")
+            return csr_array(dense)
+        parts = [
+            next(arrays[f"{letter}{end}"] for end in ends if f"{letter}{end}" in arrays) for ends in PARTS.values()
+        ]
+        data, indices, indptr = parts
+        size = len(indptr) - 1
+        found = csr_array((data.astype(float), indices, indptr), shape=(size, size))
+        found.check_format()
+        return found
+    except StopIteration:
+        raise InputError(
+            f"found no array {letter}, expected it dense or as {letter}_data, {letter}_indices and {letter}_indptr"
+        ) from None
+    except (ValueError, TypeError, IndexError) as error:
+        raise InputError(f"{letter}: found no matrix ({_line(error)}), expected one dense or sparse by rows") from None

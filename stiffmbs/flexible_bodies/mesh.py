@@ -1,0 +1,157 @@
+"""Meshes of solid elements, read by meshio and assembled by scikit-fem."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.sparse import csr_array
+from scipy.spatial import cKDTree
+
+from ..errors import InputError, needs
+from .finite_elements import FiniteElements
+
+SOLIDS = {
+    "tetra": ("tetra", "ElementTetP1", 2),
+    "tetra10": ("tetra10", "ElementTetP2", 4),
+    "hexahedron": ("hexahedron", "ElementHex1", 3),
+    "hexahedron20": ("hexahedron", "ElementHexS2", 5),
+    "hexahedron27": ("hexahedron27", "ElementHex2", 5),
+}
+"""Geometry, element of scikit-fem and order of quadrature by element type of meshio."""
+CORNERS = {"tetra": 4, "tetra10": 4, "hexahedron": 8, "hexahedron20": 8, "hexahedron27": 8}
+APART = 1e-6
+"""Largest distance of a node from its place in the element, relative to the size of the body."""
+HARMLESS = {"vertex", "line", "line3", "triangle", "triangle6", "quad", "quad8", "quad9"}
+"""Elements of a mesh that are not solids and are used only as groups."""
+
+
+def from_mesh(path: Path, length: float, modulus: float, poisson: float, density: float) -> FiniteElements:
+    """Return the model of a mesh of tetrahedra or hexahedra of first or second order.
+
+    Parameters
+    ----------
+    path : Path
+        File of a format of meshio: Gmsh, Abaqus, Nastran, VTK.
+    length : float
+        Unit of the mesh, m.
+    modulus, poisson, density : float
+        Young's modulus, N/m^2, Poisson's ratio, and density, kg/m^3.
+
+    Raises
+    ------
+    InputError
+    """
+    mesh = _read(path)
+    kinds = {block.type for block in mesh.cells}
+    solid = kinds & SOLIDS.keys()
+    if len(solid) != 1 or kinds - SOLIDS.keys() - HARMLESS:
+        raise InputError(
+            f"found elements of the types {', '.join(sorted(kinds)) or 'none'}, expected solids of one type of {', '.join(SOLIDS)}"
+        )
+    (kind,) = solid
+    connected = np.vstack([block.data for block in mesh.cells if block.type == kind]).astype(np.int64)
+    used, inverse = np.unique(connected, return_inverse=True)
+    cells = inverse.reshape(connected.shape)
+    nodes = np.asarray(mesh.points, dtype=float)[used] * length
+    if nodes.shape[1] != 3:
+        raise InputError(f"found nodes with {nodes.shape[1]} coordinates, expected x, y and z")
+    _check_volumes(nodes, cells, kind)
+    stiffness, mass = _assembled(nodes, cells, kind, modulus, poisson, density)
+    numbers = np.full(len(mesh.points), -1)
+    numbers[used] = np.arange(len(used))
+    return FiniteElements(nodes, stiffness, mass, _groups(mesh, numbers), {kind: cells})
+
+
+def _read(path: Path) -> Any:
+    with needs("meshio", "flexible"):
+        import meshio
+    try:
+        with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
+            return meshio.read(path)
+    except SystemExit:
+        reason = "unknown format"
+    except Exception as error:  # readers raise many types
+        reason = (str(error).splitlines() or [type(error).__name__])[0]
+    raise InputError(f"found no mesh ({reason}), expected Gmsh .msh, Abaqus .inp, Nastran .bdf, VTK .vtu or .vtk")
+
+
+def _check_volumes(nodes: np.ndarray, cells: np.ndarray, kind: str) -> None:
+    """Refuse inverted and flat elements, by the volume at the corners."""
+    corner = nodes[cells[:, : CORNERS[kind]]]
+    neighbours = ((0, 1, 2, 3),) if CORNERS[kind] == 4 else (
+        (0, 1, 3, 4), (1, 2, 0, 5), (2, 3, 1, 6), (3, 0, 2, 7), (4, 7, 5, 0), (5, 4, 6, 1), (6, 5, 7, 2), (7, 6, 4, 3),
+    )  # fmt: skip
+    for here, *others in neighbours:
+        edges = corner[:, others] - corner[:, [here]]
+        volume = np.linalg.det(edges)
+        scale = np.prod(np.linalg.norm(edges, axis=2), axis=1)
+        bad = np.flatnonzero(volume <= 1e-9 * scale)
+        if len(bad):
+            raise InputError(
+                f"found {len(bad)} inverted or flat elements, the first with nodes "
+                f"{', '.join(map(str, cells[bad[0], : CORNERS[kind]]))}, expected elements of positive volume"
+            )
+
+
+def _assembled(
+    nodes: np.ndarray, cells: np.ndarray, kind: str, modulus: float, poisson: float, density: float
+) -> tuple[csr_array, csr_array]:
+    with needs("skfem", "flexible"):
+        import skfem
+        from skfem.helpers import dot
+        from skfem.io.meshio import from_meshio
+        from skfem.models.elasticity import lame_parameters, linear_elasticity
+    import meshio
+
+    geometry, element, order = SOLIDS[kind]
+    corners = np.unique(cells[:, : CORNERS[kind]])
+    if geometry == kind:
+        mesh = meshio.Mesh(nodes, [(kind, cells)])
+    else:
+        number = np.full(len(nodes), -1)
+        number[corners] = np.arange(len(corners))
+        mesh = meshio.Mesh(nodes[corners], [(geometry, number[cells[:, : CORNERS[kind]]])])
+    with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
+        basis = skfem.Basis(from_meshio(mesh), skfem.ElementVector(getattr(skfem, element)()), intorder=order)
+    distance, node = cKDTree(nodes).query(basis.doflocs.T)
+    if distance.max() > APART * np.ptp(nodes, axis=0).max():
+        raise InputError(
+            f"found a node {distance.max():.3g} m off the straight edge of its element, expected elements of type "
+            f"{kind} with straight edges, or hexahedron27"
+        )
+    component = np.empty(basis.N, dtype=np.int64)
+    component[basis.element_dofs] = (np.arange(len(basis.element_dofs)) % 3)[:, None]
+    place = 3 * node + component
+
+    @skfem.BilinearForm
+    def inertia(u: Any, v: Any, _: Any) -> Any:
+        return density * dot(u, v)
+
+    found = []
+    for form in (linear_elasticity(*lame_parameters(modulus, poisson)), inertia):
+        matrix = form.assemble(basis).tocoo()
+        found.append(csr_array((matrix.data, (place[matrix.row], place[matrix.col])), shape=(3 * len(nodes),) * 2))
+    return found[0], found[1]
+
+
+def _groups(mesh: Any, numbers: np.ndarray) -> dict[str, np.ndarray]:
+    """Return the named groups of nodes: sets of points, and nodes of sets or physical groups of elements."""
+    found: dict[str, list[np.ndarray]] = {}
+    for name, points in mesh.point_sets.items():
+        found.setdefault(name, []).append(np.asarray(points, dtype=np.int64))
+    for name, of_blocks in mesh.cell_sets.items():
+        for block, members in zip(mesh.cells, of_blocks, strict=False):
+            if members is not None and len(members):
+                found.setdefault(name, []).append(np.unique(block.data[members]))
+    physical = mesh.cell_data.get("gmsh:physical")
+    for name, (tag, dimension) in mesh.field_data.items() if physical is not None else ():
+        for block, tags in zip(mesh.cells, physical, strict=True):
+            members = np.flatnonzero(tags == tag)
+            if len(members) and block.dim == dimension:
+                found.setdefault(name, []).append(np.unique(block.data[members]))
+    groups = {name: numbers[np.unique(np.concatenate(parts))] for name, parts in found.items()}
+    return {name: nodes[nodes >= 0] for name, nodes in groups.items()}

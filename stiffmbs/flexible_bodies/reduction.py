@@ -1,0 +1,260 @@
+"""Hurty-Craig-Bampton reduction of a finite element model.
+
+Interface coordinates and the lowest normal modes with the interfaces held span the displacements (Craig & Bampton,
+AIAA Journal 6(7), 1968). The modes of the reduced body exclude its rigid motions. They are orthogonal to these in the
+sense of the mass matrix. The frame is therefore the linear Tisserand (mean axes) frame (Zwoelfer & Gerstmayr,
+Multibody System Dynamics 51, 2021).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import block_diag, eigh, null_space
+
+from ..errors import InputError
+from .finite_elements import FiniteElements, rigid_displacements
+from .interfaces import Interface, check_interfaces
+from .static_solver import StaticSolver
+
+DEPENDENT = 1e-10
+"""Eigenvalue of the mass matrix of unit-mass modes below which a combination of modes is dependent and left out."""
+HELD = 1e-10
+"""Singular value below which an equation of a held interface is dependent, relative to the largest."""
+ZERO = 10.0
+"""Frequency of the lowest elastic mode that is refused as zero, relative to the highest of the rigid modes."""
+SAME_IN_ALL = 1e-6
+"""Tolerance of the mass along x, y and z, relative to it."""
+MORE_MODES = 20
+"""Modes of the first search up to a frequency, doubled until one is above it."""
+
+
+@dataclass(frozen=True, eq=False)
+class ReducedBody:
+    """Flexible body with modal coordinates in its mean-axes frame at the centre of mass, SI units.
+
+    Attributes
+    ----------
+    mass : float
+    centre : ndarray, shape (3,)
+        Centre of mass in the coordinates of the mesh.
+    inertia : ndarray, shape (3, 3)
+        About the centre of mass, in the axes of the mesh.
+    frequencies : ndarray, shape (n,)
+        Natural frequencies of the free reduced body, Hz, without the six rigid modes.
+    modes : ndarray, shape (3 nodes, n)
+        Displacements of these modes with unit modal mass.
+    rigid_frequencies : ndarray, shape (6,)
+        Computed frequencies of the rigid modes, Hz: zero but for rounding.
+    fixed_frequencies : ndarray, shape (m,)
+        Natural frequencies with all interfaces held, Hz.
+    effective_mass : ndarray, shape (m, 3)
+        Effective mass of these along x, y and z, as fraction of the mass.
+    condition : float
+        Condition number of the mass matrix of interface and normal modes of unit mass.
+    markers : ndarray, shape (interfaces, 6, n)
+        Displacement and rotation of each interface's reference point by mode; zero rotations of points.
+    points : ndarray, shape (interfaces, 3)
+        Reference points in the coordinates of the mesh.
+    sizes : ndarray of int, shape (interfaces,)
+        Number of coordinates of each interface, 6 or 3.
+    first : ndarray, shape (n, 3)
+        First moments of mass of the modes, sum m psi_k; zero in the mean-axes frame but for rounding.
+    second : ndarray, shape (n, 3, 3)
+        sum m x psi_k^T, x from the centre of mass.
+    pairs : ndarray, shape (n, n, 3, 3)
+        sum m psi_l psi_k^T by l and k.
+    dependent : int
+        Number of combinations of modes left out as linearly dependent.
+    """
+
+    mass: float
+    centre: np.ndarray
+    inertia: np.ndarray
+    frequencies: np.ndarray
+    modes: np.ndarray
+    rigid_frequencies: np.ndarray
+    fixed_frequencies: np.ndarray
+    effective_mass: np.ndarray
+    condition: float
+    markers: np.ndarray
+    points: np.ndarray
+    sizes: np.ndarray
+    first: np.ndarray
+    second: np.ndarray
+    pairs: np.ndarray
+    dependent: int
+
+    def held_frequencies(self, held: Sequence[int]) -> np.ndarray:
+        """Return the natural frequencies with some interfaces held, Hz.
+
+        Parameters
+        ----------
+        held : sequence of int
+            Numbers of the interfaces.
+        """
+        rows = []
+        for k in held:
+            size = self.sizes[k]
+            of_rigid = np.vstack([rigid_displacements((self.points[k] - self.centre)[None]), np.eye(6)[3:]])
+            rows.append(np.hstack([of_rigid, self.markers[k]])[:size])
+        free = null_space(np.vstack([np.empty((0, 6 + len(self.frequencies))), *rows]), rcond=HELD)
+        mass = block_diag(self.mass * np.eye(3), self.inertia, np.eye(len(self.frequencies)))
+        stiffness = np.append(np.zeros(6), (2 * np.pi * self.frequencies) ** 2)
+        squares = eigh(free.T @ (stiffness[:, None] * free), free.T @ mass @ free, eigvals_only=True)
+        return np.sqrt(np.maximum(squares, 0.0)) / (2 * np.pi)
+
+
+def reduce(
+    model: FiniteElements, interfaces: Sequence[Interface], count: int | None, highest: float | None = None
+) -> ReducedBody:
+    """Reduce a model to its interfaces and normal modes.
+
+    Parameters
+    ----------
+    model : FiniteElements
+    interfaces : sequence of Interface
+    count : int, optional
+        Number of normal modes with all interfaces held.
+    highest : float, optional
+        Frequency up to which these are kept, Hz, without a count.
+
+    Raises
+    ------
+    InputError
+    """
+    check_interfaces(list(interfaces), model)
+    mass, centre, inertia = rigid_body(model)
+    rigid = model.rigid_modes(centre)
+    by_rigid = model.mass @ rigid
+    solver = StaticSolver(model, interfaces, _missing_supports(model, interfaces, rigid, by_rigid))
+    squares, normal = _normal_modes(solver, count, highest)
+    static = solver.static_modes()
+    if not _holds(model, interfaces, rigid):
+        static = np.hstack([static, rigid])
+    shapes = np.hstack([static, normal])
+    shapes /= np.sqrt(np.einsum("ij,ij->j", shapes, model.mass @ shapes))
+    basis, condition = _independent(shapes, model)
+    participation = (normal.T @ by_rigid)[:, :3]
+    frequencies, modes = _free_modes(model, basis, rigid, by_rigid)
+    zeros = _rigid_frequencies(model, basis)
+    if len(frequencies) and frequencies[0] < ZERO * zeros.max():
+        raise InputError(
+            f"stiffness: found a seventh frequency of {frequencies[0]:.2g} Hz with six of up to {zeros.max():.2g} Hz, "
+            "expected six zero frequencies: a part of the body moves freely"
+        )
+    return ReducedBody(
+        mass, centre, inertia, frequencies, modes, zeros, np.sqrt(squares) / (2 * np.pi),
+        participation**2 / mass, condition, _marker_modes(model, interfaces, modes),
+        np.array([interface.point for interface in interfaces]).reshape(-1, 3),
+        np.array([interface.size for interface in interfaces], dtype=int),
+        *_moments(model, centre, modes), shapes.shape[1] - basis.shape[1],
+    )  # fmt: skip
+
+
+def rigid_body(model: FiniteElements) -> tuple[float, np.ndarray, np.ndarray]:
+    """Return mass, centre of mass and inertia about it of a model, from its mass matrix.
+
+    Raises
+    ------
+    InputError
+        If the mass is not the same along x, y and z.
+    """
+    about = model.nodes.mean(axis=0)
+    rigid = model.rigid_modes(about)
+    block = rigid.T @ (model.mass @ rigid)
+    mass = float(np.trace(block[:3, :3])) / 3
+    if mass <= 0 or np.abs(block[:3, :3] - mass * np.eye(3)).max() > SAME_IN_ALL * mass:
+        along = ", ".join(f"{part:.6g}" for part in np.diagonal(block[:3, :3]))
+        raise InputError(f"mass: found {along} kg along x, y and z, expected one positive mass")
+    first = block[3:, :3]  # m times the cross-product matrix of the centre
+    offset = np.array([first[2, 1], first[0, 2], first[1, 0]]) / mass
+    inertia = block[3:, 3:] - mass * (offset @ offset * np.eye(3) - np.outer(offset, offset))
+    return mass, about + offset, (inertia + inertia.T) / 2
+
+
+def _coordinates(model: FiniteElements, interfaces: Sequence[Interface], shapes: np.ndarray) -> list[np.ndarray]:
+    return [interface.mean(model) @ shapes[interface.entries] for interface in interfaces]
+
+
+def _holds(model: FiniteElements, interfaces: Sequence[Interface], rigid: np.ndarray) -> bool:
+    """Return True if held interfaces leave the body no rigid motion."""
+    size = np.ptp(model.nodes, axis=0).max()
+    scale = np.array([1.0] * 3 + [1 / size] * 3)
+    held = [
+        part[: interface.size] * scale
+        for interface, part in zip(interfaces, _coordinates(model, interfaces, rigid), strict=True)
+    ]
+    return len(held) > 0 and np.linalg.matrix_rank(np.vstack(held), tol=1e-6) == 6
+
+
+def _missing_supports(
+    model: FiniteElements, interfaces: Sequence[Interface], rigid: np.ndarray, by_rigid: np.ndarray
+) -> np.ndarray:
+    """Return functionals that hold the mean motion of a body that its interfaces do not hold, shape (3 n, 0 or 6)."""
+    if _holds(model, interfaces, rigid):
+        return np.empty((len(rigid), 0))
+    return by_rigid / np.sqrt(np.einsum("ij,ij->j", rigid, by_rigid)) / np.sqrt(model.mass.diagonal().max())
+
+
+def _normal_modes(solver: StaticSolver, count: int | None, highest: float | None) -> tuple[np.ndarray, np.ndarray]:
+    if count is not None:
+        return solver.normal_modes(count)
+    assert highest is not None
+    tried = MORE_MODES
+    while True:
+        squares, shapes = solver.normal_modes(tried)
+        kept = int(np.searchsorted(squares, (2 * np.pi * highest) ** 2, side="right"))
+        if kept < len(squares):
+            return squares[:kept], shapes[:, :kept]
+        tried *= 2
+
+
+def _independent(shapes: np.ndarray, model: FiniteElements) -> tuple[np.ndarray, float]:
+    """Return orthonormal combinations of unit-mass modes, and the condition number of their mass matrix."""
+    values, vectors = eigh(shapes.T @ (model.mass @ shapes))
+    kept = values > DEPENDENT * values[-1]
+    condition = float(values[-1] / values[0]) if values[0] > 0 else np.inf
+    return shapes @ (vectors[:, kept] / np.sqrt(values[kept])), condition
+
+
+def _free_modes(
+    model: FiniteElements, basis: np.ndarray, rigid: np.ndarray, by_rigid: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return frequencies (Hz) and unit-mass modes in the part of a basis that is orthogonal to rigid motions."""
+    size = np.sqrt(np.einsum("ij,ij->j", rigid, by_rigid))
+    orthogonal = basis @ null_space((by_rigid / size).T @ basis, rcond=1e-6)
+    orthogonal -= rigid @ np.linalg.solve(rigid.T @ by_rigid, by_rigid.T @ orthogonal)  # rounding of the null space
+    stiffness = orthogonal.T @ (model.stiffness @ orthogonal)
+    squares, vectors = eigh(stiffness, orthogonal.T @ (model.mass @ orthogonal))
+    return np.sqrt(np.maximum(squares, 0.0)) / (2 * np.pi), orthogonal @ vectors
+
+
+def _rigid_frequencies(model: FiniteElements, basis: np.ndarray) -> np.ndarray:
+    """Return the six lowest frequencies of the reduced body with its rigid motions, Hz."""
+    squares = eigh(basis.T @ (model.stiffness @ basis), basis.T @ (model.mass @ basis), eigvals_only=True)
+    return np.sqrt(np.abs(squares[:6])) / (2 * np.pi)
+
+
+def _marker_modes(model: FiniteElements, interfaces: Sequence[Interface], modes: np.ndarray) -> np.ndarray:
+    found = np.zeros((len(interfaces), 6, modes.shape[1]))
+    for own, part in zip(found, _coordinates(model, interfaces, modes), strict=True):
+        own[: len(part)] = part
+    return found
+
+
+def _moments(model: FiniteElements, centre: np.ndarray, modes: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return first moments, moments with the position, and moments of pairs of modes by their nodes' masses."""
+    count, n = len(model.nodes), modes.shape[1]
+    by_mass = (model.mass @ modes).reshape(count, 3, n)
+    points = model.nodes - centre
+    between = model.mass[::3, ::3]
+    shapes = modes.reshape(count, 3, n)
+    weighted = (between @ shapes.reshape(count, 3 * n)).reshape(count, 3, n)
+    return (
+        by_mass.sum(axis=0).T,
+        np.einsum("ia,ibk->kab", points, by_mass),
+        np.einsum("ial,ibk->lkab", shapes, weighted, optimize=True),
+    )

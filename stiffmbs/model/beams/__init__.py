@@ -1,0 +1,1 @@
+"""Beams: line bodies that stand for rigid nodes joined by elastic elements."""

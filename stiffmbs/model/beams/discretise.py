@@ -1,0 +1,231 @@
+"""Nodes and elements of a beam."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from .axis import Piece, frame, upward
+from .rigid_motion import logarithm
+from .section import Material, Section
+from .stiffness import element_stiffness, node_weights
+
+LARGEST_ROTATION = 3.0
+"""Largest rotation between the ends of an unloaded element, rad."""
+SAME = 1e-12
+"""Tolerance of the places of stations, relative to the length."""
+Z = np.array([0.0, 0.0, 1.0])
+
+
+@dataclass
+class Node:
+    """Rigid node of a beam.
+
+    Attributes
+    ----------
+    name : str
+        After the beam's name and a dot.
+    s : float
+        Distance from the start, m.
+    share : float
+        Length of the beam that is lumped at the node, m.
+    point : ndarray
+        m.
+    axes : ndarray
+        Rotation matrix of the section's axes; at a corner those of the piece before it.
+    mass : float
+        kg.
+    inertia : ndarray
+        In the node's axes, kg m^2.
+    """
+
+    name: str
+    s: float
+    point: np.ndarray
+    axes: np.ndarray
+    share: float = 0.0
+    mass: float = 0.0
+    inertia: np.ndarray = field(default_factory=lambda: np.zeros((3, 3)))
+
+    def lump(self, share: float, mass: float, inertia: np.ndarray, axes: np.ndarray) -> None:
+        """Add the mass of a length of the beam whose inertia per length is given along its axes."""
+        R = self.axes.T @ axes
+        self.share += share
+        self.mass += share * mass
+        self.inertia = self.inertia + share * R @ np.diag(inertia) @ R.T
+
+
+@dataclass(frozen=True)
+class Element:
+    """Elastic element between two nodes.
+
+    Attributes
+    ----------
+    first, second : Node
+    turned : ndarray
+        Rotation matrix of the element's axes at its first node against the node's axes, other than the identity after a
+        corner.
+    length : float
+        m.
+    unloaded : ndarray
+        Strain without load, shape (6,).
+    stiffness : ndarray
+        Shape (6, 6).
+    """
+
+    first: Node
+    second: Node
+    turned: np.ndarray
+    length: float
+    unloaded: np.ndarray
+    stiffness: np.ndarray
+
+
+@dataclass(frozen=True)
+class Line:
+    """Nodes and elements of a beam, in order."""
+
+    nodes: list[Node]
+    elements: list[Element]
+
+
+@dataclass(frozen=True)
+class Constants:
+    """Constants of the cross sections along a beam.
+
+    Attributes
+    ----------
+    ends : tuple
+        Stiffness, shape (6,), mass per length, and inertia per length, shape (3,), or sections at both ends.
+    """
+
+    beam: Any
+    length: float
+
+    def at(self, s: float) -> tuple[np.ndarray, float, np.ndarray]:
+        """Return stiffness, shape (6,), mass per length and inertia per length, shape (3,)."""
+        beam = self.beam
+        if beam.section is None:
+            return _direct(beam)
+        section = _between(beam.section, beam.section_end, s / self.length)
+        return _of_section(section, beam.material)
+
+
+def _direct(beam: Any) -> tuple[np.ndarray, float, np.ndarray]:
+    given, inertia = np.array(beam.stiffness, dtype=float), beam.inertia_per_length
+    if len(given) == 6:
+        return given, beam.mass_per_length, np.array(inertia, dtype=float)
+    EA, GA, EI = given
+    return np.array([EA, GA, GA, EI, EI, EI]), beam.mass_per_length, np.array([2 * inertia, inertia, inertia])
+
+
+def _between(start: Section, end: Section | None, share: float) -> Section:
+    """Return the section at a fraction of the length, with linearly interpolated numbers."""
+    if end is None:
+        return start
+    numbers = {
+        name: (1 - share) * a + share * getattr(end, name)
+        for name in type(start).model_fields
+        if isinstance(a := getattr(start, name), float) and getattr(end, name) is not None
+    }
+    return start.model_copy(update=numbers)
+
+
+def _of_section(section: Section, material: Material) -> tuple[np.ndarray, float, np.ndarray]:
+    of, E, G, rho = section.properties(material.nu), material.E, material.G, material.density
+    stiffness = np.array([E * of.A, of.shear2 * G * of.A, of.shear3 * G * of.A, G * of.J, E * of.I2, E * of.I3])
+    return stiffness, rho * of.A, rho * np.array([of.I2 + of.I3, of.I2, of.I3])
+
+
+def discretise(beam: Any) -> Line:
+    """Return the nodes and elements of a beam.
+
+    The elements are distributed over the smooth intervals between ends, corners and stations by length, at least one in
+    each. In the plane the height of a section is in the plane, so axes 2 and 3 change places.
+
+    Raises
+    ------
+    ValueError
+        If a station is beyond the beam, or an element turns by more than half a turn.
+    """
+    pieces, planar = beam.pieces(), beam.dimensions == 2
+    total = sum(piece.length for piece in pieces)
+    constants = Constants(beam, total)
+    nodes: list[Node] = []
+    elements: list[Element] = []
+    intervals = list(_intervals(pieces, beam.stations, total))
+    counts = _counts([b - a for _, _, a, b in intervals], int(beam.elements))
+    for (piece, first, a, b), count in zip(intervals, counts, strict=True):
+        up = Z if planar else upward(piece) if beam.up is None else np.array(beam.up, dtype=float)
+        _add_interval(nodes, elements, (piece, first), np.linspace(a, b, count + 1), constants, up, planar)
+    at = {round(s / total, 12): name for name, s in beam.stations.items()}
+    for k, node in enumerate(nodes):
+        node.name = at.get(round(node.s / total, 12), f"node{k}")
+    nodes[0].name, nodes[-1].name = "start", "end"
+    return Line(nodes, elements)
+
+
+def _intervals(
+    pieces: list[Piece], stations: dict[str, float], total: float
+) -> Iterator[tuple[Piece, float, float, float]]:
+    """Yield each smooth interval: its piece, where that starts, and both ends of the interval, m along the axis."""
+    for name, s in stations.items():
+        if s >= total * (1 - SAME):
+            raise ValueError(f"stations.{name}: found {s:g} m, expected less than the length of {total:g} m")
+    first = 0.0
+    for piece in pieces:
+        last = first + piece.length
+        inside = sorted(s for s in stations.values() if first + SAME * total < s < last - SAME * total)
+        for a, b in pairwise([first, *dict.fromkeys(inside), last]):
+            yield piece, first, a, b
+        first = last
+
+
+def _counts(lengths: list[float], wanted: int) -> list[int]:
+    """Distribute a number of elements over lengths, at least one each; the total is at least the wanted one."""
+    counts = [1] * len(lengths)
+    while sum(counts) < wanted:
+        coarsest = max(range(len(lengths)), key=lambda k: lengths[k] / counts[k])
+        counts[coarsest] += 1
+    return counts
+
+
+def _add_interval(
+    nodes: list[Node], elements: list[Element], placed: tuple[Piece, float], where: np.ndarray, constants: Constants,
+    up: np.ndarray, planar: bool,
+) -> None:  # fmt: skip
+    piece, first = placed
+    poses = []
+    for s in where:
+        point, tangent = piece.at(s - first)
+        try:
+            poses.append((point, frame(tangent, up)))
+        except ValueError as error:
+            raise ValueError(f"up: {error}") from None
+    if not nodes:
+        nodes.append(Node("", float(where[0]), *poses[0]))
+    start = len(nodes) - 1
+    nodes += [Node("", float(s), *pose) for s, pose in zip(where[1:], poses[1:], strict=True)]
+    spacing = float(where[1] - where[0])
+    for k, weight in enumerate(node_weights(len(where) - 1)):
+        _, mass, inertia = constants.at(float(where[k]))
+        nodes[start + k].lump(float(weight) * spacing, mass, inertia, poses[k][1])
+    for k in range(len(where) - 1):
+        (a, A), (b, B) = poses[k], poses[k + 1]
+        screw = logarithm(A.T @ (b - a), A.T @ B)
+        length = float(np.linalg.norm(screw[:3]))
+        if np.linalg.norm(screw[3:]) > LARGEST_ROTATION or length < spacing / 2:
+            raise ValueError("elements: found an element that turns by half a turn, expected more elements")
+        unloaded = np.where(np.abs(screw) < 1e-14 * length, 0.0, screw) / length
+
+        def section(share: float, from_: float = float(where[k]), planar: bool = planar) -> np.ndarray:
+            K = constants.at(from_ + share * spacing)[0]
+            return K[[0, 2, 1, 3, 5, 4]] if planar else K
+
+        found = element_stiffness(unloaded, length, section)
+        turned = nodes[start + k].axes.T @ A
+        elements.append(Element(nodes[start + k], nodes[start + k + 1], turned, length, unloaded, found))

@@ -1,0 +1,47 @@
+"""Beams among the entries of scenes and parts; the code of beams is imported only if there are any."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+LOAD = "distributed_load"
+"""Type of the loads on beams among the forces."""
+
+
+def with_beams(
+    sections: dict[str, Any], parameters: Mapping[str, Any], dimensions: Any = None, part: str = ""
+) -> dict[str, Any]:
+    """Return the sections of a scene or part with beams replaced by their nodes and elements.
+
+    Parameters
+    ----------
+    sections : mapping
+        As written, with repeated entries expanded.
+    parameters : mapping of str to Quantity
+    dimensions : int, optional
+        By default those that the sections contain.
+    part : str
+        Path of a part, followed by a dot, for messages.
+
+    Raises
+    ------
+    InputError
+        If a beam cannot be read, or one of its names is taken.
+    """
+    bodies, forces = sections.get("bodies"), sections.get("forces")
+    if not (_any(bodies, lambda kind: True) or _any(forces, lambda kind: kind == LOAD)):
+        return sections
+    from .expand import expand_beams
+
+    if not isinstance(bodies, dict | None):
+        return sections
+    chosen = sections.get("dimensions", 2) if dimensions is None else dimensions
+    found, forces = expand_beams(bodies or {}, forces, parameters, chosen, f"{part}bodies")
+    return {**sections, "bodies": found, "forces": forces}
+
+
+def _any(section: Any, fits: Callable[[Any], bool]) -> bool:
+    """Return True if a section has an entry with a type that fits."""
+    entries = section.values() if isinstance(section, dict) else ()
+    return any(isinstance(entry, dict) and "type" in entry and fits(entry["type"]) for entry in entries)

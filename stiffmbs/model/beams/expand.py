@@ -1,0 +1,130 @@
+"""Expansion of the beams of a scene into bodies and forces, before validation."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from pydantic import ValidationError as PydanticError
+
+from ...elements.body import FLEXIBLE, check_names
+from ...errors import InputError
+from ...reading.did_you_mean import did_you_mean
+from ...reading.fields import sentence
+from ...reading.files.quoted import quoted
+from ..model_data import RESERVED
+from .beam import Beam
+from .discretise import Line
+from .expanded import expanded
+from .loads import DistributedLoad, node_forces
+from .planar import BeamBody as PlanarBeam
+from .spatial import BeamBody as SpatialBeam
+
+BEAM = "beam"
+
+
+def expand_beams(
+    bodies: dict[str, Any], forces: Any, parameters: Mapping[str, Any], dimensions: Any, where: str
+) -> tuple[Any, Any]:
+    """Replace the beams among the bodies of a scene or part by their nodes and elements.
+
+    Parameters
+    ----------
+    bodies, forces : mappings of names to entries
+        As written, with repeated entries expanded.
+    parameters : mapping of str to Quantity
+    dimensions : int
+    where : str
+        Path of the bodies for messages.
+
+    Raises
+    ------
+    InputError
+        If a beam cannot be read, or one of its names is taken.
+    """
+    found: dict[Any, Any] = {}
+    added: dict[Any, Any] = {}
+    lines: dict[str, Line] = {}
+    for name, entry in bodies.items():
+        if not (isinstance(entry, dict) and entry.get("type", FLEXIBLE) != FLEXIBLE):
+            found[name] = entry
+            continue
+        _check_name(name, f"{where}.{name}")
+        beam = read_beam(entry, parameters, dimensions, f"{where}.{name}")
+        try:
+            made = expanded(str(name), beam)
+        except ValueError as error:
+            raise InputError(f"{where}.{name}.{error}") from None
+        taken = next((full for full in made.bodies if full in bodies), None)
+        if taken is not None:
+            raise InputError(f"{where}.{taken}: found a name that the beam '{name}' makes too, expected another")
+        found |= made.bodies
+        added |= made.forces
+        lines[str(name)] = made.line
+    if not (forces is None or isinstance(forces, dict)):
+        return found, forces
+    for name, entry in (forces or {}).items():
+        if name in added:
+            raise InputError(f"forces.{name}: found a name that a beam makes too, expected another")
+        added |= _loads(name, entry, lines, f"{where.removesuffix('bodies')}forces.{name}")
+    return found, added
+
+
+def _check_name(name: Any, where: str) -> None:
+    try:
+        check_names([name], "entry")
+    except ValueError as error:
+        raise InputError(f"{where.rpartition('.')[0]}: {error}") from None
+    if name in RESERVED:
+        raise InputError(f"{where}: found the name '{name}', which is reserved, expected another")
+
+
+def _loads(name: str, entry: Any, lines: Mapping[str, Line], where: str) -> dict[str, Any]:
+    """Return the forces of a distributed load; other forces as they are."""
+    if not (isinstance(entry, dict) and entry.get("type") == DistributedLoad.model_fields["type"].default):
+        return {name: entry}
+    try:
+        load = DistributedLoad.model_validate(entry)
+    except PydanticError as error:
+        raise InputError(f"{where}.{sentence(error)}") from None
+    return node_forces(name, load, lines, where)
+
+
+def read_beam(entry: Mapping[str, Any], parameters: Mapping[str, Any], dimensions: Any, where: str) -> Beam:
+    """Return the beam of an entry.
+
+    Raises
+    ------
+    InputError
+        If it has another type, or cannot be read.
+    """
+    kind = entry["type"]
+    if kind != BEAM:
+        near = did_you_mean(kind, [BEAM, FLEXIBLE]) if isinstance(kind, str) else ""
+        raise InputError(
+            f"{where}.type: found '{quoted(kind)}'{near}, expected {BEAM}, {FLEXIBLE}, or no type for a rigid body"
+        )
+    try:
+        return (SpatialBeam if dimensions == 3 else PlanarBeam).model_validate(
+            entry, context={"parameters": parameters}
+        )
+    except PydanticError as error:
+        if dimensions != 3 and _right_in_space(entry, parameters):
+            raise InputError("dimensions: found none, expected 3 for beams in space") from None
+        text = sentence(error)
+        raise InputError(f"{where}{'.' if _begins_with_key(text) else ': '}{text}") from None
+
+
+def _right_in_space(entry: Mapping[str, Any], parameters: Mapping[str, Any]) -> bool:
+    """Return True if an entry that is invalid in the plane is valid in space."""
+    try:
+        SpatialBeam.model_validate(entry, context={"parameters": parameters})
+    except PydanticError:
+        return False
+    return True
+
+
+def _begins_with_key(text: str) -> bool:
+    """Return True if a message starts with the path of a field."""
+    key, colon, _ = text.partition(":")
+    return bool(colon) and " " not in key

@@ -1,0 +1,107 @@
+"""Rigid bodies and elastic elements that stand for a beam, as entries of a scene."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ...elements.spatial.orientation import IDENTITY, from_matrix
+from .discretise import Element, Line, Node, discretise
+
+GROUND_AXES = "ground_axes"
+"""Marker of each node with axes parallel to those of the scene or part, for joints to bodies with such axes."""
+IN_PLANE = [0, 1, 5]
+"""Components of strain in the plane."""
+
+
+@dataclass(frozen=True)
+class Expanded:
+    """Bodies and forces that stand for a beam, as entries of a scene, and its nodes and elements."""
+
+    bodies: dict[str, Any]
+    forces: dict[str, Any]
+    line: Line
+
+
+def expanded(name: str, beam: Any) -> Expanded:
+    """Return the bodies and forces that stand for a beam.
+
+    Raises
+    ------
+    ValueError
+        As for `discretise`.
+    """
+    line = discretise(beam)
+    planar = beam.dimensions == 2
+    neighbours = _neighbours(line)
+    body = _planar_body if planar else _spatial_body
+    force = _planar_force if planar else _spatial_force
+    bodies = {
+        f"{name}.{node.name}": body(node, beam, line.nodes[0], neighbours[k]) for k, node in enumerate(line.nodes)
+    }
+    forces = {f"{name}.element{k + 1}": force(name, element, beam) for k, element in enumerate(line.elements)}
+    return Expanded(bodies, forces, line)
+
+
+def _neighbours(line: Line) -> list[list[np.ndarray]]:
+    """Return for each node the points from half way to its neighbours, in its axes, for drawings."""
+    points = [node.point for node in line.nodes]
+    half = [(a + b) / 2 for a, b in itertools.pairwise(points)]
+    ways = [[*half[max(k - 1, 0) : k], point, *half[k : k + 1]] for k, point in enumerate(points)]
+    return [[node.axes.T @ (p - node.point) for p in way] for node, way in zip(line.nodes, ways, strict=True)]
+
+
+def _numbers(vector: Any) -> list[float]:
+    return [float(part) for part in vector]
+
+
+def _planar_body(node: Node, beam: Any, start: Node, shape: list[np.ndarray]) -> dict[str, Any]:
+    arm = node.point - start.point
+    return {
+        "mass": node.mass, "inertia": float(node.inertia[2, 2]), "position": _numbers(node.point[:2]),
+        "angle": _angle(node.axes), "markers": {GROUND_AXES: {"angle": -_angle(node.axes)}}, "omega": beam.omega,
+        "velocity": [beam.velocity[0] - beam.omega * float(arm[1]), beam.velocity[1] + beam.omega * float(arm[0])],
+        "geometry": {"type": "polyline", "points": [_numbers(p[:2]) for p in shape]},
+    }  # fmt: skip
+
+
+def _spatial_body(node: Node, beam: Any, start: Node, shape: list[np.ndarray]) -> dict[str, Any]:
+    omega = np.array(beam.omega)
+    velocity = np.array(beam.velocity) + np.cross(omega, node.point - start.point)
+    return {
+        "mass": node.mass, "inertia": [_numbers(row) for row in (node.inertia + node.inertia.T) / 2],
+        "position": _numbers(node.point), "orientation": list(from_matrix(node.axes)),
+        "markers": {GROUND_AXES: {"orientation": list(from_matrix(node.axes.T))}},
+        "velocity": _numbers(velocity), "omega": _numbers(node.axes.T @ omega),
+        "geometry": {"type": "polyline", "points": [_numbers(p) for p in shape]},
+    }  # fmt: skip
+
+
+def _angle(axes: np.ndarray) -> float:
+    return float(np.arctan2(axes[1, 0], axes[0, 0]))
+
+
+def _common(element: Element, beam: Any, components: list[int]) -> dict[str, Any]:
+    K = element.stiffness[np.ix_(components, components)]
+    return {
+        "type": "exact_beam", "length": element.length, "unloaded": _numbers(element.unloaded[components]),
+        "stiffness": [[float(part) or None for part in row] for row in K],
+        **({"damping_ratio": beam.damping} if beam.damping else {}),
+    }  # fmt: skip
+
+
+def _planar_force(name: str, element: Element, beam: Any) -> dict[str, Any]:
+    first = {"body": f"{name}.{element.first.name}", "angle": _angle(element.turned)}
+    return {**_common(element, beam, IN_PLANE), "i": {"body": f"{name}.{element.second.name}"}, "j": first}
+
+
+def _spatial_force(name: str, element: Element, beam: Any) -> dict[str, Any]:
+    turned = np.allclose(element.turned, np.eye(3), rtol=0, atol=1e-14)
+    first = {
+        "body": f"{name}.{element.first.name}",
+        "orientation": list(IDENTITY if turned else from_matrix(element.turned)),
+    }
+    return {**_common(element, beam, list(range(6))), "i": {"body": f"{name}.{element.second.name}"}, "j": first}

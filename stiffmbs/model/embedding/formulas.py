@@ -1,0 +1,80 @@
+"""Planar formulas with spatial names."""
+
+from __future__ import annotations
+
+import ast
+import copy
+from collections.abc import Mapping
+from typing import Any
+
+from ...elements.requests.names import OF_PLANE
+from ...elements.requests.output import Output
+from ...reading.formula.formula import Formula
+from ...reading.formula.full_names import with_full_names
+from ...reading.formula.nodes import measured_markers
+from ...reading.formula.text import UNIT, as_written
+from ...reading.marker import GROUND, MarkerReference
+from ...reading.names import Names
+from .angles import Angles
+
+
+def formula(found: Formula, angles: Angles) -> str | float:
+    """Return a formula of a spatial scene: its number, its text, or the text with other names."""
+    return _written(found.text, found.tree, angles)
+
+
+def request(found: Output | Mapping[str, Output], angles: Angles) -> Any:
+    """Return a request of a spatial scene, with formulas by component."""
+    if isinstance(found, Output):
+        names = Names(frozenset(angles.data.bodies))
+        tree = with_full_names(found.written_tree(), names, (*OF_PLANE.measures, *OF_PLANE.actions))
+        return _written(found.text, tree, angles)
+    return {name: request(output, angles) for name, output in found.items()}
+
+
+def _written(text: str, tree: ast.expr, angles: Angles) -> str | float:
+    try:
+        return float(text)
+    except ValueError:
+        renamed = _Renamed(angles)
+        tree = renamed.visit(copy.deepcopy(tree))
+        return as_written(tree) if renamed.any else text
+
+
+class _Renamed(ast.NodeTransformer):
+    """Replace ``bar.angle``, ``bar.omega``, ``bar.alpha`` and ``az(a, b)`` by measures, and ``torque`` by ``tz``."""
+
+    def __init__(self, angles: Angles) -> None:
+        self._angles = angles
+        self.any = False
+
+    def visit_Attribute(self, node: ast.Attribute) -> ast.AST:
+        owner, data = node.value.id, self._angles.data  # type: ignore[attr-defined]
+        if owner in data.requests or owner == UNIT:
+            return node
+        match node.attr:
+            case "angle":
+                return self._angle(MarkerReference(body=owner), MarkerReference(body=GROUND))
+            case "omega":
+                return self._read(f"wz({owner})")
+            case "alpha":
+                return self._read(f"wdtz({owner})")
+            case "torque":
+                return self._read(f"{owner}.tz")
+        return node
+
+    def visit_Call(self, node: ast.Call) -> ast.AST:
+        called = node.func.id  # type: ignore[attr-defined]
+        if called not in (*OF_PLANE.measures, *OF_PLANE.actions):
+            return ast.Call(node.func, [self.visit(argument) for argument in node.args], [])
+        if called == "az":
+            i, j, *_ = measured_markers(node)
+            return self._angle(i, j)
+        return node
+
+    def _angle(self, i: MarkerReference, j: MarkerReference) -> ast.AST:
+        return self._read(self._angles.measured(i, j))
+
+    def _read(self, text: str) -> ast.AST:
+        self.any = True
+        return ast.parse(text, mode="eval").body

@@ -1,0 +1,163 @@
+"""Conversion of a planar model or scene to a spatial scene."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from ...elements import shape as planar
+from ...elements.body import Body
+from ...elements.element import Element
+from ...elements.shape import Shape
+from ...errors import InputError
+from ...reading.marker import GROUND, MarkerReference
+from ..model import PlanarData
+from ..model_data import ModelData
+from ..scene import Scene
+from ..settings import SteadyMotion
+from .angles import Angles, Written, placement, point, turned
+from .elements import element_in_space
+from .fields import fields, plain
+from .formulas import request
+
+ORDER = (
+    "name", "dimensions", "parameters", "tables", "variables", "gravity", "markers", "bodies", "states", "inputs", "joints", "forces", "requests", "figure", "start", "run", "notes",
+)  # fmt: skip
+"""Order of sections in the file."""
+CHANNELS = {"omega": "wz", "alpha": "wdz", "torque": "tz"}
+"""Spatial names of planar channels, if different."""
+
+
+def scene_in_space(data: PlanarData) -> Written:
+    """Return the spatial scene of a planar model in the x-y plane of the ground.
+
+    Raises
+    ------
+    InputError
+        For an element without a spatial counterpart; the message names it.
+    """
+    angles = Angles(data)
+    joints = _elements("joints", data.joints, angles)
+    joints |= {_free(f"{body}_in_plane", data): {"type": "planar", "i": body, "j": GROUND} for body in loose(data)}
+    requests: Written = {name: request(found, angles) for name, found in data.requests.items()}
+    parts: Written = {
+        "name": data.name,
+        "dimensions": 3,
+        "gravity": [*data.gravity, 0] if any(data.gravity) else None,
+        "states": {name: fields(state, angles) for name, state in data.states.items()},
+        "inputs": {name: plain(value, angles) for name, value in data.inputs.items()},
+        "joints": joints,
+        "forces": _elements("forces", data.forces, angles),
+        "requests": requests,
+    }
+    if isinstance(data, Scene):
+        parts |= {
+            "parameters": data.written_parameters(),
+            "tables": plain(data.tables, angles),
+            "variables": {name: request(found, angles) for name, found in data.variables.items()},
+            "figure": _figure(data, requests, angles),
+            "start": _start(data.start),
+            "run": plain(data.run.model_dump(exclude_unset=True), angles),
+            "notes": list(data.notes),
+        }
+    parts["bodies"] = {name: _body(name, body, angles) for name, body in data.bodies.items()}
+    parts["markers"] = _markers(GROUND, data.markers, angles)
+    return {name: parts[name] for name in ORDER if parts.get(name)}
+
+
+def _start(start: str | SteadyMotion) -> str | Written | None:
+    if isinstance(start, SteadyMotion):
+        vectors = {name: [*getattr(start, name), 0] for name in ("velocity", "about") if getattr(start, name)}
+        return {**vectors, "rotation": [0, 0, start.rotation], "rolling": list(start.rolling), "speed": start.speed}
+    return start if start != Scene.model_fields["start"].default else None
+
+
+def _body(name: str, body: Body, angles: Angles) -> Written:
+    """Return a body with three equal moments of inertia; two of them have no effect in the plane."""
+    parts: Written = {
+        "mass": body.mass,
+        "inertia": [body.inertia] * 3,
+        "position": [*body.position, 0] if any(body.position) else None,
+        **turned(body.angle),
+        "velocity": [*body.velocity, 0] if any(body.velocity) else None,
+        "omega": [0, 0, body.omega] if body.omega else None,
+        "markers": _markers(name, body.markers, angles),
+        "geometry": [shape(found) for found in body.geometry],
+    }
+    return {name: part for name, part in parts.items() if part}
+
+
+def _markers(owner: str, own: Mapping[str, Any], angles: Angles) -> Written:
+    return {name: placement(placed) for name, placed in own.items()} | angles.added.get(owner, {})
+
+
+def _elements(section: str, elements: Mapping[str, Element], angles: Angles) -> Written:
+    found: Written = {}
+    for name, element in elements.items():
+        try:
+            found[name] = element_in_space(element, angles)
+        except InputError as error:
+            raise InputError(f"{section}.{name}: {error}") from None
+    return found
+
+
+def _free(name: str, data: ModelData) -> str:
+    while name in {*data.bodies, *data.states, *data.inputs, *data.joints, *data.forces, *data.requests}:
+        name += "_"
+    return name
+
+
+def _figure(data: Scene, requests: Written, angles: Angles) -> Written | None:
+    """Return the scene's figure; shown angles of bodies, which are not channels in space, are added to the requests."""
+    if data.figure is None:
+        return None
+    figure = data.figure
+    asked = set(data.outputs())
+    names = {name: name if name in asked else _channel(name) for name in (figure.x, *figure.y)}
+    for name, written in names.items():
+        body, _, channel = name.rpartition(".")
+        if channel == "angle" and name not in asked:
+            names[name] = _free(written, data)
+            requests[names[name]] = angles.measured(MarkerReference(body=body), MarkerReference(body=GROUND))
+    over = {} if figure.x == "time" else {"x": names[figure.x]}
+    return figure.model_dump(exclude_unset=True) | over | {"y": [names[name] for name in figure.y]}
+
+
+def _channel(name: str) -> str:
+    """Return the spatial channel that corresponds to a planar one."""
+    owner, _, channel = name.rpartition(".")
+    if channel == "angle":
+        return f"{owner}_angle"
+    return f"{owner}.{CHANNELS.get(channel, channel)}" if owner else name
+
+
+def loose(data: PlanarData) -> Iterator[str]:
+    """Yield one body of each group that is connected in a common plane, but not to the ground's plane."""
+    independent_of = {body: body for body in (GROUND, *data.bodies)}
+    for joint in data.joints.values():
+        if joint.keeps_in_plane:
+            one, other = (independent_of[marker.body] for _, marker in joint.parts(MarkerReference))
+            kept, dropped = (other, one) if other == GROUND else (one, other)
+            independent_of = {body: kept if own == dropped else own for body, own in independent_of.items()}
+    yield from (body for body in data.bodies if independent_of[body] == body)
+
+
+def shape(found: Shape) -> Written:
+    """Return a shape of a spatial scene, whose depth is half its smaller width, centred on the plane."""
+    written: Written = {"type": found.type}
+    if found.color is not None:
+        written["color"] = found.color
+    match found:
+        case planar.Polyline():
+            closed = {"closed": True} if found.closed else {}
+            return written | {"points": [[*place, 0] for place in found.points], **closed}
+        case planar.Box():
+            written["size"] = [*found.size, min(found.size) / 2]
+        case planar.Cylinder():
+            written |= {"radius": found.radius, "length": found.radius}
+        case planar.Sphere():
+            written["radius"] = found.radius
+        case planar.Mesh():
+            written |= {"file": found.file, "scale": list(found.scale)}
+    assert isinstance(found, planar.Placed)
+    return written | point(found.point) | turned(found.angle)

@@ -1,0 +1,204 @@
+"""Scenes run in consecutive stages, each with other joints, forces or numbers."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import Field, model_validator
+
+from ...errors import InputError
+from ...reading.fields import Described, Measured
+from ...reading.files.quoted import quoted
+from ...reading.files.yaml_text import read_yaml
+from ...reading.units import si
+from .written_scene import WrittenScene
+
+Number = Annotated[float, Measured("number")]
+BOUNDS = ("at_least", "at_most", "equals")
+
+
+class Until(Described):
+    """Condition that ends a stage or changes its course (Adams: SENSOR).
+
+    Parameters
+    ----------
+    request : str
+        Request whose value is monitored over the solver's internal steps.
+    at_least, at_most, equals : float
+        Exactly one: the condition is met when the value rises to it, falls to it, or reaches it from either side.
+    within : float
+        Tolerance for an extremum of the value that does not quite reach `equals`, and hysteresis: the distance by which
+        the value must move back before the condition can be met again.
+    then : str
+        ``next`` continues with the next stage, ``stop`` ends all stages, ``on`` continues this stage.
+    output : float, optional
+        Time between output points from then on, s; with ``on``.
+    sets : mapping of str to str
+        Inputs that are set to the value that a request has at that time.
+    """
+
+    request: str = Field(description="name of the request that is watched")
+    at_least: Number | None = Field(None, description="the stage ends where the value comes to be this or more")
+    at_most: Number | None = Field(None, description="where it comes to be this or less")
+    equals: Number | None = Field(None, description="where it comes to this from either side")
+    within: Annotated[float, Measured("number", at_least=0)] = Field(
+        0.0,
+        description="how near to `equals` a value that turns round before it must come, and how far back before it counts again",
+    )
+    then: Literal["next", "stop", "on"] = Field(
+        "next", description="whether the next stage follows, none, or this one goes on"
+    )
+    output: si.PositiveTime | None = Field(None, description="time between output points from there on, s; with on")
+    sets: dict[str, str] = Field(default_factory=dict, description="inputs that take the value of a request there")
+
+    @model_validator(mode="after")
+    def _one_bound(self) -> Self:
+        given = [name for name in BOUNDS if getattr(self, name) is not None]
+        if len(given) != 1:
+            raise ValueError(f"found {' and '.join(given) or 'no bound'}, expected one of {', '.join(BOUNDS)}")
+        if self.output is not None and self.then != "on":
+            raise ValueError("found an output of a condition that ends the stage, expected then: on")
+        return self
+
+
+OWN_SETTINGS = ("duration", "output", "points", "start")
+"""Settings of ``run`` that each stage has for itself."""
+GRIDS = ("output", "points")
+
+
+class Stage(Described):
+    """Stage of a scene, which starts where the previous one ends.
+
+    Parameters
+    ----------
+    analysis : str
+        ``dynamic`` over time, or ``static``: the equilibrium found from the state at the start of the stage, at that
+        time; with a duration, one at each output time.
+    change : mapping
+        Changes from the previous stage (from the scene, for the first), as a merge patch (RFC 7386): mappings are
+        merged, null removes an entry, anything else replaces the old value.
+    run : mapping
+        Settings of this stage, in addition to those of the scene.
+    end : float, optional
+        End time, s, independent of the start; in place of a duration.
+    until : mapping of str to Until
+        Conditions that end the stage earlier, by name.
+    """
+
+    analysis: Literal["dynamic", "static"] = Field("dynamic", description="over time, or the equilibrium at its start")
+    change: dict[str, Any] = Field(default_factory=dict, description="what is other than before; null takes away")
+    run: dict[str, Any] = Field(default_factory=dict, description="settings of this stage")
+    end: si.Time | None = Field(None, description="when it ends, s, in place of a duration")
+    until: dict[str, Until] = Field(default_factory=dict, description="conditions that end it earlier, by name")
+
+    @property
+    def over_time(self) -> bool:
+        """True for a stage with a time interval."""
+        return self.analysis == "dynamic" or "duration" in self.run or self.end is not None
+
+    @model_validator(mode="after")
+    def _one_end(self) -> Self:
+        if self.end is not None and "duration" in self.run:
+            raise ValueError("found end and a duration, expected one of them")
+        if self.until and self.analysis == "static":
+            raise ValueError("found until with an equilibrium, expected it with analysis: dynamic")
+        return self
+
+
+def written_stages(scene: WrittenScene, stages: Sequence[Stage]) -> list[WrittenScene]:
+    """Return each stage as a scene of its own.
+
+    Raises
+    ------
+    InputError
+        If a change from outside concerns a setting that each stage has for itself.
+    """
+    for path, _ in scene.changes if len(stages) > 1 else ():
+        if path.partition(".")[0] == "run" and path.partition(".")[2] in OWN_SETTINGS:
+            raise InputError(
+                f"--set {path}: found a scene with stages, which have durations and outputs of their own, expected no change of it"
+            )
+    content = {key: value for key, value in scene.content.items() if key != "stages"}
+    found = []
+    for k, stage in enumerate(stages):
+        content = merged(content, stage.change)
+        if k == 1:
+            content.pop("at_start", None)
+        settings = dict(content.get("run") or {})
+        if any(grid in stage.run for grid in GRIDS):
+            settings = {name: value for name, value in settings.items() if name not in GRIDS}
+        whole = copy.deepcopy({**content, "run": settings | stage.run})
+        found.append(WrittenScene(whole, _of_stage(scene.changes, whole), scene.source, scene.folder))
+    return found
+
+
+def merged(old: Any, change: Any) -> Any:
+    """Apply a merge patch (RFC 7386)."""
+    if not isinstance(change, Mapping):
+        return change
+    found = dict(old) if isinstance(old, Mapping) else {}
+    for name, value in change.items():
+        if value is None:
+            found.pop(name, None)
+        else:
+            found[name] = merged(found.get(name), value)
+    return found
+
+
+def merge_patch(old: Mapping[str, Any], new: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the patch that converts one mapping to another; see `merged`."""
+    patch: dict[str, Any] = {name: None for name in old if name not in new}
+    for name, value in new.items():
+        before = old.get(name)
+        if isinstance(value, Mapping) and isinstance(before, Mapping):
+            inner = merge_patch(before, value)
+            patch |= {name: inner} if inner else {}
+        elif name not in old or value != before:
+            patch[name] = value
+    return patch
+
+
+def _of_stage(changes: Sequence[tuple[str, Any]], content: Mapping[str, Any]) -> tuple[tuple[str, Any], ...]:
+    """Return the changes from outside, without those of joints, forces and requests that a stage does not have."""
+
+    def is_there(path: str) -> bool:
+        section, _, name = path.partition(".")
+        if section not in ("joints", "forces", "requests"):
+            return True
+        return any(name == known or name.startswith(f"{known}.") for known in content.get(section) or ())
+
+    return tuple((path, value) for path, value in changes if is_there(path))
+
+
+AT_START = "at_start"
+
+
+def with_held(scene: WrittenScene) -> WrittenScene:
+    """Return the scene with the initial-condition joints among its own.
+
+    Raises
+    ------
+    InputError
+        If one of them has the name of a permanent joint.
+    """
+    content = dict(scene.content)
+    held, joints = content.pop(AT_START, None), dict(content.get("joints") or {})
+    for path, value in scene.changes:
+        if path == AT_START:
+            held = read_yaml(value, f"--set {path}") if isinstance(value, str) else value
+    held = held or {}
+    twice = next((name for name in held if name in joints), None)
+    if twice is not None:
+        raise InputError(
+            f"{scene.source}: {AT_START}: found '{quoted(twice)}', a joint of the scene, expected another name"
+        )
+    changes = tuple((_of_joint(path), value) for path, value in scene.changes if path != AT_START)
+    return replace(scene, content={**content, "joints": {**joints, **held}}, changes=changes)
+
+
+def _of_joint(path: str) -> str:
+    section, dot, name = path.partition(".")
+    return f"joints.{name}" if section == AT_START and dot else path

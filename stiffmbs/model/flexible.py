@@ -1,0 +1,195 @@
+"""Flexible bodies of scenes: each becomes a floating frame, modal coordinates, and a body for each interface."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from pydantic import Field, ValidationError
+
+from ..elements.body import FLEXIBLE
+from ..elements.element import Joint
+from ..elements.spatial.body import Body
+from ..elements.spatial.flexible.bodies import FloatingFrame, ModalCoordinates
+from ..elements.spatial.flexible.interface import FlexibleInterface
+from ..elements.spatial.joints.orientation import Orientation as HeldAxes
+from ..elements.spatial.joints.point_on_line import PointOnLine
+from ..elements.spatial.joints.point_on_plane import PointOnPlane
+from ..elements.spatial.marker import ORIGIN, Marker, Point
+from ..elements.spatial.orientation import IDENTITY, Orientation, matrix
+from ..errors import InputError
+from ..flexible_bodies.description import FlexibleBody
+from ..flexible_bodies.reduced import reduced_body
+from ..flexible_bodies.reduction import ReducedBody
+from ..reading.fields import Described, sentence
+from ..reading.files.files_read import FOLDER
+from ..reading.units import si
+
+FRAME, MODES = "frame", "modes"
+SHARE = 1e-3
+"""Mass of the body of an interface, relative to that of the flexible body, which has less by it."""
+SMALL = 1e-3
+"""Radius of gyration of the body of an interface, relative to the largest of the flexible body."""
+BY_BODY = 3
+"""Modal coordinates of one body."""
+
+
+class Rayleigh(Described):
+    """Damping proportional to mass and stiffness: c = mass m + stiffness k."""
+
+    mass: si.NumberOrZero = Field(0.0, description="factor of the mass matrix, 1/s")
+    stiffness: si.TimeOrZero = Field(0.0, description="factor of the stiffness matrix, s")
+
+
+class SceneFlexibleBody(FlexibleBody):
+    """Flexible body of a scene."""
+
+    type: Literal["flexible"] = "flexible"
+    position: Point = Field(ORIGIN, description="of the origin of the mesh at the start, m")
+    orientation: Orientation = Field(IDENTITY, description="of the axes of the mesh at the start")
+    velocity: tuple[si.Velocity, si.Velocity, si.Velocity] = Field(
+        (0.0, 0.0, 0.0), description="velocity of the centre of mass at the start, in ground axes, m/s"
+    )
+    omega: tuple[si.AngularVelocity, si.AngularVelocity, si.AngularVelocity] = Field(
+        (0.0, 0.0, 0.0), description="angular velocity at the start, in the axes of the mesh, rad/s"
+    )
+    damping: si.NumberOrZero | Rayleigh = Field(0.0, description="damping ratio of all modes, or mass and stiffness")
+
+
+def with_flexible_bodies(raw: dict[str, Any], context: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a scene whose flexible bodies are replaced by their frames, modal coordinates and interfaces.
+
+    Raises
+    ------
+    InputError
+    """
+    if raw.get("dimensions", 2) != 3:
+        raise InputError("dimensions: found a flexible body, expected 3: flexible bodies are in space")
+    bodies, joints = raw["bodies"], raw.get("joints")
+    added_bodies: dict[str, Any] = {}
+    added_joints: dict[str, Any] = dict(joints) if isinstance(joints, dict) else {}
+    for name, entry in bodies.items():
+        if not isinstance(entry, dict) or entry.get("type") != FLEXIBLE:
+            added_bodies[name] = entry
+            continue
+        try:
+            body = SceneFlexibleBody.model_validate(entry, context=dict(context))
+        except ValidationError as error:
+            raise InputError(f"bodies.{name}.{sentence(error)}") from None
+        try:
+            reduced = reduced_body(body, Path(context.get(FOLDER) or ""))
+        except InputError as error:
+            raise InputError(f"bodies.{name}: {error}") from None
+        parts = _Parts(name, body, reduced)
+        added_bodies |= dict(parts.bodies())
+        added_joints |= dict(parts.joints())
+    return {**raw, "bodies": added_bodies, "joints": added_joints}
+
+
+class _Parts:
+    """Bodies and joints that represent one flexible body.
+
+    The body of an interface has a small mass, which is taken from the flexible body at the same point: the sum is that
+    of the finite element model.
+    """
+
+    def __init__(self, name: str, body: SceneFlexibleBody, reduced: ReducedBody) -> None:
+        self._name, self._body, self._reduced = name, body, reduced
+        self._share = SHARE * reduced.mass
+        self._moment = self._share * SMALL**2 * float(np.linalg.eigvalsh(reduced.inertia)[-1]) / reduced.mass
+        self._count = -(-len(reduced.frequencies) // BY_BODY)
+        self._turn = np.array(matrix(body.orientation))
+
+    def _of_modes(self) -> list[str]:
+        return [f"{self._name}.{MODES}{k + 1}" for k in range(self._count)]
+
+    def bodies(self) -> Iterator[tuple[str, Body]]:
+        """Yield the frame, the bodies with modal coordinates, and those of the interfaces."""
+        body, reduced = self._body, self._reduced
+        frame = Body(
+            mass=reduced.mass - len(reduced.points) * self._share, inertia=reduced.inertia.tolist(), center_of_mass=tuple(reduced.centre),
+            position=body.position, orientation=body.orientation, velocity=body.velocity, omega=body.omega, any_moments=True,
+        )  # fmt: skip
+        fields = {name: getattr(frame, name) for name in Body.model_fields}
+        yield (
+            f"{self._name}.{FRAME}",
+            FloatingFrame(**fields, numbers=_Numbers(self._numbers(frame)), modes=tuple(self._of_modes())),
+        )
+        for name in self._of_modes():
+            yield name, ModalCoordinates(mass=reduced.mass, inertia=(reduced.mass,) * 3)
+        for name, point in zip(body.interfaces, reduced.points, strict=True):
+            arm = np.cross(body.omega, point - reduced.centre)
+            yield f"{self._name}.{name}", Body(
+                mass=self._share, inertia=(self._moment,) * 3, position=tuple(np.array(body.position) + self._turn @ point),
+                orientation=body.orientation, velocity=tuple(np.array(body.velocity) + self._turn @ arm), omega=body.omega,
+            )  # fmt: skip
+
+    def joints(self) -> Iterator[tuple[str, Joint]]:
+        """Yield the joints of the interfaces, and those that hold the axes and the unused ones of modal coordinates."""
+        modes = tuple(Marker(body=name) for name in self._of_modes())
+        for name in self._of_modes():
+            yield f"{name}_axes", HeldAxes(i=Marker(body=name), j=Marker(body="ground"))
+        used = len(self._reduced.frequencies) % BY_BODY
+        if used:
+            held = PointOnLine if used == 1 else PointOnPlane
+            along = {"z": (1.0, 0.0, 0.0)} if used == 1 else {"z": (0.0, 0.0, 1.0)}
+            name = self._of_modes()[-1]
+            yield f"{name}_unused", held(i=Marker(body=name), j=Marker(body="ground", orientation=along))  # type: ignore[arg-type]
+        for k, name in enumerate(self._body.interfaces):
+            shapes = self._by_coordinates(self._reduced.markers[k].T)
+            yield f"{self._name}.{name}_interface", FlexibleInterface(
+                i=Marker(body=f"{self._name}.{FRAME}", point=tuple(self._reduced.points[k])),
+                j=Marker(body=f"{self._name}.{name}"), modes=modes,
+                displacements=tuple(shapes[:, :3].ravel()), rotations=tuple(shapes[:, 3:].ravel()),
+            )  # fmt: skip
+
+    def _by_coordinates(self, modes: np.ndarray) -> np.ndarray:
+        """Return values by mode as values by modal coordinate in m, zero for the unused ones of the last body."""
+        found = np.zeros((BY_BODY * self._count, *modes.shape[1:]))
+        found[: len(modes)] = np.sqrt(self._reduced.mass) * modes
+        return found
+
+    def _numbers(self, frame: Body) -> np.ndarray:
+        """Return the numbers of `stiffmbs.elements.spatial.flexible.native.sums`."""
+        reduced, n = self._reduced, BY_BODY * self._count
+        to_axes = np.array(matrix(frame.principal_axes())).T
+        offset = np.zeros(3)
+        square = np.trace(reduced.inertia) / 2 * np.eye(3) - reduced.inertia
+        first, second = self._by_coordinates(reduced.first), self._by_coordinates(reduced.second)
+        pairs = np.zeros((n, n, 3, 3))
+        own = len(reduced.pairs)
+        pairs[:own, :own] = reduced.mass * reduced.pairs
+        for point, marker in zip(reduced.points - reduced.centre, reduced.markers, strict=True):
+            shape = self._by_coordinates(marker.T)[:, :3]
+            offset -= self._share * point
+            square -= self._share * np.outer(point, point) + self._moment / 2 * np.eye(3)
+            first -= self._share * shape
+            second -= self._share * np.einsum("a,kb->kab", point, shape)
+            pairs -= self._share * np.einsum("la,kb->lkab", shape, shape)
+        for k in range(own, n):  # unused coordinates: unit modal mass
+            pairs[k, k] += np.eye(3) * reduced.mass / 3
+        stiffness, damping = self._stiffness_and_damping(n)
+        of_modes = np.column_stack(
+            [stiffness, damping, first @ to_axes.T, np.einsum("ia,jb,kab->kij", to_axes, to_axes, second).reshape(n, 9)]
+        )
+        return np.concatenate([
+            np.zeros(3), to_axes @ offset, (to_axes @ square @ to_axes.T).ravel(), frame.principal_moments(), [reduced.mass],
+            of_modes.ravel(), np.einsum("ia,jb,lkab->lkij", to_axes, to_axes, pairs).ravel(),
+        ])  # fmt: skip
+
+    def _stiffness_and_damping(self, n: int) -> tuple[np.ndarray, np.ndarray]:
+        rates = np.full(n, 2 * np.pi * self._reduced.frequencies.max(initial=1.0))
+        rates[: len(self._reduced.frequencies)] = 2 * np.pi * self._reduced.frequencies
+        mass, given = self._reduced.mass, self._body.damping
+        if isinstance(given, Rayleigh):
+            return mass * rates**2, mass * (given.mass + given.stiffness * rates**2)
+        return mass * rates**2, 2 * given * mass * rates
+
+
+class _Numbers:
+    """Array that pydantic does not convert to a list."""
+
+    def __init__(self, array: np.ndarray) -> None:
+        self.array = array

@@ -1,0 +1,206 @@
+"""Base class of planar and spatial models built in Python."""
+
+from __future__ import annotations
+
+from collections import ChainMap
+from collections.abc import Mapping
+from typing import Any, overload
+
+from pydantic import TypeAdapter
+from pydantic import ValidationError as PydanticError
+
+from ..elements.body import LineBody
+from ..elements.element import Force, Joint
+from ..elements.requests.check import ByChannel, by_channel, check_output
+from ..elements.requests.order import dimensions, with_named
+from ..elements.requests.output_field import read_request
+from ..elements.states.amount import InputValue
+from ..elements.states.linear_system import StateEntry
+from ..errors import InputError
+from ..reading.fields import sentence
+from ..reading.formula.text import FormulaError
+from ..reading.given import Law
+from ..reading.marker import GROUND, MarkerReference
+from .sections import Body, BodyHandle, Data, Sections, key_of
+
+
+class ModelBuilder(Sections[Data, Body, BodyHandle]):
+    """Base of the models built in Python."""
+
+    @overload
+    def add(self, name: str, part: Body) -> BodyHandle: ...
+
+    @overload
+    def add(self, name: str, part: LineBody) -> Any: ...
+
+    @overload
+    def add(self, name: str, part: Joint | Force | StateEntry) -> None: ...
+
+    def add(self, name: str, part: Any) -> Any:
+        """Add a body, a joint, a force or a state.
+
+        Parameters
+        ----------
+        name : str
+            Letters, digits and ``_``; no other part has it.
+        part : Body, BeamBody, Joint, Force or State
+
+        Returns
+        -------
+        BodyHandle, BeamHandle or None
+            For a body, its handle, for use in markers and formulas and to change the body.
+
+        Raises
+        ------
+        InputError
+            If the name is taken, reserved or not an identifier, or the part names an unknown body.
+        """
+        if isinstance(part, LineBody):
+            self._check_name(name)
+            return part.add_to(self, name)
+        section = self._section_for(name, part)
+        self._check_name(name)
+        self._check(name, part)
+        section[name] = part
+        return self._handle(name)
+
+    @overload
+    def replace(self, name: str | BodyHandle, part: Body) -> BodyHandle: ...
+
+    @overload
+    def replace(self, name: str | BodyHandle, part: Joint | Force) -> None: ...
+
+    def replace(self, name: str | BodyHandle, part: Any) -> BodyHandle | None:
+        """Replace a body, a joint or a force, keeping its name.
+
+        Parameters
+        ----------
+        name : str or BodyHandle
+            Name of the part that is replaced.
+        part : Body, Joint or Force
+            Replacement of the same category: a body for a body, a joint for a joint, a force for a force.
+
+        Returns
+        -------
+        BodyHandle or None
+            As for `add`; existing handles refer to the new body.
+
+        Raises
+        ------
+        InputError
+            If there is no such part, the new one names an unknown body, or others refer to something that the new one
+            lacks.
+        """
+        name = str(name)
+        section = self._found(name)
+        if section is not self._section_for(name, part):
+            raise InputError(
+                f"{name}: found {part!r} in place of {section[name]!r}, expected a body for a body, a joint for a joint, a force for a force"
+            )
+        self._check(name, part)
+        fewer_markers = section is self.bodies and section[name].markers.keys() - part.markers.keys()
+        if isinstance(part, Joint) or (isinstance(part, Force) and self.requests) or fewer_markers:
+            self._changed(name, section, lambda: section.update({name: part}))
+        section[name] = part
+        return self._handle(name)
+
+    def remove(self, name: str | BodyHandle) -> None:
+        """Remove a body, a joint, a force, a request, or a marker of ground (``"ground.pivot"``) from the model.
+
+        Raises
+        ------
+        InputError
+            If there is no such part, or others refer to it.
+        """
+        name = str(name)
+        section = self._found(name)
+        self._changed(name, section, lambda: section.pop(key_of(name)))
+
+    def _handle(self, name: str) -> BodyHandle | None:
+        return self.handle_type(name, self) if name in self.bodies else None
+
+    def mark(self, name: str, marker: Any) -> None:
+        """Name a marker on ground, for references and formulas: ``ground.name``.
+
+        Parameters
+        ----------
+        name : str
+        marker : Marker
+            On ``ground``, with an explicit point and direction.
+
+        Raises
+        ------
+        InputError
+            If the name is taken or not an identifier, or the marker is not an explicit marker on ground.
+        """
+        self._check_spelling(name, "marker")
+        if name in self.markers:
+            raise InputError(f"{name}: found a name that is taken, expected another")
+        placement = marker.placement() if isinstance(marker, MarkerReference) and marker.body == GROUND else None
+        if placement is None:
+            raise InputError(f"{name}: found {marker!r}, expected a marker with a point on ground")
+        self.markers[name] = placement
+
+    def add_input(self, name: str, value: Any) -> None:
+        """Add an input: a named value for formulas, which every run can set.
+
+        Parameters
+        ----------
+        name : str
+            Letters, digits and ``_``; no other part has it.
+        value : float, str or Table
+            A number, text with a unit, or a table of time.
+
+        Raises
+        ------
+        InputError
+            If the name is taken, or the value is none of these.
+        """
+        self._check_name(name)
+        try:
+            self.inputs[name] = TypeAdapter(InputValue).validate_python(value)
+        except PydanticError as error:
+            raise InputError(f"inputs.{name}: {sentence(error)}") from None
+
+    def request(self, name: str, formula: Law | Mapping[str, Law]) -> None:
+        """Report a formula as a channel of the given name, or several formulas as ``name.component``.
+
+        Parameters
+        ----------
+        name : str
+            Name of the channel.
+        formula : str, float or mapping of str to these
+            In SI units, such as ``"0.6*abs(bar.omega)"`` or ``"fx(hinge) + tip_speed"``, of existing parts and
+            requests; several by the names of their components.
+
+        Raises
+        ------
+        InputError
+            As for `add`, and for a formula that cannot be read.
+        """
+        self._check_name(name)
+        names = self.data_type.output_names
+        try:
+            read = read_request(names, formula, None)
+            added = dict(by_channel({name: read}))
+            outputs = ChainMap(added, ByChannel(self.requests))  # type: ignore[arg-type]  # it is only read
+            for channel, output in added.items():
+                check_output(f"requests.{channel}", output, self, names, outputs)
+            dimensions(with_named(added, outputs))
+        except FormulaError as error:
+            raise InputError(f"requests.{name}: {error}") from None
+        except ValueError as error:
+            raise InputError(str(error)) from None
+        self.requests[name] = read
+
+    def to_scene(self) -> str:
+        """Return the text of a scene file from which `stiffmbs.read_scene` makes the same model.
+
+        Raises
+        ------
+        InputError
+            As for `data`.
+        """
+        from .model_text import model_text
+
+        return model_text(self.data())

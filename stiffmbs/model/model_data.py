@@ -1,0 +1,291 @@
+"""Content of a planar or spatial model: named bodies, joints and forces, validated as a whole."""
+
+from __future__ import annotations
+
+import math
+from abc import abstractmethod
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from pydantic import Field, field_validator, model_validator
+
+from ..elements.body import check_names
+from ..elements.element import Element, Force, Joint
+from ..elements.initial_pose import InitialPose
+from ..elements.requests.check import by_channel, check_output
+from ..elements.requests.names import OutputNames
+from ..elements.requests.order import dimensions
+from ..elements.requests.output import Output
+from ..elements.states.amount import InputValue, formulas_of_inputs
+from ..elements.states.equation import FormulaOfRate, Reported, StateName, own_state
+from ..elements.states.section import (
+    AnyState,
+    check_reactions,
+    check_states,
+    check_states_of,
+    names_in_formulas,
+    refuse_algebraic_loops,
+)
+from ..elements.states.state import StateValue
+from ..methods import NotebookMethods
+from ..reading.did_you_mean import did_you_mean
+from ..reading.fields import Described
+from ..reading.formula.formula import Formula
+from ..reading.formula.names import NAMES, FormulaNames
+from ..reading.formula.nodes import TIME
+from ..reading.formula.text import UNIT
+from ..reading.joint_name import JointName
+from ..reading.marker import GROUND, MarkerReference, check_marker, listed
+from ..reading.names import beginnings
+
+if TYPE_CHECKING:
+    from ..elements.states.equation import AngleCounter
+
+RESERVED = (GROUND, "energy", "constraint", "time", TIME, UNIT)
+
+
+class ModelData(NotebookMethods, Described):
+    """Content of a model as in a scene, validated as a whole.
+
+    Parameters
+    ----------
+    name : str
+        Shown in summaries.
+    dimensions : int
+        2 in the plane, 3 in space.
+    gravity : tuple of float
+        Acceleration along the ground's axes, m/s^2.
+    markers : mapping of str to Placement
+        Named points of ground, ``ground.name``.
+    bodies, states, joints, forces, requests : mappings by name
+        Names are unique across these sections, because channels are named after them. A request is one formula, or
+        several by name.
+    """
+
+    origin: ClassVar[Any]
+    """Placement of a marker that is a body itself."""
+    output_names: ClassVar[OutputNames]
+    """Names available in requests."""
+
+    name: str = Field("", description="shown in summaries")
+    dimensions: int
+    gravity: tuple[float, ...]
+    markers: dict[str, Any] = Field(default_factory=dict, description="named points of ground")
+    bodies: dict[str, Any] = Field(description="bodies by name")
+    states: dict[str, AnyState] = Field(
+        default_factory=dict, description="values by name that equations of their own determine"
+    )
+    inputs: dict[str, InputValue] = Field(
+        default_factory=dict, description="values by name that another program gives: numbers, or tables of time"
+    )
+    joints: dict[str, Any] = Field(default_factory=dict, description="joints by name")
+    forces: dict[str, Any] = Field(default_factory=dict, description="forces by name")
+    requests: dict[str, Any] = Field(default_factory=dict, description="formulas to report, by channel name")
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} {contents(self)}>"
+
+    def __str__(self) -> str:
+        return repr(self)
+
+    @field_validator("markers", mode="before")
+    @classmethod
+    def _named_markers(cls, markers: Any) -> Any:
+        if isinstance(markers, dict):
+            check_names(markers, "marker")
+        return markers
+
+    @field_validator("bodies", "states", "inputs", "joints", "forces", "requests", mode="before")
+    @classmethod
+    def _names(cls, named: Any, info: Any) -> Any:
+        if isinstance(named, dict):
+            check_names(named, "entry")
+            for name in named:
+                if name in RESERVED:
+                    raise ValueError(f"found the name '{name}', which is reserved, expected another")
+        return named
+
+    @model_validator(mode="after")
+    def _whole(self) -> ModelData:
+        if not self.bodies:
+            raise ValueError("bodies: found no body, expected at least one")
+        seen: dict[str, str] = {}
+        for section in ("bodies", "states", "inputs", "joints", "forces", "requests"):
+            for name in getattr(self, section):
+                if name in seen:
+                    raise ValueError(f"{section}.{name}: found a name that {seen[name]} has too, expected another")
+                seen[name] = f"{section}.{name}"
+        for name in seen:
+            owner = next((o for o, rest in beginnings(name) if rest and (o in seen or o in RESERVED)), None)
+            if owner is not None:
+                raise ValueError(
+                    f"{seen[name]}: found '{owner}' before a dot in '{name}', which is a name, expected another"
+                )
+        check_states(
+            self.states, self.bodies, self.markers, self.joints, NAMES[self.dimensions], self.names_in_formulas()
+        )
+        refuse_algebraic_loops(self.state_outputs())
+        placed = {
+            f"{section}.{name}": x for section in ("joints", "forces") for name, x in getattr(self, section).items()
+        }
+        self.check_elements(placed)
+        self.check_requests()
+        return self
+
+    def check_elements(self, placed: Mapping[str, Element]) -> None:
+        """Refuse joints and forces with unknown references, or that cannot act at the initial pose."""
+        known = self.bodies, self.joints, self.markers, NAMES[self.dimensions], self.names_in_formulas()
+        for where, element in placed.items():
+            check_element(where, element, *known)
+        pose = InitialPose(self)
+        for where, element in placed.items():  # requires valid references in all elements
+            for reason in element.invalid_placement(pose):
+                raise ValueError(f"{where}: {reason}")
+
+    def check_requests(self) -> None:
+        """Refuse requests with unknown or circular references, and units that do not fit."""
+        outputs = self.outputs()
+        for channel, output in outputs.items():
+            check_output(f"requests.{channel}", output, self, self.output_names, outputs)
+        dimensions(outputs)
+
+    def outputs(self) -> dict[str, Output]:
+        """Return the requests by channel: a name, or ``name.component``."""
+        return dict(by_channel(self.requests)) if self.requests else {}
+
+    def angle_counters(self) -> Iterator[tuple[str, AngleCounter]]:
+        """Yield counters of full turns of angles in requests, by the angles' text, if positions do not define them."""
+        yield from ()
+
+    @abstractmethod
+    def inertial(self, bodies: Mapping[str, Any]) -> Iterable[tuple[str, Force]]:
+        """Return the forces of the bodies themselves, such as weights, with the bodies' names."""
+
+    @abstractmethod
+    def initial_marker(self, marker: MarkerReference) -> Any:
+        """Return a marker with numbers, in ground axes, at the initial pose."""
+
+    @abstractmethod
+    def carried(self, marker: MarkerReference) -> tuple[str, Any]:
+        """Return the body that carries a marker, and the placement from its centre of mass in the solver's axes."""
+
+    def elements(self) -> Iterator[tuple[str, Element]]:
+        """Yield every joint, force, counter, state equation and weight with its name (for a weight, its body's)."""
+        yield from self.elements_at_initial_pose()
+        yield from self.angle_counters()
+        yield from self.state_equations()
+        yield from self.inertial(self.bodies)
+
+    def state_equations(self) -> Iterator[tuple[str, Element]]:
+        """Yield the rates of the states by their names, and the outputs of their equations."""
+        for name, state in self.states.items():
+            for full, value in state.values(name):
+                yield full, FormulaOfRate.model_construct(state=StateName(full), formula=value.rate)
+        for full, formula in self.state_outputs().items():
+            yield full, Reported.model_construct(formula=formula)
+
+    def state_outputs(self) -> dict[str, Formula]:
+        """Return named formulas for use in other formulas, such as the output of a transfer function, by full name."""
+        of_states = {full: formula for name, state in self.states.items() for full, formula in state.outputs(name)}
+        return of_states | dict(formulas_of_inputs(self.inputs)) if self.inputs else of_states
+
+    def names_in_formulas(self) -> set[str]:
+        """Return the names of states, outputs and inputs available in formulas."""
+        return names_in_formulas(self.states) | set(self.inputs)
+
+    def state_values(self) -> dict[str, StateValue]:
+        """Return the unknowns in addition to those of the bodies, by full name."""
+        of_model = {full: value for name, state in self.states.items() for full, value in state.values(name)}
+        of_forces = (own_state(name, own) for name, force in self.forces.items() for own in force.own_states())
+        return of_model | dict.fromkeys(of_forces, StateValue(None, 0.0, 1.0))
+
+    def elements_at_initial_pose(self) -> Iterator[tuple[str, Element]]:
+        """Yield joints and forces with their names, with undefined fields taken from the described poses."""
+        for name, element in (*self.joints.items(), *self.forces.items()):
+            yield name, element.at_initial_pose(self)
+
+    def joint_at_initial_pose(self, name: str) -> Joint:
+        """Return a joint with its undefined fields taken from the described poses."""
+        joint: Joint = self.joints[name]
+        return joint.at_initial_pose(self)
+
+    def size(self) -> float:
+        """Return the diagonal of the bounding box of all bodies and markers at the start, m; 1 for a single point."""
+        points = [body.coordinates()[: self.dimensions] for body in self.bodies.values()]
+        elements = (*self.joints.values(), *self.forces.values())
+        markers = dict.fromkeys(marker for element in elements for _, marker in element.markers())
+        points += [self.point(marker) for marker in markers]
+        widths = (max(p[k] for p in points) - min(p[k] for p in points) for k in range(self.dimensions))
+        return math.hypot(*widths) or 1.0
+
+    def spin_axes(self) -> Mapping[str, str]:
+        """Return no spin axes: in a described model every quaternion follows its body's angular velocity."""
+        return {}
+
+    def point(self, marker: MarkerReference) -> tuple[float, ...]:
+        """Return the position of a marker in ground axes at the start, m."""
+        return tuple(float(x) for x in self.initial_marker(marker).point)
+
+    def place(self, marker: Any) -> Any:
+        """Return the placement of a marker in the axes of its body."""
+        if marker.marker is None:
+            return marker.placement() or self.origin
+        own = self.markers if marker.body == GROUND else self.bodies[marker.body].markers
+        return own[marker.marker]
+
+
+def contents(model: Any) -> str:
+    """Return a summary of the content of a model or scene."""
+    parts = []
+    for section, one in (
+        ("bodies", "body"),
+        ("states", "state"),
+        ("joints", "joint"),
+        ("forces", "force"),
+        ("requests", "request"),
+    ):
+        count = len(getattr(model, section))
+        parts += [f"{count} {one if count == 1 else section}"] if count or section == "bodies" else []
+    return f"'{model.name}': {', '.join(parts)}"
+
+
+def check_element(
+    where: str,
+    element: Element,
+    bodies: Mapping[str, Any],
+    joints: Mapping[str, Joint],
+    on_ground: Mapping[str, Any],
+    names: FormulaNames,
+    states: Collection[str],
+) -> None:
+    """Refuse an element with an unknown body, marker, joint or coordinate, or between a body and itself."""
+    for field, marker in element.markers():
+        check_marker(f"{where}.{field}", marker, bodies, on_ground)
+    for field, joint in element.parts(JointName):
+        owner = joint.rpartition(".")[0]
+        if joint.joint not in joints and owner in joints:
+            own = " or ".join(f"{owner}.{name}" for name in joints[owner].coordinates) or owner
+            raise ValueError(f"{where}.{field}: found '{joint}' of the type {joints[owner].kind}, expected {own}")
+        if joint.joint not in joints:
+            raise ValueError(
+                f"{where}.{field}: found the unknown joint '{joint.joint}'{did_you_mean(joint.joint, joints)}, expected one of "
+                f"{', '.join(joints) or 'none'}"
+            )
+        if next(joints[joint.joint].parts(JointName), None):
+            raise ValueError(
+                f"{where}.{field}: found '{joint}', which refers to a joint itself, expected one between markers"
+            )
+    for field, reason in element.validation_errors(joints):
+        raise ValueError(f"{where}.{field}: {reason}")
+    for field, formula in element.parts(Formula):
+        for body in formula.bodies():
+            if body not in bodies and body != GROUND:
+                near = did_you_mean(body, bodies)
+                raise ValueError(f"{where}.{field}: found the unknown body '{body}'{near}, expected {listed(bodies)}")
+        check_states_of(f"{where}.{field}", formula, states)
+        check_reactions(f"{where}.{field}", formula, joints)
+        for reason in names.validation_errors(formula):
+            raise ValueError(f"{where}.{type(element).model_fields[field].alias or field}: {reason}")
+    placed = [marker.body for field, marker in element.parts(MarkerReference) if field in ("i", "j")]
+    if len(placed) > 1 and len(set(placed)) == 1:
+        raise ValueError(f"{where}: found '{placed[0]}' on both sides, expected two different bodies")

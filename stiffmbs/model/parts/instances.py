@@ -1,0 +1,220 @@
+"""Instances of parts requested by ``use``, before validation of their entries."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from ...elements.body import check_names
+from ...errors import InputError
+from ...reading.files.quoted import written
+from ...reading.names import MOUNT, beginnings
+from ...reading.units.units import Quantity
+from ..beams.entries import with_beams
+from ..files.expand import repeat_entries, set_value
+from .definitions import NAMED, Definitions, definition_in_components
+from .frame import Use
+from .options import OPTIONS, refuse_unknown_choices, with_chosen
+from .parameters import mounts_of, parameters_of
+from .vectors import Vectors, parameters_in_components, vectors_of
+
+REPEATED = ("bodies", "states", "joints", "forces")
+MOST_NESTED = 10
+"""Largest number of nested parts."""
+MOST_INSTANCES = 10_000
+MOST_VALUES = 1_000_000
+"""Largest number of numbers, texts, lists and mappings in all instances."""
+
+
+@dataclass(frozen=True)
+class Instance:
+    """Instance of a part.
+
+    Attributes
+    ----------
+    name : str
+        Full name, such as ``front.left``.
+    part : str
+        Name of its definition.
+    use : Use
+    sections : mapping
+        Markers, bodies, joints, forces and requests as written, with repeated entries expanded.
+    parameters : mapping of str to Quantity
+        Parameters of the scene and of the part.
+    outer : Instance or None
+        Enclosing instance.
+    inner : tuple of str
+        Local names of nested instances.
+    mounts : mapping of str to str
+        Further bodies that it connects to, by local name.
+    words : mapping of str to str
+        Chosen words for it and for nested parts, by choice.
+    """
+
+    name: str
+    part: str
+    use: Use
+    sections: Mapping[str, Any]
+    parameters: Mapping[str, Quantity]
+    outer: Instance | None = None
+    inner: tuple[str, ...] = ()
+    mounts: Mapping[str, str] = field(default_factory=dict)
+    words: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def where(self) -> str:
+        """Path of its definition in the scene."""
+        return f"parts.{self.part}"
+
+    def names(self, section: str) -> Iterator[str]:
+        """Yield the full names in a section."""
+        yield from (f"{self.name}.{name}" for name in self.sections.get(section) or {})
+
+    def local(self) -> dict[str, str]:
+        """Return full names by local name."""
+        named = [*self.inner, *(name for section in NAMED for name in self.sections.get(section) or {})]
+        return {name: f"{self.name}.{name}" for name in named}
+
+
+@dataclass
+class Instances:
+    """Reader of the instances of a scene, in order from outer to inner.
+
+    Attributes
+    ----------
+    definitions : Definitions
+    changes : list of (path, value)
+        Values set in instances from outside; applied changes are removed from the list.
+    words : mapping of str to str
+        Choices of the scene.
+    dimensions : int
+        2 or 3.
+    """
+
+    definitions: Definitions
+    changes: list[tuple[str, Any]]
+    words: Mapping[str, str]
+    dimensions: int
+    values: int = 0
+    found: list[Instance] = field(default_factory=list)
+
+    def read(
+        self, used: Any, parameters: Mapping[str, Quantity], outer: Instance | None = None, depth: int = 0
+    ) -> None:
+        """Add the instances of ``use`` and all nested ones.
+
+        Raises
+        ------
+        InputError
+            For a part that does not exist, uses itself, or cannot be read.
+        """
+        where = f"{outer.where}.use" if outer else "use"
+        if not isinstance(used, dict):
+            raise InputError(f"{where}: found {written(used)}, expected a mapping of names to parts")
+        for name, entry in repeat_entries(where, used, parameters).items():
+            _check_name(where, name)
+            use, own = self.definitions.use(f"{where}.{name}", entry, parameters)
+            above = [*_above(outer)]
+            if use.part in (one.part for one in above):
+                raise InputError(f"{where}.{name}: found '{use.part}', which it stands in, expected another part")
+            if depth >= MOST_NESTED:
+                raise InputError(f"{where}.{name}: found parts nested deeper than {MOST_NESTED}, expected fewer")
+            words = {**(outer.words if outer else self.words), **own}
+            self._add(
+                f"{outer.name}.{name}" if outer else name, use, words, f"{where}.{name}", parameters, outer, depth
+            )
+
+    def refuse_unknown_choices(self, known: Iterable[str]) -> None:
+        """Refuse choices of the scene that neither it nor any part in it has."""
+        of_parts = {choice for one in self.found for choice in self.definitions.choices(one.part)}
+        refuse_unknown_choices(self.words, of_parts | set(known))
+
+    def _add(
+        self, name: str, use: Use, words: Mapping[str, Any], where: str, parameters: Mapping[str, Quantity],
+        outer: Instance | None, depth: int,
+    ) -> None:  # fmt: skip
+        if len(self.found) >= MOST_INSTANCES:
+            raise InputError(f"{where}: found more than {MOST_INSTANCES} parts in their places, expected fewer")
+        found = self.definitions.of(use.part)
+        self._count(where, found)
+        definition = with_chosen(found, words, f"parts.{use.part}.{OPTIONS}")
+        self._set(name, definition)
+        vectors = vectors_of(definition.get("parameters"), f"parts.{use.part}.parameters")
+        use = use.model_copy(
+            update={"parameters": parameters_in_components(use.parameters, vectors, f"{where}.parameters")}
+        )
+        definition = definition_in_components(definition, vectors, f"parts.{use.part}")
+        own = parameters_of(use, where, definition.get("parameters"), parameters)
+        sections = {
+            section: repeat_entries(f"parts.{use.part}.{section}", definition[section], own) if section in REPEATED else definition[section]
+            for section in (*NAMED, "markers") if definition.get(section) is not None
+        }  # fmt: skip
+        sections = with_beams(sections, own, self.dimensions, f"parts.{use.part}.")
+        used = definition.get("use") or {}
+        inner = tuple(repeat_entries(f"parts.{use.part}.use", used, own)) if isinstance(used, dict) else ()
+        _check_sections(use.part, sections, inner, vectors)
+        mounts = mounts_of(definition.get("mounts"), use, where)
+        self._count(where, sections)
+        instance = Instance(name, use.part, use, sections, own, outer, inner, mounts, words)
+        self.found.append(instance)
+        if used:
+            self.read(used, own, instance, depth + 1)
+
+    def _count(self, where: str, found: Any) -> None:
+        self.values += _size(found, MOST_VALUES)
+        if self.values > MOST_VALUES:
+            raise InputError(f"{where}: found parts of more than {MOST_VALUES} values in all, expected fewer")
+
+    def _set(self, instance: str, definition: dict[str, Any]) -> None:
+        """Apply the changes from outside to a definition."""
+        for change in list(self.changes):
+            path, value = change
+            section, _, rest = path.partition(".")
+            entries = definition.get(section)
+            own = rest.removeprefix(f"{instance}.")
+            if isinstance(entries, dict) and own != rest and any(start in entries for start, _ in beginnings(own)):
+                set_value(definition, f"{section}.{own}", value)
+                self.changes.remove(change)
+
+
+def _above(instance: Instance | None) -> Iterator[Instance]:
+    while instance is not None:
+        yield instance
+        instance = instance.outer
+
+
+def _check_name(where: str, name: Any) -> None:
+    try:
+        check_names([name], "a part")
+    except ValueError as error:
+        raise InputError(f"{where}: {error}") from None
+    if name.partition(".")[0] == MOUNT:
+        raise InputError(f"{where}.{name}: found the name of what a part is placed on, expected another")
+
+
+def _check_sections(part: str, sections: Mapping[str, Any], inner: Sequence[str], vectors: Vectors) -> None:
+    seen = {**dict.fromkeys(inner, "use"), **dict.fromkeys(vectors, "parameters")}
+    for section, entries in sections.items():
+        where = f"parts.{part}.{section}"
+        if not isinstance(entries, dict):
+            raise InputError(f"{where}: found {written(entries)}, expected a mapping of names to entries")
+        for name in entries:
+            _check_name(where, name)
+            if section in NAMED and name in seen:
+                raise InputError(f"{where}.{name}: found a name that {seen[name]}.{name} has too, expected another")
+            if section in NAMED:
+                seen[name] = section
+
+
+def _size(found: Any, most: int) -> int:
+    """Return the number of values with aliases expanded, limited to one above `most`."""
+    count, waiting = 0, [found]
+    while waiting and count <= most:
+        value = waiting.pop()
+        count += 1
+        if isinstance(value, dict):
+            waiting += value.values()
+        elif isinstance(value, list):
+            waiting += value
+    return count

@@ -1,0 +1,110 @@
+"""Parameters and further mounts of an instance of a part."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from ...errors import InputError
+from ...reading.did_you_mean import did_you_mean
+from ...reading.files.quoted import written
+from ...reading.formula.text import FormulaError
+from ...reading.names import GROUND, MOUNT
+from ...reading.units.quantity import in_si, quantity
+from ...reading.units.units import Quantity
+from ..files.expand import read_parameters
+from .frame import Use
+
+
+def parameters_of(use: Use, where: str, found: Any, outside: Mapping[str, Quantity]) -> dict[str, Quantity]:
+    """Return the parameters of an instance: outer ones, its own, and the values set by its use.
+
+    A plain number takes the SI unit of the value that it replaces.
+
+    Parameters
+    ----------
+    use : Use
+    where : str
+        Path of the use in the scene.
+    found : mapping of str to number or text
+        Parameters of the definition.
+    outside : mapping of str to Quantity
+
+    Raises
+    ------
+    InputError
+        If one is unknown, has a reserved name, or is not a number.
+    """
+    own = {} if found is None else found
+    if not isinstance(own, dict):
+        raise InputError(f"parts.{use.part}.parameters: found {written(own)}, expected a mapping of names to numbers")
+    for name in use.parameters:
+        if name not in own:
+            known = ", ".join(map(str, own)) or "none"
+            raise InputError(
+                f"{where}.parameters.{name}: found no such parameter of '{use.part}'{did_you_mean(name, own)}, expected one "
+                f"of {known}"
+            )
+    names: Mapping[str, Quantity]
+    inside = dict(outside)
+    for name, value in own.items():
+        place = f"parts.{use.part}."
+        try:
+            read_parameters({name: 0.0})  # validate the name
+            given, names = (use.parameters[name], outside) if name in use.parameters else (value, inside)
+            place = f"{where}." if name in use.parameters else place
+            value_here = _quantity(given, names)
+            if name in use.parameters and value_here.dimension is None:
+                value_here = Quantity(value_here.value, _dimension(value, inside))
+            inside[name] = value_here
+        except FormulaError as error:
+            raise InputError(f"{place}parameters.{name}: {error}") from None
+        except InputError as error:
+            raise InputError(f"{place}{error}") from None
+    return inside
+
+
+def _quantity(given: Any, names: Mapping[str, Quantity]) -> Quantity:
+    return quantity(given, names) if isinstance(given, str) else Quantity(in_si(given, "number"))
+
+
+def _dimension(given: Any, names: Mapping[str, Quantity]) -> Any:
+    """Return the dimension of the replaced value; None if it cannot be read."""
+    try:
+        return _quantity(given, names).dimension
+    except FormulaError:
+        return None
+
+
+def mounts_of(found: Any, use: Use, where: str) -> dict[str, str]:
+    """Return the bodies of the further mounts of a part: the rack of a tie rod, the arm of a strut.
+
+    ``mounts: {rack: mount}`` in a part defines the local name ``rack``, and the part's mount as the default body. A use
+    can name another one: ``mounts: {rack: steering.rack}``. Points on it are in the part's frame.
+
+    Parameters
+    ----------
+    found : mapping of str to str
+        Mounts of the definition.
+    use : Use
+    where : str
+        Path of the use.
+
+    Raises
+    ------
+    InputError
+        If the use names a mount that the part does not have.
+    """
+    mounts = {} if found is None else found
+    if not isinstance(mounts, dict) or not all(isinstance(body, str) for body in mounts.values()):
+        raise InputError(f"parts.{use.part}.mounts: found {written(found)}, expected a mapping of names to bodies")
+    for name in mounts:
+        if name in (MOUNT, GROUND) or not str(name).isidentifier():
+            raise InputError(f"parts.{use.part}.mounts: found the name {written(name)}, expected another")
+    for name in use.mounts:
+        if name not in mounts:
+            raise InputError(
+                f"{where}.mounts.{name}: found no such mount of '{use.part}'{did_you_mean(name, mounts)}, expected one of "
+                f"{', '.join(mounts) or 'none'}"
+            )
+    return {**mounts, **use.mounts}

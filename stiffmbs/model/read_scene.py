@@ -1,0 +1,301 @@
+"""Reading of scenes: from the text of a file to a valid scene, or a message with the line of a fault."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+from pydantic import ValidationError as PydanticError
+
+from ..elements.body import FLEXIBLE
+from ..elements.roads.field import read_roads
+from ..errors import InputError
+from ..reading.did_you_mean import did_you_mean
+from ..reading.fields import sentence
+from ..reading.files.files_read import FOLDER, record, recorded
+from ..reading.files.include import read_including
+from ..reading.files.own_sources import own_sources
+from ..reading.files.quoted import written
+from ..reading.files.unchanged import Unchanged
+from ..reading.files.variables import read_variables
+from ..reading.files.yaml_text import read_yaml
+from ..reading.units.units import Quantity
+from .beams.entries import with_beams
+from .files.expand import (
+    read_parameters,
+    read_tables,
+    refuse_unused_parameters,
+    repeat_entries,
+    replaced_parameters,
+    set_value,
+    unshared,
+)
+from .files.stages import with_held, written_stages
+from .files.written_scene import WrittenScene
+from .parts.definitions import NAMED
+from .parts.options import CHOOSE, OPTIONS, choices_of, with_chosen, words_chosen
+from .parts.placed import with_parts
+from .parts.placing import as_written, placed_in_use, set_in_instances
+from .scene import Scene, scene_class
+
+LineOf = Callable[[tuple[Any, ...]], int | str | None]
+"""Function that returns the line in the source of a path of keys."""
+NO_FILES: Mapping[str, str] = MappingProxyType({})
+SECTIONS = ("variables", "states", "bodies", "joints", "forces")
+OF_ENTRIES = (*NAMED, "use", "roads", "tables", "inputs")
+"""Sections whose keys are names of entries."""
+
+
+def read_scene(
+    text: str, changes: Sequence[tuple[str, str]] = (), source: str = "scene", file: Path | None = None
+) -> Scene:
+    """Read a scene from text.
+
+    Parameters
+    ----------
+    text : str
+        YAML, as in a scene file.
+    changes : sequence of (path, text)
+        Values that replace those of the text, such as ``("bodies.cart.mass", "12 kg")``.
+    source : str
+        Name of the scene in messages.
+    file : Path, optional
+        File of the text; included files are relative to its folder, or to the working folder if it is None.
+
+    Returns
+    -------
+    Scene
+
+    Raises
+    ------
+    InputError
+        If it is not a valid scene; the message contains the line and the path.
+    """
+    with recorded() as files:
+        found, line = read_including(text, source, file)
+    if found is None:
+        raise InputError(f"{source}: found an empty scene, expected at least 'bodies'")
+    if not isinstance(found, dict):
+        raise InputError(f"{source}: found {type(found).__name__}, expected a mapping with 'bodies'")
+    return made_scene(found, changes, source, line, file.parent if file else None, files=files)
+
+
+def made_scene(
+    found: dict[str, Any],
+    changes: Sequence[tuple[str, Any]],
+    source: str,
+    line_of: LineOf,
+    folder: Path | None = None,
+    unchanged: Unchanged | None = None,
+    files: Mapping[str, str] = NO_FILES,
+) -> Scene:
+    """Return the scene described by a mapping.
+
+    Parameters
+    ----------
+    found : mapping
+        Modified in place.
+    changes : sequence of (path, text)
+        Values that are not text are used unchanged.
+    source : str
+        Name of the scene in messages.
+    line_of : callable
+        Returns the line in the source of a path of keys.
+    folder : Path, optional
+        Folder of meshes and property files; the working folder by default.
+    unchanged : Unchanged, optional
+        Parts that have been validated before. The scene then does not keep its source.
+    files : mapping of str to str
+        Digests of the files from which the mapping was read.
+
+    Raises
+    ------
+    InputError
+        If the scene is not valid.
+    """
+    kept = None if unchanged else WrittenScene(copy.deepcopy(found), tuple(changes), source, folder, dict(files))
+    with recorded() as read:
+        scene = _made_scene(found, changes, source, line_of, folder, unchanged or Unchanged(), kept)
+        record(own_sources(scene))
+    if kept:
+        kept.files.update(read)
+    return scene
+
+
+def _made_scene(
+    found: dict[str, Any], changes: Sequence[tuple[str, Any]], source: str, line_of: LineOf, folder: Path | None,
+    known: Unchanged, kept: WrittenScene | None,
+) -> Scene:  # fmt: skip
+    found, chosen, changes = _chosen(unshared(found), changes, source)
+    parts = found.get("parts")
+    found, changes = placed_in_use(found, changes)
+    refuse_unused_parameters(found, changes, Scene.model_fields)
+    replaced = replaced_parameters(found, changes)
+    names = {section: tuple(part) if isinstance(part := found.get(section), dict) else () for section in OF_ENTRIES}
+    in_parts, own = [], []
+    for path, value in changes:
+        read = read_yaml(value, f"--set {path}") if isinstance(value, str) else value
+        if set_in_instances(path, found.get("use")):
+            in_parts.append((path, read))
+        else:
+            set_value(found, path, read)
+            own.append(path)
+    _keep_one_grid(found, {path for path, _ in changes})
+    try:
+        scene = _validated(found, replaced, in_parts, {**chosen, FOLDER: folder}, known)
+    except _Located as error:
+        message = as_written(str(error), parts)
+        there = error.path if message == str(error) else ("parts", *error.path[1:])
+        where = _place(error.path, changes, lambda _: line_of(there))
+        raise InputError(f"{source}, {_unknown_entry(error.path, own, names)}{where}{message}") from None
+    scene._written, scene._validated = kept, known
+    if scene.stages:
+        scene._stage_scenes = _stage_scenes(scene, source)
+    elif scene.at_start:
+        scene._held_at_start = _held_at_start(scene, source)
+    return scene
+
+
+def _chosen(
+    found: dict[str, Any], changes: Sequence[tuple[str, Any]], source: str
+) -> tuple[dict[str, Any], dict[str, Any], Sequence[tuple[str, Any]]]:
+    """Return a scene with its chosen options merged, the choices for parts, and the other changes."""
+    words = {path: value for path, value in changes if path.startswith(f"{CHOOSE}.")}
+    for path, word in words.items():
+        set_value(found, path, word)
+    try:
+        chosen = {"words": words_chosen(found.get(CHOOSE)), "choices": tuple(choices_of(found, OPTIONS))}
+        merged = with_chosen(found, chosen["words"], OPTIONS)
+    except InputError as error:
+        raise InputError(f"{source}, {error}") from None
+    merged.pop(CHOOSE, None)
+    return merged, chosen, [change for change in changes if change[0] not in words]
+
+
+def _stage_scenes(scene: Scene, source: str) -> tuple[Scene, ...]:
+    """Return the scene of each stage; errors as for `made_scene`."""
+    if scene.written is None:
+        raise InputError(f"{source}: found stages, expected a scene of one run")
+    try:
+        stages = written_stages(scene.written, scene.stages)
+    except InputError as error:
+        raise InputError(f"{source}, {error}") from None
+    return tuple(
+        made_scene(dict(stage.content), stage.changes, f"{source}, stages.{k}", lambda path: None, stage.folder)
+        for k, stage in enumerate(stages)
+    )
+
+
+def _held_at_start(scene: Scene, source: str) -> Scene:
+    """Return the scene with its initial conditions of joints; errors as for `made_scene`."""
+    if scene.written is None:
+        raise InputError(f"{source}: found at_start, expected a scene that starts as described")
+    held = with_held(scene.written)
+    return made_scene(dict(held.content), held.changes, f"{source}, at_start", lambda path: None, held.folder)
+
+
+def _keep_one_grid(found: dict[str, Any], changed: set[str]) -> None:
+    """Remove one of ``run.output`` and ``run.points`` if only the other one is changed."""
+    run, grids = found.get("run"), ("output", "points")
+    chosen = [name for name in grids if f"run.{name}" in changed]
+    if isinstance(run, dict) and len(chosen) == 1:
+        for name in grids:
+            if name != chosen[0]:
+                run.pop(name, None)
+
+
+def _place(fault: tuple[Any, ...], changes: Sequence[tuple[str, Any]], line_of: LineOf) -> str:
+    """Return the location of a fault, as the beginning of a message: a change, or a line."""
+    for path, _ in changes:
+        keys = tuple(path.split("."))
+        if keys in (fault[: len(keys)], fault[1:] if fault[:1] == ("parameters",) else ()):
+            return "--set "
+    line = line_of(fault)
+    return f"line {line}, " if line else ""
+
+
+def _unknown_entry(fault: tuple[Any, ...], paths: Sequence[str], known: Mapping[str, Sequence[str]]) -> str:
+    """Return a clause on a change within an entry that the scene does not have, if the fault is there."""
+    for path in paths:
+        section, *keys = path.split(".")
+        if len(keys) > 1 and (section, keys[0]) == fault[:2] and section in known and keys[0] not in known[section]:
+            near = did_you_mean(keys[0], (*known[section], *(known["use"] if section in NAMED else ())))
+            return f"--set {path}: found no '{keys[0]}' in {section}{near}, expected an entry of the scene, or a whole new one: "
+    return ""
+
+
+class _Located(Exception):
+    """Error with the path of keys at which it occurred."""
+
+    def __init__(self, message: str, path: tuple[Any, ...]) -> None:
+        super().__init__(message)
+        self.path = path
+
+
+def _validated(
+    found: dict[str, Any],
+    replaced: Mapping[str, Quantity],
+    in_parts: Sequence[tuple[str, Any]],
+    known: Mapping[str, Any],
+    unchanged: Unchanged,
+) -> Scene:
+    try:
+        parameters = read_parameters(found.get("parameters"), replaced)
+        tables = read_tables(found.get("tables"), parameters)
+        raw = {
+            key: repeat_entries(key, value, parameters) if key in SECTIONS else value for key, value in found.items()
+        }
+        raw = with_beams(raw, parameters)
+        variables = read_variables(raw.get("variables"), parameters, tables, raw.get("states"), raw.get("inputs"))
+        context: dict[str, Any] = {"parameters": parameters, "tables": tables, "variables": variables, **known}
+        context["roads"] = read_roads(raw.get("roads"), context)
+        raw = _with_flexible_bodies(raw, context)
+        raw, context = with_parts(raw, _family(raw), context, in_parts)
+    except InputError as error:
+        raise _Located(str(error), tuple(str(error).split(":")[0].split("."))) from None
+    raw["parameters"] = {name: parameter.value for name, parameter in parameters.items()}
+    raw["tables"], raw["roads"] = tables, context["roads"]
+    written_entries = dict(raw)
+    raw = unchanged.put_into(raw, context)
+    try:
+        scene = _family(raw).model_validate(raw, context=context)
+    except PydanticError as error:
+        if "dimensions" not in raw and _right_in_space(raw, context):
+            raise _Located("dimensions: found none, expected 3 for bodies in space", ("bodies",)) from None
+        message = sentence(error)
+        path = message.split(":")[0].split(".")
+        raise _Located(message, tuple(path)) from None
+    scene._quantities = parameters
+    unchanged.keep(written_entries, context, scene)
+    return scene
+
+
+def _with_flexible_bodies(raw: dict[str, Any], context: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a scene with its flexible bodies expanded; their package is imported only for these."""
+    bodies = raw.get("bodies")
+    entries = bodies.values() if isinstance(bodies, dict) else ()
+    if not any(isinstance(entry, dict) and entry.get("type") == FLEXIBLE for entry in entries):
+        return raw
+    from .flexible import with_flexible_bodies
+
+    return with_flexible_bodies(raw, context)
+
+
+def _family(raw: dict[str, Any]) -> type[Scene]:
+    """Return the class of scenes of the given dimension; planar by default."""
+    found = raw.get("dimensions", 2)
+    if found not in (2, 3):
+        raise _Located(f"dimensions: found {written(found)}, expected 2 or 3", ("dimensions",))
+    return scene_class(found)
+
+
+def _right_in_space(raw: dict[str, Any], context: dict[str, Any]) -> bool:
+    """Return True if a scene that is invalid in the plane is valid in space."""
+    try:
+        scene_class(3).model_validate(raw, context=context)
+    except PydanticError:
+        return False
+    return True

@@ -1,0 +1,158 @@
+"""Scenes: models with run settings, as in files."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, PrivateAttr, model_validator
+
+from ..elements.element import Component
+from ..elements.requests.check import check_output
+from ..elements.requests.names import OF_PLANE
+from ..elements.requests.order import dimension, dimensions
+from ..elements.requests.output import Output
+from ..elements.requests.output_field import output_field
+from ..elements.roads.field import AnyRoad
+from ..reading.fields import Described
+from ..reading.files.unchanged import Unchanged
+from ..reading.formula.text import FormulaError
+from ..reading.table import Table
+from ..reading.units.units import Quantity, in_text
+from .files.stages import Stage
+from .files.written_scene import WrittenScene
+from .model import PlanarData
+from .model_data import ModelData
+from .settings import RunSettings, SteadyMotion
+
+
+class Figure(Described):
+    """Plot of channels, drawn by ``stiffmbs run SCENE --figure FILE``.
+
+    Parameters
+    ----------
+    title : str
+    x : str
+        A channel, or ``time``.
+    y : tuple of str
+        Channels.
+    z : str
+        A channel: the figure is then a path in space, of one `y` over `x`.
+    equal : bool
+        Whether all axes have the same scale, as for paths.
+    """
+
+    title: str = Field("", description="shown above the plot")
+    x: str = Field("time", description="a channel, or time")
+    y: tuple[str, ...] = Field(min_length=1, description="channels")
+    z: str = Field("", description="a channel: then a path in space over x, one y and z")
+    equal: bool = Field(False, description="one scale for all axes, as for paths")
+
+    @model_validator(mode="after")
+    def _one_path(self) -> Figure:
+        if self.z and (len(self.y) > 1 or self.x == "time"):
+            raise ValueError(
+                f"z: found '{self.z}' with x: {self.x}, y: {', '.join(self.y)}, expected a channel x and one y"
+            )
+        return self
+
+
+class Scene(ModelData):
+    """Model and its run settings, as read from a file."""
+
+    parameters: dict[str, float | str] = Field(default_factory=dict, description="names for use in formulas")
+    tables: dict[str, Table] = Field(default_factory=dict, description="curves that formulas call by name: curve(t)")
+    roads: dict[str, AnyRoad] = Field(default_factory=dict, description="roads that tyres name")
+    variables: dict[str, Any] = Field(default_factory=dict, description="formulas by name, which other formulas use")
+    run: RunSettings = Field(default_factory=RunSettings, description="how to run the scene")
+    start: Literal["described", "equilibrium", "settled"] | SteadyMotion = Field(
+        "described",
+        description="where a run starts: as described, at rest in the equilibrium found from there, in its pose with the "
+        "described velocities (settled), or in steady motion",
+    )
+    at_start: dict[str, Any] = Field(
+        default_factory=dict, description="joints and drives that hold at the start alone, by name"
+    )
+    stages: tuple[Stage, ...] = Field((), description="runs one after the other, each with its own changes")
+    figure: Figure | None = Field(None, description="the plot that shows what the scene is about")
+    notes: tuple[str, ...] = Field((), description="sentences that are shown with every result")
+    _quantities: Mapping[str, Quantity] = PrivateAttr(default_factory=dict)
+    _written: WrittenScene | None = PrivateAttr(default=None)
+    _validated: Unchanged = PrivateAttr(default_factory=Unchanged)
+    _stage_scenes: tuple[Scene, ...] = PrivateAttr(default=())
+    _held_at_start: Scene | None = PrivateAttr(default=None)
+
+    def check_requests(self) -> None:
+        """Refuse invalid requests, and invalid variables, which are read as requests."""
+        super().check_requests()
+        outputs = self.outputs()
+        requests = dimensions(outputs)
+        for name, output in self.variables.items():
+            check_output(f"variables.{name}", output, self, self.output_names, outputs)
+            try:
+                dimension(output, requests)
+            except FormulaError as error:
+                raise ValueError(f"variables.{name}: {error}") from None
+
+    def written_parameters(self) -> dict[str, float | str]:
+        """Return the parameters with their units, as in a scene."""
+        return {name: in_text(self._quantities.get(name, Quantity(value))) for name, value in self.parameters.items()}  # type: ignore[arg-type]
+
+    @property
+    def stage_scenes(self) -> tuple[Scene, ...]:
+        """Scenes of the stages, in order."""
+        return self._stage_scenes
+
+    @property
+    def held_at_start(self) -> Scene | None:
+        """Scene with its initial conditions of joints; None without any."""
+        return self._held_at_start
+
+    @property
+    def whole_duration(self) -> float:
+        """Total duration of all stages, s."""
+        if not self.stages:
+            return self.run.duration
+        time = 0.0
+        for stage, scene in zip(self.stages, self.stage_scenes, strict=True):
+            if stage.over_time:
+                time = time + scene.run.duration if stage.end is None else max(time, stage.end)
+        return time
+
+    @property
+    def written(self) -> WrittenScene | None:
+        """Source of the scene, for reading it with other values; None if it was not read."""
+        return self._written
+
+    @property
+    def validated(self) -> Unchanged:
+        """Validated entries for reading with other values; a changed copy has those of the original scene."""
+        return self._validated
+
+
+def notes_of(model: ModelData) -> tuple[str, ...]:
+    """Return the notes of a scene, and of the roads and tyres of a model."""
+    told: dict[str, list[str]] = {}
+    for name, element in model.forces.items():
+        for _, component in element.parts(Component):
+            for note in component.notes():
+                told.setdefault(note, []).append(name)
+    own = model.notes if isinstance(model, Scene) else ()
+    return (*own, *(f"{', '.join(names)}: {note}" for note, names in told.items()))
+
+
+class PlanarScene(PlanarData, Scene):
+    """Scene in the plane."""
+
+    variables: dict[str, Annotated[Output, output_field(OF_PLANE)]] = Field(
+        default_factory=dict, description="formulas by name, which other formulas use"
+    )
+
+
+def scene_class(dimensions: int) -> type[Scene]:
+    """Return the class of planar or spatial scenes; the latter is imported on demand."""
+    if dimensions == 2:
+        return PlanarScene
+    from .spatial_scene import SpatialScene
+
+    return SpatialScene

@@ -1,0 +1,118 @@
+"""JSON schema of scene files."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ..elements.body import Body as PlanarBody
+from ..elements.planar_kinds import FORCES, JOINTS
+from .parts.definitions import KEYS
+from .parts.options import CHOOSE, OPTIONS
+from .parts.planar_frame import PlanarUse
+from .scene import PlanarScene
+
+
+def scene_schema() -> dict[str, Any]:
+    """Return the JSON schema of planar and spatial scene files.
+
+    Returns
+    -------
+    dict
+        For editors; ``stiffmbs schema`` prints it.
+    """
+    from pydantic.json_schema import models_json_schema
+
+    from ..elements.spatial.body import Body as SpatialBody
+    from ..elements.spatial.spatial_kinds import FORCES as SPATIAL_FORCES
+    from ..elements.spatial.spatial_kinds import JOINTS as SPATIAL_JOINTS
+    from .beams.loads import DistributedLoad
+    from .beams.planar import BeamBody as PlanarBeam
+    from .beams.spatial import BeamBody as SpatialBeam
+    from .parts.spatial_frame import SpatialUse
+    from .spatial_scene import SpatialScene
+
+    planar: list[type[Any]] = [PlanarBody, PlanarBeam, DistributedLoad, *JOINTS.values(), *FORCES.values()]
+    spatial: list[type[Any]] = [
+        SpatialBody,
+        SpatialBeam,
+        DistributedLoad,
+        *SPATIAL_JOINTS.values(),
+        *SPATIAL_FORCES.values(),
+    ]
+    scenes: list[type[Any]] = [PlanarScene, SpatialScene]
+    uses: list[type[Any]] = [PlanarUse, SpatialUse]
+    found, schema = models_json_schema([(part, "validation") for part in (*scenes, *planar, *spatial, *uses)])
+    loop = {"type": "string", "description": "repeat this entry: 'k in 1..N'; k and {k} are replaced in it"}
+    for part in dict.fromkeys((*planar, *spatial, *uses)):
+        name = found[part, "validation"]["$ref"].rpartition("/")[2]
+        schema["$defs"][name]["properties"]["for"] = loop
+    for scene, beam in ((PlanarScene, PlanarBeam), (SpatialScene, SpatialBeam)):
+        whole = schema["$defs"][found[scene, "validation"]["$ref"].rpartition("/")[2]]
+        _add_beams(whole["properties"], found[beam, "validation"], found[DistributedLoad, "validation"])
+    for scene, use in ((PlanarScene, PlanarUse), (SpatialScene, SpatialUse)):
+        _add_parts(schema["$defs"], found[scene, "validation"], found[use, "validation"])
+    in_plane, in_space = (found[scene, "validation"] for scene in scenes)
+    three = {"properties": {"dimensions": {"const": 3}}, "required": ["dimensions"]}
+    return {"if": three, "then": in_space, "else": in_plane, "$defs": schema["$defs"]}
+
+
+def _add_beams(properties: dict[str, Any], beam: dict[str, Any], load: dict[str, Any]) -> None:
+    """Add line bodies and distributed loads to the sections of a scene."""
+    bodies, forces = properties["bodies"], properties["forces"]["additionalProperties"]
+    bodies["additionalProperties"] = {"anyOf": [bodies["additionalProperties"], {**beam, "required": ["type"]}]}
+    forces["oneOf"].append(load)
+    forces["discriminator"]["mapping"]["distributed_load"] = load["$ref"]
+
+
+def _add_parts(definitions: dict[str, Any], scene: dict[str, Any], use: dict[str, Any]) -> None:
+    """Add ``include``, ``parts`` and ``use`` to the schema of a scene, which then does not require bodies."""
+    whole = definitions[scene["$ref"].rpartition("/")[2]]
+    name = {"type": "string"}
+    include = {
+        "anyOf": [name, {"type": "array", "items": name}],
+        "description": "files whose sections are put with those here, from the folder of this file on",
+    }
+    placed = definitions[use["$ref"].rpartition("/")[2]]
+    placed["additionalProperties"] = {"type": "string", "description": "a word that the part offers"}
+    used = {"type": "object", "additionalProperties": use, "description": "parts in their places, by name"}
+    words = {"type": "object", "additionalProperties": name}
+    options = {
+        "type": "object",
+        "additionalProperties": {"type": "object", "additionalProperties": {"type": ["object", "null"]}},
+        "description": "sections of which a word chooses one set: choice, word, sections",
+    }
+    own = {key: whole["properties"][key] for key in KEYS if key in whole["properties"]}
+    number = {"anyOf": [{"type": "number"}, name]}
+    vector = {"type": "array", "items": number, "minItems": 2, "maxItems": 3, "description": "a point or a direction"}
+    own["parameters"] = {"type": "object", "additionalProperties": {"anyOf": [*number["anyOf"], vector]}}
+    part = {
+        "type": "object",
+        "additionalProperties": False,
+        "properties": {
+            "include": include,
+            "use": used,
+            "mounts": {
+                **words,
+                "description": "further bodies that the part connects to, and what they are by default",
+            },
+            OPTIONS: options,
+            **own,
+        },
+    }
+    placing = {
+        "type": "object",
+        "properties": {"use": name, **{key: found for key, found in placed["properties"].items() if key != "part"}},
+        "required": ["use"],
+        "additionalProperties": placed["additionalProperties"],
+    }
+    parts = {
+        "type": "object",
+        "additionalProperties": {"anyOf": [part, placing]},
+        "description": "what `use` places, by name; or placed at once, with `use` for the name of a part",
+    }
+    chosen = {**words, "description": "a word for each choice of the scene or its parts"}
+    whole["properties"] |= {"include": include, "parts": parts, "use": used, OPTIONS: options, CHOOSE: chosen}
+    whole["required"] = [key for key in whole["required"] if key != "bodies"]
+    if not whole["required"]:
+        del whole["required"]
+    whole["anyOf"] = [{"required": [key]} for key in ("bodies", "include", "use", "parts")]

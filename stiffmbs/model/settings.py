@@ -1,0 +1,224 @@
+"""Settings of runs."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TypedDict, TypeVar, Unpack, get_args
+
+from pydantic import Field, field_validator, model_validator
+
+from ..reading.fields import Described, Measured
+from ..reading.given import Number
+from ..reading.units import si
+from ..solver_names import CHOICES, FormulationName, SchemeName, SolverName
+
+MOST_OUTPUTS = 10_000_000
+"""Largest number of output times of a run."""
+FEWEST_APART, ROUNDINGS_APART = 1000, 2e-14
+"""Smallest number of distinguishable time intervals of a run, and their smallest length relative to the time itself."""
+SHORTEST = 1e-100
+"""Shortest duration, s; products of shorter steps underflow."""
+UNCOUNTED = 1e300
+
+
+class Settings(TypedDict, total=False):
+    """Fields of `RunSettings` for type checkers, as keyword arguments of `run`."""
+
+    duration: Number
+    start: Number
+    output: Number | None
+    points: int | Literal["steps"] | None
+    solver: SolverName
+    formulation: FormulationName
+    stabilisation: Number
+    scheme: SchemeName
+    rtol: Number
+    atol: Number | None
+    step: Number
+    projection: bool
+    max_step: Number
+    max_order: int | None
+    stages: Literal[3, 5, 7, "auto"]
+    presolve: bool
+    drop_first: Sequence[str]
+
+
+class RunSettings(Described):
+    """Duration, output and solver of a run.
+
+    Parameters
+    ----------
+    duration : float
+        s, greater than zero.
+    start : float
+        Time at the start, s.
+    output : float, optional
+        Spacing of the output points, s; without it (and without `points`) a thousandth of the duration.
+    points : int or "steps", optional
+        Number of output points, evenly spaced, ends included; or the solver's internal steps.
+    solver : str
+        ``bdf`` (SUNDIALS IDA), ``radau`` (Radau IIA), ``projected`` (explicit, with projection onto the constraints), ``kinematic`` (for
+        scenes whose drives fix every coordinate), or ``auto`` (projected, and bdf while the scene is stiff).
+    formulation : str
+        Formulation of the residual that ``bdf`` and ``radau`` integrate (`stiffmbs.solve.formulations`).
+    stabilisation : float
+        For the formulation ``index1``: decay rate of constraint violations, 1/s; 0 shows its drift.
+    scheme : str, optional
+        For ``projected``: ``euler_cromer`` and ``rk4`` have fixed steps, ``dopri5`` and ``dop853`` adaptive steps. The
+        default is ``dop853``, or ``euler_cromer`` if a step is given.
+    rtol, atol : floats
+        Error tolerances of ``bdf``, ``radau`` and the adaptive schemes. The default of atol (m, rad, m/s, rad/s) is rtol, times
+        the size of a mechanism that is smaller than 1 m.
+    step : float
+        Step of the fixed schemes, s; reduced if it does not divide the time between output points.
+    projection : bool
+        Whether ``projected`` returns to the constraints after each step.
+    max_step : float
+        Largest step of ``bdf``, ``radau`` and the adaptive schemes, s; 0 for none.
+    max_order : int, optional
+        Highest order of the formulas of ``bdf``, 1 to 5. The default is 5, reduced temporarily to 2 if orders 3 to 5
+        require very small steps for a stiff, lightly damped vibration (`stiffmbs.solve.error_control.stability_limit`).
+        A given order is never reduced.
+    stages : 3, 5, 7 or "auto"
+        Number of stages of ``radau``, whose order is 2 stages - 1; by default chosen by the convergence of Newton's
+        iteration.
+    presolve : bool
+        Whether the model is reduced to a smaller problem with the same results, if possible.
+    drop_first : tuple of str
+        Joints whose equations are dropped first if the scene has redundant ones.
+    """
+
+    duration: si.PositiveTime = Field(10.0, description="s")
+    start: si.Time = Field(0.0, description="time at the start, s")
+    output: si.PositiveTime | None = Field(None, description="spacing of the output points, s")
+    points: int | Literal["steps"] | None = Field(
+        None, description="number of output points, or the solver's own steps"
+    )
+    solver: SolverName = Field("bdf", description="how to solve")
+    formulation: FormulationName = Field("SI2", description="of the residual of bdf and radau")
+    stabilisation: Annotated[float, Measured("angular velocity", at_least=0)] = Field(
+        0.0, description="of index1: rate at which violations decay, 1/s"
+    )
+    scheme: SchemeName | None = Field(
+        None, description="of projected; without it dop853, and euler_cromer where a step is given"
+    )
+    rtol: Annotated[float, Measured("number", at_least=1e-14, at_most=0.1)] = Field(
+        1e-6, description="relative error tolerance of bdf, radau and the adaptive schemes"
+    )
+    atol: si.PositiveNumber | None = Field(None, description="absolute error tolerance; rtol unless given")
+    step: si.PositiveTime = Field(1e-3, description="step of the fixed schemes, s")
+    projection: bool = Field(True, description="whether projected returns to the constraints after each step")
+    max_step: si.TimeOrZero = Field(
+        0.0, description="largest step of bdf, radau and the adaptive schemes, s; 0 for none"
+    )
+    max_order: Annotated[int, Field(ge=1, le=5)] | None = Field(
+        None, description="highest order of bdf's formulas, 1 to 5; without it 5, and 2 for a while where that pays"
+    )
+    stages: Literal[3, 5, 7, "auto"] = Field("auto", description="of radau, whose order is 2 stages - 1")
+    presolve: bool = Field(True, description="whether unknowns that others determine are left out of the solution")
+    drop_first: tuple[str, ...] = Field((), description="joints whose redundant equations are dropped first")
+
+    if TYPE_CHECKING:
+
+        def __init__(self, **fields: Unpack[Settings]) -> None: ...
+
+    @field_validator("solver", mode="before")
+    @classmethod
+    def _no_scheme(cls, solver: Any) -> Any:
+        if solver in get_args(SchemeName):
+            raise ValueError(
+                f"found '{solver}', which is a scheme of the solver 'projected'; expected solver: projected, scheme: {solver}"
+            )
+        return solver
+
+    @model_validator(mode="after")
+    def _one_grid(self) -> RunSettings:
+        if self.output is not None and self.points is not None:
+            raise ValueError("found both 'output' and 'points', expected one of them")
+        if isinstance(self.points, int) and self.points < 2:
+            raise ValueError(f"points: found {self.points}, expected 2 or more")
+        asked = self.duration / self.output if self.output is not None else self.points
+        if isinstance(asked, int | float) and asked > MOST_OUTPUTS:
+            raise ValueError(
+                f"found {min(asked, UNCOUNTED):.3g} output times, expected at most {MOST_OUTPUTS:.0e}: a pinned body takes 2 GB for so many"
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _told_apart(self) -> RunSettings:
+        """Refuse output points whose spacing is below the rounding error of the time."""
+        if self.duration < SHORTEST:
+            raise ValueError(f"duration: found {self.duration:.3g} s, expected {SHORTEST:.0e} s or more")
+        count = self.points - 1 if isinstance(self.points, int) else FEWEST_APART
+        spacing = min(self.duration, self.output or self.duration / count)
+        least = ROUNDINGS_APART * max(abs(self.start), abs(self.start + self.duration))
+        if spacing < least:
+            raise ValueError(
+                f"found output points {spacing:.3g} s apart at t = {self.start:.6g} s, expected {least:.3g} s or more: numbers of 16 "
+                "digits tell shorter times no longer apart there"
+            )
+        return self
+
+
+class SteadyMotion(Described):
+    """Motion of all bodies as one rigid body: along a straight line, or on circles about one axis, at constant speed.
+
+    Adams calls such an equilibrium quasi-static.
+
+    Parameters
+    ----------
+    velocity : tuple of float
+        Velocity of every point in addition to the rotation, in ground axes, m/s: one number for each dimension; empty
+        for zero.
+    rotation : float or tuple of float
+        Angular velocity, rad/s: a number in the plane; in space a vector in ground axes, or a number for a rotation
+        about the direction opposite to gravity.
+    about : tuple of float
+        Point on the axis of rotation, m; by default the origin.
+    rolling : tuple of str
+        Bodies with an additional spin about their axis of symmetry. Rolling constraints determine it, or forces that
+        depend on the spin, such as a tyre's; otherwise it is as described.
+    speed : str
+        ``found`` if forces determine it, such as drag and a driver's traction; the velocity is then an initial guess
+        along its line.
+    """
+
+    velocity: tuple[si.Velocity, ...] = Field((), description="of every point, in ground axes, m/s")
+    rotation: si.AngularVelocity | tuple[si.AngularVelocity, si.AngularVelocity, si.AngularVelocity] = Field(
+        0.0, description="angular velocity, rad/s; a number in space is about the vertical"
+    )
+    about: tuple[si.Length, ...] = Field(
+        (), description="a point of the axis of the rotation, m; the origin without it"
+    )
+    rolling: tuple[str, ...] = Field((), description="bodies that spin about their axis of symmetry besides")
+    speed: Literal["given", "found"] = Field(
+        "given", description="whether forces tell how fast it goes along `velocity`"
+    )
+
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+def _as_written(settings: type) -> list[tuple[str, str]]:
+    """Return the fields of a typed dictionary with their types as text."""
+    return [(name, kind.__forward_arg__) for name, kind in settings.__annotations__.items()]
+
+
+class _AsItIs:
+    """Default of a setting in a signature: the value of the scene or of the given settings."""
+
+    def __repr__(self) -> str:
+        return "..."
+
+
+def takes_settings(function: Function) -> Function:
+    """Add the settings to the signature of a function that takes them by keyword, for ``help`` and completion."""
+    signature = inspect.signature(function)
+    own = [parameter for parameter in signature.parameters.values() if parameter.kind is not parameter.VAR_KEYWORD]
+    settings = [
+        inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=_AsItIs(), annotation=CHOICES.get(kind, kind))
+        for name, kind in _as_written(Settings)
+    ]
+    function.__signature__ = signature.replace(parameters=[*own, *settings])  # type: ignore[attr-defined]
+    return function

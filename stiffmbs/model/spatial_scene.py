@@ -1,0 +1,21 @@
+"""Scenes in space."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import Field
+
+from ..elements.requests.names import OF_SPACE
+from ..elements.requests.output import Output
+from ..elements.requests.output_field import output_field
+from .scene import Scene
+from .spatial_model import SpatialData
+
+
+class SpatialScene(SpatialData, Scene):
+    """Scene in space."""
+
+    variables: dict[str, Annotated[Output, output_field(OF_SPACE)]] = Field(
+        default_factory=dict, description="formulas by name, which other formulas use"
+    )

@@ -1,0 +1,268 @@
+"""Field types of the description: SI numbers that accept units, and the base class of all descriptions.
+
+A field's type carries its dimension, unit and bounds. The schema, the reference pages and the error messages are
+derived from it.
+"""
+
+from __future__ import annotations
+
+import operator
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cache
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    GetCoreSchemaHandler,
+    GetJsonSchemaHandler,
+    PydanticUserError,
+    ValidationInfo,
+    model_validator,
+)
+from pydantic import ValidationError as PydanticError
+from pydantic_core import core_schema
+
+from ..errors import InputError
+from .did_you_mean import did_you_mean
+from .files.quoted import quoted, written
+from .formula.text import FormulaError
+from .units.quantity import in_si
+from .units.units import DIMENSIONS, one
+
+NAME_PATTERN = r"^[A-Za-z_][A-Za-z0-9_]*$"
+DOTTED_PATTERN = r"^[A-Za-z_][A-Za-z0-9_]*(\.[A-Za-z_][A-Za-z0-9_]*)*$"
+"""Pattern of names that may include the names of parts: ``front.left.arm``."""
+
+
+class _SignatureWhenAsked:
+    """Signature of a class whose model is built on first use; reading the signature counts as a use."""
+
+    def __get__(self, instance: object, described: Any) -> Any:
+        described.model_rebuild()
+        made = vars(described)["__signature__"]
+        if made is self:
+            raise AttributeError("__signature__")
+        return made.__get__(instance, described)
+
+
+class _OneSentence(type(BaseModel)):  # type: ignore[misc]
+    """Metaclass that reports errors of construction and of class definition as `InputError`."""
+
+    def __new__(mcs, name: str, *arguments: Any, **options: Any) -> Any:
+        try:
+            made = super().__new__(mcs, name, *arguments, **options)
+        except PydanticUserError as error:
+            raise InputError(f"{name}: {_first_line(error)}") from error
+        if not made.__pydantic_complete__:
+            made.__signature__ = _SignatureWhenAsked()
+        return made
+
+    def __call__(cls, *unnamed: Any, **fields: Any) -> Any:
+        if unnamed:
+            names = ", ".join(f"{field.alias or name}=..." for name, field in cls.model_fields.items())
+            found = ", ".join(map(repr, unnamed))
+            raise InputError(f"{cls.__name__}: found {found} without a name, expected names of fields: {names}")
+        try:
+            return super().__call__(**fields)
+        except PydanticError as error:
+            raise InputError(f"{cls.__name__}: {sentence(error)}") from None
+        except PydanticUserError as error:  # a type that was unknown when the class was defined
+            raise InputError(f"{cls.__name__}: {_first_line(error)}") from error
+
+
+def _first_line(error: Exception) -> str:
+    return str(error).splitlines()[0]
+
+
+if TYPE_CHECKING:
+    _Base = BaseModel
+else:
+
+    class _Base(BaseModel, metaclass=_OneSentence):
+        """Model whose construction errors are single sentences."""
+
+
+class Described(_Base):
+    """Base of all descriptions: immutable, without unknown keys, with errors of one sentence.
+
+    Raises
+    ------
+    InputError
+        If a field is missing, unknown, of the wrong type or out of its bounds.
+    """
+
+    former_names: ClassVar[Mapping[str, str]] = {}
+    """New names of renamed fields by their old names, for messages."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", arbitrary_types_allowed=True, defer_build=True)
+
+    def __repr_args__(self) -> Iterator[tuple[str, Any]]:
+        """Yield the fields that differ from their defaults, for ``repr``."""
+        for name, field in type(self).model_fields.items():
+            value = getattr(self, name)
+            if name != "type" and value != field.get_default(call_default_factory=True):
+                yield field.alias or name, value
+
+    @model_validator(mode="before")
+    @classmethod
+    def _no_unknown_key(cls, found: Any) -> Any:
+        if isinstance(found, dict):
+            known = _keys(cls)
+            for key in found:
+                if key in cls.former_names:
+                    raise ValueError(f"found '{key}', expected its new name '{cls.former_names[key]}'")
+                if key not in known:
+                    raise ValueError(
+                        f"found the unknown key '{quoted(key)}'{did_you_mean(key, known)}, expected one of {', '.join(known)}"
+                    )
+        return found
+
+    @model_validator(mode="before")
+    @classmethod
+    def _arrays_as_lists(cls, found: Any) -> Any:
+        """Convert NumPy arrays and numbers to Python objects."""
+        if not isinstance(found, dict):
+            return found
+        return {key: value.tolist() if hasattr(value, "tolist") else value for key, value in found.items()}
+
+
+@cache
+def _keys(described: type[Described]) -> tuple[str, ...]:
+    return tuple(field.alias or name for name, field in described.model_fields.items())
+
+
+@dataclass(frozen=True)
+class Measured:
+    """Marker of a field as a finite number of a dimension: ``mass: Annotated[float, Measured("mass", above=0)]``.
+
+    Values are in SI units or text with units.
+
+    Parameters
+    ----------
+    dimension : str
+        One of `stiffmbs.reading.units.units.DIMENSIONS`.
+    above, at_least, at_most, other_than : float, optional
+        Bounds, and an excluded value, in SI units.
+    """
+
+    dimension: str
+    above: float | None = None
+    at_least: float | None = None
+    at_most: float | None = None
+    other_than: float | None = None
+
+    def read(self, found: object, info: ValidationInfo) -> float:
+        """Return the SI value of an entry of a scene.
+
+        Raise a FormulaError if it is not a number of the dimension within the bounds.
+        """
+        value = in_si(found, self.dimension, (info.context or {}).get("parameters"))
+        unit = DIMENSIONS[self.dimension][1].removeprefix("1").removeprefix("SI units")
+        for bound, holds, words in (
+            (self.above, operator.gt, "greater than {}"),
+            (self.at_least, operator.ge, "of {} or more"),
+            (self.at_most, operator.le, "of {} or less"),
+            (self.other_than, operator.ne, "other than {}"),
+        ):
+            if bound is not None and not holds(value, bound):
+                limit = f"{bound:g} {unit}".strip()
+                raise FormulaError(f"found {quoted(found)}, expected {one(self.dimension)} {words.format(limit)}")
+        return value
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> Any:
+        return core_schema.with_info_plain_validator_function(
+            self.read, serialization=core_schema.plain_serializer_function_ser_schema(lambda value: value)
+        )
+
+    def __get_pydantic_json_schema__(self, schema: Any, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        bounds = {"exclusiveMinimum": self.above, "minimum": self.at_least, "maximum": self.at_most}
+        number: dict[str, Any] = {name: bound for name, bound in bounds.items() if bound is not None}
+        excluded = {} if self.other_than is None else {"not": {"const": self.other_than}}
+        unit = DIMENSIONS[self.dimension][1]
+        text = {"type": "string", "description": f"a formula with units that converts to {unit}"}
+        return {"anyOf": [{"type": "number", **number, **excluded}, text], "description": f"{self.dimension}, {unit}"}
+
+
+def named_entries(section: str, found: Any, values: str) -> Iterator[tuple[str, Any]]:
+    """Yield the entries of a section of a scene.
+
+    Parameters
+    ----------
+    section : str
+    found : mapping or None
+        The section as written.
+    values : str
+        Kind of the entries, for messages.
+
+    Raises
+    ------
+    InputError
+        If the section is not a mapping, or a name is not an identifier.
+    """
+    if found is not None and not isinstance(found, dict):
+        raise InputError(f"{section}: found {written(found)}, expected a mapping of names to {values}")
+    for name, entry in (found or {}).items():
+        if not isinstance(name, str) or not re.match(NAME_PATTERN, name):
+            raise InputError(f"{section}: found the name {written(name)}, expected letters, digits and _")
+        yield name, entry
+
+
+def sentence(error: PydanticError) -> str:
+    """Return the first fault of a validation as one sentence: location, found, expected."""
+    faults = error.errors(include_url=False)
+    fault = faults[0]
+    where = location(fault["loc"])
+    others = {location(other["loc"]) for other in faults} - {where}
+    more = f" (and {len(others)} more)" if others else ""
+    return f"{where}{': ' if where else ''}{_reason(fault)}{more}"
+
+
+def location(parts: tuple[Any, ...]) -> str:
+    """Return the path of a fault in the form of ``--set``: ``bodies.cart.mass``, without the branches of unions."""
+    named = [str(part) for part in parts]
+    while named and ("[" in named[-1] or named[-1] in ("int", "float", "str")):
+        named.pop()  # the branch of a union
+    return ".".join(named)
+
+
+def _reason(fault: Any) -> str:
+    found, context = fault.get("input"), fault.get("ctx", {})
+    match fault["type"]:
+        case "value_error":
+            return str(context["error"])
+        case "missing":
+            return "found nothing, expected a value (the key is required)"
+        case "too_short" | "too_long":
+            limit = context.get("min_length", context.get("max_length"))
+            return f"found {context['actual_length']} values, expected {limit}"
+        case "string_pattern_mismatch":
+            return f"found '{quoted(found)}', expected a name of letters, digits and _ that does not start with a digit"
+        case "literal_error" | "enum":
+            near = did_you_mean(found, re.findall("'([^']*)'", context["expected"])) if isinstance(found, str) else ""
+            return f"found {written(found)}{near}, expected {context['expected']}"
+        case "tuple_type" | "list_type":
+            return f"found {written(found)}, expected a list in brackets"
+        case "dict_type" | "model_type" | "model_attributes_type":
+            return f"found {written(found)}, expected a mapping of keys to values"
+        case _:
+            return f"found {written(found)}, expected {fault['msg'].removeprefix('Input should be ')}"
+
+
+def typed(kind: str, found: Any) -> Any:
+    """Return an entry with its type filled in; raise a ValueError if it has another type than this kind."""
+    if not isinstance(found, dict):
+        return found
+    if found.get("type", kind) != kind:
+        raise ValueError(f"found the type '{quoted(found['type'])}', expected '{kind}'")
+    return {**found, "type": kind}
+
+
+def exactly_one(first: tuple[str, object], second: tuple[str, object]) -> None:
+    """Raise a ValueError with the message of an input error if both or neither of two fields, (name, value), are given."""
+    names = f"'{first[0]}' and '{second[0]}'"
+    given = sum(value is not None for _, value in (first, second))
+    if given != 1:
+        raise ValueError(f"found {'both' if given else 'neither'} of {names}, expected exactly one of them")

@@ -1,0 +1,166 @@
+"""Inclusion of other files: ``include: suspension.yaml``, at the top of a scene or of one of its parts."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from ...errors import InputError
+from .quoted import quoted, written
+from .read_before import read_yaml_file
+from .text_file import STANDARD_INPUT, file_text
+from .yaml_text import line_and_depth, line_of
+
+INCLUDE, PARTS = "include", "parts"
+MOST_FILES = 100
+"""Largest number of included files; repeated inclusions count."""
+LARGEST = 20_000_000
+"""Largest size of an included file, bytes."""
+
+
+@dataclass
+class Sources:
+    """Texts of a scene.
+
+    Attributes
+    ----------
+    texts : list of (str, str, tuple of str)
+        Name in messages, text, and path of keys in the scene at which its content is inserted.
+    """
+
+    texts: list[tuple[str, str, tuple[str, ...]]] = field(default_factory=list)
+
+    def line(self, path: tuple[Any, ...]) -> str | None:
+        """Return the line of the deepest known key of a path, with the file if it is an included one."""
+        deepest, line = 0, None
+        for k, (source, text, above) in enumerate(self.texts):
+            if path[: len(above)] != above:
+                continue
+            found, depth = line_and_depth(text, path[len(above) :])
+            if found and depth + len(above) > deepest:
+                deepest, line = depth + len(above), str(found) if k == 0 else f"{found} of {source}"
+        return line
+
+
+def read_including(text: str, source: str, file: Path | None) -> tuple[Any, Callable[[tuple[Any, ...]], str | None]]:
+    """Read a YAML text and the files that it includes; return the content, and `Sources.line` as a function of a path.
+
+    Parameters
+    ----------
+    source : str
+        Name of the text in messages.
+    file : Path or None
+        File of the text; included files are relative to its folder, or to the working folder if it is None.
+
+    Raises
+    ------
+    InputError
+        For a file that cannot be read, that includes itself, or that has a name twice.
+    """
+    sources = Sources([(source, text, ())])
+    found = read_yaml_file(text, source, file)
+    if isinstance(found, dict):
+        own = (file.resolve(),) if file else ()
+        found = _Including(sources).whole(found, source, file.parent if file else Path(), own, ())
+    return found, sources.line
+
+
+@dataclass
+class _Including:
+    sources: Sources
+
+    def whole(
+        self, found: dict[str, Any], source: str, folder: Path, within: tuple[Path, ...], path: tuple[str, ...]
+    ) -> dict[str, Any]:
+        """Return a mapping with its includes and those of its parts resolved."""
+        found = self._opened(found, source, folder, within, path)
+        parts = found.get(PARTS)
+        if isinstance(parts, dict):
+            opened = {
+                name: self._opened(part, source, folder, within, (*path, PARTS, str(name))) if isinstance(part, dict) else part
+                for name, part in parts.items()
+            }  # fmt: skip
+            found = {**found, PARTS: opened}
+        return found
+
+    def _opened(
+        self, found: dict[str, Any], source: str, folder: Path, within: tuple[Path, ...], path: tuple[str, ...]
+    ) -> dict[str, Any]:
+        if INCLUDE not in found:
+            return found
+        where = f"{_place(self.sources, source, (*path, INCLUDE))}{'.'.join((*path, INCLUDE))}"
+        merged: dict[str, Any] = {}
+        owners: dict[tuple[Any, ...], str] = {}
+        for name in _listed(found[INCLUDE], where):
+            file = folder / name
+            _add(merged, self._content(file, where, within, path), str(file), owners, where)
+        _add(merged, {key: value for key, value in found.items() if key != INCLUDE}, source, owners, where)
+        return merged
+
+    def _content(self, file: Path, where: str, within: tuple[Path, ...], path: tuple[str, ...]) -> dict[str, Any]:
+        if file.resolve() in within:
+            raise InputError(f"{where}: found '{quoted(str(file))}', which includes itself, expected no circle")
+        if len(self.sources.texts) > MOST_FILES:
+            raise InputError(f"{where}: found more than {MOST_FILES} files, expected fewer")
+        _check_file(file, where)
+        text = file_text(file)
+        self.sources.texts.append((str(file), text, path))
+        found = read_yaml_file(text, str(file), file)
+        if not isinstance(found, dict):
+            raise InputError(
+                f"{file}: found {'nothing' if found is None else written(found)}, expected a mapping of sections"
+            )
+        return self.whole(found, str(file), file.parent, (*within, file.resolve()), path)
+
+
+def _check_file(file: Path, where: str) -> None:
+    """Refuse anything except a regular file of moderate size; reading a device may not end."""
+    try:
+        if not file.is_file():
+            raise InputError(f"{where}: found no such file '{quoted(str(file))}', expected a YAML file")
+        size = file.stat().st_size
+    except (OSError, ValueError) as error:
+        raise InputError(f"{where}: the file '{quoted(str(file))}' cannot be read ({error})") from None
+    if size > LARGEST:
+        raise InputError(f"{where}: found {size} bytes in '{quoted(str(file))}', expected at most {LARGEST}")
+
+
+def _listed(found: Any, where: str) -> list[str]:
+    names = found if isinstance(found, list) else [found]
+    for name in names:
+        if not isinstance(name, str) or not name or "\0" in name or name == STANDARD_INPUT:
+            raise InputError(f"{where}: found {written(name)}, expected the name of a YAML file, or a list of them")
+    return names
+
+
+def _add(
+    merged: dict[str, Any], found: dict[str, Any], source: str, owners: dict[tuple[Any, ...], str], where: str
+) -> None:
+    """Merge the sections of a file; a name may occur in one file only."""
+    for section, value in found.items():
+        if not (isinstance(value, dict) and isinstance(merged.get(section, {}), dict)):
+            _own((section,), merged, section, value, source, owners, where)
+            continue
+        merged[section] = dict(merged.get(section, {}))
+        for name, entry in value.items():
+            _own((section, name), merged[section], name, entry, source, owners, where)
+
+
+def _own(
+    path: tuple[Any, ...], place: dict[str, Any], name: Any, value: Any, source: str,
+    owners: dict[tuple[Any, ...], str], where: str,
+) -> None:  # fmt: skip
+    if name in place and not (len(path) == 1 and place[name] == value):  # equal values may be repeated
+        first = owners.get(path, "another file")
+        raise InputError(f"{where}: found '{'.'.join(map(str, path))}' in {first} and in {source}, expected it in one")
+    place[name] = value
+    owners[path] = source
+
+
+def _place(sources: Sources, source: str, path: tuple[str, ...]) -> str:
+    """Return the file and line of a key, as the beginning of a message."""
+    text, above = next(((text, above) for name, text, above in reversed(sources.texts) if name == source), ("", ()))
+    line = line_of(text, path[len(above) :])
+    return f"{source}, line {line}, " if line else f"{source}, "

@@ -1,0 +1,45 @@
+"""Section `variables` of a scene: formulas by name."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Collection, Mapping
+from typing import Any
+
+from ...errors import InputError
+from ..fields import NAME_PATTERN
+from ..formula.nodes import TIME
+from ..formula.text import UNIT, FormulaError
+from ..formula.variables import resolved
+from ..units.units import CONSTANTS, UNITS, Quantity
+from .quoted import written
+
+
+def read_variables(
+    found: Any, parameters: Mapping[str, Quantity], tables: Collection[str], states: Any = None, inputs: Any = None
+) -> dict[str, ast.expr]:
+    """Return the syntax trees of a scene's variables by name; `states` and `inputs` are sections of the scene.
+
+    Raise an InputError if a name is not an identifier or already has a meaning, or a formula cannot be read.
+    """
+    if found is None:
+        return {}
+    if not isinstance(found, dict):
+        raise InputError(f"variables: found {written(found)}, expected a mapping of names to formulas")
+    formulas: dict[str, str | float] = {}
+    for name, formula in found.items():
+        if not isinstance(name, str) or not re.match(NAME_PATTERN, name):
+            raise InputError(f"variables: found the name {written(name)}, expected letters, digits and _")
+        if name in UNITS:
+            raise InputError(f"variables.{name}: found the name of a unit, expected another: rename the variable")
+        if name in (*CONSTANTS, *parameters, *tables, TIME, UNIT):
+            raise InputError(f"variables.{name}: found a name with a meaning already, expected another")
+        if isinstance(formula, bool) or not isinstance(formula, str | int | float):
+            raise InputError(f"variables.{name}: found {written(formula)}, expected a formula")
+        formulas[name] = formula
+    try:
+        known = [name for section in (states, inputs) if isinstance(section, dict) for name in section]
+        return resolved(formulas, {*parameters, *CONSTANTS, TIME, *known})
+    except FormulaError as error:
+        raise InputError(f"variables.{error}") from None

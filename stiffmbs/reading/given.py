@@ -1,0 +1,40 @@
+"""Types accepted by constructors in Python: numbers also as text with units, bodies also as handles."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from ..elements.roads import road
+    from ..elements.tyres import coefficients
+    from .handle import Handle
+    from .marker import MarkerReference
+    from .python_function import PythonFunction
+    from .table import Table
+
+Number: TypeAlias = "float | np.number[Any] | str"
+"""Number in SI units, or text with a unit: ``0.3``, ``"300 mm"``."""
+Numbers: TypeAlias = "Sequence[Number | None] | np.ndarray"
+Matrix: TypeAlias = "Sequence[Number | Sequence[Number | None] | np.ndarray | None] | np.ndarray"
+"""Matrix by rows, or by its diagonal if the field allows it."""
+Law: TypeAlias = "float | np.number[Any] | str"
+"""Formula or number."""
+Laws: TypeAlias = "Law | Sequence[Law]"
+Curve: TypeAlias = "Law | Table | Mapping[str, Any]"
+"""Formula of one variable, or table."""
+Function: TypeAlias = "Callable[..., Any] | PythonFunction"
+Marker: TypeAlias = "str | Handle | MarkerReference | Mapping[str, Any]"
+"""Name of a body or of a marker, handle of a body, or explicit marker."""
+Road: TypeAlias = "road.Road | Mapping[str, Any]"
+"""Road made in Python, or its type and fields."""
+TyreProperties: TypeAlias = "coefficients.TyreProperties | str | Path | Mapping[str, Any]"
+"""Property file, or its coefficients."""
+Markers: TypeAlias = "Mapping[str, Any]"
+"""Named points on a body."""
+Geometry: TypeAlias = "Mapping[str, Any] | Sequence[Mapping[str, Any]]"
+"""Shapes of a body, each with its ``type``; a single one needs no list."""
+Orientation: TypeAlias = "Sequence[Any] | np.ndarray | Mapping[str, Any]"

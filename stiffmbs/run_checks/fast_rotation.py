@@ -1,0 +1,37 @@
+"""Note on flexible bodies that rotate fast: their geometric stiffening is not included."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ..compile.system import System
+from ..dynamics.dynamics import OutputRows
+from ..elements.spatial.flexible.native.sums import BODY, MODE, MODES, OF_MODE
+
+FAST = 0.03
+"""Angular velocity, relative to the lowest natural frequency of the free body, from which a note appears. A slender
+clamped body bends at a sixth of that frequency, and its stiffness changes by the square of the ratio: 3 %."""
+
+
+def fast_rotation_notes(system: System, rows: OutputRows) -> Iterator[str]:
+    """Yield a note on each flexible body whose rotation changes its stiffness."""
+    for group in system.groups:
+        for e in range(group.count if group.entries["inertia"] and len(rows.t) else 0):
+            body = int(group.bodies[e, 0])
+            first = int(group.index[e, 2 * group.kind.n_bodies])
+            numbers = group.numbers[first + int(group.numbers[first]) :]
+            modes = 3 * (group.kind.n_bodies - 1)
+            stiffness = numbers[MODES : MODES + OF_MODE * modes].reshape(modes, OF_MODE)[
+                :, list(MODE).index("stiffness")
+            ]
+            start = system.of_body.n_u * body + system.of_body.linear
+            rate = float(np.linalg.norm(rows.u[:, start : start + 3], axis=1).max())
+            lowest = float(np.sqrt(stiffness.min(initial=np.inf) / numbers[MODES - BODY["modal_mass"]]))
+            if rate > FAST * lowest:
+                yield (
+                    f"'{group.names[e]}' turns at up to {rate:.3g} rad/s, {100 * rate / lowest:.2g} % of its lowest natural frequency "
+                    f"of {lowest / (2 * np.pi):.3g} Hz: its stiffening by centrifugal forces is not included; compare with a body "
+                    "divided into several"
+                )

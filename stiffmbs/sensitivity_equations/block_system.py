@@ -1,0 +1,102 @@
+"""Derivatives of accelerations, multipliers and algebraic states with respect to state and parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..compile.directional.direction import Direction, Numbers, unchanged
+from ..compile.directional.source import STATE
+from ..dynamics.dynamics import Dynamics
+from ..dynamics.failures import FAILURES
+from ..errors import SolverError
+from .saddle import acceleration_solution
+
+
+@dataclass(frozen=True)
+class Change:
+    """Variation of a state, one row for each direction.
+
+    Attributes
+    ----------
+    q, u : ndarrays, shapes (directions, n_q), (directions, n_u)
+        Variations of coordinates and velocities, with algebraic states that satisfy their equations.
+    acceleration, lam : ndarrays, shapes (directions, n_u), (directions, n_c)
+    """
+
+    q: np.ndarray
+    u: np.ndarray
+    acceleration: np.ndarray
+    lam: np.ndarray
+
+
+class BlockSystem:
+    """Block system of a state in several directions."""
+
+    def __init__(self, dynamics: Dynamics, directions: Sequence[Numbers]) -> None:
+        self._dynamics, self._numbers = dynamics, directions
+        self._accelerations = [Direction(dynamics.state, "acceleration", numbers) for numbers in directions]
+        self._by_time = Direction(dynamics.state, "acceleration", unchanged(dynamics.system), STATE)
+        self._outputs: list[Direction] = []
+
+    def change(
+        self, t: float, q: np.ndarray, u: np.ndarray, moved_q: np.ndarray, moved_u: np.ndarray, moved_t: np.ndarray
+    ) -> Change:
+        """Return the variations of accelerations, multipliers and algebraic states at a state.
+
+        Parameters
+        ----------
+        moved_q, moved_u : ndarrays, shapes (directions, n_q), (directions, n_u)
+            Variations of the state; columns of algebraic states are ignored.
+        moved_t : ndarray, shape (directions,)
+            Variation of time.
+
+        Raises
+        ------
+        SolverError
+            When the accelerations are not determined.
+        """
+        return self._change(t, (q, u), self._accelerations, moved_q, moved_u, moved_t)
+
+    def motion(self, t: float, q: np.ndarray, u: np.ndarray, q_rates: np.ndarray, acceleration: np.ndarray) -> Change:
+        """Return the time derivatives of all parts of a state, one row; errors as for `change`."""
+        return self._change(t, (q, u), [self._by_time], q_rates[None], acceleration[None], np.ones(1))
+
+    def _change(
+        self, t: float, at: tuple[np.ndarray, np.ndarray], directions: Sequence[Direction],
+        moved_q: np.ndarray, moved_u: np.ndarray, moved_t: np.ndarray,
+    ) -> Change:  # fmt: skip
+        state, system = self._dynamics.state, self._dynamics.system
+        state.q[:], state.u[:] = at
+        status, acceleration = self._dynamics.accelerate(t)
+        if status < 0:
+            raise SolverError(f"sensitivities: no accelerations were found at t = {t:.9g} s: {FAILURES[status]}")
+        state.a[:] = acceleration
+        algebraic, right = system.algebraic_coordinates, []
+        for direction, of_q, of_u, of_t in zip(directions, moved_q, moved_u, moved_t, strict=True):
+            direction.q[:], direction.u[:] = of_q, of_u
+            direction.q[algebraic] = 0.0
+            direction.evaluate(t, of_t)
+            force = (
+                direction.vector("f") - direction.numbers.mass * acceleration - direction.product("J", state.lam, True)
+            )
+            constraints = direction.vector("gamma") - direction.product("J", acceleration)
+            right.append(np.concatenate([force, constraints, direction.vector("rate")[algebraic]]))
+        accelerations, lam, states = np.split(
+            acceleration_solution(state, np.array(right).T).T, [system.n_u, system.n_u + system.n_c], axis=1
+        )
+        found_q = moved_q.copy()
+        found_q[:, algebraic] = states
+        return Change(found_q, moved_u, accelerations, lam)
+
+    def outputs(self, t: float, change: Change) -> np.ndarray:
+        """Return the variations of the output terms at the current state, shape (directions, values)."""
+        self._outputs = self._outputs or [Direction(self._dynamics.state, "output", each) for each in self._numbers]
+        n_values = self._dynamics.system.n_values("output")
+        for k, direction in enumerate(self._outputs):
+            direction.q[:], direction.u[:], direction.a[:] = change.q[k], change.u[k], change.acceleration[k]
+            direction.lam[:] = change.lam[k]
+            direction.evaluate(t)
+        return np.array([direction.values[:n_values] for direction in self._outputs])

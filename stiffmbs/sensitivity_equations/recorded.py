@@ -1,0 +1,178 @@
+"""Recorded run of `bdf`: all steps, in segments between restarts at breakpoints and events."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..compile.equations import ABSENT
+from ..dynamics.dynamics import Dynamics
+from ..dynamics.initial import InitialValues
+from ..errors import ChatteringError, SolverError
+from ..model.settings import RunSettings
+from ..solve.events.chattering import Chattering
+from ..solve.events.restart import INDISTINCT
+from ..solve.ida.engine import Reached
+from ..solve.ida.native_engine import NativeEngine
+from ..solve.integrator import Integrator
+from ..solve.trajectory import Grid
+
+ROUNDING = 1e-13
+"""Rounding of times, relative to the time: least shift of a segment's end before an event, duration of an empty segment."""
+FURTHEST = 1e-6
+"""Largest shift of a segment's end before an event, relative to the segment."""
+SUDDEN, JUMP, FELT = 1e-9, 1e-3, 1e-6
+"""Relative step size that indicates a discontinuity, and smallest jump, relative to own and all accelerations."""
+MOST_NUMBERS = 2e8
+"""Largest number of recorded numbers, 1.6 GB."""
+
+
+@dataclass
+class Segment:
+    """Steps between two restarts.
+
+    Attributes
+    ----------
+    start : InitialValues
+    first : ndarray, shape (2 + 2 n,)
+        Time, order, y and y' at the start.
+    rows : ndarray, shape (steps, 2 + 2 n)
+        The same at the end of each step.
+    fired : tuple of int
+        Event functions that end it; empty at a breakpoint in time or the end of the run.
+    """
+
+    start: InitialValues
+    first: np.ndarray
+    parts: list[np.ndarray] = field(default_factory=list)
+    fired: tuple[int, ...] = ()
+
+    @property
+    def rows(self) -> np.ndarray:
+        """Time, order, y and y' at the end of each step, shape (steps, 2 + 2 n)."""
+        if len(self.parts) > 1:
+            self.parts = [np.concatenate(self.parts)]
+        return self.parts[0] if self.parts else np.empty((0, len(self.first)))
+
+
+class Recorder(Integrator):
+    """Integrator that records its steps, which end at kinks of tables, as force derivatives are discontinuous there.
+
+    After a run that stopped because a force chatters, `chatters` is True.
+    """
+
+    def __init__(self, dynamics: Dynamics, settings: RunSettings) -> None:
+        super().__init__(dynamics, settings, memory="recorder")
+        if not isinstance(self.engine, NativeEngine):
+            raise SolverError(
+                "sensitivities: found SUNDIALS' libraries in another form, expected those of scikit-sundae's wheels"
+            )
+        self.native: NativeEngine = self.engine
+        self.native.end_steps_at_kinks()
+        self.segments: list[Segment] = []
+        self.chatters = False
+        self._numbers = 0
+
+    @property
+    def longest_step(self) -> float:
+        """Length of the longest step, s."""
+        times = (np.append(each.first[0], each.rows[:, 0]) for each in self.segments)
+        return max((float(np.diff(t).max(initial=0.0)) for t in times), default=0.0)
+
+    def passed(self, duration: float) -> list[Segment]:
+        """Return the segments of nonzero length; raise a SolverError when accelerations are discontinuous within one."""
+        found = [each for each in self.segments if len(each.rows)]
+        found = [each for each in found if each.rows[-1, 0] - each.first[0] > ROUNDING * duration] or found
+        for segment in found:
+            self._refuse_jumps_within(segment, SUDDEN * duration)
+        return found
+
+    def _refuse_jumps_within(self, segment: Segment, sudden: float) -> None:
+        """Refuse forces with undeclared discontinuities, where steps are as short as rounding allows."""
+        n, at = self.equations.n, self.equations.at["u"]
+        t, a = segment.rows[:, 0], segment.rows[:, 2 + n + at]
+        system, largest = self.dynamics.system, np.abs(a).max(axis=0)
+        scale = system.per_velocity(system.size, 1.0)
+        least = np.maximum(JUMP * largest, FELT * np.max(largest / scale) * scale)
+        short = (np.diff(t) < sudden) & np.any(np.abs(np.diff(a, axis=0)) > least, axis=1)
+        for k in np.flatnonzero(short):
+            there = [self._accelerations(row[0], row[2 : 2 + n]) for row in segment.rows[k : k + 2]]
+            if np.any(np.abs(there[1] - there[0]) > least):
+                raise SolverError(
+                    f"sensitivities: found that accelerations are discontinuous at t = {t[k]:.9g} s, where no force declares a breakpoint (a spring "
+                    "that passes its anchor, a discontinuous Python function): the motion is not differentiable there; expected "
+                    "continuous forces"
+                )
+
+    def _accelerations(self, t: float, y: np.ndarray) -> np.ndarray:
+        """Return the accelerations at a state."""
+        self.dynamics.state.q[:], self.dynamics.state.u[:] = self.split(y)
+        return self.dynamics.accelerate(t)[1].copy()
+
+    def _anew(
+        self, q: np.ndarray, u: np.ndarray, before: float, t: float, ahead: float, chattering: Chattering
+    ) -> tuple[InitialValues, float]:
+        """Return consistent values for the segment; the engine does not restart by itself."""
+        return self._consistent(q, u, before, t, ahead)
+
+    def _begin(self, start: InitialValues, t: float) -> None:
+        super()._begin(start, t)
+        if self.segments:
+            self._end_before_the_jump(self.segments[-1])
+        self.segments.append(Segment(start, self.native.present()))
+
+    def _end_before_the_jump(self, segment: Segment) -> None:
+        """Move the end of a segment back by some roundings of time, to where its force law holds."""
+        rows, n = segment.rows, self.equations.n
+        if not len(rows):
+            return
+        t, y, yp = rows[-1, 0], rows[-1, 2 : 2 + n].copy(), rows[-1, 2 + n :]
+        back = ROUNDING * max(abs(t), t - segment.first[0])
+        if segment.fired:
+            ahead = self._value(segment.fired[0], t + back, y + back * yp)
+            while back < FURTHEST * (t - segment.first[0]):
+                if self._value(segment.fired[0], t - back, y - back * yp) * ahead < 0:
+                    break
+                back *= 10.0
+        rows[-1, 0] = t - back
+        rows[-1, 2 : 2 + n] = y - back * yp
+
+    def _value(self, event: int, t: float, y: np.ndarray) -> float:
+        """Return an event function at a state."""
+        state, lam = self.dynamics.state, self.equations.at["lam"]
+        solved = lam != ABSENT
+        with state.unchanged():
+            state.q[:], state.u[:] = self.split(y)
+            state.lam[solved] = y[lam[solved]]
+            state.evaluate("event_function", t)
+            return float(state.values["event_function"][event])
+
+    def run(self, start: InitialValues, grid: Grid, passing: bool = False) -> Iterator[Reached]:
+        """Yield the progress as any integrator, stopping at each breakpoint; the steps are in `segments` afterwards."""
+        self.native.keep_steps(True)
+        try:
+            for reached in super().run(start, grid):
+                self._keep(reached)
+                yield reached
+        except ChatteringError:
+            self.chatters = True
+            raise
+        finally:
+            self.native.keep_steps(False)
+
+    def _keep(self, reached: Reached) -> None:
+        rows = self.native.kept_steps()
+        if not len(rows):
+            return
+        segment = self.segments[-1]
+        last = segment.parts[-1][-1, 0] if segment.parts else segment.first[0]
+        segment.parts.append(rows[np.diff(rows[:, 0], prepend=last) > INDISTINCT * np.abs(rows[:, 0])])
+        segment.fired = reached.fired
+        self._numbers += rows.size
+        if self._numbers > MOST_NUMBERS:
+            raise SolverError(
+                f"sensitivities: found {self._numbers / rows.shape[1]:.3g} steps of {rows.shape[1]} numbers, expected fewer; "
+                "give a shorter duration or a larger rtol"
+            )

@@ -1,0 +1,93 @@
+"""Report on a reduced flexible body as text and as JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from ..flexible_bodies.reduction import ReducedBody
+
+MOST_FREQUENCIES = 12
+LARGE_CONDITION = 1e12
+"""Condition number above which a note advises fewer modes."""
+
+
+def flexible_body_text(name: str, body: ReducedBody, interfaces: Sequence[str], held: Mapping[str, np.ndarray]) -> str:
+    """Return the report as text.
+
+    Parameters
+    ----------
+    name : str
+        Name of the file.
+    body : ReducedBody
+    interfaces : sequence of str
+        Names of the interfaces.
+    held : mapping of str to ndarray
+        Natural frequencies with some interfaces held, Hz.
+    """
+    nodes, elastic = len(body.modes) // 3, len(body.frequencies)
+    interface_modes = int(body.sizes.sum())
+    lines = [
+        f"{name}: {nodes} nodes, reduced to {elastic} elastic modes",
+        _line("modes", f"{interface_modes} of interfaces, {len(body.fixed_frequencies)} normal modes with all interfaces held"),
+        _line("mass", f"{body.mass:.6g} kg"),
+        _line("centre", f"{_numbers(body.centre)} m"),
+        _line("inertia", f"{_numbers(body.inertia[np.triu_indices(3)])} kg m^2 (xx xy xz yy yz zz, about the centre)"),
+        *(_line("interface", f"{own}: {'point' if size == 3 else 'point and rotation'} at {_numbers(point)} m")
+          for own, size, point in zip(interfaces, body.sizes, body.points, strict=True)),
+        _line("rigid", f"six frequencies of {body.rigid_frequencies.max():.1e} Hz or less"),
+        _line("free", f"{_listed(body.frequencies)} Hz"),
+        *(_line("held", f"{_listed(found)} Hz ({which})") for which, found in held.items()),
+        _line("fixed", f"{_listed(body.fixed_frequencies)} Hz (all interfaces held)"),
+        _line("effective", f"{', '.join(f'{100 * part:.1f} %' for part in body.effective_mass.sum(axis=0))} of the mass along x, y, z "
+              "in the normal modes"),
+        _line("condition", f"{body.condition:.2g} of the mass matrix of all modes"),
+        *(f"note: {note}" for note in _notes(body)),
+    ]  # fmt: skip
+    return "\n".join(lines)
+
+
+def _notes(body: ReducedBody) -> list[str]:
+    notes = []
+    if body.dependent:
+        notes.append(f"{body.dependent} of the modes are linear combinations of the others and left out")
+    if body.condition > LARGE_CONDITION:
+        notes.append(f"the condition number of the modes is {body.condition:.1e}; use fewer modes")
+    return notes
+
+
+def flexible_body_as_dict(
+    name: str, body: ReducedBody, interfaces: Sequence[str], held: Mapping[str, np.ndarray]
+) -> dict[str, Any]:
+    """Return the report for JSON; parameters as `flexible_body_text`."""
+    return {
+        "body": name,
+        "nodes": len(body.modes) // 3,
+        "mass": body.mass,
+        "center_of_mass": body.centre.tolist(),
+        "inertia": body.inertia.tolist(),
+        "interfaces": {own: point.tolist() for own, point in zip(interfaces, body.points, strict=True)},
+        "rigid_frequencies": body.rigid_frequencies.tolist(),
+        "free_frequencies": body.frequencies.tolist(),
+        "held_frequencies": {which: found.tolist() for which, found in held.items()},
+        "fixed_frequencies": body.fixed_frequencies.tolist(),
+        "effective_mass": body.effective_mass.tolist(),
+        "condition": body.condition,
+        "messages": _notes(body),
+    }
+
+
+def _line(label: str, text: str) -> str:
+    return f"{label:12}{text}"
+
+
+def _numbers(values: np.ndarray) -> str:
+    return " ".join(f"{value:.6g}" for value in np.where(np.abs(values) < 1e-12 * np.abs(values).max(), 0.0, values))
+
+
+def _listed(values: np.ndarray) -> str:
+    more = len(values) - MOST_FREQUENCIES
+    shown = " ".join(f"{value:.7g}" for value in values[:MOST_FREQUENCIES])
+    return f"{shown}{f' and {more} more' if more > 0 else ''}" if len(values) else "none"

@@ -1,1 +1,0 @@
-"""Integration along prescribed motions, for kinematic analysis."""

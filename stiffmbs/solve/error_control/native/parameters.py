@@ -1,0 +1,124 @@
+"""Parameters of Newton's iteration and of error estimates."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class NewtonParameters:
+    """Parameters of Newton's iteration of bdf.
+
+    Source: IDA's own values where noted, otherwise the benchmarks (``python -m tests.bench``) and ``docs/error_control.md``.
+    """
+
+    loosest: float = 0.03
+    """Largest part of the error tolerance that the iteration may leave; IDA's own is 0.33."""
+    tightest: float = 1e-6
+    """Least part of it; a tighter tolerance fails where the constraints are nearly dependent."""
+    soft: float = 1.5e4
+    """Squared fastest rate, 1/s^2, times the part of the tolerance that may be left. A position error makes a force,
+    and thereby a velocity error that has to stay below the tolerance too."""
+    precision: float = 1e-13
+    """Least relative change of a coordinate that the iteration can resolve with an ill-conditioned matrix."""
+    negligible: float = 1e-8
+    """Size of a correction, relative to the tolerance, that converges at any rate, as in IDA."""
+    unknown: float = 20.0
+    """Largest error after a correction, relative to it, as in IDA with a new matrix."""
+    diverging: float = 0.9
+    """Rate above which the iteration is stopped, as in IDA."""
+    slowest: float = 0.1
+    """Rate above which a matrix is replaced."""
+    trusted: int = 20
+    """Number of nonlinear solves after which a rate is measured again."""
+    least: float = 0.1
+    """Least fraction of a measured rate that is attributed to the age of the matrix."""
+    last: int = 3
+    """Largest number of corrections before the last one."""
+    long_steps: float = 200.0
+    """cj, 1/s, up to which steps are long."""
+    many_failures: float = 0.2
+    """Fraction of steps with a failed iteration above which its tolerance is relaxed."""
+    eased: float = 100.0
+    """Factor of that relaxation."""
+    easiest: float = 0.33
+    """Upper bound of the relaxed tolerance, as in IDA."""
+
+
+NEWTON = NewtonParameters()
+
+
+@dataclass(frozen=True)
+class PolishingParameters:
+    """Parameters of the polished dense output.
+
+    Source: the stiff benchmarks and ``docs/error_control.md``.
+    """
+
+    amplified: float = 400.0
+    """Ratio of forces by an error between steps to forces by its rates in a step, above which states are corrected."""
+    unbalanced: float = 0.3
+    """Allowed imbalance of the forces on a body between steps, relative to the largest force and to rtol."""
+    apart: float = 2.0
+    """Ratio between cj of the factors and IDA's above which factors are replaced."""
+    most_corrections: int = 8
+    """Largest number of corrections."""
+    slowest: float = 0.3
+    """Ratio of successive corrections above which factors are replaced, or the iteration fails."""
+    far_below: float = 0.2
+    """Fraction of the allowed imbalance in mid-step below which states are skipped."""
+    most_unseen: int = 7
+    """Largest number of skipped states."""
+    trusted: int = 10
+    """Number of states for which a measured rate, or the effect of closing joints, is used."""
+    worse: float = 3.0
+    """Safety factor of measured values: they depend on the direction of the residual."""
+
+
+POLISHING = PolishingParameters()
+
+
+@dataclass(frozen=True)
+class ErrorFilterParameters:
+    """Parameters of the filtered norm of error estimates.
+
+    Source: stress tests with light bodies in strong dampers.
+    """
+
+    fades_low: float = 0.99
+    """Factor of the failure count in each step, at orders up to `low`."""
+    fades: float = 0.8
+    """The same at higher orders."""
+    low: int = 2
+    """Highest low order."""
+    troubled: float = 7.0
+    """Failure count above which estimates are filtered."""
+    lasts: int = 1000
+    """Number of steps for which they are."""
+    before_a_rise: int = 3
+    """Equal steps at order 1 before IDA may raise it."""
+    never: float = 1e9
+    """Step growth that no estimate allows."""
+    no_estimate: float = 1e12
+    """Filtered norm above which a vector is not an error estimate: IDA also uses the norm for a rounding test."""
+
+
+FILTER = ErrorFilterParameters()
+
+
+@dataclass(frozen=True)
+class AccumulationParameters:
+    """Parameters of the estimated errors that accumulate over a run.
+
+    Source: ``tests/solve/test_accumulated_errors.py``.  Both numbers of steps are primes, which avoid resonance with periods.
+    """
+
+    steps_apart: int = 11
+    """Steps of bdf between displacements of positions."""
+    halved_apart: int = 251
+    """Explicit steps between two estimates by half steps, which cost two steps."""
+    faster: float = 1e-3
+    """Fraction by which velocities are increased to determine the damping."""
+
+
+ACCUMULATION = AccumulationParameters()

@@ -1,0 +1,34 @@
+"""Memory layouts of the event search within a step, and of what bounds a step."""
+
+from __future__ import annotations
+
+from stiffmbs.compile.machine.layout import FLOAT_CELL, FLOATS, INT, INT_CELL, INTS, Layout
+
+STEP_BOUND = Layout({"n": INT, "place": INT_CELL, "starts": FLOATS, "longest": FLOATS})
+"""Longest steps that resolve inputs (`stiffmbs.solve.events.step_bound`); n is 0 if nothing limits a step."""
+
+LONG_STEPS = Layout({
+    "n_nodes": INT, "node": FLOATS, "width": INT, "ratio": FLOAT_CELL, "remembered": FLOAT_CELL, "room": INT_CELL, "count": INT_CELL, "usual": FLOAT_CELL, "row": FLOATS,
+})  # fmt: skip
+"""Storage of long steps (`stiffmbs.solve.events.native.long_steps`): one row for both ends of a step and its states, of
+`width` numbers, at the nodes.  Cells: ratio of a long step to the usual one, number of steps in the mean that is usual,
+space for rows (0 for none), stored rows, usual step."""
+
+EVENT_SEARCH = Layout({
+    "n": INT, "n_event_functions": INT, "masked": INTS, "first_edge": INTS, "edges": FLOATS, "overlap": FLOATS, "period": FLOATS,
+    "value_before": FLOATS, "rate_before": FLOATS, "value_after": FLOATS, "rate_after": FLOATS,
+    "a": FLOATS, "a_rate": FLOATS, "b": FLOATS, "b_rate": FLOATS, "m": FLOATS, "m2": FLOATS, "left_low": FLOATS, "left_high": FLOATS, "noise": FLOATS, "found": INTS,
+    "zone_low": FLOATS, "zone_high": FLOATS, "apart": FLOATS, "n_calls": INT, "call": INTS, "near": INTS,
+    "n_state": INT, "n_nodes": INT, "node": FLOATS, "weight": FLOATS, "row": FLOATS, "n_angles": INT, "angle": INTS, "n_turns": INT, "turn": INTS, "radians": FLOATS, "lands": INTS, "n_zoned": INT,
+    "ready": INT_CELL, "begun": FLOAT_CELL, "depth": FLOAT_CELL,
+    "least": FLOAT_CELL, "duration": FLOAT_CELL, "longest": FLOAT_CELL, "target": FLOAT_CELL, "passage": FLOAT_CELL, "first": FLOAT_CELL, "under_way": INT_CELL, "begins": FLOAT_CELL, "narrow": INT_CELL, "passed": FLOAT_CELL, "unresolved": INT_CELL, "fastest": INT_CELL, "first_unresolved": FLOAT_CELL,
+})  # fmt: skip
+"""Search for events within a step (`stiffmbs.solve.events.native.within_step`): event functions with their
+breakpoints; their values and rates at both ends of the step and of a part of it; the kernel of each, and kernels with a
+function near a breakpoint; states of the step at nodes; arguments of sines or of periodic tables with few intervals,
+and their unit in radians; functions whose breakpoints end steps; number of functions with breakpoints.
+
+Cells: 1 if values at the start of the step are known, time of that start, least depth of an event below zero; shortest
+and longest step for the arguments of sines; longest step until the motion leaves its initial law, longest first step
+there; 1 after the beginning of the run, time of the beginning, number of steps limited by features, end of the passage;
+number of steps with unresolved arguments, first such argument, and its time."""

@@ -1,0 +1,116 @@
+"""Parameters of the search for events."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from sys import float_info
+
+EPSILON = float_info.epsilon
+"""Relative rounding of a number."""
+
+
+@dataclass(frozen=True)
+class EventSearchParameters:
+    """Parameters of the search for events within a step.
+
+    Source: the stress tests of contacts, tables and periodic laws (``python -m tests.stress``).
+    """
+
+    margin: float = 0.1
+    """Margin of a function's bounds between the ends of a step, relative to their range."""
+    unknown: float = 8.0
+    """Factor of the deviation from the cubic elsewhere, relative to that at the compared place."""
+    steep: float = 8.0
+    """Ratio of an end rate to the change between the ends above which a function has an extremum."""
+    wider: float = 2.0
+    """Factor of the change and rates in a step by which any bound is at most outside its end values."""
+    turned: float = 1.0
+    """Rotation of a body, or change of a sine's argument, in a step above which the step is searched, rad; no simple
+    fraction of a period. Explicit steps with twice that are repeated."""
+    bounded: float = 0.99
+    """Fraction of the longest step by rotations below which a feature bounds the step; the rest is rounding."""
+    clear: float = 4.0
+    """Distance of a function from its breakpoints, relative to its change in the step and by its initial rate, above
+    which it is far from them."""
+    hardly_turned: float = 0.3
+    """Largest rotation of a body in such a step, rad: values at the ends do not show whole revolutions."""
+    fits: float = 0.02
+    """Allowed deviation from the cubic, relative to the range of values there."""
+    noise: float = 1e-9
+    """Rounding of values and rates, relative to the largest number in the state."""
+    repeated: float = 8.0
+    """Allowed deviation from the cubic, relative to the change of a rate with its time of difference: in steps of
+    nanoseconds, rates are rounding."""
+    shallow: float = 1e-5
+    """Depth below zero, relative to that rounding, that is no event: rounding changes the sign of a closed contact."""
+    well: float = 0.03
+    """Relative deviation from the cubic below which the next part is doubled (it has order four)."""
+    least_part: float = 1e-4
+    """Shortest part of a step that is searched."""
+    most_parts: int = 5000
+    """Largest number of parts."""
+    few_parts: int = 100
+    """Largest number of parts if arguments of sines cannot be followed."""
+    difference: float = 1e-6
+    """Fraction of a step, or of a part, over which rates are computed."""
+    refined: float = 0.02
+    """Fraction of a part over which a parabola is fitted at an extremum."""
+    refinements: int = 5
+    """Number of such fits, each over a tenth of the last."""
+    bisections: int = 50
+    """Bisections to find an event."""
+    behind: float = 1e-9
+    """Distance after an event, relative to the step, at which the new law holds."""
+    longest: float = 1e-3
+    """Largest fraction of a step over which the motion is extrapolated to find the sign of a function that is zero."""
+    longer: float = 4.0
+    """Factor between successive extrapolations."""
+    held: int = 3
+    """Number of successive equal signs that such a function must have: a single one may be rounding."""
+    shorter: float = 0.125
+    """Factor by which an extrapolation past an event is shortened while it passes as many sign changes."""
+    rounding: float = 1e-15
+    """Time, relative to the time since zero, below which two events count as simultaneous."""
+
+
+SEARCH = EventSearchParameters()
+
+
+@dataclass(frozen=True)
+class NextStepParameters:
+    """Parameters that bound the next step of IDA near the breakpoints of laws.
+
+    Source: as for `EventSearchParameters`.
+    """
+
+    turned: float = 3.0
+    """Largest change of a sine's argument in a step, rad."""
+    short_of: float = 1e-8
+    """Distance from the end of a step to a predicted event, relative to the longest step."""
+    unsure: float = 1e-4
+    """The same relative to the event's distance."""
+    growth: float = 2.0
+    """Largest ratio of successive steps of IDA."""
+    of_an_interval: float = 0.35
+    """Fraction of an interval of a law that may be passed on each side of a place within a step: two or three steps
+    resolve an interval. Larger fractions save steps, and miss more narrow features."""
+    first_step: float = 1e-3
+    """Largest first step of IDA, relative to the time to the next stop."""
+    start_difference: float = 1e-9
+    """Time over which rates of event functions are computed at a start, and least passage, relative to the time to the
+    next stop."""
+    soon: float = 1e-2
+    """Passage relative to the time to the next stop above which IDA's first steps are short enough."""
+    bisections: int = 6
+    """Bisections to find the end of a passage."""
+    passage_steps: float = 16.0
+    """Least number of steps of a passage with periodic laws."""
+    first_part: float = 0.125
+    """First step of order 1, as a fraction of such a step."""
+    lifted: float = 1e-6
+    """Initial fraction of a run in which every step of a passage is limited."""
+    inside: float = 0.4
+    """Place within a passage at which forces are compared with those at the start; not 0.5, the centre of symmetry."""
+
+
+NEXT_STEP = NextStepParameters()

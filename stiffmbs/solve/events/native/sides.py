@@ -1,0 +1,103 @@
+"""Event functions near a state, accelerations there, and the resulting rates of the event functions."""
+
+from __future__ import annotations
+
+from stiffmbs.compile.machine.native.access import compiled, factors_view, state_view
+from stiffmbs.compile.machine.native.evaluate import SWITCH, evaluate
+from stiffmbs.compile.machine.native.memory import copied
+from stiffmbs.compile.machine.native.orientation import add_rates, take_unit_length
+from stiffmbs.dynamics.native.consistent import consistent_accelerations
+from stiffmbs.dynamics.native.views import dynamics_view
+
+
+@compiled
+def _take(s, size, q, u, along_q, along_u):
+    """Move the state along a direction, each number in proportion to its size, at least 1."""
+    for k in range(s.n_q):
+        s.q[k] = q[k] + size * max(1.0, abs(q[k])) * along_q[k]
+    for k in range(s.n_u):
+        s.u[k] = u[k] + size * max(1.0, abs(u[k])) * along_u[k]
+
+
+@compiled
+def _event_functions(s, m, t):
+    """Return the event functions at the current state, with its algebraic states if these have a solution."""
+    if m.n_algebraic > 0:
+        consistent_accelerations(s, m, t)
+    return evaluate(s, SWITCH, t)
+
+
+@compiled
+def crossing(s, m, t, size, q, u, along_q, along_u, count, found):
+    """Mark the first `count` event functions with different signs on both sides of a move; return their number."""
+    _take(s, size, q, u, along_q, along_u)
+    values = _event_functions(s, m, t)
+    for k in range(count):
+        found[k] = (values[k] > 0.0) - (values[k] < 0.0)
+    _take(s, -size, q, u, along_q, along_u)
+    values = _event_functions(s, m, t)
+    total = 0
+    for k in range(count):
+        opposite = (values[k] > 0.0) - (values[k] < 0.0)
+        found[k] = found[k] * opposite < 0
+        total += found[k]
+    return total
+
+
+def crossed(t, size, q, u, along_q, along_u, count, found, dynamics):
+    """Call `crossing` from Python."""
+    m = dynamics_view(dynamics)
+    return crossing(state_view(m.state), m, t, size, q, u, along_q, along_u, count, found)
+
+
+def switches(t, size, q, u, along_q, along_u, count, values, dynamics):
+    """Store the first `count` event functions at a moved state in `values`."""
+    m = dynamics_view(dynamics)
+    s = state_view(m.state)
+    _take(s, size, q, u, along_q, along_u)
+    copied(values, _event_functions(s, m, t), count)
+
+
+@compiled
+def following_velocities(s, m, t, size, q, u, along_u, count, found):
+    """Mark the first `count` event functions that depend on velocities."""
+    copied(s.q, q, s.n_q)
+    for k in range(s.n_u):
+        s.u[k] = u[k] + size * max(1.0, abs(u[k])) * along_u[k]
+    copied(found, _event_functions(s, m, t), count)
+    copied(s.q, q, s.n_q)
+    copied(s.u, u, s.n_u)
+    values = _event_functions(s, m, t)
+    for k in range(count):
+        found[k] = found[k] != values[k]
+
+
+def by_velocities(t, size, q, u, along_u, count, found, dynamics):
+    """Call `following_velocities` from Python."""
+    m = dynamics_view(dynamics)
+    following_velocities(state_view(m.state), m, t, size, q, u, along_u, count, found)
+
+
+def side(t, size, interval, q, u, along_q, along_u, there, count, values, acceleration, rates, dynamics):
+    """Compute event functions, accelerations and rates over an interval of time at a moved state.
+
+    Returns a negative status if there are no accelerations.  `there` is memory for coordinates.
+    """
+    m = dynamics_view(dynamics)
+    s = state_view(m.state)
+    _take(s, size, q, u, along_q, along_u)
+    copied(values, _event_functions(s, m, t), count)
+    copied(there, s.q, s.n_q)
+    add_rates(s, s.u, interval, there)
+    status = consistent_accelerations(s, m, t)
+    if status < 0:
+        return status
+    copied(acceleration, factors_view(m.acceleration_factors).b, s.n_u)
+    copied(s.q, there, s.n_q)
+    take_unit_length(s)
+    for k in range(s.n_u):
+        s.u[k] += interval * acceleration[k]
+    ahead = _event_functions(s, m, t + interval)
+    for k in range(count):
+        rates[k] = (ahead[k] - values[k]) / interval
+    return status

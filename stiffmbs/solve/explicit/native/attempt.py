@@ -1,0 +1,51 @@
+"""Step of given length: stages, and projection of its end onto the constraints."""
+
+from __future__ import annotations
+
+from math import isfinite
+
+from stiffmbs.compile.machine.native.access import compiled, shifted
+from stiffmbs.compile.machine.native.memory import copied
+from stiffmbs.compile.machine.native.statuses import NOT_FINITE
+from stiffmbs.dynamics.native.projection import back_to_constraints
+from stiffmbs.solve.explicit.native.stages import keep_algebraic, load_state, rates, take_stage, weighted
+
+
+@compiled
+def arrive(x, c, s, m, t):
+    """Project the new state y onto the constraints, and compute the rates there, the first stage of the next step.
+
+    Rates that the error estimate has computed are kept, because the projection is smaller than the error.
+    """
+    load_state(s, x.y)
+    if x.project:
+        status = back_to_constraints(x, s, m, t)
+        if status < 0:
+            return status
+        copied(x.y, s.q, s.n_q)
+        copied(shifted(x.y, s.n_q), s.u, s.n_u)
+    if not c.error_needs_end:
+        status = rates(x, s, m, c.stages, t)
+        if status < 0:
+            return status
+        keep_algebraic(s, m, x.y)
+    for i in range(x.n):
+        if not isfinite(x.y[i]):
+            return NOT_FINITE
+    return 0
+
+
+@compiled
+def attempt(x, c, s, m, h):
+    """Compute all stages of a step from y_before, and the new state y; 0 or a negative status."""
+    for row in range(1, c.stages):
+        status = take_stage(x, c, s, m, row, h)
+        if status < 0:
+            return status
+    weighted(x, c, x.y, c.stages, h)
+    if c.error_needs_end:
+        load_state(s, x.y)
+        status = rates(x, s, m, c.stages, x.t_before + h)
+        keep_algebraic(s, m, x.y)
+        return status
+    return 0

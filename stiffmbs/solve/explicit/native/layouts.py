@@ -1,0 +1,29 @@
+"""Memory layouts of a Runge-Kutta scheme and of explicit integration."""
+
+from __future__ import annotations
+
+from stiffmbs.compile.machine.layout import FLOAT_CELL, FLOATS, INT, INT_CELL, INTS, Layout
+
+SCHEME = Layout({
+    "order": INT, "stages": INT, "extended": INT, "n_errors": INT, "n_dense": INT, "n_free": INT, "error_needs_end": INT,
+    "c": FLOATS, "a": FLOATS, "errors": FLOATS, "dense": FLOATS, "free": FLOATS, "free_error": FLOATS,
+    "exponent": FLOAT_CELL, "memory": FLOAT_CELL, "stability": FLOAT_CELL,
+})  # fmt: skip
+"""Coefficients of a Runge-Kutta scheme (`stiffmbs.solve.explicit.scheme`), one column for each stage."""
+
+EXPLICIT = Layout({
+    "dynamics": INTS, "eliminated": INTS, "eliminates": INT_CELL, "pivots_tell": INT, "scheme": INTS, "n": INT, "n_q": INT, "project": INT_CELL,
+    "tolerance": FLOAT_CELL, "rtol": FLOAT_CELL, "atol": FLOATS, "longest": FLOAT_CELL, "stable": FLOAT_CELL, "shortest": FLOAT_CELL, "step_bound": INTS,
+    "t": FLOAT_CELL, "t_before": FLOAT_CELL, "span": FLOAT_CELL, "h": FLOAT_CELL, "last_error": FLOAT_CELL,
+    "n_event_functions": INT, "end_at_event": INT, "signs": FLOATS, "at_event": INT_CELL, "uncertain": INT_CELL, "watch": INTS,
+    "started": INT_CELL, "lam": FLOATS, "y": FLOATS, "y_before": FLOATS, "y_stage": FLOATS, "k": FLOATS, "difference": FLOATS, "weight": FLOATS, "polynomial": FLOATS,
+    "dense_ready": INT_CELL, "steps": INT_CELL, "rejected": INT_CELL, "accelerations": INT_CELL, "stiff_steps": INT_CELL, "far_beyond": INT_CELL,
+    "long_steps": INTS, "accumulated": INTS, "halved": FLOATS, "measured": INT_CELL, "repeats": FLOAT_CELL,
+    "n_times": INT, "times": FLOATS, "next_time": INT_CELL,
+    "capacity": INT, "rows": INT_CELL, "row_t": FLOATS, "row_y": FLOATS, "ends": FLOATS,
+})  # fmt: skip
+"""Explicit integration between two calls: the state y = (q, u) now and before the last step of length `span`; its event
+functions; the stages k; inverse tolerances of the last attempt; the number of polynomials of the last step (0 if not
+computed); counters; output times (none for every step); memory for the rows and ends of steps in one call.  `started`
+is 0 before a restart: the state, its accelerations in the last stage, and `lam` are then consistent.  `measured` is 1
+if `halved` has the result of two half steps; `repeats` is the number of periods of laws that end a step in each."""

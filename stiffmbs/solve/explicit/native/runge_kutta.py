@@ -1,0 +1,238 @@
+"""Explicit Runge-Kutta steps with projection, of fixed size or with error control."""
+
+from __future__ import annotations
+
+from math import isfinite
+
+from stiffmbs.compile.machine.native.access import compiled, shifted, state_view
+from stiffmbs.compile.machine.native.calls import call_int
+from stiffmbs.compile.machine.native.memory import copied
+from stiffmbs.compile.machine.native.statuses import (
+    AT_END,
+    AT_EVENT,
+    NOT_FINITE,
+    PAUSED,
+    STEP_TOO_SMALL,
+    STIFF,
+    UNSTABLE,
+)
+from stiffmbs.dynamics.native.views import dynamics_view
+from stiffmbs.solve.error_control.native.accumulated_errors import accumulated_errors_view, displace
+from stiffmbs.solve.events.native.long_steps import is_to_be_kept, long_steps_view, next_row
+from stiffmbs.solve.events.native.step_bound import STRETCHED, longest_step, step_bound_view
+from stiffmbs.solve.explicit.native.attempt import arrive, attempt
+from stiffmbs.solve.explicit.native.error_estimate import trusted_error
+from stiffmbs.solve.explicit.native.explicit_events import AT_ANOTHER_LAW, RETRIED, end_at_event, retaken
+from stiffmbs.solve.explicit.native.fastest_rate import fastest_rate
+from stiffmbs.solve.explicit.native.halved_step import is_halved, note_difference, two_halves
+from stiffmbs.solve.explicit.native.interpolant import interpolated, prepare, store_rows, store_step
+from stiffmbs.solve.explicit.native.parameters import CONTROL, ENDS
+from stiffmbs.solve.explicit.native.stages import explicit_view, scheme_view
+from stiffmbs.solve.explicit.native.start import first_step, start_steps
+from stiffmbs.solve.explicit.native.uncertain_end import uncertain_end
+
+__all__ = ["advance", "end_at_event", "fastest_rate", "fixed_steps"]
+
+
+@compiled
+def _watch_stiffness(x, c, h):
+    """Count steps limited by stability, or with h |lambda| beyond its limit by two stages at the step's end."""
+    if 0.0 < x.stable < x.h:
+        x.stiff_steps += 1
+        return
+    k_end = shifted(x.k, c.stages * x.n)
+    k_last = shifted(x.k, (c.stages - 1) * x.n)
+    rate = 0.0
+    move = 0.0
+    for i in range(x.n):
+        rate += (k_end[i] - k_last[i]) ** 2
+        move += (x.y[i] - x.y_stage[i]) ** 2
+    limit = c.stability**2 * move
+    if h * h * rate > limit and move > 0.0:
+        x.stiff_steps += 1
+        x.far_beyond += 1 if h * h * rate > CONTROL.far_beyond**2 * limit else 0
+
+
+@compiled
+def _is_hopeless(x, end):
+    """Return True if stability limits the steps and too many remain."""
+    return x.stiff_steps > CONTROL.stiff_part * x.steps and (end - x.t) * x.n > CONTROL.too_many_steps * x.h
+
+
+@compiled
+def _depart(x, c):
+    """Make the end of the last step the start of the next."""
+    x.t_before = x.t
+    copied(x.y_before, x.y, x.n)
+    copied(x.k, shifted(x.k, c.stages * x.n), x.n)
+    x.dense_ready = 0
+
+
+@compiled
+def _factor(x, c, error):
+    """Return the growth factor of the step (PI control; Hairer, Wanner II, ch. IV.2)."""
+    if error == 0.0:
+        return CONTROL.largest_factor
+    exponent = c.exponent - 0.75 * c.memory
+    return CONTROL.safety * error**-exponent * max(x.last_error, CONTROL.smallest_error) ** c.memory
+
+
+@compiled
+def _step(x, c, s, m, end):
+    """Take one step that passes the error test; 0, or a negative status with the state unchanged.
+
+    `span` is the length of the step, or that of the last attempt in case of a negative status.
+    """
+    _depart(x, c)
+    x.span = 0.0
+    t = x.t
+    h = min(x.h, x.longest)
+    if x.stable > 0.0:
+        h = min(h, x.stable)
+    bound = step_bound_view(x.step_bound)
+    if bound.n > 0:
+        h = min(h, longest_step(bound, t))
+    most = CONTROL.largest_factor
+    moved = 0
+    halved = 0.0
+    if is_halved(x) and t + STRETCHED * h < end:
+        halved = h if two_halves(x, c, s, m, h) == 0 else 0.0
+    while True:
+        if t + STRETCHED * h >= end:
+            h = end - t
+        if t + h == t:
+            copied(x.y, x.y_before, x.n)
+            return STEP_TOO_SMALL
+        status = attempt(x, c, s, m, h)
+        x.span = h
+        error = x.repeats * trusted_error(x, c, h) if status == 0 else 0.0
+        if not isfinite(error):
+            status = NOT_FINITE
+        if status == 0 and error <= 1.0:
+            t_new = end if h == end - t else t + h
+            status = arrive(x, c, s, m, t_new)
+            uncertain = status == 0 and uncertain_end(x, c, h)
+            if uncertain and not x.uncertain and t_new < end and moved <= ENDS.most_moved:
+                moved += 1
+                h = h * ENDS.shorter if moved <= ENDS.most_moved else h / ENDS.shorter**ENDS.most_moved
+                continue
+            if status == 0:
+                x.uncertain = 1 if uncertain or moved else 0  # two in succession would approach a locking pose
+                x.t = t_new
+                x.span = t_new - t
+                x.h = h * min(most, max(CONTROL.least_factor, _factor(x, c, error)))
+                x.last_error = error
+                x.measured = 1 if h == halved else 0
+                _watch_stiffness(x, c, h)
+                return 0
+        x.rejected += 1
+        most = 1.0
+        h *= CONTROL.after_failure if status < 0 else max(CONTROL.least_factor, CONTROL.safety * error**-c.exponent)
+        if h < x.shortest:
+            copied(x.y, x.y_before, x.n)
+            return status if status < 0 else STEP_TOO_SMALL
+
+
+@compiled
+def _shortest_to_event(x, c, s, m, explicit):
+    """Take the last attempted step up to an event in it; 0, `RETRIED`, or a negative status with the state unchanged.
+
+    A step across a jump has an error of its length times the jump.  If the motion is closer to the jump than the
+    shortest step, no accepted step reaches it.
+    """
+    status = retaken(x, c, s, m, x.span) if x.span > 0.0 else STEP_TOO_SMALL
+    if status == 0:
+        status = call_int(x.end_at_event, (explicit,))
+    if status == RETRIED:
+        return status
+    if status == 0 and x.at_event:
+        x.at_event = AT_ANOTHER_LAW
+        return 0
+    copied(x.y, x.y_before, x.n)
+    x.t = x.t_before
+    return status if status < 0 else STEP_TOO_SMALL
+
+
+@compiled
+def _keep_if_long(x, c, s, m):
+    """Store states within the last step if it is much longer than its predecessors."""
+    w = long_steps_view(x.long_steps)
+    if w.room == 0 or not is_to_be_kept(w, x.span):
+        return
+    if x.dense_ready or prepare(x, c, s, m) == 0:
+        row = next_row(w, x.t_before, x.t_before + x.span)
+        for node in range(w.n_nodes):
+            interpolated(x, c, w.node[node], shifted(row, node * w.width))
+        w.count += 1
+
+
+def advance(end, steps, held, own_steps, explicit):
+    """Integrate towards `end` by at most `steps` steps, until stability has limited `held` of them or memory is full.
+
+    Returns AT_END, AT_EVENT (a force has changed its law), PAUSED (call again), or a negative status.  After UNSTABLE
+    (a step far beyond the stability limit), call again with that limit.
+    """
+    x = explicit_view(explicit)
+    c = scheme_view(x.scheme)
+    m = dynamics_view(x.dynamics)
+    s = state_view(m.state)
+    if not x.started:
+        start_steps(x, c, s, m)
+        x.h = first_step(x, c, s, m, end)
+    held += x.stiff_steps
+    for _ in range(steps):
+        if x.stiff_steps >= held or (own_steps and x.rows >= x.capacity):
+            return PAUSED
+        stored = store_rows(x, c, s, m)
+        if stored < 1:
+            return stored
+        if x.t >= end:
+            return AT_END
+        if x.at_event == AT_ANOTHER_LAW:
+            return AT_EVENT
+        x.at_event = 0
+        far_beyond = x.far_beyond
+        status = _step(x, c, s, m, end)
+        reached = x.t
+        if x.end_at_event:
+            if status == STEP_TOO_SMALL:
+                status = _shortest_to_event(x, c, s, m, explicit)
+            elif status >= 0:
+                status = call_int(x.end_at_event, (explicit,))
+        if status < 0:
+            return status
+        if status == RETRIED:
+            continue
+        x.ends[x.steps % x.capacity] = x.t
+        x.steps += 1
+        if x.measured and x.t == reached:
+            note_difference(x)
+        displace(accumulated_errors_view(x.accumulated), x.y, x.t - x.t_before)
+        _keep_if_long(x, c, s, m)
+        if own_steps:
+            store_step(x)
+        if x.stable == 0.0 and x.far_beyond > far_beyond:
+            return UNSTABLE
+        if x.steps >= CONTROL.enough_steps and _is_hopeless(x, end):
+            return STIFF
+    return PAUSED
+
+
+def fixed_steps(start, h, steps, explicit):
+    """Take `steps` steps of length h from the time `start`; 0 or a negative status."""
+    x = explicit_view(explicit)
+    c = scheme_view(x.scheme)
+    m = dynamics_view(x.dynamics)
+    s = state_view(m.state)
+    if not x.started:
+        start_steps(x, c, s, m)
+    for step in range(steps):
+        x.t = start + step * h
+        _depart(x, c)
+        status = attempt(x, c, s, m, h)
+        if status < 0:
+            return status
+        status = arrive(x, c, s, m, start + (step + 1) * h)
+        if status < 0:
+            return status
+    return 0

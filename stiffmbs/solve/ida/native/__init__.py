@@ -1,1 +1,0 @@
-"""Compiled starts and restarts of IDA."""

@@ -1,0 +1,239 @@
+"""Events within a step of IDA; compiled only for scenes with event functions."""
+
+from __future__ import annotations
+
+from stiffmbs.compile.machine.native.access import compiled, equations_view, floats, state_view
+from stiffmbs.compile.machine.native.calls import call_int, int32
+from stiffmbs.compile.machine.native.evaluate import SWITCH, evaluate, evaluate_some, load
+from stiffmbs.compile.machine.native.memory import copied
+from stiffmbs.compile.machine.native.statuses import OK
+from stiffmbs.solve.events.native.ahead import go_ahead, go_straight
+from stiffmbs.solve.events.native.bounds import (
+    LOOKED_AT,
+    edge,
+    event_search_view,
+    longest_by_turns,
+    note_unresolved,
+    noted_rates,
+    shift_ends,
+    suspicious,
+    turned_arguments,
+    zone,
+)
+from stiffmbs.solve.events.native.from_zero import at_zero, begin_sides, leave_zero, note_sides
+from stiffmbs.solve.events.native.nearby import near_an_event, note_mean_rates, note_near
+from stiffmbs.solve.events.native.parameters import EPSILON, NEXT_STEP, SEARCH
+from stiffmbs.solve.events.native.within_step import first_event, first_event_or_change, keep_row
+from stiffmbs.solve.ida.native.ida_memory import array_of, native_ida_view
+from stiffmbs.solve.ida.native.passage import bound_passage
+
+UNSEEN = float("inf")
+"""Placeholder for no time at which event functions are known."""
+
+
+@compiled
+def _note_sides(c, w, s, toward):
+    """Find the initial signs, for IDA's root search, of functions that are zero at the start."""
+    count = w.n_event_functions
+    for k in range(count):
+        w.a[k] = float(w.value_before[k] > 0.0) - float(w.value_before[k] < 0.0)
+    begin_sides(w.m, w.m2, count)
+    most = NEXT_STEP.start_difference / NEXT_STEP.first_step * (toward - c.returned)
+    ahead = max(EPSILON * (toward - c.returned), SEARCH.rounding * abs(c.returned))
+    while ahead <= most:
+        go_ahead(c, s, ahead)
+        if note_sides(w.a, evaluate(s, SWITCH, c.returned + ahead), w.m, w.m2, count) == 0:
+            break
+        ahead *= SEARCH.longer
+    for k in range(count):
+        if w.value_before[k] == 0.0:
+            c.signs[k] = float(w.a[k] > 0.0) - float(w.a[k] < 0.0)
+    leave_zero(w.value_before, w.a, count)
+
+
+def look_at_start(toward, stop, ida):
+    """Evaluate the event functions at a restart of IDA; next output time `toward`, next breakpoint `stop`."""
+    c = native_ida_view(ida)
+    w = event_search_view(c.watch)
+    if not w.ready:
+        w.ready = 1
+        w.begun = c.returned
+        ahead = max(NEXT_STEP.start_difference * (toward - c.returned), SEARCH.rounding * abs(c.returned))
+        s = state_view(c.state)
+        load(s, equations_view(c.equations), array_of(c, c.y), array_of(c, c.yp))
+        c.seen = UNSEEN
+        keep_row(w, s, 0)
+        copied(w.value_before, evaluate(s, SWITCH, c.returned), w.n)
+        go_straight(c, s, ahead)
+        noted_rates(w.rate_before, w.value_before, evaluate(s, SWITCH, c.returned + ahead), ahead, w.n)
+        if at_zero(w.value_before, w.n_event_functions) > 0:
+            _note_sides(c, w, s, toward)
+        if w.n_turns > 0:
+            w.longest = longest_by_turns(w, w.rate_before, SEARCH.turned)
+        w.target = float("inf")
+        bound_passage(c, w, s, toward, stop)
+    return int32(OK)
+
+
+@compiled
+def _go_on(c, w, s):
+    """Make the end of the step the start of the next, which arguments of sines limit."""
+    if w.n_turns > 0:
+        w.longest = longest_by_turns(w, w.rate_after, SEARCH.turned)
+        if w.longest == float("inf") and turned_arguments(w, w.value_before, w.value_after) > NEXT_STEP.turned:
+            note_unresolved(w, w.begun, w.value_before, w.value_after)
+    keep_row(w, s, 0)
+    w.begun = c.returned
+    shift_ends(w)
+    w.target = float("inf")
+
+
+@compiled
+def _look_ahead(c, w, s):
+    """Make the next step resolve the intervals of laws, and end before an event, if breakpoints are near."""
+    if w.n_turns == 0 or w.n_zoned == 0 or w.longest == float("inf"):
+        return
+    ahead = min(w.longest, NEXT_STEP.growth * c.size)
+    go_ahead(c, s, ahead)
+    copied(w.value_after, evaluate(s, SWITCH, c.returned + ahead), w.n)
+    if note_near(w, ahead, w.row, s.q):
+        event = near_an_event(w, ahead, w.row, s.q)
+        _look_at_middle(c, w, s, ahead)
+        if w.n_zoned > w.n_event_functions:
+            ahead = _resolve_zones(c, w, s, ahead)
+        if event:
+            _aim(c, w, s, ahead)
+    load(s, equations_view(c.equations), array_of(c, c.y), array_of(c, c.yp))
+
+
+@compiled
+def _look_at_middle(c, w, s, ahead):
+    """Evaluate functions near breakpoints at a place within the extrapolation by accelerations."""
+    go_ahead(c, s, LOOKED_AT * ahead)
+    copied(w.m, evaluate_some(s, SWITCH, c.returned + LOOKED_AT * ahead, w.near), w.n)
+
+
+@compiled
+def _within_zones(w):
+    """Return True if laws pass at most a fraction of their intervals in either part of a step."""
+    beyond = 0
+    for k in range(w.n_event_functions, w.n):
+        if w.first_edge[k] == w.first_edge[k + 1] or not w.near[w.call[k]]:
+            continue
+        start, middle, end = w.value_before[k], w.m[k], w.value_after[k]
+        narrowest = min(_narrowest(w, k, start, middle), _narrowest(w, k, start, end))
+        beyond += max(abs(middle - start), abs(end - middle)) > NEXT_STEP.of_an_interval * narrowest
+    return beyond == 0
+
+
+@compiled
+def _narrowest(w, k, start, end):
+    """Return the narrowest interval of function k between two values that is wider than its distance from the start."""
+    number, last = zone(w, k, start), zone(w, k, end)
+    way = 1 if last > number else -1
+    narrowest = min(_width(w, k, number), _width(w, k, last))
+    left = min(abs(last - number), w.first_edge[k + 1] - w.first_edge[k])
+    for _ in range(left):
+        near = edge(w, k, number if way > 0 else number - 1)
+        number += way
+        width = _width(w, k, number)
+        if width > abs(near - start):
+            narrowest = min(narrowest, width)
+    return narrowest
+
+
+@compiled
+def _width(w, k, number):
+    """Return the width of an interval; infinite for the outer ones."""
+    if w.period[k] == 0.0 and not 0 < number < w.first_edge[k + 1] - w.first_edge[k]:
+        return float("inf")
+    return edge(w, k, number) - edge(w, k, number - 1)
+
+
+@compiled
+def _resolve_zones(c, w, s, most):
+    """Limit the next step so that the extrapolated motion passes each interval of a law in several steps."""
+    ahead = most
+    while ahead > w.least and not _within_zones(w):
+        ahead *= LOOKED_AT
+        w.longest = max(ahead, w.least)
+        copied(w.value_after, w.m, w.n)
+        _look_at_middle(c, w, s, ahead)
+    return ahead
+
+
+@compiled
+def _aim(c, w, s, ahead):
+    """Make the next step end just before an event of the motion extrapolated by accelerations."""
+    t, back = c.returned, -SEARCH.difference * ahead
+    go_ahead(c, s, ahead + back)
+    noted_rates(w.rate_after, w.value_after, evaluate_some(s, SWITCH, t + ahead + back, w.near), back, w.n)
+    note_mean_rates(w, ahead)
+    if not suspicious(w, ahead, w.row, s.q):
+        return
+    for node in range(w.n_nodes):
+        go_ahead(c, s, ahead * w.node[node])
+        keep_row(w, s, node)
+    place = first_event_or_change(w, s, t, ahead)
+    for k in range(w.n):
+        w.found[k] = 0
+    least = max(NEXT_STEP.short_of * w.longest, 10.0 * SEARCH.rounding * abs(t))
+    if 3.0 * least < ahead * place < ahead:
+        w.target = t + ahead * place - max(least, NEXT_STEP.unsure * ahead * place)
+
+
+@compiled
+def _evaluate_near(w, s, t):
+    """Evaluate the functions that may change within the step; all if arguments of sines limit the next step."""
+    if w.n_turns > 0:
+        return evaluate(s, SWITCH, t)
+    return evaluate_some(s, SWITCH, t, w.near)
+
+
+def look_within(ida):
+    """Set IDA's returned state to the first event within the last step; return 1 if there is one, else 0."""
+    c = native_ida_view(ida)
+    w = event_search_view(c.watch)
+    begun = w.begun
+    h = c.returned - begun
+    if not h > SEARCH.rounding * abs(begun):
+        return int32(0)
+    s = state_view(c.state)
+    e = equations_view(c.equations)
+    if c.seen != c.returned:
+        load(s, e, array_of(c, c.y), array_of(c, c.yp))
+        evaluate(s, SWITCH, c.returned)
+    c.seen = UNSEEN
+    copied(w.value_after, floats(s.values[SWITCH]), w.n)
+    nearby = note_near(w, h, w.row, s.q)
+    if not nearby:
+        note_mean_rates(w, h)
+        _go_on(c, w, s)
+        return int32(0)
+    ahead = -SEARCH.difference * h
+    go_straight(c, s, ahead)
+    noted_rates(w.rate_after, w.value_after, _evaluate_near(w, s, c.returned + ahead), ahead, w.n)
+    note_mean_rates(w, h)
+    place = begun + LOOKED_AT * h
+    if call_int(c.interpolate, (c.memory, place, int32(0), c.at_output)) < 0:
+        return int32(0)
+    load(s, e, c.output, array_of(c, c.yp))
+    copied(w.m, _evaluate_near(w, s, place), w.n)
+    load(s, e, array_of(c, c.y), array_of(c, c.yp))
+    if suspicious(w, h, w.row, s.q):
+        for node in range(w.n_nodes):
+            if call_int(c.interpolate, (c.memory, begun + w.node[node] * h, int32(0), c.at_output)) < 0:
+                return int32(0)
+            load(s, e, c.output, array_of(c, c.yp))
+            keep_row(w, s, node)
+        event = begun + h * first_event(w, s, begun, h)
+        if begun + SEARCH.rounding * abs(begun) < event < c.returned:
+            call_int(c.interpolate, (c.memory, event, int32(0), c.y))
+            call_int(c.interpolate, (c.memory, event, int32(1), c.yp))
+            c.returned = event
+            c.within = 1
+            return int32(1)
+        load(s, e, array_of(c, c.y), array_of(c, c.yp))
+    _go_on(c, w, s)
+    _look_ahead(c, w, s)
+    return int32(0)

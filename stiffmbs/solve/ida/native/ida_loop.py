@@ -1,0 +1,289 @@
+"""IDA's callbacks with their C signatures, and the loop over its steps without Python."""
+
+from __future__ import annotations
+
+from stiffmbs.compile.machine.native.access import address_of, compiled, equations_view, floats, shifted, state_view
+from stiffmbs.compile.machine.native.calls import call_int, copy_bytes, int32
+from stiffmbs.compile.machine.native.evaluate import SWITCH, add_entries, add_products, evaluate, load
+from stiffmbs.compile.machine.native.statuses import OK, ONE_STEP, RECOVERABLE, ROOT_RETURN, STOP_RETURN
+from stiffmbs.solve.error_control.native.accumulated_errors import accumulated_errors_view, displace_by, is_due
+from stiffmbs.solve.events.native.bounds import bounded_by_feature, event_search_view, repeats
+from stiffmbs.solve.events.native.event_signs import watched
+from stiffmbs.solve.events.native.long_steps import is_to_be_kept, long_steps_view, next_row
+from stiffmbs.solve.events.native.step_bound import STRETCHED, longest_step, step_bound_view
+from stiffmbs.solve.ida.native.error_norm import error_norm_view
+from stiffmbs.solve.ida.native.ida_memory import array_of, native_ida_view
+from stiffmbs.solve.ida.native.iteration import MADE, iteration_view
+from stiffmbs.solve.ida.native.layouts import STEP_WIDTH
+from stiffmbs.solve.ida.native.output_correction import corrected, output_correction_view
+from stiffmbs.solve.ida.native.parameters import LOOP
+
+STALLED = -101
+
+
+@compiled
+def _finite(values, count):
+    a, b, c, d, e, f, g, h = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0  # independent sums run in parallel
+    whole = count - count % 8
+    for k in range(0, whole, 8):
+        a += 0.0 * values[k]
+        b += 0.0 * values[k + 1]
+        c += 0.0 * values[k + 2]
+        d += 0.0 * values[k + 3]
+        e += 0.0 * values[k + 4]
+        f += 0.0 * values[k + 5]
+        g += 0.0 * values[k + 6]
+        h += 0.0 * values[k + 7]
+    for k in range(whole, count):
+        a += 0.0 * values[k]
+    return ((a + b) + (c + d)) + ((e + f) + (g + h)) == 0.0
+
+
+def residual(t, yy, yp, rr, user_data):
+    """Compute the residual r(t, y, y') (IDAResFn)."""
+    c = native_ida_view(user_data)
+    s = state_view(c.state)
+    e = equations_view(c.equations)
+    y, rates, r = array_of(c, yy), array_of(c, yp), array_of(c, rr)
+    load(s, e, y, rates)
+    add_products(e, evaluate(s, e.residual_set, t), y, rates, r)
+    return int32(OK if _finite(r, e.n) else RECOVERABLE)
+
+
+def jacobian(t, cj, yy, yp, rr, matrix, user_data, work1, work2, work3):
+    """Compute the iteration matrix dr/dy + cj dr/dy' (IDALsJacFn)."""
+    c = native_ida_view(user_data)
+    s = state_view(c.state)
+    e = equations_view(c.equations)
+    load(s, e, array_of(c, yy), array_of(c, yp))
+    a = floats(c.matrix)
+    output_correction_view(c.output_correction).current = cj
+    iteration_view(c.iteration).age = MADE
+    add_entries(e, evaluate(s, e.matrix_set, t), cj, a)
+    for k in range(0, 6, 3):
+        copy_bytes(c.pattern[k], c.pattern[k + 1], c.pattern[k + 2])
+    return int32(OK if _finite(a, e.n_slots) else RECOVERABLE)
+
+
+def event_functions(t, yy, yp, g, user_data):
+    """Compute the event functions of breakpoints of forces (IDARootFn)."""
+    c = native_ida_view(user_data)
+    s = state_view(c.state)
+    load(s, equations_view(c.equations), array_of(c, yy), array_of(c, yp))
+    values = evaluate(s, SWITCH, t)
+    c.seen = t
+    watched(values, c.signs, c.masked, g, c.n_event_functions)
+    return int32(OK if _finite(g, c.n_event_functions) else RECOVERABLE)
+
+
+@compiled
+def _longest_to_see(c, bound, t):
+    """Return the longest step from t that resolves inputs and periodic or just entered laws."""
+    longest = longest_step(bound, t) if bound.n > 0 else float("inf")
+    if c.look_at_start:
+        w = event_search_view(c.watch)
+        longest = min(longest, w.longest)
+        if t < w.target:
+            longest = min(longest, w.target - t)
+        if t < w.passed:
+            longest = min(longest, w.passage if c.size > 0.0 else w.first)
+    return max(longest, LOOP.most_tiny * LOOP.tiny * abs(t))
+
+
+@compiled
+def _see_inputs(c, stop):
+    """Set IDA's stop time to resolve a feature of an input or law; IDA continues from there with its history."""
+    bound = step_bound_view(c.step_bound)
+    if bound.n > 0 or c.look_at_start:
+        t = c.internal
+        longest = _longest_to_see(c, bound, t)
+        if c.look_at_start and event_search_view(c.watch).n_turns > 0:
+            w = event_search_view(c.watch)
+            w.narrow += bounded_by_feature(w)
+            error_norm_view(c.error_norm).repeats = repeats(w, t, t < w.passed)
+        if longest == float("inf") and c.stopping == stop:
+            return
+        call_int(c.next_step_of, (c.memory, address_of(c.next_size)))
+        first = c.size == 0.0
+        cut = (first or c.next_size > longest) and t + STRETCHED * longest < stop
+        if cut or c.stopping != stop:
+            c.stopping = t + longest if cut else stop
+            call_int(c.stop_at, (c.memory, c.stopping))
+
+
+@compiled
+def stepped(c, ida, toward, stop):
+    """Take one step; note its end, order and size in the history, and return IDA's flag."""
+    before = c.internal
+    begun = c.returned
+    c.within = 0
+    if c.look_at_start:
+        call_int(c.look_at_start, (toward, stop, ida))
+    _see_inputs(c, stop)
+    flag = call_int(c.solve, (c.memory, toward, address_of(c.returned), c.y, c.yp, int32(ONE_STEP)))
+    if flag == STOP_RETURN and c.returned < stop:
+        flag = int32(OK)
+    call_int(c.time_of, (c.memory, address_of(c.internal)))
+    call_int(c.step_of, (c.memory, address_of(c.size)))
+    if c.internal != before and flag >= 0:
+        call_int(c.order_of, (c.memory, address_of(c.order)))
+        row = shifted(c.history, STEP_WIDTH * c.recorded)
+        row[0], row[1], row[2] = c.internal, float(c.order), c.size
+        c.recorded += 1
+        _sample(c)
+        _accumulate(c)
+    if flag >= 0 and _stalled(c):
+        return STALLED
+    if flag >= 0 and c.look_within and call_int(c.look_within, (ida,)):
+        flag = int32(ROOT_RETURN)
+    if flag >= 0:
+        _keep_if_long(c, begun)
+    if flag >= 0 and c.trace:
+        _keep_step(c)
+    return flag
+
+
+@compiled
+def _keep_step(c):
+    """Store the result of a step for the integration of variational equations."""
+    n = equations_view(c.equations).n
+    row = floats(c.trace + 8 * (2 + 2 * n) * c.traced)
+    row[0] = c.returned
+    row[1] = float(c.order)
+    y, yp = array_of(c, c.y), array_of(c, c.yp)
+    for k in range(n):
+        row[2 + k] = y[k]
+        row[2 + n + k] = yp[k]
+    c.traced += 1
+
+
+@compiled
+def _report(c, values, row):
+    for k in range(c.n_reported):
+        row[k] = values[c.reported[k]]
+
+
+@compiled
+def _keep_if_long(c, begun):
+    """Store states within the last step if it is much longer than its predecessors."""
+    w = long_steps_view(c.long_steps)
+    h = c.returned - begun
+    if w.room == 0 or not is_to_be_kept(w, h):
+        return
+    row = next_row(w, begun, c.returned)
+    for node in range(w.n_nodes):
+        if call_int(c.interpolate, (c.memory, begun + w.node[node] * h, int32(0), c.at_output)) < 0:
+            return
+        _report(c, c.output, shifted(row, node * w.width))
+    w.count += 1
+
+
+@compiled
+def _sample(c):
+    c.since_sample += 1
+    if c.since_sample == LOOP.steps_apart:
+        k = c.next_sample
+        row = shifted(c.samples, k * (c.n_reported + 1))
+        row[0] = c.returned
+        _report(c, array_of(c, c.y), shifted(row, 1))
+        c.since_sample = 0
+        c.next_sample = k + 1 if k + 1 < LOOP.samples else 0
+
+
+@compiled
+def _accumulate(c):
+    """Accumulate local errors, read only every few steps to save time."""
+    a = accumulated_errors_view(c.accumulated)
+    if is_due(a, c.size) and call_int(c.errors_of, (c.memory, c.at_output)) == OK:
+        values = floats(state_view(c.state).values[equations_view(c.equations).matrix_set])
+        displace_by(a, array_of(c, c.y), c.output, values)
+
+
+@compiled
+def _stalled(c):
+    c.tiny = c.tiny + 1 if abs(c.size) < LOOP.tiny * abs(c.internal) else 0
+    return c.tiny >= LOOP.most_tiny
+
+
+@compiled
+def _report_at(c, t, derivative, current, row):
+    """Report the solution, or its derivative, at a time within the last step."""
+    if t == c.returned:
+        _report(c, array_of(c, current), row)
+        return int32(OK)
+    b = output_correction_view(c.output_correction)
+    if (
+        b.interpolate != 0
+        and c.size > b.long
+        and corrected(c.output_correction, c.state, c.equations, t, (c.returned - t) / c.size)
+    ):
+        _report(c, b.yp if derivative else b.y, row)
+        return int32(OK)
+    flag = call_int(c.interpolate, (c.memory, t, int32(derivative), c.at_output))
+    _report(c, c.output, row)
+    return flag
+
+
+@compiled
+def _served(c, times, count, y_out, yp_out):
+    """Report at the output times up to the returned time; `yp_out` may be null."""
+    flag = int32(OK)
+    while c.served < count and times[c.served] <= c.returned:
+        k = c.served
+        flag = _report_at(c, times[k], 0, c.y, shifted(y_out, k * c.n_reported))
+        if flag >= 0 and yp_out != 0:
+            flag = _report_at(c, times[k], 1, c.yp, shifted(floats(yp_out), k * c.n_reported))
+        if flag < 0:
+            break
+        c.served = k + 1
+    return flag
+
+
+@compiled
+def advanced(c, ida, count, times, stop, most, y_out, yp_out):
+    """Take at most `most` steps towards `stop`, and report at output times; return IDA's last flag.
+
+    The first step's size follows from the distance to the first output time, as in IDA's normal mode.
+    """
+    c.stopping = stop
+    flag = _served(c, times, count, y_out, yp_out)
+    for _ in range(min(most, LOOP.most_steps)):
+        if flag != OK:
+            break
+        toward = times[c.served] if c.served < count else stop
+        flag = stepped(c, ida, min(toward, stop), stop)
+        if flag >= 0:
+            outcome = _served(c, times, count, y_out, yp_out)
+            flag = outcome if outcome < 0 else flag
+    return int32(flag)
+
+
+@compiled
+def clear_call(c):
+    """Reset the counters of the call."""
+    c.served = 0
+    c.recorded = 0
+    c.traced = 0
+
+
+def advance(count, times, stop, most, y_out, yp_out, ida):
+    """Call `advanced` from Python."""
+    c = native_ida_view(ida)
+    clear_call(c)
+    return advanced(c, ida, count, times, stop, most, y_out, yp_out)
+
+
+def steps(most, stop, t_out, y_out, ida):
+    """Take at most `most` steps towards `stop`, and report each; return IDA's last flag."""
+    c = native_ida_view(ida)
+    c.stopping = stop
+    clear_call(c)
+    flag = int32(OK)
+    while flag == OK and c.served < min(most, LOOP.most_steps):
+        flag = stepped(c, ida, stop, stop)
+        if flag >= 0:
+            k = c.served
+            t_out[k] = c.returned
+            _report(c, array_of(c, c.y), shifted(y_out, k * c.n_reported))
+            c.served = k + 1
+    return int32(flag)

@@ -1,0 +1,119 @@
+"""Memory layouts of IDA's callbacks, loop, starts and norms."""
+
+from __future__ import annotations
+
+from stiffmbs.compile.machine.layout import FLOAT_CELL, FLOATS, INT, INT_CELL, INTS, Layout
+from stiffmbs.solve.ida.native.parameters import LOOP
+
+IDA = Layout({
+    "state": INTS, "equations": INTS, "array_header": INT, "n_event_functions": INT, "signs": FLOATS, "masked": INTS,
+    "last_time": FLOAT_CELL, "steps": INT_CELL, "rejected": INT_CELL, "n_ends": INT, "ends": FLOATS,
+})  # fmt: skip
+"""Tables of scikit-sundae's callbacks.  `array_header` is the size of the header before the data pointer of a NumPy
+array.  The callbacks note the last time, count accepted and rejected steps, and store the first ends of steps."""
+
+NATIVE_IDA = Layout({
+    "state": INTS, "equations": INTS, "array_of": INT, "matrix": INT, "pattern": INTS,
+    "n_event_functions": INT, "signs": FLOATS, "masked": INTS,
+    "memory": INT, "y": INT, "yp": INT, "at_output": INT, "output": FLOATS, "n_reported": INT, "reported": INTS,
+    "solve": INT, "interpolate": INT, "time_of": INT, "order_of": INT, "step_of": INT,
+    "stop_at": INT, "next_step_of": INT, "step_bound": INTS,
+    "returned": FLOAT_CELL, "internal": FLOAT_CELL, "size": FLOAT_CELL, "next_size": FLOAT_CELL, "order": INT_CELL,
+    "stopping": FLOAT_CELL, "served": INT_CELL, "tiny": INT_CELL, "within": INT_CELL,
+    "recorded": INT_CELL, "history": FLOATS, "since_sample": INT_CELL, "next_sample": INT_CELL, "samples": FLOATS,
+    "output_correction": INTS, "iteration": INTS, "watch": INTS, "look_at_start": INT, "look_within": INT, "probe": FLOATS, "residual": FLOATS, "weights": INT,
+    "long_steps": INTS, "accumulated": INTS, "errors_of": INT, "error_norm": INTS,
+    "trace": INT_CELL, "traced": INT_CELL, "seen": FLOAT_CELL,
+})  # fmt: skip
+"""Memory of the callbacks and the loop of the native IDA (`stiffmbs.solve.ida.native.ida_loop`): addresses of SUNDIALS
+functions and objects, values and pattern of the matrix, and reported unknowns.
+
+Cells: times of the returned state and of IDA's internal state; size (0 before the first) and order of its last step,
+size of the next attempt; last stop time; output times served, tiny steps in succession, 1 if the last event was found
+within the step; steps in the history, steps since the last sample, position of the next one; address of rows for time,
+order, y and y' of each step (0 for none), and rows written in this call; time of the event functions in the state."""
+
+HISTORY_ROWS = 2 * LOOP.most_steps
+"""Rows of the history of a call."""
+STEP = "end", "order", "size"
+"""Numbers in a row of the history: time of the end, s, order, and size of a step, s."""
+STEP_WIDTH = len(STEP)
+
+
+START = Layout({
+    "dynamics": INTS, "ida": INT, "error_norm": INTS, "n_watched": INT, "rate": FLOATS, "leader": INTS,
+    "n_q": INT, "q_of": INTS, "q_at": INTS, "n_u": INT, "u_of": INTS, "u_at": INTS,
+    "creep": FLOATS, "n_position_entries": INT, "position_source": INTS, "position_row": INTS, "position_creep": FLOAT_CELL,
+    "n_velocity_entries": INT, "velocity_source": INTS, "velocity_row": INTS, "lightness": FLOATS, "velocity_creep": FLOAT_CELL,
+    "n_sets": INT, "at_relaxations": INTS, "sums": FLOATS,
+    "n_f_q": INT, "f_q_source": INTS, "f_q_row": INTS, "f_q_scale": FLOATS, "n_f_u": INT, "f_u_source": INTS, "f_u_row": INTS, "f_u_scale": FLOATS,
+    "soft": FLOAT_CELL, "loosest": FLOAT_CELL, "tightest": FLOAT_CELL, "growth": FLOAT_CELL,
+    "of_positions": FLOAT_CELL, "of_velocities": FLOAT_CELL, "newton": FLOAT_CELL,
+    "n_counters": INT, "counter": INTS, "count": INTS, "counts": INTS,
+    "set_newton": INT, "start_anew": INT, "set_first_step": INT, "set_growth": INT, "set_highest_order": INT,
+})  # fmt: skip
+"""Data of IDA's compiled starts (`stiffmbs.solve.ida.starting.native.start`): independent coordinates and velocities, and their
+positions among the unknowns; entries for the relaxations and the Newton tolerance; positions of relaxations in each
+term set; IDA's counter functions, space for one number, and their sums; functions of SUNDIALS.  A start changes only
+both bounds of the stiffness, and the part of the tolerance that Newton's iteration may leave."""
+
+RESTART = Layout({"start": INTS, "q": FLOATS, "u": FLOATS})
+"""Restart of IDA after a jump of inputs (`stiffmbs.solve.ida.starting.native.restart`), with the state between calls."""
+
+ANEW = Layout({
+    "start": INTS, "n_event_functions": INT, "first_limit": INT, "n_counted": INT, "counted_source": INTS, "counted_row": INTS,
+    "reach": FLOAT_CELL, "along_q": FLOATS, "along_u": FLOATS, "q": FLOATS, "u": FLOATS, "values": FLOATS, "found": INTS,
+    "t": FLOAT_CELL, "jump": FLOAT_CELL, "meets": INT_CELL,
+    "amplified": FLOAT_CELL, "least": FLOAT_CELL, "largest_jump": FLOAT_CELL, "indistinct": FLOAT_CELL, "passed": INT_CELL, "steps_before": INT_CELL,
+})  # fmt: skip
+"""Data of restarts of IDA after an event or a breakpoint (`stiffmbs.solve.ida.starting.native.after_event`): event functions, the first
+of those that are limits of forces; revolution counters and their angles; a move to both sides of a state; memory for a
+state and event functions.  Cells: size of the move; time of the restart, largest velocity change, 1 if event functions
+of velocities change sign between both sides.  For breakpoints passed in one call (`stiffmbs.solve.ida.starting.native.breakpoints`):
+factor of long steps and least residual within them; largest velocity change without a report; relative tolerance of
+equal times; number of breakpoints passed, and steps before the last."""
+
+OUTPUT_CORRECTION = Layout({
+    "factored": FLOAT_CELL, "current": FLOAT_CELL, "enough": FLOAT_CELL, "long": FLOAT_CELL,
+    "made": FLOAT_CELL, "growth": FLOAT_CELL, "since": INT_CELL,
+    "balanced": FLOAT_CELL, "unseen": INT_CELL, "next_look": INT_CELL, "force_end": INTS, "force_row": INTS,
+    "local": FLOAT_CELL, "judged": INT_CELL, "n_joint_rows": INT, "joint_row": INTS, "dynamics": INTS, "pose": FLOATS,
+    "memory": INT, "interpolate": INT, "weights": INT, "clear": INT, "setup": INT, "solve": INT,
+    "solver": INT, "matrix": INT, "entries": INT, "pattern": INTS,
+    "at_y": INT, "y": FLOATS, "at_yp": INT, "yp": FLOATS, "at_defect": INT, "defect": FLOATS,
+    "at_correction": INT, "correction": FLOATS, "at_weight": INT, "weight": FLOATS, "size": FLOATS,
+})  # fmt: skip
+"""Newton's iteration on interpolated states (`stiffmbs.solve.ida.native.output_correction`).
+
+Cells: cj of the factors (0 for none), cj of IDA, part of the tolerance that may remain, step, s, above which states
+within it are corrected; time of the factors, growth of the convergence rate per second from there (negative if
+unknown), states corrected since its measurement; allowed imbalance relative to the largest force, number of states not
+checked after a balanced one, and the remaining number.  Then rows of the equations of motion, forces before moments,
+and their ends; effect of closing joints by 1 m on the imbalance, in units of the allowed one, and the number of states
+for which it is used; rows of position constraints; system that closes joints; memory for a pose."""
+
+ITERATION = Layout({
+    "n": INT, "by_reactions": INT, "memory": INT, "array_of": INT, "cj_of": INT, "iteration_of": INT,
+    "cj": FLOAT_CELL, "matrix_cj": FLOAT_CELL, "first": FLOAT_CELL, "by_cj": FLOAT_CELL, "growth": FLOAT_CELL, "span": FLOAT_CELL,
+    "done": INT_CELL, "age": INT_CELL, "since": INT_CELL, "slow": INT_CELL, "given_up": INT_CELL,
+})  # fmt: skip
+"""Convergence test of Newton's iteration in a step (`stiffmbs.solve.ida.native.iteration`).
+
+Cells: cj, cj of the matrix, size of the first correction, part of the rate by the change of cj, growth of the remaining
+rate (negative if unknown); age of the matrix as the sum of 1/cj, proportional to time within a factor of 2.3;
+corrections before this one, steps since the matrix was computed, steps since a rate was measured; 1 to replace the
+matrix, 1 after a failed iteration."""
+
+ERROR_NORM = Layout({
+    "memory": INT, "norm": INT, "array_of": INT, "steps_of": INT, "failures_of": INT, "order_of": INT,
+    "trouble": FLOAT_CELL, "always": INT_CELL, "looked": FLOAT_CELL, "steps": INT_CELL, "failures": INT_CELL,
+    "known_steps": INT_CELL, "known_failures": INT_CELL, "until": INT_CELL, "order": INT_CELL, "repeats": FLOAT_CELL,
+    "equal_until": INT_CELL, "growth": FLOAT_CELL, "set_growth": INT,
+    "iteration": INTS, "state": INTS, "equations": INTS, "solve": INT, "solver": INT, "matrix": INT, "at_change": INT, "change": FLOATS, "at_filtered": INT, "filtered": FLOATS,
+})  # fmt: skip
+"""Norm of IDA's error estimates (`stiffmbs.solve.ida.native.error_norm`).
+
+Cells: failures of the error test with a weight that decreases with each step; 1 to filter all estimates; cj at the last
+check of failures; steps and failures of the error test, and the same at the last check; step up to which estimates are
+filtered; order of the last step; number of periods of a law whose features are resolved, else 1; step up to which steps
+may not grow (0 for none), and least growth factor afterwards."""

@@ -1,0 +1,199 @@
+"""Polished dense output for stiff scenes.
+
+IDA interpolates each unknown separately.  If a step is long compared with the stiffest oscillation, interpolation
+errors in positions cause forces far beyond the actual ones.  Newton's iteration
+    M delta = F(t, y, y'),  y -= delta,  y' -= cj delta,  M = dF/dy + cj dF/dy'
+restores the equilibrium of stiff forces.  Small rotations since IDA's last setup also rotate stiff directions, so this
+iteration has its own factors, used as long as they converge.
+"""
+
+from __future__ import annotations
+
+from stiffmbs.compile.machine.native.access import compiled, equations_view, floats, state_view, view_of
+from stiffmbs.compile.machine.native.calls import call_int, copy_bytes, int32
+from stiffmbs.compile.machine.native.evaluate import add_entries, add_products, add_sizes, evaluate, load
+from stiffmbs.compile.machine.native.memory import copied
+from stiffmbs.compile.machine.native.statuses import OK
+from stiffmbs.dynamics.native.block_systems import MOST_MOVES, to_position_constraints
+from stiffmbs.dynamics.native.layouts import POSITION_TOLERANCE
+from stiffmbs.dynamics.native.views import dynamics_view
+from stiffmbs.solve.error_control.native.parameters import POLISHING
+from stiffmbs.solve.ida.native.layouts import OUTPUT_CORRECTION
+
+INFINITE = float("inf")
+
+output_correction_view = view_of("OutputCorrection", OUTPUT_CORRECTION)
+
+
+@compiled
+def _interpolated(b, t):
+    if call_int(b.interpolate, (b.memory, t, int32(0), b.at_y)) < OK:
+        return False
+    return call_int(b.interpolate, (b.memory, t, int32(1), b.at_yp)) >= OK
+
+
+@compiled
+def _factored(b, s, e, t):
+    b.factored = 0.0
+    cj = b.current
+    call_int(b.clear, (b.matrix,))
+    load(s, e, b.y, b.yp)
+    add_entries(e, evaluate(s, e.matrix_set, t), cj, floats(b.entries))
+    for k in range(0, 6, 3):
+        copy_bytes(b.pattern[k], b.pattern[k + 1], b.pattern[k + 2])
+    if call_int(b.setup, (b.solver, b.matrix)) != OK:
+        return False
+    b.factored = cj
+    b.made = t
+    b.growth = -1.0
+    return True
+
+
+@compiled
+def _look(b, s, e, t):
+    load(s, e, b.y, b.yp)
+    add_products(e, evaluate(s, e.residual_set, t), b.y, b.yp, b.defect)
+    add_sizes(e, floats(s.values[e.residual_set]), b.y, b.yp, b.size)
+
+
+@compiled
+def _unbalanced(b, defect):
+    """Return the largest relative imbalance of the equations of motion, in units of the allowed one."""
+    part = 0.0
+    first = 0
+    for kind in range(2):
+        largest = 0.0
+        left = 0.0
+        for k in range(first, b.force_end[kind]):
+            largest = max(largest, b.size[b.force_row[k]])
+            left = max(left, abs(defect[b.force_row[k]]))
+        first = b.force_end[kind]
+        if left > 0.0:
+            part = max(part, left / (b.balanced * largest))
+    return part
+
+
+@compiled
+def _by_closing(b, s, e, t, opening):
+    """Return the imbalance with joints closed by a projection; note its change for a unit opening."""
+    copied(b.pose, s.q, s.n_q)
+    if to_position_constraints(s, dynamics_view(b.dynamics), t, POSITION_TOLERANCE, MOST_MOVES) < 0:
+        copied(s.q, b.pose, s.n_q)
+        return INFINITE
+    add_products(e, evaluate(s, e.residual_set, t), b.y, b.yp, b.correction)
+    copied(s.q, b.pose, s.n_q)
+    part = _unbalanced(b, b.correction)
+    for k in range(e.n):
+        b.correction[k] -= b.defect[k]
+    b.local = _unbalanced(b, b.correction) / opening
+    b.judged = POLISHING.trusted
+    return part
+
+
+@compiled
+def _left(b, s, e, t):
+    """Return the largest relative imbalance of the equations of motion, as interpolated and with joints closed.
+
+    The effect of closing joints is computed if its last value is old or close to the limit.
+    """
+    part = _unbalanced(b, b.defect)
+    opening = 0.0
+    for k in range(b.n_joint_rows):
+        opening = max(opening, abs(b.defect[b.joint_row[k]]))
+    if part > 1.0 or opening <= POSITION_TOLERANCE:
+        return part
+    if b.judged > 0 and POLISHING.worse * b.local * opening <= 1.0:
+        b.judged -= 1
+        return max(part, POLISHING.worse * b.local * opening)
+    return max(part, _by_closing(b, s, e, t, opening))
+
+
+@compiled
+def _is_balanced(b, s, e, t, ahead):
+    """Return True if the forces of the interpolated state balance; set the number of states not to be checked.
+
+    Interpolants are exact at both ends of a step, so states near them do not represent others.
+    """
+    middle = 4.0 * ahead * (1.0 - ahead)
+    part = _left(b, s, e, t)
+    b.unseen = min(2 * b.unseen + 1, POLISHING.most_unseen) if part < POLISHING.far_below * middle else 0
+    b.next_look = b.unseen
+    return part <= 1.0
+
+
+@compiled
+def _corrected(b, e):
+    """Apply one correction; return its size in units of the tolerance."""
+    call_int(b.solve, (b.solver, b.matrix, b.at_correction, b.at_defect, 0.0))
+    cj = b.factored
+    squares = 0.0
+    for k in range(e.n):
+        b.y[k] -= b.correction[k]
+        b.yp[k] -= cj * b.correction[k]
+        part = b.correction[k] * b.weight[k]
+        squares += part * part
+    return (squares / e.n) ** 0.5
+
+
+@compiled
+def _predicted(b, t):
+    """Return the rate for the first correction, in proportion to the age of the factors; 1 if not measured."""
+    b.since += 1
+    known = b.growth >= 0.0 and b.since <= POLISHING.trusted
+    return POLISHING.worse * b.growth * (t - b.made) if known else 1.0
+
+
+@compiled
+def _note_rate(b, t, rate):
+    """Note the rate, unless factors are new: the iteration then converges quadratically, unlike for later states."""
+    if t > b.made:
+        b.growth = rate / (t - b.made)
+        b.since = 0
+
+
+@compiled
+def _settled(b, s, e, t):
+    """Correct until the error is negligible, by the convergence rate, or forces balance; return False on failure."""
+    rate = _predicted(b, t)
+    before = 0.0
+    for k in range(POLISHING.most_corrections):
+        size = _corrected(b, e)
+        if k > 0:
+            rate = size / before
+            if not rate < POLISHING.slowest:
+                return size <= b.enough
+            _note_rate(b, t, rate)
+        if rate * size <= b.enough:
+            return True
+        before = size
+        _look(b, s, e, t)
+        if _left(b, s, e, t) <= 1.0:
+            return True
+    return False
+
+
+@compiled
+def corrected(output_correction, state, equations, t, ahead):
+    """Interpolate and correct the state in the table's y and y'; return False if the interpolant is to be used.
+
+    `ahead` is the fraction of the step after t.
+    """
+    b = output_correction_view(output_correction)
+    if b.next_look > 0:
+        b.next_look -= 1
+        return False
+    s = state_view(state)
+    e = equations_view(equations)
+    if not _interpolated(b, t):
+        return False
+    _look(b, s, e, t)
+    if _is_balanced(b, s, e, t, ahead):
+        return True
+    if call_int(b.weights, (b.memory, b.at_weight)) < OK:
+        return False
+    if b.current / POLISHING.apart < b.factored < b.current * POLISHING.apart:
+        if _settled(b, s, e, t):
+            return True
+        _interpolated(b, t)
+        _look(b, s, e, t)
+    return _factored(b, s, e, t) and _settled(b, s, e, t)

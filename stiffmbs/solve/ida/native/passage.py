@@ -1,0 +1,93 @@
+"""Passages: short times from a restart of IDA until the motion leaves a law, which a first step must resolve.
+
+The error estimate of a step of order 1 compares the forces at its ends.  If these agree, as before and after a short
+interval of another law, the step is accepted without the forces in between.
+"""
+
+from __future__ import annotations
+
+from stiffmbs.compile.machine.native.access import compiled, equations_view, shifted
+from stiffmbs.compile.machine.native.calls import call_int
+from stiffmbs.compile.machine.native.evaluate import SWITCH, add_products, evaluate
+from stiffmbs.solve.events.native.ahead import go_ahead
+from stiffmbs.solve.events.native.bounds import zone
+from stiffmbs.solve.events.native.parameters import NEXT_STEP
+from stiffmbs.solve.ida.native.ida_memory import array_of
+
+
+@compiled
+def bound_passage(c, w, s, toward, stop):
+    """Limit steps until the motion extrapolated by initial accelerations leaves a law.
+
+    The first step is limited if the forces of the passage change an unknown by more than its tolerance.  Every step of
+    a passage is limited for periodic laws, because smaller changes add up over their periods.  The same holds at the
+    beginning of a run, where closed contacts open and close by rounding.
+    """
+    if c.returned < w.begins:
+        w.begins = c.returned
+    w.passage, w.first = float("inf"), float("inf")
+    ahead = _passage(c, w, s, toward, stop)
+    if ahead > 0.0:
+        w.passed = c.returned + ahead
+        if w.n_turns > 0 or not w.under_way:
+            w.passage = ahead / NEXT_STEP.passage_steps
+            w.first = NEXT_STEP.first_part * w.passage
+        elif _matters(c, w, s, ahead):
+            w.first = NEXT_STEP.inside * ahead
+    if w.under_way == 0 and c.returned > w.begins + NEXT_STEP.lifted * w.duration:
+        w.under_way = 1
+
+
+@compiled
+def _passage(c, w, s, toward, stop):
+    """Return the time after which the motion leaves a law; 0 if it does not soon."""
+    ahead = NEXT_STEP.start_difference * (toward - c.returned)
+    most = stop - c.returned if w.n_turns > 0 else NEXT_STEP.soon * (toward - c.returned)
+    while ahead < most and not _another_side(c, w, s, ahead):
+        ahead *= 2.0
+    if not ahead < most:
+        return 0.0
+    low = 0.5 * ahead
+    for _ in range(NEXT_STEP.bisections):
+        middle = 0.5 * (low + ahead)
+        if _another_side(c, w, s, middle):
+            ahead = middle
+        else:
+            low = middle
+    return ahead
+
+
+@compiled
+def _another_side(c, w, s, ahead):
+    """Return True if an event function changes its sign in a time, or a law its interval."""
+    go_ahead(c, s, ahead)
+    values = evaluate(s, SWITCH, c.returned + ahead)
+    others = 0
+    for k in range(w.n if w.n_turns > 0 else w.n_event_functions):
+        others += zone(w, k, values[k]) != zone(w, k, w.value_before[k])
+    return others > 0
+
+
+@compiled
+def _matters(c, w, s, ahead):
+    """Return True if the forces within a passage change an unknown by more than its tolerance.
+
+    The residual with the initial rates is the change of force; the mass is the coefficient of an unknown's own rate.
+    """
+    if call_int(c.weights, (c.memory, c.at_output)) < 0:
+        return True
+    e, rates, inside = equations_view(c.equations), array_of(c, c.yp), c.returned + NEXT_STEP.inside * ahead
+    go_ahead(c, s, NEXT_STEP.inside * ahead)
+    values, residual, own = evaluate(s, e.residual_set, inside), c.residual, shifted(c.residual, e.n)
+    add_products(e, values, c.probe, rates, residual)
+    for i in range(e.n):
+        own[i] = 0.0
+    for k in range(e.n_with_y, e.n_with_yp):
+        if e.r_row[k] == e.r_operand[k]:
+            own[e.r_row[k]] += e.r_factor[k] * values[e.r_source[k]]
+    largest = 0.0
+    for i in range(e.n):
+        change = ahead * c.output[i] * abs(residual[i])
+        if change > largest * abs(own[i]) and own[i] != 0.0:
+            largest = change / abs(own[i])
+    return largest > 1.0

@@ -1,0 +1,115 @@
+"""Restart of IDA after an event or a breakpoint, from a state that may be inconsistent, by one compiled call."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ....compile.machine.layout import packed
+from ....compile.machine.routines import Routine
+from ....dynamics.dynamics import Dynamics
+from ...error_control.native.parameters import POLISHING
+from ...events.discontinuity import JUMP, direction_of
+from ...events.restart import INDISTINCT
+from ...events.velocity_jumps import VELOCITY_JUMP
+from ..native.layouts import ANEW
+from .starts import Starts, integers
+
+_ANEW = Routine(
+    "stiffmbs.solve.ida.starting.native.after_event", "anew", "int32(float64, float64, int64, int64, int64*)"
+)
+
+
+class Begun(NamedTuple):
+    """Result of a restart; the current state is that of the restart.
+
+    Attributes
+    ----------
+    t : float
+        Time of the restart, s: that of the given state, or slightly later.
+    jump : float
+        Largest change of a velocity from the given state, m/s or rad/s.
+    meets : bool
+        True if event functions that depend on velocities change sign nearby: forces may drive the motion back.
+    """
+
+    t: float
+    jump: float
+    meets: bool
+
+
+class StartsAnew:
+    """Compiled restarts within a run.
+
+    Parameters
+    ----------
+    starts : Starts
+        Compiled starts of IDA.
+    dynamics : Dynamics
+    least : float
+        Least part of the error tolerance that may remain in states within long steps.
+
+    Attributes
+    ----------
+    starts : Starts
+    may_pass : bool
+        True if one call may pass several breakpoints: no event functions, and no forces that depend on multipliers.
+    table : int
+        Address of the memory of compiled code (`stiffmbs.solve.ida.native.layouts.ANEW`).
+    """
+
+    def __init__(self, starts: Starts, dynamics: Dynamics, least: float) -> None:
+        system, self._state = dynamics.system, dynamics.state
+        for term_set in ("position", "event_function"):
+            self._state.load(term_set)
+        counted, n = system.term("position", "continuous_angle"), system.n_event_functions
+        along_q, along_u = direction_of(dynamics)
+        values: dict[str, Any] = {
+            "start": starts.table, "n_event_functions": n, "first_limit": system.first_limit,
+            "n_counted": len(counted.row), "counted_source": integers(counted.source), "counted_row": integers(counted.row),
+            "reach": JUMP.larger_move, "along_q": along_q, "along_u": along_u,
+            "amplified": POLISHING.amplified, "least": least, "largest_jump": VELOCITY_JUMP.least, "indistinct": INDISTINCT,
+            "q": np.empty(system.n_q), "u": np.empty(system.n_u), "values": np.empty(n), "found": np.empty(n, dtype=np.int64),
+        }  # fmt: skip
+        self.starts, self._kept = starts, values
+        self._table = packed(ANEW, values)
+        self._cells, self.table = self._table.view(ANEW.cells)[0], self._table.ctypes.data
+        self.may_pass = not n and not len(system.term("acceleration", "f_lam").row)
+
+    def begin(
+        self, state: tuple[np.ndarray, np.ndarray], t: float, ahead: float, counted: bool, highest_order: int
+    ) -> Begun | None:
+        """Restart at consistent values after a state.
+
+        Parameters
+        ----------
+        state : tuple of ndarrays, shapes (n_q,), (n_u,)
+        t : float
+            s.
+        ahead : float
+            Time of extrapolation past events simultaneous with the one at t, s; 0 for none.
+        counted : bool
+            True if IDA's counters belong to this run.
+        highest_order : int
+
+        Returns
+        -------
+        Begun or None
+            None, without a start, if there are no consistent values or a force is beyond its limits.
+        """
+        self._state.q[:], self._state.u[:] = state
+        if _ANEW.short_call(t, ahead, counted, highest_order, self.table) < 0:
+            return None
+        cells = self._cells
+        return Begun(float(cells["t"]), float(cells["jump"]), bool(cells["meets"]))
+
+    @property
+    def t(self) -> float:
+        """Return the time of the last start, s."""
+        return float(self._cells["t"])
+
+    @property
+    def passed(self) -> tuple[int, int]:
+        """Return the number of breakpoints passed by the last call, and its steps before the last of them."""
+        return int(self._cells["passed"]), int(self._cells["steps_before"])

@@ -1,0 +1,176 @@
+"""Start of IDA from consistent values in one call: unknowns, relaxations, Newton tolerance and IDA itself."""
+
+from __future__ import annotations
+
+from math import isfinite
+
+from stiffmbs.compile.machine.native.access import compiled, equations_view, floats, ints, shifted, state_view, view_of
+from stiffmbs.compile.machine.native.calls import call_int, int32
+from stiffmbs.compile.machine.native.evaluate import ACCELERATION, MOTION, TANGENT, evaluate
+from stiffmbs.compile.machine.native.memory import copied
+from stiffmbs.compile.machine.native.orientation import add_rates
+from stiffmbs.compile.machine.native.statuses import OK
+from stiffmbs.dynamics.native.views import dynamics_view
+from stiffmbs.solve.events.native.bounds import event_search_view
+from stiffmbs.solve.explicit.native.stages import add_rates_behind
+from stiffmbs.solve.ida.native.error_norm import error_norm_view
+from stiffmbs.solve.ida.native.ida_memory import array_of, native_ida_view
+from stiffmbs.solve.ida.native.iteration import iteration_view
+from stiffmbs.solve.ida.native.layouts import START
+from stiffmbs.solve.ida.native.output_correction import output_correction_view
+from stiffmbs.solve.ida.native.parameters import LOOP
+from stiffmbs.solve.ida.starting.native.counters import add_counters
+
+UNFINISHED = -1
+NAN = float("nan")
+
+start_view = view_of("Start", START)
+
+
+@compiled
+def _fill_unknowns(w, s, e, y, yp):
+    """Fill the unknowns and their derivatives from the current state, and the offsets of dependent coordinates."""
+    for k in range(s.n_q):
+        leader = w.leader[k]
+        e.offset[k] = s.q[k] - (e.q_ratio[k] * s.q[leader] if leader >= 0 else 0.0)
+    for k in range(e.n):
+        y[k] = 0.0
+        yp[k] = 0.0
+    for k in range(w.n_q):
+        y[w.q_at[k]] = s.q[w.q_of[k]]
+        yp[w.q_at[k]] = w.rate[w.q_of[k]]
+    for k in range(w.n_u):
+        y[w.u_at[k]] = s.u[w.u_of[k]]
+        yp[w.u_at[k]] = s.a[w.u_of[k]]
+    multipliers = yp if e.integrated else y
+    for k in range(s.n_c):
+        if e.at_lam[k] >= 0:
+            multipliers[e.at_lam[k]] = s.lam[k]
+
+
+@compiled
+def _relax(w, s, t):
+    """Apply `stiffmbs.solve.error_control.relaxation.relax` at the current state."""
+    if s.n_c == 0:
+        return
+    values = evaluate(s, MOTION, t)
+    for k in range(2 * s.n_c):
+        w.creep[k] = 0.0
+    of_velocities = shifted(w.creep, s.n_c)
+    for k in range(w.n_position_entries):
+        entry = values[w.position_source[k]]
+        w.creep[w.position_row[k]] += entry * entry
+    for k in range(w.n_velocity_entries):
+        entry = values[w.velocity_source[k]]
+        of_velocities[w.velocity_row[k]] += entry * entry * w.lightness[k]
+    for k in range(s.n_c):
+        w.creep[k] *= w.position_creep
+        of_velocities[k] *= w.velocity_creep
+    for k in range(w.n_sets):
+        if s.values[k] != 0:
+            copied(shifted(floats(s.values[k]), w.at_relaxations[k]), w.creep, 2 * s.n_c)
+
+
+@compiled
+def _largest_row_sum(w, s, values, count, source, row, scale):
+    for k in range(s.n_u):
+        w.sums[k] = 0.0
+    for k in range(count):
+        w.sums[row[k]] += abs(values[source[k]]) / scale[k]
+    largest = 0.0
+    for k in range(s.n_u):
+        if not isfinite(w.sums[k]):
+            return w.sums[k]
+        largest = max(largest, w.sums[k])
+    return largest
+
+
+@compiled
+def _look_at_stiffness(w, s, t):
+    """Store `stiffmbs.solve.error_control.newton.stiffness_at` and `newton_tolerance` at the current state."""
+    values = evaluate(s, TANGENT, t)
+    w.of_positions = _largest_row_sum(w, s, values, w.n_f_q, w.f_q_source, w.f_q_row, w.f_q_scale)
+    w.of_velocities = _largest_row_sum(w, s, values, w.n_f_u, w.f_u_source, w.f_u_row, w.f_u_scale)
+    fastest = max(w.of_positions, w.of_velocities * w.of_velocities)
+    allowed = w.soft / fastest if fastest > 0.0 else w.loosest
+    w.newton = max(min(w.loosest, allowed), w.tightest)
+
+
+@compiled
+def begun(w, c, t):
+    """Start IDA at the prepared unknowns, as `stiffmbs.solve.ida.ida.NativeIda.begin`; OK or a negative flag."""
+    call_int(w.set_newton, (c.memory, w.newton))
+    flag = call_int(w.start_anew, (c.memory, t, c.y, c.yp))
+    call_int(w.set_first_step, (c.memory, 0.0))
+    call_int(w.set_growth, (c.memory, 1.0, w.growth))
+    norm = error_norm_view(w.error_norm)
+    norm.growth = w.growth
+    norm.equal_until = 0
+    iteration = iteration_view(c.iteration)
+    iteration.cj = float("inf")
+    iteration.growth = -1.0
+    correction = output_correction_view(c.output_correction)
+    correction.unseen = 0
+    correction.next_look = 0
+    correction.judged = 0
+    search = event_search_view(c.watch)
+    search.ready = 0
+    for k in range(w.n_watched):
+        search.found[k] = 0
+    for k in range(c.n_event_functions):
+        c.signs[k] = 0.0
+    for k in range(LOOP.samples * (1 + c.n_reported)):
+        c.samples[k] = NAN
+    c.returned = t
+    c.internal = t
+    c.size = 0.0
+    c.tiny = 0
+    c.since_sample = 0
+    return flag
+
+
+@compiled
+def prepared(w, s, m, e, c, t):
+    """Prepare a start at the current consistent state, with its accelerations and multipliers; OK or a negative number.
+
+    The acceleration terms, which hold the rates of coordinates after those of bodies, must be those of this state.
+    """
+    for k in range(s.n_c):
+        s.mu[k] = 0.0
+    for k in range(s.n_q):
+        w.rate[k] = 0.0
+    add_rates(s, s.u, 1.0, w.rate)
+    add_rates_behind(s, m, 1.0, w.rate)
+    _relax(w, s, t)
+    _look_at_stiffness(w, s, t)
+    if not isfinite(w.of_positions + w.of_velocities):
+        return UNFINISHED
+    _fill_unknowns(w, s, e, array_of(c, c.y), array_of(c, c.yp))
+    return OK
+
+
+@compiled
+def keep_counters(w, c):
+    """Add IDA's counters to their sums before a start resets them."""
+    add_counters(w.n_counters, w.counter, c.memory, w.count, w.counts)
+
+
+def start(t, counted, highest_order, table):
+    """Start IDA at the consistent values of the state; OK, or a negative number to leave the start to Python.
+
+    If `counted` is nonzero, IDA's counters are kept.
+    """
+    w = start_view(table)
+    m = dynamics_view(w.dynamics)
+    s = state_view(m.state)
+    c = native_ida_view(ints(w.ida))
+    if m.n_behind > 0:
+        evaluate(s, ACCELERATION, t)
+    if prepared(w, s, m, equations_view(c.equations), c, t) < 0:
+        return int32(UNFINISHED)
+    if counted:
+        keep_counters(w, c)
+    if begun(w, c, t) < 0:
+        return int32(UNFINISHED)
+    call_int(w.set_highest_order, (c.memory, int32(highest_order)))
+    return int32(OK)

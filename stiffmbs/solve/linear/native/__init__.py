@@ -1,1 +1,0 @@
-"""Compiled factorisations of the iteration matrix."""

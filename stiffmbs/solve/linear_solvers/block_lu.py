@@ -1,0 +1,102 @@
+"""Linear solver of IDA: block LU of bodies and joints without pivoting."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, ClassVar
+
+import numpy as np
+
+from ...compile.equations import ABSENT, Equations
+from ...compile.machine.layout import Layout, held_once, packed_with_memory
+from ...compile.machine.routines import Routine
+from ...sparse.block_updates import updates
+from ...sparse.blocks import QUAD, Blocks, at_a_line, filled
+from ...sparse.elimination_order import EliminationOrder, nodes_in_order
+from .fixed_order import FixedOrder, Memory, PairedColumns
+from .native.layouts import BLOCK_LU, COORDINATE, MULTIPLIER, VELOCITY
+from .when_needed import WhenNeeded
+
+_MODULE = "stiffmbs.solve.linear_solvers.native.block_lu"
+SETUP = Routine(_MODULE, "setup", "int32(int64*, int64)")
+SOLVE = Routine(_MODULE, "solve", "int32(int64*, int64, int64, int64, float64)", unrolled=True)
+SEED = 14
+"""Seed of the state for the trial of the factors; its entries between 0.5 and 1 expose rounding errors."""
+
+
+@dataclass(frozen=True)
+class BlockLU(FixedOrder):
+    """Block LU in a fixed order, checked by its residual; `PairedColumns` with pivoting if the residual is too large.
+
+    Attributes
+    ----------
+    nodes : list of ndarray of int
+        Unknowns of each supernode, in the order of elimination.
+    kinds : ndarray of int, shape (n,)
+        Kind of each unknown.
+    """
+
+    setup: ClassVar[Routine] = SETUP
+    solve: ClassVar[Routine] = SOLVE
+    layout: ClassVar[Layout] = BLOCK_LU
+
+    nodes: list[np.ndarray]
+    kinds: np.ndarray
+
+    @classmethod
+    def of(cls, equations: Equations, order: EliminationOrder) -> BlockLU:
+        """Create the solver of a formulation for an elimination order of its bodies and joints."""
+        kinds = np.full(equations.n, MULTIPLIER)
+        for name, kind in (("q", COORDINATE), ("u", VELOCITY)):
+            at = equations.at.get(name, np.empty(0, dtype=np.int64))
+            kinds[at[at != ABSENT]] = kind
+        return cls(equations.n, *equations.pattern, order, nodes_in_order(equations, order), kinds)
+
+    def sentence(self) -> str:
+        """Return a description for the summary."""
+        return f"blocks in a fixed order, {self.n} unknowns, {len(self.rows)} entries"
+
+    @cached_property
+    def blocks(self) -> Blocks:
+        """Return the nonzero blocks of the factors."""
+        return filled(self.nodes, self.rows, self.columns)
+
+    @cached_property
+    def _plan(self) -> dict[str, Any]:
+        """Return the constant arrays shared by all memories of the solver."""
+        blocks = self.blocks
+        diagonal = np.flatnonzero((self.rows == self.columns) & (self.kinds[self.rows] == COORDINATE))
+        lists = {
+            "size": blocks.sizes, "start": blocks.starts, "down_width": blocks.down_width, "right_width": blocks.right_width,
+            "node_start": blocks.node_starts, "place": blocks.places, "kind": self.kinds, "diagonal": diagonal,
+            **blocks.quads("down", blocks.below), **blocks.quads("right", blocks.right),
+        }  # fmt: skip
+        random = np.random.default_rng(SEED)
+        signs = random.choice([-1.0, 1.0], self.n)
+        return {
+            "n": self.n, "pivots": 0, "last_flag": 0, "n_nodes": len(blocks.nodes), "n_diagonal": len(diagonal), "n_lu": int(blocks.starts[-1]),
+            **{name: held_once(np.asarray(part, dtype=np.int64)) for name, part in lists.items()},
+            **{name: held_once(part) for name, part in updates(blocks).items()},
+            "slot": held_once(blocks.slots(self.rows, self.columns)), "state": signs * random.uniform(0.5, 1.0, self.n),
+        }  # fmt: skip
+
+    def memory(self, array_of: int) -> Memory:
+        """Return the memory of the compiled routines, given the address of N_VGetArrayPointer."""
+        with_pivots = PairedColumns(self.n, self.rows, self.columns, self.order).memory(array_of)
+        blocks = self.blocks
+        beside = [right + own for right, own in zip(blocks.right_width, blocks.widths, strict=True)]
+        scratch = max([*beside, *blocks.down_width, *(2 * QUAD * size for size in blocks.sizes)])
+        arrays = {
+            **self._plan, "array_of": array_of, "factors": with_pivots.arrays["factors"],
+            "with_pivots": np.array([with_pivots.content.ctypes.data]), "kept": with_pivots,
+            "x": at_a_line(blocks.node_starts[-1]), "scratch": at_a_line(scratch),
+            "order": np.zeros(max(blocks.sizes), dtype=np.int64),
+            "unit": np.eye(QUAD), "behind": np.triu(np.ones((QUAD, QUAD)), 1),
+            **{name: np.zeros(self.n) for name in ("pivot", "tried", "trial", "product", "terms", "allowed")},
+        }  # fmt: skip
+        content = packed_with_memory(BLOCK_LU, arrays)
+        cells = content.view(BLOCK_LU.cells)[0]
+        needed = WhenNeeded(cells, {"setup_pivots": PairedColumns.setup, "solve_pivots": PairedColumns.solve})
+        cells["compile_pivots"] = needed.address
+        return Memory(content, arrays, with_pivots.factors, needed)

@@ -1,0 +1,106 @@
+"""Validation of the factors of a block LU by the residual of a trial solution.
+
+References
+----------
+Oettli and Prager, Compatibility of approximate solution of linear equations, Numer. Math. 6 (1964) 405-409: residual.
+"""
+
+from __future__ import annotations
+
+from stiffmbs.compile.machine.native.access import compiled, factors_view
+from stiffmbs.solve.linear_solvers.native.block_solution import solved
+from stiffmbs.solve.linear_solvers.native.layouts import COORDINATE, MULTIPLIER
+from stiffmbs.solve.linear_solvers.native.parameters import PIVOTS
+
+
+@compiled
+def _near_tried(s):
+    """Return True if no pivot has changed much since the last trial."""
+    if s.serves == 0:
+        return False
+    s.serves -= 1
+    far = 0
+    for k in range(s.n):
+        ratio = abs(s.pivot[k] * s.tried[k])  # sign ignored: equally large rows may be exchanged
+        far += 0 if 1.0 / PIVOTS.changed < ratio < PIVOTS.changed else 1
+    return far == 0
+
+
+@compiled
+def _sized(s, f):
+    """Scale the trial solution: coordinates of 1, velocities of the rate, multipliers of comparable effect."""
+    rate = 0.0
+    for k in range(s.n_diagonal):
+        rate = max(rate, abs(f.a[s.diagonal[k]]))
+    for i in range(f.n):
+        s.terms[i] = 0.0
+    for j in range(f.n):
+        s.trial[j] = s.state[j] * (1.0 if s.kind[j] == COORDINATE else rate)
+        if s.kind[j] != MULTIPLIER:
+            for p in range(f.a_start[j], f.a_start[j + 1]):
+                s.terms[f.a_row[p]] += abs(f.a[p] * s.trial[j])
+    for j in range(f.n):
+        if s.kind[j] == MULTIPLIER:
+            part = 0.0
+            for p in range(f.a_start[j], f.a_start[j + 1]):
+                if s.kind[f.a_row[p]] != MULTIPLIER:
+                    part = max(part, abs(f.a[p]) / s.terms[f.a_row[p]])
+            s.trial[j] = s.state[j] / part if 0.0 < part < float("inf") else s.state[j]
+
+
+@compiled
+def _multiply(s, f, by):
+    """Compute A times a vector in `product`, and the sums of the magnitudes of each row's terms in `terms`."""
+    for i in range(f.n):
+        s.product[i] = 0.0
+        s.terms[i] = 0.0
+    for j in range(f.n):
+        for p in range(f.a_start[j], f.a_start[j + 1]):
+            part = f.a[p] * by[j]
+            s.product[f.a_row[p]] += part
+            s.terms[f.a_row[p]] += abs(part)
+
+
+@compiled
+def trusted(s, f):
+    """Return True if the factors leave a small residual; validated by a trial if pivots have changed."""
+    if _near_tried(s):
+        return True
+    _sized(s, f)
+    _multiply(s, f, s.trial)
+    for i in range(f.n):
+        s.allowed[i] = PIVOTS.largest_residual * s.terms[i]
+    left = _left_after_solution(s, f)
+    s.refined = 1 if 1.0 < left <= PIVOTS.refinable / PIVOTS.largest_residual else 0
+    if s.refined:
+        left = _left_after_solution(s, f)
+    for k in range(f.n):
+        s.tried[k] = 1.0 / s.pivot[k]
+    s.serves = PIVOTS.serves if left <= 1.0 else 0
+    return left <= 1.0
+
+
+@compiled
+def _left_after_solution(s, f):
+    """Subtract the solution for `product` from the trial; return the largest residual relative to the allowed one."""
+    solved(s, s.product)
+    for j in range(f.n):
+        s.trial[j] -= s.x[s.place[j]]
+    _multiply(s, f, s.trial)
+    largest = 0.0
+    for i in range(f.n):
+        left = 0.0 if s.product[i] == 0.0 else abs(s.product[i]) / s.allowed[i]
+        if not left <= largest:
+            largest = left if left < float("inf") else float("inf")  # also for NaN
+    return largest
+
+
+@compiled
+def refine(s, x, b):
+    """Refine a solution once by its residual."""
+    _multiply(s, factors_view(s.factors), x)
+    for i in range(s.n):
+        s.product[i] = b[i] - s.product[i]
+    solved(s, s.product)
+    for j in range(s.n):
+        x[j] += s.x[s.place[j]]

@@ -1,0 +1,157 @@
+"""Factors of one supernode of a block LU (`stiffmbs.solve.linear_solvers.native.block_lu`), with pivots from its own rows.
+
+Its block is replaced by U^-1, its rows right of it are multiplied by L^-1 P, and later rows by U^-1.  Stiff bushings
+make blocks ill-conditioned.  Products with triangular inverses then still leave residuals near rounding, unlike
+products with the inverse of the whole block.
+
+References
+----------
+Du Croz and Higham, Stability of methods for matrix inversion, IMA J. Numer. Anal. 12 (1992) 1-19.
+"""
+
+from __future__ import annotations
+
+from stiffmbs.compile.machine.native.access import compiled, shifted
+from stiffmbs.compile.machine.native.quads import add_products, plus_product, product_of, quad, set_quad, spread
+
+
+@compiled
+def _largest(line, k, size):
+    """Return the index of the largest magnitude in a line from the k-th number on."""
+    largest = k
+    for r in range(k + 1, size):
+        if abs(line[r]) > abs(line[largest]):
+            largest = r
+    return largest
+
+
+@compiled
+def _exchange(line, a, b):
+    kept = line[a]
+    line[a] = line[b]
+    line[b] = kept
+
+
+@compiled
+def _reduced(s, line, by, first, width):
+    """Add a multiple of a pivot's multipliers to a line."""
+    factor = spread(by)
+    for at in range(first, width, 4):
+        set_quad(line, at, plus_product(quad(line, at), factor, quad(s.scratch, at)))
+
+
+@compiled
+def _triangular(s, d, stride, t, width, size, first):
+    """Factor a supernode's columns as L U with row pivoting; `t` becomes L^-1 P, later rows are multiplied by U^-1."""
+    for k in range(size):
+        s.order[k] = k
+    for k in range(size):
+        line = shifted(d, k * stride)
+        largest = _largest(line, k, size)
+        if largest != k:
+            for i in range(size):
+                _exchange(shifted(d, i * stride), k, largest)
+            for i in range(k):
+                _exchange(shifted(t, s.order[i] * width), k, largest)
+            kept = s.order[k]
+            s.order[k] = s.order[largest]
+            s.order[largest] = kept
+        pivot = line[k]
+        s.pivot[first + k] = pivot
+        inverse = spread(1.0 / pivot)
+        own, within = k - k % 4, 4 * (k % 4)
+        set_quad(s.scratch, own, product_of(product_of(quad(line, own), inverse), quad(s.behind, within)))
+        for at in range(own + 4, stride, 4):
+            part = product_of(quad(line, at), inverse)
+            set_quad(s.scratch, at, part)
+            set_quad(line, at, part)
+        for i in range(k + 1, size):
+            into = shifted(d, i * stride)
+            _reduced(s, into, -into[k], own, stride)
+        for i in range(k):
+            into = shifted(t, s.order[i] * width)
+            _reduced(s, into, -into[k], own, width)
+        into = shifted(t, s.order[k] * width)
+        for at in range(0, own, 4):
+            set_quad(into, at, spread(0.0))
+        set_quad(into, own, plus_product(quad(s.unit, within), spread(-1.0), quad(s.scratch, own)))
+        for at in range(own + 4, width, 4):
+            set_quad(into, at, product_of(spread(-1.0), quad(s.scratch, at)))
+
+
+@compiled
+def _inverted(s, d, stride, width, size):
+    """Replace U, above the diagonal of a supernode's columns, by its inverse."""
+    for j in range(size):
+        line = shifted(d, j * stride)
+        inverse = 1.0 / line[j]
+        for i in range(j):
+            s.scratch[i] = -inverse * line[i]
+        for at in range(0, width, 4):
+            set_quad(line, at, spread(0.0))
+        add = j + 3 - (j + 3) % 4
+        for at in range(0, add, 4):
+            add_products(1, 1, shifted(line, at), 0, s.scratch, 1, shifted(d, at), stride, j)
+        line[j] = inverse
+
+
+@compiled
+def add_two_quads(rows, into, stride, a, a_stride, b, b_stride, depth):
+    """Add products for one to four rows of two quads."""
+    if rows == 4:
+        add_products(4, 2, into, stride, a, a_stride, b, b_stride, depth)
+    elif rows == 3:
+        add_products(3, 2, into, stride, a, a_stride, b, b_stride, depth)
+    elif rows == 2:
+        add_products(2, 2, into, stride, a, a_stride, b, b_stride, depth)
+    else:
+        add_products(1, 2, into, stride, a, a_stride, b, b_stride, depth)
+
+
+@compiled
+def add_one_quad(rows, into, stride, a, a_stride, b, b_stride, depth):
+    """Add products for one to four rows of one quad."""
+    if rows == 4:
+        add_products(4, 1, into, stride, a, a_stride, b, b_stride, depth)
+    elif rows == 3:
+        add_products(3, 1, into, stride, a, a_stride, b, b_stride, depth)
+    elif rows == 2:
+        add_products(2, 1, into, stride, a, a_stride, b, b_stride, depth)
+    else:
+        add_products(1, 1, into, stride, a, a_stride, b, b_stride, depth)
+
+
+@compiled
+def _multiplied(s, d, stride, u, width, size):
+    """Multiply a supernode's rows right of its diagonal block by L^-1 P, `d`, and by -1."""
+    zero = spread(0.0)
+    minus = spread(-1.0)
+    for column in range(0, width, 8):
+        two = column + 4 < width
+        for i in range(size):
+            place = i * width + column
+            set_quad(s.scratch, 8 * i, plus_product(zero, minus, quad(u, place)))
+            set_quad(u, place, zero)
+            if two:
+                set_quad(s.scratch, 8 * i + 4, plus_product(zero, minus, quad(u, place + 4)))
+                set_quad(u, place + 4, zero)
+        line = 0
+        while line < size:
+            left = size - line
+            rows = 3 if left == 5 or left == 6 or left == 9 else min(left, 4)
+            into = shifted(u, line * width + column)
+            if two:
+                add_two_quads(rows, into, width, shifted(d, line), stride, s.scratch, 8, size)
+            else:
+                add_one_quad(rows, into, width, shifted(d, line), stride, s.scratch, 8, size)
+            line += rows
+
+
+@compiled
+def factor_node(s, k, down, right, first):
+    """Factor supernode k, given its panels; its pivots are stored from unknown `first` on."""
+    size, width, stride = s.size[k], s.node_start[k + 1] - s.node_start[k], s.down_width[k]
+    lower = shifted(right, size * s.right_width[k])
+    _triangular(s, down, stride, lower, width, size, first)
+    _inverted(s, down, stride, width, size)
+    _multiplied(s, lower, width, right, s.right_width[k], size)

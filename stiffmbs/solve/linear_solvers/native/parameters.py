@@ -1,0 +1,32 @@
+"""Parameters of the linear solvers of IDA."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class PivotParameters:
+    """Parameters of the accuracy of factors in a fixed order.
+
+    Source: ``tests/solve/linear_solvers``, with scenes whose stiffnesses differ by twelve decades.
+    """
+
+    largest: float = 1e3
+    """Ratio of an entry to the pivot of its column above which the pivot is rejected."""
+    worth_a_pair: float = 0.8
+    """Ratio of the items of a supernode to its entries above which columns are stored separately."""
+    largest_residual: float = 1e-9
+    """Allowed residual of a trial solution by blocks, relative to the terms of a row."""
+    refinable: float = 1e-5
+    """Largest residual that a refinement can correct."""
+    changed: float = 8.0
+    """Factor by which a pivot must differ from that of the last trial to cause another trial."""
+    serves: int = 50
+    """Factorisations after which a trial is always made."""
+    waits_for: int = 20
+    """Largest number of factorisations with pivoting before the next attempt without; it grows by one with each
+    refusal."""
+
+
+PIVOTS = PivotParameters()

@@ -1,1 +1,0 @@
-"""Loops for `stiffmbs.compile.machine.translate`; imported only for compilation."""

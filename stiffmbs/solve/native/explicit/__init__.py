@@ -1,1 +1,0 @@
-"""Explicit Runge-Kutta steps: start, stages, error estimate, end and interpolant."""

@@ -1,1 +1,0 @@
-"""Tables shared by Python and compiled code (`stiffmbs.compile.machine.layout`)."""

@@ -1,0 +1,1 @@
+"""Radau IIA collocation methods of 3, 5 and 7 stages."""

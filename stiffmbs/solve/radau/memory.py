@@ -1,0 +1,203 @@
+"""Memory of a Radau integration and its linear systems."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from ...compile.equations import Equations
+from ...compile.machine.layout import fill, packed
+from ...compile.state import State
+from ...sparse.elimination_order import EliminationOrder
+from ..cost import ImplicitCost
+from ..ida.choice import cost_of
+from ..ida.libraries import Libraries
+from ..ida.matrices import Assembled, Matrix
+from ..ida.session import Session
+from ..linear_solvers.block_lu import BlockLU
+from .collocation import Collocation, radau
+from .condensed import condensed_efforts
+from .interface import RadauFunctions
+from .native.layouts import COLLOCATION, RADAU
+from .parameters import RadauParameters
+
+if TYPE_CHECKING:
+    from ..ida.connection import Connection
+
+CHOSEN_FROM = (3, 5, 7)
+"""Numbers of stages among which a run chooses."""
+VECTORS = {"b": 1, "x": 1, "pair_b": 2, "pair_x": 2}
+"""Vectors of the linear systems, and their size in numbers of unknowns."""
+
+
+class Pairs(NamedTuple):
+    """Complex matrix as a real one: unknown k is the pair 2 k, 2 k + 1 of its real and imaginary part.
+
+    Attributes
+    ----------
+    matrix : Matrix
+        Real matrix of twice the size.
+    re_re, im_im : ndarrays of int
+        Entry of each slot of the complex matrix in the pattern of the real one.
+    im_re, re_im : ndarrays of int
+        Entry of each imaginary part.
+    """
+
+    matrix: Matrix
+    re_re: np.ndarray
+    im_im: np.ndarray
+    im_re: np.ndarray
+    re_im: np.ndarray
+
+
+def in_pairs(matrix: Any, imaginary: np.ndarray) -> Pairs:
+    """Return a complex matrix whose given slots have an imaginary part, with the linear solver of a real matrix."""
+    rows, columns = matrix.rows, matrix.columns
+    row, column = rows[imaginary], columns[imaginary]
+    all_rows = np.concatenate([2 * rows, 2 * rows + 1, 2 * row + 1, 2 * row])
+    all_columns = np.concatenate([2 * columns, 2 * columns + 1, 2 * column, 2 * column + 1])
+    order = np.lexsort((all_rows, all_columns))
+    place = np.empty(len(order), dtype=np.int64)
+    place[order] = np.arange(len(order))
+    parts = np.split(place, np.cumsum([len(rows), len(rows), len(row)]))
+    fields: dict[str, Any] = {"n": 2 * matrix.n, "rows": all_rows[order], "columns": all_columns[order]}
+    if hasattr(matrix, "order"):
+        own = matrix.order
+        fields["order"] = EliminationOrder(_doubled(own.unknowns), 4 * own.fill, 8 * own.updates)
+    if isinstance(matrix, BlockLU):
+        fields |= {"nodes": [_doubled(node) for node in matrix.nodes], "kinds": np.repeat(matrix.kinds, 2)}
+    return Pairs(type(matrix)(**fields), *parts)
+
+
+def _doubled(unknowns: np.ndarray) -> np.ndarray:
+    doubled: np.ndarray = (2 * unknowns[:, None] + np.arange(2)).ravel()
+    return doubled
+
+
+class Radau:
+    """Radau methods in place of IDA's BDF (`stiffmbs.solve.ida.connection.Formula`).
+
+    Parameters
+    ----------
+    equations : Equations
+    matrix : Matrix
+        Real iteration matrix with its linear solver.
+    state : State
+    stages : int or None
+        Number of stages; None to choose it by the convergence of Newton's iteration.
+    cost : ImplicitCost
+        Cost of a residual and of a real iteration matrix.
+    parameters : RadauParameters
+
+    Attributes
+    ----------
+    pair_cost : float
+        Cost of a complex matrix, in real ones.
+    """
+
+    polishes = True
+
+    def __init__(
+        self,
+        equations: Equations,
+        matrix: Matrix,
+        state: State,
+        stages: int | None,
+        cost: ImplicitCost,
+        parameters: RadauParameters,
+    ) -> None:
+        self._equations, self._matrix, self._parameters = equations, matrix, parameters
+        for term_set in ("effort", "effort_tangent"):
+            state.load(term_set)
+        self._pairs = in_pairs(matrix, equations.slots_with_rates)
+        self.pair_cost = cost_of(self._pairs.matrix) / cost_of(matrix)
+        methods = CHOSEN_FROM if stages is None else (stages,)
+        self._coefficients = {
+            count: _arrays(radau(count)) | _costs(count, cost, self.pair_cost, parameters)
+            for count in {*methods, *(count - 2 for count in methods)}
+        }
+        self._tables = {count: packed(COLLOCATION, arrays) for count, arrays in self._coefficients.items()}
+        self._methods = methods
+        self._most = max(methods)
+        self._words = np.zeros(len(RADAU), dtype=np.int64)
+
+    def libraries(self) -> Libraries:
+        """Return the SUNDIALS functions, with those of IDA replaced."""
+        return RadauFunctions(self._matrix.libraries())
+
+    def memory(self, session: Session) -> int:
+        """Return the address of the memory."""
+        return self._words.ctypes.data
+
+    def connect(self, connection: Connection, session: Session, real: Assembled) -> None:
+        """Create matrices and vectors, and fill the memory."""
+        equations, n, system = self._equations, self._equations.n, self._equations.system
+        self._of_equations = equations.table()
+        imaginary = equations.slots_with_rates
+        pairs = self._pairs
+        vectors = {name: np.zeros(count * n) for name, count in VECTORS.items()}
+        at = {f"at_{name}": session.vector(values) for name, values in vectors.items()}
+        complexes = [pairs.matrix.assembled(session, at["at_pair_b"]) for _ in range(self._most // 2)]
+        solvers = [real, *complexes]
+        for each in solvers:
+            session.libraries.SUNLinSolInitialize(each.solver)
+        number = np.full(len(equations.pattern[0]), -1)
+        number[imaginary] = np.arange(len(imaginary))
+        functions = system.n_event_functions
+        efforts = condensed_efforts(equations)
+        n_efforts, n_all = efforts["n_efforts"], n + efforts["n_efforts"]
+        values = {
+            "state": connection.state_table, "equations": self._of_equations[0], "array_of": session.libraries.address("N_VGetArrayPointer"), "n": n,
+            "methods": self._addresses(0), "below": self._addresses(-2), "n_methods": len(self._methods),
+            "clear": session.libraries.address("SUNMatZero"), "setup": session.libraries.address("SUNLinSolSetup"),
+            "solve": session.libraries.address("SUNLinSolSolve"),
+            "solver": np.array([each.solver for each in solvers]), "matrix": np.array([each.matrix for each in solvers]),
+            "values": np.array([each.values for each in solvers]), "patterns": np.concatenate([each.pattern for each in solvers]),
+            "n_slots": len(number), "slot": _at(real, np.arange(len(number))),
+            "re_re": _at(complexes[0], pairs.re_re), "im_im": _at(complexes[0], pairs.im_im),
+            "n_imaginary": len(imaginary), "imaginary_of": number.astype(np.int32),
+            "im_re": _at(complexes[0], pairs.im_re), "re_im": _at(complexes[0], pairs.re_im),
+            "entries": np.zeros(len(number)), **vectors, **at, "output_correction": connection.output_correction.table, "error_norm": connection.error_norm.table,
+            "n_all": n_all, **efforts, "lever": np.zeros(efforts["n_levers"]), "slope": np.zeros(efforts["n_slopes"]),
+            "misfit": np.zeros(self._most * n_efforts), "r": np.zeros(self._most * n),
+            **{name: np.zeros(n) for name in ("yp", "yp_stage", "error", "weight", "atol")},
+            **{name: np.zeros(n_all) for name in ("y", "y_stage", "y_past")},
+            **{name: np.zeros(self._most * n_all) for name in ("z", "d", "past")},
+            "n_functions": functions, "functions": connection.event_functions if functions else 0, "ida": connection.words,
+            **{name: np.zeros(functions) for name in ("before", "after", "within")}, "fired": np.zeros(functions, dtype=np.int64),
+            **asdict(self._parameters),
+        }  # fmt: skip
+        fill(self._words, RADAU, values)
+        self._kept = values, solvers
+
+    def _addresses(self, more: int) -> np.ndarray:
+        """Return the addresses of the tables of the methods, or of those with more stages."""
+        return np.array([self._tables[count + more].ctypes.data for count in self._methods])
+
+    def forget(self) -> None:
+        """Forget the method chosen in an earlier run, and pivots."""
+        cells = self._words.view(RADAU.cells)[0]
+        cells["method"], cells["h_factored"] = 0, 0.0
+        for each in self._kept[1]:
+            if each.pivots is not None:
+                each.pivots["ready"] = 0
+
+
+def _arrays(c: Collocation) -> dict[str, Any]:
+    """Return the contents of the table of a method."""
+    arrays = {name: np.ascontiguousarray(value) for name, value in vars(c).items() if isinstance(value, np.ndarray)}
+    return {**arrays, "stages": c.stages, "pairs": len(c.alpha), "gamma": c.gamma}
+
+
+def _costs(stages: int, cost: ImplicitCost, pair_cost: float, parameters: RadauParameters) -> dict[str, float]:
+    """Return the costs of the matrices of a step and of an iteration."""
+    setup = cost.matrix * (1 + pair_cost * (stages // 2))
+    return {"setup_cost": setup, "iteration_cost": stages * cost.residual + parameters.solution_cost * setup}
+
+
+def _at(assembled: Assembled, entries: np.ndarray) -> np.ndarray:
+    """Return the positions of entries of a pattern among the values of a matrix."""
+    places = entries if assembled.slots is None else assembled.slots[entries]
+    return np.ascontiguousarray(places, dtype=np.int32)

@@ -1,0 +1,373 @@
+"""Functions of Radau methods with the interface of IDA, so that one loop drives both."""
+
+from __future__ import annotations
+
+from math import sqrt
+
+from stiffmbs.compile.machine.native.access import compiled, floats, ints
+from stiffmbs.compile.machine.native.calls import call_address, call_int, int32
+from stiffmbs.compile.machine.native.memory import copied
+from stiffmbs.compile.machine.native.statuses import OK, ROOT_RETURN, STOP_RETURN
+from stiffmbs.solve.ida.native.output_correction import output_correction_view
+from stiffmbs.solve.radau.native.memory import collocation_view, polynomial, polynomial_rates, radau_view
+from stiffmbs.solve.radau.native.newton import closed
+from stiffmbs.solve.radau.native.steps import EXCLUDED, set_weights, step
+
+BAD_ORDER, BAD_TIME = -25, -26
+"""IDA_BAD_K and IDA_BAD_T."""
+BISECTIONS = 60
+MOST_RETAKEN, BEFORE_EVENT, ROUNDINGS = 12, 0.99, 1e-14
+"""Number of attempts to end a step before an event, fraction of the way to it, and least step relative to the time."""
+
+
+@compiled
+def _data(x, vector):
+    return floats(call_address(x.array_of, vector))
+
+
+@compiled
+def _event_functions(x, t, y, yp, target):
+    """Compute the event functions of a state, as IDA calls them."""
+    copied(x.b, y, x.n)
+    copied(x.x, yp, x.n)
+    return call_int(x.functions, (t, x.at_b, x.at_x, target, x.ida))
+
+
+@compiled
+def _changed(x, before, after):
+    """Return the number of event functions whose sign differs, or that have become zero."""
+    count = 0
+    for k in range(x.n_functions):
+        count += before[k] != 0.0 and (after[k] == 0.0 or (before[k] > 0.0) != (after[k] > 0.0))
+    return count
+
+
+@compiled
+def _root(x, begin):
+    """Return the first time of a sign change in the last step, just after it; the end if there is none."""
+    low = 0.0
+    high = 1.0
+    for _ in range(BISECTIONS):
+        middle = 0.5 * (low + high)
+        if middle <= low or middle >= high or (high - low) * x.h_past < 1e-15 * abs(x.t):
+            break
+        polynomial(x, middle, x.n, x.y_stage)
+        _event_functions(x, begin + middle * x.h_past, x.y_stage, x.yp, x.within)
+        if _changed(x, x.before, x.within) > 0:
+            high = middle
+            copied(x.after, x.within, x.n_functions)
+        else:
+            low = middle
+    return high
+
+
+@compiled
+def _step_back(x, begin, h):
+    """Return to the beginning of the last step, with a shorter one to follow."""
+    copied(x.y, x.y_past, x.n_all)
+    x.t = begin
+    x.h = h
+    x.h_past = 0.0
+    x.h_accepted = 0.0
+    x.steps -= 1
+
+
+@compiled
+def _stepped(x, toward):
+    """Take a step, up to just before an event if the change of law makes its error estimate invalid.
+
+    The tolerance of the estimate, of order s, is that of smooth solutions; a step over a jump has to meet the requested
+    one.
+    """
+    for _ in range(MOST_RETAKEN):
+        begin = x.t
+        flag = step(x, toward)
+        if flag < 0 or x.n_functions == 0:
+            return flag
+        _event_functions(x, x.t, x.y, x.yp, x.after)
+        relaxed = collocation_view(ints(x.methods[x.method_past])).relaxed
+        if x.error_size * relaxed <= 1.0 or _changed(x, x.before, x.after) == 0:
+            return flag
+        h = BEFORE_EVENT * _root(x, begin) * x.h_past
+        if not h > ROUNDINGS * abs(begin):
+            return flag
+        _step_back(x, begin, h)
+    return flag
+
+
+def solve(memory, toward, returned, y, yp, task):
+    """Take one step (IDASolve in the mode IDA_ONE_STEP)."""
+    x = radau_view(ints(memory))
+    if x.stops and x.t >= x.stop:
+        returned[0] = x.t
+        copied(_data(x, y), x.y, x.n)
+        copied(_data(x, yp), x.yp, x.n)
+        x.stops = 0
+        return int32(STOP_RETURN)
+    if x.n_functions > 0 and x.h_past == 0.0:
+        _event_functions(x, x.t, x.y, x.yp, x.before)
+    begin = x.t
+    flag = _stepped(x, toward)
+    if flag < 0:
+        return int32(flag)
+    returned[0] = x.t
+    copied(_data(x, y), x.y, x.n)
+    copied(_data(x, yp), x.yp, x.n)
+    if x.n_functions > 0:
+        if _changed(x, x.before, x.after) > 0:
+            place = _root(x, begin)
+            if place < 1.0:
+                returned[0] = begin + place * x.h_past
+                polynomial(x, place, x.n, _data(x, y))
+                polynomial_rates(x, place, _data(x, yp))
+            for k in range(x.n_functions):
+                sign = -1 if x.before[k] > 0.0 else 1
+                crossed = x.before[k] != 0.0 and (x.after[k] == 0.0 or (x.before[k] > 0.0) != (x.after[k] > 0.0))
+                x.fired[k] = sign if crossed else 0
+            copied(x.before, x.after, x.n_functions)
+            return int32(ROOT_RETURN)
+        copied(x.before, x.after, x.n_functions)
+    if x.stops and x.t >= x.stop:
+        x.stops = 0
+        return int32(STOP_RETURN)
+    return int32(OK)
+
+
+@compiled
+def _dense_output(x, t, place, target):
+    """Compute the state at a place of the last step.
+
+    In a step that is long for the stiff forces, the interpolation errors of positions would make large forces: one
+    Newton correction with the factors of the step restores the equilibrium.
+    """
+    if not (x.h_past > output_correction_view(x.output_correction).long and x.h_factored > 0.0 and place < 1.0):
+        polynomial(x, place, x.n, target)
+        return
+    polynomial(x, place, x.n_all, x.y_stage)
+    polynomial_rates(x, place, x.yp_stage)
+    closed(x, t)
+    copied(target, x.y_stage, x.n)
+
+
+def interpolate(memory, t, order, target):
+    """Evaluate the polynomial of the last step, or its derivative (IDAGetDky)."""
+    x = radau_view(ints(memory))
+    if order > 1:
+        return int32(BAD_ORDER)
+    if x.h_past == 0.0:
+        copied(_data(x, target), x.yp if order == 1 else x.y, x.n)
+        return int32(OK)
+    place = 1.0 + (t - x.t) / x.h_past
+    if not -1e-6 <= place <= 1.0 + 1e-6:
+        return int32(BAD_TIME)
+    if order == 1:
+        polynomial_rates(x, place, _data(x, target))
+    else:
+        _dense_output(x, t, place, _data(x, target))
+    return int32(OK)
+
+
+def reinitialise(memory, t, y, yp):
+    """Start or restart (IDAReInit)."""
+    x = radau_view(ints(memory))
+    x.t = t
+    copied(x.y, _data(x, y), x.n)
+    copied(x.yp, _data(x, yp), x.n)
+    x.h_past = 0.0
+    x.h = 0.0
+    x.rate_kept = 0
+    x.current = 0
+    x.rate = 1.0
+    x.h_accepted = 0.0
+    x.since_change = 0
+    x.stops = 0
+    x.steps = 0
+    x.residuals = 0
+    x.jacobians = 0
+    x.factorizations = 0
+    x.error_failures = 0
+    x.step_failures = 0
+    x.iterations = 0
+    x.newton_failures = 0
+    return int32(OK)
+
+
+def set_stop_time(memory, t):
+    """Set the time beyond which no step goes (IDASetStopTime)."""
+    x = radau_view(ints(memory))
+    x.stop = t
+    x.stops = 1
+    return int32(OK)
+
+
+def set_first_step(memory, h):
+    """Set the size of the first step (IDASetInitStep)."""
+    x = radau_view(ints(memory))
+    x.first = h
+    return int32(OK)
+
+
+def set_longest_step(memory, h):
+    """Set the largest step; 0 for none (IDASetMaxStep)."""
+    x = radau_view(ints(memory))
+    x.longest = h
+    return int32(OK)
+
+
+def set_newton(memory, part):
+    """Set the part of the requested tolerance that Newton's iteration may leave (IDASetNonlinConvCoef)."""
+    x = radau_view(ints(memory))
+    x.part = min(part, x.loosest)
+    return int32(OK)
+
+
+def set_growth(memory, low, high):
+    """Ignore the bounds of unchanged steps (IDASetEtaFixedStepBounds)."""
+    return int32(OK)
+
+
+@compiled
+def _relax(x, c):
+    c.relaxed = x.tolerance * x.rtol ** (0.5 * (1.0 + c.stages) / c.stages - 1.0)
+
+
+def set_tolerances(memory, rtol, atol):
+    """Set the tolerances (IDASVtolerances), which count excluded unknowns in the norm."""
+    x = radau_view(ints(memory))
+    values = _data(x, atol)
+    tested = 0
+    for k in range(x.n):
+        tested += values[k] < EXCLUDED
+    x.n_tested = max(tested, 1)
+    factor = sqrt(float(x.n_tested) / float(x.n))
+    x.rtol = rtol * factor
+    for k in range(x.n):
+        x.atol[k] = values[k] * factor if values[k] < EXCLUDED else values[k]
+    for number in range(x.n_methods):
+        c = collocation_view(ints(x.methods[number]))
+        _relax(x, c)
+    for number in range(x.n_methods):
+        _relax(x, collocation_view(ints(x.below[number])))
+    return int32(OK)
+
+
+def set_order(memory, order):
+    """Ignore the highest order (IDASetMaxOrd)."""
+    return int32(OK)
+
+
+def set_renewal(memory, change):
+    """Ignore the renewal of matrices (IDASetDeltaCjLSetup)."""
+    return int32(OK)
+
+
+def time_of(memory, result):
+    """Store the time of the state (IDAGetCurrentTime)."""
+    x = radau_view(ints(memory))
+    result[0] = x.t
+    return int32(OK)
+
+
+def step_of(memory, result):
+    """Store the size of the last step (IDAGetLastStep)."""
+    x = radau_view(ints(memory))
+    result[0] = x.h_past
+    return int32(OK)
+
+
+def next_step_of(memory, result):
+    """Store the size of the next step (IDAGetCurrentStep)."""
+    x = radau_view(ints(memory))
+    result[0] = x.h
+    return int32(OK)
+
+
+def errors_of(memory, target):
+    """Store the estimated error of the last step, reduced like the tolerance (IDAGetEstLocalErrors)."""
+    x = radau_view(ints(memory))
+    errors = _data(x, target)
+    relaxed = collocation_view(ints(x.methods[x.method])).relaxed
+    for k in range(x.n):
+        errors[k] = x.error[k] / relaxed
+    return int32(OK)
+
+
+def weights_of(memory, target):
+    """Store the inverse tolerances (IDAGetErrWeights)."""
+    x = radau_view(ints(memory))
+    set_weights(x)
+    weights = _data(x, target)
+    for k in range(x.n):
+        weights[k] = x.weight[k]
+    return int32(OK)
+
+
+def steps_of(memory, result):
+    """Store the number of steps (IDAGetNumSteps)."""
+    x = radau_view(ints(memory))
+    result[0] = x.steps
+    return int32(OK)
+
+
+def residuals_of(memory, result):
+    """Store the number of residuals (IDAGetNumResEvals)."""
+    x = radau_view(ints(memory))
+    result[0] = x.residuals
+    return int32(OK)
+
+
+def jacobians_of(memory, result):
+    """Store the number of matrices (IDAGetNumJacEvals)."""
+    x = radau_view(ints(memory))
+    result[0] = x.jacobians
+    return int32(OK)
+
+
+def factorizations_of(memory, result):
+    """Store the number of factorisations (IDAGetNumLinSolvSetups)."""
+    x = radau_view(ints(memory))
+    result[0] = x.factorizations
+    return int32(OK)
+
+
+def error_failures_of(memory, result):
+    """Store the number of failed error tests (IDAGetNumErrTestFails)."""
+    x = radau_view(ints(memory))
+    result[0] = x.error_failures
+    return int32(OK)
+
+
+def step_failures_of(memory, result):
+    """Store the number of steps that failed to converge (IDAGetNumStepSolveFails)."""
+    x = radau_view(ints(memory))
+    result[0] = x.step_failures
+    return int32(OK)
+
+
+def iterations_of(memory, result):
+    """Store the number of iterations (IDAGetNumNonlinSolvIters)."""
+    x = radau_view(ints(memory))
+    result[0] = x.iterations
+    return int32(OK)
+
+
+def newton_failures_of(memory, result):
+    """Store the number of failed iterations (IDAGetNumNonlinSolvConvFails)."""
+    x = radau_view(ints(memory))
+    result[0] = x.newton_failures
+    return int32(OK)
+
+
+def order_of(memory, result):
+    """Store the order of the last step (IDAGetLastOrder)."""
+    x = radau_view(ints(memory))
+    result[0] = 2 * collocation_view(ints(x.methods[x.method_past])).stages - 1
+    return int32(OK)
+
+
+def roots_of(memory, result):
+    """Store the directions of the sign changes at the last root (IDAGetRootInfo)."""
+    x = radau_view(ints(memory))
+    for k in range(x.n_functions):
+        result[k] = x.fired[k]
+    return int32(OK)

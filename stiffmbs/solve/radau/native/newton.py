@@ -1,0 +1,330 @@
+"""Simplified Newton iteration for the stages of a Radau step.
+
+The stages Z_i solve r(t + c_i h, y + Z_i, (1/h) sum_j D_ij Z_j) = 0 with the residual r(t, y, y') = M y' - f(t, y).
+With D = T Lambda T^-1, the corrections delta = T^-1 dZ solve one real system (gamma/h M - f_y) delta_1 = -(T^-1 r)_1 and
+complex ones with (alpha + i beta)/h.
+"""
+
+from __future__ import annotations
+
+from math import isfinite, sqrt
+
+from stiffmbs.compile.machine.native.access import compiled, equations_view, floats, ints, shifted, state_view
+from stiffmbs.compile.machine.native.calls import call_int, copy_bytes
+from stiffmbs.compile.machine.native.evaluate import EFFORT, EFFORT_TANGENT, add_entries, add_products, evaluate, load
+from stiffmbs.compile.machine.native.memory import copied
+from stiffmbs.compile.machine.native.statuses import OK
+from stiffmbs.solve.ida.native.output_correction import output_correction_view
+from stiffmbs.solve.radau.native.memory import basis, collocation_view
+
+MOST_ITERATIONS = 7
+"""Largest number of iterations with three stages; each further stage adds two and a half."""
+ROUNDINGS = 4e-16
+"""Distance of the last stage from a stop time, relative to the time."""
+MOST_CLOSINGS, CLOSED = 5, 1.0
+"""Largest number of corrections of a state between steps, and misfit that remains, in rtol of the largest effort."""
+LEAST_RATE, REMEMBERED, DIVERGING, SHORTER, MOST_LEFT = 1e-16, 0.8, 0.99, 0.8, 20.0
+"""As in RADAU5: least rate of convergence, exponent of the rate of the last step, ratio of corrections that ends the
+iteration; factor of a step whose iteration is too slow, and most that counts of what it would leave."""
+CONVERGED, SLOW, DIVERGED, NOT_FINITE_STAGE = 0, 1, 2, 3
+
+
+@compiled
+def residual(x, t, y, yp, target, misfit):
+    """Compute r(t, y, y') with the stored efforts of stiff forces, which follow the unknowns in y.
+
+    Their misfit, F(q, u) - F, is part of the linearised equations; its levers are those of the matrix.
+    """
+    s = state_view(x.state)
+    e = equations_view(x.equations)
+    load(s, e, y, yp)
+    add_products(e, evaluate(s, e.residual_set, t), y, yp, target)
+    x.residuals += 1
+    if x.acting > 0:
+        values = evaluate(s, EFFORT, t)
+        for k in range(x.n_efforts):
+            misfit[k] = values[x.effort_source[k]] - y[x.n + k]
+        for k in range(x.n_levers):
+            changed = x.lever_factor[k] * values[x.lever_source[k]] - x.lever[k]
+            target[x.lever_unknown[k]] += changed * misfit[x.lever_effort[k]]
+
+
+@compiled
+def store_efforts(x, t):
+    """Store the efforts of the state."""
+    if x.acting > 0:
+        s = state_view(x.state)
+        load(s, equations_view(x.equations), x.y, x.yp)
+        values = evaluate(s, EFFORT, t)
+        for k in range(x.n_efforts):
+            x.y[x.n + k] = values[x.effort_source[k]]
+
+
+@compiled
+def _store_slopes(x, s, t):
+    """Store the levers and slopes of efforts at the state of the matrix."""
+    values = evaluate(s, EFFORT, t)
+    for k in range(x.n_levers):
+        x.lever[k] = x.lever_factor[k] * values[x.lever_source[k]]
+    values = evaluate(s, EFFORT_TANGENT, t)
+    for k in range(x.n_slopes):
+        x.slope[k] = x.slope_factor[k] * values[x.slope_source[k]]
+
+
+@compiled
+def add_efforts(x, change, misfit):
+    """Compute the changes of efforts with those of the unknowns in `change`."""
+    efforts = shifted(change, x.n)
+    if x.acting == 0:
+        for k in range(x.n_efforts):
+            efforts[k] = 0.0
+        return
+    for k in range(x.n_efforts):
+        efforts[k] = misfit[k]
+    for k in range(x.n_slopes):
+        efforts[x.slope_effort[k]] += x.slope[k] * change[x.slope_unknown[k]]
+
+
+@compiled
+def _filled(x, number):
+    """Clear a matrix; return its values."""
+    call_int(x.clear, (x.matrix[number],))
+    return floats(x.values[number])
+
+
+@compiled
+def _set_up(x, number):
+    """Factor a filled matrix; return True unless it is singular."""
+    pattern = shifted(x.patterns, 6 * number)
+    for k in range(0, 6, 3):
+        copy_bytes(pattern[k], pattern[k + 1], pattern[k + 2])
+    x.factorizations += 1
+    return call_int(x.setup, (x.solver[number], x.matrix[number])) == OK
+
+
+@compiled
+def factored(x, c, h, t, y, yp, renewed):
+    """Factor the matrices of a step of length h; their terms are those at (t, y, y') if `renewed`, or the last ones."""
+    s = state_view(x.state)
+    e = equations_view(x.equations)
+    x.h_factored = 0.0
+    if renewed:
+        load(s, e, y, yp)
+        evaluate(s, e.matrix_set, t)
+        x.jacobians += 1
+        if x.acting > 0:
+            _store_slopes(x, s, t)
+    values = floats(s.values[e.matrix_set])
+    a = x.entries
+    add_entries(e, values, c.gamma / h, a)
+    into = _filled(x, 0)
+    total = 0.0
+    for k in range(x.n_slots):
+        into[x.slot[k]] = a[k]
+        total += 0.0 * a[k]
+    if total != 0.0 or not _set_up(x, 0):
+        return False
+    for pair in range(c.pairs):
+        add_entries(e, values, c.alpha[pair] / h, a)
+        into = _filled(x, pair + 1)
+        for k in range(x.n_slots):
+            into[x.re_re[k]] = a[k]
+            into[x.im_im[k]] = a[k]
+        imaginary = c.beta[pair] / h
+        for k in range(x.n_imaginary):
+            into[x.im_re[k]] = 0.0
+            into[x.re_im[k]] = 0.0
+        for k in range(e.n_constant, e.n_entries):
+            if e.m_cj[k] != 0.0:
+                at = x.imaginary_of[e.m_slot[k]]
+                part = values[e.m_source[k]] * e.m_cj[k] * imaginary
+                into[x.im_re[at]] += part
+                into[x.re_im[at]] -= part
+        if not _set_up(x, pair + 1):
+            return False
+    x.h_factored = h
+    x.method_factored = x.method
+    output_correction_view(x.output_correction).current = c.gamma / h
+    return True
+
+
+@compiled
+def solved_real(x):
+    """Solve the real system for the vectors of the table."""
+    call_int(x.solve, (x.solver[0], x.matrix[0], x.at_x, x.at_b, 0.0))
+
+
+@compiled
+def closed(x, t):
+    """Move the state in `x.y_stage` so that joints are closed and forces agree with the stored efforts."""
+    largest = 0.0
+    for k in range(x.n, x.n_all):
+        largest = max(largest, abs(x.y_stage[k]))
+    before = 0.0
+    for count in range(MOST_CLOSINGS):
+        residual(x, t, x.y_stage, x.yp_stage, x.b, x.misfit)
+        apart = 0.0
+        for k in range(x.n_efforts):
+            apart = max(apart, abs(x.misfit[k]))
+        if count > 0:
+            if apart <= CLOSED * x.rtol * largest:
+                return
+            x.closing = apart / before
+        before = max(apart, 1e-300)
+        for k in range(x.n):
+            x.b[k] = 0.0 if x.weight[k] > 0.0 else -x.b[k]
+        for k in range(x.n_levers):
+            x.b[x.lever_unknown[k]] += x.lever[k] * x.misfit[x.lever_effort[k]]
+        solved_real(x)
+        copied(x.d, x.x, x.n)
+        add_efforts(x, x.d, x.misfit)
+        for k in range(x.n_all):
+            x.y_stage[k] += x.d[k]
+        if x.closing * apart <= CLOSED * x.rtol * largest:
+            return
+
+
+@compiled
+def extrapolated(x, c, h):
+    """Fill the stages from the polynomial of the last step, continued; zero after a start."""
+    n = x.n_all
+    if x.h_past == 0.0:
+        for k in range(c.stages * n):
+            x.z[k] = 0.0
+        return
+    p = collocation_view(ints(x.methods[x.method_past]))
+    for i in range(c.stages):
+        place = 1.0 + c.nodes[i] * h / x.h_past
+        z = shifted(x.z, i * n)
+        for k in range(n):
+            z[k] = x.y_past[k] - x.y[k]
+        for j in range(p.stages):
+            factor = basis(p, j, place)
+            past = shifted(x.past, j * n)
+            for k in range(n):
+                z[k] += factor * past[k]
+
+
+@compiled
+def stage_time(x, t):
+    """Return the time of a stage, before the stop time, where laws may change."""
+    return min(t, x.stop - ROUNDINGS * abs(x.stop)) if x.stops else t
+
+
+@compiled
+def _residuals(x, c, t, h):
+    """Compute the residuals of all stages; return True if they are finite."""
+    n = x.n
+    total = 0.0
+    for i in range(c.stages):
+        z = shifted(x.z, i * x.n_all)
+        for k in range(x.n_all):
+            x.y_stage[k] = x.y[k] + z[k]
+        for k in range(n):
+            x.yp_stage[k] = 0.0
+        for j in range(c.stages):
+            factor = c.derivative[i * c.stages + j] / h
+            other = shifted(x.z, j * x.n_all)
+            for k in range(n):
+                x.yp_stage[k] += factor * other[k]
+        r = shifted(x.r, i * n)
+        residual(x, stage_time(x, t + c.nodes[i] * h), x.y_stage, x.yp_stage, r, shifted(x.misfit, i * x.n_efforts))
+        for k in range(n):
+            total += 0.0 * r[k]
+    return total == 0.0
+
+
+@compiled
+def _transformed(x, c, row, target, stride):
+    """Compute row `row` of -T^-1 r, with a stride."""
+    n = x.n
+    for k in range(n):
+        target[stride * k] = 0.0
+    for i in range(c.stages):
+        factor = c.inverse[row * c.stages + i]
+        r = shifted(x.r, i * n)
+        for k in range(n):
+            target[stride * k] -= factor * r[k]
+
+
+@compiled
+def _add_back(x, c, column, source, stride):
+    """Add column `column` of T times a correction to the corrections of the stages, in the place of the residuals."""
+    n = x.n
+    for i in range(c.stages):
+        factor = c.transform[i * c.stages + column]
+        d = shifted(x.d, i * x.n_all)
+        for k in range(n):
+            d[k] += factor * source[stride * k]
+
+
+@compiled
+def _corrected(x, c):
+    """Correct all stages; return the RMS of the corrections in tolerances."""
+    n = x.n
+    for k in range(c.stages * x.n_all):
+        x.d[k] = 0.0
+    _transformed(x, c, 0, x.b, 1)
+    solved_real(x)
+    _add_back(x, c, 0, x.x, 1)
+    for pair in range(c.pairs):
+        for half in range(2):
+            _transformed(x, c, 1 + 2 * pair + half, shifted(x.pair_b, half), 2)
+        call_int(x.solve, (x.solver[pair + 1], x.matrix[pair + 1], x.at_pair_x, x.at_pair_b, 0.0))
+        for half in range(2):
+            _add_back(x, c, 1 + 2 * pair + half, shifted(x.pair_x, half), 2)
+    total = 0.0
+    for i in range(c.stages):
+        d = shifted(x.d, i * x.n_all)
+        z = shifted(x.z, i * x.n_all)
+        if x.acting > 0:
+            add_efforts(x, d, shifted(x.misfit, i * x.n_efforts))
+        for k in range(n):
+            part = d[k] * x.weight[k]
+            total += part * part
+        for k in range(x.n_all):
+            z[k] += d[k]
+    return sqrt(total / (c.stages * x.n_tested))
+
+
+@compiled
+def most_iterations(c):
+    """Return the largest number of iterations."""
+    return MOST_ITERATIONS + 5 * (c.stages - 3) // 2
+
+
+@compiled
+def iterated(x, c, t, h):
+    """Solve the stages of a step; CONVERGED, or a reason with the suggested factor of the step in `x.suggested`."""
+    most = most_iterations(c)
+    contraction = max(x.rate, LEAST_RATE) ** REMEMBERED
+    before = 0.0
+    ratio_before = 0.0
+    x.suggested = x.after_failure
+    x.contraction = 0.0
+    for count in range(1, most + 1):
+        if not _residuals(x, c, t, h):
+            return NOT_FINITE_STAGE
+        size = _corrected(x, c)
+        x.iterations += 1
+        x.iterations_taken = count
+        if not isfinite(size):
+            return NOT_FINITE_STAGE
+        if count > 1:
+            ratio = size / before if before > 0.0 else 0.0
+            x.contraction = ratio if count <= 3 else sqrt(ratio * ratio_before)
+            ratio_before = ratio
+        if count > 2:  # the first correction has the errors of extrapolated multipliers, which are in no norm
+            if not x.contraction < DIVERGING:
+                return DIVERGED
+            left = x.contraction / (1.0 - x.contraction) * size * x.contraction ** (most - 1 - count) / x.newton
+            if left >= 1.0 and count < most:
+                x.suggested = SHORTER * min(MOST_LEFT, left) ** (-1.0 / (3.0 + most - count))
+                return SLOW
+        if count > 1 and x.contraction < DIVERGING:
+            contraction = x.contraction / (1.0 - x.contraction)
+        before = max(size, 1e-300)
+        if contraction * size <= x.newton:
+            x.rate = contraction
+            return CONVERGED
+    return SLOW

@@ -1,0 +1,336 @@
+"""Steps of Radau methods with error control; predictive control of Gustafsson."""
+
+from __future__ import annotations
+
+from math import isfinite, sqrt
+
+from stiffmbs.compile.machine.native.access import compiled, ints, shifted
+from stiffmbs.compile.machine.native.memory import copied
+from stiffmbs.solve.ida.native.error_norm import error_norm_view
+from stiffmbs.solve.ida.native.output_correction import output_correction_view
+from stiffmbs.solve.radau.native.memory import basis, collocation_view
+from stiffmbs.solve.radau.native.newton import (
+    CONVERGED,
+    SLOW,
+    add_efforts,
+    closed,
+    extrapolated,
+    factored,
+    iterated,
+    most_iterations,
+    residual,
+    solved_real,
+    stage_time,
+    store_efforts,
+)
+
+ERROR_TEST_FAILED, NO_CONVERGENCE, NO_FACTORS = -3, -4, -6
+"""Flags of IDA: IDA_ERR_FAIL, IDA_CONV_FAIL, IDA_LSETUP_FAIL."""
+MOST_FAILURES = 50
+SMALLEST = 4e-15
+"""Least step, relative to the time."""
+EXCLUDED = 1e10
+"""Absolute tolerance above which an unknown is in no norm."""
+PART, NEGLIGIBLE, SHORT = 0.01, 1e-5, 1e-6
+"""Relative change of the state in a first step; sizes in tolerances that say nothing; first step without information, s."""
+STRETCHED = 1.01
+"""Factor by which a step may be longer, to end at the stop time."""
+ROUNDING = 1e-10
+"""Least estimated error."""
+FIRST_REJECTED, LEAST_ERROR = 0.1, 1e-2
+"""Factor of the first step after a failed error test, and least error in the predictive control."""
+
+
+@compiled
+def set_weights(x):
+    """Compute the inverse tolerances at the state."""
+    for k in range(x.n):
+        x.weight[k] = 1.0 / (x.rtol * abs(x.y[k]) + x.atol[k]) if x.atol[k] < EXCLUDED else 0.0
+
+
+@compiled
+def _size(x, values):
+    """Return the RMS of a vector in tolerances."""
+    total = 0.0
+    for k in range(x.n):
+        part = values[k] * x.weight[k]
+        total += part * part
+    return sqrt(total / x.n_tested)
+
+
+@compiled
+def _solved_defect(x, t, y):
+    """Compute (gamma/h M - f_y)^-1 (f(t, y) - M y') for y' in `x.yp_stage`; return its size in tolerances."""
+    residual(x, t, y, x.yp_stage, x.b, x.misfit)
+    for k in range(x.n):
+        x.b[k] = -x.b[k]
+    solved_real(x)
+    repeats = error_norm_view(x.error_norm).repeats  # periods of a law among which the tolerance is shared
+    return repeats * _size(x, x.x)
+
+
+@compiled
+def _estimate(x, c, t, h, y):
+    """Compute the error (gamma/h M - f_y)^-1 (f(t, y) + M sum d_i Z_i / h); return its size in tolerances."""
+    for k in range(x.n):
+        x.yp_stage[k] = 0.0
+    for i in range(c.stages):
+        factor = -c.error[i] / h
+        z = shifted(x.z, i * x.n_all)
+        for k in range(x.n):
+            x.yp_stage[k] += factor * z[k]
+    size = _solved_defect(x, t, y)
+    copied(x.error, x.x, x.n)
+    return max(size / c.relaxed, ROUNDING)
+
+
+@compiled
+def _estimate_below(x, c, lower, t, h):
+    """Return the size that the estimate of a method of fewer stages would have, in tolerances.
+
+    Its stages are taken from the polynomial of the accepted step. In (gamma/h M - f_y)^-1, gamma is that of the step.
+    """
+    for k in range(x.n):
+        x.yp_stage[k] = 0.0
+    for i in range(lower.stages):
+        for j in range(c.stages):
+            factor = -lower.error[i] / h * basis(c, j, lower.nodes[i])
+            z = shifted(x.past, j * x.n_all)
+            for k in range(x.n):
+                x.yp_stage[k] += factor * z[k]
+    return _solved_defect(x, t, x.y_past) * c.gamma / lower.gamma
+
+
+@compiled
+def first_step(x, toward):
+    """Return a first step by the rates of the state (Hairer, Norsett, Wanner I, ch. II.4)."""
+    if x.first > 0.0:
+        return x.first
+    of_state = _size(x, x.y)
+    of_rates = _size(x, x.yp)
+    return PART * of_state / of_rates if min(of_state, of_rates) > NEGLIGIBLE else SHORT
+
+
+@compiled
+def _bounded(x, factor):
+    return min(x.largest_factor, max(x.least_factor, factor))
+
+
+@compiled
+def _cost_rate(x, c, h, error, longest):
+    """Return the cost per time of steps of a method that has an error estimate in tolerances in a step of length h."""
+    following = min(h * _bounded(x, x.safety * max(error, ROUNDING) ** (-1.0 / (c.stages + 1.0))), longest)
+    return (c.setup_cost + x.iterations_taken * c.iteration_cost) / following
+
+
+@compiled
+def _choose_method(x, c, longest):
+    """Choose the number of stages with the least cost per time.
+
+    The error of two stages more is extrapolated as that of a geometric sequence.
+    """
+    x.since_change += 1
+    if x.n_methods == 1 or x.since_change < x.stages_after:
+        return
+    x.since_change = 0
+    number = x.method
+    lower = collocation_view(ints(x.below[number]))
+    error = x.error_size * c.relaxed
+    below = max(_estimate_below(x, c, lower, x.t - x.h_past, x.h_past), 1e-300)
+    cost = _cost_rate(x, c, x.h_past, x.error_size, longest)
+    if number > 0 and (
+        x.contraction > x.fewer_stages or _cost_rate(x, lower, x.h_past, below / lower.relaxed, longest) < x.gain * cost
+    ):
+        x.method = number - 1
+    elif number + 1 < x.n_methods and error < below:
+        higher = collocation_view(ints(x.methods[number + 1]))
+        if _cost_rate(x, higher, x.h_past, error * error / below / higher.relaxed, longest) < x.gain * cost:
+            x.method = number + 1
+
+
+@compiled
+def _close_end(x, c, t, h):
+    """Close the state at the end of the step."""
+    last = shifted(x.z, (c.stages - 1) * x.n_all)
+    for k in range(x.n_all):
+        x.y_stage[k] = x.y[k] + last[k]
+    for k in range(x.n):
+        x.yp_stage[k] = 0.0
+    x.closing = 1.0
+    closed(x, stage_time(x, t + h))
+    for k in range(x.n_all):
+        last[k] = x.y_stage[k] - x.y[k]
+
+
+@compiled
+def _accept(x, c, t, h):
+    """Make the end of the step the state; keep its polynomial."""
+    n = x.n
+    copied(x.y_past, x.y, x.n_all)
+    copied(x.past, x.z, c.stages * x.n_all)
+    last = shifted(x.z, (c.stages - 1) * x.n_all)
+    for k in range(x.n_all):
+        x.y[k] += last[k]
+    for k in range(n):
+        x.yp[k] = 0.0
+    for j in range(c.stages):
+        factor = c.derivative[(c.stages - 1) * c.stages + j] / h
+        z = shifted(x.z, j * x.n_all)
+        for k in range(n):
+            x.yp[k] += factor * z[k]
+    x.t = t + h
+    x.h_past = h
+    x.method_past = x.method
+    x.steps += 1
+
+
+@compiled
+def _choose_unknowns(x):
+    """Make the efforts of stiff forces unknowns if the step is long for these forces."""
+    acting = x.n_efforts if x.h > output_correction_view(x.output_correction).long else 0
+    x.newton = x.loosest if acting > 0 else x.part
+    if acting > 0 and (x.acting == 0 or x.h_past == 0.0):
+        x.acting = acting
+        store_efforts(x, x.t)
+        for k in range(x.n, x.n_all):
+            x.y_past[k] = x.y[k]
+        for j in range(collocation_view(ints(x.methods[x.method_past])).stages):
+            z = shifted(x.past, j * x.n_all)
+            for k in range(x.n, x.n_all):
+                z[k] = 0.0
+        x.h_factored = 0.0
+    x.acting = acting
+
+
+@compiled
+def _begun(x, toward):
+    """Prepare a step; return its length without regard to the stop time."""
+    set_weights(x)
+    if x.h == 0.0:
+        x.h = first_step(x, toward)
+        x.rate = 1.0
+    _choose_unknowns(x)
+    x.rejected = 0
+    x.failures = 0
+    x.renewed = 1 if x.h_factored == 0.0 or x.rate_kept == 0 else 0
+    return min(x.h, x.longest) if x.longest > 0.0 else x.h
+
+
+@compiled
+def _has_matrices(x, c, h):
+    """Provide factored matrices for a step of length h; return False if one is singular."""
+    if x.renewed == 0 and h == x.h_factored and x.method == x.method_factored:
+        return True
+    if not factored(x, c, h, x.t, x.y, x.yp, x.renewed):
+        x.renewed = 1
+        return False
+    if x.renewed:
+        x.current = 1
+    x.renewed = 0
+    return True
+
+
+@compiled
+def _after_failed_iteration(x, outcome, h):
+    """Return the length of the next attempt: the same with a new matrix, if the last one was old, or a shorter one."""
+    x.newton_failures += 1
+    x.rate = 1.0
+    if not x.current:
+        x.renewed = 1
+        return h * x.suggested if outcome == SLOW else h
+    x.step_failures += 1
+    x.rejected = 1
+    return h * x.suggested
+
+
+@compiled
+def _error(x, c, h, first):
+    """Return the error of the step in tolerances; a failed estimate is repeated with f at the corrected state."""
+    error = _estimate(x, c, x.t, h, x.y)
+    if error >= 1.0 and (first or x.rejected):
+        copied(x.y_stage, x.error, x.n)
+        add_efforts(x, x.y_stage, x.misfit)
+        for k in range(x.n_all):
+            x.y_stage[k] += x.y[k]
+        error = _estimate(x, c, x.t, h, x.y_stage)
+    return error
+
+
+@compiled
+def _growth(x, c, error):
+    """Return the ratio of the next step to this one by its error."""
+    most = most_iterations(c)
+    margin = min(x.safety, x.safety * (1.0 + 2.0 * most) / (x.iterations_taken + 2.0 * most))
+    return _bounded(x, margin * error ** (-1.0 / (c.stages + 1.0)))
+
+
+@compiled
+def _predicted_growth(x, c, h, error):
+    """Return the same by the errors of two steps (Gustafsson; Hairer, Wanner II, eq. IV.8.25)."""
+    growth = _growth(x, c, error)
+    if x.h_accepted == 0.0:
+        return growth
+    predicted = x.safety * h / x.h_accepted * (x.last_error / (error * error)) ** (1.0 / (c.stages + 1.0))
+    return min(growth, _bounded(x, predicted))
+
+
+@compiled
+def _choose_next(x, c, h, planned, at_stop):
+    """Choose the next step; it stays if that saves new factors, and is not shortened by a stop time."""
+    following = h * _predicted_growth(x, c, h, x.error_size)
+    if x.contraction > 0.0:  # the rate of convergence is proportional to the step
+        following = min(following, h * x.slowest / x.contraction)
+    if x.rejected:
+        following = min(following, h)
+    x.h_accepted = h
+    x.last_error = max(LEAST_ERROR, x.error_size)
+    x.rate_kept = 1 if x.contraction <= x.keep_matrix else 0
+    if x.rate_kept and x.keep_low * h <= following <= x.keep_high * h:
+        following = h
+    x.h = max(following, planned) if at_stop and not x.rejected else following
+
+
+@compiled
+def step(x, toward):
+    """Take one step that passes the error test, not beyond the stop time.
+
+    Returns 0 or a negative flag of IDA.
+    """
+    h = _begun(x, toward)
+    first = x.h_past == 0.0
+    c = collocation_view(ints(x.methods[x.method]))
+    while True:
+        at_stop = x.stops and x.t + STRETCHED * h >= x.stop
+        if at_stop:
+            h = x.stop - x.t
+        if not h > SMALLEST * abs(x.t) or x.failures > MOST_FAILURES:
+            return ERROR_TEST_FAILED if x.rejected else NO_CONVERGENCE
+        x.failures += 1
+        if not _has_matrices(x, c, h):
+            h *= x.after_failure
+            continue
+        extrapolated(x, c, h)
+        outcome = iterated(x, c, x.t, h)
+        if outcome != CONVERGED:
+            h = _after_failed_iteration(x, outcome, h)
+            continue
+        error = _error(x, c, h, first)
+        if not isfinite(error):
+            h *= x.after_failure
+            continue
+        if error < 1.0:
+            break
+        x.rejected = 1
+        x.error_failures += 1
+        h *= FIRST_REJECTED if first and x.failures == 1 else _growth(x, c, error)
+        x.renewed = 1 if not x.current and x.rate_kept == 0 else 0
+    x.error_size = error
+    _choose_next(x, c, h, x.h, at_stop)
+    if x.acting > 0:
+        _close_end(x, c, x.t, h)
+    _accept(x, c, x.t, h)
+    if at_stop:
+        x.t = x.stop
+    x.current = 0
+    _choose_method(x, c, h if at_stop else float("inf"))
+    return 0

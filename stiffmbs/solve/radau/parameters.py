@@ -1,0 +1,57 @@
+"""Parameters of the Radau methods."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class RadauParameters:
+    """Parameters of step size, number of stages and Newton's iteration; after the code RADAU of Hairer and Wanner.
+
+    Attributes
+    ----------
+    tolerance : float
+        Factor c of the tolerance c rtol^((s + 1)/(2 s)) of the error estimate, whose order is s instead of 2 s - 1.
+    safety : float
+        Safety factor of the step size control.
+    least_factor, largest_factor : float
+        Bounds of the ratio of successive steps.
+    keep_matrix : float
+        Convergence rate of Newton's iteration below which the iteration matrix is kept for the next step.
+    keep_low, keep_high : float
+        Ratio of successive steps between which the step and the factors stay unchanged.
+    stages_after : int
+        Steps after which the number of stages is chosen again.
+    gain : float
+        Ratio of costs per time below which another number of stages is chosen.
+    solution_cost : float
+        Cost of the solutions of an iteration, in those of the matrices of a step.
+    fewer_stages : float
+        Convergence rate of Newton's iteration above which the number of stages falls.
+    slowest : float
+        Convergence rate of Newton's iteration that the next step may have.
+    after_failure : float
+        Factor of the step after a failed iteration.
+    loosest : float
+        Largest part of the tolerance that Newton's iteration may leave.
+    """
+
+    tolerance: float = 0.01
+    safety: float = 0.9
+    least_factor: float = 0.125
+    largest_factor: float = 5.0
+    keep_matrix: float = 1e-3
+    keep_low: float = 1.0
+    keep_high: float = 1.2
+    stages_after: int = 4
+    gain: float = 0.8
+    solution_cost: float = 0.1
+    fewer_stages: float = 0.8
+    slowest: float = 0.3
+    after_failure: float = 0.5
+    loosest: float = 0.03
+
+
+RADAU = RadauParameters()
+"""Parameters of every run."""

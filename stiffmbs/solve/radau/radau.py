@@ -1,0 +1,101 @@
+"""Radau IIA methods of 3, 5 and 7 stages: L-stable, of orders 5, 9 and 13, with error control."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ...compile.equations import Equations
+from ...dynamics.dynamics import Dynamics
+from ...dynamics.initial import InitialValues
+from ...model.settings import RunSettings
+from ..bdf import integrated, refuse_untested_reactions
+from ..cost import ImplicitCost
+from ..error_control.error_test import ErrorControl
+from ..formulations import READ_BY_FORMULATIONS
+from ..ida.choice import chosen, natural
+from ..ida.engine import Engine
+from ..ida.native_engine import NativeEngine
+from ..integrator import Integrator
+from ..solver import Traits
+from ..trajectory import Grid, ProgressCallback, Trajectory
+from .memory import Radau
+from .parameters import RADAU
+
+READ = ("formulation", "rtol", "atol", "max_step", "stages")
+"""Settings that the solver reads."""
+CONTROL = ErrorControl(margin=1.0)
+ITERATIONS, START_STEPS = 3, 4
+"""Average number of Newton iterations in a step; small steps after a start."""
+
+
+def traits(settings: RunSettings) -> Traits:
+    """Return the traits of Radau methods with a formulation, which may read further settings."""
+    of_formulation = READ_BY_FORMULATIONS.get(settings.formulation, ())
+    return Traits("radau", (*READ, *of_formulation), implicit=True)
+
+
+def solve(
+    dynamics: Dynamics, start: InitialValues, grid: Grid, settings: RunSettings, watch: ProgressCallback
+) -> Trajectory:
+    """Integrate by Radau IIA methods; the contract is in `stiffmbs.solve.trajectory`.
+
+    Raises
+    ------
+    InputError
+        When the formulation does not test velocities and forces depend on reactions.
+    """
+    refuse_untested_reactions(dynamics.system, settings)
+    dynamics.forget_pivots()
+    return integrated(radau_integrator(dynamics, settings), start, grid, watch)
+
+
+def radau_integrator(dynamics: Dynamics, settings: RunSettings) -> Integrator:
+    """Return the integrator of a system, which may be reused."""
+    return Integrator(dynamics, settings, CONTROL, memory="radau", driver=driven_by_radau)
+
+
+def of_radau(cost: ImplicitCost) -> ImplicitCost:
+    """Return the cost of steps of five stages, with a real and two complex matrices."""
+    return replace(cost, step_residuals=5 * ITERATIONS, step_matrices=3, start_steps=START_STEPS)
+
+
+def driven_by_radau(
+    dynamics: Dynamics, settings: RunSettings, control: ErrorControl
+) -> tuple[Equations, Engine, float]:
+    """Return the equations, their driver and the mean cost of a real and two complex linear systems, ns."""
+    equations, matrix, cost = chosen(natural(dynamics, settings))
+    stages = None if settings.stages == "auto" else settings.stages
+    of_steps = ImplicitCost.of(dynamics, 1e-3 * cost)
+    formula = Radau(equations, matrix, dynamics.state, stages, of_steps, RADAU)
+    engine = NativeEngine(equations, dynamics, matrix, settings, control, formula, Unlimited())
+    return equations, engine, cost * (1 + 2 * formula.pair_cost) / 3
+
+
+class Unlimited:
+    """Order without a limit (`stiffmbs.solve.ida.native_engine.OrderLimit`)."""
+
+    order, held = 5, False
+
+    def forget(self) -> None:
+        """Do nothing."""
+
+    def begin(self, t: float, steps: int, fastest: float) -> None:
+        """Do nothing."""
+
+    def due(self, steps: int) -> bool:
+        """Return False: no check is ever due."""
+        return False
+
+    def wait(self, steps: int) -> int:
+        """Return a number of steps beyond any call."""
+        return 2**31
+
+    def changed(self, samples: np.ndarray, steps: int) -> bool:
+        """Return False."""
+        return False
+
+    def note(self, steps: int) -> str:
+        """Return an empty sentence."""
+        return ""

@@ -1,0 +1,1 @@
+"""Elimination orders, dense blocks and factors of sparse matrices."""

@@ -1,0 +1,158 @@
+"""Fill-reducing elimination order of a block system's unknowns, with its cost, and memory for its factors."""
+
+from __future__ import annotations
+
+import heapq
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..compile.equations import ABSENT, Equations
+from .eliminated_bodies import EliminatedBodies
+
+
+class EliminationOrder(NamedTuple):
+    """Elimination order with little fill-in.
+
+    Attributes
+    ----------
+    unknowns : ndarray of int, shape (n,)
+    fill : int
+        Entries of each triangle with pivots on the diagonal and full blocks of bodies and joints.
+    updates : int
+        Multiplications of the elimination under the same conditions.
+    """
+
+    unknowns: np.ndarray
+    fill: int
+    updates: int
+
+
+def elimination_order(equations: Equations) -> EliminationOrder:
+    """Return a minimum degree order of whole bodies and joints.
+
+    The diagonal block of a joint is zero, or nearly zero with relaxed rows, until bodies of the joint are eliminated.
+    A joint waits until its block is regular in every pose (`stiffmbs.sparse.eliminated_bodies`).  Pivots then
+    stay on the diagonal and the fill-in is as estimated, for trees and loops.
+
+    References
+    ----------
+    George and Liu, The evolution of the minimum degree ordering algorithm, SIAM Review 31 (1989) 1-19.
+    """
+    n_bodies, owner = _owners(equations)
+    present = [at[at != ABSENT] for at in reversed(equations.at.values())]  # u before q of a body
+    natural = np.concatenate([np.empty(0, dtype=np.int64), *present])
+    by_owner = natural[np.argsort(owner[natural], kind="stable")]
+    sizes = np.bincount(owner, minlength=n_bodies + len(equations.system.joint_start) - 1)
+    starts = np.concatenate([[0], np.cumsum(sizes)]).tolist()
+    size = sizes.tolist()
+    neighbours: list[set[int]] = [set() for _ in size]
+    rows, columns = equations.pattern
+    pairs = np.sort(owner[rows] * len(size) + owner[columns])
+    for both in pairs[np.diff(pairs, prepend=-1) > 0].tolist():
+        a, b = divmod(both, len(size))
+        if a != b:
+            neighbours[a].add(b)
+            neighbours[b].add(a)
+    order, fill, updates = [], 0, 0
+    for node, around in _least_degree(neighbours, _counted(equations, owner, len(size)), n_bodies):
+        order.append(by_owner[starts[node] : starts[node + 1]])
+        height = size[node] + sum(size[other] for other in around)
+        fill += size[node] * height
+        updates += size[node] * height * height
+    return EliminationOrder(np.concatenate([np.empty(0, dtype=np.int64), *order]), fill, updates)
+
+
+def factors_of(n: int, rows: np.ndarray, columns: np.ndarray, order: EliminationOrder) -> dict[str, Any]:
+    """Return the contents of the layout `stiffmbs.compile.machine.native.tables.FACTORS`.
+
+    Parameters
+    ----------
+    n : int
+        Number of unknowns.
+    rows, columns : ndarrays of int
+        Entries, by columns.
+    order : EliminationOrder
+        Elimination order of the columns, with its fill-in.
+    """
+    return {
+        "n": n, "expected_entries": order.fill + n,
+        "a_start": np.searchsorted(columns, np.arange(n + 1)).astype(np.int64, copy=False),
+        "a_row": np.ascontiguousarray(rows, dtype=np.int64), "a": np.zeros(len(rows)), "factored": np.zeros(len(rows)), "scale": np.ones(n), "order": order.unknowns,
+        **{name: np.zeros(size, dtype=np.int64) for name, size in (("l_start", n + 1), ("u_start", n + 1), ("pivot", n), ("stack", 4 * n))},
+        **{name: np.zeros(n) for name in ("work", "b", "previous", "x")},
+    }  # fmt: skip
+
+
+def nodes_in_order(equations: Equations, order: EliminationOrder) -> list[np.ndarray]:
+    """Return the unknowns of each body's coordinates, of its velocities and of each joint, in the order of elimination.
+
+    The diagonal block of coordinates is close to cj times the identity for any forces.  After its elimination, that of
+    velocities contains masses, dampers and springs.
+    """
+    _, owner = _owners(equations)
+    place = np.full(equations.n, -1)
+    kinds = [name for name in ("q", "u", "mu", "lam") if name in equations.at]
+    part = np.zeros(equations.n, dtype=np.int64)
+    for k, name in enumerate(kinds):
+        at = equations.at[name]
+        part[at[at != ABSENT]] = k
+    place[order.unknowns] = np.arange(equations.n)
+    first = np.full(int(owner.max(initial=-1)) + 1, equations.n)
+    np.minimum.at(first, owner, place)
+    node = 2 * first[owner] + (part == kinds.index("u") if "u" in kinds else 0)
+    sequence = np.lexsort((np.arange(equations.n), part, node))
+    return np.split(sequence, np.flatnonzero(np.diff(node[sequence])) + 1)
+
+
+def _owners(equations: Equations) -> tuple[int, np.ndarray]:
+    """Return the number of bodies, and the body of each unknown or the number of bodies plus its joint."""
+    system = equations.system
+    n_bodies = len(system.bodies)
+    width = {"q": system.of_body.n_q, "x": system.of_body.n_q, "u": system.of_body.n_u}
+    owner = np.zeros(equations.n, dtype=np.int64)
+    joint = n_bodies + np.repeat(np.arange(len(system.joint_start) - 1), np.diff(system.joint_start))
+    for name, at in equations.at.items():
+        owners = np.minimum(np.arange(len(at)) // width[name], n_bodies - 1) if name in width else joint
+        owner[at[at != ABSENT]] = owners[at != ABSENT]
+    return n_bodies, owner
+
+
+def _counted(equations: Equations, owner: np.ndarray, n_owners: int) -> list[int]:
+    """Return the number of velocities of each body and of equations of each joint, on one level."""
+    at = equations.at
+    level = [at["u"] if "u" in at else at["q"], at["lam"] if "lam" in at else at["mu"]]
+    unknowns = np.concatenate(level)
+    counted: list[int] = np.bincount(owner[unknowns[unknowns != ABSENT]], minlength=n_owners).tolist()
+    return counted
+
+
+def _least_degree(neighbours: list[set[int]], counted: list[int], n_bodies: int) -> Iterator[tuple[int, set[int]]]:
+    """Yield nodes in minimum degree order, bodies before joints, with the neighbours that each has then.
+
+    `counted` holds the velocities of bodies and the equations of joints.  A waiting joint is checked after the
+    elimination of each neighbour.
+    """
+    bodies_of = [sorted(k for k in around if k < n_bodies) for around in neighbours[n_bodies:]]
+    bodies = EliminatedBodies(bodies_of, counted[:n_bodies], counted[n_bodies:])
+    queue = [(len(neighbours[node]), node) for node in range(n_bodies)]
+    heapq.heapify(queue)
+    gone = [False] * len(neighbours)
+    while queue:
+        degree, node = heapq.heappop(queue)
+        if gone[node] or degree != len(neighbours[node]):
+            continue
+        if node < n_bodies:
+            bodies.eliminate(node)
+        elif not bodies.eliminated_joint(node - n_bodies):
+            continue
+        gone[node] = True
+        around = neighbours[node]
+        yield node, around
+        for other in around:
+            neighbours[other] |= around
+            neighbours[other] -= {node, other}
+        for other in around:
+            heapq.heappush(queue, (len(neighbours[other]), other))
+    yield from ((node, set()) for node, done in enumerate(gone) if not done)

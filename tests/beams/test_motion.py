@@ -1,0 +1,178 @@
+"""Beams in motion: converged values from independent methods, conservation laws, and all solvers."""
+
+import math
+
+import numpy as np
+import pytest
+
+import stiffmbs
+
+from .scenes import cantilever, flying, flying_in_space, pendulum, right_angle, spin_up
+
+
+def solved(text, **changes):
+    solution = stiffmbs.run(stiffmbs.read_scene(text) if isinstance(text, str) else text, **changes)
+    assert solution.outcome.name == "DONE", solution.message
+    return solution
+
+
+def at(solution, *channels, row=-1):
+    return np.array([solution[channel][row] for channel in channels])
+
+
+@pytest.mark.parametrize("solver", ["bdf", "radau", "projected"])
+def test_every_solver_follows_a_rubber_pendulum(solver):
+    found = solved(pendulum(16), solver=solver)
+    assert at(found, "rod.end.x", "rod.end.y") == pytest.approx([0.4365326, -0.8979798], abs=2e-4)
+    energy = found["energy.total"]
+    assert np.ptp(energy) < 1e-5 * np.max(np.abs(found["energy.kinetic"]))
+
+
+@pytest.mark.long
+def test_the_error_of_a_pendulum_in_space_is_of_fourth_order():
+    expected = np.array([0.1955840, 0.4683335, -0.8644481])
+    errors = [
+        np.max(np.abs(at(solved(pendulum(n, 3), solver="radau"), "rod.end.x", "rod.end.y", "rod.end.z") - expected))
+        for n in (8, 16)
+    ]
+    assert errors[1] < 1e-4 and math.log2(errors[0] / errors[1]) > 3
+
+
+@pytest.mark.long
+def test_a_spinning_beam_stiffens():
+    """Largest lag of the tip in the hub's frame 0.5738; a linear beam in a moving frame diverges."""
+    found = solved(spin_up(8))
+    rows = (3, 5, 8)
+    assert [found["lag"][row] for row in rows] == pytest.approx([-0.2172674, -0.4684762, -0.5428415], abs=1.5e-4)
+
+
+def test_momentum_and_energy_of_a_flying_beam_are_kept():
+    found = solved(flying(8, 5.0), points=101)
+    free = found.t > 2.51
+    energy = found["energy.total"][free]
+    assert np.ptp(energy) < 1e-6 * energy[0]
+    mass = nodes_of(found, "rod", 8)
+    momentum = sum(m * np.array([found[f"rod.{node}.vx"], found[f"rod.{node}.vy"]]) for node, m in mass.items())
+    assert np.ptp(momentum[:, free], axis=1) == pytest.approx(0, abs=1e-9)
+    assert momentum[:, -1] == pytest.approx([8 * 2.5, 0], abs=1e-6)
+
+
+def nodes_of(solution, name, n, length=10.0, mass_per_length=1.0):
+    from stiffmbs.model.beams.stiffness import node_weights
+
+    names = ["start", *(f"node{k}" for k in range(1, n)), "end"]
+    return dict(zip(names, node_weights(n) * length / n * mass_per_length, strict=True))
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(
+    ("text", "channels", "expected", "tolerance"),
+    [
+        (flying_in_space, ("rod.start.x", "rod.start.y", "rod.start.z"), (19.213600, 1.625556, -2.127248), 1e-3),
+        (right_angle, ("frame.elbow.z", "frame.end.z"), (4.642067, 3.508934), 1e-3),
+    ],
+)  # fmt: skip
+def test_thick_beams_are_of_second_order(text, channels, expected, tolerance):
+    """Their large rotary inertia is lumped; Richardson extrapolation removes most of the error."""
+    coarse, fine = (at(solved(text(n)), *channels) for n in (16, 32))
+    assert np.max(np.abs(fine - expected)) < 4e-3
+    assert np.max(np.abs(fine + (fine - coarse) / 3 - expected)) < tolerance
+
+
+@pytest.mark.long
+def test_flying_spaghetti_in_the_plane():
+    """The load starts with a jump, so waves of the length of an element are excited and limit the order to 1.5."""
+    channels, expected = (
+        ("rod.start.x", "rod.start.y", "rod.end.x", "rod.end.y"),
+        (4.4300259, -0.7851762, 5.9452208, 8.9706652),
+    )
+    errors = [np.max(np.abs(at(solved(flying(n)), *channels) - expected)) for n in (8, 32)]
+    assert errors[1] < 2e-3 and errors[0] / errors[1] > 8
+
+
+def test_whirl_of_a_shaft_with_a_disc():
+    """Timoshenko shaft with rotary and gyroscopic inertia at 200 rad/s, from a p-version finite element model."""
+    spin = 200
+    scene = stiffmbs.read_scene(f"""
+dimensions: 3
+bodies:
+  shaft:
+    type: beam
+    start: [0, 0, 0]
+    end: [1, 0, 0]
+    elements: 24
+    stations: {{seat: 1/3}}
+    section: {{type: circle, diameter: 30 mm}}
+    material: {{E: 2.1e11, nu: 0.3, density: 7850}}
+    omega: [{spin}, 0, 0]
+  disc: {{mass: 10, inertia: [0.1125, 0.05625, 0.05625], position: [1/3, 0, 0], omega: [{spin}, 0, 0]}}
+joints:
+  seat: {{type: fixed, i: disc, j: shaft.seat}}
+  left: {{type: spherical, i: shaft.start, j: ground}}
+  right: {{type: point_on_line, i: shaft.end, j: {{body: ground, orientation: {{z: [1, 0, 0]}}}}}}
+""")
+    found = sorted(mode.frequency * math.tau for mode in stiffmbs.modes(scene).modes)[1:5]
+    assert found == pytest.approx([191.83284, 196.15700, 953.53732, 1080.93587], rel=1e-4)
+
+
+def test_damping_is_that_of_the_stiffness():
+    """The damping ratio of a mode is half its angular frequency times the damping time."""
+    undamped = cantilever(6, stiffness="[1e6, 1e6, 1]")
+    damped = undamped.replace("elements: 6", "elements: 6, damping: 1 ms")
+    modes = [stiffmbs.modes(stiffmbs.read_scene(text)).modes[:3] for text in (undamped, damped)]
+    for free, mode in zip(*modes, strict=True):
+        assert mode.damping_ratio == pytest.approx(math.tau * free.frequency * 1e-3 / 2, rel=1e-6)
+
+
+def test_a_beam_moves_as_a_rigid_body_without_strain():
+    """A straight beam that turns about its centre of mass in space, with the stretch of its spin."""
+    found = solved("""
+dimensions: 3
+bodies:
+  bar:
+    type: beam
+    start: [-1, 0, 0]
+    end: [1, 0, 0]
+    elements: 4
+    stiffness: [1e9, 1e9, 1e9, 1e6, 1e6, 1e6]
+    mass_per_length: 1
+    inertia_per_length: [2e-3, 1e-3, 1e-3]
+    velocity: [0, -2, 0.5]
+    omega: [0, 0, 2]
+run: {duration: 1 s, points: 3, rtol: 1e-8, solver: radau}
+""")
+    angle = 2.0
+    assert at(found, "bar.end.x", "bar.end.y", "bar.end.z") == pytest.approx(
+        [math.cos(angle), math.sin(angle), 0.5], abs=1e-6
+    )
+
+
+def test_an_element_that_is_bent_too_far_stops_the_run():
+    text = (
+        cantilever(2, torque=0.0)
+        .replace("torque: 0.0", 'torque: "30*t"')
+        .replace("elements: 2", "elements: 2, damping: 0.1")
+    )
+    found = stiffmbs.run(stiffmbs.read_scene(text), duration=1.0, solver="radau")
+    assert found.outcome.name == "STOPPED" and "divide the beam into more elements" in found.message
+    assert "turns its ends by more than half a turn" in found.notes[0]
+
+
+def test_sensitivities_with_respect_to_stiffness_and_length():
+    text = """
+parameters: {E: 5 MPa, L: 1 m}
+gravity: [0, -2]
+bodies:
+  s: {type: beam, start: [0, 0], end: [L, 0], elements: 4, section: {type: circle, diameter: 20 mm},
+      material: {E: E, density: 1100 kg/m^3}, damping: 10 ms}
+joints: {c: {type: fixed, i: s.start, j: ground}}
+run: {duration: 0.2, rtol: 1e-9}
+"""
+    scene = stiffmbs.read_scene(text)
+    found = stiffmbs.sensitivities(scene, to=["E", "L"], of="final(s.end.y)")
+    for name, value in (("E", 5e6), ("L", 1.0)):
+        ends = []
+        for factor in (1 - 1e-4, 1 + 1e-4):
+            changed = stiffmbs.read_scene(text, [(name, value * factor)])
+            ends.append(solved(changed, rtol=1e-10)["s.end.y"][-1])
+        assert found.to[name] == pytest.approx((ends[1] - ends[0]) / (2e-4 * value), rel=1e-3)

@@ -1,0 +1,1 @@
+"""Comparisons of solvers with each other."""

@@ -1,1 +1,0 @@
-"""Static equilibria and steady motions: their derivatives, and what their search needs."""

@@ -1,0 +1,129 @@
+"""Radau methods: their orders, motion against closed forms and other integrators, and work that stiffness does not change."""
+
+import numpy as np
+import pytest
+
+import stiffmbs
+from stiffmbs import Body, Drive, Model, Prismatic, Revolute, SpringDamper, spatial
+from tests.stress.families.stiffness.stiffness import bar_on_bushing
+from tests.stress.mechanisms.pendulum import bar_rate, swing
+
+STAGES = pytest.mark.parametrize("stages", [3, 5, 7])
+
+
+def oscillator(frequency=2 * np.pi, **fields):
+    model = Model()
+    model.add("mass", Body(mass=1, inertia=1, position=(0.3, 0)))
+    model.add("rail", Prismatic(i="mass", j="ground"))
+    model.add(
+        "spring",
+        SpringDamper(
+            i="mass", j=stiffmbs.Marker(body="ground", point=(-2, 0)), stiffness=frequency**2, free_length=2, **fields
+        ),
+    )
+    return model  # fmt: skip
+
+
+@pytest.mark.parametrize(("stages", "steps"), [(3, 40), (5, 10), (7, 6)])
+def test_errors_fall_with_the_order_of_the_method(stages, steps):
+    """Steps of a given length over four periods; order 2 s - 1 at their ends."""
+    errors = []
+    for count in (steps, 2 * steps):
+        settings = {"max_step": 2.0 / count, "rtol": 0.1, "atol": 1e3, "points": 2}
+        end = stiffmbs.run(oscillator(), duration=2.0, solver="radau", stages=stages, **settings)
+        errors.append(np.hypot(end["mass.x"][-1] - 0.3, end["mass.vx"][-1] / (2 * np.pi)))
+    assert np.log2(errors[0] / errors[1]) == pytest.approx(2 * stages - 1, abs=1.0)
+
+
+@STAGES
+@pytest.mark.parametrize("rtol", [1e-4, 1e-7, 1e-10])
+def test_errors_at_all_output_times_follow_the_tolerance(stages, rtol):
+    found = stiffmbs.run(oscillator(), duration=3.0, points=200, solver="radau", stages=stages, rtol=rtol)
+    np.testing.assert_allclose(found["mass.x"], 0.3 * np.cos(2 * np.pi * found.t), atol=3 * rtol)
+    np.testing.assert_allclose(found["mass.vx"], -0.6 * np.pi * np.sin(2 * np.pi * found.t), atol=20 * rtol)
+
+
+@pytest.mark.parametrize("stiffness", [1e6, 1e9, 1e12])
+def test_steps_and_forces_do_not_depend_on_the_stiffness(stiffness):
+    """A bar that swings on a bushing, against a hinge, once the ringing of the start is over."""
+    found = stiffmbs.run(bar_on_bushing(stiffness), duration=2.0, points=201, rtol=1e-6, solver="radau")
+    phi = swing(found.t, np.pi / 2, bar_rate(1.0))
+    force = 9.81 * (2.5 * np.cos(phi) ** 2 + 0.25 * np.sin(phi) ** 2)
+    late = slice(len(phi) // 4, None)
+    softness = 1e6 / stiffness
+    np.testing.assert_allclose(found["bearing.fy"][late], force[late], atol=9.81 * (1e-3 + 0.1 * softness))
+    assert found.solver["steps"] < 300
+
+
+@pytest.mark.parametrize("k_b", ["1e7 N/m", "1e11 N/m"])
+def test_a_stiff_car_over_a_bump(examples, k_b):
+    scene = stiffmbs.load_scene(examples / "half_car.yaml", [("k_b", k_b)])
+    exact = stiffmbs.run(scene, rtol=1e-10, solver="bdf")
+    found = stiffmbs.run(scene, rtol=1e-6, solver="radau")
+    np.testing.assert_allclose(found["chassis.y"], exact["chassis.y"], atol=1e-6)
+    largest = np.abs(exact["front_bushing.fy"]).max()
+    np.testing.assert_allclose(found["front_bushing.fy"], exact["front_bushing.fy"], atol=2e-3 * largest)
+    assert found.solver["steps"] < 150
+
+
+@pytest.mark.parametrize("formulation", ["SI2", "SI2_exact", "SI1", "I3", "index1"])
+def test_formulations_give_one_motion(examples, formulation):
+    scene = stiffmbs.load_scene(examples / "cart_pendulum.yaml")
+    exact = stiffmbs.run(scene, rtol=1e-11, duration=2.0, solver="projected")
+    found = stiffmbs.run(scene, rtol=1e-7, duration=2.0, solver="radau", formulation=formulation)
+    np.testing.assert_allclose(found["bar.angle"], exact["bar.angle"], atol=1e-5)
+
+
+def test_a_spinning_top_in_space():
+    model = spatial.Model("top", gravity=(0, 0, -9.81))
+    tilted = {"euler": "zxz", "angles": [0, 0.6, 0]}
+    body = {"mass": 1, "inertia": (0.06, 0.06, 0.04), "center_of_mass": (0, 0, 0.2), "orientation": tilted}
+    model.add("top", spatial.Body(**body, omega=(0, 0, 20)))
+    model.add("tip", spatial.Spherical(i="top", j="ground"))
+    exact = stiffmbs.run(model, duration=2.0, points=101, solver="projected", rtol=1e-12)
+    found = stiffmbs.run(model, duration=2.0, points=101, solver="radau", rtol=1e-8)
+    for axis in "xyz":
+        np.testing.assert_allclose(found[f"top.{axis}"], exact[f"top.{axis}"], atol=1e-7)
+
+
+@STAGES
+def test_events_are_located_at_the_requested_tolerance(stages):
+    """x'' = -5 sign(x) from x = 0 at 1 m/s: parabolas of 0.4 s; a step over a jump may not count as smooth."""
+    model = Model()
+    model.add("block", Body(mass=1, inertia=1, velocity=(1, 0)))
+    model.add("rail", Prismatic(i="block", j="ground"))
+    model.add("push", stiffmbs.AppliedForce(i="block", force=("-5*sign(block.x)", 0)))
+    found = stiffmbs.run(model, duration=2.0, rtol=1e-9, solver="radau", stages=stages)
+    t = np.mod(found.t, 0.8)
+    expected = np.where(t < 0.4, t - 2.5 * t**2, -(t - 0.4) + 2.5 * (t - 0.4) ** 2)
+    np.testing.assert_allclose(found["block.x"], expected, atol=1e-7)
+    assert found.solver["events"] in (4, 5)
+
+
+def test_a_breakpoint_belongs_to_the_time_before_it():
+    """The velocity of |t - 0.5| jumps at a stop; the step before it must not take the law after it."""
+    model = Model()
+    model.add("sled", Body(mass=1, inertia=1, position=(0.5, 0)))
+    model.add("rail", Prismatic(i="sled", j="ground"))
+    model.add("motor", Drive(joint="rail", position="abs(t - 0.5)"))
+    found = stiffmbs.run(model, duration=1.0, points=11, solver="radau")
+    assert any("t = 0.5" in note and "sled.vx by 2" in note for note in found.notes)
+
+
+def test_a_soft_spring_that_turns_fast_is_no_unknown():
+    """A spring of no length through the origin: linear in coordinates, but not in its length."""
+    model = spatial.Model()
+    model.add("ball", spatial.Body(mass=2, inertia=(1, 1, 1), position=(0.3, 0, 0), velocity=(0.0, 0.02, 0.01)))
+    model.add("spring", spatial.SpringDamper(i="ball", j="ground", stiffness=50))
+    found = stiffmbs.run(model, duration=10.0, points=101, solver="radau", rtol=1e-8)
+    np.testing.assert_allclose(found["ball.x"], 0.3 * np.cos(5 * found.t), atol=1e-7)
+    assert found.solver["newton_failures"] < 0.1 * found.solver["steps"]
+
+
+def test_a_pendulum_through_many_turns_keeps_its_energy():
+    model = Model(gravity=(0, -9.81))
+    model.add("bar", Body(mass=1, inertia=0.1, position=(0.5, 0)))
+    model.add("pin", Revolute(i=stiffmbs.Marker(body="bar", point=(-0.5, 0)), j="ground"))
+    found = stiffmbs.run(model, duration=20.0, solver="radau", rtol=1e-9)
+    assert found.energy_drift() < 1e-6
+    assert found.solver["steps"] < 1000
