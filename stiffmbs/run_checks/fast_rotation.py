@@ -8,7 +8,7 @@ import numpy as np
 
 from ..compile.system import System
 from ..dynamics.dynamics import OutputRows
-from ..elements.spatial.flexible.native.sums import BODY, MODE, MODES, OF_MODE
+from ..elements.spatial.flexible.layout import BODY, MODE, MODES, OF_MODE
 
 FAST = 0.03
 """Angular velocity, relative to the lowest natural frequency of the free body, from which a note appears. A slender

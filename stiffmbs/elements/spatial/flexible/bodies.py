@@ -22,7 +22,7 @@ class FloatingFrame(Body):
     Attributes
     ----------
     numbers : object with an ndarray `array`
-        Numbers of the body's inertia and elasticity (`stiffmbs.elements.spatial.flexible.native.sums`), with zero
+        Numbers of the body's inertia and elasticity (`stiffmbs.compile.machine.native.flexible.sums`), with zero
         gravity.
     modes : tuple of str
         Bodies with its modal coordinates.

@@ -8,7 +8,9 @@ from typing import Any, ClassVar
 from ....reading.marker import MarkerReference
 from ...element import CompiledTerms, Force
 from .bodies import FloatingFrame
-from .native.sums import BODY
+from .layout import BODY
+
+NATIVE = "stiffmbs.compile.machine.native"
 
 KERNELS = {
     "inertia": ("add_forces", "add_inertia", "kinetic_energy", "potential_energy", "dissipated_power"),
@@ -69,8 +71,8 @@ def _source(n: int, n_bodies: int, patterns: Mapping[str, Any], places: Mapping[
     }
     return "\n".join(
         [
-            "from stiffmbs.compile.machine.native.access import shifted",
-            *(f"from {__package__}.native.{module} import {', '.join(names)}" for module, names in KERNELS.items()),
+            f"from {NATIVE}.access import shifted",
+            *(f"from {NATIVE}.flexible.{module} import {', '.join(names)}" for module, names in KERNELS.items()),
             "",
             "",
             "def kernel(count, index, number, t, q, turn, u, a, lam, mu, place, value):",

@@ -1,4 +1,4 @@
-"""Derivatives of the forces and of inertia of a flexible body (`stiffmbs.elements.spatial.flexible.native.inertia`).
+"""Derivatives of the forces and of inertia of a flexible body (`stiffmbs.compile.machine.native.flexible.inertia`).
 
 Matrices are by rows: three of the frame's position, three of its rotation, and the modes. Derivatives by the pose have
 4 + n columns, the quaternion and the modes; those by velocities 3 + n, the angular velocity and modal velocities.
@@ -7,7 +7,7 @@ Matrices are by rows: three of the frame's position, three of its rotation, and 
 from __future__ import annotations
 
 from stiffmbs.compile.machine.native.access import compiled, room, shifted
-from stiffmbs.elements.spatial.flexible.native.sums import (
+from stiffmbs.compile.machine.native.flexible.sums import (
     axial,
     body_view,
     centrifugal,

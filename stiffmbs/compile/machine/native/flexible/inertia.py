@@ -1,9 +1,9 @@
-"""Forces, mass matrix and energies of a flexible body in a floating frame (`stiffmbs.elements.spatial.flexible.native.sums`)."""
+"""Forces, mass matrix and energies of a flexible body in a floating frame (`stiffmbs.compile.machine.native.flexible.sums`)."""
 
 from __future__ import annotations
 
 from stiffmbs.compile.machine.native.access import compiled, room, shifted
-from stiffmbs.elements.spatial.flexible.native.sums import (
+from stiffmbs.compile.machine.native.flexible.sums import (
     axial,
     body_view,
     centrifugal,

@@ -5,19 +5,14 @@ matrix, contracted beforehand: d0 = sum m x, X = sum m x x^T, S_k = sum m psi_k,
 Z_lk = sum m psi_l psi_k^T (Zwoelfer & Gerstmayr, Multibody System Dynamics 51, 2021). Each is less the part of the
 rigid frame and of the unit modal masses, which the diagonal of the mass matrix contains.
 
-The numbers of a body are those of `BODY`, of `MODE` for each mode, and Z_lk by l and k. Vectors are in body axes, apart
+The layout of the numbers of a body is in `stiffmbs.elements.spatial.flexible.layout`. Vectors are in body axes, apart
 from gravity. Matrices have nine entries by rows.
 """
 
 from __future__ import annotations
 
 from stiffmbs.compile.machine.native.access import compiled, parts_of, room, shifted
-
-BODY = {"gravity": 3, "d0": 3, "X": 9, "moments": 3, "modal_mass": 1}
-MODE = {"stiffness": 1, "damping": 1, "S": 3, "Y": 9}
-"""Names and lengths of consecutive numbers."""
-MODES, OF_MODE = sum(BODY.values()), sum(MODE.values())
-"""Number of the first mode, and numbers of each."""
+from stiffmbs.elements.spatial.flexible.layout import BODY, MODE, MODES, OF_MODE
 
 body_view = parts_of("FlexibleBody", BODY)
 mode_view = parts_of("FlexibleMode", MODE)
