@@ -132,7 +132,7 @@ def _made_scene(
     found, chosen, changes = _chosen(unshared(found), changes, source)
     parts = found.get("parts")
     found, changes = placed_in_use(found, changes)
-    refuse_unused_parameters(found, changes, Scene.model_fields)
+    refuse_unused_parameters(found, changes, (*Scene.model_fields, "vehicle"))
     replaced = replaced_parameters(found, changes)
     names = {section: tuple(part) if isinstance(part := found.get(section), dict) else () for section in OF_ENTRIES}
     in_parts, own = [], []
@@ -254,6 +254,7 @@ def _validated(
         context["roads"] = read_roads(raw.get("roads"), context)
         raw = _with_flexible_bodies(raw, context)
         raw, context = with_parts(raw, _family(raw), context, in_parts)
+        raw = _with_vehicle(raw, context)
     except InputError as error:
         raise _Located(str(error), tuple(str(error).split(":")[0].split("."))) from None
     raw["parameters"] = {name: parameter.value for name, parameter in parameters.items()}
@@ -282,6 +283,15 @@ def _with_flexible_bodies(raw: dict[str, Any], context: Mapping[str, Any]) -> di
     from .flexible import with_flexible_bodies
 
     return with_flexible_bodies(raw, context)
+
+
+def _with_vehicle(raw: dict[str, Any], context: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a scene with the channels of its vehicle; their module is imported only for spatial scenes with one."""
+    if raw.get("vehicle") is None or raw.get("dimensions") != 3:
+        return raw
+    from .vehicle import with_vehicle
+
+    return with_vehicle(raw, context)
 
 
 def _family(raw: dict[str, Any]) -> type[Scene]:

@@ -11,6 +11,7 @@ from ..elements.requests.output import Output
 from ..elements.requests.output_field import output_field
 from .scene import Scene
 from .spatial_model import SpatialData
+from .vehicle import Vehicle
 
 
 class SpatialScene(SpatialData, Scene):
@@ -18,4 +19,7 @@ class SpatialScene(SpatialData, Scene):
 
     variables: dict[str, Annotated[Output, output_field(OF_SPACE)]] = Field(
         default_factory=dict, description="formulas by name, which other formulas use"
+    )
+    vehicle: Vehicle | None = Field(
+        None, description="the sprung body whose motion is reported in the axes of ISO 8855"
     )
