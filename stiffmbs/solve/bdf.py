@@ -12,6 +12,7 @@ from ..errors import InputError, SolverError
 from ..model.settings import RunSettings
 from .error_control.error_test import ErrorControl
 from .error_control.precision import PRECISION, governed_by_rounding, too_fine
+from .error_control.relaxation import RELAXATION, refuse_drift
 from .events.refusals import DIVERGENCE, refuse_beyond_sense
 from .formulations import FORMULATIONS, READ_BY_FORMULATIONS
 from .ida.engine import Reached
@@ -92,9 +93,11 @@ def integrated(
                 raise SolverError(f"stopped at t = {reached.t:.9g} s: {failure}")
             if pays and not pays(reached):
                 break
-            if reached.t < grid.end and integrator.steps() >= DIVERGENCE.followed_steps:
+            if reached.t < grid.end and integrator.steps() >= RELAXATION.followed_steps:
                 state = integrator.split(reached.y)
-                refuse_beyond_sense(integrator.dynamics, rows, reached.t, *state)
+                refuse_drift(integrator.dynamics, reached.t, *state, integrator.settings)
+                if integrator.steps() >= DIVERGENCE.followed_steps:
+                    refuse_beyond_sense(integrator.dynamics, rows, reached.t, *state)
     statistics = {**integrator.statistics(), "seconds": ending.seconds}
     history = integrator.engine.history()
     return Trajectory(

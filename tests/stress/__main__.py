@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import os
 import sys
 
 import click
 
 from stiffmbs.errors import InputError, StiffmbsError
+from stiffmbs.solve import SOLVERS
+
+from .replaced import REPLACEMENT, replace_bdf
 
 SOME_WRONG, WRONG_INPUT = 1, 2
 COUNT = 1000
@@ -25,9 +29,21 @@ COUNT = 1000
     type=click.IntRange(0),
     help="Seed of the first random case of --fuzz (default 0); the seeds are consecutive.",
 )
+@click.option(
+    "--instead-of-bdf",
+    "solver",
+    type=click.Choice(sorted(SOLVERS)),
+    help="Integrate by this solver wherever a case takes bdf.",
+)
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object a line for each case.")
 def stress(
-    names: tuple[str, ...], quick: bool, fuzz: str | None, count: int | None, seed: int | None, as_json: bool
+    names: tuple[str, ...],
+    quick: bool,
+    fuzz: str | None,
+    count: int | None,
+    seed: int | None,
+    solver: str | None,
+    as_json: bool,
 ) -> None:
     """Run stress tests and print their outcomes: right, told (reported), slow, or WRONG.
 
@@ -39,6 +55,9 @@ def stress(
 
     Exit status: 0 if no case is wrong, 1 if some are, 2 if there is no such case.
     """
+    if solver:
+        os.environ[REPLACEMENT] = solver  # for child processes
+        replace_bdf(solver)
     try:
         if fuzz is None:
             some_wrong = _cases(names, quick, count, seed, as_json)

@@ -10,6 +10,7 @@ import numpy as np
 from ...compile.system import System
 from ...dynamics.dynamics import Dynamics, OutputRows
 from ...dynamics.storage import blocks, release
+from ...errors import SolverError
 from ...model.settings import RunSettings
 from ..events.restart import INDISTINCT
 from ..trajectory import Trajectory
@@ -33,6 +34,10 @@ class RelaxationParameters:
     tightest: float = 1e-3
     loosest: float = 1e3
     """Bounds of the factor by which a tolerance other than 1e-8 scales the relaxations."""
+    followed_steps: int = 1000
+    """Steps before the drift is checked during a run."""
+    refused: float = 1e6
+    """Drift, in tolerances, at which a run ends: its motion no longer is that of the mechanism."""
 
 
 RELAXATION = RelaxationParameters()
@@ -165,6 +170,22 @@ def creep_at(dynamics: Dynamics, t: float, u: np.ndarray, settings: RunSettings)
         return 0.0
     absolute = absolute_tolerances(system, settings)[system.n_q :]
     return float(_in_tolerances(u, state.u, absolute, settings.rtol).max())
+
+
+def refuse_drift(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, settings: RunSettings) -> None:
+    """Stop a run whose relaxed constraints have drifted apart.
+
+    Raises
+    ------
+    SolverError
+        If velocities violate the constraints by more than `RelaxationParameters.refused` tolerances.
+    """
+    if settings.formulation == "SI2" and dynamics.system.n_c:
+        dynamics.state.q[:] = q
+        if (drift := creep_at(dynamics, t, u, settings)) > RELAXATION.refused:
+            raise SolverError(
+                f"stopped at t = {t:.9g} s: relaxed constraints let velocities creep by {drift:.2g} tolerances"
+            )
 
 
 def _at_one_of(t: np.ndarray, instants: np.ndarray) -> np.ndarray:

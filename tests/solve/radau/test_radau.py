@@ -6,6 +6,7 @@ import pytest
 import stiffmbs
 from stiffmbs import Body, Drive, Model, Prismatic, Revolute, SpringDamper, spatial
 from tests.stress.families.stiffness.stiffness import bar_on_bushing
+from tests.stress.families.structure.headline import loop, swing_of
 from tests.stress.mechanisms.pendulum import bar_rate, swing
 
 STAGES = pytest.mark.parametrize("stages", [3, 5, 7])
@@ -126,4 +127,35 @@ def test_a_pendulum_through_many_turns_keeps_its_energy():
     model.add("pin", Revolute(i=stiffmbs.Marker(body="bar", point=(-0.5, 0)), j="ground"))
     found = stiffmbs.run(model, duration=20.0, solver="radau", rtol=1e-9)
     assert found.energy_drift() < 1e-6
+    assert found.solver["steps"] < 1000
+
+
+@pytest.mark.parametrize("rtol", [1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11])
+def test_the_first_step_after_an_event_follows_the_new_law(rtol):
+    """A vibration about 0 that a constant force moves to 0.125 m while x < 0.04 m; the law follows an algebraic state."""
+    scene = stiffmbs.read_scene(
+        """
+bodies: {cart: {mass: 2, inertia: 1, position: [0.1, 0]}}
+states: {p: {zero: p - 5*cart.x - 1, start: 1.5}}
+forces: {push: {type: force, i: cart, force: ["-40*cart.x + branch(p - 1.2, 5, 0, 0)", 0]}}
+run: {duration: 1 s, points: 11, solver: radau}
+"""
+    )
+    found = stiffmbs.run(scene, rtol=rtol)
+    w = np.sqrt(20.0)
+    first, v = np.arccos(0.4) / w, -0.1 * w * np.sin(np.arccos(0.4))
+    low = 2 * (np.arctan2(v / w, 0.04 - 0.125) % np.pi) / w
+    after = found.t - first
+    below = 0.125 + (0.04 - 0.125) * np.cos(w * after) + v / w * np.sin(w * after)
+    again = 0.1 * np.cos(w * (found.t - 2 * first - low))
+    expected = np.select([after < 0, after < low], [0.1 * np.cos(w * found.t), below], again)
+    np.testing.assert_allclose(found["cart.x"], expected, atol=max(10 * rtol, 1e-9))
+
+
+def test_a_drifting_run_ends_before_it_follows_another_mechanism():
+    """Torques of 1e9 N m hold two cranks against each other: relaxed constraints give way, and exact ones do not."""
+    found = stiffmbs.run(loop(2, 1e9, False, 3.2), duration=1.0, points=21, solver="radau")
+    assert found.success
+    assert any("SI2_exact" in note for note in found.notes)
+    assert swing_of(2, 3.2, found) < 1e-4
     assert found.solver["steps"] < 1000

@@ -22,7 +22,7 @@ RADAU = Layout({
     "y": FLOATS, "yp": FLOATS, "y_stage": FLOATS, "yp_stage": FLOATS, "z": FLOATS, "r": FLOATS, "d": FLOATS, "past": FLOATS, "y_past": FLOATS, "error": FLOATS, "weight": FLOATS,
     "atol": FLOATS, "rtol": FLOAT_CELL, "newton": FLOAT_CELL, "part": FLOAT_CELL, "loosest": FLOAT_CELL, "longest": FLOAT_CELL, "first": FLOAT_CELL, "stop": FLOAT_CELL, "stops": INT_CELL,
     "t": FLOAT_CELL, "h": FLOAT_CELL, "h_past": FLOAT_CELL, "method": INT_CELL, "method_past": INT_CELL, "begun": INT_CELL,
-    "h_factored": FLOAT_CELL, "method_factored": INT_CELL, "current": INT_CELL, "rate_kept": INT_CELL, "rejected": INT_CELL, "failures": INT_CELL, "renewed": INT_CELL, "error_size": FLOAT_CELL, "closing": FLOAT_CELL, "suggested": FLOAT_CELL,
+    "h_factored": FLOAT_CELL, "method_factored": INT_CELL, "current": INT_CELL, "rate_kept": INT_CELL, "rejected": INT_CELL, "failures": INT_CELL, "renewed": INT_CELL, "error_size": FLOAT_CELL, "left": FLOAT_CELL, "closing": FLOAT_CELL, "suggested": FLOAT_CELL,
     "rate": FLOAT_CELL, "contraction": FLOAT_CELL, "last_error": FLOAT_CELL, "h_accepted": FLOAT_CELL, "since_change": INT_CELL, "iterations_taken": INT_CELL,
     "n_functions": INT, "functions": INT, "ida": INTS, "before": FLOATS, "after": FLOATS, "within": FLOATS, "fired": INTS,
     "steps": INT_CELL, "residuals": INT_CELL, "jacobians": INT_CELL, "factorizations": INT_CELL, "error_failures": INT_CELL,
@@ -41,6 +41,6 @@ step with its beginning; error estimate and inverse tolerances.
 
 Cells: tolerances, the requested relative one, part that Newton's iteration may leave; largest and first step, stop
 time; time, next step, last step, methods of both; step size, method and time of the factors, 1 if the matrix belongs to
-the beginning of the step; convergence rate of Newton's iteration, its last ratio; error and size of the last accepted
-step; steps since a change of the method.  Event functions at both ends of the step.  Counters, then the parameters of
+the beginning of the step; convergence rate of Newton's iteration, its last ratio, and what it left, in tolerances; error and size of the last
+accepted step; steps since a change of the method.  Event functions at both ends of the step.  Counters, then the parameters of
 `stiffmbs.solve.radau.parameters`."""

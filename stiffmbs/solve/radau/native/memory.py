@@ -22,17 +22,13 @@ def basis(c, node, place):
 @compiled
 def slope(c, node, place):
     """Return the derivative of `basis`."""
-    total = 0.0
-    for left_out in range(-1, c.stages):
-        if left_out != node:
-            part = c.weights[node + 1]
-            if left_out >= 0:
-                part *= place
-            for k in range(c.stages):
-                if k != node and k != left_out:
-                    part *= place - c.nodes[k]
-            total += part
-    return total
+    value = c.weights[node + 1] * place
+    rate = c.weights[node + 1]
+    for k in range(c.stages):
+        if k != node:
+            rate = rate * (place - c.nodes[k]) + value
+            value *= place - c.nodes[k]
+    return rate
 
 
 @compiled

@@ -23,8 +23,11 @@ ROUNDINGS = 4e-16
 """Distance of the last stage from a stop time, relative to the time."""
 MOST_CLOSINGS, CLOSED = 5, 1.0
 """Largest number of corrections of a state between steps, and misfit that remains, in rtol of the largest effort."""
-LEAST_RATE, REMEMBERED, DIVERGING, SHORTER, MOST_LEFT = 1e-16, 0.8, 0.99, 0.8, 20.0
-"""As in RADAU5: least rate of convergence, exponent of the rate of the last step, ratio of corrections that ends the
+LEAST_RATE = 1e-4
+"""Least rate of convergence expected of the next step. That of a linear motion is no larger than rounding, and would let
+the first correction past a change of law."""
+REMEMBERED, DIVERGING, SHORTER, MOST_LEFT = 0.8, 0.99, 0.8, 20.0
+"""As in RADAU5: exponent of the rate of the last step, ratio of corrections that ends the
 iteration; factor of a step whose iteration is too slow, and most that counts of what it would leave."""
 CONVERGED, SLOW, DIVERGED, NOT_FINITE_STAGE = 0, 1, 2, 3
 
@@ -297,7 +300,7 @@ def most_iterations(c):
 def iterated(x, c, t, h):
     """Solve the stages of a step; CONVERGED, or a reason with the suggested factor of the step in `x.suggested`."""
     most = most_iterations(c)
-    contraction = max(x.rate, LEAST_RATE) ** REMEMBERED
+    contraction = max(x.rate, LEAST_RATE) ** REMEMBERED if x.h_past > 0.0 else 1.0
     before = 0.0
     ratio_before = 0.0
     x.suggested = x.after_failure
@@ -326,5 +329,6 @@ def iterated(x, c, t, h):
         before = max(size, 1e-300)
         if contraction * size <= x.newton:
             x.rate = contraction
+            x.left = contraction * size
             return CONVERGED
     return SLOW
