@@ -20,6 +20,8 @@ from typing import Any
 import stiffmbs
 
 ROOT = f"{Path(stiffmbs.__file__).parent}/"
+PARAMETERS = "tuning.py"
+"""File with the values of solver parameters; reading one is not counted as a call."""
 
 
 @dataclass
@@ -44,6 +46,8 @@ class Calls:
         if event != "call" or not file.startswith(ROOT):
             return
         file = file.removeprefix(ROOT)
+        if file == PARAMETERS:
+            return
         package = file.partition("/")[0]
         self.files.add(file)
         if self._package and package != self._package:

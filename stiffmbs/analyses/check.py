@@ -27,6 +27,7 @@ from ..redundancy.messages.redundancy import (
 from ..redundancy.opposed_actuators import opposed_sentences
 from ..redundancy.overconstraint import Overconstraint, listed, overconstraints
 from ..solve.subsystems import Subsystem, presolved
+from ..tuning import in_use
 from .job import Examined, Runnable, data_of, examined
 
 MOST_MOVES = 50
@@ -154,7 +155,8 @@ def check(model: Runnable, settings: RunSettings | None = None, **changes: Unpac
         try:
             start = initial_values(dynamics, found.grid.start)
             free = idle_freedoms(dynamics, found.grid.start)
-            subsystems = presolved(found.data, dynamics, start, found.grid, found.settings)
+            with in_use(found.settings.tuning):
+                subsystems = presolved(found.data, dynamics, start, found.grid, found.settings)
             problems += [start.position_sentence(MOST_MOVES)] if start.moved_far else []
         except (AssemblyError, SolverError) as error:
             problems += [] if redundancy.extra_freedoms else [str(error)]

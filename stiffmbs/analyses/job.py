@@ -26,6 +26,7 @@ from ..solve.events.input_ends import solve_up_to_the_inputs_end
 from ..solve.settings import changed, near_constraints, output_grid
 from ..solve.subsystems import Subsystem, presolved, solve_subsystems
 from ..solve.trajectory import Grid, ProgressCallback, Trajectory, unwatched
+from ..tuning import described, in_use
 from .load_scene import load_scene
 from .python_faults import told_faults
 from .start_from import StartFrom, started_from, starting_at, state_to_start_from
@@ -82,9 +83,13 @@ class Job:
                 return solve_subsystems(solve, self.subsystems, self.start, grid, self.settings, watch)
             return solve(self.dynamics, self.start, grid, self.settings, watch)
 
-        if not self.dynamics.system.has_inputs:
-            return over(self.grid)
-        return solve_up_to_the_inputs_end(self.dynamics, self.grid, over)
+        with in_use(self.settings.tuning):
+            if LOGGER.isEnabledFor(logging.DEBUG):
+                for line in described():
+                    LOGGER.debug("%s", line)
+            if not self.dynamics.system.has_inputs:
+                return over(self.grid)
+            return solve_up_to_the_inputs_end(self.dynamics, self.grid, over)
 
 
 Runnable: TypeAlias = ModelBuilder[Any, Any, Any] | ModelData | str | Path
@@ -115,7 +120,7 @@ def prepare(
         refuse_inconsistencies(found.redundancy)
     dynamics = found.dynamics()
     LOGGER.info("assembling %s", found.data.name)
-    with told_faults(dynamics.system):
+    with told_faults(dynamics.system), in_use(found.settings.tuning):
         start = _start(found.data, dynamics, found.grid.start, found.start_from)
         subsystems = presolved(found.data, dynamics, start, found.grid, found.settings)
     dynamics.system.known_terms.clear()

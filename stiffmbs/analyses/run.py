@@ -31,14 +31,12 @@ from ..solve.missing_rows import reported
 from ..solve.settings import changed, settings_notes
 from ..solve.suspect import suspect
 from ..solve.trajectory import IN_DOUBT, Outcome, ProgressCallback, Trajectory
+from ..tuning import in_use
 from .given_inputs import Given, with_inputs
 from .job import Job, Runnable, data_of, prepare
 from .python_faults import up_to_a_fault
 from .start_from import StartFrom
 from .taken_again import Computed, on_exact_constraints, rerun_after_missed_events
-
-OF_ANY_ERROR = ACCUMULATED.tolerances * ACCUMULATED.usual_rtol
-"""Estimated position error, relative to the mechanism's size, below which none is reported, with any tolerances."""
 
 
 @takes_settings
@@ -122,9 +120,13 @@ class Finished:
         return self.examined or channels_of(self.job.data, self.job.dynamics.system, self.rows)
 
 
-@np.errstate(all="ignore")  # numbers of a diverged run overflow
 def finished(job: Job, watch: ProgressCallback | None = None) -> Finished:
     """Integrate and examine a prepared job; errors as for `run`."""
+    with in_use(job.settings.tuning), np.errstate(all="ignore"):  # numbers of a diverged run overflow
+        return _finished(job, watch)
+
+
+def _finished(job: Job, watch: ProgressCallback | None) -> Finished:
     compute = partial(on_exact_constraints, compute=partial(_computed, watch=watch))
     computed, missed_events = rerun_after_missed_events(job, compute)
     trajectory, rows = computed.trajectory, computed.rows
@@ -270,7 +272,9 @@ def _notes(job: Job, trajectory: Trajectory, structure: StructureNotes) -> Itera
         yield job.start.sentence()
     if trajectory.note:
         yield trajectory.note
-    if trajectory.displaced is not None and (trajectory.displaced > OF_ANY_ERROR * min(1.0, system.size)).any():
+    # relative to the mechanism's size, with any tolerances
+    least = ACCUMULATED.tolerances * ACCUMULATED.usual_rtol * min(1.0, system.size)
+    if trajectory.displaced is not None and (trajectory.displaced > least).any():
         from ..run_checks.accumulated_errors import accumulated_errors_sentence  # few runs have such errors
 
         yield from accumulated_errors_sentence(system, job.settings, trajectory)

@@ -16,6 +16,7 @@ from ..results.channels import channels_of
 from ..solve.missing_rows import reported
 from ..solve.settings import near_constraints
 from ..solve.trajectory import Grid, Outcome, Trajectory
+from ..tuning import in_use
 from ..verification.solve_again import Deadline
 from .at_error import LINE, Row
 from .entries import Entry
@@ -114,7 +115,8 @@ class Sweep:
     @np.errstate(all="ignore")  # numbers of a diverged run overflow
     def _errors(self, job: Job, trajectory: Trajectory) -> dict[str, float]:
         """Return the errors by measure; empty if some output instants have no solution."""
-        rows, _ = reported(job.dynamics, trajectory, near_constraints(job.settings))
+        with in_use(job.settings.tuning):
+            rows, _ = reported(job.dynamics, trajectory, near_constraints(job.settings))
         if len(rows.t) < len(self.reference.solution.time):
             return {}
         return self.reference.errors(channels_of(job.data, job.dynamics.system, rows))

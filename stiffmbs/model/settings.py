@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypedDict, TypeVar, Unpack, get_args
 
-from pydantic import Field, field_validator, model_validator
+from pydantic import Field, ValidationInfo, field_validator, model_validator
 
 from ..reading.fields import Described, Measured
 from ..reading.given import Number
@@ -42,6 +42,7 @@ class Settings(TypedDict, total=False):
     stages: Literal[3, 5, 7, "auto"]
     presolve: bool
     drop_first: Sequence[str]
+    tuning: Mapping[str, Mapping[str, Any]]
 
 
 class RunSettings(Described):
@@ -87,6 +88,8 @@ class RunSettings(Described):
         Whether the model is reduced to a smaller problem with the same results, if possible.
     drop_first : tuple of str
         Joints whose equations are dropped first if the scene has redundant ones.
+    tuning : mapping
+        Changed parameters of solvers, by subsystem and name (`stiffmbs.tuning`), for experts.
     """
 
     duration: si.PositiveTime = Field(10.0, description="s")
@@ -118,6 +121,7 @@ class RunSettings(Described):
     stages: Literal[3, 5, 7, "auto"] = Field("auto", description="of radau, whose order is 2 stages - 1")
     presolve: bool = Field(True, description="whether unknowns that others determine are left out of the solution")
     drop_first: tuple[str, ...] = Field((), description="joints whose redundant equations are dropped first")
+    tuning: dict[str, dict[str, Any]] = Field({}, description="changed parameters of solvers, for experts")
 
     if TYPE_CHECKING:
 
@@ -131,6 +135,13 @@ class RunSettings(Described):
                 f"found '{solver}', which is a scheme of the solver 'projected'; expected solver: projected, scheme: {solver}"
             )
         return solver
+
+    @field_validator("tuning", mode="before")
+    @classmethod
+    def _known_parameters(cls, found: Any, info: ValidationInfo) -> Any:
+        from .tuning import checked  # few runs have it
+
+        return checked(found, lambda entry: Measured("number").read(entry, info))
 
     @model_validator(mode="after")
     def _one_grid(self) -> RunSettings:

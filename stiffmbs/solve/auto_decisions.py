@@ -8,6 +8,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import NamedTuple, TypeVar
 
+from ..tuning import tuned
+
 
 @dataclass(frozen=True)
 class AutoParameters:
@@ -61,7 +63,7 @@ class AutoParameters:
     penalty: float = 3.0
 
 
-AUTO = AutoParameters()
+AUTO = tuned("auto", AutoParameters())
 
 
 class ExplicitSteps(NamedTuple):

@@ -6,9 +6,10 @@ read, so that the choice is reproducible.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from ..dynamics.dynamics import Dynamics
+from ..tuning import tuned
 
 
 @dataclass(frozen=True)
@@ -66,7 +67,7 @@ class CostParameters:
     restart_steps: int = 27
 
 
-COSTS = CostParameters()
+COSTS = tuned("cost", CostParameters())
 """Costs of every run."""
 
 
@@ -89,9 +90,9 @@ class ImplicitCost:
     residual: float
     matrix: float
     memory: float
-    step_residuals: float = COSTS.step_residuals
-    step_matrices: float = COSTS.step_matrices
-    start_steps: int = COSTS.start_steps
+    step_residuals: float = field(default_factory=lambda: COSTS.step_residuals)
+    step_matrices: float = field(default_factory=lambda: COSTS.step_matrices)
+    start_steps: int = field(default_factory=lambda: COSTS.start_steps)
 
     @classmethod
     def of(cls, dynamics: Dynamics, factors: float | None = None) -> ImplicitCost:

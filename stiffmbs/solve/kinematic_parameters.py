@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ..tuning import tuned
+
 
 @dataclass(frozen=True)
 class KinematicParameters:
@@ -32,4 +34,4 @@ class KinematicParameters:
     """Estimated remaining evaluations that stop the integration."""
 
 
-KINEMATIC = KinematicParameters()
+KINEMATIC = tuned("kinematic", KinematicParameters())

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 from ..model.settings import RunSettings
 from .trajectory import Solver, Trajectory
 
-FOR_ALL_SOLVERS = frozenset({"duration", "start", "output", "points", "solver", "presolve", "drop_first"})
+FOR_ALL_SOLVERS = frozenset({"duration", "start", "output", "points", "solver", "presolve", "drop_first", "tuning"})
 """Settings that are read before a solver begins; all others are read by the solvers that declare them."""
 
 

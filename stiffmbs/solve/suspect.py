@@ -10,6 +10,7 @@ import numpy as np
 from ..compile.system import System
 from ..compile.written_values import writer
 from ..dynamics.dynamics import Dynamics
+from ..tuning import tuned
 
 
 @dataclass(frozen=True)
@@ -22,7 +23,7 @@ class SuspectParameters:
     """Violation of a constraint, m or rad, from which on a mechanism counts as locked."""
 
 
-SUSPECT = SuspectParameters()
+SUSPECT = tuned("suspect", SuspectParameters())
 
 TERM_SETS = ("motion", "acceleration")
 

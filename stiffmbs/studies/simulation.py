@@ -23,6 +23,7 @@ from ..results.saved_state import TURNS, SavedState
 from ..solve.error_control.relaxation import creep_at
 from ..solve.events.restart import restarted
 from ..solve.settings import changed
+from ..tuning import in_use
 from .case_solver import CaseSolver, Task, written_scene
 from .input_numbers import InputNumbers
 from .stepping import Stepper, stepper_of
@@ -101,7 +102,8 @@ class Simulation:
         self._inputs.set(self._first)
         job.dynamics.forget_pivots()
         self.t = job.grid.start
-        self._stepper = stepper_of(job, job.start, self.t)
+        with in_use(job.settings.tuning):
+            self._stepper = stepper_of(job, job.start, self.t)
         self._steps, self._relaxed = 0, relaxed(job)
         self._places = self._places_of_bodies()
         self._known: dict[str, float] | None = None
@@ -146,10 +148,11 @@ class Simulation:
             self.set_inputs(inputs)
         end = self.t + dt
         self._steps += 1
-        if self._relaxed and (self._steps % LOOK == 0 or self._steps & (self._steps - 1) == 0):
-            self._advance_without_creep(end)
-        else:
-            self._advance(end)
+        with in_use(self._job.settings.tuning):
+            if self._relaxed and (self._steps % LOOK == 0 or self._steps & (self._steps - 1) == 0):
+                self._advance_without_creep(end)
+            else:
+                self._advance(end)
         self.t, self._known = end, None
 
     def _advance(self, end: float) -> None:
@@ -193,7 +196,8 @@ class Simulation:
             If an input is unknown, or its value is invalid.
         """
         if inputs and self._inputs.set(inputs):
-            self._stepper.jump()
+            with in_use(self._job.settings.tuning):
+                self._stepper.jump()
             self._known = None
 
     @property
@@ -273,7 +277,8 @@ class Simulation:
                 self._inputs.set(
                     {k.removeprefix(INPUT): float(archive[k]) for k in archive.files if k.startswith(INPUT)}
                 )
-        self._stepper.restart(found.t, placed.q, placed.u)
+        with in_use(job.settings.tuning):
+            self._stepper.restart(found.t, placed.q, placed.u)
         self.t, self._known = found.t, None
 
     def _places_of_bodies(self) -> dict[str, tuple[np.ndarray, int]]:

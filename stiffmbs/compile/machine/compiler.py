@@ -104,13 +104,14 @@ def _called(with_geometry: bool) -> str:
 
 
 @cache
-def compiled_routines(module: str, signatures: Signatures, unrolled: bool) -> dict[str, Compiled]:
+def compiled_routines(module: str, signatures: Signatures, unrolled: bool, changed: str) -> dict[str, Compiled]:
     """Compile functions of a ``native`` module together, or load them from the cache.
 
-    Unrolled loops take LLVM longer; they speed up solutions with dense blocks only.
+    Unrolled loops take LLVM longer; they speed up solutions with dense blocks only.  `changed` names the parameters in
+    use that differ from the defaults (`stiffmbs.tuning.values_in`).
     """
     entry = store.name_of(
-        store.ROUTINE, _language(), _native(module.partition(".")[0]), module, repr((signatures, unrolled))
+        store.ROUTINE, _language(), _native(module.partition(".")[0]), module, repr((signatures, unrolled)), changed
     )
     words = f"the routines {module.rpartition('.')[2]}"
     return _loaded(entry, _Source(signatures, lambda: vars(importlib.import_module(module)), words, unrolled=unrolled))

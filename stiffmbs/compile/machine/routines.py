@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
+from ...tuning import parameters_are_changed, values_in
 from .compiler import Compiled, compiled_routines
 
 Signatures = tuple[tuple[str, str], ...]
@@ -31,24 +32,33 @@ class Routine:
     others: Signatures = ()
     unrolled: bool = False
 
-    @cached_property
+    @property
     def call(self) -> Callable[..., Any]:
         """Function for calls from Python; pointers are passed as addresses."""
-        return self._compiled().call
+        return self._compiled.call
 
-    @cached_property
+    @property
     def short_call(self) -> Callable[..., Any]:
         """Function for calls of a few microseconds, which keep the interpreter lock."""
-        return self._compiled().short_call
+        return self._compiled.short_call
 
-    @cached_property
+    @property
     def address(self) -> int:
         """Address for calls from compiled code."""
-        return self._compiled().address
+        return self._compiled.address
 
+    @property
     def _compiled(self) -> Compiled:
+        return self._with(values_in(self.module)) if parameters_are_changed() else self._usual
+
+    @cached_property
+    def _usual(self) -> Compiled:
+        return self._with("")
+
+    def _with(self, changed: str) -> Compiled:
+        """Return the function compiled with the parameters in use; `changed` are those that are not the default."""
         together = tuple(sorted(((self.name, self.signature), *self.others)))
-        return compiled_routines(self.module, together, self.unrolled)[self.name]
+        return compiled_routines(self.module, together, self.unrolled, changed)[self.name]
 
 
 def together(module: str, **signatures: str) -> tuple[Routine, ...]:

@@ -8,6 +8,7 @@ import numpy as np
 
 from ...compile.system import System
 from ...model.settings import RunSettings
+from ...tuning import tuned
 from .tolerances import absolute_tolerances
 
 
@@ -51,5 +52,5 @@ class AccumulatedErrors:
         return found
 
 
-ACCUMULATED = AccumulatedErrors()
+ACCUMULATED = tuned("accumulated_errors", AccumulatedErrors())
 """Threshold of every run."""

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from dataclasses import dataclass
 
 import numpy as np
 
 from ...compile.equations import Equations
 from ...model.settings import RunSettings
+from ...tuning import tuned
 from .tolerances import independent_tolerances
 
 
-class ErrorControl(NamedTuple):
+@dataclass(frozen=True)
+class ErrorControl:
     """Settings of IDA for a requested tolerance; the defaults are those of `bdf` (`docs/error_control.md`).
 
     Attributes
@@ -62,6 +64,8 @@ class ErrorControl(NamedTuple):
         return counted
 
 
-CHOSEN = {2: ErrorControl(), 3: ErrorControl(margin=0.12, growth=1.6)}
+PLANAR = tuned("error_test", ErrorControl())
+SPATIAL = tuned("error_test_in_space", ErrorControl(margin=0.12, growth=1.6))
+CHOSEN = {2: PLANAR, 3: SPATIAL}
 """Error control of every run, by the dimensions of the scene.  Steps of even spatial motions may never change: with
 IDA's growth factor, their errors would depend on the start more than on the tolerance."""

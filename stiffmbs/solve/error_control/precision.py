@@ -11,6 +11,7 @@ import numpy as np
 from ...compile.system import System
 from ...dynamics.dynamics import Dynamics
 from ...model.settings import RunSettings
+from ...tuning import tuned
 
 
 @dataclass(frozen=True)
@@ -31,7 +32,7 @@ class PrecisionParameters:
     """Fraction of failed error tests that indicates rounding."""
 
 
-PRECISION = PrecisionParameters()
+PRECISION = tuned("precision", PrecisionParameters())
 
 
 def too_fine(dynamics: Dynamics, settings: RunSettings, t: float, q: np.ndarray) -> str:

@@ -12,6 +12,7 @@ from ...dynamics.dynamics import Dynamics, OutputRows
 from ...dynamics.storage import blocks, release
 from ...errors import SolverError
 from ...model.settings import RunSettings
+from ...tuning import tuned
 from ..events.restart import INDISTINCT
 from ..trajectory import Trajectory
 from .tolerances import absolute_tolerances
@@ -40,7 +41,7 @@ class RelaxationParameters:
     """Drift, in tolerances, at which a run ends: its motion no longer is that of the mechanism."""
 
 
-RELAXATION = RelaxationParameters()
+RELAXATION = tuned("relaxation", RelaxationParameters())
 
 
 class Creep(NamedTuple):

@@ -21,6 +21,7 @@ from ...compile.equations import Equations
 from ...compile.machine.layout import addresses
 from ...compile.machine.routines import Routine
 from ...model.settings import RunSettings
+from ...tuning import tuned
 from ..ida.native.parameters import LOOP
 from .tolerances import independent_tolerances
 
@@ -29,8 +30,8 @@ CUBIC = Routine(
     "cubic",
     "void(int64, int64, float64*, float64, float64*, int64, int64*, float64, float64*, float64*)",
 )
-FIRST_COMPARED = np.array([0, 4, 8, 12, 15], dtype=np.int64)
-"""Samples compared first; they usually suffice to show that the motion is far from a cubic."""
+FIRST_COMPARED = 5
+"""Number of samples compared first; they usually suffice to show that the motion is far from a cubic."""
 A_STABLE_ORDER, HIGHEST_ORDER = 2, 5
 """Highest A-stable order, and highest order of BDF."""
 ERROR_CONSTANT = 2 / 9
@@ -66,7 +67,7 @@ class StabilityLimitParameters:
     """Error of a step that the integrator aims at, relative to the tolerance."""
 
 
-STABILITY_LIMIT = StabilityLimitParameters()
+STABILITY_LIMIT = tuned("stability_limit", StabilityLimitParameters())
 
 
 @dataclass(frozen=True)
@@ -76,7 +77,7 @@ class CubicFit:
     Attributes
     ----------
     least : float
-        Distance shown by the samples `FIRST_COMPARED`.
+        Distance shown by the samples compared first.
     distance : float
         Largest RMS distance of one state; not computed if `least` is not negligible.
     third : float
@@ -124,8 +125,9 @@ def cubic_fit(samples: np.ndarray, rtol: float, atol: np.ndarray, negligible: fl
     """
     count, n = len(samples), samples.shape[1] - 1
     samples, work, found = np.ascontiguousarray(samples), np.empty(n + 6 * count + 8), np.zeros(3)
-    rows, at_atol, first, at_work, at_found = addresses(samples, atol, FIRST_COMPARED, work, found)
-    CUBIC.short_call(count, n, rows, rtol, at_atol, len(FIRST_COMPARED), first, negligible, at_work, at_found)
+    first = np.ceil(np.linspace(0, count - 1, FIRST_COMPARED)).astype(np.int64)
+    rows, at_atol, at_first, at_work, at_found = addresses(samples, atol, first, work, found)
+    CUBIC.short_call(count, n, rows, rtol, at_atol, FIRST_COMPARED, at_first, negligible, at_work, at_found)
     return CubicFit(*found.tolist())
 
 

@@ -11,6 +11,7 @@ import numpy as np
 from ...compile.written_values import writer
 from ...dynamics.dynamics import Dynamics
 from ...errors import ChatteringError, SolverError
+from ...tuning import tuned
 from .discontinuity import JUMP, jumping, sliding
 
 
@@ -43,7 +44,7 @@ class ChatteringParameters:
     """Upper bound of that distance."""
 
 
-CHATTERING = ChatteringParameters()
+CHATTERING = tuned("chattering", ChatteringParameters())
 
 
 class Chattering:

@@ -10,6 +10,7 @@ import numpy as np
 from ...compile.machine.layout import address, addresses
 from ...compile.machine.routines import together
 from ...dynamics.dynamics import Dynamics
+from ...tuning import tuned
 from .native.parameters import SEARCH
 
 
@@ -28,7 +29,7 @@ class JumpParameters:
     """Time over which the rate of an event function is computed, s."""
 
 
-JUMP = JumpParameters()
+JUMP = tuned("jumps", JumpParameters())
 
 SWITCHES, CROSSED, BY_VELOCITIES, SIDE = together(
     "stiffmbs.solve.events.native.sides",
@@ -88,9 +89,10 @@ class _Beside:
         """Return both sides of a move."""
         return self.side(size), self.side(-size)
 
-    def crossed(self, reach: float = JUMP.smaller_move) -> np.ndarray:
+    def crossed(self, reach: float | None = None) -> np.ndarray:
         """Return the event functions that differ in sign between the two sides of a move."""
         found = np.empty(self._count, dtype=np.int64)
+        reach = JUMP.smaller_move if reach is None else reach
         count = CROSSED.short_call(self.t, reach, *self._at, self._count, address(found), self._table)
         return found.nonzero()[0] if count else found[:0]
 
@@ -144,7 +146,7 @@ def jumping(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> np.nd
     return crossed if near > max(JUMP.jumps * far, JUMP.least_jump) else crossed[:0]
 
 
-def sliding(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, reach: float = JUMP.larger_move) -> np.ndarray:
+def sliding(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, reach: float | None = None) -> np.ndarray:
     """Return the event functions whose zero the motion is driven to from both sides by a discontinuous force.
 
     There is no classical solution then, but a sliding mode, as with sign(v) at rest (Filippov, Differential Equations
@@ -152,9 +154,10 @@ def sliding(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, reach: f
 
     Parameters
     ----------
-    reach : float
-        Size of the move, as `JumpParameters.larger_move`, within which a jump is searched for.
+    reach : float, optional
+        Size of the move within which a jump is searched for; by default `JumpParameters.larger_move`.
     """
+    reach = JUMP.larger_move if reach is None else reach
     with dynamics.state.unchanged():
         beside = _Beside(dynamics, t, q, u)
         back = beside.crossed(reach)

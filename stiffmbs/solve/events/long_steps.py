@@ -12,6 +12,7 @@ from ...compile.equations import Equations
 from ...compile.machine.layout import packed
 from ...compile.system import System
 from ...dynamics.dynamics import Dynamics
+from ...tuning import tuned
 from .native.layouts import LONG_STEPS
 
 
@@ -33,9 +34,8 @@ class LongStepParameters:
     """Largest number of values stored of one run."""
 
 
-LONG_STEP = LongStepParameters()
+LONG_STEP = tuned("long_steps", LongStepParameters())
 
-MIDDLE = np.array([0.5 - LONG_STEP.from_middle, 0.5 + LONG_STEP.from_middle])
 """Nodes of a step that give the state at its middle and its rate."""
 WHOLE = 0.5 - 0.5 * np.cos(np.arange(8) * np.pi / 7)
 """Nodes that represent a whole step: the interpolant of DOP853 has degree 7, that of BDF at most 5."""
@@ -66,7 +66,7 @@ class LongSteps(NamedTuple):
     begin, end : ndarrays, shape (n,)
         s.
     q, u : ndarrays, shapes (n, places, n_q), (n, places, n_u)
-        States at `MIDDLE` of each step, or at `WHOLE`.
+        States at two places next to the middle of each step, or at `WHOLE`.
     """
 
     dynamics: Dynamics
@@ -90,7 +90,7 @@ class LongSteps(NamedTuple):
         return self.q.shape[1] == len(WHOLE)
 
     def middles(self, steps: np.ndarray) -> Motion:
-        """Return the middles of some steps; for steps that are stored at `MIDDLE`."""
+        """Return the middles of some steps; for steps that are stored at two places."""
         begin, end, q, u = self.begin[steps], self.end[steps], self.q[steps], self.u[steps]
         rate = (u[:, 1] - u[:, 0]) / (2.0 * LONG_STEP.from_middle * (end - begin))[:, None]
         return Motion(0.5 * (begin + end), q.mean(axis=1), u.mean(axis=1), rate)
@@ -123,7 +123,7 @@ class LongStepLog:
     """
 
     def __init__(self, system: System, width: int) -> None:
-        places = WHOLE if system.has_functions else MIDDLE
+        places = WHOLE if system.has_functions else np.array([0.5 - LONG_STEP.from_middle, 0.5 + LONG_STEP.from_middle])
         ratio, remembered = LONG_STEP.for_functions if system.has_functions else LONG_STEP.for_others
         row = 2 + len(places) * width
         room = min(LONG_STEP.most_steps, LONG_STEP.most_values // row) if system.has_laws else 0

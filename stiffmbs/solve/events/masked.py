@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...dynamics.dynamics import Dynamics
+from ...tuning import tuned
 from .chattering import Chattering, jump_sentence
 from .discontinuity import jumping
 
@@ -35,7 +36,7 @@ class MaskingParameters:
     """Successive events from which a force is checked for a jump; the first may be those of a start at zero."""
 
 
-MASKING = MaskingParameters()
+MASKING = tuned("masking", MaskingParameters())
 
 
 class MaskedEvents:

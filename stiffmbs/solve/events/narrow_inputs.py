@@ -9,6 +9,7 @@ import numpy as np
 
 from ...compile.inputs.features import InputFeatures
 from ...compile.inputs.of_time import Input
+from ...tuning import tuned
 
 
 @dataclass(frozen=True)
@@ -25,7 +26,7 @@ class NarrowInputParameters:
     """Change of an input, relative to its values, that may be rounding."""
 
 
-NARROW_INPUTS = NarrowInputParameters()
+NARROW_INPUTS = tuned("narrow_inputs", NarrowInputParameters())
 
 
 def narrower_than_output(features: InputFeatures, spacing: float) -> str:

@@ -10,6 +10,7 @@ from ...compile.system import System
 from ...compile.written_values import beyond
 from ...dynamics.dynamics import Dynamics
 from ...errors import SolverError
+from ...tuning import tuned
 from ..suspect import suspect
 from ..trajectory import Rows
 
@@ -31,7 +32,7 @@ class DivergenceParameters:
     """Largest number of stored states from which growth is estimated."""
 
 
-DIVERGENCE = DivergenceParameters()
+DIVERGENCE = tuned("divergence", DivergenceParameters())
 
 SPEED_OF_LIGHT = 299_792_458.0
 """Speed of light, m/s."""

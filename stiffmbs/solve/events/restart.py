@@ -13,6 +13,7 @@ from ...dynamics.algebraic_states import failure
 from ...dynamics.dynamics import Dynamics
 from ...dynamics.initial import InitialValues
 from ...errors import SolverError
+from ...tuning import tuned
 
 
 @dataclass(frozen=True)
@@ -28,7 +29,7 @@ class RestartParameters:
     """Upper bound of that rtol."""
 
 
-RESTARTS = RestartParameters()
+RESTARTS = tuned("restarts", RestartParameters())
 
 GONE_PAST = Routine(
     "stiffmbs.solve.events.native.past",

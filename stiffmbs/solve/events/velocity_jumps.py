@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...dynamics.dynamics import Dynamics
+from ...tuning import tuned
 
 
 @dataclass(frozen=True)
@@ -19,7 +20,7 @@ class VelocityJumpParameters:
     """Largest number of jumps reported one by one."""
 
 
-VELOCITY_JUMP = VelocityJumpParameters()
+VELOCITY_JUMP = tuned("velocity_jumps", VelocityJumpParameters())
 
 
 class VelocityJumps:

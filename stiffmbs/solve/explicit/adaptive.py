@@ -14,6 +14,7 @@ from ...dynamics.dynamics import Dynamics
 from ...dynamics.initial import InitialValues
 from ...errors import SolverError
 from ...model.settings import RunSettings
+from ...tuning import tuned
 from ..events.chattering import Chattering
 from ..events.refusals import DIVERGENCE, refuse_beyond_limits, refuse_beyond_sense
 from ..events.restart import just_after, just_before, restarted
@@ -42,7 +43,7 @@ class CheckParameters:
     """Events of which one is always checked, and part of the steps that stability must limit for an early decision."""
 
 
-CHECKS = CheckParameters()
+CHECKS = tuned("explicit_checks", CheckParameters())
 
 
 class Leaving(NamedTuple):

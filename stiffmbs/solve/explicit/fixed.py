@@ -15,6 +15,7 @@ from ...dynamics.dynamics import POSITION_TOLERANCE, Dynamics
 from ...dynamics.initial import InitialValues
 from ...errors import SolverError
 from ...model.settings import RunSettings
+from ...tuning import tuned
 from ..events.chattering import jump_sentence
 from ..events.discontinuity import JUMP, sliding
 from ..events.narrow_inputs import narrower_than_steps
@@ -39,7 +40,7 @@ class FixedStepParameters:
     """Relative reduction of the step from which on it is reported."""
 
 
-FIXED_STEP = FixedStepParameters()
+FIXED_STEP = tuned("fixed_steps", FixedStepParameters())
 
 EULER_CROMER = Routine(
     "stiffmbs.solve.explicit.native.euler_cromer",

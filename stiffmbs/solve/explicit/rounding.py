@@ -17,6 +17,7 @@ import numpy as np
 from ...compile.machine.layout import address
 from ...dynamics.dynamics import Dynamics
 from ...dynamics.elimination.eliminated import ACCELERATE
+from ...tuning import tuned
 from ..suspect import acceleration_name, suspect
 from .integration import Integration
 
@@ -48,7 +49,7 @@ class RoundingParameters:
     steps."""
 
 
-ROUNDING = RoundingParameters()
+ROUNDING = tuned("explicit_rounding", RoundingParameters())
 
 
 class Rounding:

@@ -11,6 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ...dynamics.dynamics import Dynamics
+from ...tuning import tuned
 from .fastest_rate import fastest_rate
 from .integration import Integration
 from .scheme import Scheme
@@ -38,7 +39,7 @@ class StabilityBoundParameters:
     """Lowest order at which too long a step amplifies rounding considerably."""
 
 
-STABILITY_BOUND = StabilityBoundParameters()
+STABILITY_BOUND = tuned("stability_bound", StabilityBoundParameters())
 
 NOT_ASKED, UNBOUNDED = 0.0, float("inf")
 

@@ -10,6 +10,7 @@ from ...compile.equations import Equations
 from ...dynamics.dynamics import Dynamics
 from ...model.settings import RunSettings
 from ...sparse.elimination_order import EliminationOrder, elimination_order
+from ...tuning import tuned
 from ..error_control.error_test import ErrorControl
 from ..formulations import FORMULATIONS
 from ..linear_solvers.block_lu import BlockLU
@@ -47,7 +48,7 @@ class LinearSolverCosts:
     """Upper bound of the numbers stored in the blocks, relative to the entries of a triangle of full blocks."""
 
 
-COSTS = LinearSolverCosts()
+COSTS = tuned("linear_solver", LinearSolverCosts())
 """Costs of every run."""
 
 

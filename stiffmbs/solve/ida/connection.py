@@ -20,7 +20,7 @@ from .error_norm import ErrorNorm
 from .iteration import Iteration
 from .libraries import Libraries
 from .matrices import Assembled, Matrix
-from .native.layouts import HISTORY_ROWS, NATIVE_IDA
+from .native.layouts import NATIVE_IDA
 from .native.parameters import LOOP
 from .output_correction import OutputCorrection
 from .session import Session
@@ -191,7 +191,7 @@ class Connection:
 
     def _packed(self) -> np.ndarray:
         functions = {name: self._session.libraries.address(function) for name, function in FUNCTIONS.items()}
-        history, formulation = self.history.rows(HISTORY_ROWS), self._equations.formulation
+        history, formulation = self.history.rows(2 * LOOP.most_steps), self._equations.formulation
         for term_set in (formulation.residual_set, formulation.matrix_set):
             self._state.load(term_set)
         self.equations_table, self._slots = self._equations.table(self._assembled.slots)

@@ -15,6 +15,7 @@ from ...compile.machine.layout import packed
 from ...compile.machine.native.statuses import ROOT_RETURN
 from ...compile.machine.routines import Routine
 from ...compile.state import State
+from ...tuning import tuned
 from ..error_control.newton import Stiffness
 from ..trajectory import History
 from .engine import Engine, Reached
@@ -35,7 +36,7 @@ class FallbackParameters:
     """Number of output times reported together, because a report costs more than a step."""
 
 
-FALLBACK = FallbackParameters()
+FALLBACK = tuned("sundae", FallbackParameters())
 
 if TYPE_CHECKING:
     pass

@@ -11,6 +11,7 @@ from ...compile.equations import Equations
 from ...compile.machine.layout import fill, packed
 from ...compile.state import State
 from ...sparse.elimination_order import EliminationOrder
+from ...tuning import parameters_of
 from ..cost import ImplicitCost
 from ..ida.choice import cost_of
 from ..ida.libraries import Libraries
@@ -167,7 +168,7 @@ class Radau:
             **{name: np.zeros(self._most * n_all) for name in ("z", "d", "past")},
             "n_functions": functions, "functions": connection.event_functions if functions else 0, "ida": connection.words,
             **{name: np.zeros(functions) for name in ("before", "after", "within")}, "fired": np.zeros(functions, dtype=np.int64),
-            **asdict(self._parameters),
+            **asdict(parameters_of(self._parameters)),
         }  # fmt: skip
         fill(self._words, RADAU, values)
         self._kept = values, solvers

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ...tuning import tuned
+
 
 @dataclass(frozen=True)
 class RadauParameters:
@@ -53,5 +55,5 @@ class RadauParameters:
     loosest: float = 0.03
 
 
-RADAU = RadauParameters()
+RADAU = tuned("radau", RadauParameters())
 """Parameters of every run."""

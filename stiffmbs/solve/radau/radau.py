@@ -10,6 +10,7 @@ from ...compile.equations import Equations
 from ...dynamics.dynamics import Dynamics
 from ...dynamics.initial import InitialValues
 from ...model.settings import RunSettings
+from ...tuning import tuned
 from ..bdf import integrated, refuse_untested_reactions
 from ..cost import ImplicitCost
 from ..error_control.error_test import ErrorControl
@@ -25,7 +26,7 @@ from .parameters import RADAU
 
 READ = ("formulation", "rtol", "atol", "max_step", "stages")
 """Settings that the solver reads."""
-CONTROL = ErrorControl(margin=1.0)
+CONTROL = tuned("error_test_of_radau", ErrorControl(margin=1.0))
 ITERATIONS, START_STEPS = 3, 4
 """Average number of Newton iterations in a step; small steps after a start."""
 

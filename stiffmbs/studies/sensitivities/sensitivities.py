@@ -21,6 +21,7 @@ from ...solve.bdf import integrated
 from ...solve.missing_rows import reported
 from ...solve.settings import changed
 from ...solve.trajectory import Grid, Outcome
+from ...tuning import in_use
 from ..outputs import outputs_of
 from .channels import changed_channels, changed_requests
 from .formulas import Formula
@@ -208,7 +209,8 @@ class DifferentiatedRun:
         self._recorder = Recorder(job.dynamics, job.settings)
         job.dynamics.forget_pivots()
         grid = job.grid if times is None else Grid(job.grid.start, job.grid.end, times)
-        self._trajectory = integrated(self._recorder, job.start, grid, lambda _: None)
+        with in_use(job.settings.tuning):
+            self._trajectory = integrated(self._recorder, job.start, grid, lambda _: None)
         if self._trajectory.outcome is Outcome.INTERRUPTED:
             raise KeyboardInterrupt
         self.success = self._trajectory.outcome is Outcome.DONE
@@ -256,7 +258,8 @@ class DifferentiatedRun:
     def _rows(self) -> OutputRows:
         if not self.success:
             raise SolverError(f"sensitivities: the run {self._trajectory.message}")
-        rows, gaps = reported(self._job.dynamics, self._trajectory, True)
+        with in_use(self._job.settings.tuning):
+            rows, gaps = reported(self._job.dynamics, self._trajectory, True)
         if len(rows.t) < len(self._trajectory.t) or gaps:
             raise SolverError(
                 "sensitivities: found instants without accelerations and reactions, expected them everywhere"
@@ -269,7 +272,8 @@ class DifferentiatedRun:
         along = AlongRun(job.dynamics, self._recorder, self._numbers, breakpoint_rates(self._set_ups))
         start_q, start_u = (np.array([set_up.start[k] for set_up in self._set_ups]) for k in range(2))
         try:
-            found = list(along.at(rows, instants, start_q, start_u))
+            with in_use(job.settings.tuning):
+                found = list(along.at(rows, instants, start_q, start_u))
         finally:
             along.close()
         if not found:

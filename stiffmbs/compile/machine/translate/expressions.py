@@ -10,6 +10,7 @@ from contextlib import contextmanager
 from dataclasses import fields, is_dataclass
 from typing import Any
 
+from ....tuning import parameters_of
 from .arithmetic import compared, computed, negated
 from .code import Code, common, constant
 from .functions import FUNCTIONS
@@ -143,7 +144,7 @@ class Expressions:
             raise Wider(name, self.left[name].kind)
         if name in self.records:
             return self.records[name]
-        found = self._outside.get(name)
+        found = parameters_of(self._outside.get(name))
         if isinstance(found, bool | int | float):
             return constant(found)
         if is_dataclass(found) and not isinstance(found, type):

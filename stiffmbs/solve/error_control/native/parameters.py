@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ....tuning import tuned
+
 
 @dataclass(frozen=True)
 class NewtonParameters:
@@ -45,7 +47,7 @@ class NewtonParameters:
     """Upper bound of the relaxed tolerance, as in IDA."""
 
 
-NEWTON = NewtonParameters()
+NEWTON = tuned("newton", NewtonParameters())
 
 
 @dataclass(frozen=True)
@@ -75,7 +77,7 @@ class PolishingParameters:
     """Safety factor of measured values: they depend on the direction of the residual."""
 
 
-POLISHING = PolishingParameters()
+POLISHING = tuned("polishing", PolishingParameters())
 
 
 @dataclass(frozen=True)
@@ -103,7 +105,7 @@ class ErrorFilterParameters:
     """Filtered norm above which a vector is not an error estimate: IDA also uses the norm for a rounding test."""
 
 
-FILTER = ErrorFilterParameters()
+FILTER = tuned("error_filter", ErrorFilterParameters())
 
 
 @dataclass(frozen=True)
@@ -121,4 +123,4 @@ class AccumulationParameters:
     """Fraction by which velocities are increased to determine the damping."""
 
 
-ACCUMULATION = AccumulationParameters()
+ACCUMULATION = tuned("accumulation", AccumulationParameters())

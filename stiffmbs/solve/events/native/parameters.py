@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from sys import float_info
 
+from ....tuning import tuned
+
 EPSILON = float_info.epsilon
 """Relative rounding of a number."""
 
@@ -73,7 +75,7 @@ class EventSearchParameters:
     """Time, relative to the time since zero, below which two events count as simultaneous."""
 
 
-SEARCH = EventSearchParameters()
+SEARCH = tuned("event_search", EventSearchParameters())
 
 
 @dataclass(frozen=True)
@@ -113,4 +115,4 @@ class NextStepParameters:
     """Place within a passage at which forces are compared with those at the start; not 0.5, the centre of symmetry."""
 
 
-NEXT_STEP = NextStepParameters()
+NEXT_STEP = tuned("next_step", NextStepParameters())

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ....tuning import tuned
+
 
 @dataclass(frozen=True)
 class StepControlParameters:
@@ -47,7 +49,7 @@ class StepControlParameters:
     """Shortest step, as a fraction of the run."""
 
 
-CONTROL = StepControlParameters()
+CONTROL = tuned("explicit_steps", StepControlParameters())
 
 
 @dataclass(frozen=True)
@@ -71,7 +73,7 @@ class FirstStepParameters:
     """Shortest steps within which the motion must leave a zero of an event function."""
 
 
-FIRST_STEP = FirstStepParameters()
+FIRST_STEP = tuned("explicit_first_step", FirstStepParameters())
 
 
 @dataclass(frozen=True)
@@ -93,7 +95,7 @@ class LocationParameters:
     """Bisections to find a sign change on the interpolant."""
 
 
-LOCATION = LocationParameters()
+LOCATION = tuned("explicit_events", LocationParameters())
 
 
 @dataclass(frozen=True)
@@ -111,4 +113,4 @@ class UncertainEndParameters:
     to 0.33 and from 0.6 of a step on."""
 
 
-ENDS = UncertainEndParameters()
+ENDS = tuned("explicit_ends", UncertainEndParameters())

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from stiffmbs.compile.machine.layout import FLOAT_CELL, FLOATS, INT, INT_CELL, INTS, Layout
-from stiffmbs.solve.ida.native.parameters import LOOP
 
 IDA = Layout({
     "state": INTS, "equations": INTS, "array_header": INT, "n_event_functions": INT, "signs": FLOATS, "masked": INTS,
@@ -33,8 +32,6 @@ size of the next attempt; last stop time; output times served, tiny steps in suc
 within the step; steps in the history, steps since the last sample, position of the next one; address of rows for time,
 order, y and y' of each step (0 for none), and rows written in this call; time of the event functions in the state."""
 
-HISTORY_ROWS = 2 * LOOP.most_steps
-"""Rows of the history of a call."""
 STEP = "end", "order", "size"
 """Numbers in a row of the history: time of the end, s, order, and size of a step, s."""
 STEP_WIDTH = len(STEP)

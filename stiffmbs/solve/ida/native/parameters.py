@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ....tuning import tuned
+
 
 @dataclass(frozen=True)
 class LoopParameters:
@@ -32,4 +34,4 @@ class LoopParameters:
     """Number of rows for one call that reports every step."""
 
 
-LOOP = LoopParameters()
+LOOP = tuned("loop", LoopParameters())

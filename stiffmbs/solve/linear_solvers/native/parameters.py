@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ....tuning import tuned
+
 
 @dataclass(frozen=True)
 class PivotParameters:
@@ -29,4 +31,4 @@ class PivotParameters:
     refusal."""
 
 
-PIVOTS = PivotParameters()
+PIVOTS = tuned("pivots", PivotParameters())

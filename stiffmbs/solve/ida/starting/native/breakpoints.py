@@ -11,8 +11,8 @@ from stiffmbs.compile.machine.native.statuses import STOP_RETURN
 from stiffmbs.dynamics.native.views import dynamics_view
 from stiffmbs.solve.ida.native.ida_loop import advanced, clear_call
 from stiffmbs.solve.ida.native.ida_memory import array_of, native_ida_view
-from stiffmbs.solve.ida.native.layouts import HISTORY_ROWS
 from stiffmbs.solve.ida.native.output_correction import output_correction_view
+from stiffmbs.solve.ida.native.parameters import LOOP
 from stiffmbs.solve.ida.starting.native.after_event import anew_view, back_with_jump, counted_anew
 from stiffmbs.solve.ida.starting.native.restart import accelerated
 from stiffmbs.solve.ida.starting.native.start import UNFINISHED, begun, keep_counters, prepared, start_view
@@ -95,7 +95,7 @@ def advance_past(count, times, n_stops, stops, most, highest_order, y_out, table
         if flag < 0:
             return int32(flag)
         flag = advanced(c, ida, count, times, stop, most, y_out, 0)
-        if flag != STOP_RETURN or w.passed + 1 == n_stops or c.recorded + most > HISTORY_ROWS:
+        if flag != STOP_RETURN or w.passed + 1 == n_stops or c.recorded + most > 2 * LOOP.most_steps:
             return int32(flag)
         t = c.returned + w.indistinct * abs(c.returned)
         same = t + w.indistinct * abs(t)

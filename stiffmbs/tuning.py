@@ -1,0 +1,151 @@
+"""Parameters of the solvers in use: the defaults, or those that the settings of a run change.
+
+Each subsystem has one frozen dataclass of its parameters. Its instance of defaults is registered by `tuned`, which
+returns an object with the same attributes. Their values are the defaults, except within `in_use`. Compiled code
+contains the values as constants; `values_in` is part of its cache key.
+"""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from contextvars import ContextVar
+from dataclasses import fields, replace
+from functools import cache
+from types import FunctionType, MappingProxyType
+from typing import Any, TypeVar, cast
+
+SUBSYSTEMS = {
+    "accumulation": "solve.error_control.native.parameters:ACCUMULATION",
+    "accumulated_errors": "solve.error_control.accumulated_errors:ACCUMULATED",
+    "auto": "solve.auto_decisions:AUTO",
+    "chattering": "solve.events.chattering:CHATTERING",
+    "cost": "solve.cost:COSTS",
+    "divergence": "solve.events.refusals:DIVERGENCE",
+    "error_filter": "solve.error_control.native.parameters:FILTER",
+    "error_test": "solve.error_control.error_test:PLANAR",
+    "error_test_in_space": "solve.error_control.error_test:SPATIAL",
+    "error_test_of_radau": "solve.radau.radau:CONTROL",
+    "event_search": "solve.events.native.parameters:SEARCH",
+    "explicit_checks": "solve.explicit.adaptive:CHECKS",
+    "explicit_ends": "solve.explicit.native.parameters:ENDS",
+    "explicit_events": "solve.explicit.native.parameters:LOCATION",
+    "explicit_first_step": "solve.explicit.native.parameters:FIRST_STEP",
+    "explicit_rounding": "solve.explicit.rounding:ROUNDING",
+    "explicit_steps": "solve.explicit.native.parameters:CONTROL",
+    "fixed_steps": "solve.explicit.fixed:FIXED_STEP",
+    "jumps": "solve.events.discontinuity:JUMP",
+    "kinematic": "solve.kinematic_parameters:KINEMATIC",
+    "linear_solver": "solve.ida.choice:COSTS",
+    "long_steps": "solve.events.long_steps:LONG_STEP",
+    "loop": "solve.ida.native.parameters:LOOP",
+    "masking": "solve.events.masked:MASKING",
+    "narrow_inputs": "solve.events.narrow_inputs:NARROW_INPUTS",
+    "newton": "solve.error_control.native.parameters:NEWTON",
+    "next_step": "solve.events.native.parameters:NEXT_STEP",
+    "pivots": "solve.linear_solvers.native.parameters:PIVOTS",
+    "polishing": "solve.error_control.native.parameters:POLISHING",
+    "precision": "solve.error_control.precision:PRECISION",
+    "radau": "solve.radau.parameters:RADAU",
+    "relaxation": "solve.error_control.relaxation:RELAXATION",
+    "restarts": "solve.events.restart:RESTARTS",
+    "stability_bound": "solve.explicit.stable_step:STABILITY_BOUND",
+    "stability_limit": "solve.error_control.stability_limit:STABILITY_LIMIT",
+    "sundae": "solve.ida.sundae:FALLBACK",
+    "suspect": "solve.suspect:SUSPECT",
+    "velocity_jumps": "solve.events.velocity_jumps:VELOCITY_JUMP",
+}
+"""Names of the subsystems in ``run.tuning``, and the places of their defaults."""
+Values = Mapping[str, Mapping[str, Any]]
+"""Changed values by the names of subsystem and parameter."""
+Parameters = TypeVar("Parameters")
+_CHANGED: ContextVar[Mapping[str, Any]] = ContextVar("changed", default=MappingProxyType({}))
+"""Changed parameters by the name of their subsystem."""
+
+
+class Tuned:
+    """Parameters of a subsystem, with the attributes of its dataclass."""
+
+    __slots__ = ("_defaults", "_name")
+
+    def __init__(self, name: str, defaults: Any) -> None:
+        self._name, self._defaults = name, defaults
+
+    def __getattr__(self, field: str) -> Any:
+        if field.startswith("_"):
+            raise AttributeError(field)
+        return getattr(_CHANGED.get().get(self._name, self._defaults), field)
+
+
+def tuned(name: str, defaults: Parameters) -> Parameters:
+    """Register the default parameters of a subsystem; the result has their attributes, with the values in use."""
+    return cast("Parameters", Tuned(name, defaults))
+
+
+def parameters_of(found: Any) -> Any:
+    """Return the instance in use of registered parameters, and any other object as it is."""
+    if not isinstance(found, Tuned):
+        return found
+    return _CHANGED.get().get(found._name, found._defaults)
+
+
+def parameters_are_changed() -> bool:
+    """Return True if parameters in use differ from the defaults."""
+    return bool(_CHANGED.get())
+
+
+@cache
+def _read_by(module: str) -> frozenset[str]:
+    """Return the names of the subsystems whose parameters the functions of a module read, also by calls."""
+    found, seen, modules = set(), set(), [module]
+    while modules:
+        name = modules.pop()
+        seen.add(name)
+        for value in vars(importlib.import_module(name)).values():
+            if isinstance(value, Tuned):
+                found.add(value._name)
+            elif isinstance(value, FunctionType) and value.__module__ not in seen:
+                modules.append(value.__module__)
+    return frozenset(found)
+
+
+def values_in(module: str) -> str:
+    """Return the changed parameters in the compiled functions of a module, as text for cache keys; empty if none."""
+    changed = _CHANGED.get()
+    return (
+        "; ".join(f"{name}: {changed[name]!r}" for name in sorted(changed.keys() & _read_by(module))) if changed else ""
+    )
+
+
+@contextmanager
+def in_use(changes: Values) -> Iterator[None]:
+    """Change parameters within a context, for the current thread; those that are not named have their defaults."""
+    token = _CHANGED.set({name: replace(defaults_of(name), **changes[name]) for name in changes})
+    try:
+        yield
+    finally:
+        _CHANGED.reset(token)
+
+
+def defaults_of(name: str) -> Any:
+    """Return the default parameters of a subsystem."""
+    module, _, variable = SUBSYSTEMS[name].partition(":")
+    return getattr(importlib.import_module(f"{__package__}.{module}"), variable)._defaults
+
+
+def numbers_of(parameters: Any) -> dict[str, Any]:
+    """Return the numeric parameters among the fields of a dataclass, and tuples of numbers."""
+    found = {field.name: getattr(parameters, field.name) for field in fields(parameters)}
+    return {
+        name: value for name, value in found.items() if isinstance(value, int | float | tuple) and value is not True
+    }
+
+
+def described() -> Iterator[str]:
+    """Yield a line for each subsystem, with its parameters in use; changed ones are followed by their defaults."""
+    for name in SUBSYSTEMS:
+        usual = numbers_of(defaults_of(name))
+        used = numbers_of(_CHANGED.get().get(name, defaults_of(name)))
+        values = (f"{key} = {used[key]}" + f" (default {usual[key]})" * (used[key] != usual[key]) for key in usual)
+        yield f"parameters {name}: {', '.join(values)}"
