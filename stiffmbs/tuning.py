@@ -73,9 +73,11 @@ class Tuned:
         self._name, self._defaults = name, defaults
 
     def __getattr__(self, field: str) -> Any:
-        if field.startswith("_"):
-            raise AttributeError(field)
-        return getattr(_CHANGED.get().get(self._name, self._defaults), field)
+        changed = _CHANGED.get()
+        return getattr(changed.get(self._name, self._defaults) if changed else self._defaults, field)
+
+    def __reduce__(self) -> tuple[Any, tuple[str]]:
+        return _registered, (self._name,)
 
 
 def tuned(name: str, defaults: Parameters) -> Parameters:
@@ -130,8 +132,13 @@ def in_use(changes: Values) -> Iterator[None]:
 
 def defaults_of(name: str) -> Any:
     """Return the default parameters of a subsystem."""
+    return _registered(name)._defaults
+
+
+def _registered(name: str) -> Tuned:
     module, _, variable = SUBSYSTEMS[name].partition(":")
-    return getattr(importlib.import_module(f"{__package__}.{module}"), variable)._defaults
+    found: Tuned = getattr(importlib.import_module(f"{__package__}.{module}"), variable)
+    return found
 
 
 def numbers_of(parameters: Any) -> dict[str, Any]:

@@ -14,6 +14,7 @@ from ..dynamics.dynamics import Dynamics
 from ..dynamics.initial import InitialValues
 from ..errors import InputError, SolverError
 from ..model.settings import RunSettings
+from ..tuning import parameters_of
 from .driven_states import Instant, states_after
 from .driven_velocities import IntegratedMotion
 from .events.narrow_inputs import hidden_peak, narrower_than_output
@@ -118,6 +119,7 @@ class _Motion:
         self.t, self.steps, self.moves = t, 0, 0
         self._begun = t
         self._status = 0
+        self._parameters = parameters_of(KINEMATIC)
         self.q, self.u, self.a = start.q, start.u, start.acceleration
         state = dynamics.state
         state.q[:], state.u[:] = start.q, start.u
@@ -149,7 +151,7 @@ class _Motion:
         state, t = self._dynamics.state, breakpoint + self._shortest
         state.q[:], state.u[:] = self.q, self.u
         self._status = min(
-            self._dynamics.assemble(t, most=KINEMATIC.most_moves), 0
+            self._dynamics.assemble(t, most=self._parameters.most_moves), 0
         ) or self._dynamics.correct_velocities(t)
         if self._status < 0 or not self._take(t):
             raise SolverError(self._stuck())
@@ -159,12 +161,12 @@ class _Motion:
         state, dynamics = self._dynamics.state, self._dynamics
         step = h * self.u + h * h / 2 * self.a
         self._status = 0
-        if np.abs(step * self._turns).max() > KINEMATIC.rotation:
+        if np.abs(step * self._turns).max() > self._parameters.rotation:
             return False
         predicted_q, predicted_u = dynamics.system.of_body.moved(self.q, step), self.u + h * self.a
         predicted_q[self._counters] += h * self._turning
         state.q[:], state.u[:] = predicted_q, predicted_u
-        moves = dynamics.assemble(t, most=KINEMATIC.most_moves)
+        moves = dynamics.assemble(t, most=self._parameters.most_moves)
         self._status = min(moves, 0)
         if moves < 0 or not self._near(state.q, predicted_q, h):
             return False
@@ -172,13 +174,15 @@ class _Motion:
         if self._status < 0:
             return False
         size = max(_length(self.u), _length(state.u))
-        if _length(state.u - predicted_u) > KINEMATIC.change * size + 1e-9:
+        if _length(state.u - predicted_u) > self._parameters.change * size + 1e-9:
             return False
         before = self.u
         if not self._take(t):
             return False
         secant = (self.u - before) / h
-        if h * _length(self.a - secant) > KINEMATIC.change * size + 1e-9:  # forces of 1e23 N leave no significant digit
+        if (
+            h * _length(self.a - secant) > self._parameters.change * size + 1e-9
+        ):  # forces of 1e23 N leave no significant digit
             self.a = secant
         self.steps, self.moves = self.steps + 1, self.moves + moves
         return True
@@ -208,7 +212,7 @@ class _Motion:
     def _near(self, q: np.ndarray, predicted: np.ndarray, h: float) -> bool:
         own = _length(h * self.u) + _length(h * h / 2 * self.a)
         miss = self._dynamics.system.move(predicted, q)
-        return bool(_length(miss) <= KINEMATIC.surprise * own + 1e-9)
+        return bool(_length(miss) <= self._parameters.surprise * own + 1e-9)
 
     def _polish(self, t: float) -> None:
         """Correct positions to rounding by up to two more Newton moves, then velocities."""

@@ -16,6 +16,7 @@ from stiffmbs.solve.events.chattering import CHATTERING, Chattering
 from stiffmbs.solve.events.discontinuity import sliding
 from stiffmbs.solve.explicit import fixed
 from stiffmbs.solve.trajectory import Outcome
+from stiffmbs.tuning import parameters_of
 from tests.stress.families.roads.kinks import SLIDES, belts, follower
 from tests.stress.families.roads.kinks import wheel as wheel_on_road
 
@@ -116,7 +117,7 @@ def test_fixed_steps_note_a_force_that_jumps_back_and_forth(scene, scheme):
 def test_looks_at_a_jump_leave_fixed_steps_as_they_are(monkeypatch):
     found = []
     for looks in (50, 1):
-        monkeypatch.setattr(fixed, "FIXED_STEP", replace(fixed.FIXED_STEP, checks=looks))
+        monkeypatch.setattr(fixed, "FIXED_STEP", replace(parameters_of(fixed.FIXED_STEP), checks=looks))
         found.append(
             stiffmbs.run(
                 block("-5*sign(block.vx)", velocity=(1, 0)),
@@ -173,7 +174,7 @@ def test_the_number_of_events_to_come_follows_the_law_of_their_growth():
 
 @pytest.mark.parametrize("solver", ["bdf", "dop853"])
 def test_steps_too_short_to_arrive_end_the_run(solver, monkeypatch):
-    changed = replace(chattering.CHATTERING, steps_seen=5000, steps_ahead=20_000)
+    changed = replace(parameters_of(chattering.CHATTERING), steps_seen=5000, steps_ahead=20_000)
     monkeypatch.setattr(chattering, "CHATTERING", changed)
     rub = "-1000*block.vx/sqrt(block.vx^2 + block.vy^2)"
     solution = solve(block(rub, velocity=(1, 0)), solver, monkeypatch, duration=10.0)

@@ -35,25 +35,25 @@ class Routine:
     @property
     def call(self) -> Callable[..., Any]:
         """Function for calls from Python; pointers are passed as addresses."""
-        return self._compiled.call
+        return (self._changed if parameters_are_changed() else self._usual).call
 
     @property
     def short_call(self) -> Callable[..., Any]:
         """Function for calls of a few microseconds, which keep the interpreter lock."""
-        return self._compiled.short_call
+        return (self._changed if parameters_are_changed() else self._usual).short_call
 
     @property
     def address(self) -> int:
         """Address for calls from compiled code."""
-        return self._compiled.address
-
-    @property
-    def _compiled(self) -> Compiled:
-        return self._with(values_in(self.module)) if parameters_are_changed() else self._usual
+        return (self._changed if parameters_are_changed() else self._usual).address
 
     @cached_property
     def _usual(self) -> Compiled:
         return self._with("")
+
+    @property
+    def _changed(self) -> Compiled:
+        return self._with(values_in(self.module))
 
     def _with(self, changed: str) -> Compiled:
         """Return the function compiled with the parameters in use; `changed` are those that are not the default."""

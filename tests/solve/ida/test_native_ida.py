@@ -25,6 +25,7 @@ from stiffmbs.solve.ida.sundae import FALLBACK, SundaeEngine
 from stiffmbs.solve.linear_solvers.block_lu import BlockLU
 from stiffmbs.solve.linear_solvers.fixed_order import FixedOrder, PairedColumns
 from stiffmbs.sparse.elimination_order import EliminationOrder, elimination_order
+from stiffmbs.tuning import parameters_of
 
 
 class Problem:
@@ -146,9 +147,9 @@ def test_all_matrices_give_the_same_motion(chain, kind):
 
 
 def test_the_linear_solver_is_that_of_the_least_estimated_cost(chain, squeezer, monkeypatch):
-    monkeypatch.setattr(choice, "COSTS", replace(choice.COSTS, worth_compiling=np.inf))
+    monkeypatch.setattr(choice, "COSTS", replace(parameters_of(choice.COSTS), worth_compiling=np.inf))
     assert type(chosen(chain.equations)[1]) is FixedOrder, "blocks would save too little to be compiled"
-    monkeypatch.setattr(choice, "COSTS", replace(choice.COSTS, worth_compiling=0.0))
+    monkeypatch.setattr(choice, "COSTS", replace(parameters_of(choice.COSTS), worth_compiling=0.0))
     assert isinstance(chosen(chain.equations)[1], BlockLU)
     monkeypatch.setattr(choice, "block_cost", lambda *_: np.inf)
     assert type(chosen(chain.equations)[1]) is FixedOrder
@@ -175,7 +176,7 @@ def test_without_superlu_another_linear_solver_is_chosen(chain, monkeypatch):
     def missing():
         raise libraries.Unavailable("no SuperLU_MT")
 
-    monkeypatch.setattr(choice, "COSTS", replace(choice.COSTS, superlu=(0.0, 0.0, 0.0)))
+    monkeypatch.setattr(choice, "COSTS", replace(parameters_of(choice.COSTS), superlu=(0.0, 0.0, 0.0)))
     assert isinstance(chosen(chain.equations)[1], Sparse)
     monkeypatch.setattr("stiffmbs.solve.ida.matrices.sparse_libraries", missing)
     assert isinstance(chosen(chain.equations)[1], FixedOrder)

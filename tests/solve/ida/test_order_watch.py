@@ -12,6 +12,7 @@ from stiffmbs.solve.error_control import stability_limit
 from stiffmbs.solve.ida.native.parameters import LOOP
 from stiffmbs.solve.integrator import Integrator
 from stiffmbs.solve.trajectory import Grid
+from stiffmbs.tuning import parameters_of
 
 
 def rod_on_bushing(stiffness):
@@ -26,7 +27,7 @@ def rod_on_bushing(stiffness):
 
 def check_first_after(monkeypatch, steps):
     """The first check comes after that many steps."""
-    changed = replace(stability_limit.STABILITY_LIMIT, interval=steps)
+    changed = replace(parameters_of(stability_limit.STABILITY_LIMIT), interval=steps)
     monkeypatch.setattr(stability_limit, "STABILITY_LIMIT", changed)
 
 

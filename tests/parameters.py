@@ -1,0 +1,149 @@
+"""Halve and double each parameter of the solvers, and report those that change no result of a set of short runs.
+
+    python -m tests.parameters [SUBSYSTEM...] [--json] [--all]
+
+A value outside of its range is replaced by the middle between the default and the bound.  A result is every channel, counter,
+note and message of a run; elapsed times are left out.  Runs with changed parameters compile the routines that read them, so that
+all subsystems take about an hour; set STIFFMBS_CACHE to a folder of its own.
+"""
+
+from __future__ import annotations
+
+import argparse
+import hashlib
+import json
+import time
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import stiffmbs
+from stiffmbs import tuning
+from stiffmbs.errors import StiffmbsError
+from stiffmbs.model.tuning import bounds
+
+EXAMPLES = Path(__file__).parents[1] / "examples"
+NARROW = """
+{bodies: {a: {mass: 1, inertia: 1}}, forces: {push: {type: force, i: a, force: ["1000*exp(-((t - 3.3)/0.004)^2)", 0]}}, run: {duration: 5 s}}
+"""
+SLIDING = """
+{bodies: {a: {mass: 1, inertia: 1, velocity: [1, 0]}}, forces: {drag: {type: force, i: a, force: ["-2*sign(a.vx)", 0]}}, run: {duration: 1 s}}
+"""
+GROWING = """
+{bodies: {a: {mass: 1, inertia: 1, velocity: [1, 0]}}, forces: {push: {type: force, i: a, force: ["100*a.x^3", 0]}}, run: {duration: 20 s}}
+"""
+DAMPED = """
+{bodies: {a: {mass: 1e-4, inertia: 1e-6, position: [1, 0]}}, gravity: [0, -9.81], joints: {j: {type: prismatic, i: a, j: ground}},
+ forces: {d: {type: force, i: a, force: ["1 - 1e4*a.vx - 1e3*(a.x - 0.5)", 0]}}, run: {duration: 1 s}}
+"""
+
+
+class Case(NamedTuple):
+    """Short run of an example or of a scene's text, with changed settings."""
+
+    scene: str
+    settings: dict[str, Any]
+
+    def result(self, changes: tuning.Values | None = None) -> str:
+        """Return a digest of everything that a run gives, or its error."""
+        try:
+            found = stiffmbs.run(_scene(self.scene), tuning=changes or {}, **self.settings)
+        except StiffmbsError as error:
+            return str(error)
+        counters = {name: value for name, value in found.solver.items() if "seconds" not in name}
+        digest = hashlib.sha256(repr((found.message, found.notes, sorted(counters.items()))).encode())
+        for name in sorted(found.channels):
+            digest.update(found.channels[name].tobytes())
+        return digest.hexdigest()
+
+
+@cache
+def _scene(name: str) -> Any:
+    return stiffmbs.read_scene(name) if "{" in name else stiffmbs.load_scene(EXAMPLES / f"{name}.yaml")
+
+
+CASES = tuple(
+    Case(scene, {"duration": duration, "points": 101, **settings})
+    for scene, duration, *variants in (
+        ("cart_pendulum", 2.0, {}, {"solver": "projected"}, {"rtol": 1e-10}, {"solver": "radau"}),
+        ("half_car", 0.5, {}, {"solver": "auto"}, {"solver": "radau"}, {"rtol": 1e-9}, {"solver": "auto", "rtol": 1e-3}),
+        ("bouncing_ball", 1.0, {}, {"solver": "projected"}, {"solver": "radau"}),
+        ("stick_slip", 2.0, {}, {"solver": "projected"}),
+        ("cam_follower", 1.0, {}, {"solver": "projected"}, {"solver": "projected", "scheme": "dopri5"}),
+        ("crank_slider", 1.0, {"solver": "kinematic"}, {"solver": "auto"}),
+        ("andrews", 0.03, {}, {"solver": "projected"}, {"rtol": 1e-3}),
+        ("dead_centres", 2.0, {}, {"solver": "projected"}),
+        ("simple_pendulum", 1.0, {"solver": "projected", "scheme": "rk4", "step": 3e-3}),
+        ("dzhanibekov", 5.0, {}, {"solver": "projected"}, {"solver": "projected", "rtol": 1e-12}),
+        ("heavy_top", 1.0, {}, {"solver": "radau"}),
+        (NARROW, 5.0, {}, {"solver": "projected"}),
+        (SLIDING, 1.0, {}, {"solver": "projected"}, {"solver": "projected", "scheme": "rk4"}),
+        (GROWING, 20.0, {}, {"solver": "projected"}),
+        (DAMPED, 1.0, {}, {"solver": "auto"}),
+        ("chain", 0.5, {}, {"solver": "projected"}),
+        ("four_bars", 0.5, {}, {"solver": "radau"}),
+        ("spatial_chain", 0.2, {}, {"solver": "projected"}),
+    )
+    for settings in variants
+)  # fmt: skip
+
+
+@cache
+def usual(case: Case) -> str:
+    """Return the result with the default parameters."""
+    return case.result()
+
+
+def changed(value: Any, factor: float) -> Any:
+    """Return a value multiplied by a factor, or one between it and the bound that the factor exceeds."""
+    if isinstance(value, int):
+        return max(round(value * factor), 1) if factor < 1.0 or value > 0 else 1
+    least, most = bounds(value)
+    scaled = value * factor
+    return scaled if least < scaled < most else (value + (least if scaled <= least else most)) / 2
+
+
+def variations(name: str) -> Iterator[tuple[str, str, Any]]:
+    """Yield the label, field and value of each changed parameter of a subsystem."""
+    for field, value in tuning.numbers_of(tuning.defaults_of(name)).items():
+        for factor in (0.5, 2.0):
+            if isinstance(value, tuple):
+                for k, each in enumerate(value):
+                    yield f"{field}.{k}", field, (*value[:k], changed(each, factor), *value[k + 1 :])
+            else:
+                yield field, field, changed(value, factor)
+
+
+def first_changed(name: str, field: str, value: Any) -> str:
+    """Return the first case with another result if a parameter is changed; empty if none."""
+    for case in CASES:
+        if case.result({name: {field: value}}) != usual(case):
+            return f"{case.scene.strip()[:20]} {case.settings}"
+    return ""
+
+
+def main() -> None:
+    """Print a line for each parameter that changes nothing, or for all."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("subsystems", nargs="*", choices=[*tuning.SUBSYSTEMS, []], default=[])
+    parser.add_argument("--json", action="store_true", help="print one object a line")
+    parser.add_argument("--all", action="store_true", help="print parameters that change a result, too")
+    asked = parser.parse_args()
+    for name in asked.subsystems or tuning.SUBSYSTEMS:
+        found: dict[str, list[str]] = {}
+        begun = time.monotonic()
+        for label, field, value in variations(name):
+            found.setdefault(label, []).append(first_changed(name, field, value))
+        for label, by in found.items():
+            row = {"parameter": f"{name}.{label}", "halved": by[0], "doubled": by[-1]}
+            if asked.json:
+                print(json.dumps(row), flush=True)
+            elif asked.all or not any(by):
+                print(f"{row['parameter']}: " + ("; ".join(filter(None, by)) or "changes nothing"), flush=True)
+        if not asked.json:
+            print(f"{name}: {len(found)} parameters, {time.monotonic() - begun:.0f} s", flush=True)
+
+
+if __name__ == "__main__":
+    main()
