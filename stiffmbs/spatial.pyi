@@ -352,7 +352,7 @@ class LineForce(_LineForce):
     ) -> None: ...
 
 class MagicFormulaTyre(_MagicFormulaTyre):
-    """Magic Formula tyre (Pacejka) of MF-Tyre 5.2 and PAC2002, with the coefficients of a property file (.tir)."""
+    """Magic Formula tyre (Pacejka) of MF-Tyre 5.2, PAC2002, 6.1 and 6.2, with the coefficients of a property file (.tir)."""
     def __init__(
         self,
         *,
@@ -364,6 +364,8 @@ class MagicFormulaTyre(_MagicFormulaTyre):
         hand: given.Number = ...,
         side: Literal["left", "right"] | None = ...,
         transient: bool | None = ...,
+        pressure: given.Number | None = ...,
+        turn_slip: bool | None = ...,
         type: Literal["magic_formula_tyre"] = ...,
     ) -> None: ...
 

@@ -32,7 +32,7 @@ elements. Also ``e.t`` for time, ``e.rate(expression)`` for a total time derivat
 
 
 IN_EQUATIONS = frozenset([
-    "a", "angle", "angles", "at_extremum", "breakpoints", "by", "by_accelerations", "by_q", "by_u", "common_normal",
+    "a", "angle", "angles", "at_extremum", "at_root", "breakpoints", "by", "by_accelerations", "by_q", "by_u", "common_normal",
     "composed", "coordinate", "coordinates", "depends", "derivatives", "distance", "frames", "in_state", "integral",
     "is_constant", "kind", "lam", "loads", "logarithm", "meanings", "named", "own", "point", "q", "rate", "reaction",
     "read", "relative_rotation", "second_rate", "shortest_rotation", "slope", "state_rates", "states", "t", "type", "u",
@@ -142,6 +142,10 @@ class Element(Described):
             "const": cls.kind, "default": cls.kind, "title": "Type", "type": "string",
         }  # fmt: skip
         return schema
+
+    def own_notes(self) -> Iterator[str]:
+        """Yield notes about the element for the user."""
+        yield from ()
 
     def parts(self, part: builtins.type) -> Iterator[tuple[str, Any]]:
         """Yield the fields of a type, such as markers, formulas or joint names, with field names, in order."""

@@ -134,9 +134,9 @@ def notes_of(model: ModelData) -> tuple[str, ...]:
     """Return the notes of a scene, and of the roads and tyres of a model."""
     told: dict[str, list[str]] = {}
     for name, element in model.forces.items():
-        for _, component in element.parts(Component):
-            for note in component.notes():
-                told.setdefault(note, []).append(name)
+        components = (component for _, component in element.parts(Component))
+        for note in (*element.own_notes(), *(note for component in components for note in component.notes())):
+            told.setdefault(note, []).append(name)
     own = model.notes if isinstance(model, Scene) else ()
     return (*own, *(f"{', '.join(names)}: {note}" for note, names in told.items()))
 

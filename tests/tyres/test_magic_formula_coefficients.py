@@ -5,7 +5,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from stiffmbs.elements.tyres.magic_formula import OUTPUTS, relaxation_lengths
+from stiffmbs.elements.tyres.coefficients import WRENCH
+from stiffmbs.elements.tyres.magic_formula import relaxation_lengths
 from stiffmbs.elements.tyres.names import COEFFICIENTS, SCALES
 from stiffmbs.tyres import TyreProperties
 
@@ -53,7 +54,7 @@ def by_package(tyre, states):
     load, kappa, alpha, gamma, ratio = states.T
     found = TyreProperties(coefficients=tyre).wrench(load, kappa, alpha, gamma, ratio * tyre["LONGVL"])
     lengths = [[float(x) for x in relaxation_lengths(SimpleNamespace(**tyre), s[0], s[3], lambda x: x)] for s in states]
-    return np.column_stack([*(found[name] for name in OUTPUTS), np.array(lengths)])
+    return np.column_stack([*(found[name] for name in WRENCH), np.array(lengths)])
 
 
 def difference(one, other):

@@ -67,10 +67,35 @@ def test_unknown_keys_and_missing_weights_are_noted(read):
     assert "[UNITS]" not in notes  # no entry is a mass or an angle
 
 
-@pytest.mark.parametrize("kind", [60, 61, 62, 7, 21, 2012, 61.0, 51.5, 0, -5])
+@pytest.mark.parametrize("kind", [7, 21, 2012, 51.5, 0, -5, "'FTIRE'"])
 def test_files_of_other_formulas_are_refused_by_their_fittyp(read, kind):
-    with pytest.raises(InputError, match=r"line 10: found FITTYP = .*expected that of MF-Tyre 5\.2, one of 5, 6"):
+    with pytest.raises(
+        InputError, match=r"line 10: found FITTYP = .*expected that of MF-Tyre 5\.2 \(5, 6, 50, 52\), 6\.1"
+    ):
         read(FILE.replace("LONGVL = 16700", f"FITTYP = {kind}"))
+
+
+@pytest.mark.parametrize(
+    ("kind", "version"),
+    [(5, "5.2"), ("'PAC2002'", "5.2"), (60, "6.1"), (61.0, "6.1"), ("'MF_6.1'", "6.1"), (62, "6.2"), ("'mf62'", "6.2")],
+)
+def test_fittyp_selects_the_version(read, kind, version):
+    found = read(FILE.replace("LONGVL = 16700", f"FITTYP = {kind}"))
+    assert found.version == version
+    assert any("version 6.0" in note for note in found.notes()) == (kind == 60)
+
+
+def test_a_format_of_a_later_version_selects_it_without_fittyp(read):
+    assert read(FILE.replace("PAC2002", "MF_62")).version == "6.2"
+    assert read(FILE.replace("PAC2002", "MF_62").replace("LONGVL", "FITTYP = 52\nLONGVL")).version == "5.2"
+
+
+def test_pressures_have_the_units_of_the_file(read):
+    """1 kN/mm2 is 1e9 Pa."""
+    text = FILE.replace("LONGVL", "FITTYP = 61\nLONGVL")
+    found = read(f"{text}[OPERATING_CONDITIONS]\nNOMPRES = 0.00024\nINFLPRES = 0.0003\n")
+    assert found.coefficients["NOMPRES"] == pytest.approx(2.4e5)
+    assert found.nominal_pressure == pytest.approx(3e5)
 
 
 @pytest.mark.parametrize("kind", [5, 6, 52])

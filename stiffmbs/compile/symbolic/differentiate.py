@@ -6,7 +6,7 @@ SymPy's `diff` traverses every subexpression for each derivative, which is slow 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 import sympy as sp
 
@@ -72,6 +72,29 @@ class Derivatives:
         symbol = self._new("extreme", x.xreplace(at))
         self._chain[symbol] = {
             v: self.named(self.partial(x, v).xreplace(at)) for v in state if v in self._variables[symbol]
+        }
+        return symbol
+
+    def at_root(
+        self,
+        residual: Callable[[sp.Symbol], sp.Expr],
+        value: sp.Expr,
+        variables: Sequence[sp.Symbol],
+        state: Iterable[sp.Symbol],
+    ) -> sp.Symbol:
+        """Return a symbol for the zero of a function of it and of few variables, with the given value.
+
+        Its derivatives follow from the implicit function theorem.
+        """
+        symbol = self._new("root", value)
+        self._chain[symbol] = {}  # a variable like the others until its derivatives are known
+        function = residual(symbol)
+        inverse = self.named(-1 / self.partial(function, symbol))
+        slopes = [(self.named(inverse * self.partial(function, variable)), variable) for variable in variables]
+        self._chain[symbol] = {
+            v: sp.Add(*(slope * self.partial(variable, v) for slope, variable in slopes))
+            for v in state
+            if v in self._variables[symbol]
         }
         return symbol
 

@@ -292,3 +292,7 @@ class SymbolicElement:
         variables = [sp.Symbol(f"extremal{k}", real=True) for k in range(len(at))]
         values = dict(zip(variables, at, strict=True))
         return self.derivatives.at_extremum(self.read(function(variables)), values, self._state)
+
+    def at_root(self, residual: Callable[[sp.Symbol], Any], value: Any, variables: Sequence[sp.Symbol]) -> sp.Symbol:
+        """Return a symbol for the zero of a function, computed as `value`, differentiated through few variables."""
+        return self.derivatives.at_root(lambda x: self.read(residual(x)), self.read(value), variables, self._state)

@@ -115,3 +115,16 @@ def slips(e: Symbolic, contact: ContactPoint, sliding: Any, slow: Any) -> tuple[
     missing = above_zero(e.named(slow - forward))
     speed = e.named(forward + missing**2 / (2 * slow))
     return e.named(-sliding / speed), e.named(contact.vy / speed), speed
+
+
+def yaw_rate(e: Symbolic, contact: ContactPoint) -> Any:
+    """Return the rate at which the heading turns about the road's normal, rad/s.
+
+    With the angular velocity omega = yaw n + tilt x + turns y about the normal, the heading, and the spin axis, which is
+    inclined by the camber, the spin is omega y = turns + yaw sin(camber).
+    """
+    from sympy import sin
+
+    omega = e.named(e.i.omega if e.j is None else e.i.omega - e.j.omega)
+    inclined = e.named(sin(contact.camber))
+    return e.named((omega.dot(contact.normal) - inclined * contact.spin) / (1 - inclined**2))

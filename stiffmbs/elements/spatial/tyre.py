@@ -41,6 +41,8 @@ class Rolling:
         Vx over `speed`: 1 forward, -1 backward, with a smooth transition near zero speed.
     friction : Symbol
         Friction factor of the road.
+    turn, rolling : Symbol, optional
+        Yaw rate and spin over the speed of the contact point, 1/m, of a tyre with turn slip.
     """
 
     load: Any
@@ -50,11 +52,13 @@ class Rolling:
     speed: Any
     direction: Any
     friction: Any
+    turn: Any = None
+    rolling: Any = None
 
 
 @dataclass(frozen=True)
-class _Touch:
-    """Contact, radial deflection (m), load (N), slip, tangent of slip angle, reference speed (m/s), state rates."""
+class Touch:
+    """Contact, deflection (m), load (N), slip, tangent of slip angle, reference speed (m/s), state rates, turn slip."""
 
     contact: ContactPoint
     deflection: Any
@@ -63,6 +67,7 @@ class _Touch:
     tangent: Any
     speed: Any
     rates: tuple[Any, ...] = ()
+    turn: tuple[Any, ...] = ()
 
 
 class Tyre(Force):
@@ -115,7 +120,7 @@ class Tyre(Force):
         return e.stiffness * deflection + e.damping * rate
 
     @staticmethod
-    def rim_contact(e: Symbolic, deflection: Any, camber: Any) -> tuple[Any, Any] | None:
+    def rim_contact(e: Symbolic, deflection: Any, contact: ContactPoint) -> tuple[Any, Any] | None:
         """Return the rim's normal force on the road, N, and its overturning torque, N m, or None."""
         return None
 
@@ -127,7 +132,8 @@ class Tyre(Force):
         return cls.unloaded_radius(e) - deflection * Rational(1, 3)
 
     @classmethod
-    def _touching(cls, e: Symbolic) -> _Touch:
+    def touching(cls, e: Symbolic) -> Touch:
+        """Return the contact with its load and slips."""
         from sympy import Max, Piecewise
 
         contact = contact_point(e)
@@ -137,30 +143,30 @@ class Tyre(Force):
         sliding = e.named(contact.vx - e.named(cls.rolling_radius(e, deflection)) * contact.spin)
         slip, tangent, speed = slips(e, contact, sliding, e.slow)
         if not e.own:
-            return _Touch(contact, deflection, load, slip, tangent, speed)
+            return Touch(contact, deflection, load, slip, tangent, speed)
         slip, tangent, rates = lagged(e, contact, sliding, cls.relaxation_lengths(e, e.named(load), contact.camber))
-        return _Touch(contact, deflection, load, slip, tangent, speed, rates)
+        return Touch(contact, deflection, load, slip, tangent, speed, rates)
 
     @classmethod
     def _acting(cls, e: Symbolic) -> tuple[Any, Rolling, Any, Any]:
         """Return the contact, the arguments of the law, the deflection, and forces and torques with the rim."""
         from sympy import atan
 
-        touch = cls._touching(e)
+        touch = cls.touching(e)
         contact, angle = touch.contact, e.named(atan(touch.tangent))
         direction = contact.vx / touch.speed
-        of = (touch.load, touch.slip, angle, contact.camber, touch.speed, direction, contact.friction)
+        of = (touch.load, touch.slip, angle, contact.camber, touch.speed, direction, contact.friction, *touch.turn)
         rolling = Rolling(*(e.variable(x) if e.in_state(x) else x for x in map(e.read, of)))
-        variables = [x for x in vars(rolling).values() if e.in_state(x)]
+        variables = [x for x in vars(rolling).values() if x is not None and e.in_state(x)]
         fx, fy, mx, my, mz = e.composed(cls.law(e, rolling), variables)
-        rim = cls.rim_contact(e, touch.deflection, contact.camber)
+        rim = cls.rim_contact(e, touch.deflection, contact)
         normal = rolling.load if rim is None else e.read(touch.load + rim[0])
         return contact, rolling, touch.deflection, (fx, fy, normal, mx if rim is None else mx + rim[1], my, mz)
 
     @classmethod
     def rates(cls, e: Symbolic) -> Any:
         """Return the rates of the contact patch deflections of a tyre with relaxation lengths."""
-        return cls._touching(e).rates
+        return cls.touching(e).rates
 
     @classmethod
     def powers(cls, e: Symbolic) -> Pairs:

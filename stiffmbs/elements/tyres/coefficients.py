@@ -17,40 +17,20 @@ from ...reading.files.requested import unused_notes
 from ...reading.table import Table
 from ..element import Component
 from ..read_by import Context, JsonSchema, ReadBy
-from .names import (
-    AS_BEFORE,
-    COEFFICIENTS,
-    COMBINED,
-    DIMENSIONS,
-    LATER,
-    OF_THE_FILE,
-    RANGES,
-    REASONS,
-    REQUIRED,
-    SCALES,
-    home,
-)
+from .formulas import OF_FITTYP, OF_FORMAT, VERSIONS, Version, plain
+from .names import AS_BEFORE, COMBINED, LATER, OF_THE_FILE, RANGES, REASONS, REQUIRED, TURN_SLIP, home
 from .property_file import PropertyFile, read_property_file
 
 if TYPE_CHECKING:
     import numpy as np
 
-NUMBERS = (*COEFFICIENTS, *SCALES, *DIMENSIONS)
-UNLIMITED = 1e12
-"""Largest load of a file without FZMAX, N."""
-DEFAULTS = {
-    **dict.fromkeys(COEFFICIENTS, 0.0), **dict.fromkeys(SCALES, 1.0), "VERTICAL_DAMPING": 0.0, "BREFF": 0.0, "DREFF": 0.0,
-    "FREFF": 1 / 3, "LONGVL": 16.7, "FZMAX": UNLIMITED, "PTY2": 1.0,
-}  # fmt: skip
-"""Default values; FREFF gives the unloaded radius less a third of the deflection as rolling radius."""
 WITH_LENGTHS = 10
 """Increment of USE_MODE for transient slips by relaxation lengths."""
-MODES = frozenset((*range(5), *range(10, 15)))
-"""Values of USE_MODE without sign."""
-FITTYPES = (5, 6, 50, 52)
-"""FITTYP of MF-Tyre 5.x."""
+WITH_TURN_SLIP = 5
+"""Last digit of USE_MODE with turn slip."""
 SIDES = ("left", "right", "symmetric")
-FORMATS = ("PAC2002", "MF_05", "MF-TYRE", "MF_52", "52", "MF52")
+DEEP = 0.1
+"""Second point of the linear curve of BOTTOM_STIFF, m; it is extrapolated."""
 
 
 class Bottoming(Component):
@@ -71,39 +51,60 @@ class TyreProperties(Component):
     """
 
     coefficients: dict[str, float] = Field(description="by name, SI units")
-    use_mode: int | None = Field(None, description="USE_MODE of PAC2002; 4, or 14 with relaxation lengths, by default")
+    version: Literal["5.2", "6.1", "6.2"] = Field("5.2", description="of the Magic Formula; 5.2 includes PAC2002")
+    use_mode: int | None = Field(None, description="USE_MODE; 4, or 14 with relaxation lengths, by default")
     side: Literal["", "left", "right", "symmetric"] = Field("", description="TYRESIDE, that the tyre was measured on")
     ranges: dict[str, tuple[float, float]] = Field(
         {},
-        description="valid ranges of slip, slip_angle (rad), camber (rad) and load (N)",
+        description="valid ranges of slip, slip_angle (rad), camber (rad), load (N) and pressure (Pa)",
     )
     deflection_load: Table | None = Field(
-        None, description="load (N) over deflection (m), in place of VERTICAL_STIFFNESS"
+        None, description="load (N) over deflection (m), in place of VERTICAL_STIFFNESS; 5.2 alone"
     )
     bottoming: Bottoming | None = Field(None, description="contact of the rim with the road")
     remarks: tuple[str, ...] = ()
 
     @model_validator(mode="after")
     def _complete(self) -> TyreProperties:
+        known = self.formula.numbers
         for name in self.coefficients:
-            if name not in NUMBERS:
+            if name not in known:
                 raise ValueError(
-                    f"found the unknown coefficient '{quoted(name)}'{did_you_mean(name, NUMBERS)}, expected one such as PCX1, FNOMIN, LMUX"
+                    f"found the unknown coefficient '{quoted(name)}'{did_you_mean(name, known)}, expected one such as PCX1, FNOMIN, LMUX"
                 )
         for name in REQUIRED:
             if name not in self.coefficients:
                 raise ValueError(f"found no {name}, expected one")
             if not self.coefficients[name]:
                 raise ValueError(f"found {name} = 0, expected a number other than zero")
-        if self.use_mode is not None and abs(self.use_mode) not in MODES:
-            raise ValueError(_wrong_mode(self.use_mode))
-        for name in ("FNOMIN", "UNLOADED_RADIUS", "VERTICAL_STIFFNESS"):
-            if self.coefficients[name] < 0:
+        if self.use_mode is not None and abs(self.use_mode) not in self.formula.modes:
+            raise ValueError(_wrong_mode(self.use_mode, self.formula))
+        for name in ("FNOMIN", "UNLOADED_RADIUS", "VERTICAL_STIFFNESS", "NOMPRES"):
+            if self.coefficients.get(name, 1.0) <= 0:
                 raise ValueError(f"found {name} = {self.coefficients[name]:g}, expected a number above zero")
+        if self.formula.has_pressure:
+            self._check_stiffness()
         return self
+
+    def _check_stiffness(self) -> None:
+        """Refuse a progressive stiffness that the stiffness at the nominal load contradicts (Q_FZ1 of 6.1)."""
+        p = {**self.formula.defaults, **self.coefficients}
+        slope = p["VERTICAL_STIFFNESS"] * p["UNLOADED_RADIUS"] / p["FNOMIN"]
+        if slope**2 <= 4 * p["Q_FZ2"]:
+            raise ValueError(
+                f"found Q_FZ2 = {p['Q_FZ2']:g}, expected less than {slope**2 / 4:.4g}, that is "
+                "(VERTICAL_STIFFNESS UNLOADED_RADIUS/FNOMIN)^2/4"
+            )
+        if self.deflection_load is not None:
+            raise ValueError(f"found a deflection_load of a tyre of version {self.version}, expected one of 5.2")
 
     def __hash__(self) -> int:
         return hash(tuple(self.coefficients.items()))
+
+    @property
+    def formula(self) -> Version:
+        """Version of the Magic Formula."""
+        return VERSIONS[self.version]
 
     @property
     def is_combined(self) -> bool:
@@ -112,7 +113,9 @@ class TyreProperties(Component):
 
     @property
     def has_lengths(self) -> bool:
-        """True if there are relaxation lengths."""
+        """True if there are relaxation lengths, or the stiffnesses of 6.1 that give them."""
+        if self.formula.has_pressure:
+            return all(self.coefficients.get(f"{name}_STIFFNESS", 0.0) > 0 for name in ("LONGITUDINAL", "LATERAL"))
         return any(self.coefficients.get(name, 0.0) for name in ("PTX1", "PTY1"))
 
     @property
@@ -121,24 +124,45 @@ class TyreProperties(Component):
         return self.has_lengths and (self.use_mode is None or abs(self.use_mode) > WITH_LENGTHS)
 
     @property
+    def has_turn_slip(self) -> bool:
+        """True if there are coefficients of turn slip."""
+        return self.formula.has_pressure and any(self.coefficients.get(name, 0.0) for name in TURN_SLIP)
+
+    @property
+    def takes_turn_slip(self) -> bool:
+        """True if USE_MODE selects turn slip."""
+        return self.use_mode is not None and abs(self.use_mode) % WITH_LENGTHS == WITH_TURN_SLIP
+
+    @property
     def is_mirrored(self) -> bool:
         """True if USE_MODE is negative."""
         return self.use_mode is not None and self.use_mode < 0
 
+    @property
+    def nominal_pressure(self) -> float | None:
+        """INFLPRES or NOMPRES, Pa; None for 5.2."""
+        if not self.formula.has_pressure:
+            return None
+        numbers = {**self.formula.defaults, **self.coefficients}
+        return numbers["INFLPRES"] or numbers["NOMPRES"]
+
     def in_equations(self) -> dict[str, Any]:
         """Return the names and values that the equations use."""
         mode = 4 if self.use_mode is None else abs(self.use_mode) % WITH_LENGTHS
-        own = {
-            "is_combined": self.is_combined, "mode": str(mode), "is_mirrored": self.is_mirrored, "side": self.side,
-            "deflection_load": self.deflection_load, "bottoming": self.bottoming,
+        own: dict[str, Any] = {
+            "ellipse": "" if self.is_combined else "limit", "mode": str(mode), "is_mirrored": self.is_mirrored, "side": self.side,
+            "deflection_load": self.deflection_load, "bottoming": self.bottoming, "formula": self.version,
         }  # fmt: skip
-        return {**DEFAULTS, **self.coefficients, **own}
+        if self.nominal_pressure is not None:
+            own["INFLPRES"] = self.nominal_pressure
+        return {**self.formula.defaults, **self.coefficients, **own}
 
     def notes(self) -> Iterator[str]:
         """Yield sentences on settings that the equations do not use."""
         yield from self.remarks
         if self.use_mode is not None and abs(self.use_mode) > WITH_LENGTHS and not self.has_lengths:
-            yield f"USE_MODE = {self.use_mode} asks for relaxation lengths, and there are none (PTX1, PTY1): slips are those of the steady state"
+            missing = "LONGITUDINAL_STIFFNESS, LATERAL_STIFFNESS" if self.formula.has_pressure else "PTX1, PTY1"
+            yield f"USE_MODE = {self.use_mode} asks for relaxation lengths, and there are none ({missing}): slips are those of the steady state"
         if not self.is_combined:
             yield "there are no coefficients of combined slip (RBX1, RCX1, RBY1, RCY1): forces are held on the friction ellipse"
 
@@ -150,13 +174,14 @@ class TyreProperties(Component):
         camber: Any = 0.0,
         speed: Any = None,
         friction: Any = 1.0,
+        pressure: Any = None,
     ) -> dict[str, np.ndarray]:
         """Return forces and torques of steady slip, rolling forward, in ISO axes at the contact point.
 
         Parameters
         ----------
         load : array_like
-            N, positive.
+            N, positive; values above FZMAX count as FZMAX.
         slip : array_like
             kappa, positive when driving.
         slip_angle, camber : array_like
@@ -165,17 +190,77 @@ class TyreProperties(Component):
             m/s, for the rolling resistance; LONGVL of the file by default.
         friction : array_like
             Friction factor of the road.
+        pressure : array_like, optional
+            Inflation pressure, Pa, of 6.1 and 6.2; INFLPRES or NOMPRES by default.
 
         Returns
         -------
         dict of str to ndarray
             ``longitudinal``, ``lateral`` (N), ``overturning``, ``rolling``, ``aligning`` (N m); arguments broadcast.
         """
-        from .magic_formula import steady_wrench
+        import numpy as np
 
-        numbers = self.in_equations()
-        rolling = numbers["LONGVL"] if speed is None else speed
-        return steady_wrench(numbers, load, slip, slip_angle, camber, rolling, friction)
+        load = np.minimum(load, self.coefficients.get("FZMAX", math.inf))
+        found = self.steady_state(load, slip, slip_angle, camber, pressure, speed, friction=friction)
+        return {name: found[symbol] for name, symbol in WRENCH.items()}
+
+    def steady_state(
+        self,
+        Fz: Any,
+        kappa: Any = 0.0,
+        alpha: Any = 0.0,
+        gamma: Any = 0.0,
+        p: Any = None,
+        Vx: Any = None,
+        phit: Any = None,
+        friction: Any = 1.0,
+    ) -> dict[str, np.ndarray]:
+        """Return the steady state of the tyre in ISO axes at the contact point, with the symbols of the Magic Formula.
+
+        No valid range is applied, and the low-speed formula of the element is not used.
+
+        Parameters
+        ----------
+        Fz : array_like
+            Load, N, zero or positive.
+        kappa : array_like
+            Longitudinal slip, positive when driving, -1 for a locked wheel.
+        alpha, gamma : array_like
+            Slip angle and camber, rad: a positive slip angle gives a negative side force, with positive camber the top
+            leans to the right.
+        p : array_like, optional
+            Inflation pressure, Pa; INFLPRES or NOMPRES by default. Version 5.2 has none.
+        Vx : array_like, optional
+            Forward speed of the contact point, m/s, negative in reverse; LONGVL by default.
+        phit : array_like, optional
+            Turn slip, yaw rate over speed, 1/m, positive in a turn to the left. Without it the equations of turn slip
+            are not used.
+        friction : array_like
+            Friction factor of the road.
+
+        Returns
+        -------
+        dict of str to ndarray
+            Forces ``Fx``, ``Fy`` (N) and torques ``Mx``, ``My``, ``Mz`` (N m); stiffnesses ``Kxk`` (N), ``Kya``,
+            ``Kyg0`` (N/rad); peak friction ``mux``, ``muy``; pneumatic trail ``t`` (m) and residual torque ``Mzr`` (N
+            m); ``omega`` (rad/s), effective radius ``Re``, deflection ``rho``, loaded radius ``Rl`` (m); relaxation
+            lengths ``sigma_x``, ``sigma_y`` (m); half length ``a`` and half width ``b`` of the contact patch (m).
+            ``Kyg0``, ``a`` and ``b`` are of 6.1 and 6.2 alone. The arguments broadcast.
+
+        Raises
+        ------
+        InputError
+            For a negative load, a pressure or turn slip of a tyre of version 5.2, or turn slip without coefficients.
+        """
+        from .steady_state import steady_state
+
+        if p is not None and not self.formula.has_pressure:
+            raise InputError("found a pressure for a tyre of version 5.2, expected a tyre of 6.1 or 6.2")
+        if phit is not None and not self.has_turn_slip:
+            raise InputError(
+                "found turn slip for a tyre without its coefficients, expected one with PHYP1, PDYP1 or so"
+            )
+        return steady_state(self.in_equations(), Fz, kappa, alpha, gamma, p, Vx, phit, friction)
 
     @classmethod
     def from_file(cls, path: str | Path) -> TyreProperties:
@@ -189,48 +274,76 @@ class TyreProperties(Component):
         return _of_file(read_property_file(Path(path)))
 
 
+WRENCH = dict(
+    zip(("longitudinal", "lateral", "overturning", "rolling", "aligning"), ("Fx", "Fy", "Mx", "My", "Mz"), strict=True)
+)
+"""Symbols of forces and torques by the channels of a tyre."""
+
+
 def _of_file(file: PropertyFile) -> TyreProperties:
-    _check_formula(file)
+    version, remarks = _version(file)
+    formula = VERSIONS[version]
     found = {
-        name: file.number(name, DIMENSIONS.get(name, ""), home(name))
-        for name in NUMBERS
+        name: file.number(name, formula.dimensions.get(name, ""), home(name))
+        for name in formula.numbers
         if name in REQUIRED or file.entry(name, home(name))
     }
     read = {
-        "coefficients": found, "use_mode": _mode(file), "side": _side(file), "ranges": dict(_ranges(file)),
-        "deflection_load": _curve(file, "DEFLECTION_LOAD_CURVE"), "bottoming": _bottoming(file),
+        "coefficients": found, "version": version, "use_mode": _mode(file, formula), "side": _side(file),
+        "ranges": dict(_ranges(file, formula)), "bottoming": _bottoming(file, formula),
     }  # fmt: skip
+    if not formula.has_pressure:
+        read["deflection_load"] = _curve(file, "DEFLECTION_LOAD_CURVE")
     for name in OF_THE_FILE:
         file.entry(name)
-    remarks = unused_notes([*file.sections.values(), file.tables], REASONS)
+    remarks += unused_notes([*file.sections.values(), file.tables], REASONS)
     try:
         return TyreProperties(**read, remarks=tuple(f"{file.source}: {note}" for note in remarks))
     except InputError as error:
         raise InputError(f"{file.source}: {str(error).removeprefix('TyreProperties: ')}") from None
 
 
-def _check_formula(file: PropertyFile) -> None:
-    """Refuse files of other formulas, by format, FITTYP, or coefficients that MF-Tyre 5.2 does not have."""
-    form = file.text("PROPERTY_FILE_FORMAT")
-    if form and form not in FORMATS:
+def _version(file: PropertyFile) -> tuple[str, list[str]]:
+    """Return the version of a file's formula by FITTYP, or by its format, and notes on it.
+
+    Raises
+    ------
+    InputError
+        If it is unknown, or 5.2 without FITTYP and with coefficients that MF-Tyre 5.2 does not have.
+    """
+    form, kind = file.text("PROPERTY_FILE_FORMAT"), file.text("FITTYP", "MODEL")
+    if form and plain(form) not in OF_FORMAT:
         raise InputError(
-            f"{_where(file, 'PROPERTY_FILE_FORMAT')}: found the format '{quoted(form)}', expected PAC2002 or MF-Tyre 5.2 "
-            f"({', '.join(FORMATS)})"
+            f"{_where(file, 'PROPERTY_FILE_FORMAT')}: found the format '{quoted(form)}', expected PAC2002 or MF-Tyre "
+            "(PAC2002, MF_05, MF-TYRE, MF_52, MF_61, MF_62)"
         )
-    if file.entry("FITTYP", "MODEL"):
-        kind = file.number("FITTYP", home="MODEL")
-        if kind not in FITTYPES:
+    if kind:
+        name = _whole(kind)
+        if name not in OF_FITTYP:
             raise InputError(
-                f"{_where(file, 'FITTYP')}: found FITTYP = {kind:g}, expected that of MF-Tyre 5.2, one of "
-                f"{', '.join(map(str, FITTYPES))}: Magic Formula 6.0 and later are not supported"
+                f"{_where(file, 'FITTYP')}: found FITTYP = {quoted(kind)}, expected that of MF-Tyre 5.2 (5, 6, 50, 52), "
+                "6.1 (60, 61) or 6.2 (62)"
             )
-        return
+        older = ["FITTYP = 60: the file of version 6.0 is evaluated by the formula of 6.1"] if name == "60" else []
+        return OF_FITTYP[name], older
+    if (version := OF_FORMAT[plain(form)] if form else "") and version != "5.2":
+        return version, []
     for name in LATER:
         if file.entry(name, home(name)) and file.number(name, home=home(name)) != AS_BEFORE[name]:
             raise InputError(
-                f"{_where(file, name)}: found {name} without FITTYP, a coefficient of Magic Formula 6.0 or later, which "
-                f"is not supported; expected a file of MF-Tyre 5.2, or FITTYP = {FITTYPES[0]} where {name} has no effect"
+                f"{_where(file, name)}: found {name} without FITTYP, a coefficient of Magic Formula 6.0 or later, expected "
+                f"FITTYP = 61 or 62, or FITTYP = 5 where {name} has no effect"
             )
+    return "5.2", []
+
+
+def _whole(kind: str) -> str:
+    """Return a FITTYP as a whole number without decimals, or as a plain word."""
+    try:
+        number = float(kind)
+    except ValueError:
+        return plain(kind)
+    return str(int(number)) if number.is_integer() else plain(kind) if number > 0 else kind
 
 
 def _where(file: PropertyFile, name: str) -> str:
@@ -238,9 +351,11 @@ def _where(file: PropertyFile, name: str) -> str:
     return f"{file.source}, line {entry.line}" if entry else file.source
 
 
-def _ranges(file: PropertyFile) -> Iterator[tuple[str, tuple[float, float]]]:
+def _ranges(file: PropertyFile, formula: Version) -> Iterator[tuple[str, tuple[float, float]]]:
     """Yield the valid ranges of the file by channel; a missing limit is infinite."""
     for channel, (least, most, dimension) in RANGES.items():
+        if channel == "pressure" and not formula.has_pressure:
+            continue
         ends = [file.number(name, dimension) if file.entry(name) else None for name in (least, most)]
         if ends != [None, None]:
             low, high = (-math.inf if ends[0] is None else ends[0]), (math.inf if ends[1] is None else ends[1])
@@ -262,8 +377,10 @@ def _curve(file: PropertyFile, section: str) -> Table | None:
         raise InputError(f"{where}: {error}") from None
 
 
-def _bottoming(file: PropertyFile) -> Bottoming | None:
-    """Return the contact of the rim, or None if the file has no curve or no radius."""
+def _bottoming(file: PropertyFile, formula: Version) -> Bottoming | None:
+    """Return the contact of the rim, or None if the file has no curve or stiffness, or no radius."""
+    if formula.has_pressure:
+        return _stiff_rim(file)
     if not file.entry("BOTTOMING_RADIUS", "DIMENSION"):
         return None
     load = _curve(file, "BOTTOMING_CURVE")
@@ -273,19 +390,30 @@ def _bottoming(file: PropertyFile) -> Bottoming | None:
     return Bottoming(radius=file.number("BOTTOMING_RADIUS", "length", "DIMENSION"), width=width, load=load)
 
 
-def _mode(file: PropertyFile) -> int | None:
+def _stiff_rim(file: PropertyFile) -> Bottoming | None:
+    """Return the contact of the rim of 6.1 and 6.2 by RIM_RADIUS, BOTTOM_OFFST and BOTTOM_STIFF."""
+    stiffness = file.number("BOTTOM_STIFF", "stiffness", "VERTICAL") if file.entry("BOTTOM_STIFF", "VERTICAL") else 0.0
+    if stiffness <= 0 or not file.entry("RIM_RADIUS", "DIMENSION"):
+        return None
+    offset = file.number("BOTTOM_OFFST", "length", "VERTICAL") if file.entry("BOTTOM_OFFST", "VERTICAL") else 0.0
+    radius = file.number("RIM_RADIUS", "length", "DIMENSION") + offset
+    return Bottoming(radius=radius, load=Table(table=((0.0, 0.0), (DEEP, DEEP * stiffness))))
+
+
+def _mode(file: PropertyFile, formula: Version) -> int | None:
     if not file.entry("USE_MODE", "MODEL"):
         return None
     mode = file.number("USE_MODE", home="MODEL")
-    if abs(mode) not in MODES:
-        raise InputError(f"{_where(file, 'USE_MODE')}: {_wrong_mode(mode)}")
+    if abs(mode) not in formula.modes:
+        raise InputError(f"{_where(file, 'USE_MODE')}: {_wrong_mode(mode, formula)}")
     return int(mode)
 
 
-def _wrong_mode(mode: float) -> str:
+def _wrong_mode(mode: float, formula: Version) -> str:
+    more = ", 5 and 15 with turn slip" if formula.has_pressure else ""
     return (
-        f"found USE_MODE = {mode:g}, expected 0 to 4 for steady slip, 10 to 14 for slip with relaxation lengths, or the negative "
-        "of one of these for a mirrored tyre"
+        f"found USE_MODE = {mode:g}, expected 0 to 4 for steady slip, 10 to 14 for slip with relaxation lengths{more}, or the "
+        "negative of one of these for a mirrored tyre"
     )
 
 

@@ -8,13 +8,10 @@ in place of the adapted one, as in MF-Tyre 5.2 and MSC Adams/Tire (PAC2002).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import lru_cache
-from types import SimpleNamespace
 from typing import Any
 
-import numpy as np
 from sympy import Expr, Float, Rational, atan, cos, exp, pi, sin, sqrt, tan
 
 from ..roads.road import above_zero, magnitude
@@ -24,7 +21,8 @@ LEAST_LOAD = Float("1e-12")
 """Offset of loads in divisors, N, for a tyre without contact; it is below rounding for a tyre on the road."""
 
 
-COMBINED_MODE = "4"
+COMBINED_MODES = ("4", "5")
+"""Last digits of USE_MODE with combined slip; 5 includes turn slip."""
 OF_MODES = {"0": "", "1": "fx my", "2": "fy mx mz", "3": "fx fy mx my mz"}
 """Forces and torques by the last digit of USE_MODE, without combined slip."""
 
@@ -58,6 +56,34 @@ class Curve:
     mu: Expr
     horizontal: Expr
     vertical: Expr
+
+
+@dataclass(frozen=True)
+class Torque:
+    """Aligning torque, N m, with pneumatic trail, m, and residual torque, N m."""
+
+    whole: Any
+    trail: Any
+    residual: Any
+
+
+@dataclass(frozen=True)
+class Forces:
+    """Forces (N) and torques (N m) at the contact point, the curves of pure slip, and the aligning torque's parts."""
+
+    fx: Any
+    fy: Any
+    mx: Any
+    my: Any
+    mz: Any
+    x: Curve
+    y: Curve
+    torque: Torque
+
+    @property
+    def wrench(self) -> tuple[Any, Any, Any, Any, Any]:
+        """Fx, Fy, Mx, My, Mz."""
+        return self.fx, self.fy, self.mx, self.my, self.mz
 
 
 def magic(b: Any, x: Any, c: Any, curvature: Any) -> Any:
@@ -126,7 +152,7 @@ def combined(p: Any, s: Slip, x: Curve, y: Curve, dfz: Any, f: Name) -> tuple[An
     return fx, f(y.force * lessened + induced), induced
 
 
-def aligning(p: Any, s: Slip, x: Curve, y: Curve, forces: tuple[Any, Any, Any], dfz: Any, f: Name) -> Any:
+def aligning(p: Any, s: Slip, x: Curve, y: Curve, forces: tuple[Any, Any, Any], dfz: Any, f: Name) -> Torque:
     """Return the aligning torque: pneumatic trail, residual torque, and the arm of Fx."""
     fx, fy, induced = forces
     gamma, R = f(s.gamma * p.LGAZ), p.UNLOADED_RADIUS
@@ -149,7 +175,7 @@ def aligning(p: Any, s: Slip, x: Curve, y: Curve, forces: tuple[Any, Any, Any], 
     slope = f(p.QBZ9 * stiffer + p.QBZ10 * y.B * y.C)
     residual = f(residual_most * cos(atan(slope * equivalent(of_rest, driving))) * straight)
     arm = f((p.SSZ1 + p.SSZ2 * fy / p.FNOMIN + (p.SSZ3 + p.SSZ4 * dfz) * s.gamma) * R * p.LS)
-    return -trail * (fy - induced) + residual + arm * fx
+    return Torque(-trail * (fy - induced) + residual + arm * fx, trail, residual)
 
 
 def equivalent(alpha: Any, driving: Any) -> Any:
@@ -160,18 +186,20 @@ def equivalent(alpha: Any, driving: Any) -> Any:
     return atan(sqrt(tan(alpha) ** 2 + driving + Float("1e-60")))
 
 
-def wrench(p: Any, s: Slip, f: Name, is_combined: bool = True) -> tuple[Any, Any, Any, Any, Any]:
-    """Return Fx, Fy, Mx, My, Mz at the contact point.
+def wrench(p: Any, s: Slip, f: Name, ellipse: str = "") -> Forces:
+    """Return forces and torques at the contact point.
 
     Parameters
     ----------
-    is_combined : bool
-        Whether there are weights of combined slip; without them Fx and Fy are limited by the friction ellipse.
+    ellipse : str
+        Name in `ELLIPSES` if there are no weights of combined slip; empty with weights.
     """
     dfz = increment(p, s.load, f)
     x, y = longitudinal(p, s, dfz, f), lateral(p, s, dfz, f)
-    forces = combined(p, s, x, y, dfz, f) if is_combined else on_ellipse(s, x, y, f)
-    return (*forces[:2], *torques(p, s, forces[0], forces[1], f), aligning(p, s, x, y, forces, dfz, f))
+    forces = ELLIPSES[ellipse](s, x, y, f) if ellipse else combined(p, s, x, y, dfz, f)
+    mx, my = torques(p, s, forces[0], forces[1], f)
+    torque = aligning(p, s, x, y, forces, dfz, f)
+    return Forces(*forces[:2], mx, my, torque.whole, x, y, torque)
 
 
 def uncombined(p: Any, s: Slip, f: Name) -> tuple[Any, Any, Any, Any, Any]:
@@ -179,14 +207,20 @@ def uncombined(p: Any, s: Slip, f: Name) -> tuple[Any, Any, Any, Any, Any]:
     dfz, none = increment(p, s.load, f), Rational(0)
     x, y = longitudinal(p, s, dfz, f), lateral(p, s, dfz, f)
     mx, my = torques(p, s, x.force, y.force, f)
-    return x.force, y.force, mx, my, aligning(p, replace(s, kappa=none), x, y, (none, y.force, none), dfz, f)
+    return x.force, y.force, mx, my, aligning(p, replace(s, kappa=none), x, y, (none, y.force, none), dfz, f).whole
 
 
-def of_mode(mode: str, p: Any, s: Slip, f: Name, is_combined: bool) -> tuple[Any, Any, Any, Any, Any]:
-    """Return the forces and torques selected by the last digit of USE_MODE, with zero for the others."""
-    if mode == COMBINED_MODE:
-        return wrench(p, s, f, is_combined)
-    found, wanted = uncombined(p, s, f), OF_MODES[mode].split()
+def of_mode(formula: Any, mode: str, p: Any, s: Slip, f: Name, ellipse: str) -> tuple[Any, Any, Any, Any, Any]:
+    """Return the forces and torques selected by the last digit of USE_MODE, with zero for the others.
+
+    Parameters
+    ----------
+    formula : module
+        With the functions `wrench` and `uncombined` of a version.
+    """
+    if mode in COMBINED_MODES:
+        return formula.wrench(p, s, f, ellipse).wrench  # type: ignore[no-any-return]
+    found, wanted = formula.uncombined(p, s, f), OF_MODES[mode].split()
     return tuple(x if name in wanted else Rational(0) for name, x in zip(OF_MODES["3"].split(), found, strict=True))  # type: ignore[return-value]
 
 
@@ -220,33 +254,12 @@ def on_ellipse(s: Slip, x: Curve, y: Curve, f: Name) -> tuple[Any, Any, Any]:
     return f(x.force * less), f(y.force * less), Rational(0)
 
 
-CHOICES = ("is_combined", "mode", "is_mirrored", "side", "deflection_load", "bottoming")
-"""Properties that are not numbers; `is_combined` is the only one with an effect here."""
-OUTPUTS = ("longitudinal", "lateral", "overturning", "rolling", "aligning")
+ELLIPSES = {"limit": on_ellipse}
+"""Combined slip without weights: limits of both forces by the friction ellipse."""
 
 
-def steady_wrench(
-    numbers: Mapping[str, Any], load: Any, slip: Any, slip_angle: Any, camber: Any, speed: Any, friction: Any
-) -> dict[str, np.ndarray]:
-    """Return forces and torques by the names of a tyre's channels; arguments may be arrays that broadcast."""
-    values = {name: value for name, value in numbers.items() if name not in CHOICES}
-    states = [np.asarray(x, dtype=float) for x in (np.minimum(load, values["FZMAX"]), slip, slip_angle, camber)]
-    function = _function(tuple(values), bool(numbers["is_combined"]))
-    found = function(*values.values(), *states, np.asarray(speed) / values["LONGVL"], friction)
-    shape = np.broadcast_shapes(*(np.shape(x) for x in (*states, speed, friction)))
-    return {name: np.broadcast_to(x, shape).copy() for name, x in zip(OUTPUTS, found, strict=True)}
-
-
-@lru_cache(maxsize=4)
-def _function(names: tuple[str, ...], is_combined: bool) -> Callable[..., Any]:
-    import sympy as sp
-
-    from .magic_formula import Slip, wrench
-
-    numbers = sp.symbols(names, real=True)
-    load, slip, slip_angle, camber, speed, friction = of = sp.symbols("N kappa alpha gamma v mu", real=True)
-    state = Slip(load, slip, slip_angle, camber, speed, sp.Integer(1), friction)
-    coefficients = SimpleNamespace(**dict(zip(names, numbers, strict=True)))
-    expressions = wrench(coefficients, state, lambda x: x, is_combined)
-    function: Callable[..., Any] = sp.lambdify([*numbers, *of], expressions, "numpy", cse=True)
-    return function
+def rolling_radius(p: Any, deflection: Any, f: Name) -> Any:
+    """Return the effective rolling radius, m, by BREFF, DREFF and FREFF."""
+    nominal = f(p.FNOMIN / p.VERTICAL_STIFFNESS)
+    part = f(deflection / nominal)
+    return p.UNLOADED_RADIUS - nominal * (p.DREFF * atan(p.BREFF * part) + p.FREFF * part)

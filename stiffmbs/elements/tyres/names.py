@@ -1,4 +1,4 @@
-"""Keys of property files of PAC2002 and MF-Tyre 5.2."""
+"""Keys of property files of PAC2002, MF-Tyre 5.2, 6.1 and 6.2."""
 
 from __future__ import annotations
 
@@ -42,9 +42,33 @@ LATER = _words(
 """Force coefficients of MF-Tyre 6.0 and later that MF-Tyre 5.2 does not have."""
 AS_BEFORE = {**dict.fromkeys(LATER, 0.0), "PKY4": 2.0, "QSY7": 1.0}
 """Values of these coefficients without effect."""
+TURN_SLIP = _words(
+    """
+    PDXP1 PDXP2 PDXP3 PKYP1 PDYP1 PDYP2 PDYP3 PDYP4 PHYP1 PHYP2 PHYP3 PHYP4 PECP1 PECP2
+    QDTP1 QCRP1 QCRP2 QBRP1 QDRP1 QDRP2
+    """
+)
+"""Coefficients of turn slip."""
+ONLY_BEFORE = _words("PHY3 PTX1 PTX2 PTX3 PTY1 PTY2 LGAX LGAY LGAZ LSGKP LSGAL")
+"""Coefficients of MF-Tyre 5.2 that later versions do not have."""
+COEFFICIENTS_6 = (
+    *(name for name in COEFFICIENTS if name not in ONLY_BEFORE), *LATER, *TURN_SLIP,
+    *_words("PCFX1 PCFX2 PCFX3 PCFY1 PCFY2 PCFY3"),
+)  # fmt: skip
+"""Coefficients of MF-Tyre 6.1 and 6.2."""
+SCALES_6 = (*(name for name in SCALES if name not in ONLY_BEFORE), *_words("LKYC LKZC LMP LMUV"))
+"""Scale factors of MF-Tyre 6.1 and 6.2."""
+DIMENSIONS_6 = {
+    **DIMENSIONS, "WIDTH": "length", "ASPECT_RATIO": "", "LONGITUDINAL_STIFFNESS": "stiffness",
+    "LATERAL_STIFFNESS": "stiffness", "INFLPRES": "pressure", "NOMPRES": "pressure",
+    **dict.fromkeys(_words("Q_RE0 Q_V1 Q_V2 Q_FZ2 Q_FCX Q_FCY PFZ1 Q_RA1 Q_RA2 Q_RB1 Q_RB2 Q_FCY2 Q_CAM3"), ""),
+    "Q_CAM1": "", "Q_CAM2": "per length", "Q_FYS1": "force", "Q_FYS2": "force", "Q_FYS3": "force",
+}  # fmt: skip
+"""Other numbers of MF-Tyre 6.1 and 6.2, with their dimensions."""
 RANGES = {
     "slip": ("KPUMIN", "KPUMAX", ""), "slip_angle": ("ALPMIN", "ALPMAX", "angle"),
     "camber": ("CAMMIN", "CAMMAX", "angle"), "load": ("FZMIN", "FZMAX", "force"),
+    "pressure": ("PRESMIN", "PRESMAX", "pressure"),
 }  # fmt: skip
 """Limits of the valid ranges of a file, by channel, and their dimension."""
 OF_THE_FILE = ("FILE_TYPE", "FILE_VERSION", "FILE_FORMAT")
@@ -55,26 +79,40 @@ REASONS = {
         "BELT_MASS": "the gyroscopic couple of the belt is left out", "LGYR": "the gyroscopic couple of the belt is left out",
     },
     "[INERTIA]": {"*": "the mass properties are those of the wheel's body"},
+    "[STRUCTURAL]": {"*": "the rigid ring of MF-Swift is not modelled"},
+    "[MODEL]": {
+        "VXLOW": "the field slow of the tyre has its place", "ROAD_INCREMENT": "of the road", "ROAD_DIRECTION": "of the road",
+    },
+    "[VERTICAL]": dict.fromkeys(("MC_CONTOUR_A", "MC_CONTOUR_B"), "the contact point is in the wheel's plane"),
 }  # fmt: skip
 """Reasons why keys have no effect, by section."""
 DEFAULT_VALUES = {
-    "QTZ1": 0.0, "LGYR": 1.0, "GRAVITY": -9.81, **AS_BEFORE,
+    "QTZ1": 0.0, "LGYR": 1.0, "GRAVITY": -9.81, **AS_BEFORE, "MC_CONTOUR_A": 0.0, "MC_CONTOUR_B": 0.0, "Q_CAM": 0.0, "PCMZ1": 0.0,
+    "ENV_C1": 0.0, "ENV_C2": 0.0, "ROAD_DIRECTION": 1.0,
     **dict.fromkeys(("LIP", "LKYC", "LKZC", "LMP", "LMUV", "LAMU", "LCZ", "LFZMAX"), 1.0),
 }  # fmt: skip
 """Values of unused keys that have no effect."""
 
 
+_HOMES = {
+    "DIMENSION": _words("UNLOADED_RADIUS WIDTH ASPECT_RATIO RIM_RADIUS BOTTOMING_RADIUS"),
+    "MODEL": _words("LONGVL FITTYP USE_MODE VXLOW"),
+    "OPERATING_CONDITIONS": _words("INFLPRES NOMPRES"),
+    "VERTICAL_FORCE_RANGE": _words("FZMIN FZMAX"),
+    "STRUCTURAL": _words("LONGITUDINAL_STIFFNESS LATERAL_STIFFNESS PCFX1 PCFX2 PCFX3 PCFY1 PCFY2 PCFY3"),
+    "CONTACT_PATCH": _words("Q_RA1 Q_RA2 Q_RB1 Q_RB2"),
+    "VERTICAL": tuple(DIMENSIONS_6),
+    "SCALING_COEFFICIENTS": (*SCALES, *SCALES_6),
+    "TURNSLIP_COEFFICIENTS": TURN_SLIP,
+}
+_HOME = {name: section for section, names in reversed(_HOMES.items()) for name in names}
+
+
 def home(name: str) -> str:
     """Return the section of a property file that a key belongs to."""
-    if name in DIMENSIONS:
-        return {"UNLOADED_RADIUS": "DIMENSION", "LONGVL": "MODEL", "FZMAX": "VERTICAL_FORCE_RANGE"}.get(
-            name, "VERTICAL"
-        )
-    if name in SCALES:
-        return "SCALING_COEFFICIENTS"
     of_torque = {"X": "OVERTURNING_COEFFICIENTS", "Y": "ROLLING_COEFFICIENTS", "Z": "ALIGNING_COEFFICIENTS"}
     of_force = {"X": "LONGITUDINAL_COEFFICIENTS", "Y": "LATERAL_COEFFICIENTS", "Z": "ALIGNING_COEFFICIENTS"}
-    return (of_torque if name[0] == "Q" else of_force).get(name[2:3], "")
+    return _HOME.get(name) or (of_torque if name[0] == "Q" else of_force).get(name[2:3], "")
 
 
 SAMPLE = dict.fromkeys(
@@ -87,3 +125,9 @@ SAMPLE = dict.fromkeys(
     1.0,
 )
 """Coefficients of the usual tyre, for compilation in advance."""
+SAMPLE_6 = {
+    **SAMPLE, **dict.fromkeys(_words("LONGITUDINAL_STIFFNESS LATERAL_STIFFNESS NOMPRES Q_RE0 Q_FCX Q_FCY WIDTH"), 1.0),
+    "VERTICAL_STIFFNESS": 3.0, "PPX1": 0.1, "PPY1": 0.1, "QSY7": 0.9, "Q_V1": 0.01, "Q_V2": 0.1, "Q_FZ2": 0.5, "Q_FCY2": -0.4,
+    "Q_CAM1": 1.0, "Q_CAM2": 1.0, "Q_FYS1": 0.1,
+}  # fmt: skip
+"""Coefficients of a tyre of 6.2, for compilation in advance."""

@@ -30,7 +30,8 @@ UNITS = {
 """Units of a file in SI units, by their names in Adams/Tire, case-insensitive."""
 FRACTIONS: Mapping[str, tuple[str, str]] = {
     "": ("", ""), "length": ("LENGTH", ""), "force": ("FORCE", ""), "angle": ("ANGLE", ""), "velocity": ("LENGTH", "TIME"),
-    "stiffness": ("FORCE", "LENGTH"), "damping": ("FORCE TIME", "LENGTH"),
+    "stiffness": ("FORCE", "LENGTH"), "damping": ("FORCE TIME", "LENGTH"), "pressure": ("FORCE", "LENGTH LENGTH"),
+    "per length": ("", "LENGTH"),
 }  # fmt: skip
 """Units whose product makes a dimension, and those that divide it."""
 _KEY = re.compile(r"^\s*([A-Za-z_]\w*)\s*=\s*(.*)$")

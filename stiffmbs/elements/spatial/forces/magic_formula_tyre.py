@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any, Literal
 
 from pydantic import Field, model_validator
@@ -12,31 +12,38 @@ from ....reading.units import si
 from ...element import Symbolic
 from ...roads.road import above_zero, magnitude
 from ...tyres.coefficients import AnyProperties, TyreProperties
-from ...tyres.names import SAMPLE
+from ...tyres.names import SAMPLE, SAMPLE_6
+from ..contact_point import ContactPoint
+from ..pressed_tyre import pressed, pressure_increment
 from ..relaxation import DEFLECTIONS
-from ..tyre import Rolling, Tyre
+from ..tyre import Rolling, Touch, Tyre
 
 
 class MagicFormulaTyre(Tyre):
-    """Magic Formula tyre (Pacejka) of MF-Tyre 5.2 and PAC2002, with the coefficients of a property file (.tir).
+    """Magic Formula tyre (Pacejka) of MF-Tyre 5.2, PAC2002, 6.1 and 6.2, with the coefficients of a property file (.tir).
 
     It gives longitudinal and lateral force, overturning, rolling and aligning torque. It includes pure and combined
     slip, camber, load, and relaxation lengths; USE_MODE selects them. Slip angle and camber enter as angles; Pacejka's
-    book uses tan(alpha) and sin(gamma).
+    book uses tan(alpha) and sin(gamma). FITTYP of the file selects the version.
 
-    The load is VERTICAL_STIFFNESS d + VERTICAL_DAMPING d', or that of [DEFLECTION_LOAD_CURVE] with the same damping. It
-    is never negative; the load in the formula is limited to FZMAX. With BOTTOMING_RADIUS and [BOTTOMING_CURVE], the rim
-    adds to the normal force and the overturning torque only. The rolling radius is UNLOADED_RADIUS - d0 (DREFF
-    atan(BREFF d/d0) + FREFF d/d0), with d0 = FNOMIN/VERTICAL_STIFFNESS. A file without coefficients of combined slip
-    uses the friction ellipse, and a note reports it.
+    In version 5.2 the load is VERTICAL_STIFFNESS d + VERTICAL_DAMPING d', or that of [DEFLECTION_LOAD_CURVE] with the
+    same damping. The rolling radius is UNLOADED_RADIUS - d0 (DREFF atan(BREFF d/d0) + FREFF d/d0), with d0 =
+    FNOMIN/VERTICAL_STIFFNESS. In 6.1 and 6.2 load and radii depend on pressure, spin, camber and the forces along the
+    road (`stiffmbs.elements.tyres.deflection_6`), and turn slip can be included.
 
-    Pacejka, Tire and Vehicle Dynamics (2006), sec. 4.3.2; MSC Adams/Tire, PAC2002.
+    The load is never negative; the load in the formula is limited to FZMAX. With BOTTOMING_RADIUS and [BOTTOMING_CURVE],
+    or in 6.1 and 6.2 with BOTTOM_STIFF, the rim adds to the normal force and the overturning torque only. A file without
+    coefficients of combined slip uses the friction ellipse, and a note reports it.
+
+    Pacejka, Tire and Vehicle Dynamics (2012), sec. 4.3; MSC Adams/Tire, PAC2002; Besselink, Schmeitz, Pacejka, Vehicle
+    System Dynamics 48 suppl. 1 (2010) 337-352.
     """
 
     kind = "magic_formula_tyre"
     forms = (
         {"properties": TyreProperties(coefficients=SAMPLE)},
         {"properties": TyreProperties(coefficients={**SAMPLE, "PTX1": 1.0, "PTY1": 1.0})},
+        {"properties": TyreProperties(coefficients=SAMPLE_6, version="6.2")},
     )
     reflected = {"j": "z", "hand": "angle"}
 
@@ -50,16 +57,39 @@ class MagicFormulaTyre(Tyre):
     transient: bool | None = Field(
         None, description="whether slips lag by relaxation lengths; as USE_MODE says by default"
     )
+    pressure: si.PositivePressure | None = Field(
+        None, description="inflation pressure of a tyre of 6.1 or 6.2, Pa; INFLPRES of the file by default"
+    )
+    turn_slip: bool | None = Field(
+        None, description="whether the yaw rate acts on the forces (6.1, 6.2); as USE_MODE says by default"
+    )
 
     @model_validator(mode="after")
-    def _has_lengths(self) -> MagicFormulaTyre:
-        if self.transient and not self.properties.has_lengths:
-            raise ValueError("transient: found properties without PTX1 and PTY1, expected relaxation lengths")
+    def _has_coefficients(self) -> MagicFormulaTyre:
+        p = self.properties
+        if self.transient and not p.has_lengths:
+            missing = "LONGITUDINAL_STIFFNESS and LATERAL_STIFFNESS" if p.formula.has_pressure else "PTX1 and PTY1"
+            raise ValueError(f"transient: found properties without {missing}, expected relaxation lengths")
+        if self.pressure is not None and not p.formula.has_pressure:
+            raise ValueError("pressure: found one for a tyre of version 5.2, expected properties of 6.1 or 6.2")
+        if self._turns and not p.has_turn_slip:
+            raise ValueError("turn_slip: found properties without its coefficients, expected some such as PDYP1, PHYP1")
         return self
+
+    @property
+    def _turns(self) -> bool:
+        return self.properties.takes_turn_slip if self.turn_slip is None else self.turn_slip
+
+    def own_notes(self) -> Iterator[str]:
+        """Yield a note on a pressure outside the range of the file."""
+        low, high = self.properties.ranges.get("pressure", (-math.inf, math.inf))
+        pressure = self.properties.nominal_pressure if self.pressure is None else self.pressure
+        if pressure is not None and not low <= pressure <= high:
+            yield f"the pressure of {pressure:g} Pa is outside the valid range of its data, {low:g} to {high:g} Pa"
 
     def valid_ranges(self) -> Mapping[str, tuple[float, float]]:
         """Return the valid ranges of the property file for each quantity, SI units; empty if the file has none."""
-        ranges = self.properties.ranges
+        ranges = {name: range for name, range in self.properties.ranges.items() if name != "pressure"}
         return {"load": (-math.inf, math.inf), **ranges} if ranges else {}  # no range applies without contact
 
     def own_states(self) -> tuple[str, ...]:
@@ -67,8 +97,20 @@ class MagicFormulaTyre(Tyre):
         return DEFLECTIONS if transient else ()
 
     @classmethod
+    def touching(cls, e: Symbolic) -> Touch:
+        """Return the contact with its load and slips."""
+        if e.properties.formula == "5.2":
+            return super().touching(e)
+        return pressed(e, cls.hand_of(e), cls.takes_turns(e))
+
+    @staticmethod
+    def takes_turns(e: Symbolic) -> bool:
+        """Return True if the yaw rate acts on the forces."""
+        return bool(e.properties.mode == "5" if e.turn_slip is None else e.turn_slip)
+
+    @classmethod
     def relaxation_lengths(cls, e: Symbolic, load: Any, camber: Any) -> tuple[Any, Any]:
-        """Return the relaxation lengths by PTX1 to PTX3, and by PTY1, PTY2 and PKY3."""
+        """Return the relaxation lengths of 5.2, by PTX1 to PTX3, and by PTY1, PTY2 and PKY3."""
         from ...tyres.magic_formula import relaxation_lengths
 
         return relaxation_lengths(e.properties, load, camber, e.named)
@@ -84,33 +126,33 @@ class MagicFormulaTyre(Tyre):
         return spring(deflection) + p.VERTICAL_DAMPING * rate
 
     @staticmethod
-    def rim_contact(e: Symbolic, deflection: Any, camber: Any) -> tuple[Any, Any] | None:
-        """Return the force of [BOTTOMING_CURVE] and its overturning torque; the rim is as wide as the tyre."""
-        rim = e.properties.bottoming
-        return (
-            None if rim is None else bottomed(e, rim, deflection - (e.properties.UNLOADED_RADIUS - rim.radius), camber)
-        )
+    def rim_contact(e: Symbolic, deflection: Any, contact: ContactPoint) -> tuple[Any, Any] | None:
+        """Return the force of the rim and its overturning torque."""
+        p, rim = e.properties, e.properties.bottoming
+        if rim is None:
+            return None
+        if p.formula == "5.2":
+            depth = deflection - (p.UNLOADED_RADIUS - rim.radius)
+        else:
+            depth = e.named(rim.radius - contact.radius)
+        return bottomed(e, rim, depth, contact.camber)
 
     @classmethod
     def rolling_radius(cls, e: Symbolic, deflection: Any) -> Any:
-        """Return the effective rolling radius by BREFF, DREFF and FREFF of the property file."""
-        from sympy import atan
+        """Return the effective rolling radius of 5.2 by BREFF, DREFF and FREFF of the property file."""
+        from ...tyres.magic_formula import rolling_radius
 
-        p = e.properties
-        nominal = e.named(p.FNOMIN / p.VERTICAL_STIFFNESS)
-        part = e.named(deflection / nominal)
-        return p.UNLOADED_RADIUS - nominal * (p.DREFF * atan(p.BREFF * part) + p.FREFF * part)
+        return rolling_radius(e.properties, deflection, e.named)
 
     @classmethod
     def law(cls, e: Symbolic, rolling: Rolling) -> tuple[Any, Any, Any, Any, Any]:
         """Return forces and moments by the Magic Formula."""
-        from ...tyres.magic_formula import Slip, of_mode
+        from ...tyres import magic_formula, magic_formula_6
 
-        p = e.properties
-        hand = e.hand if cls._is_as_measured(e) else -e.hand
+        p, hand = e.properties, cls.hand_of(e)
         beyond = e.named(rolling.load - p.FZMAX)
         load = e.named(rolling.load - e.named(above_zero(beyond)))
-        slip = Slip(
+        slip: Any = magic_formula.Slip(
             load,
             rolling.slip,
             e.named(hand * rolling.slip_angle),
@@ -119,14 +161,18 @@ class MagicFormulaTyre(Tyre):
             rolling.direction,
             rolling.friction,
         )
-        fx, fy, mx, my, mz = of_mode(p.mode, p, slip, e.named, p.is_combined)
+        formula: Any = magic_formula
+        if p.formula != "5.2":
+            formula, turn = magic_formula_6, None if rolling.turn is None else e.named(hand * rolling.turn)
+            slip = formula.PressedSlip(*vars(slip).values(), pressure_increment(e), turn, rolling.rolling)
+        fx, fy, mx, my, mz = magic_formula.of_mode(formula, p.mode, p, slip, e.named, p.ellipse)
         return fx, hand * fy, hand * mx, my, hand * mz
 
     @staticmethod
-    def _is_as_measured(e: Symbolic) -> bool:
-        """Return True if the tyre is mounted as measured, apart from `hand`: by its side, and the sign of USE_MODE."""
+    def hand_of(e: Symbolic) -> Any:
+        """Return -1 for a tyre that is mirrored, by `hand`, by its side, or by the sign of USE_MODE, else 1."""
         other_side = e.side is not None and e.properties.side in ("left", "right") and e.side != e.properties.side
-        return bool(other_side == e.properties.is_mirrored)
+        return e.hand if other_side == e.properties.is_mirrored else -e.hand
 
 
 NO_WIDTH = "1e-30"

@@ -1,0 +1,226 @@
+"""Steady state of a Magic Formula tyre at arrays of loads, slips, camber angles, pressures and speeds.
+
+The equations are those of the element, evaluated by NumPy.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import lru_cache
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+
+from ...errors import InputError
+
+STATE = ("load", "kappa", "alpha", "gamma", "speed", "direction", "friction", "dpi", "turn", "rolling")
+"""Arguments of the compiled equations of forces."""
+OF_RADIUS = ("loaded", "free", "spin", "dpi", "gamma", "fx", "fy")
+"""Arguments of the compiled equations of deflection and load."""
+MOST_ITERATIONS = 200
+"""Limit of the iterations for rolling and loaded radius; bisection of an interval takes about 60."""
+BEYOND = 1.2
+"""Upper end of the search for the loaded radius, in free radii: a cambered tyre touches the road with its edge."""
+
+
+def steady_state(
+    numbers: Mapping[str, Any],
+    Fz: Any,
+    kappa: Any = 0.0,
+    alpha: Any = 0.0,
+    gamma: Any = 0.0,
+    p: Any = None,
+    Vx: Any = None,
+    phit: Any = None,
+    friction: Any = 1.0,
+) -> dict[str, np.ndarray]:
+    """Return the steady state of a tyre by the symbols of the Magic Formula; see `TyreProperties.steady_state`."""
+    later = numbers["formula"] != "5.2"
+    pressure = numbers["INFLPRES"] if later and p is None else p
+    turn = None if phit is None else np.asarray(phit, dtype=float)
+    speed = numbers["LONGVL"] if Vx is None else Vx
+    given = (Fz, kappa, alpha, gamma, 1.0 if pressure is None else pressure, speed, 0.0 if turn is None else turn)
+    Fz, kappa, alpha, gamma, pressure, speed, turned, friction = (
+        np.array(x, dtype=float) for x in np.broadcast_arrays(*given, friction)
+    )
+    _check(Fz, pressure)
+    dpi = pressure / numbers["NOMPRES"] - 1 if later else 0 * Fz
+    rolled = _rolling(numbers, Fz, kappa, speed, dpi)
+    rolling = (1 + kappa) * np.cos(alpha) * np.sign(speed) / rolled["Re"]
+    state = (Fz, kappa, alpha, gamma, np.abs(speed) / numbers["LONGVL"], np.sign(speed), friction, dpi, turned, rolling)
+    found = _forces(numbers, turn is not None)(*_values(numbers), *state)
+    forces = {name: np.broadcast_to(x, Fz.shape).astype(float) for name, x in found.items()}
+    free = rolled.pop("free")
+    return forces | rolled | _deflected(numbers, Fz, gamma, dpi, rolled["omega"], free, forces)
+
+
+def _check(load: np.ndarray, pressure: np.ndarray) -> None:
+    if np.any(load < 0) or not np.all(np.isfinite(load)):
+        raise InputError(f"found a load of {load[~(load >= 0)].flat[0]:g} N, expected zero or a positive number")
+    if np.any(~(pressure > 0)):
+        raise InputError(f"found a pressure of {pressure[~(pressure > 0)].flat[0]:g} Pa, expected a number above zero")
+
+
+def _names(numbers: Mapping[str, Any]) -> tuple[str, ...]:
+    return tuple(name for name, value in numbers.items() if isinstance(value, float))
+
+
+def _values(numbers: Mapping[str, Any]) -> list[float]:
+    return [numbers[name] for name in _names(numbers)]
+
+
+def _rolling(
+    numbers: Mapping[str, Any], Fz: np.ndarray, kappa: np.ndarray, speed: np.ndarray, dpi: np.ndarray
+) -> dict[str, np.ndarray]:
+    """Return the effective radius, the spin and the free radius, by iteration to rest.
+
+    The radius grows with the spin: omega = (1 + kappa) Vx/Re.
+    """
+    radius = _compiled("rolling", *_key(numbers))
+    values, forward = _values(numbers), speed + kappa * np.abs(speed)
+    if numbers["formula"] == "5.2":
+        Re = radius(*values, _deflection_at(numbers, Fz))["Re"]
+        return {"Re": Re + 0 * forward, "omega": forward / Re, "free": numbers["UNLOADED_RADIUS"] + 0 * forward}
+    omega = forward / numbers["UNLOADED_RADIUS"]
+    for _ in range(MOST_ITERATIONS):
+        found = radius(*values, Fz, omega, dpi)
+        before, omega = omega, forward / found["Re"]
+        if np.all(np.abs(omega - before) <= 1e-15 * np.abs(omega)):
+            break
+    return {name: np.broadcast_to(x, Fz.shape).astype(float) for name, x in found.items()} | {"omega": omega}
+
+
+def _deflected(
+    numbers: Mapping[str, Any],
+    Fz: np.ndarray,
+    gamma: np.ndarray,
+    dpi: np.ndarray,
+    omega: np.ndarray,
+    free: np.ndarray,
+    forces: dict[str, np.ndarray],
+) -> dict[str, np.ndarray]:
+    """Return deflection and loaded radius, by iteration on the load for 6.1 and 6.2."""
+    if numbers["formula"] == "5.2":
+        rho = _deflection_at(numbers, Fz)
+        return {"rho": rho, "Rl": free - rho}
+    load = _compiled("load", *_key(numbers))
+    values = _values(numbers)
+
+    def found(loaded: np.ndarray) -> dict[str, np.ndarray]:
+        return load(*values, loaded, free, omega, dpi, gamma, forces["Fx"], forces["Fy"])
+
+    Rl = falling_root(lambda loaded: found(loaded)["load"] - Fz, lambda x: found(x)["slope"], 0.0 * free, BEYOND * free)
+    return {"rho": found(Rl)["rho"] + 0 * Rl, "Rl": Rl}
+
+
+def _deflection_at(numbers: Mapping[str, Any], Fz: np.ndarray) -> np.ndarray:
+    """Return the deflection at a load by the linear stiffness or by [DEFLECTION_LOAD_CURVE]."""
+    curve = numbers["deflection_load"]
+    if curve is None:
+        return Fz / numbers["VERTICAL_STIFFNESS"]
+    from scipy.interpolate import PchipInterpolator
+
+    at, loads = np.array(curve.table).T
+    inner, slopes = PchipInterpolator(at, loads), PchipInterpolator(at, loads).derivative()
+
+    def excess(x: np.ndarray) -> np.ndarray:
+        within = np.clip(x, at[0], at[-1])
+        return Fz - inner(within) - slopes(within) * (x - within)
+
+    last = max(float(slopes(at[-1])), 1e-9)
+    longest = at[-1] + np.maximum(Fz - loads[-1], 0) / last + 0 * Fz
+    return falling_root(excess, lambda x: -slopes(np.clip(x, at[0], at[-1])), 0 * Fz + min(at[0], 0.0), longest)
+
+
+def falling_root(
+    function: Callable[[np.ndarray], np.ndarray],
+    slope: Callable[[np.ndarray], np.ndarray],
+    low: np.ndarray,
+    high: np.ndarray,
+) -> np.ndarray:
+    """Return the zeros of decreasing functions within intervals by Newton's method with bisection; high without one."""
+    x = (low + high) / 2
+    for _ in range(MOST_ITERATIONS):
+        value = function(x)
+        low, high = np.where(value >= 0, x, low), np.where(value >= 0, high, x)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            step = x - value / slope(x)
+        inside = (step > low) & (step < high)
+        new = np.where(inside, step, (low + high) / 2)
+        if np.all((np.abs(new - x) <= 1e-16 + 4e-16 * np.abs(x)) | (value == 0)):
+            break
+        x = np.where(value == 0, x, new)
+    return np.asarray(x)
+
+
+def _key(numbers: Mapping[str, Any]) -> tuple[Any, ...]:
+    return _names(numbers), numbers["formula"], numbers["ellipse"], False
+
+
+def _forces(numbers: Mapping[str, Any], turns: bool) -> Callable[..., dict[str, Any]]:
+    return _compiled("forces", *_key(numbers)[:-1], turns)
+
+
+@lru_cache(maxsize=16)
+def _compiled(
+    of: str, names: tuple[str, ...], formula: str, ellipse: str, turns: bool
+) -> Callable[..., dict[str, Any]]:
+    """Return the equations of forces, of the load, or of the rolling radius as a function of numbers and state."""
+    import sympy as sp
+
+    numbers = sp.symbols(names, real=True)
+    p = SimpleNamespace(**dict(zip(names, numbers, strict=True)), formula=formula, ellipse=ellipse)
+    arguments = {"forces": STATE, "load": OF_RADIUS, "rolling": ("load", "spin", "dpi")[: 1 if formula == "5.2" else 3]}
+    symbols = [sp.Symbol(name, real=True) for name in arguments[of]]
+    outputs = {"forces": _force_outputs, "load": _load_outputs, "rolling": _radius_outputs}[of](p, symbols, turns)
+    function = sp.lambdify([*numbers, *symbols], list(outputs.values()), "numpy", cse=True)
+    return lambda *values: dict(zip(outputs, function(*values), strict=True))
+
+
+def _force_outputs(p: Any, symbols: list[Any], turns: bool) -> dict[str, Any]:
+    from . import magic_formula, magic_formula_6
+
+    (*basic, dpi, turn, rolling), load, gamma = symbols, symbols[0], symbols[3]
+    if p.formula == "5.2":
+        forces = magic_formula.wrench(p, magic_formula.Slip(*basic), _same, p.ellipse)
+        lengths = magic_formula.relaxation_lengths(p, load, gamma, _same)
+        more = {}
+    else:
+        from .deflection_6 import contact_patch
+
+        state = magic_formula_6.PressedSlip(*basic, dpi=dpi, turn=turn if turns else None, rolling=rolling)
+        forces = magic_formula_6.wrench(p, state, _same, p.ellipse)
+        lengths = magic_formula_6.relaxation_lengths(p, load, dpi, gamma, _same)
+        dfz = magic_formula.increment(p, load, _same)
+        more = dict(zip("ab", contact_patch(p, load, dpi), strict=True))
+        more["Kyg0"] = magic_formula_6.camber_stiffness(p, load, dpi, dfz)
+    return {
+        **dict(zip(("Fx", "Fy", "Mx", "My", "Mz"), forces.wrench, strict=True)),
+        "Kya": forces.y.stiffness, "Kxk": forces.x.stiffness, "mux": forces.x.mu, "muy": forces.y.mu,
+        "t": forces.torque.trail, "Mzr": forces.torque.residual, "sigma_x": lengths[0], "sigma_y": lengths[1], **more,
+    }  # fmt: skip
+
+
+def _load_outputs(p: Any, symbols: list[Any], turns: bool) -> dict[str, Any]:
+    from .deflection_6 import deflection, stiffening
+
+    loaded, free, spin, dpi, gamma, fx, fy = symbols
+    load = stiffening(p, loaded, free, spin, dpi, gamma).load(fx, fy)
+    return {"load": load, "slope": load.diff(loaded), "rho": deflection(p, loaded, free, gamma)}
+
+
+def _radius_outputs(p: Any, symbols: list[Any], turns: bool) -> dict[str, Any]:
+    if p.formula == "5.2":
+        from .magic_formula import rolling_radius
+
+        return {"Re": rolling_radius(p, symbols[0], _same)}
+    from .deflection_6 import effective_radius, free_radius
+
+    load, spin, dpi = symbols
+    free = free_radius(p, spin)
+    return {"Re": effective_radius(p, load, dpi, free), "free": free}
+
+
+def _same(x: Any) -> Any:
+    return x
