@@ -94,6 +94,7 @@ from .studies.suspension.kinematics_and_compliance import KinematicsAndComplianc
 from .studies.suspension.kinematics_and_compliance import kinematics_and_compliance as kinematics_and_compliance
 from .studies.suspension.road_loads import RoadLoads as RoadLoads
 from .studies.suspension.road_loads import road_loads as road_loads
+from .studies.suspension.vehicle import VehicleOptions as VehicleOptions
 from .studies.sweep import sweep as sweep
 from .reading.variation import Range as Range
 from .verification.verify import verify as verify

@@ -37,7 +37,7 @@ _LATER = {
     "Sensitivity": ".studies.sensitivities.sensitivities", "sensitivities": ".studies.sensitivities.sensitivities",
     "RoadLoads": ".studies.suspension.road_loads", "road_loads": ".studies.suspension.road_loads",
     "KinematicsAndCompliance": ".studies.suspension.kinematics_and_compliance",
-    "kinematics_and_compliance": ".studies.suspension.kinematics_and_compliance",
+    "kinematics_and_compliance": ".studies.suspension.kinematics_and_compliance", "VehicleOptions": ".studies.suspension.vehicle",
     "Simulation": ".studies.simulation", "simulation": ".studies.simulation", "follow": ".studies.follow",
     "listed_statements": ".adams.listing", "build_fmu": ".studies.fmu.build", "differences": ".results.listings.differences",
     "animate": ".show.drawing.animate", "draw": ".show.drawing.draw", "html": ".show.html", "plot": ".show.figure",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Unpack
 
 import numpy as np
@@ -13,7 +14,7 @@ from ..errors import AssemblyError, SolverError
 from ..model.scene import Scene
 from ..model.settings import RunSettings, Settings, takes_settings
 from ..results.solution import Solution
-from .job import Runnable, data_of, prepare
+from .job import Job, Runnable, data_of, prepare
 from .solution_at_rest import solution_at_rest
 
 
@@ -48,12 +49,24 @@ def quasi_static(model: Runnable, settings: RunSettings | None = None, **changes
         data = data.model_copy(update={"start": "described"})
     job = prepare(data, settings, **changes)
     times = job.grid.times if job.grid.times is not None else np.linspace(job.grid.start, job.grid.end, 101)
-    job.dynamics.state.q[:] = job.start.q
-    found = [_next(job.dynamics, float(t)) for t in times]
+    found = [*equilibria_over_time(job, times)]
     q, u = (np.array([getattr(each, name) for each in found]) for name in ("q", "u"))
     moves = sum(each.moves for each in found)
     solver = {"name": "quasi_static", "moves": moves, "imbalance": max(each.imbalance for each in found)}
     return solution_at_rest(job, times, q, u, f"{len(times)} equilibria after {moves} moves", (), solver)
+
+
+def equilibria_over_time(job: Job, times: np.ndarray) -> Iterator[Equilibrium]:
+    """Yield the equilibria at given times, s, each from the pose of the previous one; the state is set to it.
+
+    Raises
+    ------
+    AssemblyError, SolverError
+        As for `quasi_static`.
+    """
+    job.dynamics.state.q[:] = job.start.q
+    for t in times:
+        yield _next(job.dynamics, float(t))
 
 
 def _next(dynamics: Dynamics, t: float) -> Equilibrium:

@@ -68,7 +68,7 @@ def state_matrix(linear: Linearised, scale: np.ndarray) -> StateMatrix:
     SolverError
         When a free motion has no mass.
     """
-    constraints = _Constraints(linear.velocity * scale)
+    constraints = Constraints(linear.velocity * scale)
     free = constraints.null_space * scale[:, None]
     poses, left = (
         free if np.array_equal(matrix, linear.velocity) else null_space(matrix * scale) * scale[:, None]
@@ -76,7 +76,7 @@ def state_matrix(linear: Linearised, scale: np.ndarray) -> StateMatrix:
     )
     n_a, n_b, n_s = poses.shape[1], free.shape[1], len(linear.rate_by_states)
     s = np.hstack([np.zeros((n_s, n_a + n_b)), np.eye(n_s)])
-    led = _following(_Constraints(linear.position * scale), linear.position_by_states, scale)
+    led = _following(Constraints(linear.position * scale), linear.position_by_states, scale)
     x = np.hstack([poses, np.zeros((len(scale), n_b)), led])
     v = _following(constraints, linear.velocity_at_position @ x + linear.velocity_by_states @ s, scale)
     v[:, n_a : n_a + n_b] += free
@@ -108,7 +108,7 @@ def state_matrix(linear: Linearised, scale: np.ndarray) -> StateMatrix:
     )
 
 
-def _following(constraints: _Constraints, missing: np.ndarray, scale: np.ndarray) -> np.ndarray:
+def _following(constraints: Constraints, missing: np.ndarray, scale: np.ndarray) -> np.ndarray:
     """Return the smallest velocities or accelerations that cancel a violation by J; zero if there is none."""
     if not np.any(missing):
         return np.zeros((len(scale), missing.shape[1]))
@@ -139,10 +139,10 @@ def null_space(matrix: np.ndarray) -> np.ndarray:
     -------
     ndarray, shape (n, n - rank)
     """
-    return _Constraints(matrix).null_space
+    return Constraints(matrix).null_space
 
 
-class _Constraints:
+class Constraints:
     """Factorized equations A x = b: A^T with normalised rows of A, pivoted, is Q R.
 
     Parameters

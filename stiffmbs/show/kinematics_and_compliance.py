@@ -2,56 +2,145 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..results.files import written_whole
-from ..studies.suspension.characteristics import UNITS
-from ..studies.suspension.kinematics_and_compliance import KinematicsAndCompliance, Sweep
+from ..studies.suspension.kinematics_and_compliance import KinematicsAndCompliance
 from .sections import Section, Table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Sheet
 
 SHOWN = {
-    "bump": ("toe", "camber", "lateral", "longitudinal", "load"),
-    "roll": ("toe", "camber", "load"),
+    "bump": ("toe", "camber", "lateral", "longitudinal", "load", "wheel_rate"),
+    "roll": ("toe", "camber", "load", "wheel_rate"),
     "steer": ("toe", "camber"),
     "lateral": ("toe", "camber", "lateral"),
     "lateral_parallel": ("toe", "camber", "lateral"),
-    "brake": ("toe", "camber", "longitudinal"),
-    "traction": ("toe", "camber", "longitudinal"),
+    "brake": ("toe", "spin", "longitudinal"),
+    "traction": ("toe", "spin", "longitudinal"),
     "aligning": ("toe", "camber"),
     "aligning_parallel": ("toe", "camber"),
 }
-"""Characteristics drawn for each load case."""
+"""Measures whose slopes are shown for each load case."""
+
+
+@dataclass(frozen=True)
+class Panel:
+    """Diagram of the page: curves of one load case.
+
+    Attributes
+    ----------
+    title : str
+    case : str
+        Load case.
+    shown : tuple of str
+        Measures, of wheels (``toe``) or of the axle (``axle.track``).
+    over : str
+        Measure along the other axis; empty for the input of the case.
+    upright : bool
+        True if `over` is drawn upwards, as wheel travel is.
+    """
+
+    title: str
+    case: str
+    shown: tuple[str, ...]
+    over: str = ""
+    upright: bool = False
+
+
+PANELS = (
+    Panel("Bump steer", "bump", ("toe",), "travel", True),
+    Panel("Bump camber", "bump", ("camber",), "travel", True),
+    Panel("Track change", "bump", ("lateral",), "travel", True),
+    Panel("Wheelbase change", "bump", ("longitudinal",), "travel", True),
+    Panel("Wheel load", "bump", ("load",), "travel", True),
+    Panel("Wheel rate", "bump", ("wheel_rate",), "travel", True),
+    Panel("Roll centre height", "bump", ("axle.roll_centre_height",), "travel", True),
+    Panel("Caster", "bump", ("caster",), "travel", True),
+    Panel("Support angles: brake, drive", "bump", ("brake_angle", "drive_angle"), "travel", True),
+    Panel("Roll steer", "roll", ("toe",), "axle.roll_angle"),
+    Panel("Roll camber", "roll", ("camber",), "axle.roll_angle"),
+    Panel("Roll rate", "roll", ("axle.roll_rate",), "axle.roll_angle"),
+    Panel("Roll centre", "roll", ("axle.roll_centre_height",), "axle.roll_centre_lateral"),
+    Panel("Steering", "steer", ("toe",)),
+    Panel("Ackermann", "steer", ("axle.ackermann",), "axle.steer"),
+    Panel("Steering axis at the road", "steer", ("scrub_radius", "caster_trail"), "axle.steer"),
+    Panel("Camber over steer", "steer", ("camber",), "axle.steer"),
+    Panel("Lateral force: steer", "lateral_parallel", ("toe",)),
+    Panel("Lateral force: camber", "lateral_parallel", ("camber",)),
+    Panel("Lateral force: steer", "lateral", ("toe",)),
+    Panel("Braking: steer", "brake", ("toe",)),
+    Panel("Braking: recession", "brake", ("longitudinal",)),
+    Panel("Traction: steer", "traction", ("toe",)),
+    Panel("Aligning torque: steer", "aligning_parallel", ("toe",)),
+)
+"""Diagrams of the page, of which an axle shows those that apply."""
+COLUMNS = 4
+ROUNDING = 1e-9
+"""Largest value, in the unit of a measure, that the table shows as zero."""
 
 
 def kc_text(scene: str, found: KinematicsAndCompliance) -> str:
-    """Return the slopes of all curves at the middle, and the values at both ends, as text."""
-    lines = [f"{scene}: {found.axle.left} and {found.axle.right} on a rig, {found.message}"]
-    for sweep in found.sweeps.values():
-        x = sweep.abscissa
-        lines.append(f"{sweep.case.name}: {sweep.case.swept}, {x[0]:g} .. {x[-1]:g} {sweep.case.unit}")
-        for channel, values in sweep.channels.items():
-            unit = unit_of(channel)
-            slope = f"{sweep.slope(channel):>12.5g} {unit or '1'}/{sweep.case.unit}"
-            lines.append(f"  {channel:32} {values[0]:>11.5g} .. {values[-1]:<11.5g} {unit:5} {slope}")
-    lines.append(f"left and right differ by at most {found.asymmetry():.1e}, relative to their curves")
+    """Return all measures at the described heights, and the slopes of the curves there, as one table."""
+    lines = [f"{scene}: {found.axle.title} on a rig, {found.message}", *_words(found)]
+    rows = [("", *_columns(found), "unit"), *measure_rows(found), *slope_rows(found)]
+    width = max(len(row[0]) for row in rows)
+    lines += [
+        "  ".join((f"{row[0]:{width}}", *(f"{cell:>11}" for cell in row[1:-1]), row[-1])).rstrip() for row in rows
+    ]
+    if len(found.axle.wheels) == 2:
+        lines.append(f"left and right differ by at most {found.asymmetry():.1e}, relative to their curves")
     return "\n".join(lines)
 
 
-def unit_of(channel: str) -> str:
-    """Return the unit of a characteristic."""
-    return UNITS[channel.split(".")[1]]
+def _words(found: KinematicsAndCompliance) -> list[str]:
+    """Return the numbers of the vehicle that the measures refer to, and which are assumed."""
+    vehicle = found.vehicle
+    if not vehicle.wheelbase or vehicle.height is None or vehicle.front is None:
+        return ["no wheelbase and height of the centre of mass: without anti-dive, anti-lift, anti-squat"]
+    told = f"wheelbase {vehicle.wheelbase:.4g} m, centre of mass at {vehicle.height:.4g} m"
+    return [f"{told}; assumed: {', '.join(vehicle.assumed)}" if vehicle.assumed else told]
+
+
+def _columns(found: KinematicsAndCompliance) -> tuple[str, ...]:
+    sides = tuple(wheel.side for wheel in found.axle.wheels)
+    return (*sides, "axle") if len(sides) == 2 else sides
+
+
+def measure_rows(found: KinematicsAndCompliance) -> list[tuple[str, ...]]:
+    """Return rows of name, value of each side and of the axle, and unit, at the described heights."""
+    names = dict.fromkeys(name.partition(".")[2] for name in found.measures)
+    return [_row(found, name, found.measures, name, found.unit(f"of.{name}") or "1") for name in names]
+
+
+def slope_rows(found: KinematicsAndCompliance) -> list[tuple[str, ...]]:
+    """Return rows of the slopes of the curves of `SHOWN` at the described heights."""
+    rows = []
+    for case, sweep in found.sweeps.items():
+        slopes = {name: sweep.slope(name) for name in sweep.channels}
+        for name in SHOWN[case]:
+            unit = f"{found.unit(f'of.{name}') or '1'}/{sweep.case.unit}"
+            rows.append(_row(found, f"{case}: {name}", slopes, name, unit))
+    return rows
+
+
+def _row(
+    found: KinematicsAndCompliance, title: str, values: Mapping[str, float], name: str, unit: str
+) -> tuple[str, ...]:
+    cells = (values.get(f"{column}.{name}") for column in _columns(found))
+    return (title, *("" if cell is None else f"{cell if abs(cell) > ROUNDING else 0:.5g}" for cell in cells), unit)
 
 
 def kc_csv(found: KinematicsAndCompliance) -> str:
     """Return all curves as CSV, one row for each point of each load case."""
     names = sorted({channel for sweep in found.sweeps.values() for channel in sweep.channels})
-    rows = [",".join(["case", "input", *(f"{name} [{unit_of(name)}]" for name in names)])]
+    rows = [",".join(["case", "input", *(f"{name} [{found.unit(name)}]" for name in names)])]
     for name, sweep in found.sweeps.items():
         for k, x in enumerate(sweep.abscissa):
             cells = (f"{sweep.channels[each][k]:.12g}" if each in sweep.channels else "" for each in names)
@@ -60,15 +149,22 @@ def kc_csv(found: KinematicsAndCompliance) -> str:
 
 
 def kc_figure(found: KinematicsAndCompliance) -> Sheet:
-    """Draw a row of curves for each load case, left and right."""
+    """Draw the page: the panels that apply to the axle, with wheel travel upwards as chassis engineers draw it."""
     from matplotlib.figure import Figure
 
-    columns = max(len(SHOWN[name]) for name in found.sweeps)
-    figure = Figure(figsize=(2.6 * columns, 2.0 * len(found.sweeps)), layout="constrained")
-    axes = np.atleast_2d(figure.subplots(len(found.sweeps), columns, squeeze=False))
-    for row, sweep in zip(axes, found.sweeps.values(), strict=True):
-        _draw_row(row, sweep)
-    figure.suptitle(f"{found.name}: {found.axle.left} (solid), {found.axle.right} (dashed)")
+    panels = [panel for panel in PANELS if panel.case in found.sweeps and _curves(found, panel)]
+    columns = min(COLUMNS, max(len(panels), 1))
+    rows = max(1, -(-len(panels) // columns))
+    figure = Figure(figsize=(3.0 * columns, 2.3 * rows), layout="constrained")
+    axes = figure.subplots(rows, columns, squeeze=False).ravel()
+    for each, panel in zip(axes, panels, strict=False):
+        _draw(each, found, panel)
+    for each in axes[len(panels) :]:
+        each.set_axis_off()
+    sides = ", ".join(
+        f"{wheel.side} {style}" for wheel, style in zip(found.axle.wheels, ("solid", "dashed"), strict=False)
+    )
+    figure.suptitle(f"{found.name}: {found.axle.title} ({sides})")
     return figure
 
 
@@ -85,29 +181,61 @@ def draw_kc(path: Path | str, found: KinematicsAndCompliance) -> None:
 
 
 def kc_section(found: KinematicsAndCompliance) -> Section:
-    """Return a report section: slopes at the middle and values at both ends of all curves, and the figure."""
-    tables = []
-    for sweep in found.sweeps.values():
-        x, case = sweep.abscissa, sweep.case
-        heads = (f"{case.name}: {case.swept}", *(f"at {each:g} {case.unit}" for each in (x[0], x[-1])), "slope", "unit")
-        rows = [
-            (channel, f"{values[0]:.5g}", f"{values[-1]:.5g}", f"{sweep.slope(channel):.5g}", f"{unit_of(channel) or '1'}/{case.unit}")
-            for channel, values in sweep.channels.items()
-        ]  # fmt: skip
-        tables.append(Table(heads, tuple(rows)))
-    title = f"Kinematics and compliance: {found.axle.left} and {found.axle.right}"
+    """Return a report section: the table of measures, that of slopes, and the page of diagrams."""
+    columns = (*_columns(found), "unit")
+    tables = (
+        Table(("at the described heights", *columns), tuple(measure_rows(found))),
+        Table(("slope there", *columns), tuple(slope_rows(found))),
+    )
     told = f"Left and right differ by at most {found.asymmetry():.1e}, relative to their curves."
-    return Section(title, (found.message, told), tuple(tables), (kc_figure(found),))
+    sentences = (found.message, *_words(found), *((told,) if len(found.axle.wheels) == 2 else ()))
+    return Section(f"Kinematics and compliance: {found.axle.title}", sentences, tables, (kc_figure(found),))
 
 
-def _draw_row(row: np.ndarray, sweep: Sweep) -> None:
-    shown = SHOWN[sweep.case.name]
-    for axes, name in zip(row, shown, strict=False):
-        axes.plot(sweep.abscissa, sweep.channels[f"left.{name}"], "-")
-        axes.plot(sweep.abscissa, sweep.channels[f"right.{name}"], "--")
-        axes.set_xlabel(f"{sweep.case.name} ({sweep.case.unit})", fontsize=8)
-        axes.set_ylabel(f"{name} ({UNITS[name]})", fontsize=8)
-        axes.tick_params(labelsize=7)
-        axes.grid(alpha=0.3)
-    for axes in row[len(shown) :]:
-        axes.set_axis_off()
+def _curves(found: KinematicsAndCompliance, panel: Panel) -> list[tuple[str, np.ndarray, np.ndarray]]:
+    """Return the curves of a panel with their line styles: abscissa and values where both are finite."""
+    sweep = found.sweeps[panel.case]
+    curves = []
+    for name in panel.shown:
+        sides = ["axle"] if name.startswith("axle.") else [wheel.side for wheel in found.axle.wheels]
+        for side, style in zip(sides, ("-", "--"), strict=False):
+            channel = name if side == "axle" else f"{side}.{name}"
+            over = (
+                panel.over if panel.over.startswith("axle.") else f"{sides[0] if side == 'axle' else side}.{panel.over}"
+            )
+            if side == "axle" and panel.over == "travel":
+                over = f"{found.axle.wheels[0].side}.travel"
+            x = sweep.channels.get(over) if panel.over else sweep.abscissa
+            if channel in sweep.channels and x is not None and np.any(np.isfinite(sweep.channels[channel] + x)):
+                curves.append((style, x, sweep.channels[channel]))
+    return curves
+
+
+def _draw(axes: Any, found: KinematicsAndCompliance, panel: Panel) -> None:
+    """Draw one panel."""
+    sweep = found.sweeps[panel.case]
+    colours = {name: f"C{k}" for k, name in enumerate(panel.shown)}
+    per_name = len(_curves(found, panel)) // len(panel.shown)
+    for k, (style, x, y) in enumerate(_curves(found, panel)):
+        colour = colours[panel.shown[min(k // max(per_name, 1), len(panel.shown) - 1)]]
+        axes.plot(*((y, x) if panel.upright else (x, y)), style, color=colour, linewidth=1.2)
+    own = " / ".join(panel.shown)
+    own = f"{_worded(own)} ({found.unit(_of(panel.shown[0])) or '1'})"
+    other = f"{sweep.case.swept} ({sweep.case.unit})"
+    if panel.over:
+        other = f"{_worded(panel.over)} ({found.unit(_of(panel.over))})"
+    along, upwards = (own, other) if panel.upright else (other, own)
+    axes.set_xlabel(along, fontsize=7)
+    axes.set_ylabel(upwards, fontsize=7)
+    axes.set_title(panel.title, fontsize=8)
+    axes.tick_params(labelsize=6)
+    axes.grid(alpha=0.3)
+
+
+def _of(name: str) -> str:
+    """Return the channel of a measure whose unit is asked for."""
+    return name if "." in name else f"wheel.{name}"
+
+
+def _worded(name: str) -> str:
+    return name.replace("axle.", "").replace("_", " ")

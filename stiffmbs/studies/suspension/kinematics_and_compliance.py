@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
-from ...analyses.job import Runnable, data_of
-from ...analyses.quasi_static import quasi_static
+from ...analyses.job import Runnable, data_of, prepare
+from ...analyses.quasi_static import equilibria_over_time
 from ...errors import InputError
 from ...reading.did_you_mean import did_you_mean
 from ...reading.table import Table
-from .characteristics import characteristics
-from .rig import INPUTS, SIDES, Axle, axle_of, design_height, on_rig
+from .axle import Axle, axle_of
+from .characteristics import UNITS, Hub, Pose, Setup, displacements, of_axle, of_steering_axis, of_travel, setup_of
+from .compliance import Compliance, compliance_of
+from .rig import inputs_of, on_rig
+from .vehicle import Vehicle, VehicleOptions, vehicle_of
 
 
 @dataclass(frozen=True)
@@ -45,7 +49,7 @@ class LoadCase:
 
 
 CASES = (
-    LoadCase("bump", "travel of both wheels", "mm", 1e-3, {"kc_left": 1.0, "kc_right": 1.0}, 50.0),
+    LoadCase("bump", "travel of both wheels", "mm", 1e-3, {"kc_left": 1.0, "kc_right": 1.0, "kc_wheel": 1.0}, 50.0),
     LoadCase("roll", "travel, left up and right down", "mm", 1e-3, {"kc_left": 1.0, "kc_right": -1.0}, 30.0, True),
     LoadCase("steer", "travel of the rack to the left", "mm", 1e-3, {"kc_rack": 1.0}, 30.0, True),
     LoadCase("lateral", "force outwards at both patches", "kN", 1e3, {"kc_lateral": 1.0}, 2.0),
@@ -58,6 +62,12 @@ CASES = (
     ),
 )
 AMPLITUDES = {case.name: case.amplitude for case in CASES}
+OF_TWO_WHEELS = ("roll", "lateral_parallel", "aligning_parallel")
+"""Cases that a single wheel does not have: it has no roll, and its parallel loads are those of the other cases."""
+STEER_ANGLE = 10.0
+"""Default amplitude of a steering joint that rotates, deg."""
+NEARLY_STRAIGHT = 1e5
+"""Length of a swing arm, mm, and value of any measure, above which rounding governs the comparison of both sides."""
 
 
 @dataclass(frozen=True)
@@ -92,15 +102,34 @@ class KinematicsAndCompliance:
     ----------
     name : str
     axle : Axle
+    vehicle : Vehicle
+        Numbers of the vehicle that anti-dive, anti-lift, anti-squat and Ackermann refer to.
+    measures : dict of str to float
+        Measures at the described heights, in the units of `UNITS`: of bump motion and steering, and those of roll.
+    compliance : Compliance
+        Compliance matrices at the described heights.
     sweeps : dict of str to Sweep
         Curves by load case.
     message : str
+    angular : bool
+        True if the steering joint rotates.
     """
 
     name: str
     axle: Axle
+    vehicle: Vehicle
+    measures: dict[str, float]
+    compliance: Compliance
     sweeps: dict[str, Sweep] = field(default_factory=dict)
     message: str = ""
+    angular: bool = False
+
+    def unit(self, channel: str) -> str:
+        """Return the unit of a measure such as ``left.toe``."""
+        name = channel.split(".")[1]
+        if name == "steering_ratio":
+            return "" if self.angular else "mm/deg"
+        return UNITS[name]
 
     def asymmetry(self) -> float:
         """Return the largest difference between left and right, relative to the largest value of the curve or 1.
@@ -111,8 +140,14 @@ class KinematicsAndCompliance:
         for sweep in self.sweeps.values():
             order = slice(None, None, -1) if sweep.case.opposite else slice(None)
             for left in (each for each in sweep.channels if each.startswith("left.")):
-                a, b = sweep.channels[left], sweep.channels[f"right.{left.removeprefix('left.')}"][order]
-                worst = max(worst, float(np.max(np.abs(a - b)) / max(1.0, np.max(np.abs(a)))))
+                right = f"right.{left.removeprefix('left.')}"
+                if right not in sweep.channels:
+                    continue
+                a, b = sweep.channels[left], sweep.channels[right][order]
+                finite = np.isfinite(a) & np.isfinite(b) & (np.abs(a) < NEARLY_STRAIGHT)
+                a, b = a[finite], b[finite]
+                largest = max(1.0, float(np.max(np.abs(a), initial=0.0)))
+                worst = max(worst, float(np.max(np.abs(a - b), initial=0.0)) / largest)
         return worst
 
     def as_dict(self, scene: str) -> dict[str, Any]:
@@ -120,8 +155,8 @@ class KinematicsAndCompliance:
         cases = {
             name: {
                 "input": sweep.case.swept, "unit": sweep.case.unit, "values": sweep.abscissa.tolist(),
-                "channels": {channel: values.tolist() for channel, values in sweep.channels.items()},
-                "slopes": {channel: sweep.slope(channel) for channel in sweep.channels},
+                "channels": {channel: _numbers(values) for channel, values in sweep.channels.items()},
+                "slopes": {channel: _numbers(np.array([sweep.slope(channel)]))[0] for channel in sweep.channels},
             }
             for name, sweep in self.sweeps.items()
         }  # fmt: skip
@@ -130,31 +165,53 @@ class KinematicsAndCompliance:
             "status": "done",
             "message": self.message,
             "asymmetry": self.asymmetry(),
+            "vehicle": {
+                "wheelbase": self.vehicle.wheelbase,
+                "cg_height": self.vehicle.height,
+                "brake_share": self.vehicle.brake_share,
+                "drive_share": self.vehicle.drive_share,
+                "assumed": list(self.vehicle.assumed),
+            },
+            "measures": {
+                name: {"value": _numbers(np.array([value]))[0], "unit": self.unit(name)}
+                for name, value in self.measures.items()
+            },
+            "compliance": self.compliance.as_dict(),
             "cases": cases,
         }
 
 
 def kinematics_and_compliance(
     model: Runnable, axle: str = "front", points: int = 11, body: str | None = None, steering: str | None = None,
-    **amplitudes: float,
+    wheels: Sequence[str] = (), radius: float | None = None, vehicle: VehicleOptions | None = None, **amplitudes: float,
 ) -> KinematicsAndCompliance:  # fmt: skip
     """Sweep an axle on a test rig by equilibria: wheel travel, roll, steering, and forces and torques on the wheels.
 
-    The body is clamped as described, pads hold the patches at their heights, and tyres, drivers and other axles are
-    left out. All sweeps start at the heights of the described scene.
+    The body is clamped as described, pads hold the contacts at their heights, and tyres, drivers and other axles are
+    left out. All sweeps start at the heights of the described scene. The wheels roll on their pads. Measures follow from
+    the velocities of the carriers at each equilibrium, for any kind of suspension.
 
     Parameters
     ----------
     model : Scene, str or Path
         Scene with suspensions ``front.left`` and ``front.right``, each with a body ``upright`` that has the markers
-        ``spindle`` and ``patch``, or with a body ``front.axle`` that has those of both sides, as in the shipped parts.
+        ``spindle`` and ``patch``, or with a body ``front.axle`` that has those of both sides, as in the shipped parts;
+        or with tyres on wheels that rotate in revolute joints.
     axle : str
-        Prefix of ``.left`` and ``.right``; empty for suspensions ``left`` and ``right``.
+        Prefix of ``.left`` and ``.right``; empty for suspensions ``left`` and ``right``. In scenes with other names,
+        ``front`` or ``rear`` for the foremost or last tyres, or the beginning of the names of tyres or wheels.
     points : int
         Number of points of each curve, odd and at least 5.
     body, steering : str, optional
-        Body to clamp, by default ``chassis`` or the one that carries the axle.  Prismatic joint that steers, by default
-        the only ``guide``.
+        Body to clamp, by default ``chassis`` or the one that carries the axle.  Prismatic or revolute joint that
+        steers, by default the only prismatic ``guide`` of the axle.
+    wheels : sequence of str
+        Bodies of the wheels, instead of the search by `axle`.
+    radius : float, optional
+        Distance from the centres of the wheels to the road, m, where no marker ``patch`` gives it; by default the
+        unloaded radius of the tyres.
+    vehicle : VehicleOptions, optional
+        Wheelbase, height of the centre of mass, and shares of braking and driving force.
     **amplitudes
         Amplitudes of the load cases, such as ``bump=40`` (mm) or ``lateral=3`` (kN); 0 omits a case.
 
@@ -180,22 +237,92 @@ def kinematics_and_compliance(
     data = data_of(model)
     if data.dimensions != 3:
         raise InputError("found a scene in the plane, expected one in space")
-    found = axle_of(data, axle, body, steering)
-    sizes = {**AMPLITUDES, **amplitudes}
-    cases = [case for case in CASES if sizes[case.name] and (case.name != "steer" or found.steering)]
+    found = axle_of(data, axle, body, steering, wheels, radius)
+    angular = found.steering is not None and data.joints[found.steering].kind == "revolute"
+    cases = [_case(case, angular) for case in CASES if _applies(case, found)]
+    sizes = {case.name: amplitudes.get(case.name, case.amplitude) for case in cases}
+    cases = [case for case in cases if sizes[case.name]]
     half = points // 2
-    schedule = _schedule(cases, sizes, half)
-    heights = {f"kc_{side}": design_height(data, found, side) for side in SIDES}
-    rig = on_rig(data, found, _tables(schedule, heights))
-    solution = quasi_static(rig, start=0.0, duration=float(len(schedule) - 1), output=1.0)
+    schedule = _schedule(cases, sizes, half) or [{}, {}]
+    heights = {f"kc_{wheel.side}": float(wheel.contact[2]) for wheel in found.wheels}
+    rig = on_rig(data, found, _tables(inputs_of(found), schedule, heights))
+    setup = setup_of(rig, found, vehicle_of(data, found, vehicle or VehicleOptions()))
+    points_of = [(case, k) for case in cases for k in range(2 * half + 2)]
+    job = prepare(rig, start=0.0, duration=float(len(schedule) - 1), output=1.0)
+    start: list[Hub] = []
+    rows: list[dict[str, float]] = []
+    moves, compliance, measures = 0, None, {}
+    for t, rest in enumerate(equilibria_over_time(job, np.arange(float(len(schedule))))):
+        case = points_of[t][0] if points_of else CASES[0]
+        pose = Pose(setup, job.dynamics, float(t), _mode(case, found))
+        moves += rest.moves
+        if not t:
+            start, compliance = pose.hubs, compliance_of(pose)
+            measures = _at_start(pose, setup)
+        rows.append(_measured(pose, start, case))
     sweeps = {}
     for k, case in enumerate(cases):
         first = k * (2 * half + 2)
         order = [*range(first + 2 * half + 1, first + half + 1, -1), *range(first, first + half + 1)]
-        part = {name: values[order] for name, values in solution.items()}
         abscissa = sizes[case.name] * np.linspace(-1, 1, points)
-        sweeps[case.name] = Sweep(case, abscissa, characteristics(rig, found, part, half, "kc_left" in case.inputs))
-    return KinematicsAndCompliance(data.name, found, sweeps, solution.message)
+        channels = {name: np.array([rows[k].get(name, np.nan) for k in order]) for name in rows[first]}
+        sweeps[case.name] = Sweep(case, abscissa, channels)
+    assert compliance is not None
+    message = f"{len(rows)} equilibria after {moves} moves"
+    return KinematicsAndCompliance(
+        data.name, found, setup.vehicle, measures, compliance, sweeps, message, setup.angular
+    )
+
+
+def _applies(case: LoadCase, axle: Axle) -> bool:
+    """Return True if an axle has a load case."""
+    if case.name == "steer":
+        return axle.steering is not None
+    return len(axle.wheels) == 2 or case.name not in OF_TWO_WHEELS
+
+
+def _case(case: LoadCase, angular: bool) -> LoadCase:
+    """Return a load case, with the unit of a steering joint that rotates."""
+    if case.name != "steer" or not angular:
+        return case
+    return replace(case, swept="angle of the steering joint", unit="deg", scale=np.pi / 180, amplitude=STEER_ANGLE)
+
+
+def _mode(case: LoadCase, axle: Axle) -> tuple[float, ...]:
+    """Return the factors of the pads in the motion that a case measures."""
+    return (1.0, -1.0) if case.name == "roll" else (1.0,) * len(axle.wheels)
+
+
+def _measured(pose: Pose, start: list[Hub], case: LoadCase) -> dict[str, float]:
+    """Return the measures of one equilibrium of a load case, by wheel and of the axle."""
+    lifted = case.name in ("bump", "roll")
+    found: dict[str, float] = {}
+    for hub, first, load in zip(pose.hubs, start, pose.loads, strict=True):
+        of_wheel = displacements(hub, first, load)
+        if lifted:
+            of_wheel |= of_travel(pose, hub)
+        if pose.steered is not None and (lifted or case.name == "steer"):
+            of_wheel |= of_steering_axis(pose, hub)
+        found |= {f"{hub.wheel.side}.{name}": value for name, value in of_wheel.items()}
+    if len(pose.hubs) == 2 and (lifted or case.name == "steer"):
+        found |= {f"axle.{name}": value for name, value in of_axle(pose, lifted).items()}
+    return found
+
+
+def _at_start(pose: Pose, setup: Setup) -> dict[str, float]:
+    """Return all measures of the first pose: of bump, of steering, and of the axle in roll."""
+    bump, steer = (next(case for case in CASES if case.name == name) for name in ("bump", "steer"))
+    bumped = pose if pose.mode == _mode(bump, setup.axle) else pose.with_mode(_mode(bump, setup.axle))
+    found = _measured(bumped, bumped.hubs, bump)
+    if pose.steered is not None:
+        found = {**_measured(bumped, bumped.hubs, steer), **found}
+    left_out = ("travel", "spin", "lateral", "longitudinal", "turning_radius", "ackermann", "roll_angle", "steer")
+    return {name: value for name, value in found.items() if name.split(".")[1] not in left_out}
+
+
+def _numbers(values: np.ndarray) -> list[float | None]:
+    """Return numbers for JSON: None for those that are not finite."""
+    return [float(value) if np.isfinite(value) else None for value in values]
 
 
 def _schedule(cases: list[LoadCase], sizes: dict[str, float], half: int) -> list[dict[str, float]]:
@@ -208,11 +335,11 @@ def _schedule(cases: list[LoadCase], sizes: dict[str, float], half: int) -> list
     ]
 
 
-def _tables(schedule: list[dict[str, float]], heights: dict[str, float]) -> dict[str, Table]:
+def _tables(names: Sequence[str], schedule: list[dict[str, float]], heights: dict[str, float]) -> dict[str, Table]:
     return {
         name: Table(
             table=[(float(t), heights.get(name, 0.0) + inputs.get(name, 0.0)) for t, inputs in enumerate(schedule)],
             lines=True,
         )
-        for name in INPUTS
+        for name in names
     }

@@ -170,11 +170,14 @@ class _Axle:
             torque[2] = -sign * size
         elif case == "aligning_parallel":
             torque[2] = size
-        return [Push(at, force, torque), Pad(self._patches[side], 0.0, lift)]
+        return [Push(at, force, torque), self._pad(side, lift)]
+
+    def _pad(self, side: str, lift: float = 0.0) -> Pad:
+        return Pad(self._spindles[side], -float(self._patches[side].point[2]), 0.0, lift)
 
     def _measures(self, side: str, sign: float, upright: Pose, rest: Pose, load: float) -> dict[str, float]:
-        along, patch = upright.rotation[:, 1], self._patches[side].point
-        moved, centre = upright.at(patch) - rest.at(patch), upright.position - rest.position
+        along, pad = upright.rotation[:, 1], self._pad(side)
+        moved, centre = pad.contact(upright) - pad.contact(rest), upright.position - rest.position
         return {
             "travel": 1e3 * centre[2],
             "toe": float(np.degrees(sign * np.arctan2(along[0], along[1]))),

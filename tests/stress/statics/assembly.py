@@ -131,16 +131,26 @@ class Ball:
 
 @dataclass(frozen=True)
 class Pad:
-    """Vertical force that holds a point at a height, m, between those at zero and full load."""
+    """Vertical force that holds a wheel's lowest point at a height, m, between those at zero and full load.
+
+    The wheel, with its axis along y of the end's body and its centre at the end, rolls.
+    """
 
     at: End
+    radius: float
     rest: float
     lifted: float
     unknowns: int = 1
 
+    def contact(self, pose: Pose) -> np.ndarray:
+        """Return the lowest point of the wheel, m."""
+        axis = pose.rotation[:, 1]
+        up = np.array([0.0, 0.0, 1.0]) - axis[2] * axis
+        return np.asarray(pose.at(self.at.point) - self.radius * up / np.linalg.norm(up))
+
     def act(self, wrenches: Wrenches, multipliers: np.ndarray, load: float) -> np.ndarray:
         """Add the vertical force."""
-        place = wrenches.poses[self.at.body].at(self.at.point)
+        place = self.contact(wrenches.poses[self.at.body])
         wrenches.add(self.at.body, place, np.array([0.0, 0.0, multipliers[0]]))
         return np.array([place[2] - self.rest - load * self.lifted])
 

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from stiffmbs import read_scene
-from stiffmbs.studies.suspension.rig import axle_of
+from stiffmbs.studies.suspension.axle import axle_of
 
 
 def test_the_body_that_carries_the_axle_is_clamped():

@@ -1,0 +1,124 @@
+"""Numbers of the whole vehicle that measures of an axle refer to."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...elements.spatial.marker import Marker
+from ...elements.spatial.tyre import Tyre
+from ...errors import InputError
+from ...model.model_data import ModelData
+from ...reading.marker import GROUND
+from .axle import SAME_AXLE, Axle
+
+BRAKE_SHARES = {True: 0.6, False: 0.4}
+"""Assumed share of the braking force at a front and at a rear axle; typical of passenger cars."""
+
+
+@dataclass(frozen=True)
+class Vehicle:
+    """Numbers of the vehicle for anti-dive, anti-lift, anti-squat and Ackermann.
+
+    Attributes
+    ----------
+    wheelbase : float or None
+        Distance to the other axle, m; None leaves out the measures that need it.
+    height : float or None
+        Height of the centre of mass of the vehicle above the road, m.
+    front : bool or None
+        True for the front axle.
+    brake_share, drive_share : float
+        Share of this axle in the braking and in the driving force.
+    inboard_brakes : bool
+        True if the brakes are on the body, so that their torque does not act on the carriers.
+    outboard_drive : bool
+        True if the driving torque acts on the carriers, as with a solid axle or motors in the hubs.
+    assumed : tuple of str
+        Names of the numbers that are assumptions.
+    """
+
+    wheelbase: float | None = None
+    height: float | None = None
+    front: bool | None = None
+    brake_share: float = 1.0
+    drive_share: float = 1.0
+    inboard_brakes: bool = False
+    outboard_drive: bool = False
+    assumed: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class VehicleOptions:
+    """Numbers of the vehicle that are given; None leaves them to the scene.
+
+    Attributes
+    ----------
+    wheelbase, cg_height : float, optional
+        m.
+    brake_share, drive_share : float, optional
+        Share of this axle, 0 to 1.
+    inboard_brakes, outboard_drive : bool, optional
+    """
+
+    wheelbase: float | None = None
+    cg_height: float | None = None
+    brake_share: float | None = None
+    drive_share: float | None = None
+    inboard_brakes: bool = False
+    outboard_drive: bool | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("wheelbase", "cg_height"):
+            value = getattr(self, name)
+            if value is not None and not 0 < value < np.inf:
+                raise InputError(f"{name}: found {value}, expected a length above zero, m")
+        for name in ("brake_share", "drive_share"):
+            value = getattr(self, name)
+            if value is not None and not 0 <= value <= 1:
+                raise InputError(f"{name}: found {value}, expected a share from 0 to 1")
+
+
+def vehicle_of(model: ModelData, axle: Axle, given: VehicleOptions) -> Vehicle:
+    """Return the numbers of the vehicle: as given, else from the scene, else assumptions."""
+    own = float(np.mean([wheel.contact[0] for wheel in axle.wheels]))
+    others = [x for x in _contacts(model) if abs(x - own) > SAME_AXLE]
+    one = bool(others) and max(others) - min(others) < SAME_AXLE
+    front = bool(own > np.mean(others)) if others and (own > max(others) or own < min(others)) else None
+    assumed = []
+    brake = given.brake_share
+    if brake is None:
+        brake = 1.0 if front is None else BRAKE_SHARES[front]
+        assumed.append(f"brake share {brake:g}")
+    drive = given.drive_share
+    if drive is None:
+        drive = 1.0
+        assumed.append("drive share 1")
+    return Vehicle(
+        wheelbase=given.wheelbase or (abs(own - float(np.mean(others))) if one else None),
+        height=given.cg_height or _height(model, axle),
+        front=front,
+        brake_share=brake,
+        drive_share=drive,
+        inboard_brakes=given.inboard_brakes,
+        outboard_drive=axle.solid if given.outboard_drive is None else given.outboard_drive,
+        assumed=tuple(assumed),
+    )
+
+
+def _contacts(model: ModelData) -> list[float]:
+    """Return the positions along x of all wheels of a scene."""
+    found = [model.point(force.i)[0] for force in model.forces.values() if isinstance(force, Tyre)]
+    for name, body in model.bodies.items():
+        found += [model.point(Marker(body=name, marker=each))[0] for each in body.markers if each.endswith("patch")]
+    return found
+
+
+def _height(model: ModelData, axle: Axle) -> float | None:
+    """Return the height of the centre of mass of all bodies above the contacts, or None if the body is ground."""
+    if axle.body == GROUND:
+        return None
+    masses = np.array([body.mass for body in model.bodies.values()])
+    heights = [model.point(Marker(body=name, point=body.center_of_mass))[2] for name, body in model.bodies.items()]
+    return float(masses @ heights / masses.sum() - np.mean([wheel.contact[2] for wheel in axle.wheels]))
