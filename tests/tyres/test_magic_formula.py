@@ -78,6 +78,42 @@ def test_without_combined_coefficients_forces_stay_on_the_friction_ellipse():
     assert not list(TYRE.notes())
 
 
+def test_combined_slip_without_coefficients_by_the_manual_of_pac2002():
+    """mu_x and mu_y by the slips kappa_c and alpha_c, in the order of the manual's equations."""
+    shifted = {name: x for name, x in PLAIN.items() if name[0] != "R"} | {
+        "PHX1": 0.002,
+        "PVX1": 0.01,
+        "PHY1": -0.003,
+        "PVY1": 0.02,
+    }
+    bare = TyreProperties(coefficients=shifted, is_pac2002=True)
+    for kappa, alpha in ((0.05, 0.04), (-0.2, 0.15), (0.3, -0.3), (0.01, 0.2)):
+        x, y = bare.steady_state(4000, kappa, 0.0), bare.steady_state(4000, 0.0, alpha)
+        pure = TyreProperties(coefficients={**shifted, "RBX1": 1e-30})  # weights of combined slip are 1
+        fx0, fy0 = float(pure.steady_state(4000, kappa)["Fx"]), float(pure.steady_state(4000, 0, alpha)["Fy"])
+        svx, svy = 4000 * 0.01, 4000 * 0.02
+        kappa_c = kappa + 0.002 + svx / x["Kxk"]
+        alpha_c = math.sin(alpha - 0.003 + svy / y["Kya"])
+        tangent = math.tan(math.acos(abs(kappa_c) / math.hypot(kappa_c, alpha_c)))
+        act_x, act_y = (fx0 - svx) / 4000, (fy0 - svy) / 4000
+        mu_x = 1 / math.hypot(1 / act_x, tangent / y["muy"])
+        mu_y = tangent / math.hypot(1 / x["mux"], tangent / act_y)
+        both = bare.steady_state(4000, kappa, alpha)
+        assert both["Fx"] == pytest.approx(mu_x / abs(act_x) * fx0, rel=1e-9)
+        assert both["Fy"] == pytest.approx(mu_y / abs(act_y) * fy0, rel=1e-9)
+
+
+def test_the_belt_of_a_tyre_whose_deflection_grows_turns_it():
+    """M = QTZ1 LGYR MBELT Re Omega dy/dt, where dy/dt = Vy at zero deflection."""
+    lengths = {**PLAIN, "PTX1": 1.0, "PTY1": 1.0, "PTY2": 1.8}
+    couples = []
+    for belt in (0.0, 0.7):
+        tyre = TyreProperties(coefficients=lengths, belt=belt)
+        found = reported(wheel(MagicFormulaTyre(i="wheel", properties=tyre), 0.32, 0.02, 0.06, 0.0, 20.0, 64.0))
+        couples.append(found["aligning"])
+    assert couples[1] - couples[0] == pytest.approx(0.7 * (0.32 - 0.02 / 3) * 64 * 20 * math.tan(0.06), rel=1e-10)
+
+
 @pytest.mark.skipif(not PUBLISHED.is_dir(), reason="the published tyre is not here")
 def test_a_published_tyre():
     """Forces on which two other programs agree to 1e-12."""

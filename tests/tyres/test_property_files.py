@@ -115,7 +115,7 @@ def test_later_coefficients_without_fittyp_are_refused(read, name):
 UNUSED = {
     "[MODEL]\nVXLOW = 1": "[MODEL] VXLOW",
     "[INERTIA]\nMASS = 9.3\nIYY = 0.8": "(the mass properties are those of the wheel's body): [INERTIA] MASS, [INERTIA] IYY",
-    "[CONTACT_COEFFICIENTS]\nQTZ1 = 0.2": "(the gyroscopic couple of the belt is left out): [CONTACT_COEFFICIENTS] QTZ1",
+    "[CONTACT_COEFFICIENTS]\nQTZ1 = 0.2": "(of the belt's couple, which needs MBELT too): [CONTACT_COEFFICIENTS] QTZ1",
     "[BOTTOMING_CURVE]\n{pen fz}\n0 0\n10 5": "table [BOTTOMING_CURVE]",
     "[OPERATING_CONDITIONS]\nINFLPRES = 2e5": "[OPERATING_CONDITIONS] INFLPRES",
     "[DIMENSION]\nRIM_RADIUS = 190": "[DIMENSION] RIM_RADIUS",
@@ -129,6 +129,14 @@ UNUSED = {
 @pytest.mark.parametrize("added", UNUSED)
 def test_each_key_that_is_not_used_is_noted_with_its_section(read, added):
     assert UNUSED[added] in " ".join(read(f"{FILE}{added}\n").notes())
+
+
+def test_the_belt_of_pac2002_has_its_mass_in_the_units_of_the_file(read):
+    text = FILE.replace("MASS = 'kg'", "MASS = 'gram'")
+    found = read(f"{text}[ALIGNING_COEFFICIENTS]\nQTZ1 = 0.2\nMBELT = 5400\n[SCALING_COEFFICIENTS]\nLGYR = 0.5\n")
+    assert found.belt == pytest.approx(0.2 * 5.4 * 0.5)
+    assert found.is_pac2002
+    assert any("needs relaxation lengths" in note for note in found.notes())
 
 
 def test_values_without_effect_are_not_noted(read):

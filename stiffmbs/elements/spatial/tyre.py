@@ -125,6 +125,11 @@ class Tyre(Force):
         return None
 
     @classmethod
+    def belt_couple(cls, e: Symbolic, touch: Touch) -> Any:
+        """Return the gyroscopic couple of the belt about the road's normal, N m; zero by default."""
+        return 0
+
+    @classmethod
     def rolling_radius(cls, e: Symbolic, deflection: Any) -> Any:
         """Return the effective rolling radius, m: the unloaded radius less a third of the deflection."""
         from sympy import Rational
@@ -159,6 +164,7 @@ class Tyre(Force):
         rolling = Rolling(*(e.variable(x) if e.in_state(x) else x for x in map(e.read, of)))
         variables = [x for x in vars(rolling).values() if x is not None and e.in_state(x)]
         fx, fy, mx, my, mz = e.composed(cls.law(e, rolling), variables)
+        mz += cls.belt_couple(e, touch)
         rim = cls.rim_contact(e, touch.deflection, contact)
         normal = rolling.load if rim is None else e.read(touch.load + rim[0])
         return contact, rolling, touch.deflection, (fx, fy, normal, mx if rim is None else mx + rim[1], my, mz)

@@ -62,6 +62,8 @@ class TyreProperties(Component):
         None, description="load (N) over deflection (m), in place of VERTICAL_STIFFNESS; 5.2 alone"
     )
     bottoming: Bottoming | None = Field(None, description="contact of the rim with the road")
+    is_pac2002: bool = Field(False, description="whether combined slip without coefficients is that of PAC2002")
+    belt: float = Field(0.0, description="QTZ1 LGYR MBELT of the belt's gyroscopic couple, kg; 5.2 alone")
     remarks: tuple[str, ...] = ()
 
     @model_validator(mode="after")
@@ -150,7 +152,8 @@ class TyreProperties(Component):
         """Return the names and values that the equations use."""
         mode = 4 if self.use_mode is None else abs(self.use_mode) % WITH_LENGTHS
         own: dict[str, Any] = {
-            "ellipse": "" if self.is_combined else "limit", "mode": str(mode), "is_mirrored": self.is_mirrored, "side": self.side,
+            "ellipse": "" if self.is_combined else "pac2002" if self.is_pac2002 else "limit",
+            "belt": self.belt or None, "mode": str(mode), "is_mirrored": self.is_mirrored, "side": self.side,
             "deflection_load": self.deflection_load, "bottoming": self.bottoming, "formula": self.version,
         }  # fmt: skip
         if self.nominal_pressure is not None:
@@ -163,6 +166,8 @@ class TyreProperties(Component):
         if self.use_mode is not None and abs(self.use_mode) > WITH_LENGTHS and not self.has_lengths:
             missing = "LONGITUDINAL_STIFFNESS, LATERAL_STIFFNESS" if self.formula.has_pressure else "PTX1, PTY1"
             yield f"USE_MODE = {self.use_mode} asks for relaxation lengths, and there are none ({missing}): slips are those of the steady state"
+        if self.belt and not self.has_lengths:
+            yield "the gyroscopic couple of the belt (QTZ1) needs relaxation lengths, and there are none: it is left out"
         if not self.is_combined:
             yield "there are no coefficients of combined slip (RBX1, RCX1, RBY1, RCY1): forces are held on the friction ellipse"
 
@@ -294,6 +299,8 @@ def _of_file(file: PropertyFile) -> TyreProperties:
     }  # fmt: skip
     if not formula.has_pressure:
         read["deflection_load"] = _curve(file, "DEFLECTION_LOAD_CURVE")
+        read["belt"] = _belt(file)
+        read["is_pac2002"] = plain(file.text("PROPERTY_FILE_FORMAT")) == "PAC2002"
     for name in OF_THE_FILE:
         file.entry(name)
     remarks += unused_notes([*file.sections.values(), file.tables], REASONS)
@@ -388,6 +395,14 @@ def _bottoming(file: PropertyFile, formula: Version) -> Bottoming | None:
         return None
     width = file.number("WIDTH", "length", "DIMENSION") if file.entry("WIDTH", "DIMENSION") else 0.0
     return Bottoming(radius=file.number("BOTTOMING_RADIUS", "length", "DIMENSION"), width=width, load=load)
+
+
+def _belt(file: PropertyFile) -> float:
+    """Return the factor of the belt's gyroscopic couple, kg."""
+    given = ("QTZ1", ""), ("MBELT", "mass"), ("LGYR", "")
+    if not all(any(section.has(name) for section in file.sections.values()) for name in ("QTZ1", "MBELT")):
+        return 0.0
+    return math.prod(file.number(name, unit, home(name)) for name, unit in given if file.entry(name, home(name)))
 
 
 def _stiff_rim(file: PropertyFile) -> Bottoming | None:

@@ -254,8 +254,25 @@ def on_ellipse(s: Slip, x: Curve, y: Curve, f: Name) -> tuple[Any, Any, Any]:
     return f(x.force * less), f(y.force * less), Rational(0)
 
 
-ELLIPSES = {"limit": on_ellipse}
-"""Combined slip without weights: limits of both forces by the friction ellipse."""
+def within_ellipse(s: Slip, x: Curve, y: Curve, f: Name) -> tuple[Any, Any, Any]:
+    """Return Fx and Fy of combined slip by the friction ellipse of MSC Adams/Tire, PAC2002.
+
+    With kappa_c and alpha* = sin(alpha_c), the slips from those without force, and the friction that is used, mu_act:
+    Fx = Fx0/sqrt(1 + (mu_x,act tan(beta)/mu_y)^2), Fy = Fy0/sqrt(1 + (mu_y,act/(mu_x tan(beta)))^2), tan(beta) = abs(alpha*/kappa_c).
+    """
+    least = Float("1e-60")
+    kappa = f(s.kappa + x.horizontal + x.vertical / (x.stiffness + LEAST_LOAD))
+    stiffness = y.stiffness + sign(y.stiffness) * LEAST_LOAD + LEAST_LOAD**2
+    alpha = f(sin(s.alpha + y.horizontal + y.vertical / stiffness))
+    most_x, most_y = x.mu * s.load + LEAST_LOAD, y.mu * s.load + LEAST_LOAD
+    along, across = f((x.force - x.vertical) / most_y), f((y.force - y.vertical) / most_x)
+    fx = x.force * sqrt((kappa**2 + least) / (kappa**2 + (along * alpha) ** 2 + least))
+    fy = y.force * sqrt((alpha**2 + least) / (alpha**2 + (across * kappa) ** 2 + least))
+    return f(fx), f(fy), Rational(0)
+
+
+ELLIPSES = {"limit": on_ellipse, "pac2002": within_ellipse}
+"""Combined slip without weights: a limit of both forces, and the friction ellipse of PAC2002."""
 
 
 def rolling_radius(p: Any, deflection: Any, f: Name) -> Any:

@@ -74,10 +74,7 @@ RANGES = {
 OF_THE_FILE = ("FILE_TYPE", "FILE_VERSION", "FILE_FORMAT")
 """Keys that describe the file itself."""
 REASONS = {
-    "*": {
-        "QTZ1": "the gyroscopic couple of the belt is left out", "MBELT": "the gyroscopic couple of the belt is left out",
-        "BELT_MASS": "the gyroscopic couple of the belt is left out", "LGYR": "the gyroscopic couple of the belt is left out",
-    },
+    "*": {"QTZ1": "of the belt's couple, which needs MBELT too", "MBELT": "of the belt's couple, which needs QTZ1 too"},
     "[INERTIA]": {"*": "the mass properties are those of the wheel's body"},
     "[STRUCTURAL]": {"*": "the rigid ring of MF-Swift is not modelled"},
     "[MODEL]": {
@@ -102,7 +99,8 @@ _HOMES = {
     "STRUCTURAL": _words("LONGITUDINAL_STIFFNESS LATERAL_STIFFNESS PCFX1 PCFX2 PCFX3 PCFY1 PCFY2 PCFY3"),
     "CONTACT_PATCH": _words("Q_RA1 Q_RA2 Q_RB1 Q_RB2"),
     "VERTICAL": tuple(DIMENSIONS_6),
-    "SCALING_COEFFICIENTS": (*SCALES, *SCALES_6),
+    "SCALING_COEFFICIENTS": (*SCALES, *SCALES_6, "LGYR"),
+    "ALIGNING_COEFFICIENTS": ("QTZ1", "MBELT"),
     "TURNSLIP_COEFFICIENTS": TURN_SLIP,
 }
 _HOME = {name: section for section, names in reversed(_HOMES.items()) for name in names}

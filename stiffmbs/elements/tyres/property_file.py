@@ -31,7 +31,7 @@ UNITS = {
 FRACTIONS: Mapping[str, tuple[str, str]] = {
     "": ("", ""), "length": ("LENGTH", ""), "force": ("FORCE", ""), "angle": ("ANGLE", ""), "velocity": ("LENGTH", "TIME"),
     "stiffness": ("FORCE", "LENGTH"), "damping": ("FORCE TIME", "LENGTH"), "pressure": ("FORCE", "LENGTH LENGTH"),
-    "per length": ("", "LENGTH"),
+    "per length": ("", "LENGTH"), "mass": ("MASS", ""),
 }  # fmt: skip
 """Units whose product makes a dimension, and those that divide it."""
 _KEY = re.compile(r"^\s*([A-Za-z_]\w*)\s*=\s*(.*)$")

@@ -185,11 +185,11 @@ def _force_outputs(p: Any, symbols: list[Any], turns: bool) -> dict[str, Any]:
     if p.formula == "5.2":
         forces = magic_formula.wrench(p, magic_formula.Slip(*basic), _same, p.ellipse)
         lengths = magic_formula.relaxation_lengths(p, load, gamma, _same)
-        more = {}
+        more: dict[str, Any] = {}
     else:
         from .deflection_6 import contact_patch
 
-        state = magic_formula_6.PressedSlip(*basic, dpi=dpi, turn=turn if turns else None, rolling=rolling)
+        state = magic_formula_6.PressedSlip(*(*basic, dpi, turn if turns else None, rolling))
         forces = magic_formula_6.wrench(p, state, _same, p.ellipse)
         lengths = magic_formula_6.relaxation_lengths(p, load, dpi, gamma, _same)
         dfz = magic_formula.increment(p, load, _same)

@@ -138,6 +138,19 @@ class MagicFormulaTyre(Tyre):
         return bottomed(e, rim, depth, contact.camber)
 
     @classmethod
+    def belt_couple(cls, e: Symbolic, touch: Touch) -> Any:
+        """Return the gyroscopic couple of the belt, as the lateral deflection turns it about the heading.
+
+        M = QTZ1 LGYR MBELT V dy/dt, with the rolling speed V and the deflection y; MSC Adams/Tire, PAC2002. Pacejka, Tire and
+        Vehicle Dynamics (2012), sec. 5.4.2.
+        """
+        belt = e.properties.belt
+        if belt is None or not touch.rates:
+            return 0
+        rolling = e.named(cls.rolling_radius(e, touch.deflection))
+        return belt * rolling * touch.contact.spin * e.named(touch.rates[1])
+
+    @classmethod
     def rolling_radius(cls, e: Symbolic, deflection: Any) -> Any:
         """Return the effective rolling radius of 5.2 by BREFF, DREFF and FREFF of the property file."""
         from ...tyres.magic_formula import rolling_radius
