@@ -26,7 +26,7 @@ Shape: TypeAlias = tuple[Any, ...]
 ShapeOf: TypeAlias = Callable[[Any, "Compilable", "ElementData"], Shape]
 """Function that returns the shape of a value and appends its data."""
 REACTION = "reaction"
-"""Prefix of the index of a joint reaction in a formula's shape."""
+"""Prefix of the index of a joint's reaction or coordinate in a formula's shape."""
 STATE = "state"
 """Prefix of the slot of a state in a formula's shape."""
 TAKEN_OUT = "taken_out"
@@ -204,6 +204,9 @@ class FormulaShape(ast.NodeVisitor):
 
     def visit_Attribute(self, node: ast.Attribute) -> ast.AST:
         assert isinstance(node.value, ast.Name)
+        if node.value.id in self.model.joints:
+            self.reactions.append((node.attr, node.value.id))
+            return ast.Name(f"{REACTION}{len(self.reactions) - 1}")
         if self.model.dimensions == 3 and node.attr[0] in "qw":
             self.measures.append((OWN + node.attr, (MarkerReference(body=node.value.id),)))
             return ast.Name(f"measure{len(self.measures) - 1}")

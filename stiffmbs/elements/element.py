@@ -18,6 +18,7 @@ from pydantic import GetJsonSchemaHandler, model_validator
 from ..errors import InputError
 from ..reading.fields import Described, typed
 from ..reading.formula.formula import Formula
+from ..reading.joint_name import joint_channels
 from ..reading.marker import MarkerReference
 
 if TYPE_CHECKING:
@@ -28,12 +29,12 @@ if TYPE_CHECKING:
 Symbolic = Any
 """Element as its equations see it (`stiffmbs.compile.symbolic.element.SymbolicElement`). Markers are frames, numbers
 symbols, and formulas expressions. Formulas and tables of a variable are functions, and referenced joints are symbolic
-elements. Also ``e.t`` for time, ``e.rate(expression)`` for a total time derivative, and ``e.frames`` for the bodies."""
+elements. Also ``e.t`` for time, ``e.rate(expression)`` and ``e.acceleration(expression)`` for total time derivatives, and ``e.frames`` for the bodies."""
 
 
 IN_EQUATIONS = frozenset([
-    "a", "angle", "angles", "at_extremum", "at_root", "breakpoints", "by", "by_accelerations", "by_q", "by_u", "common_normal",
-    "composed", "coordinate", "coordinates", "depends", "derivatives", "distance", "frames", "in_state", "integral",
+    "a", "acceleration", "angle", "angles", "at_extremum", "at_root", "breakpoints", "by", "by_accelerations", "by_q", "by_u", "channel", "common_normal",
+    "composed", "coordinate", "coordinates", "counts", "depends", "derivatives", "distance", "frames", "in_state", "integral",
     "is_constant", "kind", "lam", "loads", "logarithm", "meanings", "named", "own", "point", "q", "rate", "reaction",
     "read", "relative_rotation", "second_rate", "shortest_rotation", "slope", "state_rates", "states", "t", "type", "u",
     "variable", "velocities", "velocity_level", "_accelerations", "_coordinate", "_joint", "_logarithms", "_new_rotation", "_note",
@@ -200,6 +201,11 @@ class Joint(Element):
     coordinates : tuple of str
         Names of its coordinates, for drives and couplers: ``angle``, ``displacement``. The joint has a static function
         of `e` with each of these names.
+    further_coordinates : tuple of str
+        Names of its other free coordinates, of `stiffmbs.reading.joint_name.FREE_COORDINATES`, which are only reported
+        and used in formulas. The joint has a function with each of these names, too.
+    channels : tuple of str
+        Names of the values that `measured` returns: the free coordinates with their rates and accelerations.
     transmits : tuple of str
         Reaction components in space: forces ``fx fy fz`` along the axes of marker j, and torques ``tx ty tz`` about
         them at the point of marker i. Components along other directions, such as the torque of a universal joint, are
@@ -213,9 +219,29 @@ class Joint(Element):
 
     equations: ClassVar[tuple[str, ...]] = ()
     coordinates: ClassVar[tuple[str, ...]] = ()
+    further_coordinates: ClassVar[tuple[str, ...]] = ()
+    channels: ClassVar[tuple[str, ...]] = ()
     transmits: ClassVar[tuple[str, ...]] = ()
     elastic: ClassVar[str] = ""
     keeps_in_plane: ClassVar[bool] = False
+
+    @classmethod
+    def __pydantic_init_subclass__(cls, **options: Any) -> None:
+        """Name the channels of a new kind's free coordinates."""
+        super().__pydantic_init_subclass__(**options)
+        if cls.free_coordinates():
+            cls.channels = joint_channels(cls.free_coordinates())
+
+    @classmethod
+    def free_coordinates(cls) -> tuple[str, ...]:
+        """Return the names of all coordinates along which the joint allows motion."""
+        return (*cls.coordinates, *cls.further_coordinates)
+
+    @classmethod
+    def measured(cls, e: Symbolic) -> Any:
+        """Return the reported values, one expression for each name in `channels`."""
+        free = [getattr(cls, name)(e) for name in cls.free_coordinates()]
+        return [value for x in free for value in (x, e.rate(x), e.acceleration(x))]
 
     @staticmethod
     def position(e: Symbolic) -> Any:

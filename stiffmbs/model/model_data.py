@@ -279,12 +279,12 @@ def check_element(
         raise ValueError(f"{where}.{field}: {reason}")
     for field, formula in element.parts(Formula):
         for body in formula.bodies():
-            if body not in bodies and body != GROUND:
+            if body not in bodies and body not in joints and body != GROUND:
                 near = did_you_mean(body, bodies)
                 raise ValueError(f"{where}.{field}: found the unknown body '{body}'{near}, expected {listed(bodies)}")
         check_states_of(f"{where}.{field}", formula, states)
         check_reactions(f"{where}.{field}", formula, joints)
-        for reason in names.validation_errors(formula):
+        for reason in names.validation_errors(formula, joints):
             raise ValueError(f"{where}.{type(element).model_fields[field].alias or field}: {reason}")
     placed = [marker.body for field, marker in element.parts(MarkerReference) if field in ("i", "j")]
     if len(placed) > 1 and len(set(placed)) == 1:

@@ -13,6 +13,7 @@ from ..elements.element import Force
 from ..elements.forces.weight import weights
 from ..elements.initial_pose import InitialSpatialMarker
 from ..elements.requests.names import OF_SPACE
+from ..elements.requests.order import channels_in
 from ..elements.requests.output import CONTINUOUS_ANGLES
 from ..elements.requests.output_field import SpatialRequest
 from ..elements.spatial.body import Body, BodyHandle
@@ -65,8 +66,15 @@ class SpatialData(ModelData):
         angles = (
             term for output in self.outputs().values() for term in output.terms if term.function in CONTINUOUS_ANGLES
         )
-        for term in dict.fromkeys(angles):
-            yield str(term), counter_of(str(term), frozenset(self.bodies))
+        of_joints = (name for output in self.outputs().values() for name in channels_in(output) if self._turns(name))
+        for angle in dict.fromkeys((*map(str, angles), *of_joints)):
+            yield angle, counter_of(angle, frozenset((*self.bodies, *self.joints)))
+
+    def _turns(self, channel: str) -> bool:
+        """Return True for an angle of a joint whose own equations do not count its turns."""
+        owner, _, name = channel.rpartition(".")
+        joint = self.joints.get(owner)
+        return joint is not None and name in joint.free_coordinates() and name.startswith("angle")
 
     def inertial(self, bodies: Mapping[str, Body]) -> Iterable[tuple[str, Force]]:
         """Yield the weights and gyroscopic torques of the bodies."""

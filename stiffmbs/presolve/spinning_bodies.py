@@ -159,8 +159,11 @@ def _demands(element: Element, model: Compilable) -> Iterator[tuple[MarkerRefere
     referred = [joint.joint for _, joint in element.parts(JointName)]
     for _, formula in element.parts(Formula):
         referred += [joint for _, joint in formula.reactions()]
-        for body, coordinate in formula.coordinates():
-            yield MarkerReference(body=body), _seen_in_coordinate(coordinate), False
+        for owner, coordinate in formula.coordinates():
+            if owner in model.joints:
+                referred.append(owner)
+            else:
+                yield MarkerReference(body=owner), _seen_in_coordinate(coordinate), False
         for measure, (i, j, *axes) in formula.measures():
             yield from ((marker, _seen_in_measure(measure), False) for marker in (i, j))
             yield from ((marker, REFUSED, False) for marker in axes)

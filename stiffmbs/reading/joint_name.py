@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import WithJsonSchema
@@ -12,7 +13,20 @@ if TYPE_CHECKING:
     from ..elements.element import Joint
 
 COORDINATES = ("angle", "displacement")
-"""Names of the coordinates of joints."""
+"""Names of the coordinates that drives, couplers and friction can name."""
+FREE_COORDINATES = (*COORDINATES, "angle_1", "angle_2", "displacement_x", "displacement_y", "displacement_z")
+"""Names of all free coordinates of joints, as channels and in formulas."""
+ORDERS = ("", "_rate", "_acceleration")
+"""Endings of the channels of a free coordinate, by its order in time: ``angle angle_rate angle_acceleration``."""
+
+
+def joint_channels(coordinates: Iterable[str], orders: Sequence[str] = ORDERS) -> tuple[str, ...]:
+    """Return the channels of free coordinates, with their derivatives in time."""
+    return tuple(coordinate + order for coordinate in coordinates for order in orders)
+
+
+JOINT_CHANNELS = frozenset(joint_channels(FREE_COORDINATES))
+"""Channels of the free coordinates of all kinds of joints."""
 
 
 class JointName(str):

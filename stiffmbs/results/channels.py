@@ -14,8 +14,10 @@ from ..errors import ChannelError
 from ..model.model_data import ModelData
 from ..presolve.subsystems import counters_of
 from ..reading.did_you_mean import did_you_mean
+from ..reading.joint_name import FREE_COORDINATES
 from ..reading.names import owner_of
 from .body_axes import in_own_axes
+from .joint_angles import joint_angles
 
 
 def channels_of(model: ModelData, system: System, rows: OutputRows) -> dict[str, np.ndarray]:
@@ -33,14 +35,22 @@ def channels_of(model: ModelData, system: System, rows: OutputRows) -> dict[str,
     if system.states or any(group.entries["signal"] for group in system.groups):
         channels |= state_channels(system, rows.q, rows.values)
     channels |= reactions(system, rows.values)
-    channels["energy.kinetic"], channels["energy.potential"] = rows.kinetic, rows.potential
-    channels["energy.total"] = rows.kinetic + rows.potential
-    channels["constraint.position"], channels["constraint.velocity"] = rows.position_violation, rows.velocity_violation
+    if (angles := joint_angles(system, model.joints)) is not None:
+        channels |= angles.continuous(rows)
+    channels |= channels_of_model(rows)
     if not model.requests:
         return channels
     from .requests import requested
 
     return channels | requested(model, rows.t, channels, counters(model, system, rows.q))
+
+
+def channels_of_model(rows: OutputRows) -> dict[str, np.ndarray]:
+    """Return the energies and the largest constraint violations."""
+    return {
+        "energy.kinetic": rows.kinetic, "energy.potential": rows.potential, "energy.total": rows.kinetic + rows.potential,
+        "constraint.position": rows.position_violation, "constraint.velocity": rows.velocity_violation,
+    }  # fmt: skip
 
 
 def state_channels(system: System, q: np.ndarray, values: np.ndarray) -> dict[str, np.ndarray]:
@@ -89,7 +99,8 @@ def series_of(model: ModelData, system: System, rows: OutputRows, name: str) -> 
     ChannelError
         If there is no such channel.
     """
-    at = -1 if model.requests else system.reported.get(name, -1)
+    turns = name.rpartition(".")[2] in FREE_COORDINATES and system.of_body.dimensions == 3
+    at = -1 if turns else system.reported.get(name, -1)
     return rows.values[:, at] if at >= 0 else named(channels_of(model, system, rows), name)
 
 

@@ -42,10 +42,7 @@ def requested(model: ModelData, time: np.ndarray, channels: Channels, counters: 
         Values by channel, shape (n,), in the order of the model.
     """
     outputs = model.outputs()
-    functions = {
-        name: {**_FUNCTIONS, **{called: curve(table) for called, table in output.tables.items()}}
-        for name, output in outputs.items()
-    }
+    functions = {name: _functions_of(output) for name, output in outputs.items()}
     order = in_order(outputs)
     found = {name: allocated(len(time)) for name in outputs}
     for block in blocks(len(time)):
@@ -58,6 +55,19 @@ def requested(model: ModelData, time: np.ndarray, channels: Channels, counters: 
             values[block] = known[name]
         release(*channels.values(), *found.values())
     return found
+
+
+def value_over_time(
+    model: ModelData, output: Output, time: np.ndarray, channels: Channels, counters: Channels
+) -> np.ndarray:
+    """Return a request at each instant, given the channels that it reads; parameters as for `requested`."""
+    with np.errstate(all="ignore"):
+        return _value(output, time, channels, _Terms(model, channels, counters, len(time)), _functions_of(output))
+
+
+def _functions_of(output: Output) -> Functions:
+    """Return the functions that a request may call."""
+    return {**_FUNCTIONS, **{called: curve(table) for called, table in output.tables.items()}}
 
 
 def _value(output: Output, time: np.ndarray, channels: Channels, terms: _Terms, functions: Functions) -> np.ndarray:

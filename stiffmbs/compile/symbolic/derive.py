@@ -20,7 +20,7 @@ from ..kind import Kind
 from .continuous_angle import away_from_pole
 from .element import SymbolicElement
 from .losses import power_of_force, power_of_joint
-from .stated import Stated, stated_by_force, stated_by_joint
+from .stated import Stated, measured_by_joint, multipliers, stated_by_force, stated_by_joint
 from .symbols import Symbols, symbols_of
 from .variation import Summand, Variation
 
@@ -139,6 +139,7 @@ def _derived_joint(kind: Kind, symbols: Symbols) -> Derived:
         for r, row in enumerate(e.by_accelerations(equation) + rest for equation, rest in zip(V, second, strict=True))
         for column in e.by_q.of(row)
     ]
+    entries["measured"] = _entries(sp.Matrix(measured_by_joint(kind, symbols, lam)))
     for name in ("C", "V"):  # complete, including zeros: solvers find them by row
         entries[name] = [Entry(terms[name][row], row) for row in range(V.rows)]
     variation = Variation(symbols)
@@ -252,11 +253,6 @@ def _counting(e: SymbolicElement) -> dict[str, list[Entry]]:
     }
     entries["continuous_angle"] = _entries(sp.Matrix(e.angles))
     return {name: [replace(entry, row=first + entry.row) for entry in found] for name, found in entries.items()}
-
-
-def multipliers(name: str, count: int) -> sp.Matrix:
-    """Return a column of symbols for the multipliers of one element's equations."""
-    return sp.Matrix([sp.Symbol(f"{name}{k}", real=True) for k in range(count)])
 
 
 def _reaction(stated: Stated, e: SymbolicElement, force: sp.Matrix) -> sp.Matrix:

@@ -81,6 +81,8 @@ class SymbolicElement:
         Rates of the states, in the equations of joints.
     angles : list of expressions
         Continuous angles, in the order of their counters.
+    counts : bool
+        False for values that are only reported: angles without a counter are then within one turn.
     breakpoints : list of expressions
         Event functions of the equations (``Abs``, ``Max``, ``Piecewise``), as they are read.
     derivatives : Derivatives
@@ -101,6 +103,7 @@ class SymbolicElement:
         self.states, self.own = states, states[:n_own]
         self.state_rates: tuple[sp.Expr, ...] = ()
         self.angles: list[sp.Expr] = []
+        self.counts = True
         self.breakpoints: list[sp.Expr] = []
         self.derivatives = derivatives
         self._rotations: dict[tuple[Any, Any], RelativeRotation] = {}
@@ -157,6 +160,10 @@ class SymbolicElement:
         rates = {symbol: rate for frame in self.frames for symbol, rate in frame.motion}
         rates |= dict(zip(self.states, self.state_rates, strict=False)) | {self.t: sp.Integer(1)}
         return self.derivatives.along(self.derivatives.along(x, rates), rates)
+
+    def acceleration(self, x: Any) -> sp.Expr:
+        """Return the second total time derivative of an expression of the pose and time."""
+        return self.by_accelerations(self.rate(x)) + self.second_rate(self.read(x))
 
     def by_accelerations(self, x: sp.Expr) -> sp.Expr:
         """Return the acceleration part J a of the rate of a function of velocities, in fewer products than from J."""
@@ -261,6 +268,8 @@ class SymbolicElement:
         for angle in self.angles:
             if angle.args[:2] == (sine, cosine):
                 return angle
+        if not self.counts:
+            return ContinuousAngle(sine, cosine, sp.Integer(0))
         self.angles.append(ContinuousAngle(sine, cosine, counter(len(self.angles))))
         return self.angles[-1]
 

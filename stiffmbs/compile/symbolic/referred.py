@@ -62,6 +62,12 @@ class ReferredJoint(SymbolicElement):
         """Normal loads on its surfaces."""
         return self._joint.loads(self)
 
+    def channel(self, name: str) -> sp.Expr:
+        """Return a free coordinate of the joint, ``angle``, or its rate, ``angle_rate``."""
+        coordinate = name.removesuffix("_rate")
+        x = getattr(self._joint, coordinate)(self)
+        return self.read(x) if name == coordinate else self.rate(x)
+
     @cached_property
     def coordinate(self) -> Any:
         """Referenced coordinate, or None; an angle gets a turn counter only if it is used."""

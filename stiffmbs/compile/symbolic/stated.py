@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import sympy as sp
@@ -68,6 +68,20 @@ def stated_by_joint(kind: Kind, symbols: Symbols) -> Stated:
     return asked.known(Stated(asked.column("point"), asked.event_functions(), position, velocity))
 
 
+def measured_by_joint(kind: Kind, symbols: Symbols, lam: Iterable[sp.Expr]) -> tuple[sp.Expr, ...]:
+    """Return the reported values of a joint, given its multipliers: coordinates with their rates, or an effort.
+
+    Raises
+    ------
+    InputError
+        If they are invalid; names the class.
+    """
+    asked, e = _Asked(kind.element, symbols), symbols.element
+    e.counts, e.__dict__["lam"] = False, list(lam)
+    measured = asked.measured()
+    return asked.known(Stated((), (), measured=measured)).measured
+
+
 def stated_by_force(kind: Kind, symbols: Symbols) -> Stated:
     """Return the law of a force.
 
@@ -79,12 +93,7 @@ def stated_by_force(kind: Kind, symbols: Symbols) -> Stated:
     asked = _Asked(kind.element, symbols)
     powers, condensed = asked.pairs(), asked.condensed()
     (potential,) = asked.column("potential")
-    limits, measured = asked.column("limits"), asked.column("measured")
-    if len(measured) != len(kind.element.channels):  # type: ignore[attr-defined]
-        raise InputError(
-            f"{kind.element.__name__}.measured: found {len(measured)} expressions, expected one for each of its channels "
-            f"({', '.join(kind.element.channels) or 'none'})"  # type: ignore[attr-defined]
-        )
+    limits, measured = asked.column("limits"), asked.measured()
     rates = asked.column("rates")
     if len(rates) != kind.n_own:
         raise InputError(
@@ -98,10 +107,18 @@ def stated_by_force(kind: Kind, symbols: Symbols) -> Stated:
     )  # fmt: skip
 
 
+def multipliers(name: str, count: int) -> sp.Matrix:
+    """Return a column of symbols for the multipliers of one element's equations."""
+    return sp.Matrix([sp.Symbol(f"{name}{k}", real=True) for k in range(count)])
+
+
 def text_of(kind: Kind) -> str:
     """Return a text that determines all derived terms of a kind: its equations and the expressions of their symbols."""
     symbols = symbols_of(kind)
     stated = (stated_by_joint if issubclass(kind.element, Joint) else stated_by_force)(kind, symbols)
+    if issubclass(kind.element, Joint):
+        lam = multipliers("lam", len(stated.position) + len(stated.velocity))
+        stated = replace(stated, measured=measured_by_joint(kind, symbols, lam))
     e, laws = symbols.element, [(law.argument, *law.of) for law in symbols.laws]
     parts = (*vars(stated).values(), list(e.meanings.items()), symbols.numbers, laws, e.angles, symbols.joint_lam)
     return repr((sp.srepr(parts), getattr(kind.element, "turns", False)))
@@ -140,6 +157,16 @@ class _Asked:
         name = "condensed_powers"
         return tuple((self._read(name, effort), self._read(name, rate)) for effort, rate in self._called(name))
 
+    def measured(self) -> tuple[sp.Expr, ...]:
+        """Return the expressions of the channels of the class."""
+        found, channels = self.column("measured"), self.element.channels
+        if len(found) != len(channels):
+            raise InputError(
+                f"{self.element.__name__}.measured: found {len(found)} expressions, expected one for each of its channels "
+                f"({', '.join(channels) or 'none'})"
+            )
+        return found
+
     def event_functions(self) -> tuple[sp.Expr, ...]:
         """Return the breakpoints of formulas, and those stated by the class, or else those of its equations."""
         named = issubclass(self.element, Force) and self.element.event_functions is not Force.event_functions
@@ -149,7 +176,7 @@ class _Asked:
     def known(self, stated: Stated) -> Stated:
         """Return the equations after a check that all symbols are defined."""
         parts = sp.flatten(vars(stated).values())
-        meant = self.symbols.known()
+        meant = {*self.symbols.known(), *getattr(self.e, "lam", ())}
         for symbol in sorted({symbol for x in parts for symbol in self.e.derivatives.variables(x)} - meant, key=str):
             raise InputError(
                 f"{self.element.__name__}: found the symbol {symbol} in its equations, expected fields, markers and time of e"

@@ -12,6 +12,7 @@ from typing import Any
 import sympy as sp
 
 from ...reading.formula.functions import EACH, FUNCTIONS, IN_FORMULAS, Breakpoints, FormulaFunction
+from ...reading.formula.names import REACTIONS
 from ...reading.formula.nodes import TIME
 from ...reading.formula.text import evaluate
 from ..bodies import SPACE
@@ -250,14 +251,21 @@ class _Builder:
         return function if n_variables else function()
 
     def reactions(self, name: str, wanted: tuple[tuple[str, Shape], ...]) -> list[sp.Expr]:
-        """Return components of the reactions of joints."""
+        """Return components of the reactions of joints, their coordinates, and the rates of these."""
+        joints = {
+            shape: self.made(f"{name}_j{k}", shape)
+            for k, shape in enumerate(dict.fromkeys(shape for _, shape in wanted))
+        }
         known: dict[Shape, dict[str, sp.Expr]] = {}
-        for k, shape in enumerate(dict.fromkeys(shape for _, shape in wanted)):
-            joint = self.made(f"{name}_j{k}", shape)
-            _, _, fields, *_ = shape
-            first = next(field[1] for _, field in fields if field[0] == "marker")
-            known[shape] = self.symbols.element.reaction(joint, self.frames[first])
-        return [known[shape][component] for component, shape in wanted]
+        for component, shape in wanted:
+            if component in REACTIONS and shape not in known:
+                _, _, fields, *_ = shape
+                first = next(field[1] for _, field in fields if field[0] == "marker")
+                known[shape] = self.symbols.element.reaction(joints[shape], self.frames[first])
+        return [
+            known[shape][component] if component in REACTIONS else joints[shape].channel(component)
+            for component, shape in wanted
+        ]
 
     def functions(self) -> dict[str, Callable[..., sp.Expr]]:
         """Return the functions of formulas; those with breakpoints record them if they depend on the state."""

@@ -7,6 +7,7 @@ from math import sqrt
 from stiffmbs.compile.machine.native.access import compiled, factors_view, floats, shifted, state_view
 from stiffmbs.compile.machine.native.evaluate import MOTION, OUTPUT, POSITION, call_kernels, evaluate, share_turns
 from stiffmbs.compile.machine.native.factors import log_determinant
+from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.orientation import take_unit_length
 from stiffmbs.compile.machine.native.statuses import SINGULAR
 from stiffmbs.dynamics.elimination.native.eliminated import log_determinant_by_blocks
@@ -117,6 +118,7 @@ def _output_point(s, m, t, q, project, tolerance, largest):
     status = consistent_accelerations(s, m, t)
     if status < 0:
         return status
+    copied(s.a, factors_view(m.acceleration_factors).b, s.n_u)
     share_turns(s, m.turned_for_output, m.n_turned_for_output)  # the others follow from the accelerations
     call_kernels(s, OUTPUT, t)
     return 0

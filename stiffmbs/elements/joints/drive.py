@@ -39,7 +39,8 @@ class Drive(Joint):
     The reaction is the action of the motor on its first body: ``motor.torque`` on an angle, ``motor.fx motor.fy`` along
     a displacement. The first body is that of the joint's marker i, or for a formula that of the drive's own marker `i`.
     Without `i` it is the first body that the formula names, and the torque's point is its centre of mass. As for every
-    joint the reaction is -J^T lam: the torque on a driven angle is minus the multiplier.
+    joint the reaction is -J^T lam: the torque on a driven angle is minus the multiplier. The channel ``motor.effort`` is
+    the torque, N m, on an angle, or the force, N, along a displacement, positive in the direction of the coordinate.
 
     Full revolutions of angles are counted, so angles can be driven over any number of them. In space the initial pose
     defines an angle up to full turns; it starts in the turn nearest to s(0). For a joint with two coordinates, name the
@@ -49,6 +50,7 @@ class Drive(Joint):
     kind = "drive"
     reflected = {"prescribed_position": "joint", "prescribed_velocity": "joint"}
     equations = ("motion",)
+    channels = ("effort",)
     forms = (
         *({"joint": "pin", "position": law} for law in ("2*t", "0.1 + 2*t", "0.1 - 2*t", "0.1*sin(2*t)", "0.1")),
         {"joint": "pin", "position": SLOT},
@@ -106,6 +108,11 @@ class Drive(Joint):
         ):  # fmt: skip
             if law is not None and (reason := _unfit(field, law, expected)):
                 yield field, reason
+
+    @classmethod
+    def measured(cls, e: Symbolic) -> Any:
+        """Return the effort of the motor along the driven coordinate: its power is effort times rate."""
+        return [-e.lam[0]]
 
     @staticmethod
     def position(e: Symbolic) -> Any:

@@ -33,6 +33,7 @@ class Curve(Joint, Generic[M]):
 
     kind = "point_on_curve"
     equations: ClassVar[tuple[str, ...]] = ("normal",)
+    further_coordinates: ClassVar[tuple[str, ...]] = ("displacement_x", "displacement_y")
     forms: ClassVar[tuple[Mapping[str, Any], ...]] = ({"y": SLOT}, {"radius": CAM})
 
     i: M = Field(description="marker of the body with the point, on which the reaction is reported")
@@ -51,6 +52,16 @@ class Curve(Joint, Generic[M]):
     def _closed(cls, radius: Formula | Table | None) -> Formula | Table | None:
         return repeating(radius)
 
+    @staticmethod
+    def displacement_x(e: Symbolic) -> Any:
+        """Return x of the point in the axes of marker j."""
+        return (e.i.point - e.j.point).dot(e.j.axes[0])
+
+    @staticmethod
+    def displacement_y(e: Symbolic) -> Any:
+        """Return y of the point in the axes of marker j."""
+        return (e.i.point - e.j.point).dot(e.j.axes[1])
+
     @model_validator(mode="after")
     def _one_curve(self) -> Self:
         exactly_one(("y", self.y), ("radius", self.radius))
@@ -68,6 +79,13 @@ class PointOnCurve(Curve[Marker]):
     The curve should be free of breakpoints. The reaction is normal to the curve, without friction, and bilateral: the
     point cannot lift off.
     """
+
+    further_coordinates = ("displacement_x", "displacement_y", "angle")
+
+    @staticmethod
+    def angle(e: Symbolic) -> Any:
+        """Return the angle of marker i relative to marker j."""
+        return e.i.angle - e.j.angle
 
     @staticmethod
     def position(e: Symbolic) -> Any:

@@ -21,6 +21,7 @@ class PointOnLine(Joint):
     reflected = {}
     equations = ("normal",)
     coordinates = ("displacement",)
+    further_coordinates = ("angle",)
     elastic = "bushing"
 
     i: Marker = Field(description="marker of the body with the pin, on which the reaction is reported")
@@ -34,3 +35,8 @@ class PointOnLine(Joint):
     def displacement(e: Symbolic) -> Any:
         """Return the displacement of the pin along the line, from marker j."""
         return (e.i.point - e.j.point).dot(e.j.axis)
+
+    @staticmethod
+    def angle(e: Symbolic) -> Any:
+        """Return the angle of marker i relative to marker j."""
+        return e.i.angle - e.j.angle

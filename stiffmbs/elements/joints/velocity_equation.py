@@ -9,6 +9,7 @@ from pydantic import Field, field_validator
 from ...reading.formula.field import OfMotion
 from ...reading.formula.formula import Formula
 from ...reading.formula.names import VELOCITIES
+from ...reading.joint_name import ORDERS
 from ..element import Symbolic
 from .constraint_equation import ONE_OR_MORE, UserConstraint
 
@@ -39,7 +40,7 @@ class VelocityEquation(UserConstraint):
     def _names_a_velocity(cls, zero: tuple[Formula, ...]) -> tuple[Formula, ...]:
         for formula in zero:
             used = {*(name for _, name in formula.coordinates()), *(name for name, _ in formula.measures())}
-            if not used & set(VELOCITIES):
+            if not (used & set(VELOCITIES) or any(name.endswith(ORDERS[1]) for name in used)):
                 raise ValueError(f"found '{formula.text}', expected a formula with a velocity such as cart.vx")
         return zero
 

@@ -118,7 +118,9 @@ def _of(owner: str, model: Any, names: OutputNames) -> tuple[str, ...]:
     if owner in model.forces:
         force = model.forces[owner]
         return (*names.of_elements, *force.channels, *force.own_states())
-    return names.of_elements if owner in model.joints else OF_RUN.get(owner, ())
+    if owner in model.joints:
+        return (*names.of_elements, *model.joints[owner].channels)
+    return OF_RUN.get(owner, ())
 
 
 def _check_request(where: str, name: str, output: Output, others: Mapping[str, Output]) -> None:

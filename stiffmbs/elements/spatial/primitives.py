@@ -73,6 +73,16 @@ def angle_about_z(e: Any) -> Any:
     return e.angle(e.i.x.dot(e.j.y), e.i.x.dot(e.j.x))
 
 
+def along_x(e: Any) -> Any:
+    """Return the displacement of marker i along the x axis of marker j."""
+    return along(e.i, e.j, e.j.x)
+
+
+def along_y(e: Any) -> Any:
+    """Return the displacement of marker i along the y axis of marker j."""
+    return along(e.i, e.j, e.j.y)
+
+
 class SpatialJoint(Joint):
     """Base of the spatial joints between two markers; scenes use its subclasses."""
 

@@ -131,14 +131,14 @@ def check_states(
                 for marker in markers:
                     check_marker(where, marker, bodies, on_ground)
             for body in formula.bodies():
-                if body not in bodies and body != GROUND:
+                if body not in bodies and body not in joints and body != GROUND:
                     raise ValueError(
                         f"{where}: found the unknown body '{body}'{did_you_mean(body, bodies)}, expected {listed(bodies)}"
                     )
             check_reactions(where, formula, joints)
             if known is not None:
                 check_states_of(where, formula, known)
-            for reason in names.validation_errors(formula):
+            for reason in names.validation_errors(formula, joints):
                 raise ValueError(f"{where}: {reason}")
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import copy
+import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -13,6 +14,7 @@ from ...reading.formula.formula import Formula
 from ...reading.formula.full_names import with_full_names
 from ...reading.formula.nodes import measured_markers
 from ...reading.formula.text import UNIT, as_written
+from ...reading.joint_name import JOINT_CHANNELS
 from ...reading.marker import GROUND, MarkerReference
 from ...reading.names import Names
 from .angles import Angles
@@ -52,6 +54,8 @@ class _Renamed(ast.NodeTransformer):
         owner, data = node.value.id, self._angles.data  # type: ignore[attr-defined]
         if owner in data.requests or owner == UNIT:
             return node
+        if owner in data.joints and node.attr in JOINT_CHANNELS:
+            return self._of_joint(node, data.joints[owner])
         match node.attr:
             case "angle":
                 return self._angle(MarkerReference(body=owner), MarkerReference(body=GROUND))
@@ -62,6 +66,11 @@ class _Renamed(ast.NodeTransformer):
             case "torque":
                 return self._read(f"{owner}.tz")
         return node
+
+    def _of_joint(self, node: ast.Attribute, joint: Any) -> ast.AST:
+        """Return a joint coordinate; in space an angle starts within half a turn."""
+        turns = round(self._angles.initial(joint.i, joint.j) / (2 * math.pi)) if node.attr == "angle" else 0
+        return self._read(f"({ast.unparse(node)} + {2 * math.pi * turns!r})") if turns else node
 
     def visit_Call(self, node: ast.Call) -> ast.AST:
         called = node.func.id  # type: ignore[attr-defined]

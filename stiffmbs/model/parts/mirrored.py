@@ -150,6 +150,22 @@ class Mirror:
             return float(self.frame.rotation_signs[-1])
         return float(self.frame.signs[0 if len(self.frame.signs) == 2 else 2])
 
+    def _along_joint(self, joint: str, channel: str) -> float | None:
+        """Return the sign of a free coordinate of a joint of the part, or of its rate; None for any other name."""
+        own: Joint | None = self.part.joints.get(joint.removeprefix(f"{self.name}."))
+        if own is None or channel not in own.channels:
+            return None
+        coordinate = channel.removesuffix("_rate")
+        if coordinate == "angle":
+            return float(self.frame.rotation_signs[-1])
+        if coordinate.startswith("displacement"):
+            axis = {"displacement_x": 0, "displacement_y": 1}.get(coordinate, len(self.frame.signs) - 1)
+            along_x = coordinate == "displacement" and len(self.frame.signs) == 2
+            return float(self.frame.signs[0 if along_x else axis])
+        raise FormulaError(
+            f"found '{joint}.{channel}' in a mirrored part, expected a displacement, or an angle about one axis"
+        )
+
     def _image(self, value: Any, signs: Any, law: bool) -> Any:
         """Return a value with its signs applied; laws also change the sign of their argument."""
         match value:
@@ -162,7 +178,9 @@ class Mirror:
                 each = signs if isinstance(signs, tuple) else itertools.repeat(signs, len(value))
                 return tuple(self._image(x, sign, law) for x, sign in zip(value, each, strict=True))
             case Formula() | Table():
-                return mirrored_law(value, MirroredNames(self.frame, self._own), signs, signs if law else 1.0)
+                return mirrored_law(
+                    value, MirroredNames(self.frame, self._own, self._along_joint), signs, signs if law else 1.0
+                )
             case bool():
                 return value
             case int() | float():

@@ -28,15 +28,24 @@ class MirroredNames(ast.NodeTransformer):
         Frame of the part in ground axes.
     inside : callable
         Returns True if a marker belongs to the part or its mounts.
+    along_joint : callable
+        Returns the sign of a joint's coordinate, given the names of both; None if the part has no such joint.
     """
 
-    def __init__(self, frame: Any, inside: Callable[[MarkerReference], bool]) -> None:
-        self.frame, self.inside = frame, inside
+    def __init__(
+        self,
+        frame: Any,
+        inside: Callable[[MarkerReference], bool],
+        along_joint: Callable[[str, str], float | None],
+    ) -> None:
+        self.frame, self.inside, self.along_joint = frame, inside, along_joint
 
     def visit_Attribute(self, node: ast.Attribute) -> ast.AST:
         body = node.value.id  # type: ignore[attr-defined]
         if body == UNIT:
             return node
+        if (sign := self.along_joint(body, node.attr)) is not None:
+            return _signed(node, sign)
         if not self.inside(MarkerReference(body=body)):
             raise FormulaError(f"found '{body}', which is outside of a mirrored part, expected what is in it")
         match node.attr:

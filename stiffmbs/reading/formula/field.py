@@ -13,6 +13,7 @@ from pydantic_core import core_schema
 
 from ..did_you_mean import did_you_mean
 from ..files.quoted import quoted, written
+from ..joint_name import JOINT_CHANNELS
 from ..names import Names, names_of
 from ..table import Table
 from ..units.quantity import as_float, is_unit, of_name
@@ -51,7 +52,9 @@ def _without_meaning(text: str, own: Container[str]) -> Iterator[str]:
         match node:
             case ast.Name(name) if name != TIME and not any(name in known for known in (own, UNITS, CONSTANTS)):
                 yield name
-            case ast.Attribute(ast.Name(owner), name) if owner != UNIT and name not in COORDINATES:
+            case ast.Attribute(ast.Name(owner), name) if not (
+                owner == UNIT or name in COORDINATES or name in JOINT_CHANNELS
+            ):
                 yield f"{owner}.{name}"
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Mapping
 
+from ..joint_name import FREE_COORDINATES, ORDERS
 from ..units.units import DIMENSIONS, Quantity
 from .check_dimensions import Columns, dimension_of
 from .dimension import UNKNOWN, Known, measured_in
@@ -15,13 +16,21 @@ def _by_name(names: Mapping[str, str]) -> dict[str, str]:
     return {name: dimension for dimension, listed in names.items() for name in listed.split()}
 
 
+OF_JOINTS = {
+    "angle": ("angle", "angular velocity", "angular acceleration"), "displacement": ("length", "velocity", "acceleration"),
+}  # fmt: skip
+"""Dimensions of a joint coordinate, its rate and its acceleration, by the beginning of its name."""
 CHANNELS = _by_name({
     "length": "x y z deflection deflection_x deflection_y", "angle": "angle slip_angle camber", "number": "q0 q1 q2 q3 slip",
     "velocity": "vx vy vz", "angular velocity": "omega wx wy wz", "acceleration": "ax ay az",
     "angular acceleration": "alpha wdx wdy wdz", "force": "fx fy fz longitudinal lateral load",
     "torque": "tx ty tz torque overturning rolling aligning",
-})  # fmt: skip
-"""Dimensions of the coordinates of bodies, and of the channels of joints, forces and tyres."""
+}) | {
+    coordinate + order: dimension
+    for coordinate in FREE_COORDINATES
+    for order, dimension in zip(ORDERS, OF_JOINTS[coordinate.partition("_")[0]], strict=True)
+}  # fmt: skip
+"""Dimensions of the coordinates of bodies and joints, and of the channels of joints, forces and tyres."""
 _MEASURES = _by_name({
     "length": "dx dy dz dm", "angle": "ax ay az psi theta phi", "number": "q0 q1 q2 q3", "velocity": "vx vy vz vm vr",
     "angular velocity": "wx wy wz wm", "acceleration": "accx accy accz accm",

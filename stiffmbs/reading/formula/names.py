@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ..did_you_mean import did_you_mean
+from ..joint_name import ORDERS, joint_channels
 
 if TYPE_CHECKING:
+    from ...elements.element import Joint
     from .formula import Formula
 
 
@@ -35,11 +37,13 @@ class FormulaNames:
     velocity_measures: tuple[str, ...]
     along_axes: tuple[str, ...]
 
-    def validation_errors(self, formula: Formula) -> Iterator[str]:
+    def validation_errors(self, formula: Formula, joints: Mapping[str, Joint]) -> Iterator[str]:
         """Yield faults of a formula: names of the other family, and velocities in formulas of positions."""
         of_body = self.positions + (self.velocities if formula.velocities else ())
         for body, coordinate in formula.coordinates():
-            if coordinate not in of_body:
+            if body in joints:
+                yield from self._of_joint(formula, body, joints[body], coordinate)
+            elif coordinate not in of_body:
                 near = did_you_mean(coordinate, of_body)
                 yield f"found '{body}.{coordinate}'{near}, expected one of {body}.{f', {body}.'.join(of_body)}"
         for name, joint in formula.reactions():
@@ -54,6 +58,20 @@ class FormulaNames:
                 yield f"found the velocity {name} in '{formula.text}', expected positions only"
             elif len(markers) > 2 and name not in self.along_axes:
                 yield f"found {len(markers)} markers of {name} in '{formula.text}', expected one or two"
+
+    def _of_joint(self, formula: Formula, name: str, joint: Joint, channel: str) -> Iterator[str]:
+        """Yield the reason why a name is not that of a joint's coordinate, or of its rate where velocities are permitted."""
+        known = joint_channels(joint.free_coordinates(), ORDERS[: 1 + formula.velocities])
+        if channel in known:
+            return
+        found = f"found '{name}.{channel}'{did_you_mean(channel, known)} in '{formula.text}'"
+        if not known:
+            yield f"{found}, a joint of the type {joint.kind}, which has no coordinates, expected a measure between its markers"
+        elif channel in joint_channels(joint.free_coordinates()):
+            order = "velocity" if channel.endswith("_rate") else "acceleration"
+            yield f"{found}, which is a{'n' * (order[0] == 'a')} {order}, expected one of {name}.{f', {name}.'.join(known)}"
+        else:
+            yield f"{found}, expected one of {name}.{f', {name}.'.join(known)}"
 
 
 PLANE = FormulaNames(

@@ -178,6 +178,8 @@ def _of_formula(element: Element, data: ModelData, sites: _Sites) -> Site | None
     """Return the centre of mass of the first body that an element's formulas name."""
     for _, formula in element.parts(Formula):
         for body in formula.bodies():
+            if body in data.joints:
+                return sites.of(data.joints[body].i)
             if body != GROUND:
                 origin, turned = sites.poses.pose(body, 0)
                 return Site(body, np.zeros(3), np.eye(3), origin, turned)

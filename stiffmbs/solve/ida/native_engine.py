@@ -226,7 +226,7 @@ class NativeEngine(Engine):
 
         if self._starts is None or not Restarts.serve(dynamics.system, self._ida):
             return None
-        return Restarts(self._starts, (q, u))
+        return Restarts(dynamics, self._starts, (q, u))
 
     @cached_property
     def _starts(self) -> Starts | None:

@@ -9,7 +9,7 @@ from pydantic import Field
 from ...element import Symbolic
 from ..branches import initially_apart
 from ..marker import Marker
-from ..primitives import ALIGN, IN_PLANE, SpatialJoint, align, along
+from ..primitives import ALIGN, IN_PLANE, SpatialJoint, align, along, along_x, along_y, angle_about_z
 
 
 class Planar(SpatialJoint):
@@ -23,9 +23,13 @@ class Planar(SpatialJoint):
 
     kind = "planar"
     equations = (*IN_PLANE, *ALIGN)
+    further_coordinates = ("displacement_x", "displacement_y", "angle")
     transmits = ("fz", "tx", "ty")
     elastic = "bushing"
     initially: ClassVar = staticmethod(initially_apart)
+    displacement_x: ClassVar = staticmethod(along_x)
+    displacement_y: ClassVar = staticmethod(along_y)
+    angle: ClassVar = staticmethod(angle_about_z)
 
     j: Marker = Field(description="marker whose xy plane is the one to slide on")
 

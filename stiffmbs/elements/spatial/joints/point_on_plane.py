@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, ClassVar
 
 from pydantic import Field
 
 from ...element import Symbolic
 from ..marker import Marker
-from ..primitives import IN_PLANE, SpatialJoint, along
+from ..primitives import IN_PLANE, SpatialJoint, along, along_x, along_y
 
 
 class PointOnPlane(SpatialJoint):
@@ -21,8 +21,11 @@ class PointOnPlane(SpatialJoint):
 
     kind = "point_on_plane"
     equations = IN_PLANE
+    further_coordinates = ("displacement_x", "displacement_y")
     transmits = ("fz",)
     elastic = "bushing"
+    displacement_x: ClassVar = staticmethod(along_x)
+    displacement_y: ClassVar = staticmethod(along_y)
 
     i: Marker = Field(description="marker of the body with the point, on which the reaction is reported")
     j: Marker = Field(description="marker whose xy plane is the plane")

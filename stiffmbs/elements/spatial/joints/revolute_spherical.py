@@ -25,9 +25,16 @@ class RevoluteSpherical(Rod[Marker]):
     kind = "revolute_spherical"
     reflected = {}
     equations = (*Rod.equations, *IN_PLANE)
+    further_coordinates = ("angle_1",)
 
     i: Marker = Field(description="marker of the body with the ball, on which the reaction is reported")
     j: Marker = Field(description="marker whose z axis is the hinge's")
+
+    @staticmethod
+    def angle_1(e: Symbolic) -> Any:
+        """Return the angle of the rod about the hinge axis j.z, from j.x."""
+        d = e.i.point - e.j.point
+        return e.angle(d.dot(e.j.y), d.dot(e.j.x))
 
     @staticmethod
     def position(e: Symbolic) -> Any:

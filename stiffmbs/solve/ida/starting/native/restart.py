@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from stiffmbs.compile.machine.native.access import compiled, equations_view, factors_view, ints, state_view, view_of
 from stiffmbs.compile.machine.native.calls import call_int, int32
-from stiffmbs.compile.machine.native.evaluate import load
+from stiffmbs.compile.machine.native.evaluate import POSITION, evaluate, load
 from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.statuses import OK, STOP_RETURN
 from stiffmbs.dynamics.native.block_systems import MOST_MOVES
@@ -50,7 +50,13 @@ def restart(t, end, restarts):
     e = equations_view(c.equations)
     copied(s.q, w.q, s.n_q)
     copied(s.u, w.u, s.n_u)
-    if brought_back(s, m, t) < 0 or accelerated(s, m, t) < 0:
+    if brought_back(s, m, t) < 0:
+        return int32(UNFINISHED)
+    if w.n_counted:
+        values = evaluate(s, POSITION, t)
+        for k in range(w.n_counted):
+            s.q[w.counted_row[k]] = values[w.counted_source[k]]
+    if accelerated(s, m, t) < 0:
         return int32(UNFINISHED)
     if prepared(b, s, m, e, c, t) < 0 or begun(b, c, t) < 0:
         return int32(UNFINISHED)

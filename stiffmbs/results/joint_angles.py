@@ -1,0 +1,117 @@
+"""Full revolutions of the joint angles of spatial models.
+
+A pose defines such an angle up to full turns. They are counted by the integration where an element or a request names
+the angle, and otherwise follow from its rate and acceleration at the output times.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from ..compile.system import System
+from ..dynamics.dynamics import OutputRows
+from ..elements.element import Joint
+from ..elements.states.equation import AngleCounter
+from ..reading.joint_name import ORDERS, JointName
+
+TURN = 2 * np.pi
+UNCERTAIN_TURN = 1.0
+"""Difference of an angle's change between output times and that predicted from its rates, rad, from which on the number
+of turns is uncertain."""
+
+
+@dataclass(frozen=True)
+class JointAngles:
+    """Angles of the joints of a spatial model within a turn, and the counters of their turns.
+
+    Attributes
+    ----------
+    places : mapping of str to (int, int, int)
+        Places of each angle, its rate and its acceleration in the values of the output terms, by channel.
+    counters : mapping of str to int
+        Coordinate that counts the turns of some angles, by channel.
+    """
+
+    places: Mapping[str, tuple[int, ...]]
+    counters: Mapping[str, int]
+
+    def continuous(self, rows: OutputRows) -> dict[str, np.ndarray]:
+        """Return the angles with their full revolutions by channel, shape (n,), rad."""
+        found = {}
+        for name, places in self.places.items():
+            if name in self.counters:
+                angle = rows.values[:, places[0]]
+                found[name] = angle + TURN * np.round((rows.q[:, self.counters[name]] - angle) / TURN)
+        if self._followed:
+            change, predicted = self._changes(rows)
+            angles = rows.values[:, [self.places[name][0] for name in self._followed]]
+            angles[1:] += TURN * np.cumsum(np.round((predicted - change) / TURN), axis=0)
+            found |= dict(zip(self._followed, angles.T, strict=True))
+        return found
+
+    def uncertain(self, rows: OutputRows) -> Iterator[str]:
+        """Yield a sentence on the angle whose turns between output times are least certain."""
+        if not self._followed or len(rows.t) < 2:
+            return
+        change, predicted = self._changes(rows)
+        apart = np.abs(np.remainder(predicted - change + np.pi, TURN) - np.pi)
+        apart[np.isnan(apart)] = 0.0
+        row, k = np.unravel_index(int(np.argmax(apart)), apart.shape)
+        if apart[row, k] > UNCERTAIN_TURN:
+            name = self._followed[k]
+            yield (
+                f"whole turns of {name} are not certain: between t = {rows.t[row]:.6g} s and {rows.t[row + 1]:.6g} s it changes "
+                "too much for the output times; name it in a request, so that the integration counts its turns, or take "
+                "more output points"
+            )
+
+    @cached_property
+    def _followed(self) -> list[str]:
+        """Angles without a counter."""
+        return [name for name in self.places if name not in self.counters]
+
+    def _changes(self, rows: OutputRows) -> tuple[np.ndarray, np.ndarray]:
+        """Return the changes of angles between instants, and those of the Hermite polynomial of their rates.
+
+        Shape (n - 1, angles).
+        """
+        angle, rate, acceleration = (
+            rows.values[:, [self.places[name][order] for name in self._followed]] for order in range(len(ORDERS))
+        )
+        h = np.diff(rows.t)[:, None]
+        predicted = h / 2 * (rate[:-1] + rate[1:]) - h**2 / 12 * np.diff(acceleration, axis=0)
+        return np.diff(angle, axis=0), predicted
+
+
+def joint_angles(system: System, joints: Mapping[str, Any]) -> JointAngles | None:
+    """Return the angles of a system's joints; None in the plane, where bodies' angles count their turns, or without any."""
+    if system.of_body.dimensions == 2:
+        return None
+    angles = {
+        f"{name}.{coordinate}": tuple(system.reported[f"{name}.{coordinate}{order}"] for order in ORDERS)
+        for group in system.groups
+        if issubclass(group.kind.element, Joint) and not group.record.n_counters
+        for coordinate in group.kind.element.free_coordinates()
+        if coordinate.startswith("angle")
+        for name in group.names
+    }
+    places = {name: found for name, found in angles.items() if min(found) >= 0}
+    return JointAngles(places, dict(_counters(system, joints))) if places else None
+
+
+def _counters(system: System, joints: Mapping[str, Any]) -> Iterator[tuple[str, int]]:
+    """Yield the angles that an element or a request counts, with the coordinates of their counters."""
+    for group in system.groups:
+        if group.record.n_counters == 1:
+            for name, element, (place,) in zip(group.names, group.elements, group.counters, strict=True):
+                if isinstance(element, AngleCounter):
+                    yield name, int(place)
+                elif len(named := [joint for _, joint in element.parts(JointName)]) == 1:
+                    coordinate = named[0].coordinate_of(joints[named[0].joint])
+                    if coordinate is not None:
+                        yield f"{named[0].joint}.{coordinate}", int(place)
