@@ -290,7 +290,8 @@ class Dynamics:
                 len(times), system.n_u, written[1], mass, n_output, written[4],
                 len(self._potential), potentials, len(self._power), powers, len(self._kinetic), kinetics, *written[6:],
             )  # fmt: skip
-            release(*rows, kinetic, potential, power, q, u)
+            if count > 1:
+                release(*rows, kinetic, potential, power, q, u)
             if done < block.stop:
                 break
         q, u, acceleration, lam, values, judged = (array[:done] for array in rows)

@@ -20,9 +20,15 @@ def in_own_axes(
     """
     axes = system.principal_axes
     q = q[:, : system.n_pose]
-    if not axes.size or np.array_equal(axes, np.broadcast_to(OWN_ARE_PRINCIPAL, axes.shape)):
+    if own_are_principal(system):
         return q, u, acceleration
     return _turned_back(q, CONJUGATE * axes), _seen_from(u, axes), _seen_from(acceleration, axes)
+
+
+def own_are_principal(system: System) -> bool:
+    """Return True in the plane, and if the own axes of all bodies are principal ones."""
+    axes = system.principal_axes
+    return not axes.size or np.array_equal(axes, np.broadcast_to(OWN_ARE_PRINCIPAL, axes.shape))
 
 
 def from_own_axes(system: System, q: np.ndarray) -> np.ndarray:

@@ -47,23 +47,23 @@ class JointAngles:
             if name in self.counters:
                 angle = rows.values[:, places[0]]
                 found[name] = angle + TURN * np.round((rows.q[:, self.counters[name]] - angle) / TURN)
-        if self._followed:
+        if self.followed:
             change, predicted = self._changes(rows)
-            angles = rows.values[:, [self.places[name][0] for name in self._followed]]
+            angles = rows.values[:, [self.places[name][0] for name in self.followed]]
             angles[1:] += TURN * np.cumsum(np.round((predicted - change) / TURN), axis=0)
-            found |= dict(zip(self._followed, angles.T, strict=True))
+            found |= dict(zip(self.followed, angles.T, strict=True))
         return found
 
     def uncertain(self, rows: OutputRows) -> Iterator[str]:
         """Yield a sentence on the angle whose turns between output times are least certain."""
-        if not self._followed or len(rows.t) < 2:
+        if not self.followed or len(rows.t) < 2:
             return
         change, predicted = self._changes(rows)
         apart = np.abs(np.remainder(predicted - change + np.pi, TURN) - np.pi)
         apart[np.isnan(apart)] = 0.0
         row, k = np.unravel_index(int(np.argmax(apart)), apart.shape)
         if apart[row, k] > UNCERTAIN_TURN:
-            name = self._followed[k]
+            name = self.followed[k]
             yield (
                 f"whole turns of {name} are not certain: between t = {rows.t[row]:.6g} s and {rows.t[row + 1]:.6g} s it changes "
                 "too much for the output times; name it in a request, so that the integration counts its turns, or take "
@@ -71,7 +71,7 @@ class JointAngles:
             )
 
     @cached_property
-    def _followed(self) -> list[str]:
+    def followed(self) -> list[str]:
         """Angles without a counter."""
         return [name for name in self.places if name not in self.counters]
 
@@ -81,7 +81,7 @@ class JointAngles:
         Shape (n - 1, angles).
         """
         angle, rate, acceleration = (
-            rows.values[:, [self.places[name][order] for name in self._followed]] for order in range(len(ORDERS))
+            rows.values[:, [self.places[name][order] for name in self.followed]] for order in range(len(ORDERS))
         )
         h = np.diff(rows.t)[:, None]
         predicted = h / 2 * (rate[:-1] + rate[1:]) - h**2 / 12 * np.diff(acceleration, axis=0)

@@ -14,22 +14,28 @@ from ..analyses.renumber import renumberable
 from ..analyses.start_from import StartFrom, started_from, state_to_start_from
 from ..analyses.taken_again import CREPT, exactly, relaxed
 from ..dynamics.algebraic_states import failure
-from ..errors import AssemblyError, InputError, SolverError
+from ..dynamics.dynamics import OutputRows
+from ..errors import AssemblyError, ChannelError, InputError, SolverError
 from ..model.settings import RunSettings, Settings, takes_settings
-from ..reading.did_you_mean import did_you_mean
+from ..results.body_axes import own_are_principal
 from ..results.channels import channels_of, turns_of
 from ..results.files import written_whole
+from ..results.instant import Instant
+from ..results.joint_angles import joint_angles
 from ..results.saved_state import TURNS, SavedState
 from ..solve.error_control.relaxation import creep_at
 from ..solve.events.restart import restarted
 from ..solve.settings import changed
 from ..tuning import in_use
 from .case_solver import CaseSolver, Task, written_scene
+from .followed_turns import FollowedTurns
 from .input_numbers import InputNumbers
 from .stepping import Stepper, stepper_of
 
 OWN_INPUTS = "inputs"
 """Section of a scene with its inputs."""
+QUATERNION = ("q0", "q1", "q2", "q3")
+"""Channels that are normalised, unlike the coordinates of an integrator."""
 INPUT = "simulation/input/"
 """Prefix of the names of inputs in files of saved simulations."""
 LOOK = 64
@@ -106,7 +112,13 @@ class Simulation:
             self._stepper = stepper_of(job, job.start, self.t)
         self._steps, self._relaxed = 0, relaxed(job)
         self._places = self._places_of_bodies()
+        self._follow_from(self.t, {})
+        self._instant = Instant(job.data, job.dynamics.system, self._row, self._angle)
         self._known: dict[str, float] | None = None
+
+    def _follow_from(self, t: float, known: Mapping[str, float]) -> None:
+        """Count the turns of joint angles from a time and known channels on."""
+        self._turns = FollowedTurns(self._job, t, self._stepper.q, self._stepper.u, known)
 
     @property
     def q(self) -> np.ndarray:
@@ -153,7 +165,15 @@ class Simulation:
                 self._advance_without_creep(end)
             else:
                 self._advance(end)
-        self.t, self._known = end, None
+        self.t = end
+        if self._turns.any:
+            self._turns.note(end, self._stepper.q, self._stepper.u)
+        self._forget()
+
+    def _forget(self) -> None:
+        """Discard the channels of an earlier state."""
+        self._known = None
+        self._instant.forget()
 
     def _advance(self, end: float) -> None:
         """Advance to a later time; use relaxed constraints again if exact ones fail, as in a singular pose."""
@@ -198,7 +218,7 @@ class Simulation:
         if inputs and self._inputs.set(inputs):
             with in_use(self._job.settings.tuning):
                 self._stepper.jump()
-            self._known = None
+            self._forget()
 
     @property
     def channels(self) -> dict[str, float]:
@@ -214,16 +234,15 @@ class Simulation:
         return dict(self._known)
 
     def __getitem__(self, channel: str) -> float:
-        """Return the current value of a channel."""
+        """Return the current value of a channel; only this one is computed."""
         place = self._places.get(channel)
         if place:
             values, number = place
             return values.item(number)
-        known = self.channels
-        if channel not in known:
-            near = did_you_mean(channel, known)
-            raise InputError(f"found no channel '{channel}'{near}, expected one such as {', '.join(list(known)[:12])}")
-        return known[channel]
+        try:
+            return self._instant.value(channel)
+        except ChannelError as error:
+            raise InputError(str(error)) from None
 
     @property
     def state(self) -> SavedState:
@@ -234,14 +253,31 @@ class Simulation:
 
     def _report(self) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
         """Return the current channels and revolution counters, one value each."""
-        job, dynamics = self._job, self._job.dynamics
+        job, system, rows = self._job, self._job.dynamics.system, self._instant.rows
+        channels = channels_of(job.data, system, rows)
+        if self._turns.any:
+            channels |= {name: np.array([angle]) for name, angle in self._turns.angles().items()}
+        return channels, turns_of(system, rows.q)
+
+    def _row(self) -> OutputRows:
+        """Return the output row of the current state."""
+        dynamics = self._job.dynamics
         with dynamics.state.unchanged():
             rows = dynamics.report(np.array([self.t]), self.q[None], self.u[None], project=True)
         if not len(rows.t):
             raise AssemblyError(
                 f"no accelerations and reactions were found at t = {self.t:.9g} s: {failure(dynamics, rows.status, self.t)}"
             )
-        return channels_of(job.data, dynamics.system, rows), turns_of(dynamics.system, rows.q)
+        return rows
+
+    def _angle(self, rows: OutputRows, channel: str) -> float:
+        """Return a continuous angle of a joint."""
+        followed = self._turns.angles() if self._turns.any else {}
+        if channel in followed:
+            return followed[channel]
+        angles = joint_angles(self._job.dynamics.system, self._job.data.joints)
+        assert angles is not None
+        return angles.continuous(rows)[channel].item(0)
 
     def save(self, path: str | Path) -> None:
         """Write the current state and inputs to a file .npz, which `load` and ``stiffmbs run --from`` read.
@@ -279,12 +315,14 @@ class Simulation:
                 )
         with in_use(job.settings.tuning):
             self._stepper.restart(found.t, placed.q, placed.u)
-        self.t, self._known = found.t, None
+        self.t = found.t
+        self._follow_from(self.t, found.channels)
+        self._forget()
 
     def _places_of_bodies(self) -> dict[str, tuple[np.ndarray, int]]:
-        """Return the places of planar channels that are coordinates or velocities."""
+        """Return the places of channels that are coordinates or velocities."""
         system = self._job.dynamics.system
-        if system.of_body.dimensions == 3:
+        if not own_are_principal(system):
             return {}
         levels = ((self._stepper.q, system.of_body.positions), (self._stepper.u, system.of_body.velocities))
         return {
@@ -292,4 +330,5 @@ class Simulation:
             for values, labels in levels
             for k, body in enumerate(system.bodies)
             for n, label in enumerate(labels)
+            if label not in QUATERNION
         }
