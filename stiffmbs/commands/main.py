@@ -35,6 +35,9 @@ SECTIONS = {
         "kc": "suspension.kc",
         "loads": "suspension.loads",
     },
+    "Tyres": {
+        "tyre": "suspension.tyre",
+    },
     "Pictures and reports": {
         "draw": "draw",
         "animate": "animate",

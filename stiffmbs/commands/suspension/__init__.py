@@ -1,1 +1,1 @@
-"""Commands for suspensions."""
+"""Commands for suspensions and tyres."""

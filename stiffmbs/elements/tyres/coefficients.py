@@ -267,6 +267,26 @@ class TyreProperties(Component):
             )
         return steady_state(self.in_equations(), Fz, kappa, alpha, gamma, p, Vx, phit, friction)
 
+    def to_file(self, path: str | Path, units: dict[str, str] | None = None) -> None:
+        """Write a property file with the same evaluation; numbers that the equations do not use are left out.
+
+        Parameters
+        ----------
+        path : str or Path
+        units : dict of str to str, optional
+            Units of LENGTH, FORCE, ANGLE, MASS and TIME by their names in Adams/Tire; SI units by default.
+
+        Raises
+        ------
+        InputError
+            For an unknown unit.
+        OSError
+            If the file cannot be written.
+        """
+        from .written_file import property_text
+
+        Path(path).write_text(property_text(self, units), encoding="utf-8")
+
     @classmethod
     def from_file(cls, path: str | Path) -> TyreProperties:
         """Read a property file.

@@ -101,6 +101,7 @@ _HOMES = {
     "VERTICAL": tuple(DIMENSIONS_6),
     "SCALING_COEFFICIENTS": (*SCALES, *SCALES_6, "LGYR"),
     "ALIGNING_COEFFICIENTS": ("QTZ1", "MBELT"),
+    "OVERTURNING_COEFFICIENTS": ("PPMX1",),
     "TURNSLIP_COEFFICIENTS": TURN_SLIP,
 }
 _HOME = {name: section for section, names in reversed(_HOMES.items()) for name in names}

@@ -1,0 +1,129 @@
+"""Curves of a Magic Formula tyre: forces over slips, and friction ellipses, at several loads and pressures."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from pydantic import Field
+
+from ..elements.tyres.coefficients import TyreProperties
+from ..errors import InputError
+from ..reading.fields import Described
+from ..reading.units import si
+
+PARTS_OF_LOAD = (0.5, 1.0, 1.5)
+"""Loads by default, in nominal loads."""
+SLIP, ANGLE = 0.3, math.radians(15)
+"""Ends of the curves over slip and slip angle, unless the valid ranges of the file are narrower."""
+FAR_SLIP, FAR_ANGLE = 1.0, math.radians(40)
+"""Ends of the slips for friction ellipses."""
+DIRECTIONS = 73
+"""Directions of slip of a friction ellipse, both ends included."""
+STATE = ("Fz", "kappa", "alpha", "gamma", "p", "Vx", "phit")
+"""Columns of a state that is evaluated by itself."""
+CONSTANTS = ("Kxk", "Kya", "mux", "muy", "Re", "rho", "Rl", "sigma_x", "sigma_y")
+"""Values at zero slip that are listed for each load."""
+
+
+class TyreSweep(Described):
+    """Loads, pressures, camber and speed of the curves, and the number of points of each."""
+
+    load: tuple[si.PositiveForce, ...] = Field((), description="N; half, all and one and a half of FNOMIN by default")
+    pressure: tuple[si.PositivePressure, ...] = Field((), description="Pa, of 6.1 and 6.2; INFLPRES by default")
+    camber: si.Angle = Field(0.0, description="rad")
+    speed: si.PositiveVelocity | None = Field(None, description="m/s; LONGVL by default")
+    points: int = Field(61, ge=3, le=10001, description="of each curve")
+
+
+@dataclass(frozen=True)
+class TyreCurve:
+    """Curves at one load and pressure; arrays in SI units and ISO axes.
+
+    Attributes
+    ----------
+    load, pressure : float, float or None
+    kappa, fx : ndarray
+        Longitudinal slip, and Fx without slip angle.
+    alpha, fy, mz : ndarray
+        Slip angle, and Fy and Mz without longitudinal slip.
+    ellipse : (ndarray, ndarray)
+        Fx and Fy of largest magnitude in each direction of slip.
+    constants : dict of str to float
+        Stiffnesses, friction, radii and relaxation lengths at zero slip.
+    """
+
+    load: float
+    pressure: float | None
+    kappa: np.ndarray
+    fx: np.ndarray
+    alpha: np.ndarray
+    fy: np.ndarray
+    mz: np.ndarray
+    ellipse: tuple[np.ndarray, np.ndarray]
+    constants: dict[str, float]
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the numbers for JSON."""
+        names = {"kappa": self.kappa, "Fx": self.fx, "alpha": self.alpha, "Fy": self.fy, "Mz": self.mz}
+        ellipse = {name: x.tolist() for name, x in zip(("Fx", "Fy"), self.ellipse, strict=True)}
+        curves = {name: x.tolist() for name, x in names.items()}
+        return {"load": self.load, "pressure": self.pressure, **self.constants, **curves, "ellipse": ellipse}
+
+
+def tyre_curves(tyre: TyreProperties, sweep: TyreSweep) -> list[TyreCurve]:
+    """Return the curves of a tyre, load by load and pressure by pressure.
+
+    Raises
+    ------
+    InputError
+        For a pressure of a tyre of version 5.2.
+    """
+    if sweep.pressure and not tyre.formula.has_pressure:
+        raise InputError("found a pressure for a tyre of version 5.2, expected a tyre of 6.1 or 6.2")
+    loads = sweep.load or tuple(part * tyre.coefficients["FNOMIN"] for part in PARTS_OF_LOAD)
+    pressures = sweep.pressure or (tyre.nominal_pressure,)
+    return [_curve(tyre, load, pressure, sweep) for load, pressure in itertools.product(loads, pressures)]
+
+
+def _curve(tyre: TyreProperties, load: float, pressure: float | None, sweep: TyreSweep) -> TyreCurve:
+    kappa = np.linspace(*_within(tyre, "slip", SLIP), sweep.points)
+    alpha = np.linspace(*_within(tyre, "slip_angle", ANGLE), sweep.points)
+    along, across, still = (
+        tyre.steady_state(load, slip, angle, sweep.camber, pressure, sweep.speed)
+        for slip, angle in ((kappa, 0.0), (0.0, alpha), (0.0, 0.0))
+    )
+    constants = {name: float(still[name]) for name in CONSTANTS}
+    ellipse = _ellipse(tyre, load, pressure, sweep)
+    return TyreCurve(load, pressure, kappa, along["Fx"], alpha, across["Fy"], across["Mz"], ellipse, constants)
+
+
+def _ellipse(
+    tyre: TyreProperties, load: float, pressure: float | None, sweep: TyreSweep
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the forces of largest magnitude along each direction of slip."""
+    direction = np.linspace(0, 2 * math.pi, DIRECTIONS)[:, None]
+    size = np.linspace(0, 1, sweep.points) ** 2  # denser at small slips
+    kappa = np.clip(FAR_SLIP * size * np.cos(direction), *_within(tyre, "slip", FAR_SLIP))
+    alpha = np.clip(FAR_ANGLE * size * np.sin(direction), *_within(tyre, "slip_angle", FAR_ANGLE))
+    found = tyre.steady_state(load, kappa, alpha, sweep.camber, pressure, sweep.speed)
+    most = np.argmax(np.hypot(found["Fx"], found["Fy"]), axis=1)
+    rows = np.arange(DIRECTIONS)
+    return found["Fx"][rows, most], found["Fy"][rows, most]
+
+
+def _within(tyre: TyreProperties, channel: str, end: float) -> tuple[float, float]:
+    low, high = tyre.ranges.get(channel, (-math.inf, math.inf))
+    return max(-end, low), min(end, high)
+
+
+def tyre_states(tyre: TyreProperties, rows: list[tuple[float, ...]]) -> list[dict[str, float]]:
+    """Return the steady state at single states of Fz, kappa, alpha, gamma, p, Vx and phit, of which the last may be omitted."""
+    found = []
+    for row in rows:
+        state = tyre.steady_state(**dict(zip(STATE, row, strict=False)))
+        found.append({**dict(zip(STATE, row, strict=False)), **{name: float(x) for name, x in state.items()}})
+    return found
