@@ -55,7 +55,6 @@ def refuse_missing(package: str, source: str, where: str = "") -> None:
 
     Parameters
     ----------
-    package : str
     source : str
         Argument of ``pip install`` that installs it.
     where : str

@@ -90,9 +90,9 @@ CASES = tuple(
 
 
 @cache
-def usual(case: Case) -> str:
-    """Return the result with the default parameters."""
-    return case.result()
+def usual(number: int) -> str:
+    """Return the result of a case with the default parameters."""
+    return CASES[number].result()
 
 
 def changed(value: Any, factor: float) -> Any:
@@ -117,8 +117,8 @@ def variations(name: str) -> Iterator[tuple[str, str, Any]]:
 
 def first_changed(name: str, field: str, value: Any) -> str:
     """Return the first case with another result if a parameter is changed; empty if none."""
-    for case in CASES:
-        if case.result({name: {field: value}}) != usual(case):
+    for number, case in enumerate(CASES):
+        if case.result({name: {field: value}}) != usual(number):
             return f"{case.scene.strip()[:20]} {case.settings}"
     return ""
 

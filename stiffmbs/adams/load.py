@@ -37,7 +37,6 @@ def read_adams(text: str, changes: Sequence[tuple[str, str]] = (), source: str =
 
     Parameters
     ----------
-    text : str
     changes : sequence of (path, text)
         Values that replace those of the dataset, such as ``("bodies.PART_2.mass", "12 kg")``.
     source : str

@@ -52,7 +52,6 @@ class Settled:
         Largest remaining generalised force, relative to the largest acting one.
     free : tuple of str
         Largest velocity of each motion that nothing resists.
-    notes : tuple of str
     eigenvalues : tuple of complex
         Eigenvalues of perturbations of a steady motion, 1/s, in the frame that moves with it; empty at rest.
     """

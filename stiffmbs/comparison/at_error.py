@@ -83,7 +83,6 @@ class Row:
         Largest errors over all output instants and channels, by measure; empty if the run failed.
     seconds : float
         Median of the times of a solution; nan if the run failed.
-    steps : int
     message : str
         Reason of a failure; else empty.
     """
@@ -112,7 +111,6 @@ class AtError:
 
     Attributes
     ----------
-    error : float
     seconds, steps : mappings of str to float
         Values of each solver that reaches the error.
     better : tuple of str
@@ -154,11 +152,8 @@ def times_at(rows: Sequence[Row], measure: str, resolved: float, targets: Sequen
 
     Parameters
     ----------
-    rows : sequence of Row
-    measure : str
     resolved : float
         Error below which errors are not resolved.
-    targets : sequence of float
     """
     done = [row for row in rows if row.errors and np.isfinite(row.errors[measure])]
     for target in targets:

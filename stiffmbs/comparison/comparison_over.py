@@ -52,8 +52,6 @@ class AtValue:
 
     Attributes
     ----------
-    value : float
-    rows : tuple of Row
     at : AtError or None
         Times at the error.
     message : str
@@ -72,13 +70,10 @@ class ComparisonOver:
 
     Attributes
     ----------
-    name : str
-    parameter : str
     measure : str
         Measure of errors: ``positions`` (m, rad), ``velocities`` or ``forces``.
     error : float
         Error at which times are compared.
-    values : tuple of AtValue
     entries : tuple of Entry
         Compared solvers, with schemes and formulations.
     interrupted : bool
@@ -164,7 +159,6 @@ def crossings(values: Sequence[float], at: Sequence[AtError | None], entries: Se
         Values of the parameter, in order.
     at : sequence of AtError or None
         Times at the error, by value.
-    entries : sequence of Entry
     """
     kinds = [[entry.name for entry in entries if entry.implicit], [entry.name for entry in entries if entry.explicit]]
     if not all(kinds):

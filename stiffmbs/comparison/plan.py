@@ -39,7 +39,6 @@ class Plan:
 
     Attributes
     ----------
-    solvers, formulations : tuple of str
     tolerances : tuple of float
         Relative tolerances, the loosest first.
     steps : tuple of float

@@ -57,7 +57,6 @@ class Reference:
         Largest difference of positions, relative to the motion of each body.
     left_out : tuple of str
         Reactions that are not compared, as rigid bodies do not determine them.
-    notes : tuple of str
     """
 
     solution: Solution
@@ -123,7 +122,6 @@ def reference(model: ModelData, settings: RunSettings, allowed: float, tell: Tel
 
     Parameters
     ----------
-    model : ModelData
     settings : RunSettings
         Settings of the comparison that do not depend on the solver: duration, output points and others.
     allowed : float

@@ -20,7 +20,6 @@ class BodyKind:
     ----------
     dimensions : int
         2 or 3.
-    positions, velocities, accelerations : tuples of str
     reactions : tuple of str
         Components of force and torque.
     ground, ground_turn : tuples of float

@@ -44,8 +44,6 @@ class Equations:
 
     Parameters
     ----------
-    formulation : Formulation
-    system : System
     coordinates : Coordinates, optional
         Independent coordinates; all by default. The equations of dependent coordinates are added to those of their
         leaders (virtual work: N^T r(N z) with q = offset + N z).

@@ -52,12 +52,7 @@ class Part:
 
 
 class FormulaParts:
-    """Parts of a formula, each analysed once.
-
-    Parameters
-    ----------
-    formula : Formula
-    """
+    """Parts of a formula, each analysed once."""
 
     def __init__(self, formula: Formula) -> None:
         self._values = formula.values

@@ -47,8 +47,6 @@ class Formulation(NamedTuple):
         Some of ``q u mu lam x``.
     residual_set, matrix_set : str
         Term sets of residual and matrix.
-    residual : sequence of Product
-    matrix : sequence of Block
     tested : tuple of str
         Unknowns under error control.
     integrated : bool

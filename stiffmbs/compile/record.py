@@ -93,7 +93,6 @@ def record_of(kind: Kind, place: str = "") -> KindRecord:
 
     Parameters
     ----------
-    kind : Kind
     place : str, optional
         Position in a list, such as ``2 of 7 kinds``; logged while it is derived.
     """

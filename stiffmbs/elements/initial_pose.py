@@ -25,12 +25,7 @@ larger."""
 
 @dataclass(frozen=True)
 class InitialPose:
-    """Model at its described pose, for checks of the placement of elements.
-
-    Attributes
-    ----------
-    model : ModelData
-    """
+    """Model at its described pose, for checks of the placement of elements."""
 
     model: ModelData
 

@@ -45,7 +45,6 @@ class Equilibrium:
 
     Attributes
     ----------
-    q, u, acceleration, lam : ndarrays
     moves : int
         Number of Newton moves.
     imbalance : float

@@ -34,7 +34,6 @@ class Balance:
     ----------
     left : ndarray, shape (n_u + states,)
         Residual of forces, inertia forces and reactions, and the rates of the user's own states.
-    lam : ndarray
     largest : float
         Largest force.
     allowed : ndarray, shape (n_u + states,)

@@ -41,8 +41,6 @@ def with_found_spins(dynamics: Dynamics, motion: SteadyMotion, by_velocity: csc_
 
     Parameters
     ----------
-    dynamics : Dynamics
-    motion : SteadyMotion
     by_velocity : sparse array, shape (n_u + states, n_u)
         Derivatives of the forces and of the rates of states.
     """

@@ -89,10 +89,8 @@ def natural_modes(state: StateMatrix, mass: csr_array, bodies: tuple[str, ...], 
 
     Parameters
     ----------
-    state : StateMatrix
     mass : sparse array, shape (n_u, n_u)
         In ground axes.
-    bodies : tuple of str
     scale : ndarray, shape (n_u,)
         The mechanism's size for displacements, 1 for rotations.
     """

@@ -59,7 +59,6 @@ def state_matrix(linear: Linearised, scale: np.ndarray) -> StateMatrix:
 
     Parameters
     ----------
-    linear : Linearised
     scale : ndarray, shape (n_u,)
         Units of the variations of velocities: lengths for displacements, 1 for rotations.
 

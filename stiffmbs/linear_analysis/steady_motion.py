@@ -25,7 +25,6 @@ def eigenvalues_beside(
         At a state of the motion, with its multipliers.
     t : float
         s.
-    motion : SteadyMotion
     acceleration : ndarray, shape (n_u,)
         u' of the motion.
 

@@ -26,7 +26,6 @@ class Input:
 
     Attributes
     ----------
-    name : str
     force : ndarray, shape (n_u,)
         Generalised forces, ground axes.
     position : ndarray, shape (holonomic,)
@@ -104,8 +103,6 @@ class Transfer:
 
     Attributes
     ----------
-    a, b, c, d : ndarrays
-    inputs, outputs : tuples of str
     at : ndarray, shape (outputs,)
         Outputs at the state itself.
     """

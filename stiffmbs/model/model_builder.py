@@ -43,7 +43,6 @@ class ModelBuilder(Sections[Data, Body, BodyHandle]):
         ----------
         name : str
             Letters, digits and ``_``; no other part has it.
-        part : Body, BeamBody, Joint, Force or State
 
         Returns
         -------
@@ -124,7 +123,6 @@ class ModelBuilder(Sections[Data, Body, BodyHandle]):
 
         Parameters
         ----------
-        name : str
         marker : Marker
             On ``ground``, with an explicit point and direction.
 

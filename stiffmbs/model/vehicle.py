@@ -81,7 +81,6 @@ class Vehicle(Described):
         Vehicle axes relative to the body's, for bodies whose axes are not x forward and z upwards.
     points : mapping of str to tuple of float
         Further points on the body, whose velocity, acceleration and sideslip become ``vehicle.NAME.vx`` ...
-    steering : Steering, optional
     tyres : tuple of str, optional
         Tyres whose slips and loads become ``vehicle.TYRE.kappa`` ...; by default all.
     """

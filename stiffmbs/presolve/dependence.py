@@ -48,7 +48,6 @@ def dependence(system: System, term: Term, values: np.ndarray) -> Dependence:
 
     Parameters
     ----------
-    system : System
     term : Term
         C_q in the set ``position``.
     values : ndarray

@@ -28,7 +28,6 @@ def independent_coordinates(system: System, state: State, t: float) -> Coordinat
 
     Parameters
     ----------
-    system : System
     state : State
         At a pose that satisfies the constraints; it is not changed.
     t : float

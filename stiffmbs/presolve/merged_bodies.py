@@ -92,7 +92,6 @@ def merge(model: ModelData, held: Container[str]) -> MergedBodies | None:
 
     Parameters
     ----------
-    model : ModelData
     held : container of str
         Joints without redundant equations, as a merged joint must not constrain more than the original.
 

@@ -112,7 +112,6 @@ def parts_of(model: ModelData, whole: System, way: np.ndarray | None, alike: Ali
 
     Parameters
     ----------
-    model : ModelData
     whole : System
         With its redundant equations marked.
     way : ndarray, shape (n_u,), or None

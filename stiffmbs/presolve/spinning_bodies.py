@@ -105,7 +105,6 @@ def spinning(model: Compilable, turns: Mapping[str, np.ndarray]) -> SpinningBodi
 
     Parameters
     ----------
-    model : Compilable
     turns : mapping of str to ndarray, shape (3,)
         Rotation of each body about its principal axes during the run at the initial angular velocity, rad.
     """

@@ -191,7 +191,6 @@ def named_entries(section: str, found: Any, values: str) -> Iterator[tuple[str, 
 
     Parameters
     ----------
-    section : str
     found : mapping or None
         The section as written.
     values : str

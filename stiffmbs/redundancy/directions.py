@@ -48,7 +48,6 @@ def directions(
 
     Parameters
     ----------
-    poses : sequence of Pose
     changes : sequence of mapping of str to ndarray
         At each pose, the change of each channel along each null vector, shape (vectors,).
     owner : str

@@ -58,7 +58,6 @@ class LoopEquations:
 
     Parameters
     ----------
-    loop : Loop
     state : State
         Working memory; rows are scaled at its pose.
     t : float

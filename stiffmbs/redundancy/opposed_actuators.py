@@ -34,7 +34,6 @@ def opposed_sentences(system: System, data: ModelData, q: np.ndarray, grid: Grid
 
     Parameters
     ----------
-    system : System
     data : ModelData
         Model from which the system was compiled.
     q : ndarray

@@ -73,7 +73,6 @@ def examine(system: System, start: float, duration: float, order: Sequence[str])
 
     Parameters
     ----------
-    system : System
     start, duration : float
         Of the run, s.
     order : sequence of str

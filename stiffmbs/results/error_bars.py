@@ -63,10 +63,6 @@ def error_bar(values: np.ndarray, others: Sequence[np.ndarray], fine: Fine | Non
         Times, s, and values of a run with instants between the reported ones, and the indices of these.
     rounding : float
         Rounding error.
-
-    Returns
-    -------
-    ErrorBar
     """
     if not others and fine is None:
         return UNKNOWN

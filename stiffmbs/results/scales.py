@@ -62,7 +62,6 @@ def scales(
 
     Parameters
     ----------
-    channels : mapping of str to ndarray
     size : float
         Size of the mechanism, m.
     requested : mapping of str to str

@@ -55,7 +55,6 @@ def frames(robot: Robot, coordinates: Mapping[str, float], rates: Mapping[str, f
 
     Parameters
     ----------
-    robot : Robot
     coordinates, rates : mappings of str to float
         Coordinates of hinges and slides by name, rad or m, and their rates; missing ones are as drawn, and at rest.
     """

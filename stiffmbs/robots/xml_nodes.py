@@ -16,7 +16,6 @@ class Node:
 
     Parameters
     ----------
-    element : Element
     kind : str
         Tags from the root to the element, separated by ``/``.
     owner : str

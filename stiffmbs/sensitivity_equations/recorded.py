@@ -35,7 +35,6 @@ class Segment:
 
     Attributes
     ----------
-    start : InitialValues
     first : ndarray, shape (2 + 2 n,)
         Time, order, y and y' at the start.
     rows : ndarray, shape (steps, 2 + 2 n)

@@ -26,7 +26,6 @@ class Target(NamedTuple):
     ----------
     k : int
         Eliminated supernode.
-    kind : int
     start, stride : int
         Start and stride of the panel's lines.
     factors : int

@@ -45,7 +45,6 @@ class Task:
         Varied parameters or paths, as `stiffmbs.load_scene` changes them.
     settings : mapping
         Settings of the run that all cases share.
-    outputs : tuple of Output
     """
 
     scene: WrittenScene

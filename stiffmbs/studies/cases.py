@@ -24,7 +24,6 @@ class Cases:
 
     Attributes
     ----------
-    variations : tuple of Variation
     drawn : tuple of tuple
         Values of each variation of a sample, case by case; empty for a grid.
     """
@@ -57,7 +56,6 @@ def cases_of(variations: Sequence[Variation], sample: str | None = None, seed: i
 
     Parameters
     ----------
-    variations : sequence of Variation
     sample : str, optional
         ``lhs:500``, ``sobol:512`` or ``random:500``; the full grid by default.
     seed : int

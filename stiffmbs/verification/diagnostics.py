@@ -38,7 +38,6 @@ class Comparison:
         By the other solver.
     between : DenseSamples or None
         Samples between output times.
-    bars : mapping of str to ErrorBar
     sizes : mapping of str to float
         Scales of the channels.
     """

@@ -90,8 +90,6 @@ def read_commands(text: str, known: Collection[Key] = (), read: Read | None = No
 
     Parameters
     ----------
-    text : str
-    known : collection of Key
     read : callable, optional
         Returns the text of another command file by its name; without it FILE/COMMAND is refused.
 

@@ -24,7 +24,6 @@ def dataset_text(scene: SpatialData, source: str = "scene") -> str:
 
     Parameters
     ----------
-    scene : SpatialData
     source : str
         Name of the scene in messages.
 

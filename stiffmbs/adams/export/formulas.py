@@ -34,7 +34,6 @@ class Functions:
 
     Parameters
     ----------
-    numbering : Numbering
     names : mapping of str to str
         Adams functions of states and their outputs by name: ``DIF(3)``, ``VARVAL(1)``.
     reactions : mapping of str to (str, int)
@@ -49,7 +48,6 @@ class Functions:
 
         Parameters
         ----------
-        law : Formula, Table or float
         variable : str
             Expression of the law's own variable, such as the deflection of a spring.
 

@@ -101,8 +101,6 @@ class Law:
 
     Parameters
     ----------
-    motion : Motion
-    translation : Translation
     sort : str
         Rotational or translational.
     """

@@ -54,7 +54,6 @@ class Arguments:
 
     Parameters
     ----------
-    statement : Statement
     keyword : str
         Its full name.
     names : sequence of str

@@ -45,7 +45,6 @@ def read_frame(found: Arguments, origin: str, x_point: str, z_point: str, length
 
     Parameters
     ----------
-    found : Arguments
     origin, x_point, z_point : str
         Names of the three points: QP, XP, ZP of a marker, QG, XG, ZG of a part.
     length : float

@@ -45,7 +45,6 @@ def is_unread_system(name: str | None, statement: Statement, every: Sequence[Sta
     ----------
     name : str or None
         Full name of the statement.
-    statement : Statement
     every : sequence of Statement
         All statements of the dataset.
     """

@@ -78,7 +78,6 @@ class Direction:
     ----------
     state : State
         State at which the derivatives are taken.
-    term_set : str
     numbers : Numbers
         Changes of the system's numbers.
     along : collection of str

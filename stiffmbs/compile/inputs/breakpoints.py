@@ -24,7 +24,6 @@ def breakpoint_times(inputs: Sequence[Input], start: float, end: float) -> np.nd
 
     Parameters
     ----------
-    inputs : sequence of Input
     start, end : float
         s.
     """

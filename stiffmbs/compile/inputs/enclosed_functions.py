@@ -99,10 +99,6 @@ def _quintic_ramp(z: Enclosure) -> Enclosure:
 def step(x: Any, x0: Any, h0: Any, x1: Any, h1: Any) -> Any:
     """Return Adams' STEP: a cubic from h0 at x0 to h1 at x1 with zero end slopes.
 
-    Parameters
-    ----------
-    x, x0, h0, x1, h1 : Enclosure or float
-
     Returns
     -------
     Enclosure or float

@@ -73,7 +73,6 @@ def first_input_end(system: System, start: float, end: float) -> InputEnd | None
 
     Parameters
     ----------
-    system : System
     start, end : float
         s.
     """

@@ -37,12 +37,10 @@ class Input:
 
     Attributes
     ----------
-    tree : ast.expr
     text : str
         For messages.
     values : mapping of str to float
         Parameters, units and constants by name.
-    tables : mapping of str to TableRanges
     """
 
     tree: ast.expr

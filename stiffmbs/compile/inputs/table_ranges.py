@@ -16,13 +16,8 @@ from .zeros import MOST_STRETCHES, TooMany
 class TableRanges:
     """Table as a function of arrays and of enclosures.
 
-    Parameters
-    ----------
-    table : Table
-
     Attributes
     ----------
-    table : Table
     breakpoints : ndarray
         Arguments of its breakpoints, within one period for a periodic table.
     period : float

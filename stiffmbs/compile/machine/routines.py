@@ -19,7 +19,6 @@ class Routine:
 
     Attributes
     ----------
-    module, name, signature : str
     others : tuple of (name, signature)
         Functions of the module compiled with it, because they share most of their code.
     unrolled : bool

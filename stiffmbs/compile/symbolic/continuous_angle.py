@@ -39,11 +39,6 @@ def away_from_pole(angle: ContinuousAngle, e: Any) -> Callable[[sp.Expr], sp.Exp
 
     The rate is unchanged except near the pole, where sine and cosine both vanish. There the derivatives are
     approximate, which is acceptable because only the number of turns depends on the counter.
-
-    Parameters
-    ----------
-    angle : ContinuousAngle
-    e : SymbolicElement
     """
     sine, cosine, _ = angle.args
     part = e.named(Less(sp.Integer(1), (sine**2 + cosine**2) / POLE))

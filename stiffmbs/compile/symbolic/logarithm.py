@@ -26,7 +26,6 @@ class SpatialLogarithm:
     ----------
     d : Matrix
         Position of marker i from marker j.
-    turn : RelativeRotation
     velocity, omega : Matrix
         Velocity of i's point relative to j's body, and relative angular velocity.
     e : SymbolicElement

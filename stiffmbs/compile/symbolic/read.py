@@ -51,7 +51,6 @@ def read(x: Any, note: Callable[[sp.Expr], None]) -> sp.Expr:
 
     Parameters
     ----------
-    x : Expr or number
     note : callable
         Called with the expression that is zero at each breakpoint.
 

@@ -28,9 +28,6 @@ class Stated:
         Equations of a joint.
     powers : tuple of (Expr, Expr)
         Efforts and rates of a force.
-    potential : Expr
-    limits : tuple of Expr
-    measured : tuple of Expr
     rates : tuple of Expr
         Rates of a force's own states.
     condensed : tuple of (Expr, Expr)

@@ -50,7 +50,6 @@ class Law:
 
     Attributes
     ----------
-    argument : expression
     of : (str, int)
         Name of its intervals (``turn`` for the argument of a sine) and, for ``table``, the index of its offset in the
         element's numbers, else 0.
@@ -74,7 +73,6 @@ class Symbols:
         Multipliers of each joint referred to.
     event_functions : list of expressions
         Event functions of formulas (``abs``, ``step``, ...) that depend on the state.
-    laws : list of Law
     """
 
     element: SymbolicElement

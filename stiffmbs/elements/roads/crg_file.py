@@ -44,7 +44,6 @@ class CrgHeader:
 
     Attributes
     ----------
-    blocks : Fields of lists of Entry
     numbers : Fields of float
         Numbers of ``$ROAD_CRG`` by name, in capitals.
     layout : str

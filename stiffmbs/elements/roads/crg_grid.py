@@ -35,7 +35,6 @@ class CrgGrid:
 
     Attributes
     ----------
-    path : str
     u : ndarray, shape (n,)
         Coordinates along the reference line, m.
     v : ndarray, shape (k,)

@@ -89,7 +89,6 @@ def refuse_other_meanings(where: str, states: Iterable[str], known: Mapping[str,
     ----------
     where : str
         Path in the scene, for messages.
-    states : iterable of str
     known : mapping of str to collection of str
         Other names in formulas, by section.
 

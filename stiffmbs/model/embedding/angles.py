@@ -53,7 +53,6 @@ class Angles:
 
     Attributes
     ----------
-    data : PlanarData
     added : mapping of str to mapping of str to Written
         Added markers by name, by body.
     """

@@ -87,8 +87,6 @@ def refuse_unused_parameters(
 
     Parameters
     ----------
-    scene : mapping
-    changes : sequence of (path, value)
     sections : collection of str
         Sections that a scene may have.
 
@@ -122,7 +120,6 @@ def read_parameters(found: Any, replaced: Mapping[str, Quantity] | None = None) 
 
     Parameters
     ----------
-    found : mapping of str to number or text
     replaced : mapping of str to Quantity, optional
         Original values of parameters set from outside: a plain number takes the SI unit of the value that it replaces.
 

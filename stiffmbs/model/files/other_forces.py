@@ -31,7 +31,6 @@ class OtherForces:
 
     Parameters
     ----------
-    written : WrittenScene
     names : sequence of str
         Paths of the varied values, as for `stiffmbs.load_scene`.
     unchanged : Unchanged

@@ -41,10 +41,8 @@ def read_scene_file(text: str, changes: Sequence[tuple[str, Any]], source: str, 
     ----------
     text : str
         Text of the file.
-    changes : sequence of (path, text)
     source : str
         Name of the scene in messages.
-    file : Path
     """
     with uncollected():
         name = f"{SCENE}-{digest(str(file.resolve()), str(file), source, repr([tuple(pair) for pair in changes]))}"

@@ -37,7 +37,6 @@ class Instance:
         Full name, such as ``front.left``.
     part : str
         Name of its definition.
-    use : Use
     sections : mapping
         Markers, bodies, joints, forces and requests as written, with repeated entries expanded.
     parameters : mapping of str to Quantity
@@ -83,7 +82,6 @@ class Instances:
 
     Attributes
     ----------
-    definitions : Definitions
     changes : list of (path, value)
         Values set in instances from outside; applied changes are removed from the list.
     words : mapping of str to str

@@ -107,8 +107,6 @@ def mirrored_law(found: Formula | Table, names: MirroredNames, value: float, arg
 
     Parameters
     ----------
-    found : Formula or Table
-    names : MirroredNames
     value, argument : float
         1 or -1; `argument` applies to the variables that the field defines.
     """

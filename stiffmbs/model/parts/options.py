@@ -43,7 +43,6 @@ def with_chosen(found: dict[str, Any], words: Any, where: str) -> dict[str, Any]
 
     Parameters
     ----------
-    found : mapping
     words : mapping of str to str
         Word by choice; unknown choices are ignored.
     where : str

@@ -23,12 +23,10 @@ def parameters_of(use: Use, where: str, found: Any, outside: Mapping[str, Quanti
 
     Parameters
     ----------
-    use : Use
     where : str
         Path of the use in the scene.
     found : mapping of str to number or text
         Parameters of the definition.
-    outside : mapping of str to Quantity
 
     Raises
     ------
@@ -86,7 +84,6 @@ def mounts_of(found: Any, use: Use, where: str) -> dict[str, str]:
     ----------
     found : mapping of str to str
         Mounts of the definition.
-    use : Use
     where : str
         Path of the use.
 

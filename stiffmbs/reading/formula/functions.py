@@ -52,8 +52,6 @@ class FormulaFunction:
 
     Attributes
     ----------
-    takes : Takes
-    dimension : Rule
     value : callable
         Evaluates numbers.
     array : callable
@@ -66,7 +64,6 @@ class FormulaFunction:
         Its interval form in `stiffmbs.compile.inputs.enclosed_functions`; empty if it follows from the derivative.
     derivative : str
         Derivative of a function of x with respect to x, as a formula.
-    breakpoints : Breakpoints
     domain : (float, float)
         Domain of the argument.
     poles : bool

@@ -40,7 +40,6 @@ def overconstraint_sentences(case: Overconstraint, near_start: bool = False) -> 
 
     Parameters
     ----------
-    case : Overconstraint
     near_start : bool
         Whether it is known near the start only, as formulas or tables are involved.
     """

@@ -141,7 +141,6 @@ def model_fields(spec: Any, model: RequestedModel) -> Iterator[Fields[Any]]:
 
     Parameters
     ----------
-    spec : mujoco.MjSpec
     model : RequestedModel
         The compiled model, after reading.
     """

@@ -26,7 +26,6 @@ def scene(robot: Robot, coordinates: Mapping[str, float], rates: Mapping[str, fl
 
     Parameters
     ----------
-    robot : Robot
     coordinates, rates : mappings of str to float
         Initial coordinates of hinges and slides, rad or m, and their rates; others are as drawn, and at rest.
 

@@ -28,7 +28,6 @@ def changed_channels(
     u : ndarray, shape (instants, n_u)
     numbers : sequence of Numbers
         Numbers of the directions.
-    changes : sequence of Change
     values : ndarray, shape (instants, directions, values)
         Derivatives of the output terms.
     """
@@ -61,7 +60,6 @@ def changed_requests(
 
     Parameters
     ----------
-    set_ups : sequence of SetUp
     channels : mapping of str to ndarray
         Channels that formulas read, shape (n,).
     slopes : mapping of str to ndarray

@@ -65,7 +65,6 @@ class Formula:
     text : str
         Formula, as in `stiffmbs.sweep`.
     time : ndarray, shape (n,)
-    channels : mapping of str to ndarray
     """
 
     def __init__(self, text: str, time: np.ndarray, channels: Mapping[str, np.ndarray]) -> None:

@@ -53,7 +53,6 @@ def assembly(entries: Sequence[Entry], text: str = "") -> str:
 
     Parameters
     ----------
-    entries : sequence of Entry
     text : str, optional
         Source of the functions; the files of their code by default.
 

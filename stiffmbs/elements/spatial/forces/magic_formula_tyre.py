@@ -201,8 +201,6 @@ def bottomed(e: Symbolic, rim: Any, depth: Any, camber: Any) -> tuple[Any, Any]:
 
     Parameters
     ----------
-    e : SymbolicElement
-    rim : Bottoming
     depth : Expr
         Penetration of the rim at mid-width, m; negative without contact.
     camber : Expr
