@@ -10,16 +10,16 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
 from ..compile.compile_model import compile_model
-from ..compile.quaternions import rotated
+from ..compile.quaternions import CONJUGATE, rotated, times
 from ..compile.system import System
 from ..model.model_data import ModelData
 from .body_fixed_poses import BODY_FIXED_POSES, BodyFixedPoses
 from .merged_bodies import MergedBodies, merge
-from .spin import Spin
 from .spinning_bodies import AXES, SpinningBodies, name_of_angle, spinning
 from .subsystems import behind_bodies, mechanisms, part_of
 
@@ -184,3 +184,28 @@ def _part(
     at_initial_pose = whole.q[: whole.n_pose].reshape(len(whole.bodies), -1)[numbers]
     placed = poses.of([place for _, _, place in carried]).like(at_initial_pose, parent)
     return Part(own, numbers, parent, placed, behind, kept, spins)
+
+
+class Spin(NamedTuple):
+    """Body of a part whose quaternion excludes its spin.
+
+    Attributes
+    ----------
+    body : int
+        Its number in the part.
+    axis : int
+        Principal axis of the spin.
+    angle : int
+        Coordinate of the part that holds the angle.
+    """
+
+    body: int
+    axis: int
+    angle: int
+
+    def turned(self, q: np.ndarray, u: np.ndarray, angle: np.ndarray) -> None:
+        """Rotate the body by the angle (rows,), in arrays of shapes (rows, bodies, n_q) and (rows, bodies, n_u)."""
+        turn = np.zeros((len(angle), 4))
+        turn[:, 0], turn[:, 1 + self.axis] = np.cos(angle / 2), np.sin(angle / 2)
+        q[:, self.body, 3:] = times(q[:, self.body, 3:], turn)
+        u[:, self.body, 3:] = rotated(CONJUGATE * turn, u[:, self.body, 3:])

@@ -15,7 +15,6 @@ import numpy as np
 from ..compile.placed_markers import marker_axes
 from .loop_equations import LoopEquations, Pose
 from .loops import LoopJoint
-from .transmitted import COMPONENTS, transmitted
 from .uniqueness import changes_of
 
 INDEPENDENT_COMPONENT = 1e-3
@@ -136,3 +135,18 @@ def _together(options: Sequence[Sequence[_Option]], count: int) -> Iterator[tupl
 
 def _named(choice: Sequence[_Option]) -> Choice:
     return tuple((option.joint, option.kind) for option in choice)
+
+
+COMPONENTS = ("fx", "fy", "fz", "tx", "ty", "tz")
+
+
+def transmitted() -> dict[str, tuple[str, ...]]:
+    """Return the components that each kind of joint in space transmits (`Joint.transmits`), if declared.
+
+    Kinds that transmit only forces come first, those with most components leading, as point guides are easier to make
+    than orientation guides.
+    """
+    from ..elements.spatial.spatial_kinds import JOINTS
+
+    found = [(kind, joint.transmits) for kind, joint in JOINTS.items() if joint.transmits]
+    return dict(sorted(found, key=lambda item: (any(name[0] == "t" for name in item[1]), -len(item[1]))))

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from ..compile.state import LEFT_OPEN
 from ..dynamics.dynamics import Dynamics
 from ..redundancy.overconstraint import listed
 from ..redundancy.redundancy import Redundancy
 from ..redundancy.unproven import unproven
 from ..solve.trajectory import Trajectory
-from .departures import departure
-from .unfollowed import unfollowed
+from .instants import some_instants
 
 
 def locked(dynamics: Dynamics, redundancy: Redundancy, way: Trajectory) -> tuple[int, str] | None:
@@ -34,3 +38,101 @@ def locked(dynamics: Dynamics, redundancy: Redundancy, way: Trajectory) -> tuple
         f"stopped at t = {t:.6g} s: joint '{joint}' (equation {equation}) was left out, as near the start it holds the same "
         f"as {names}; it does not hold there, so that the joints lock or contradict each other"
     )
+
+
+UNFOLLOWED_PART, UNFOLLOWED_VELOCITY = 1e-2, 1e-3
+"""Violation of a velocity equation that no tolerance explains: relative to its terms, and in m/s or rad/s at least."""
+
+
+Unfollowed = tuple[int, int, float]
+"""First output at which a velocity equation does not hold, its row, and the violation, m/s or rad/s."""
+
+
+def unfollowed(dynamics: Dynamics, way: Trajectory) -> Unfollowed | None:
+    """Return the violation at the first output at which a nonholonomic equation does not hold, or None.
+
+    The relaxed formulation lets velocities drift if multipliers grow without bound. Holonomic equations cannot remain
+    violated in this way. The state of `dynamics` is changed.
+    """
+    rows = np.flatnonzero(dynamics.system.active & ~dynamics.system.holonomic)
+    if not len(rows):
+        return None
+    outputs = some_instants(len(way.t))  # a mechanism that has locked violates its drive at later outputs too
+    seen = _first(dynamics, rows, way, outputs)
+    if seen is None:
+        return None
+    before = outputs[max(int(np.searchsorted(outputs, seen[0])) - 1, 0)]
+    return _first(dynamics, rows, way, np.arange(before, seen[0] + 1))
+
+
+def _first(dynamics: Dynamics, rows: np.ndarray, way: Trajectory, outputs: np.ndarray) -> Unfollowed | None:
+    """Return the largest violation of some equations at the first of some outputs at which one is too large."""
+    system, state = dynamics.system, dynamics.state
+    V, J = system.term("motion", "V"), system.term("motion", "J")
+    used = np.isin(J.row, rows)
+    row, column, source = J.row[used], J.column[used], J.source[used]
+    violations, coefficients = np.empty((len(outputs), len(V.source))), np.empty((len(outputs), len(source)))
+    for k, output in enumerate(outputs.tolist()):
+        state.q[:], state.u[:] = way.q[output], way.u[output]
+        state.evaluate("motion", float(way.t[output]))
+        values = state.values["motion"]
+        violations[k], coefficients[k] = values[V.source], values[source]
+    gaps, sizes = np.zeros((2, len(outputs), system.n_c))
+    gaps[:, V.row] = np.abs(violations)
+    np.add.at(sizes.T, row, np.abs(coefficients * way.u[outputs][:, column]).T)
+    excess = (gaps - np.maximum(UNFOLLOWED_PART * sizes, UNFOLLOWED_VELOCITY))[:, rows]
+    wrong = np.flatnonzero(np.any(excess > 0, axis=1))
+    if not len(wrong):
+        return None
+    k = int(wrong[0])
+    worst = int(rows[np.argmax(excess[k])])
+    return int(outputs[k]), worst, float(gaps[k, worst])
+
+
+POSES = 10_000
+"""Number of poses to check in the whole motion, with one for each output at least."""
+LEFT_OUT = 10.0
+"""Largest violation of dropped equations, relative to that of the others, that is due to interpolation."""
+MOST_ASSEMBLIES = 500
+"""Largest number of poses between outputs that are assembled."""
+
+
+def departure(dynamics: Dynamics, rows: Sequence[int], way: Trajectory) -> tuple[int, float, int] | None:
+    """Return the last output before a violation of dropped rows where the others hold, its time, s, and row; or None.
+
+    Poses between outputs are interpolated. A pose is assembled if the violation of dropped rows exceeds that due to
+    interpolation. The state of `dynamics` is changed.
+    """
+    system, state = dynamics.system, dynamics.state
+    source, row = system.term("position", "C").source, system.term("position", "C").row
+    place = np.empty(system.n_c, dtype=np.int64)
+    place[row] = source
+    left_out, kept = place[list(rows)], place[system.active & system.holonomic]
+    allowed, assemblies = LEFT_OPEN * min(1.0, system.size), 0
+    for output, t, q in _poses(dynamics, way):
+        state.q[:] = q
+        state.count_anew(t)
+        state.evaluate("position", t)
+        values = np.abs(state.values["position"])
+        gaps = values[left_out]
+        if not gaps.max() > allowed + LEFT_OUT * values[kept].max(initial=0.0):
+            continue
+        assemblies += 1
+        if dynamics.assemble(t) < 0:
+            return output, t, rows[int(np.argmax(gaps))]
+        if assemblies == MOST_ASSEMBLIES:
+            return None
+    return None
+
+
+def _poses(dynamics: Dynamics, way: Trajectory) -> Iterator[tuple[int, float, np.ndarray]]:
+    """Yield poses at outputs and on Hermite interpolants between them: number of the output before, time, s, pose."""
+    of_body, bodies = dynamics.system.of_body, dynamics.system.of_body.n_q * len(dynamics.system.bodies)
+    count = 1 + POSES // len(way.t)
+    parts = np.arange(1, count + 1) / count
+    for k in range(len(way.t) - 1):
+        h, q = way.t[k + 1] - way.t[k], way.q[k]
+        move = of_body.move(q[:bodies], way.q[k + 1][:bodies])
+        for s in parts:
+            step = (3 - 2 * s) * s**2 * move + s * (1 - s) * h * ((1 - s) * way.u[k] - s * way.u[k + 1])
+            yield k, float(way.t[k] + s * h), of_body.moved(q, step)

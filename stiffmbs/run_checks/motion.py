@@ -6,11 +6,15 @@ from collections.abc import Callable, Iterator, Mapping
 
 import numpy as np
 
+from ..compile.machine.layout import address, addresses
+from ..compile.machine.routines import Routine
+from ..compile.state import State
+from ..compile.system import System
+from ..compile.written_values import writer
 from ..dynamics.dynamics import Dynamics, OutputRows
 from ..elements.element import Joint
 from ..results.joint_angles import joint_angles
-from .lost_turns import lost_turns_sentence
-from .near_limits import near_limits_sentence
+from .instants import some_instants
 from .singular_passage import singular_passage_sentence
 
 
@@ -34,3 +38,75 @@ def motion_notes(
         yield from angles.uncertain(rows)
     if dynamics.system.has_limits:
         yield from near_limits_sentence(dynamics, rows)
+
+
+def near_limits_sentence(dynamics: Dynamics, rows: OutputRows) -> Iterator[str]:
+    """Yield a sentence on the first force outside the range in which its kind is reliable; the state is changed."""
+    system, state = dynamics.system, dynamics.state
+    first, end = system.first_limit, system.n_event_functions
+    if not len(rows.t):
+        return
+    doubtful, words = _doubts(system)
+    for k in some_instants(len(rows.t)):
+        state.q[:], state.u[:] = rows.q[k], rows.u[k]
+        state.evaluate("event_function", rows.t[k])
+        passed = np.flatnonzero(state.values["event_function"][first:end] < doubtful)
+        if len(passed):
+            yield (
+                f"{words[passed[0]]}, first seen at t = {rows.t[k]:.6g} s; a vibration that has grown, as shimmy, may come to that, "
+                "and the motion may then depend on the tolerances: look at it with --verify, and at its growth with "
+                "'stiffmbs modes' and an earlier --at"
+            )
+            return
+
+
+def _doubts(system: System) -> tuple[np.ndarray, tuple[str, ...]]:
+    """Return, for each limit of a force, the value below which the motion is doubtful, and the doubt."""
+    found = [
+        (group.kind.element.doubtful, f"'{name}' {group.kind.element.doubt}")  # type: ignore[attr-defined]
+        for group in system.groups
+        if group.entries["limit"]
+        for name in group.names
+        for _ in range(group.entries["limit"])
+    ]
+    return np.array([value for value, _ in found]), tuple(words for _, words in found)
+
+
+APART_FROM_COUNTERS = Routine(
+    "stiffmbs.run_checks.native.turns",
+    "apart_from_counters",
+    "void(int64, int64, float64*, float64*, int64, int64*, int64*, float64*, int64*)",
+)
+
+UNCERTAIN_TURN = 1.0
+"""Difference of an orientation and the integral of its rate, rad, from which on the turn is uncertain."""
+
+
+def lost_turns_sentence(dynamics: Dynamics, rows: OutputRows) -> Iterator[str]:
+    """Yield a sentence on the angle that differs most from the counter of its turns, if the turn is uncertain."""
+    system, state = dynamics.system, dynamics.state
+    solved = np.flatnonzero(~np.isnan(rows.position_violation))
+    if not len(solved):
+        return
+    counted = system.term("position", "continuous_angle")
+    instants = solved[some_instants(len(solved))]
+    apart = _apart(state, rows.t[instants], rows.q[instants], counted.source, counted.row)
+    if not np.nanmax(apart) > UNCERTAIN_TURN:
+        return
+    k, worst = np.unravel_index(int(np.nanargmax(apart)), apart.shape)
+    name = writer(system, "position", int(counted.source[worst]))
+    yield (
+        f"whole turns of the angle of '{name}' are not certain: at t = {rows.t[instants[k]]:.6g} s the orientations and the integral of "
+        f"the angular velocity differ by {apart[k, worst]:.2g} rad; the steps are too long for the speed (tighten rtol, or shorten step), "
+        "or the angle's reference axis comes to lie along the axis of rotation"
+    )
+
+
+def _apart(state: State, t: np.ndarray, q: np.ndarray, source: np.ndarray, row: np.ndarray) -> np.ndarray:
+    """Return the distances of angles (position terms) from their counters, rad, shape (len(t), len(row))."""
+    state.load("position")
+    apart = np.empty((len(t), len(row)))
+    source, row = (np.ascontiguousarray(places, dtype=np.int64) for places in (source, row))
+    at_t, at_q, at_source, at_row, at_apart = addresses(t, q, source, row, apart)
+    APART_FROM_COUNTERS.call(*q.shape, at_t, at_q, len(row), at_source, at_row, at_apart, address(state.table))
+    return apart

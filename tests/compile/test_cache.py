@@ -14,8 +14,7 @@ from click.testing import CliRunner
 
 import stiffmbs
 from stiffmbs import spatial
-from stiffmbs.analyses.usual_elements import usual_elements
-from stiffmbs.analyses.warm import routines
+from stiffmbs.analyses.warm import routines, usual_elements
 from stiffmbs.cache import entries as kept
 from stiffmbs.commands.main import main
 from stiffmbs.compile import record

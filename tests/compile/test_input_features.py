@@ -12,10 +12,9 @@ import stiffmbs
 from stiffmbs import AppliedForce, Body, Model
 from stiffmbs.compile.compile_model import compile_model
 from stiffmbs.compile.inputs import ends, of_time
-from stiffmbs.compile.inputs.breakpoints import breakpoint_times
 from stiffmbs.compile.inputs.enclosed_functions import FUNCTIONS
 from stiffmbs.compile.inputs.enclosure import Enclosure
-from stiffmbs.compile.inputs.features import InputFeatures, input_features
+from stiffmbs.compile.inputs.features import InputFeatures, breakpoint_times, input_features
 from stiffmbs.compile.inputs.of_time import Input
 from stiffmbs.compile.inputs.table_ranges import TableRanges
 from stiffmbs.compile.symbolic.symbols import SMOOTH

@@ -8,7 +8,7 @@ import sympy
 
 import stiffmbs
 from stiffmbs import InputError, si, spatial
-from stiffmbs.analyses.usual_elements import usual_elements
+from stiffmbs.analyses.warm import usual_elements
 from stiffmbs.compile.kind import sorted_out
 from stiffmbs.compile.symbolic.derive import derive
 from stiffmbs.compile.symbolic.generate import kernel_source

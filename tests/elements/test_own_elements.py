@@ -12,11 +12,11 @@ import sympy
 
 import stiffmbs
 from stiffmbs import Body, InputError, Marker, Model, spatial
-from stiffmbs.analyses.usual_elements import usual_elements
+from stiffmbs.analyses.warm import usual_elements
 from stiffmbs.compile import record
 from stiffmbs.elements import own_elements
 from stiffmbs.elements.own_elements import REGISTRY
-from stiffmbs.redundancy.transmitted import transmitted
+from stiffmbs.redundancy.replacements import transmitted
 
 from ..outside import plane, space
 from ..random_parts import forms_of

@@ -5,9 +5,9 @@ import pytest
 
 import stiffmbs
 from stiffmbs import AppliedForce, Body, Model, Prismatic, SpringDamper, compile_model
-from stiffmbs.compile.inputs.breakpoints import breakpoint_times
 from stiffmbs.compile.inputs.enclosed_functions import FUNCTIONS
 from stiffmbs.compile.inputs.enclosure import Enclosure
+from stiffmbs.compile.inputs.features import breakpoint_times
 from stiffmbs.compile.inputs.of_time import _OF_ARRAYS, inputs_of
 from stiffmbs.reading.table import Table
 

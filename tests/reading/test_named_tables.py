@@ -6,7 +6,7 @@ from scipy.interpolate import Akima1DInterpolator, CubicSpline, PchipInterpolato
 
 import stiffmbs
 from stiffmbs import InputError
-from stiffmbs.compile.inputs.breakpoints import breakpoint_times
+from stiffmbs.compile.inputs.features import breakpoint_times
 from stiffmbs.compile.inputs.of_time import inputs_of
 from stiffmbs.compile.table_values import curve
 from stiffmbs.reading.table import Table

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 import stiffmbs
 from stiffmbs import spatial
 from stiffmbs.elements.planar_kinds import FORCES
-from stiffmbs.redundancy.transmitted import COMPONENTS
+from stiffmbs.redundancy.replacements import COMPONENTS
 
 from ..spatial_loops import door, ground, parallelogram
 from . import test_redundancy as plane

@@ -5,7 +5,7 @@ import pytest
 
 import stiffmbs
 from stiffmbs import Body, Marker, Model, Revolute
-from stiffmbs.redundancy import small_singular
+from stiffmbs.redundancy import loop_rank
 from stiffmbs.redundancy import sparse_matrix as entries_module
 from stiffmbs.redundancy.sparse_matrix import SparseMatrix
 
@@ -90,10 +90,10 @@ def test_small_singular_values_alone_are_those_of_the_whole(monkeypatch, redunda
     A[79] = A[78] + 1e-6 * A[79]
     row, column = np.nonzero(A)
     entries = SparseMatrix(row, column, A[row, column], A.shape)
-    whole, whole_vectors = small_singular.small_singular(entries)
+    whole, whole_vectors = loop_rank.small_singular(entries)
     monkeypatch.setattr(entries_module, "DENSE_UP_TO", 0)
-    values, vectors = small_singular.small_singular(entries)
-    assert (len(values), vectors.shape[1]) == (len(whole), redundant + 1 + small_singular.MORE)
+    values, vectors = loop_rank.small_singular(entries)
+    assert (len(values), vectors.shape[1]) == (len(whole), redundant + 1 + loop_rank.MORE)
     np.testing.assert_allclose(values[-redundant - 1 :], whole[-redundant - 1 :], rtol=1e-6, atol=1e-13)
     null, whole_null = (v[:, v.shape[1] - redundant :] for v in (vectors, whole_vectors))
     np.testing.assert_allclose(null @ null.T, whole_null @ whole_null.T, atol=1e-9)

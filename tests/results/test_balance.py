@@ -13,6 +13,7 @@ from stiffmbs.solve.ida.matrices import Dense, Sparse
 from stiffmbs.solve.ida.output_correction import OutputCorrection
 from stiffmbs.solve.linear_solvers.fixed_order import FixedOrder
 from stiffmbs.sparse.elimination_order import elimination_order
+from stiffmbs.tuning import parameters_of
 from tests.stress.families.stiffness.stiffness import bar_on_bushing
 from tests.stress.mechanisms.pendulum import bar_rate, swing
 
@@ -34,7 +35,7 @@ def force_error(solution):
 
 @pytest.fixture
 def as_interpolated(monkeypatch):
-    return lambda: monkeypatch.setattr(newton, "POLISHING", replace(newton.POLISHING, amplified=np.inf))
+    return lambda: monkeypatch.setattr(newton, "POLISHING", replace(parameters_of(newton.POLISHING), amplified=np.inf))
 
 
 @pytest.mark.parametrize("stiffness", [1e10, 1e12, 1e13])

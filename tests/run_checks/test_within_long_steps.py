@@ -7,7 +7,7 @@ import stiffmbs
 from stiffmbs.analyses.job import prepare
 from stiffmbs.run_checks import within_long_steps
 from stiffmbs.run_checks.within_long_steps import overlooked_in_long_steps
-from stiffmbs.solve.events.long_steps import MIDDLE, WHOLE, LongSteps
+from stiffmbs.solve.events.long_steps import LONG_STEP, WHOLE, LongSteps
 
 SOLVERS = (
     {"solver": "bdf"},
@@ -82,7 +82,8 @@ def test_the_middle_of_a_long_step_is_judged(place):
     model.add("push", stiffmbs.AppliedForce(i="ball", force=(f"{HEIGHT}*exp(-((ball.x - {place})/0.01)^2)", 0)))
     job = prepare(model, duration=1.0, rtol=1e-6)
     begin, end = np.array([0.4, 0.7]), np.array([0.6, 0.9])
-    t = begin[:, None] + MIDDLE * (end - begin)[:, None]
+    middle = np.array([0.5 - LONG_STEP.from_middle, 0.5 + LONG_STEP.from_middle])
+    t = begin[:, None] + middle * (end - begin)[:, None]
     q, u = np.zeros((2, 2, 3)), np.zeros((2, 2, 3))
     q[..., 0], u[..., 0] = 10 * t, 10.0
     found = overlooked_in_long_steps(LongSteps(job.dynamics, begin, end, q, u), job.settings, 1.0)

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from stiffmbs.analyses.usual_elements import usual_elements
+from stiffmbs.analyses.warm import usual_elements
 from stiffmbs.cache.entries import DIRECTORY_VARIABLE
 from stiffmbs.compile.compile_model import compile_model
 from stiffmbs.compile.group import Group

@@ -18,7 +18,7 @@ from stiffmbs.model.model import Model
 from stiffmbs.model.model_builder import ModelBuilder
 from stiffmbs.reading.marker import Marker
 from stiffmbs.redundancy.overconstraint import Overconstraint
-from stiffmbs.redundancy.transmitted import COMPONENTS
+from stiffmbs.redundancy.replacements import COMPONENTS
 
 from ...case import Case, Outcome, Verdict, measured
 from ...mechanisms.pendulum import GRAVITY
