@@ -41,7 +41,7 @@ _LATER = {
     "Simulation": ".studies.simulation", "simulation": ".studies.simulation", "follow": ".studies.follow",
     "listed_statements": ".adams.listing", "build_fmu": ".studies.fmu.build", "differences": ".results.listings.differences",
     "animate": ".show.drawing.animate", "draw": ".show.drawing.draw", "html": ".show.html", "plot": ".show.figure",
-    "summary": ".show.summary",
+    "summary": ".show.summary", "open": ".live.page",
 }  # fmt: skip
 """Module of each name that is loaded on first use; a different name in that module follows a colon."""
 

@@ -43,6 +43,7 @@ SECTIONS = {
         "animate": "animate",
         "plot": "plot",
         "report": "report",
+        "open": "starting.open:open_scene",
     },
     "Other programs": {
         "convert": "convert",

@@ -91,6 +91,10 @@ class CaseSolver:
         self._of_scene = self._changed = RunSettings()
         self._files: dict[str, str] = {}
 
+    def take_jobs(self, other: CaseSolver) -> None:
+        """Take over the jobs of another solver, whose structures may occur again; it must not be used any more."""
+        self._jobs = other._jobs
+
     def scene(self, values: Sequence[Any]) -> Scene:
         """Return the scene of a case.
 

@@ -99,7 +99,9 @@ def edged(solid: Solid, sharp: float = 0.8) -> Solid:
 
 def face_normal(points: np.ndarray) -> np.ndarray:
     """Return the unit normal of a flat face by Newell's method, or zero for a degenerate face."""
-    across = np.cross(points, np.roll(points, -1, axis=0)).sum(axis=0)
+    after = np.concatenate([points[1:], points[:1]])
+    products = points[:, [1, 2, 0]] * after[:, [2, 0, 1]] - points[:, [2, 0, 1]] * after[:, [1, 2, 0]]
+    across = products.sum(axis=0)
     length = float(np.linalg.norm(across))
     return across / length if length > 0 else across
 
@@ -138,23 +140,37 @@ def triangles(solid: Solid) -> np.ndarray:
 
 
 def _of_face(points: np.ndarray) -> list[tuple[int, int, int]]:
+    """Cut ears off a flat face, in its own plane (Meisters, American Mathematical Monthly 82, 1975)."""
+    if len(points) == 3:
+        return [(0, 1, 2)]
     normal = face_normal(points)
+    axis = int(np.argmax(np.abs(normal)))
+    first, second = ((1, 2), (2, 0), (0, 1))[axis]
+    sign = 1.0 if normal[axis] >= 0 else -1.0
+    plane = [(x, sign * y) for x, y in points[:, [first, second]].tolist()]
     left = list(range(len(points)))
     found = []
     while len(left) > 3:
-        ear = next((k for k in range(len(left)) if _is_ear(points, left, k, normal)), 1)
+        ear = next((k for k in range(len(left)) if _is_ear(plane, left, k)), 1)
         found.append((left[ear - 1], left[ear], left[(ear + 1) % len(left)]))
         left.pop(ear)
     return [*found, (left[0], left[1], left[2])]
 
 
-def _is_ear(points: np.ndarray, left: list[int], k: int, normal: np.ndarray) -> bool:
-    a, b, c = (points[left[(k + step) % len(left)]] for step in (-1, 0, 1))
-    if np.cross(b - a, c - b) @ normal <= 0:
+Flat = tuple[float, float]
+
+
+def _is_ear(plane: list[Flat], left: list[int], k: int) -> bool:
+    corners = (k - 1) % len(left), k, (k + 1) % len(left)
+    a, b, c = (plane[left[m]] for m in corners)
+    if _turn(a, b, c) <= 0:
         return False
-    others = [points[left[m]] for m in range(len(left)) if m not in ((k - 1) % len(left), k, (k + 1) % len(left))]
-    return not any(_inside(point, a, b, c, normal) for point in others)
+    return not any(_inside(plane[left[m]], a, b, c) for m in range(len(left)) if m not in corners)
 
 
-def _inside(p: np.ndarray, a: np.ndarray, b: np.ndarray, c: np.ndarray, normal: np.ndarray) -> bool:
-    return all(np.cross(end - start, p - start) @ normal >= 0 for start, end in ((a, b), (b, c), (c, a)))
+def _turn(a: Flat, b: Flat, c: Flat) -> float:
+    return (b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0])
+
+
+def _inside(p: Flat, a: Flat, b: Flat, c: Flat) -> bool:
+    return _turn(a, b, p) >= 0 and _turn(b, c, p) >= 0 and _turn(c, a, p) >= 0

@@ -24,6 +24,8 @@ POSE_VALUES = 240_000
 CHANNEL_VALUES = 450_000
 """Largest number of values of channels."""
 MOST_INSTANTS = 2000
+SMALLEST = 9
+"""Level of compression of files."""
 LEVELS = int(np.iinfo(np.uint16).max)
 
 
@@ -45,20 +47,20 @@ class Packed:
         start, self.length = self.length, self.length + len(values)
         return {"start": start, "length": len(values), "low": low, "step": step}
 
-    def text(self) -> str:
+    def text(self, level: int = SMALLEST) -> str:
         """Return all columns, compressed, as text."""
         content = np.concatenate(self.columns) if self.columns else np.zeros(0, dtype=np.uint16)
-        return packed_text(content.astype("<u2").tobytes())
+        return packed_text(content.astype("<u2").tobytes(), level)
 
 
-def packed_text(content: bytes) -> str:
+def packed_text(content: bytes, level: int = SMALLEST) -> str:
     """Return bytes, compressed, as text that is harmless in a page."""
-    return base64.b64encode(gzip.compress(content, 9, mtime=0)).decode("ascii")
+    return base64.b64encode(gzip.compress(content, level, mtime=0)).decode("ascii")
 
 
 def page_data(
     drawing: Drawing, runs: Mapping[str, Poses], solution: Solution | None = None, shown: Sequence[str] = (),
-    traces: Sequence[Anchor] = (),
+    traces: Sequence[Anchor] = (), only: Sequence[str] | None = None, level: int = SMALLEST,
 ) -> dict[str, str]:  # fmt: skip
     """Return the two texts of a page: ``head``, JSON, and ``numbers``, both compressed.
 
@@ -72,6 +74,10 @@ def page_data(
         Channels that are plotted first.
     traces : sequence of Anchor
         Points whose paths are drawn first.
+    only : sequence of str, optional
+        Channels whose values are included; of the others only names and units.  By default all.
+    level : int
+        Level of compression, 1 (fast) to 9 (small).
     """
     packed = Packed()
     width = sum(7 * len(poses.points) + 3 * len(poses.forces) for poses in runs.values()) or 1
@@ -83,9 +89,9 @@ def page_data(
         "runs": [{"name": name, **_motion(poses, packed, most)} for name, poses in runs.items()],
         "follow": followed_body(drawing, first),
         "traces": [{"body": anchor.body, "point": anchor.point.tolist()} for anchor in traces],
-        "channels": _channels(solution, packed, shown) if solution is not None else None,
+        "channels": _channels(solution, packed, shown, only) if solution is not None else None,
     }
-    return {"head": packed_text(json.dumps(head, allow_nan=False).encode()), "numbers": packed.text()}
+    return {"head": packed_text(json.dumps(head, allow_nan=False).encode(), level), "numbers": packed.text(level)}
 
 
 def _motion(poses: Poses, packed: Packed, most: int) -> dict[str, Any]:
@@ -109,15 +115,19 @@ def _continuous(p: np.ndarray) -> np.ndarray:
     return p * turns[:, None]
 
 
-def _channels(solution: Solution, packed: Packed, shown: Sequence[str]) -> dict[str, Any]:
+def _channels(solution: Solution, packed: Packed, shown: Sequence[str], only: Sequence[str] | None) -> dict[str, Any]:
     """Return every channel, at few enough output instants to keep the page small."""
-    most = max(100, min(MOST_INSTANTS, CHANNEL_VALUES // max(len(solution.channels), 1)))
+    included = solution.channels if only is None else only
+    most = max(100, min(MOST_INSTANTS, CHANNEL_VALUES // max(len(included), 1)))
     rows = np.unique(np.linspace(0, len(solution.time) - 1, min(len(solution.time), most)).astype(int))
     return {
         "time": solution.time[rows].tolist(), "thinned": len(rows) < len(solution.time), "of": len(solution.time),
         "shown": [name for name in shown if name in solution.channels],
         "columns": [
-            {"name": name, "unit": solution.unit(name), "unique": name not in solution.not_unique, **packed.add(values[rows])}
+            {
+                "name": name, "unit": solution.unit(name), "unique": name not in solution.not_unique,
+                **(packed.add(values[rows]) if name in included else {}),
+            }
             for name, values in solution.channels.items()
         ],
     }  # fmt: skip

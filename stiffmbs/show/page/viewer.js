@@ -30,7 +30,7 @@ const MOVING = (() => {
         for (const name of Object.keys(part)) part[name] = part[name].map((at) => column(packed, at));
       }
     }
-    if (data.channels) data.channels.columns.forEach((c) => (c.values = column(packed, c)));
+    if (data.channels) data.channels.columns.forEach((c) => { if ("start" in c) c.values = column(packed, c); });
     return data;
   }
 
@@ -47,8 +47,8 @@ const MOVING = (() => {
     const it = {
       start, end, t: start, playing: false, speed: 1,
       on: (f) => listeners.push(f),
-      set(t) { it.t = Math.min(Math.max(t, start), end); listeners.forEach((f) => f(it.t)); },
-      toggle() { if (!it.playing && it.t >= end) it.set(start); it.playing = !it.playing; listeners.forEach((f) => f(it.t)); },
+      set(t) { it.t = Math.min(Math.max(t, it.start), it.end); listeners.forEach((f) => f(it.t)); },
+      toggle() { if (!it.playing && it.t >= it.end) it.set(it.start); it.playing = !it.playing; listeners.forEach((f) => f(it.t)); },
     };
     return it;
   }
@@ -76,7 +76,10 @@ const MOVING = (() => {
   /* The mechanism of one run as objects of three.js. */
   function mechanism(drawing, run, ghost) {
     const flat = drawing.dimensions === 2, groups = {}, root = new THREE.Group(), links = [];
-    const group = (body) => (groups[body] ??= root.add(new THREE.Group()).children.at(-1));
+    const group = (body) => {
+      if (!groups[body]) { groups[body] = new THREE.Group(); groups[body].userData.body = body; root.add(groups[body]); }
+      return groups[body];
+    };
     const material = (Kind, color, order, extra = {}) => new Kind({
       color: ghost ?? color, transparent: flat || ghost !== undefined, opacity: ghost !== undefined ? 0.35 : 1, depthTest: !flat, ...extra,
     });
@@ -174,9 +177,9 @@ const MOVING = (() => {
     return found;
   }
 
-  function view(place, data, time) {
-    const { drawing } = data, size = drawing.size;
-    const canvas = make("canvas", place, {}, { tabindex: 0, role: "img", "aria-label": `${drawing.name || "mechanism"} in motion; drag to turn it, space plays and pauses` });
+  /* The mechanism on a canvas; `load` shows other data and keeps the camera. */
+  function view(place, time) {
+    const canvas = make("canvas", place, {}, { tabindex: 0, role: "img" });
     let renderer;
     try {
       renderer = new THREE.WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
@@ -190,18 +193,17 @@ const MOVING = (() => {
     const scene = new THREE.Scene();
     scene.add(new THREE.HemisphereLight(0xffffff, 0x9a9aa5, 2.2), new THREE.AmbientLight(0xffffff, 0.5));
     const lamp = new THREE.DirectionalLight(0xffffff, 1.4);
-    scene.add(lamp);
-    const machines = data.runs.map((run, k) => {
-      const machine = mechanism(drawing, run, k ? COLORS[k % COLORS.length] : undefined);
-      scene.add(machine.root);
-      return machine;
-    });
-    const upright = drawing.dimensions === 2 || Math.abs(drawing.gravity[1]) > Math.abs(drawing.gravity[2]) ? "y" : "z";
-    const camera = new THREE.OrthographicCamera(-1, 1, 1, -1, -50 * size, 50 * size);
-    camera.up.set(0, upright === "y" ? 1 : 0, upright === "z" ? 1 : 0);
+    scene.add(lamp, lamp.target);
+    const camera = new THREE.OrthographicCamera(-1, 1, 1, -1, -50, 50);
     const controls = new THREE.OrbitControls(camera, canvas);
     controls.enableDamping = false;
-    const box = new THREE.Box3();
+    const legend = make("div", place, { className: "legend" });
+    const tip = make("span", place, { className: "name tip" }, { "aria-hidden": "true" });
+    const middle = new THREE.Vector3(), half = new THREE.Vector3(), force = new THREE.Vector3();
+    const state = { forces: false, names: false, follow: "", off: new Set(), traces: [] };
+    let data = null, machines = [], loads = [], names = [], reach = 1, upright = "z", scale = null;
+    let wide = 0, high = 0, before = null, pointed = null;
+
     const throughout = (act) => {
       for (let k = 0; k <= 12; k++) {
         for (const machine of machines) {
@@ -211,61 +213,117 @@ const MOVING = (() => {
         }
       }
     };
-    const framed = data.follow ? (act) => machines.forEach((machine) => { machine.update(time.start); machine.root.updateMatrixWorld(true); act(machine.root); }) : throughout;
-    framed((root) => box.expandByObject(root, true));
-    const middle = box.getCenter(new THREE.Vector3()), reach = box.getSize(new THREE.Vector3()).length() || size;
-    const home = () => {
+    const atStart = (act) => machines.forEach((machine) => { machine.update(time.start); machine.root.updateMatrixWorld(true); act(machine.root); });
+    function home() {
+      const { drawing } = data;
       controls.target.copy(middle);
       const way = drawing.dimensions === 2 ? [0, 0, 1] : upright === "z" ? [1, -1, 0.8165] : [1, 0.8165, 1];
-      camera.position.copy(middle).add(new THREE.Vector3(...way).normalize().multiplyScalar(10 * size));
+      camera.position.copy(middle).add(new THREE.Vector3(...way).normalize().multiplyScalar(10 * drawing.size));
       camera.zoom = 1;
+      before = null;
       controls.update();
-    };
-    home();
-    camera.updateMatrixWorld();
-    const half = new THREE.Vector3(), corner = new THREE.Vector3(), level = camera.quaternion.clone().invert();
-    framed((root) => root.traverse((part) => {  // half of the width and height of the whole motion, or of the start, as it is seen first
-      if (!part.geometry) return;
-      part.geometry.computeBoundingBox();
-      const own = part.geometry.boundingBox;
-      for (let k = 0; k < 8; k++) {
-        corner.set(...["x", "y", "z"].map((axis, n) => (k & (1 << n) ? own.min : own.max)[axis]));
-        corner.applyMatrix4(part.matrixWorld).sub(middle).applyQuaternion(level);
-        half.set(Math.max(half.x, Math.abs(corner.x)), Math.max(half.y, Math.abs(corner.y)), 0);
+      camera.updateMatrixWorld();
+    }
+    /* The camera sees the whole motion, or the start if it follows a body. */
+    function frame() {
+      const { drawing } = data, framed = data.follow ? atStart : throughout;
+      upright = drawing.dimensions === 2 || Math.abs(drawing.gravity[1]) > Math.abs(drawing.gravity[2]) ? "y" : "z";
+      Object.assign(camera, { near: -50 * drawing.size, far: 50 * drawing.size });
+      camera.up.set(0, upright === "y" ? 1 : 0, upright === "z" ? 1 : 0);
+      const flat = drawing.dimensions === 2;  // dragging pans in the plane and orbits in space
+      controls.mouseButtons.LEFT = flat ? 2 : 0;
+      controls.mouseButtons.RIGHT = flat ? 0 : 2;
+      controls.touches.ONE = flat ? 1 : 0;
+      controls.enableRotate = !flat;
+      const box = new THREE.Box3(), corner = new THREE.Vector3();
+      framed((root) => root.children.forEach((part) => { if (!part.userData.floor) box.expandByObject(part, true); }));
+      box.getCenter(middle);
+      reach = box.getSize(new THREE.Vector3()).length() || drawing.size;
+      home();
+      half.set(0, 0, 0);
+      const level = camera.quaternion.clone().invert();
+      framed((root) => root.traverse((part) => {  // half of the width and height of what is seen first
+        if (!part.geometry || part.userData.floor) return;
+        part.geometry.computeBoundingBox();
+        const own = part.geometry.boundingBox;
+        for (let k = 0; k < 8; k++) {
+          corner.set(...["x", "y", "z"].map((axis, n) => (k & (1 << n) ? own.min : own.max)[axis]));
+          corner.applyMatrix4(part.matrixWorld).sub(middle).applyQuaternion(level);
+          half.set(Math.max(half.x, Math.abs(corner.x)), Math.max(half.y, Math.abs(corner.y)), 0);
+        }
+      }));
+      wide = 0;
+    }
+    function clear() {
+      clearTraces();
+      [...machines.map((machine) => machine.root), ...loads.map(({ found }) => found)].forEach((root) => {
+        scene.remove(root);
+        root.traverse((part) => { part.geometry?.dispose(); part.material?.dispose(); });
+      });
+      names.forEach(({ label }) => label.remove());
+    }
+    /* Show other data; `keep` leaves camera, switches and traces as they are. */
+    function load(found, keep) {
+      const traced = keep ? state.traces.map(({ anchor }) => anchor) : found.traces;
+      if (data) clear();
+      data = found;
+      const { drawing } = data;
+      canvas.setAttribute("aria-label", `${drawing.name || "mechanism"} in motion; drag to ${drawing.dimensions === 2 ? "move" : "turn"} it, space plays and pauses`);
+      machines = data.runs.map((run, k) => {
+        const machine = mechanism(drawing, run, k ? COLORS[k % COLORS.length] : undefined);
+        scene.add(machine.root);
+        return machine;
+      });
+      loads = drawing.loads.map((load) => {
+        const found = arrow(drawing.marks[load.name] ? "#e69f00" : drawing.load_color, drawing.unit);
+        scene.add(found);
+        return { load, found };
+      });
+      names = drawing.names.map((name) => ({
+        name, label: make("span", place, { textContent: name.text, className: name.role === "body" ? "name" : "name element", hidden: true }, { "aria-hidden": "true" }),
+      }));
+      if (!keep) {
+        Object.assign(state, {
+          forces: data.longest.force > 0 && drawing.dimensions === 2, names: drawing.names.length <= (drawing.dimensions === 2 ? 40 : 12), follow: data.follow,
+        });
+        frame();
       }
-    }));
-
-    const loads = drawing.loads.map((load) => {
-      const found = arrow(drawing.marks[load.name] ? "#e69f00" : drawing.load_color, drawing.unit);
-      scene.add(found);
-      return { load, found };
-    });
-    const names = drawing.names.map((name) => ({
-      name, label: make("span", place, { textContent: name.text, className: name.role === "body" ? "name" : "name element" }, { "aria-hidden": "true" }),
-    }));
-    const state = { forces: data.longest.force > 0, names: drawing.names.length <= 40, follow: data.follow, traces: [] };
+      traced.forEach(addTrace);
+      explain();
+      it.stale = true;
+    }
     const addTrace = (anchor) => data.runs.forEach((run, k) => {
+      if (anchor.body !== "ground" && !run.bodies[anchor.body]) return;
       const found = trace(machines[k], run, anchor, COLORS[(state.traces.length + 1) % COLORS.length]);
-      state.traces.push(found);
+      state.traces.push({ found, anchor });
       scene.add(found);
     });
-    const clearTraces = () => state.traces.splice(0).forEach((found) => { scene.remove(found); found.geometry.dispose(); });
-    data.traces.forEach(addTrace);
+    const clearTraces = () => state.traces.splice(0).forEach(({ found }) => { scene.remove(found); found.geometry.dispose(); });
 
-    if (data.runs.length > 1 || data.longest.force > 0) {
-      const legend = make("div", place, { className: "legend" });
+    function explain() {
+      legend.replaceChildren();
+      scale = null;
       const entry = (color, text) => {
         const row = make("div", legend);
-        make("span", row, { className: "key" }).style.background = color;
-        row.append(text);
+        const key = make("span", row, { className: "key" });
+        key.style.background = color;
+        const words = make("span", row, { textContent: text });
+        return { key, words };
       };
       if (data.runs.length > 1) data.runs.forEach((run, k) => entry(k ? COLORS[k % COLORS.length] : "#56b4e9", run.name || "run"));
-      if (data.longest.force > 0) entry(drawing.load_color, `forces, longest ${Number(data.longest.force.toPrecision(4))} N`);
-      for (const mark of new Set(Object.values(drawing.marks))) entry(mark === "redundant" ? "#d55e00" : "#e69f00", mark === "redundant" ? "redundant equations" : "force not unique");
+      for (const mark of new Set(Object.values(data.drawing.marks))) entry(mark === "redundant" ? "#d55e00" : "#e69f00", mark === "redundant" ? "redundant equations" : "force not unique");
+      if (state.forces && data.longest.force > 0) scale = entry(data.drawing.load_color, "");
+      legend.hidden = !legend.children.length;
     }
-
-    let wide = 0, high = 0, before = null;
-    const force = new THREE.Vector3();
+    /* The scale of forces: the length of an arrow of a round force on the screen. */
+    function measure() {
+      if (!scale) return;
+      const perNewton = ((data.longest.length / data.longest.force) * wide * camera.zoom) / (camera.right - camera.left);
+      const base = 10 ** Math.floor(Math.log10(90 / perNewton));
+      const round = [5, 2, 1].map((f) => f * base).find((f) => f * perNewton <= 90) ?? base;
+      Object.assign(scale.key.style, { width: `${round * perNewton}px`, height: "4px", verticalAlign: "3px" });
+      scale.words.textContent = `${Number(round.toPrecision(2))} N`;
+    }
     function fit() {
       const w = place.clientWidth, h = place.clientHeight;
       if (w === wide && h === high) return;
@@ -275,32 +333,67 @@ const MOVING = (() => {
       Object.assign(camera, { left: -up * ratio, right: up * ratio, top: up, bottom: -up });
       camera.updateProjectionMatrix();
     }
+    const onScreen = (anchor, t) => {
+      const p = machines[0].anchored(anchor, t).project(camera);
+      return [((p.x + 1) / 2) * wide, ((1 - p.y) / 2) * high];
+    };
     function draw() {
+      if (!data) return;
       fit();
       const t = time.t;
       machines.forEach((machine) => machine.update(t));
-      if (state.follow) {
+      if (state.follow && data.runs[0].bodies[state.follow]) {
         const now = machines[0].anchored({ body: state.follow, point: [0, 0, 0] }, t);
         if (before) { const step = now.clone().sub(before); camera.position.add(step); controls.target.add(step); }
         before = now;
       } else before = null;
       for (const { load, found } of loads) {
-        const length = state.forces && forceOf(data.runs[0], load.name, t, force) ? (force.length() / data.longest.force) * data.longest.length : 0;
-        found.visible = length > 0.01 * size;
+        const seen = state.forces && !state.off.has(load.name) && forceOf(data.runs[0], load.name, t, force);
+        const length = seen ? (force.length() / data.longest.force) * data.longest.length : 0;
+        found.visible = length > 0.01 * data.drawing.size;
         if (found.visible) { found.position.copy(machines[0].anchored(load, t)); found.pointTo(force.normalize(), length); }
       }
-      lamp.position.copy(camera.position).add(new THREE.Vector3(0.3, 0.6, 0.2).multiplyScalar(size));
+      lamp.position.copy(camera.position).add(new THREE.Vector3(0.3, 0.6, 0.2).multiplyScalar(data.drawing.size));
       camera.updateMatrixWorld();
       renderer.render(scene, camera);
+      measure();
       for (const { name, label } of names) {
         label.hidden = !state.names;
         if (!state.names) continue;
-        const p = machines[0].anchored(name, t).project(camera);
-        label.style.transform = `translate(${((p.x + 1) / 2) * wide + 7}px, ${((1 - p.y) / 2) * high - (name.role === "body" ? 18 : -4)}px)`;
+        const [x, y] = onScreen(name, t);
+        label.style.transform = `translate(${x + 7}px, ${y - (name.role === "body" ? 18 : -4)}px)`;
       }
+      hover(t);
     }
+    /* The name of what is nearest to the pointer: an element's point, else the body below it. */
+    function hover(t) {
+      tip.hidden = true;
+      if (!pointed || state.names) return;
+      let best = 16, text = "";
+      for (const { name } of names) {
+        if (name.role === "body") continue;
+        const [x, y] = onScreen(name, t), far = Math.hypot(x - pointed.x, y - pointed.y);
+        if (far < best) [best, text] = [far, name.text];
+      }
+      if (!text) {
+        const ray = new THREE.Raycaster();
+        ray.setFromCamera(new THREE.Vector2((2 * pointed.x) / wide - 1, 1 - (2 * pointed.y) / high), camera);
+        let hit = ray.intersectObject(machines[0].root, true).find(({ object }) => object.isMesh)?.object;
+        while (hit && !hit.userData.body) hit = hit.parent;
+        text = hit && hit.userData.body !== "ground" ? hit.userData.body : "";
+      }
+      if (!text) return;
+      tip.hidden = false;
+      tip.textContent = text;
+      tip.style.transform = `translate(${pointed.x + 12}px, ${pointed.y + 10}px)`;
+    }
+    canvas.addEventListener("pointermove", (e) => { pointed = { x: e.offsetX, y: e.offsetY }; it.stale = true; });
+    canvas.addEventListener("pointerleave", () => { pointed = null; it.stale = true; });
     controls.addEventListener("change", () => { it.stale = true; });
-    const it = { draw, state, home: () => { home(); it.stale = true; }, addTrace, clearTraces, canvas, stale: true };
+    const it = {
+      draw, state, canvas, stale: true, load, addTrace: (anchor) => addTrace(anchor), clearTraces,
+      home: () => { frame(); it.stale = true; }, explain: () => { explain(); it.stale = true; },
+    };
     new ResizeObserver(() => { it.stale = true; }).observe(place);
     return it;
   }
@@ -313,13 +406,23 @@ const MOVING = (() => {
     for (let k = Math.ceil(low / step); k * step <= high + step * 1e-9; k++) found.push(k * step);
     return found;
   }
-  const short = (x) => (x === 0 ? "0" : Math.abs(x) >= 1e5 || Math.abs(x) < 1e-3 ? x.toExponential(2) : String(Number(x.toPrecision(5))));
+  /* Labels of ticks with as many digits as tell them apart. */
+  function labels(values) {
+    const step = values.length > 1 ? Math.abs(values[1] - values[0]) : Math.abs(values[0]) || 1, largest = Math.max(...values.map(Math.abs), step);
+    if (largest >= 1e5 || largest < 1e-2) {
+      const digits = Math.min(Math.max(0, Math.ceil(Math.log10(largest / step) - 1e-9)), 9);
+      return values.map((v) => (Math.abs(v) < step * 1e-6 ? "0" : v.toExponential(digits)));
+    }
+    const decimals = Math.min(Math.max(0, Math.ceil(-Math.log10(step) - 1e-9)), 9);
+    return values.map((v) => (Math.abs(v) < step * 1e-6 ? 0 : v).toFixed(decimals));
+  }
+  const LEAST_RANGE = 1e-6;  // of an axis, relative to its values: what is less is rounding
 
-  function plots(place, data, time) {
-    const { channels } = data, T = Float64Array.from(channels.time), by = new Map(channels.columns.map((c) => [c.name, c]));
+  /* `fetch(names)` gets the values of channels that a page does not hold. */
+  function plots(place, time, fetch) {
+    let channels, T, by, bands = [];
     const bar = make("div", place, { className: "controls" });
     const list = make("datalist", place, { id: "channel-names" });
-    channels.columns.forEach((c) => make("option", list, { value: c.name }));
     const label = make("label", bar, { textContent: "Channel " });
     const field = make("input", label, { type: "text" }, { list: "channel-names", size: 26, autocomplete: "off" });
     const add = make("button", bar, { type: "button", textContent: "Plot" });
@@ -328,8 +431,19 @@ const MOVING = (() => {
     const frame = make("div", place, { className: "plot" });
     const canvas = make("canvas", frame, {}, { tabindex: 0, role: "img" });
     const chosenList = make("ul", place, { className: "chosen" }, { "aria-label": "plotted channels" });
-    make("p", place, { className: "hint", textContent: "Drag over the plot to zoom, double-click for all of the time; click sets the time. Keys: left and right move the time, + and - zoom." +
-      (channels.thinned ? ` Plots show ${T.length} of ${channels.of} instants; the tables are of all.` : "") });
+    const hint = make("p", place, { className: "hint" });
+    function load(found, keep) {
+      const names = keep ? chosen.map((c) => c.name) : found.shown.slice(0, 4), whole = from === time.start && to === time.end;
+      channels = found; T = Float64Array.from(channels.time); by = new Map(channels.columns.map((c) => [c.name, c]));
+      if (list.children.length !== channels.columns.length || channels.columns.some((c, k) => c.name !== list.children[k].value)) list.replaceChildren(...channels.columns.map((c) => make("option", null, { value: c.name })));
+      hint.textContent = "Drag over the plot to zoom, double-click for all of the time; click sets the time. Keys: left and right move the time, + and - zoom." +
+        (channels.thinned ? ` Plots show ${T.length} of ${channels.of} instants; the tables are of all.` : "");
+      if (!keep || whole || !(from < T[T.length - 1])) [from, to] = [T[0], T[T.length - 1]];
+      chosen.splice(0);
+      names.filter((name) => by.get(name)?.values).forEach((name) => chosen.push(by.get(name)));
+      if (!chosen.length && by.get("energy.total")?.values) chosen.push(by.get("energy.total"));
+      listed();
+    }
     const chosen = [];
     let from = time.start, to = time.end, drag = null;
     const units = () => [...new Set(chosen.map((c) => c.unit))];
@@ -337,6 +451,7 @@ const MOVING = (() => {
       const found = by.get(name);
       if (!found) { said.textContent = `no channel '${name}'`; return; }
       if (chosen.includes(found)) return;
+      if (!found.values) { fetch([...chosen.map((c) => c.name), name]).then((got) => { if (got) choose(name); }); return; }
       if (units().length === 2 && !units().includes(found.unit)) { said.textContent = `two units at a time: take one of ${units().join(", ")} out first`; return; }
       chosen.push(found);
       said.textContent = "";
@@ -370,27 +485,41 @@ const MOVING = (() => {
       c.font = "11px system-ui, sans-serif"; c.fillStyle = "#222"; c.strokeStyle = "#ddd"; c.lineWidth = 1;
       const bottom = h - below;
       c.textAlign = "center"; c.textBaseline = "top";
-      for (const t of ticks(from, to, (w - left - right()) / 90)) {
+      const instants = ticks(from, to, (w - left - right()) / 90), said = labels(instants);
+      instants.forEach((t, k) => {
         const x = xOf(t, w);
         c.beginPath(); c.moveTo(x, above); c.lineTo(x, bottom); c.stroke();
-        c.fillText(short(t), x, bottom + 4);
-      }
+        c.fillText(said[k], x, bottom + 4);
+      });
       c.fillText("time (s)", (left + w - right()) / 2, h - 14);
       units().forEach((unit, side) => {
         const own = chosen.filter((o) => o.unit === unit);
         let low = Infinity, high = -Infinity;
         for (const o of own) for (let k = 0; k < T.length; k++) if (T[k] >= from && T[k] <= to && o.values[k] === o.values[k]) { low = Math.min(low, o.values[k]); high = Math.max(high, o.values[k]); }
+        for (const band of bands.filter((one) => own.some((o) => o.name === one.channel))) { low = Math.min(low, ...band.low); high = Math.max(high, ...band.high); }
         if (!(low <= high)) return;
-        const pad = high > low ? 0.06 * (high - low) : Math.abs(high) * 0.1 || 1;
+        const pad = high - low > LEAST_RANGE * Math.max(Math.abs(low), Math.abs(high)) ? 0.06 * (high - low) : Math.abs(high) * 0.1 || 1;
         low -= pad; high += pad;
         const yOf = (v) => bottom - ((v - low) / (high - low)) * (bottom - above);
         c.textAlign = side ? "left" : "right"; c.textBaseline = "middle"; c.fillStyle = "#222";
-        for (const v of ticks(low, high, 6)) {
+        const values = ticks(low, high, 6), words = labels(values);
+        values.forEach((v, k) => {
           if (!side) { c.strokeStyle = "#ddd"; c.beginPath(); c.moveTo(left, yOf(v)); c.lineTo(w - right(), yOf(v)); c.stroke(); }
-          c.fillText(short(v), side ? w - right() + 5 : left - 5, yOf(v));
-        }
+          c.fillText(words[k], side ? w - right() + 5 : left - 5, yOf(v));
+        });
         c.save(); c.translate(side ? w - 8 : 10, (above + bottom) / 2); c.rotate(-Math.PI / 2); c.textAlign = "center"; c.fillText(unit || "1", 0, 0); c.restore();
         c.save(); c.beginPath(); c.rect(left, above, w - left - right(), bottom - above); c.clip();
+        for (const band of bands) {
+          const o = own.find((one) => one.name === band.channel);
+          if (!o) continue;
+          const paint = COLORS[chosen.indexOf(o) % COLORS.length], path = (values, k, first) => c[first ? "moveTo" : "lineTo"](xOf(band.time[k], w), yOf(values[k]));
+          c.fillStyle = `${paint}2e`; c.beginPath();
+          band.time.forEach((_, k) => path(band.low, k, !k));
+          for (let k = band.time.length - 1; k >= 0; k--) path(band.high, k, false);
+          c.fill();
+          c.strokeStyle = `${paint}55`; c.lineWidth = 0.8;
+          for (const values of band.curves) { c.beginPath(); band.time.forEach((_, k) => path(values, k, !k)); c.stroke(); }
+        }
         for (const o of own) {
           const n = chosen.indexOf(o);
           c.strokeStyle = COLORS[n % COLORS.length]; c.setLineDash(DASHES[n % DASHES.length]); c.lineWidth = 1.6; c.beginPath();
@@ -430,54 +559,77 @@ const MOVING = (() => {
     add.onclick = () => choose(field.value.trim());
     field.onkeydown = (e) => { if (e.key === "Enter") choose(field.value.trim()); };
     field.onchange = () => { if (by.has(field.value)) choose(field.value); };
-    const it = { draw, stale: true, choose, chosen };
-    channels.shown.slice(0, 4).forEach(choose);
-    if (!chosen.length && by.has("energy.total")) choose("energy.total");
+    const it = { draw, stale: true, choose, chosen, load, field, band: (found) => { bands = found; it.stale = true; } };
     new ResizeObserver(() => { it.stale = true; }).observe(frame);
     return it;
   }
 
-  function controls(place, data, time, shown) {
+  /* Play, scrub, speed; and what is seen of the mechanism.  `load` shows other data. */
+  function controls(place, time, shown) {
     const bar = make("div", place, { className: "controls" }, { role: "group", "aria-label": "time" });
     const play = make("button", bar, { type: "button", textContent: "Play" });
     const scrub = make("input", bar, { type: "range", min: 0, max: 1000, step: "any", value: 0 }, { "aria-label": "time" });
     const told = make("output", bar);
-    const pick = (words, options, act) => {
+    const pick = (words, act) => {
       const label = make("label", bar, { textContent: `${words} ` });
       const select = make("select", label);
-      options.forEach(([value, text]) => make("option", select, { value, textContent: text }));
       select.onchange = () => act(select.value, select);
+      select.offer = (options) => {
+        if (options.length === select.options.length && options.every(([, text], k) => select.options[k].textContent === text)) return;
+        select.replaceChildren(...options.map(([value, textContent]) => make("option", null, { value, textContent })));
+      };
       return select;
     };
+    const speed = pick("Speed", (s) => { time.speed = Number(s); });
     const speeds = [0.001, 0.01, 0.1, 0.25, 0.5, 1, 2, 5, 10];
-    const length = time.end - time.start;
-    const usual = speeds.reduce((best, s) => (Math.abs(Math.log(length / s / 6)) < Math.abs(Math.log(length / best / 6)) ? s : best), 1);
-    time.speed = length >= 3 && length <= 20 ? 1 : usual;
-    pick("Speed", speeds.map((s) => [s, `${s} x`]), (s) => { time.speed = Number(s); }).value = time.speed;
+    speed.offer(speeds.map((s) => [s, `${s} x`]));
+    let names = [], load = () => {};
     if (shown) {
-      pick("Follow", [["", "nothing"], ...data.drawing.bodies.map((b) => [b, b])], (body) => { shown.state.follow = body; shown.stale = true; }).value = data.follow;
-      pick("Trace", [["", "choose"], ["clear", "none"], ...data.drawing.names.map((n, k) => [k, n.text])], (k, select) => {
+      const follow = pick("Follow", (body) => { shown.state.follow = body; shown.stale = true; });
+      const path = pick("Trace", (k, select) => {
         if (k === "clear") shown.clearTraces();
-        else if (k !== "") shown.addTrace(data.drawing.names[k]);
+        else if (k !== "") shown.addTrace(names[k]);
         select.value = "";
         shown.stale = true;
       });
-      const box = (words, field) => {
-        const label = make("label", bar);
-        const input = make("input", label, { type: "checkbox", checked: shown.state[field] });
+      const box = (words, act, into = bar) => {
+        const label = make("label", into);
+        const input = make("input", label, { type: "checkbox" });
         label.append(` ${words}`);
-        input.onchange = () => { shown.state[field] = input.checked; shown.stale = true; };
+        input.onchange = () => act(input.checked);
+        return input;
       };
-      if (data.longest.force > 0) box("forces", "forces");
-      box("names", "names");
-      make("button", bar, { type: "button", textContent: "Whole mechanism" }).onclick = shown.home;
+      const forces = box("forces", (on) => { shown.state.forces = on; shown.explain(); each.hidden = !on; });
+      const each = make("details", bar, { className: "each" });
+      make("summary", each, { textContent: "of" });
+      const switches = make("div", each);
+      const named = box("names", (on) => { shown.state.names = on; shown.stale = true; });
+      make("button", bar, { type: "button", textContent: "Whole mechanism" }).onclick = () => shown.home();
+      load = (data, keep) => {
+        names = data.drawing.names;
+        follow.offer([["", "nothing"], ...data.drawing.bodies.map((b) => [b, b])]);
+        path.offer([["", "choose"], ["clear", "none"], ...names.map((n, k) => [k, n.text])]);
+        if (!keep) { follow.value = data.follow; path.value = ""; }
+        forces.parentElement.hidden = !(data.longest.force > 0);
+        forces.checked = shown.state.forces;
+        named.checked = shown.state.names;
+        each.hidden = !(forces.checked && data.drawing.loads.length > 1);
+        const loads = data.drawing.loads.map((one) => one.name);
+        if (switches.dataset.of !== loads.join()) {
+          switches.dataset.of = loads.join();
+          switches.replaceChildren();
+          loads.forEach((name) => { box(name, (on) => { shown.state.off[on ? "delete" : "add"](name); shown.stale = true; }, switches).checked = !shown.state.off.has(name); });
+        }
+      };
     }
     play.onclick = () => time.toggle();
-    scrub.oninput = () => { time.playing = false; time.set(time.start + (scrub.value / 1000) * length); };
-    const step = length / 200;
-    place.addEventListener("keydown", (e) => {
-      if (/^(INPUT|SELECT|BUTTON)$/.test(e.target.tagName)) return;
+    scrub.oninput = () => { time.playing = false; time.set(time.start + (scrub.value / 1000) * (time.end - time.start)); };
+    const writing = (e) => e.isContentEditable || /^(SELECT|BUTTON|TEXTAREA|SUMMARY)$/.test(e.tagName) || (e.tagName === "INPUT" && e.type !== "range");
+    document.addEventListener("keydown", (e) => {
+      if (writing(e.target) || e.ctrlKey || e.altKey || e.metaKey) return;
+      const own = place.contains(e.target) && e.target.tagName !== "INPUT", step = (time.end - time.start) / 200;
       if (e.key === " ") time.toggle();
+      else if (!own) return;
       else if (e.key === "ArrowRight") time.set(time.t + step);
       else if (e.key === "ArrowLeft") time.set(time.t - step);
       else if (e.key === "Home") time.set(time.start);
@@ -486,24 +638,52 @@ const MOVING = (() => {
       e.preventDefault();
     });
     time.on((t) => {
+      const length = time.end - time.start;
       scrub.value = ((t - time.start) / (length || 1)) * 1000;
       scrub.setAttribute("aria-valuetext", `${t.toPrecision(4)} s`);
-      told.textContent = `t = ${t.toFixed(Math.max(0, 3 - Math.floor(Math.log10(length || 1))))} s`;
+      told.textContent = `t = ${t.toFixed(Math.min(Math.max(0, 3 - Math.floor(Math.log10(length || 1))), 12))} s`;
       play.textContent = time.playing ? "Pause" : "Play";
     });
+    return {
+      load(data, keep) {
+        const length = time.end - time.start;
+        const usual = speeds.reduce((best, s) => (Math.abs(Math.log(length / s / 6)) < Math.abs(Math.log(length / best / 6)) ? s : best), 1);
+        if (!keep) speed.value = time.speed = length >= 3 && length <= 20 ? 1 : usual;
+        load(data, keep);
+      },
+    };
   }
 
-  async function show(place, head, numbers) {
-    const data = await read(head, numbers);
-    const time = clock(Math.min(...data.runs.map((r) => r.start)), Math.max(...data.runs.map((r) => r.end)));
-    const shown = view(make("div", place, { className: "viewer" }), data, time);
-    controls(place, data, time, shown);
-    const plotted = data.channels ? plots(place, data, time) : null;
+  const spanOf = (data) => [Math.min(...data.runs.map((r) => r.start)), Math.max(...data.runs.map((r) => r.end))];
+
+  /* `fetch` is for pages that get further channels from a server.  `replace` of the result shows another run. */
+  async function show(place, head, numbers, fetch = async () => false) {
+    let data = await read(head, numbers);
+    const time = clock(...spanOf(data));
+    const shown = view(make("div", place, { className: "viewer" }), time);
+    const bar = controls(place, time, shown);
+    const plotted = data.channels ? plots(place, time, fetch) : null;
     const drawn = [shown, plotted].filter(Boolean);
+    const load = (keep) => {
+      shown?.load(data, keep);
+      bar.load(data, keep);
+      plotted?.load(data.channels, keep);
+      it.data = data;
+    };
+    const it = {
+      time, data, shown, plotted, frames: 0,
+      async replace(head, numbers) {
+        const found = await read(head, numbers), kept = found.drawing.dimensions === data.drawing.dimensions;
+        data = found;
+        [time.start, time.end] = spanOf(data);
+        load(kept);
+        time.set(time.t);
+      },
+    };
+    load(false);
     time.on(() => drawn.forEach((part) => { part.stale = true; }));
     time.set(time.start);
     let last = null;
-    const it = { time, data, shown, plotted, frames: 0 };
     const tick = (now) => {
       if (time.playing && last !== null) {
         const t = time.t + Math.min((now - last) / 1000, 0.5) * time.speed;  // no jump after a pause of the browser

@@ -1,0 +1,172 @@
+"""Application of a live page: its own files, the scene's text, and requests that a worker answers.
+
+No file is served by its path: a page gets the text of its scene, and files of the package by fixed names.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import hashlib
+import json
+from collections.abc import AsyncIterator, Awaitable, Callable
+from dataclasses import dataclass
+from importlib.resources import files
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ..errors import InputError
+from ..model.schema import scene_schema
+from ..reading.files.text_file import file_text
+from ..results.files import write_text
+from .worker import STOP
+from .workers import Workers
+
+if TYPE_CHECKING:
+    from starlette.applications import Starlette
+    from starlette.requests import Request
+    from starlette.responses import Response
+
+OWN = {
+    "live.css": ("stiffmbs.live.static", "text/css"), "live.js": ("stiffmbs.live.static", "text/javascript"),
+    "completion.js": ("stiffmbs.live.static", "text/javascript"),
+    "editor.min.js": ("stiffmbs.live.static", "text/javascript"),
+    "three.min.js": ("stiffmbs.show.page", "text/javascript"),
+    "first_scene.yaml": ("stiffmbs.commands.starting", "text/plain"),
+    "viewer.js": ("stiffmbs.show.page", "text/javascript"), "viewer.css": ("stiffmbs.show.page", "text/css"),
+}  # fmt: skip
+"""Files of the page: their packages and types."""
+
+
+@dataclass
+class Document:
+    """Text of a scene and its file.
+
+    Attributes
+    ----------
+    file : Path or None
+        File that is read and saved.
+    text : str
+        Text of a scene without a file.
+    editable : bool
+        False for a model that no text describes.
+    """
+
+    file: Path | None
+    text: str
+    editable: bool = True
+
+    def read(self) -> tuple[str, str]:
+        """Return the text and a digest of the file's content, which is empty if there is no file."""
+        if self.file is None or not self.file.exists():
+            return self.text, ""
+        return file_text(self.file), _digest(self.file)
+
+    def save(self, text: str, digest: str) -> str:
+        """Write the file and return the digest of its new content.
+
+        Raises
+        ------
+        InputError
+            If there is no file, or if it is not that of the digest any more.
+        """
+        if self.file is None or not self.editable:
+            raise InputError("found no file to save to, expected a page that was opened with one; use 'Download scene'")
+        if _digest(self.file) != digest:
+            raise InputError(f"{self.file.name} has changed since this page read it")
+        write_text(self.file, text)
+        return _digest(self.file)
+
+
+def _digest(file: Path) -> str:
+    return hashlib.sha256(file.read_bytes()).hexdigest() if file.exists() else ""
+
+
+def application(token: str, document: Document, workers: Workers) -> Starlette:
+    """Return the application; all its paths begin with the token."""
+    from starlette.applications import Starlette
+    from starlette.responses import JSONResponse, Response, StreamingResponse
+    from starlette.routing import Route
+
+    schema: list[bytes] = []
+
+    async def page(request: Request) -> Response:
+        return Response(files("stiffmbs.live.static").joinpath("live.html").read_bytes(), media_type="text/html")
+
+    async def own(request: Request) -> Response:
+        found = OWN.get(request.path_params["name"])
+        if found is None:
+            return Response("no such file", status_code=404)
+        return Response(files(found[0]).joinpath(request.path_params["name"]).read_bytes(), media_type=found[1])
+
+    async def start(request: Request) -> Response:
+        workers.start_ahead()
+        text, digest = document.read()
+        name = document.file.name if document.file else ""
+        return JSONResponse({"text": text, "digest": digest, "name": name, "editable": document.editable})
+
+    async def described(request: Request) -> Response:
+        if not schema:
+            schema.append(json.dumps(await asyncio.to_thread(scene_schema)).encode())
+        return Response(schema[0], media_type="application/json")
+
+    async def job(request: Request, content: dict[str, Any]) -> Response:
+        worker = workers.of(str(content.get("page", "")))
+        if content.get("what") == STOP:
+            worker.put({"what": STOP})
+            return JSONResponse({})
+
+        async def lines() -> AsyncIterator[str]:
+            async for message in worker.channel.answers(content, worker.put):
+                yield json.dumps(message) + "\n"
+
+        return StreamingResponse(lines(), media_type="application/x-ndjson")
+
+    async def save(request: Request, content: dict[str, Any]) -> Response:
+        try:
+            digest = (
+                ""
+                if document.file is None
+                else _digest(document.file)
+                if content.get("over")
+                else str(content.get("digest"))
+            )
+            return JSONResponse({"digest": document.save(str(content.get("text", "")), digest)})
+        except InputError as error:
+            return JSONResponse({"message": str(error)}, status_code=409)
+        except OSError as error:
+            return JSONResponse({"message": f"not saved: {error.strerror or error}"}, status_code=409)
+
+    async def close(request: Request, content: dict[str, Any]) -> Response:
+        workers.end(str(content.get("page", "")))
+        return JSONResponse({})
+
+    return Starlette(
+        routes=[
+            Route(f"/{token}/", page),
+            Route(f"/{token}/own/{{name}}", own),
+            Route(f"/{token}/start", start),
+            Route(f"/{token}/schema", described),
+            Route(f"/{token}/job", _posted(job), methods=["POST"]),
+            Route(f"/{token}/save", _posted(save), methods=["POST"]),
+            Route(f"/{token}/close", _posted(close), methods=["POST"]),
+        ]
+    )
+
+
+def _posted(
+    answer: Callable[[Request, dict[str, Any]], Awaitable[Response]],
+) -> Callable[[Request], Awaitable[Response]]:
+    """Return a route that reads a JSON object."""
+
+    async def posted(request: Request) -> Response:
+        from starlette.responses import JSONResponse
+
+        try:
+            content = json.loads(await request.body())
+        except (ValueError, RecursionError):
+            content = None
+        if not isinstance(content, dict):
+            return JSONResponse({"message": "found no JSON object, expected one"}, status_code=400)
+        return await answer(request, content)
+
+    return posted

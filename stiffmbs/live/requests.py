@@ -1,0 +1,172 @@
+"""Requests of a live page on the scene in its editor, by name, and their answers."""
+
+from __future__ import annotations
+
+import base64
+import tempfile
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..analyses.check import check
+from ..analyses.linearised.modes import modes
+from ..comparison.compare import compare
+from ..comparison.table import text as comparison_text
+from ..errors import InputError
+from ..results.files import WRITERS, write
+from ..results.solution import Solution
+from ..show.modes import modes_text
+from ..show.verdict import verdict
+from ..solve.trajectory import Outcome, ProgressCallback
+from ..verification.verify import verify
+from .solver import LiveSolver, shown
+
+MOST_CASES = 41
+"""Largest number of runs of a sweep."""
+MOST_INSTANTS = 400
+"""Largest number of instants of a band."""
+PAGES = (".html", ".report.html")
+Tell = Callable[[dict[str, Any]], None]
+"""Function that tells the page about progress."""
+
+
+class Request:
+    """Request of a page.
+
+    Attributes
+    ----------
+    what : str
+        Name of an entry of `ANSWERS`.
+    text : str
+        Text of the scene.
+    numbers : mapping of str to str
+        Parameters with other values than in the text.
+    rest : mapping
+        Further fields.
+    """
+
+    def __init__(self, content: Mapping[str, Any]) -> None:
+        self.what, self.text = str(content.get("what", "")), str(content.get("text", ""))
+        numbers = content.get("numbers")
+        self.numbers = {str(k): str(v) for k, v in numbers.items()} if isinstance(numbers, dict) else {}
+        self.rest = content
+
+    def names(self, field: str) -> list[str]:
+        """Return a field that is a list of names."""
+        found = self.rest.get(field)
+        return [str(name) for name in found] if isinstance(found, list) else []
+
+    def number(self, field: str, least: float, greatest: float) -> float:
+        """Return a field that is a number within bounds.
+
+        Raises
+        ------
+        InputError
+            If it is not.
+        """
+        found = self.rest.get(field)
+        if not isinstance(found, int | float) or not least <= found <= greatest:
+            raise InputError(f"{field}: found {found!r}, expected a number from {least:g} to {greatest:g}")
+        return float(found)
+
+
+Answer = Callable[[LiveSolver, Request, ProgressCallback, Tell], dict[str, Any]]
+
+
+def _solve(solver: LiveSolver, request: Request, watch: ProgressCallback, tell: Tell) -> dict[str, Any]:
+    return shown(solver.solve(request.text, request.numbers, watch), request.names("channels"))
+
+
+def _check(solver: LiveSolver, request: Request, watch: ProgressCallback, tell: Tell) -> dict[str, Any]:
+    return {"status": "done", "text": str(check(solver.scene(request.text, request.numbers)))}
+
+
+def _modes(solver: LiveSolver, request: Request, watch: ProgressCallback, tell: Tell) -> dict[str, Any]:
+    return {"status": "done", "text": modes_text(modes(solver.scene(request.text, request.numbers)))}
+
+
+def _verify(solver: LiveSolver, request: Request, watch: ProgressCallback, tell: Tell) -> dict[str, Any]:
+    told = verdict(verify(solver.scene(request.text, request.numbers), watch=watch))
+    notes = [f"- {note}" for note in told.to_check] or ["Nothing to check."]
+    return {"status": told.status, "text": "\n".join([told.headline, told.digits_words, *notes])}
+
+
+def _compare(solver: LiveSolver, request: Request, watch: ProgressCallback, tell: Tell) -> dict[str, Any]:
+    def line(text: str) -> None:
+        watch(np.nan)
+        tell({"stage": text})
+
+    scene = solver.scene(request.text, request.numbers)
+    return {
+        "status": "done",
+        "text": comparison_text(compare(scene, tolerances="1e-3:1e-8:6:log", repeats=3, tell=line)),
+    }
+
+
+def _sweep(solver: LiveSolver, request: Request, watch: ProgressCallback, tell: Tell) -> dict[str, Any]:
+    """Return each channel over time for several values of a parameter, and the least and greatest value at each instant."""
+    name = str(request.rest.get("parameter", ""))
+    count = int(request.number("count", 2, MOST_CASES))
+    low, high = (request.number(end, -1e300, 1e300) for end in ("low", "high"))
+    unit = str(request.rest.get("unit", ""))
+    values = np.geomspace(low, high, count) if request.rest.get("log") and low > 0 else np.linspace(low, high, count)
+    runs: list[tuple[str, Solution]] = []
+    failed: list[tuple[str, Solution]] = []
+    for k, value in enumerate(values):
+        tell({"stage": f"case {k + 1} of {count}"})
+        text = f"{value:.9g} {unit}".strip()
+        found = solver.solve(request.text, {**request.numbers, name: text}, watch).solution
+        if found.outcome is Outcome.INTERRUPTED:
+            raise KeyboardInterrupt
+        (runs if found.outcome is Outcome.DONE else failed).append((text, found))
+    if not runs:
+        raise InputError(f"sweep of {name}: no run was completed; the first one: {failed[0][1].message}")
+    time = runs[0][1].time
+    rows = np.unique(np.linspace(0, len(time) - 1, min(len(time), MOST_INSTANTS)).astype(int))
+    bands = []
+    for channel in request.names("channels"):
+        curves = [np.interp(time[rows], run.time, run.channels[channel]) for _, run in runs if channel in run.channels]
+        if curves:
+            least, greatest = np.min(curves, axis=0), np.max(curves, axis=0)
+            bands.append(
+                {
+                    "channel": channel,
+                    "low": least.tolist(),
+                    "high": greatest.tolist(),
+                    "curves": [c.tolist() for c in curves],
+                }
+            )
+    notes = [f"{name} = {text}: {run.message}" for text, run in failed]
+    head = f"{name}: {count} values from {low:g} to {high:g} {unit}; the bands hold all of their curves"
+    return {"status": "done", "text": "\n".join([head, *notes]), "time": time[rows].tolist(), "bands": bands}
+
+
+def _export(solver: LiveSolver, request: Request, watch: ProgressCallback, tell: Tell) -> dict[str, Any]:
+    """Return the file of the results, of the page in motion, or of the report, in base64."""
+    suffix = str(request.rest.get("suffix", ""))
+    if suffix not in (*WRITERS, *PAGES):
+        raise InputError(f"export: found '{suffix}', expected one of {', '.join((*WRITERS, *PAGES))}")
+    found = solver.solve(request.text, request.numbers, watch)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / f"scene{suffix}"
+        if suffix == ".report.html":
+            from ..show.report import check_report, write_report
+
+            check_report(path)
+            write_report(path, found.scene, found.solution, request.text)  # type: ignore[arg-type]  # a scene, or a model
+        elif suffix == ".html":
+            from ..show.drawing.animate import check_animation, write_animation
+
+            check_animation(path)
+            write_animation(path, found.scene, {"": found.solution})
+        else:
+            write(path, found.solution)
+        content = path.read_bytes()
+    return {"status": "done", "suffix": suffix, "content": base64.b64encode(content).decode("ascii")}
+
+
+ANSWERS: dict[str, Answer] = {
+    "solve": _solve, "check": _check, "modes": _modes, "verify": _verify, "compare": _compare, "sweep": _sweep, "export": _export,
+}  # fmt: skip

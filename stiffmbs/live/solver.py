@@ -1,0 +1,192 @@
+"""Solution of a scene's text again and again: warm, with what did not change kept from one time to the next."""
+
+from __future__ import annotations
+
+import re
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from ..analyses.run import run, solved
+from ..elements.element import Element
+from ..errors import InputError, StiffmbsError
+from ..model.model_data import ModelData
+from ..model.read_scene import read_scene
+from ..model.scene import Scene
+from ..reading.python_function import PythonFunction
+from ..results.solution import Solution
+from ..show.counters import solver_lines
+from ..show.drawing.derive import drawing_of
+from ..show.drawing.poses import poses_of
+from ..show.page.data import page_data
+from ..show.verdict import verdict
+from ..solve.trajectory import Outcome, ProgressCallback
+from ..studies.case_solver import CaseSolver, Task
+
+Numbers = Mapping[str, str]
+"""Parameters with other values than in the text, such as ``{"L": "0.7 m"}``."""
+NOTHING = "scene: type or paste a scene here; Ctrl-Space lists what may stand at the cursor"
+FAST = 1
+"""Level of compression of numbers that go to a browser on the same machine."""
+_LINE, _LINE_FIRST = re.compile(r"line (\d+)"), re.compile(r"^line \d+[,:] ")
+
+
+@dataclass(frozen=True)
+class Solved:
+    """Scene and its solution, and what they were solved for."""
+
+    text: str
+    numbers: tuple[tuple[str, str], ...]
+    scene: ModelData
+    solution: Solution
+
+
+class NeedsConsent(InputError):
+    """The model runs Python functions, and the user has not agreed yet."""
+
+
+class LiveSolver:
+    """Solver of the text of one page.
+
+    Parameters
+    ----------
+    file : Path, optional
+        File of the scene; files that it names are relative to its folder.
+    model : ModelData, optional
+        A model in place of a text, which cannot be written as text.
+    """
+
+    def __init__(self, file: Path | None = None, model: ModelData | None = None) -> None:
+        self._file, self._model = file, model
+        self._read: tuple[str, Scene] | None = None
+        self._cases: tuple[tuple[str, tuple[str, ...]], CaseSolver] | None = None
+        self._allowed = False
+        self.last: Solved | None = None
+
+    @property
+    def source(self) -> str:
+        """Name of the scene in messages."""
+        return self._file.name if self._file else "scene"
+
+    def allow(self) -> None:
+        """Record that Python functions may run."""
+        self._allowed = True
+
+    def scene(self, text: str, numbers: Numbers) -> ModelData:
+        """Return the scene of a text with other numbers.
+
+        Raises
+        ------
+        InputError
+            If it is not valid; the message contains the line.
+        NeedsConsent
+            If it runs Python functions, before `allow`.
+        """
+        found = self._found(text, numbers)
+        if not self._allowed:
+            refuse_python(found)
+        return found
+
+    def _found(self, text: str, numbers: Numbers) -> ModelData:
+        if self._model is not None:
+            return self._model
+        if not text.strip():
+            raise InputError(NOTHING)
+        if self._read is None or self._read[0] != text:
+            self._read = (text, read_scene(text, (), self.source, self._file))
+        scene = self._read[1]
+        if not numbers or scene.written is None:
+            return scene
+        return self._solver(text, tuple(numbers)).scene(list(numbers.values()))
+
+    def _solver(self, text: str, names: tuple[str, ...]) -> CaseSolver:
+        """Return the solver of a text's cases; it takes over the prepared jobs of the last one."""
+        if self._cases is None or self._cases[0] != (text, names):
+            written = self._read[1].written if self._read else None
+            made = CaseSolver(Task(written, names, {}, ()))  # type: ignore[arg-type]  # a model has no cases
+            if self._cases is not None:
+                made.take_jobs(self._cases[1])
+            self._cases = ((text, names), made)
+        return self._cases[1]
+
+    def solve(self, text: str, numbers: Numbers, watch: ProgressCallback) -> Solved:
+        """Solve a text with other numbers; return the last solution if they are the same.
+
+        Raises
+        ------
+        StiffmbsError
+            As for `stiffmbs.run`.
+        """
+        asked = tuple(numbers.items())
+        if self.last is not None and (self.last.text, self.last.numbers) == (text, asked):
+            return self.last
+        scene = self.scene(text, numbers)
+        if self._model is None and isinstance(scene, Scene) and not scene.stages:
+            solution = solved(self._solver(text, tuple(numbers)).job(scene), watch)
+        else:
+            solution = run(scene, watch=watch)
+        found = Solved(text, asked, scene, solution)
+        self.last = None if solution.outcome is Outcome.INTERRUPTED else found
+        return found
+
+
+def refuse_python(model: ModelData) -> None:
+    """Raise NeedsConsent if a model contains Python functions, or elements of other packages."""
+    package = __name__.partition(".")[0]
+    found = []
+    for name, element in (*model.joints.items(), *model.forces.items()):
+        own = type(element).__module__
+        if own.partition(".")[0] != package:
+            found.append(f"{name} ({own})")
+        found += [f"{name} ({function.name})" for function in functions_of(element)]
+    if found:
+        raise NeedsConsent(f"The scene runs Python code that is not of {package}: {', '.join(found)}.")
+
+
+def functions_of(element: Element) -> list[PythonFunction]:
+    """Return the Python functions of an element."""
+    return [part for _, part in element.parts(PythonFunction)]
+
+
+def shown(found: Solved, channels: Sequence[str]) -> dict[str, Any]:
+    """Return a solution as a page shows it: the motion, chosen channels, and the verdict."""
+    scene, solution = found.scene, found.solution
+    figure = solution.figure.y if solution.figure else ()
+    wanted = [name for name in channels if name in solution.channels] or list(figure) or ["energy.total"]
+    poses = poses_of(scene, solution.time, solution.channels)
+    page = page_data(drawing_of(scene), {"": poses}, solution, wanted, only=wanted, level=FAST)
+    told = verdict(solution)
+    return {
+        "status": told.status, "message": told.headline, "notes": list(told.to_check), "digits": told.digits_words,
+        "lines": [f"{label}: {line}" for label, line in solver_lines(solution.solver)], "page": page,
+        "parameters": parameters_of(scene), "name": solution.name, "end": float(solution.time[-1]),
+    }  # fmt: skip
+
+
+def parameters_of(scene: ModelData) -> list[dict[str, Any]]:
+    """Return the parameters of a scene: name, value in SI units, and the value with its unit as text."""
+    if not isinstance(scene, Scene):
+        return []
+    written = scene.written_parameters()
+    return [
+        {"name": name, "value": value, "text": str(written[name])}
+        for name, value in scene.parameters.items()
+        if isinstance(value, float | int)
+    ]
+
+
+def error_of(error: StiffmbsError, source: str) -> dict[str, Any]:
+    """Return an error as a page shows it, with the line in the text, or 0 if unknown."""
+    message = str(error)
+    head = message.partition(": ")[0] if message.startswith(source) else ""
+    line = _LINE.search(head) if " of " not in head else None  # lines of included files are not lines of the text
+    text = message.removeprefix(f"{source}, ").removeprefix(f"{source}: ")
+    text = _LINE_FIRST.sub("", text) if line else text
+    return {"status": "error", "message": text, "line": int(line[1]) if line else 0}
+
+
+def timed(begun: float) -> float:
+    """Return the time since an instant, s."""
+    return round(time.perf_counter() - begun, 4)

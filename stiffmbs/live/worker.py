@@ -1,0 +1,154 @@
+"""Process that solves the scene of one page: requests on standard input, answers on standard output, JSON on each line.
+
+The newest request wins: a run that goes on for an older one is interrupted.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import queue
+import sys
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, TextIO
+
+from ..errors import StiffmbsError
+from ..model.model_data import ModelData
+from ..reading.files.text_file import file_text
+from ..show.summary import json_line
+from .requests import ANSWERS, Request
+from .solver import LiveSolver, NeedsConsent, error_of, timed
+
+BETWEEN = 0.2
+"""Least time between two messages on progress, s."""
+STOP = "stop"
+Send = Callable[[dict[str, Any]], None]
+
+
+@dataclass
+class Newest:
+    """Numbers of the newest request, and of the newest one that the user stopped."""
+
+    number: int = 0
+    stopped: int = 0
+
+
+class Worker:
+    """Loop that answers the requests of a page, the newest first.
+
+    Parameters
+    ----------
+    send : callable
+        Function that sends an answer.
+    """
+
+    def __init__(self, solver: LiveSolver, send: Send) -> None:
+        self._solver, self._send = solver, send
+        self._newest = Newest()
+        self._requests: queue.Queue[dict[str, Any] | None] = queue.Queue()
+
+    def take(self, message: dict[str, Any] | None) -> None:
+        """Accept a request from another thread; None ends the loop."""
+        if message is None:
+            self._newest.number = sys.maxsize
+        elif message.get("what") == STOP:
+            self._newest.stopped = self._newest.number
+            return
+        else:
+            self._newest.number = int(message["number"])
+        self._requests.put(message)
+
+    def solve_ahead(self, file: Path) -> None:
+        """Solve a file before a page asks for it, and end with the first request; errors are left to that request."""
+
+        def watch(t: float) -> None:
+            if self._newest.number:
+                raise KeyboardInterrupt
+
+        with contextlib.suppress(StiffmbsError):
+            self._solver.solve(file_text(file), {}, watch)
+
+    def loop(self) -> None:
+        """Answer requests until the end."""
+        while (message := self._requests.get()) is not None:
+            number = int(message["number"])
+            if number < self._newest.number:
+                self._send({"number": number, "status": "superseded"})
+                continue
+            begun = time.perf_counter()
+            answer = self._answer(message, number)
+            self._send({**answer, "number": number, "seconds": timed(begun)})
+
+    def _answer(self, message: dict[str, Any], number: int) -> dict[str, Any]:
+        if message.get("allow"):
+            self._solver.allow()
+        told = time.monotonic()
+
+        def tell(progress: dict[str, Any]) -> None:
+            nonlocal told
+            if time.monotonic() - told > BETWEEN:
+                told = time.monotonic()
+                self._send({"number": number, "status": "progress", **progress})
+
+        def watch(t: float) -> None:
+            if number < self._newest.number or number <= self._newest.stopped:
+                raise KeyboardInterrupt
+            if t == t:
+                tell({"time": t})
+
+        try:
+            answer = ANSWERS[str(message.get("what"))](self._solver, Request(message), watch, tell)
+        except KeyboardInterrupt:
+            answer = {"status": "interrupted", "message": "interrupted", "text": "interrupted"}
+        except NeedsConsent as error:
+            answer = {"status": "consent", "message": str(error)}
+        except StiffmbsError as error:
+            answer = error_of(error, self._solver.source)
+        except Exception as error:  # a fault of the package must not end the page
+            answer = {
+                "status": "error",
+                "line": 0,
+                "message": f"unexpected {type(error).__name__}: {error}; please report it",
+            }
+        return answer if number == self._newest.number else {"status": "superseded"}
+
+
+def _read(lines: TextIO, worker: Worker) -> None:
+    for line in lines:
+        worker.take(json.loads(line))
+    worker.take(None)
+    time.sleep(BETWEEN)
+    os._exit(0)  # a long compilation must not outlive the page
+
+
+def main() -> None:
+    """Run the loop on standard input and output; prints of other code go to standard error."""
+    answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
+    os.dup2(2, 1)
+    file = Path(sys.argv[1]) if len(sys.argv) > 1 and sys.argv[1] else None
+
+    def send(message: dict[str, Any]) -> None:
+        answers.write(json_line(message) + "\n")
+        answers.flush()
+
+    worker = Worker(LiveSolver(file), send)
+    threading.Thread(target=_read, args=(sys.stdin, worker), daemon=True).start()
+    if file is not None and file.exists():
+        worker.solve_ahead(file)
+    worker.loop()
+
+
+def of_model(model: ModelData, send: Send) -> Worker:
+    """Return a worker in a thread of this process, for a model whose Python functions no other process has."""
+    worker = Worker(LiveSolver(model=model), send)
+    threading.Thread(target=worker.loop, daemon=True).start()
+    return worker
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,168 @@
+"""Workers of a server: one process for each page (tab), started ahead, ended when the page is closed."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import os
+import subprocess
+import sys
+import threading
+from collections.abc import AsyncIterator, Callable
+from pathlib import Path
+from typing import Any
+
+from ..model.model_data import ModelData
+
+MOST_PAGES = 6
+"""Largest number of pages with a worker; the one that was used least recently loses its worker."""
+ENDED = "the solver process ended unexpectedly; the next change starts another one"
+FINAL = "progress"
+
+
+class Channel:
+    """Requests to a worker, and its answers by number."""
+
+    def __init__(self, loop: asyncio.AbstractEventLoop) -> None:
+        self._loop = loop
+        self._waiting: dict[int, asyncio.Queue[dict[str, Any]]] = {}
+        self._number = 0
+        self.ended = False
+
+    def receive(self, message: dict[str, Any]) -> None:
+        """Accept an answer, from any thread."""
+        self._loop.call_soon_threadsafe(self._deliver, message)
+
+    def _deliver(self, message: dict[str, Any]) -> None:
+        if message.get("status") == "ended":
+            self.ended = True
+            for waiting in self._waiting.values():
+                waiting.put_nowait({"status": "error", "message": ENDED, "line": 0})
+        elif (found := self._waiting.get(int(message["number"]))) is not None:
+            found.put_nowait(message)
+
+    async def answers(
+        self, request: dict[str, Any], put: Callable[[dict[str, Any]], None]
+    ) -> AsyncIterator[dict[str, Any]]:
+        """Yield the progress of a request, and its answer last."""
+        self._number += 1
+        number, answers = self._number, asyncio.Queue[dict[str, Any]]()
+        self._waiting[number] = answers
+        try:
+            put({**request, "number": number})
+            while True:
+                message = await answers.get()
+                yield message
+                if message["status"] != FINAL:
+                    return
+        finally:
+            del self._waiting[number]
+
+
+class Process:
+    """Worker in a process of its own.
+
+    Parameters
+    ----------
+    file : Path, optional
+        File of the scene.
+    """
+
+    def __init__(self, file: Path | None, loop: asyncio.AbstractEventLoop) -> None:
+        self.channel = Channel(loop)
+        command = [sys.executable, "-m", f"{__package__}.worker", str(file or "")]
+        environment = {
+            **os.environ,
+            "PYDANTIC_DISABLE_PLUGINS": "__all__",
+            "PYTHONPATH": os.pathsep.join(filter(None, sys.path)),
+        }
+        self._process = subprocess.Popen(
+            command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, encoding="utf-8", env=environment,
+            start_new_session=True,
+        )  # fmt: skip
+        threading.Thread(target=self._listen, daemon=True).start()
+
+    def _listen(self) -> None:
+        assert self._process.stdout is not None
+        for line in self._process.stdout:
+            self.channel.receive(json.loads(line))
+        self._process.wait()
+        try:
+            self.channel.receive({"status": "ended"})
+        except RuntimeError:  # the server's loop is closed
+            return
+
+    def put(self, message: dict[str, Any]) -> None:
+        """Send a request."""
+        assert self._process.stdin is not None
+        try:
+            self._process.stdin.write(json.dumps(message) + "\n")
+            self._process.stdin.flush()
+        except (OSError, ValueError):
+            self.channel.receive({"status": "ended"})
+
+    def end(self) -> None:
+        """End the process."""
+        self._process.kill()
+
+
+class Thread:
+    """Worker in a thread of this process, for a model with Python functions."""
+
+    def __init__(self, model: ModelData, loop: asyncio.AbstractEventLoop) -> None:
+        from .worker import of_model
+
+        self.channel = Channel(loop)
+        self._worker = of_model(model, self.channel.receive)
+
+    def put(self, message: dict[str, Any]) -> None:
+        """Send a request."""
+        self._worker.take(message)
+
+    def end(self) -> None:
+        """End the thread when its run is over."""
+        self._worker.take(None)
+
+
+class Workers:
+    """Workers of all pages of a server.
+
+    Parameters
+    ----------
+    make : callable
+        Function that starts a worker.
+    """
+
+    def __init__(self, make: Callable[[], Process | Thread]) -> None:
+        self._make = make
+        self._of_pages: dict[str, Process | Thread] = {}
+        self._ahead: Process | Thread | None = None
+
+    def start_ahead(self) -> None:
+        """Start the worker of the next page."""
+        if self._ahead is None or self._ahead.channel.ended:
+            self._ahead = self._make()
+
+    def of(self, page: str) -> Process | Thread:
+        """Return the worker of a page; start one if there is none, or if it has ended."""
+        found = self._of_pages.pop(page, None)
+        if found is None or found.channel.ended:
+            self.start_ahead()
+            assert self._ahead is not None
+            found, self._ahead = self._ahead, None
+        self._of_pages[page] = found  # the last one used
+        while len(self._of_pages) > MOST_PAGES:
+            self.end(next(iter(self._of_pages)))
+        return found
+
+    def end(self, page: str) -> None:
+        """End the worker of a page."""
+        if (found := self._of_pages.pop(page, None)) is not None:
+            found.end()
+
+    def end_all(self) -> None:
+        """End all workers."""
+        for page in list(self._of_pages):
+            self.end(page)
+        if self._ahead is not None:
+            self._ahead.end()

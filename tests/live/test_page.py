@@ -1,0 +1,151 @@
+"""The page in a real browser: text, errors, sliders, and plots, without a message on its console."""
+
+import json
+
+import pytest
+
+import stiffmbs
+
+from ..conftest import EXAMPLES
+from ..show.page import browser
+
+pytest.importorskip("starlette")
+pytest.importorskip("uvicorn")
+pytest.importorskip("websocket")
+pytestmark = [pytest.mark.long, pytest.mark.skipif(browser.found() is None, reason="no Chromium is installed")]
+OF_SOFTWARE = "GL Driver Message"
+"""Messages of drawing without a graphics card."""
+
+
+@pytest.fixture(scope="module")
+def tab(tmp_path_factory):
+    with browser.tab(tmp_path_factory.mktemp("browser")) as found:
+        yield found
+
+
+@pytest.fixture
+def opened(tab, tmp_path):
+    """Opens a text in a page; nothing may have gone wrong when all is done."""
+    pages = []
+
+    def make(text):
+        path = tmp_path / "scene.yaml"
+        path.write_text(text, encoding="utf-8")
+        pages.append(stiffmbs.open(path, browser=False))
+        tab.errors.clear()
+        tab.requests.clear()
+        tab.do("Page.navigate", url=pages[-1].url)
+        tab.wait("typeof LIVE === 'object' && LIVE.answers > 0 && LIVE.complete")
+        return path
+
+    yield make
+    tab.run("LIVE.saved = LIVE.editor?.state.doc.toString()")  # so that leaving the page asks nothing
+    tab.do("Page.navigate", url="about:blank")
+    tab.wait("location.href === 'about:blank' && document.readyState === 'complete'")
+    for page in pages:
+        page.close()
+    assert [error for error in tab.errors if OF_SOFTWARE not in error] == []
+    assert all(url.startswith((pages[-1].url, "data:", "blob:", "about:")) for url in tab.requests)
+
+
+TEXT = (EXAMPLES / "cart_pendulum.yaml").read_text(encoding="utf-8")
+
+
+def replace(tab, old, new):
+    """Edit the text as a user does, and wait for the answer."""
+    before = tab.run("LIVE.answers")
+    tab.run(
+        f"(() => {{ const text = LIVE.editor.state.doc.toString(), from = text.indexOf({json.dumps(old)});"
+        f"LIVE.editor.dispatch({{changes: {{from, to: from + {len(old)}, insert: {json.dumps(new)}}}}}); }})()"
+    )
+    tab.wait(f"LIVE.answers > {before}")
+
+
+def curve(tab):
+    return tab.run("Array.from(shown.plotted.chosen[0].values).slice(0, 400)")
+
+
+def test_an_error_appears_at_its_line_and_goes(tab, opened):
+    opened(TEXT)
+    replace(tab, "mass: 10 kg", "mass: ten")
+    assert tab.run("LIVE.errors.map((one) => one.line)") == [10]
+    assert "mass" in tab.run("document.getElementById('headline').textContent")
+    tab.wait("document.querySelector('.cm-lint-marker-error')")
+    replace(tab, "mass: ten", "mass: 10 kg")
+    assert tab.run("LIVE.errors") == []
+    assert tab.run("document.getElementById('headline').textContent").startswith("Completed")
+
+
+def test_a_slider_moves_the_curve_and_writes_its_value(tab, opened):
+    opened(TEXT)
+    before, answers, t = curve(tab), tab.run("LIVE.answers"), tab.run("shown.time.t")
+    tab.run(
+        "(() => { const r = document.getElementById('slider-L'); r.value = 700; r.dispatchEvent(new Event('input')); })()"
+    )
+    tab.wait(f"LIVE.answers > {answers}")
+    moved = curve(tab)
+    assert moved != before and "L: 0.6 m" in tab.run("LIVE.editor.state.doc.toString()")
+    assert tab.run("shown.time.t") >= t
+    answers = tab.run("LIVE.answers")
+    tab.run("document.getElementById('slider-L').dispatchEvent(new Event('change'))")
+    tab.wait(f"LIVE.answers > {answers}")
+    assert "L: 0.84 m" in tab.run("LIVE.editor.state.doc.toString()") and curve(tab) == moved
+    answers = tab.run("LIVE.answers")
+    tab.run("document.getElementById('undo').click()")
+    tab.wait(f"LIVE.answers > {answers}")
+    assert "L: 0.6 m" in tab.run("LIVE.editor.state.doc.toString()") and curve(tab) == before
+
+
+def test_a_further_channel_is_fetched(tab, opened):
+    opened(TEXT)
+    tab.run("shown.plotted.choose('cart.x')")
+    tab.wait("shown.plotted.chosen.length === 2")
+    replace(tab, "270 N/m", "300 N/m")
+    assert tab.run("shown.plotted.chosen.map((c) => c.name)") == ["rail.fy", "cart.x"]
+
+
+def test_completion_follows_the_schema(tab, opened):
+    opened(TEXT)
+
+    def offered(before):
+        script = (
+            "(() => { const doc = CM.EditorState.create({doc: %s}); return LIVE.completer({state: doc, pos: doc.doc.length, explicit: true})"
+            "?.options.map((one) => one.label) ?? []; })()"
+        )
+        return tab.run(script % json.dumps(before))
+
+    assert {"bodies", "joints", "run"} <= set(offered(""))
+    assert {"mass", "inertia", "markers"} <= set(offered("bodies:\n  a:\n    "))
+    assert "mass" not in offered("bodies:\n  a:\n    mass: 1\n    ")
+    assert {"revolute", "drive"} <= set(offered("joints:\n  a: {type: "))
+    assert "stiffness" not in offered("joints:\n  a: {type: revolute, ") and "i" in offered(
+        "joints:\n  a: {type: revolute, "
+    )
+    assert {"ground", "b", "b.tip"} <= set(
+        offered("bodies:\n  b:\n    markers: {tip: {point: [0, 0]}}\njoints:\n  a: {i: ")
+    )
+    assert {"radau", "bdf"} <= set(offered("run: {solver: "))
+
+
+def test_analyses_sweep_and_save(tab, opened):
+    path = opened(TEXT)
+    tab.run("document.getElementById('check').click()")
+    tab.wait("document.querySelector('#text pre').textContent.includes('degrees of freedom')")
+    tab.run("document.getElementById('sweep').click()")
+    tab.run("document.getElementById('count').value = 3")
+    tab.run("document.getElementById('sweeper').requestSubmit()")
+    tab.wait("document.querySelector('#text pre').textContent.includes('bands')")
+    replace(tab, "270 N/m", "300 N/m")
+    assert tab.run("document.getElementById('saved').textContent") == "not saved"
+    tab.run("document.getElementById('save').click()")
+    tab.wait("document.getElementById('saved').textContent === ''")
+    assert "300 N/m" in path.read_text(encoding="utf-8")
+
+
+def test_an_empty_page_offers_a_first_scene(tab, opened):
+    opened("")
+    assert not tab.run("document.getElementById('empty').hidden")
+    tab.run("document.getElementById('first').click()")
+    tab.wait("window.shown && shown.frames > 0")
+    assert tab.run("document.getElementById('empty').hidden")
+    tab.run("LIVE.saved = LIVE.editor.state.doc.toString()")

@@ -1,0 +1,221 @@
+"""The server of a page: who may ask it, what it gives away, and what happens when processes end."""
+
+import http.client
+import json
+import socket
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+import stiffmbs
+from stiffmbs.commands.main import main
+
+from ..conftest import EXAMPLES
+
+pytest.importorskip("starlette")
+pytest.importorskip("uvicorn")
+
+
+@pytest.fixture
+def scene(tmp_path):
+    path = tmp_path / "scene.yaml"
+    path.write_text((EXAMPLES / "cart_pendulum.yaml").read_text(encoding="utf-8"), encoding="utf-8")
+    return path
+
+
+@pytest.fixture
+def page(scene):
+    opened = stiffmbs.open(scene, browser=False)
+    yield opened
+    opened.close()
+
+
+class Client:
+    def __init__(self, page):
+        _, _, self.host, self.token, _ = page.url.split("/")
+
+    def ask(self, path, content=None, token=None, **heads):
+        """Status, headers and text of an answer; a header None is left out."""
+        port = int(self.host.split(":")[1])
+        connection = http.client.HTTPConnection("127.0.0.1", port, timeout=60)
+        method = "GET" if content is None else "POST"
+        body = None if content is None else json.dumps(content).encode()
+        given = {"Host": self.host, **({"Origin": f"http://{self.host}"} if body else {}), **heads}
+        connection.putrequest(method, f"/{self.token if token is None else token}/{path}", skip_host=True)
+        for name, value in given.items():
+            if value is not None:
+                connection.putheader(name, value)
+        if body is not None:
+            connection.putheader("Content-Length", str(len(body)))
+        connection.endheaders(body)
+        answer = connection.getresponse()
+        return answer.status, dict(answer.getheaders()), answer.read().decode(errors="replace")
+
+    def job(self, what, text, page="one", **rest):
+        status, _, lines = self.ask("job", {"page": page, "what": what, "text": text, **rest})
+        assert status == 200
+        return json.loads(lines.strip().splitlines()[-1])
+
+
+@pytest.mark.parametrize("token", ["", "wrong", "%00", "%C3%A9"])
+def test_nothing_without_the_token(page, token):
+    for path in ("", "start", "own/live.js", "schema"):
+        assert Client(page).ask(path, token=token)[0] == 403
+    assert Client(page).ask("save", {"text": "x"}, token=token)[0] == 403
+
+
+@pytest.mark.parametrize(
+    "heads",
+    [
+        {"Host": "evil.example"},
+        {"Host": "127.0.0.1:1"},
+        {"Host": ""},
+        {"Host": None},
+        {"Origin": "http://evil.example"},
+        {"Origin": "null"},
+        {"Origin": "http://127.0.0.1:1"},
+    ],
+)
+def test_another_host_or_origin_is_refused(page, heads, scene):
+    before = scene.read_text()
+    for path, content in (("start", None), ("save", {"text": "x", "over": True}), ("job", {"what": "solve"})):
+        assert Client(page).ask(path, content, **heads)[0] in (400, 403)
+    assert scene.read_text() == before
+
+
+def test_a_change_without_an_origin_is_refused(page):
+    assert Client(page).ask("save", {"text": "x", "over": True}, Origin=None)[0] == 403
+
+
+def test_pages_have_a_policy(page):
+    status, heads, text = Client(page).ask("")
+    assert status == 200 and "default-src 'none'" in heads["content-security-policy"]
+    assert "unsafe-eval" not in heads["content-security-policy"] and "<script>" not in text
+    assert heads["referrer-policy"] == "no-referrer"
+
+
+@pytest.mark.parametrize(
+    "path",
+    [
+        "own/../app.py", "own/..%2fapp.py", "own/%2e%2e/%2e%2e/page.py", "own//etc/passwd", "own/live.html", "scene.yaml",
+        "own/README.md", "../../etc/passwd",
+    ],
+)  # fmt: skip
+def test_no_file_is_served_by_its_path(page, path):
+    assert Client(page).ask(path)[0] in (403, 404)
+
+
+def test_it_listens_on_the_loopback_interface_alone(page):
+    port = int(Client(page).host.split(":")[1])
+    for address in {info[4][0] for info in socket.getaddrinfo(socket.gethostname(), None, socket.AF_INET)}:
+        if not address.startswith("127."):
+            with pytest.raises(OSError), socket.create_connection((address, port), timeout=2):
+                pass
+
+
+@pytest.mark.parametrize("body", [[], "text", 3, None])
+def test_a_request_that_is_no_object_is_refused(page, body):
+    status, _, text = Client(page).ask("job", body if body is not None else [])
+    assert status == 400 and "expected" in text
+
+
+@pytest.mark.long
+def test_two_pages_have_their_own_texts(page, scene):
+    client, text = Client(page), scene.read_text()
+    one = client.job("solve", text, page="one")
+    other = client.job("solve", text.replace("L: 0.6 m", "L: 0.7 m"), page="other")
+    values = [next(p["value"] for p in found["parameters"] if p["name"] == "L") for found in (one, other)]
+    assert values == [0.6, 0.7]
+
+
+def test_another_saved_text_is_not_lost(page, scene):
+    client = Client(page)
+    start = json.loads(client.ask("start")[2])
+    assert client.ask("save", {"text": start["text"] + "# one\n", "digest": start["digest"]})[0] == 200
+    status, _, said = client.ask("save", {"text": start["text"] + "# other\n", "digest": start["digest"]})
+    assert status == 409 and "has changed" in said and scene.read_text().endswith("# one\n")
+    assert client.ask("save", {"text": start["text"] + "# other\n", "over": True})[0] == 200
+    assert scene.read_text().endswith("# other\n")
+
+
+@pytest.mark.long
+def test_a_killed_solver_is_replaced(page, scene, monkeypatch):
+    from stiffmbs.live.workers import Process
+
+    started = []
+    first = Process.__init__
+    monkeypatch.setattr(Process, "__init__", lambda self, *given: (started.append(self), first(self, *given))[1])
+    client = Client(page)
+    text = scene.read_text()
+    client.job("solve", text, page="ahead")  # takes the one that was started before
+    client.job("solve", text)
+    for process in started:
+        process._process.kill()
+        process._process.wait()
+    found = [client.job("solve", text)["status"] for _ in range(2)]
+    assert found[-1] == "done"
+
+
+@pytest.mark.long
+def test_a_model_becomes_a_text():
+    model = stiffmbs.Model(gravity=(0, -9.81))
+    model.add("ball", stiffmbs.Body(mass=1, inertia=1))
+    page = stiffmbs.open(model, browser=False, duration=0.5)
+    try:
+        client = Client(page)
+        start = json.loads(client.ask("start")[2])
+        assert start["editable"] and "ball" in start["text"]
+        answer = client.job("solve", start["text"])
+        assert answer["status"] == "done" and answer["end"] == 0.5
+        assert "<iframe" in page._repr_html_() and page.url in page._repr_html_()
+        assert client.ask("save", {"text": "x"})[0] == 409
+    finally:
+        page.close()
+
+
+def test_a_model_with_python_functions_asks_before_they_run():
+    called = []
+    model = stiffmbs.Model()
+    model.add("a", stiffmbs.Body(mass=1, inertia=1, position=(1, 0)))
+    model.add("f", stiffmbs.PythonForce(i="a", of=("a.x",), function=lambda x: (called.append(1), (-x[0], 0, 0))[1]))
+    called.clear()
+    page = stiffmbs.open(model, browser=False)
+    try:
+        client = Client(page)
+        start = json.loads(client.ask("start")[2])
+        assert not start["editable"]
+        assert client.job("solve", start["text"])["status"] == "consent" and not called
+        assert client.job("solve", start["text"], allow=True)["status"] == "done" and called
+    finally:
+        page.close()
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [("model.adm", "convert"), ("no_folder/scene.yaml", "no_folder"), (".", "expected a scene"), ("x.txt", "yaml")],
+)
+def test_what_is_no_scene_is_refused(tmp_path, monkeypatch, name, expected):
+    monkeypatch.chdir(tmp_path)
+    found = CliRunner().invoke(main, ["open", name, "--no-browser"])
+    assert found.exit_code == 2 and expected in found.output and "Traceback" not in found.output
+
+
+def test_a_taken_port_is_refused(page, scene):
+    port = Client(page).host.split(":")[1]
+    found = CliRunner().invoke(main, ["open", str(scene), "--no-browser", "--port", port])
+    assert found.exit_code == 2 and f"--port {port}" in found.output
+
+
+def test_a_new_file_is_created_by_saving(tmp_path):
+    path = Path(tmp_path / "new.yaml")
+    page = stiffmbs.open(path, browser=False)
+    try:
+        client = Client(page)
+        start = json.loads(client.ask("start")[2])
+        assert start["text"] == "" and not path.exists()
+        assert "Ctrl-Space" in client.job("solve", "")["message"]
+        assert client.ask("save", {"text": "name: x\n", "digest": start["digest"]})[0] == 200
+        assert path.read_text() == "name: x\n"
+    finally:
+        page.close()
