@@ -59,6 +59,7 @@ from .elements.states.linear_system import TransferFunction as TransferFunction
 from .elements.states.state import State as State
 from .reading.table import Table as Table
 from .reading.units import si as si
+from .live.page import open as open
 from .errors import AssemblyError as AssemblyError
 from .errors import InputError as InputError
 from .errors import SolverError as SolverError

@@ -51,6 +51,7 @@ from .errors import AssemblyError as AssemblyError
 from .errors import InputError as InputError
 from .errors import SolverError as SolverError
 from .errors import StiffmbsError as StiffmbsError
+from .live.page import open as open
 from .model.beams.planar import BeamBody as BeamBody
 from .model.model import Model as Model
 from .model.read_scene import read_scene as read_scene
