@@ -193,9 +193,10 @@ def _arrays(c: Collocation) -> dict[str, Any]:
 
 
 def _costs(stages: int, cost: ImplicitCost, pair_cost: float, parameters: RadauParameters) -> dict[str, float]:
-    """Return the costs of the matrices of a step and of an iteration."""
+    """Return the costs of the matrices of a step and of an iteration, and the rate below which matrices are kept."""
     setup = cost.matrix * (1 + pair_cost * (stages // 2))
-    return {"setup_cost": setup, "iteration_cost": stages * cost.residual + parameters.solution_cost * setup}
+    iteration = stages * cost.residual + parameters.solution_cost * setup
+    return {"setup_cost": setup, "iteration_cost": iteration, "keep": parameters.keep_matrix * setup / iteration}
 
 
 def _at(assembled: Assembled, entries: np.ndarray) -> np.ndarray:

@@ -20,9 +20,10 @@ class RadauParameters:
     least_factor, largest_factor : float
         Bounds of the ratio of successive steps.
     keep_matrix : float
-        Convergence rate of Newton's iteration below which the iteration matrix is kept for the next step.
-    keep_low, keep_high : float
-        Ratio of successive steps between which the step and the factors stay unchanged.
+        Convergence rate of Newton's iteration below which the matrices are kept for the next step, if they cost as much as
+        an iteration; in proportion to their cost otherwise.
+    keep_high : float
+        Ratio of successive steps below which the step and the factors stay unchanged.
     stages_after : int
         Steps after which the number of stages is chosen again.
     gain : float
@@ -43,9 +44,8 @@ class RadauParameters:
     safety: float = 0.9
     least_factor: float = 0.125
     largest_factor: float = 5.0
-    keep_matrix: float = 1e-3
-    keep_low: float = 1.0
-    keep_high: float = 1.2
+    keep_matrix: float = 5e-3
+    keep_high: float = 1.5
     stages_after: int = 4
     gain: float = 0.8
     solution_cost: float = 0.1

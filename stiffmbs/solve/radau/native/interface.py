@@ -285,8 +285,8 @@ def next_step_of(memory, result):
 def errors_of(memory, target):
     """Store the estimated error of the last step (IDAGetEstLocalErrors).
 
-    An estimate e times its tolerance c rtol^((s + 1)/(2 s)) gives an error of (c e)^(2 s/(s + 1)) rtol, as the solution
-    has order 2 s - 1. Newton's iteration leaves a part of the tolerance.
+    The solution has order 2 s - 1. An estimate e c rtol^((s + 1)/(2 s)) gives it an error of (c e)^(2 s/(s + 1)) rtol.
+    The iteration leaves a part of the tolerance.
     """
     x = radau_view(ints(memory))
     errors = _data(x, target)

@@ -6,10 +6,11 @@ from stiffmbs.compile.machine.layout import FLOAT_CELL, FLOATS, INDICES, INT, IN
 
 COLLOCATION = Layout({
     "stages": INT, "pairs": INT, "nodes": FLOATS, "derivative": FLOATS, "transform": FLOATS, "inverse": FLOATS, "gamma": FLOAT_CELL, "relaxed": FLOAT_CELL, "alpha": FLOATS,
-    "beta": FLOATS, "error": FLOATS, "weights": FLOATS, "bubble": FLOATS, "setup_cost": FLOAT_CELL, "iteration_cost": FLOAT_CELL,
+    "beta": FLOATS, "error": FLOATS, "weights": FLOATS, "bubble": FLOATS, "setup_cost": FLOAT_CELL, "iteration_cost": FLOAT_CELL, "keep": FLOAT_CELL,
 })  # fmt: skip
 """Coefficients of `stiffmbs.solve.radau.collocation.Collocation`; `relaxed` is the tolerance of the error estimate
-relative to the requested one. Costs of the matrices of a step and of an iteration, in any unit."""
+relative to the requested one. Costs of the matrices of a step and of an iteration, in any unit. Convergence rate below
+which matrices are kept."""
 
 RADAU = Layout({
     "state": INTS, "equations": INTS, "array_of": INT, "n": INT, "n_tested": INT_CELL, "methods": INTS, "n_methods": INT, "below": INTS,
@@ -27,7 +28,7 @@ RADAU = Layout({
     "n_functions": INT, "functions": INT, "ida": INTS, "before": FLOATS, "after": FLOATS, "within": FLOATS, "fired": INTS,
     "steps": INT_CELL, "residuals": INT_CELL, "jacobians": INT_CELL, "factorizations": INT_CELL, "error_failures": INT_CELL,
     "step_failures": INT_CELL, "iterations": INT_CELL, "newton_failures": INT_CELL,
-    "safety": FLOAT_CELL, "least_factor": FLOAT_CELL, "largest_factor": FLOAT_CELL, "keep_matrix": FLOAT_CELL, "keep_low": FLOAT_CELL, "keep_high": FLOAT_CELL,
+    "safety": FLOAT_CELL, "least_factor": FLOAT_CELL, "largest_factor": FLOAT_CELL, "keep_matrix": FLOAT_CELL, "keep_high": FLOAT_CELL,
     "stages_after": INT_CELL, "gain": FLOAT_CELL, "fewer_stages": FLOAT_CELL, "slowest": FLOAT_CELL, "after_failure": FLOAT_CELL, "tolerance": FLOAT_CELL,
 })  # fmt: skip
 """Memory of an integration by Radau methods.

@@ -284,8 +284,8 @@ def _choose_next(x, c, h, planned, at_stop):
         following = min(following, h)
     x.h_accepted = h
     x.last_error = max(LEAST_ERROR, x.error_size)
-    x.rate_kept = 1 if x.contraction <= x.keep_matrix else 0
-    if x.rate_kept and x.keep_low * h <= following <= x.keep_high * h:
+    x.rate_kept = 1 if x.contraction <= c.keep else 0
+    if x.rate_kept and h <= following <= x.keep_high * h:
         following = h
     x.h = max(following, planned) if at_stop and not x.rejected else following
 
