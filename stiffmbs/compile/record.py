@@ -250,14 +250,14 @@ def _equations(kind: Kind) -> list[str]:
 
 def _helpers(elements: list[type]) -> set[Path]:
     """Return the files of functions and classes that elements' equations may call: members of their modules from this
-    package, and imports inside functions."""
+    package, and imports inside functions of their modules and of these members' modules."""
     found = set()
     for module in {element.__module__ for element in elements}:
         package = module.partition(".")[0]
         for member in vars(sys.modules[module]).values():
             called = inspect.isfunction(member) or inspect.isclass(member)
             if called and member.__module__.partition(".")[0] == package:
-                found.add(Path(inspect.getfile(member)))
+                found |= {Path(inspect.getfile(member)), *_imported_later(member.__module__)}
         found |= _imported_later(module)
     return found
 

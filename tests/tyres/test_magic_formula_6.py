@@ -210,3 +210,39 @@ def test_a_motorcycle_tyre_at_40_degrees_of_camber_rolls_by_every_solver(version
         assert last["deflection"] == pytest.approx(float(state["rho"]), rel=1e-5), solver
         for channel in ("tyre.load", "tyre.lateral", "wheel.wy", "tyre.deflection_y"):
             assert solution[channel] == pytest.approx(runs["bdf"][channel], rel=1e-4, abs=1e-4), (solver, channel)
+
+
+REVERSING = """
+dimensions: 3
+gravity: [0, 0, -9.81]
+bodies:
+  fork: {mass: 380, inertia: [100, 100, 100], position: [0, 0, 0.31], velocity: [5, 0, 0]}
+  wheel:
+    {mass: 20, inertia: [0.5, 1, 0.5], position: [0, 0, 0.31], orientation: {x: [1, 0, 0], y: [0, 0.8, 0.6]},
+     velocity: [5, 0, 0], omega: [0, 15.6, 0]}
+joints:
+  keep: {type: parallel, i: fork, j: ground}
+  axle: {type: revolute, i: {body: wheel, orientation: {z: [0, 1, 0]}}, j: {body: fork, orientation: {z: [0, 0.8, 0.6]}}}
+forces:
+  tyre: {type: magic_formula_tyre, i: wheel, properties: {coefficients: COEFFICIENTS, version: "6.2"}, turn_slip: true}
+  push: {type: force, i: fork, force: ["-1500*step(t, 0.2, 0, 0.4, 1)", "200*step(t, 0.2, 0, 0.4, 1)", 0]}
+  turn: {type: torque, i: fork, torque: [0, 0, "30*step(t, 0.2, 0, 0.4, 1) - 100*fork.wz"]}
+run: {duration: 3 s, rtol: 1e-7, output: 0.05 s}
+"""
+
+
+@pytest.mark.long
+def test_a_cambered_wheel_stops_and_reverses_while_it_is_steered():
+    """It falls on the road at the start, comes to a standstill and rolls backward; the solvers agree, and all is finite."""
+    text = REVERSING.replace("COEFFICIENTS", json.dumps({**NUMBERS, **TURNING, "VERTICAL_DAMPING": 3000.0}))
+    scene = stiffmbs.read_scene(text)
+    runs = [
+        stiffmbs.run(scene, **settings)
+        for settings in ({"solver": "bdf"}, {"solver": "radau"}, {"solver": "projected"})
+    ]
+    for solution in runs:
+        assert solution.success, solution.message
+        assert solution["fork.vx"][-1] < -1
+        assert np.isfinite(solution["tyre.aligning"]).all()
+        for channel in ("fork.x", "fork.y", "fork.vx"):
+            assert solution[channel] == pytest.approx(runs[0][channel], abs=2e-4), channel

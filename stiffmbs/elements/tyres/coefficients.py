@@ -250,7 +250,8 @@ class TyreProperties(Component):
             ``Kyg0`` (N/rad); peak friction ``mux``, ``muy``; pneumatic trail ``t`` (m) and residual torque ``Mzr`` (N
             m); ``omega`` (rad/s), effective radius ``Re``, deflection ``rho``, loaded radius ``Rl`` (m); relaxation
             lengths ``sigma_x``, ``sigma_y`` (m); half length ``a`` and half width ``b`` of the contact patch (m).
-            ``Kyg0``, ``a`` and ``b`` are of 6.1 and 6.2 alone. The arguments broadcast.
+            ``Kyg0``, ``a`` and ``b`` are of 6.1 and 6.2 alone; ``rho`` and ``Rl`` are NaN for a load that no loaded
+            radius carries. The arguments broadcast.
 
         Raises
         ------

@@ -210,16 +210,22 @@ def uncombined(p: Any, s: Slip, f: Name) -> tuple[Any, Any, Any, Any, Any]:
     return x.force, y.force, mx, my, aligning(p, replace(s, kappa=none), x, y, (none, y.force, none), dfz, f).whole
 
 
-def of_mode(formula: Any, mode: str, p: Any, s: Slip, f: Name, ellipse: str) -> tuple[Any, Any, Any, Any, Any]:
-    """Return the forces and torques selected by the last digit of USE_MODE, with zero for the others.
+@dataclass(frozen=True)
+class Formula:
+    """Functions of a version: forces and torques of combined slip, and those of separate slips."""
 
-    Parameters
-    ----------
-    formula : module
-        With the functions `wrench` and `uncombined` of a version.
-    """
+    wrench: Callable[..., Forces]
+    uncombined: Callable[..., tuple[Any, Any, Any, Any, Any]]
+
+
+FORMULA = Formula(wrench, uncombined)
+"""MF-Tyre 5.2 and PAC2002."""
+
+
+def of_mode(formula: Formula, mode: str, p: Any, s: Slip, f: Name, ellipse: str) -> tuple[Any, Any, Any, Any, Any]:
+    """Return the forces and torques selected by the last digit of USE_MODE, with zero for the others."""
     if mode in COMBINED_MODES:
-        return formula.wrench(p, s, f, ellipse).wrench  # type: ignore[no-any-return]
+        return formula.wrench(p, s, f, ellipse).wrench
     found, wanted = formula.uncombined(p, s, f), OF_MODES[mode].split()
     return tuple(x if name in wanted else Rational(0) for name, x in zip(OF_MODES["3"].split(), found, strict=True))  # type: ignore[return-value]
 

@@ -14,7 +14,7 @@ from typing import Any
 
 from sympy import Float, Rational, atan, cos, exp, pi, sin, sqrt, tan
 
-from ..roads.road import magnitude
+from ..roads.road import above_zero, magnitude
 from .magic_formula import (
     COMBINED_MODES,
     ELLIPSES,
@@ -22,6 +22,7 @@ from .magic_formula import (
     OF_MODES,
     Curve,
     Forces,
+    Formula,
     Name,
     Slip,
     Torque,
@@ -33,6 +34,8 @@ from .magic_formula import (
     weight,
 )
 
+ROUNDED = Float("1e-3")
+"""Width over which the arccosine of 4.104 is rounded at 1, where its slope is infinite."""
 ONE, ZERO = Rational(1), Rational(0)
 LEAST_SPIN = Float("1e-12")
 """Offset of spin torques in divisors, N m."""
@@ -184,14 +187,15 @@ def with_torque(p: Any, s: PressedSlip, y: Curve, lessened: Any, dfz: Any, spin:
     if spin.phi is None:
         return spin
     R, C = p.UNLOADED_RADIUS, p.QDRP1
-    most = f(p.QCRP1 * magnitude(y.mu) * R * s.load * sqrt(s.load / (p.FNOMIN * p.LFZO)) * p.LMP)
+    most = f(p.QCRP1 * magnitude(y.mu) * R * s.load * sqrt(s.load / (p.FNOMIN * p.LFZO) + Float("1e-30")) * p.LMP)
     D = f(most / sin(pi / 2 * C))
     stiffness = s.load * R * (p.QDZ8 + p.QDZ9 * dfz + (p.QDZ10 + p.QDZ11 * dfz) * magnitude(s.gamma)) * p.LKZC
     x = f(stiffness / (C * D * (1 - camber_reduction(p, dfz)) + LEAST_SPIN) * spin.phi)
     torque = f(D * sin(magic(ONE, x, C, p.QDRP2)))
     by_turn = most * 2 / pi * atan(p.QCRP2 * R * magnitude(s.turn)) * lessened
-    part = f(at_most_one(by_turn / (magnitude(torque) + LEAST_SPIN)))
-    angle = 2 * atan(sqrt((1 - part + Float("1e-30")) / (1 + part)))  # arccos(part)
+    left = f(above_zero(f(1 - by_turn / (magnitude(torque) + LEAST_SPIN))))
+    left = f(magnitude(left, ROUNDED) / magnitude(ONE, ROUNDED))
+    angle = 2 * atan(sqrt(left / (2 - left)))  # arccos(1 - left)
     return replace(spin, torque=torque, shape=f(2 / pi * angle))
 
 
@@ -282,6 +286,10 @@ def uncombined(p: Any, s: PressedSlip, f: Name) -> tuple[Any, Any, Any, Any, Any
     x, y = longitudinal(p, s, dfz, spin, f), lateral(p, s, dfz, spin, f)
     torque = aligning(p, replace(s, kappa=ZERO), x, y, (ZERO, y.force, ONE), dfz, spin, f)
     return x.force, y.force, overturning(p, s, y.force, f), rolling_resistance(p, s, x.force, f), torque.whole
+
+
+FORMULA = Formula(wrench, uncombined)
+"""Versions 6.1 and 6.2."""
 
 
 def relaxation_lengths(p: Any, load: Any, dpi: Any, gamma: Any, f: Name) -> tuple[Any, Any]:

@@ -20,6 +20,10 @@ OF_RADIUS = ("loaded", "free", "spin", "dpi", "gamma", "fx", "fy")
 """Arguments of the compiled equations of deflection and load."""
 MOST_ITERATIONS = 200
 """Limit of the iterations for rolling and loaded radius; bisection of an interval takes about 60."""
+LEAST_LOAD = 1e-9
+"""Smallest load of the search for the loaded radius, N, so that a tyre without load touches the road."""
+UNCARRIED = 1e-9
+"""Largest error of the load that a loaded radius carries, relative; beyond it there is no such radius."""
 BEYOND = 1.2
 """Upper end of the search for the loaded radius, in free radii: a cambered tyre touches the road with its edge."""
 
@@ -110,8 +114,11 @@ def _deflected(
     def found(loaded: np.ndarray) -> dict[str, np.ndarray]:
         return load(*values, loaded, free, omega, dpi, gamma, forces["Fx"], forces["Fy"])
 
+    Fz = np.maximum(Fz, LEAST_LOAD)
     Rl = falling_root(lambda loaded: found(loaded)["load"] - Fz, lambda x: found(x)["slope"], 0.0 * free, BEYOND * free)
-    return {"rho": found(Rl)["rho"] + 0 * Rl, "Rl": Rl}
+    carried = found(Rl)
+    Rl = np.where(np.abs(carried["load"] - Fz) < UNCARRIED * (Fz + numbers["FNOMIN"]), Rl, np.nan)
+    return {"rho": carried["rho"] + 0 * Rl, "Rl": Rl}
 
 
 def _deflection_at(numbers: Mapping[str, Any], Fz: np.ndarray) -> np.ndarray:

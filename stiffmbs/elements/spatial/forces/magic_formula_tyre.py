@@ -160,12 +160,14 @@ class MagicFormulaTyre(Tyre):
     @classmethod
     def law(cls, e: Symbolic, rolling: Rolling) -> tuple[Any, Any, Any, Any, Any]:
         """Return forces and moments by the Magic Formula."""
-        from ...tyres import magic_formula, magic_formula_6
+        from ...tyres.magic_formula import FORMULA, Slip, of_mode
+        from ...tyres.magic_formula_6 import FORMULA as LATER
+        from ...tyres.magic_formula_6 import PressedSlip
 
         p, hand = e.properties, cls.hand_of(e)
         beyond = e.named(rolling.load - p.FZMAX)
         load = e.named(rolling.load - e.named(above_zero(beyond)))
-        slip: Any = magic_formula.Slip(
+        slip: Any = Slip(
             load,
             rolling.slip,
             e.named(hand * rolling.slip_angle),
@@ -174,11 +176,11 @@ class MagicFormulaTyre(Tyre):
             rolling.direction,
             rolling.friction,
         )
-        formula: Any = magic_formula
+        formula = FORMULA
         if p.formula != "5.2":
-            formula, turn = magic_formula_6, None if rolling.turn is None else e.named(hand * rolling.turn)
-            slip = formula.PressedSlip(*vars(slip).values(), pressure_increment(e), turn, rolling.rolling)
-        fx, fy, mx, my, mz = magic_formula.of_mode(formula, p.mode, p, slip, e.named, p.ellipse)
+            formula, turn = LATER, None if rolling.turn is None else e.named(hand * rolling.turn)
+            slip = PressedSlip(*(*vars(slip).values(), pressure_increment(e), turn, rolling.rolling))
+        fx, fy, mx, my, mz = of_mode(formula, p.mode, p, slip, e.named, p.ellipse)
         return fx, hand * fy, hand * mx, my, hand * mz
 
     @staticmethod
