@@ -112,6 +112,8 @@ class Dynamics:
         self.state = State(system)
         for term_set in ("motion", "output"):
             self.state.load(term_set)
+        joints = np.array([bool(group.record.n_equations) for group in system.groups], dtype=bool)
+        self._constraining = self.state.restricted({"motion": joints})
         algebraic = system.algebraic_coordinates.astype(np.int64)
         self._positions, self._velocities, self._accelerations = saddle_points(
             self.state, POSITION_STEP, VELOCITY_STEP, WITH_ALGEBRAIC_STATES if len(algebraic) else ACCELERATIONS
@@ -141,7 +143,7 @@ class Dynamics:
         self.table = packed(
             DYNAMICS,
             {
-                "state": self.state.table,
+                "state": self.state.table, "constraining": self._constraining[0],
                 "positions": self._positions.equations_table, "position_factors": self._positions.factors_table,
                 "velocities": self._velocities.equations_table, "velocity_factors": self._velocities.factors_table,
                 "accelerations": self._accelerations.equations_table, "acceleration_factors": self._accelerations.factors_table,

@@ -20,6 +20,10 @@ BLOCK = 100_000
 """Rows that are written or read before memory is released."""
 
 
+CACHED = 256
+"""Rows of a table that are processed together, so that they stay in the processor's cache."""
+
+
 def allocated(*shape: int) -> np.ndarray:
     """Return an uninitialized array of floats.
 

@@ -34,7 +34,7 @@ def motion_notes(
         yield from singular_passage_sentence(dynamics, rows, rtol, again)
     if dynamics.system.n_counters:
         yield from lost_turns_sentence(dynamics, rows)
-    if (angles := joint_angles(dynamics.system, joints)) is not None:
+    if dynamics.system.of_body.dimensions == 3 and (angles := joint_angles(dynamics.system, joints)) is not None:
         yield from angles.uncertain(rows)
     if dynamics.system.has_limits:
         yield from near_limits_sentence(dynamics, rows)

@@ -25,7 +25,7 @@ from ..solve.trajectory import Trajectory
 CONTRADICTING_ROWS = Routine(
     "stiffmbs.run_checks.native.contradictions",
     "contradicting_rows",
-    "int64(int64, int64, float64*, float64*, float64*, float64*, float64, int64, float64*, int64*)",
+    "int64(int64, int64, float64*, float64*, float64*, float64*, float64, float64*, int64, float64*, int64*)",
 )
 
 OVERLOOKED_TOLERANCES = 3e5
@@ -81,12 +81,13 @@ def overlooked(system: System, rows: OutputRows, trajectory: Trajectory, setting
     steps = trajectory.step_times
     if len(steps) < 2 or not system.has_laws:
         return None
-    pairs = contradicting_rows(rows, system.mass, steps)
+    absolute = absolute_tolerances(system, settings)[system.n_q :]
+    pairs = contradicting_rows(rows, system.mass, steps, OVERLOOKED_TOLERANCES * absolute / np.diff(steps).max())
     if not len(pairs):
         return None
     number = np.searchsorted(steps, rows.t[pairs])
     step = steps[number] - steps[number - 1]
-    tolerance = absolute_tolerances(system, settings)[system.n_q :] + settings.rtol * np.abs(rows.u[pairs])
+    tolerance = absolute + settings.rtol * np.abs(rows.u[pairs])
     over_step = np.abs(_contradictions(rows, pairs)) * step[:, None] / (OVERLOOKED_TOLERANCES * tolerance)
     found = np.flatnonzero((over_step > 1).any(axis=1))
     if not len(found):
@@ -98,12 +99,26 @@ def overlooked(system: System, rows: OutputRows, trajectory: Trajectory, setting
     return Overlooked(rows.t[at[first]], float(step[k]), velocity, acting(system, rows, int(at[0])))
 
 
-def contradicting_rows(rows: OutputRows, mass: np.ndarray, steps: np.ndarray) -> np.ndarray:
-    """Return the numbers of the rows that contradict the next one in the same step, with these weights and ends of steps."""
+def contradicting_rows(rows: OutputRows, mass: np.ndarray, steps: np.ndarray, least: np.ndarray) -> np.ndarray:
+    """Return the numbers of the rows that contradict the next one in the same step.
+
+    Parameters
+    ----------
+    rows : OutputRows
+    mass : ndarray, shape (n_u,)
+        Weights of accelerations.
+    steps : ndarray
+        Ends of steps, s.
+    least : ndarray, shape (n_u,)
+        Differences of accelerations up to which there is no contradiction.
+    """
     found = np.empty(len(rows.t), dtype=np.int64)
-    t, u, acceleration, mass, steps = map(np.ascontiguousarray, (rows.t, rows.u, rows.acceleration, mass, steps))
-    *of_rows, at_steps, at_found = addresses(t, u, acceleration, mass, steps, found)
-    count = CONTRADICTING_ROWS.call(len(t), len(mass), *of_rows, OVERLOOKED_PART, len(steps), at_steps, at_found)
+    arrays = rows.t, rows.u, rows.acceleration, mass, least, steps
+    t, u, acceleration, mass, least, steps = map(np.ascontiguousarray, arrays)
+    *of_rows, at_least, at_steps, at_found = addresses(t, u, acceleration, mass, least, steps, found)
+    count = CONTRADICTING_ROWS.call(
+        len(t), len(mass), *of_rows, OVERLOOKED_PART, at_least, len(steps), at_steps, at_found
+    )
     return found[:count]
 
 

@@ -6,7 +6,7 @@ both violations are checked again.
 
 from __future__ import annotations
 
-from stiffmbs.compile.machine.native.access import compiled, equations_view, factors_view, floats, shifted
+from stiffmbs.compile.machine.native.access import compiled, equations_view, factors_view, floats, shifted, state_view
 from stiffmbs.compile.machine.native.calls import call_int
 from stiffmbs.compile.machine.native.evaluate import (
     ACCELERATION,
@@ -31,6 +31,8 @@ from stiffmbs.dynamics.native.views import eliminated_view
 
 KEPT = 1e-3
 """Least pivot relative to its diagonal for elimination, which then loses at most three of sixteen digits."""
+CONTRACTION = 0.1
+"""Part of a violation that a move by the factors of a nearby pose may leave."""
 LEFT = 1e-10
 """Allowed residual of accelerations relative to the terms of J u' = gamma: forces on light bodies amplify rounding."""
 
@@ -76,37 +78,73 @@ def consistent_accelerations(s, m, t):
 
 @compiled
 def _closed(r, s, m, t, tolerance):
-    """Project q and u onto the constraints with the current factors; return True if that converges."""
-    violations = evaluate(s, MOTION, t)
+    """Project q and u onto the constraints with the current factors; return True if that converges.
+
+    The constraint terms of the set ``motion`` are then those of the result. Each move must reduce the violation to a part
+    `CONTRACTION`, so that moves by the factors of another pose are close to those of smallest norm.
+    """
+    joints = state_view(m.constraining)
+    violations = evaluate(joints, MOTION, t)
     close = max(tolerance, ROUNDING * largest_of(s.q, s.n_pose))
     for _ in range(MOST_FROZEN_MOVES):
-        if largest_open(s, violations) > close:
+        before = largest_open(s, violations)
+        if before > close:
             call_int(r.move, (violations, m.eliminated))
             add_rates(s, r.a, 1.0, s.q)
             take_unit_length(s)
-            violations = evaluate(s, MOTION, t)
+            violations = evaluate(joints, MOTION, t)
+            if not largest_open(s, violations) <= max(close, CONTRACTION * before):
+                return False
     if largest_open(s, violations) > close:
         return False
     close = max(tolerance, ROUNDING * largest_of(s.u, s.n_u))
     for _ in range(MOST_FROZEN_MOVES):
-        if largest_open(s, shifted(violations, s.n_c)) > close:
+        before = largest_open(s, shifted(violations, s.n_c))
+        if before > close:
             call_int(r.move, (shifted(violations, s.n_c), m.eliminated))
             for k in range(s.n_u):
                 s.u[k] += r.a[k]
-            violations = evaluate(s, MOTION, t)
+            violations = evaluate(joints, MOTION, t)
+            if not largest_open(s, shifted(violations, s.n_c)) <= max(close, CONTRACTION * before):
+                return False
     return largest_open(s, shifted(violations, s.n_c)) <= close
+
+
+@compiled
+def _closed_or_as_before(r, s, m, t, tolerance):
+    """Project as `_closed`; return False, with q and u unchanged, if that does not converge."""
+    copied(r.q_before, s.q, s.n_q)
+    copied(r.u_before, s.u, s.n_u)
+    if _closed(r, s, m, t, tolerance):
+        return True
+    copied(s.q, r.q_before, s.n_q)
+    copied(s.u, r.u_before, s.n_u)
+    return False
+
+
+@compiled
+def _by_lu(s, m, t, tolerance, most):
+    """Project q and u by the block systems; 0 or a negative status."""
+    status = to_position_constraints(s, m, t, tolerance, most)
+    return status if status < 0 else to_velocity_constraints(s, m, t)
+
+
+@compiled
+def from_row_to_row(s, m, t, tolerance, most, first):
+    """Project as `to_constraints`, after the first row with the factors of the row before if they are close enough.
+
+    Return 1 if the constraint terms of the set ``motion`` are those of the result, 0 if not, or a negative status.
+    """
+    if not first and m.by_elimination and _closed_or_as_before(eliminated_view(m.eliminated), s, m, t, tolerance):
+        return 1
+    if _eliminated(s, m, t) and _closed_or_as_before(eliminated_view(m.eliminated), s, m, t, tolerance):
+        return 1
+    return _by_lu(s, m, t, tolerance, most)
 
 
 @compiled
 def to_constraints(s, m, t, tolerance, most):
     """Project q and u of a state near the constraints; 0 or a negative status."""
-    if _eliminated(s, m, t):
-        r = eliminated_view(m.eliminated)
-        copied(r.q_before, s.q, s.n_q)
-        copied(r.u_before, s.u, s.n_u)
-        if _closed(r, s, m, t, tolerance):
-            return 0
-        copied(s.q, r.q_before, s.n_q)
-        copied(s.u, r.u_before, s.n_u)
-    status = to_position_constraints(s, m, t, tolerance, most)
-    return status if status < 0 else to_velocity_constraints(s, m, t)
+    if _eliminated(s, m, t) and _closed_or_as_before(eliminated_view(m.eliminated), s, m, t, tolerance):
+        return 0
+    return _by_lu(s, m, t, tolerance, most)

@@ -18,7 +18,7 @@ from stiffmbs.dynamics.native.block_systems import (
     to_position_constraints,
     to_velocity_constraints,
 )
-from stiffmbs.dynamics.native.consistent import consistent_accelerations, to_constraints
+from stiffmbs.dynamics.native.consistent import consistent_accelerations, from_row_to_row
 from stiffmbs.dynamics.native.views import dynamics_view, eliminated_view
 
 AMPLIFIED, MOVED = 1e6, 1e-6
@@ -97,22 +97,24 @@ def _led_astray(s, q, violation):
 
 
 @compiled
-def _output_point(s, m, t, q, project, tolerance, largest):
+def _output_point(s, m, t, q, project, tolerance, largest, first):
     """Project the state if requested; compute accelerations, multipliers and output terms; 0 or a negative status."""
     for k in range(3):
         largest[k] = 0.0
     take_unit_length(s)
     for k in range(s.n_q):
         q[k] = s.q[k]
+    joints = state_view(m.constraining)
+    status = 0
     if project and s.n_c > 0:
         largest[2] = _largest_violation(s, evaluate(s, POSITION, t))
-        status = to_constraints(s, m, t, tolerance, MOST_MOVES)
+        status = from_row_to_row(s, m, t, tolerance, MOST_MOVES, first)
         if status < 0:
             return status
         if _led_astray(s, q, largest[2]):
             return SINGULAR
     if s.n_c > 0:
-        values = evaluate(s, MOTION, t)
+        values = floats(s.values[MOTION]) if status == 1 else evaluate(joints, MOTION, t)
         largest[0] = _largest_violation(s, values)
         largest[1] = _largest_violation(s, shifted(values, s.n_c))
     status = consistent_accelerations(s, m, t)
@@ -139,7 +141,7 @@ def output_points(count, times, project, tolerance, n_output, q, u, acceleration
             s.q[k] = at_row[k]
         for k in range(s.n_u):
             s.u[k] = u[row * s.n_u + k]
-        m.status = _output_point(s, m, times[row], at_row, project, tolerance, shifted(judged, 4 * row))
+        m.status = _output_point(s, m, times[row], at_row, project, tolerance, shifted(judged, 4 * row), row == 0)
         if m.status < 0:
             return row
         factors = factors_view(m.acceleration_factors)

@@ -33,10 +33,11 @@ def _within_step(begin, end, n_steps, steps):
     return low > 0 and low < n_steps and steps[low - 1] < begin and end < steps[low]
 
 
-def contradicting_rows(count, n_u, t, u, acceleration, mass, part, n_steps, steps, found):
+def contradicting_rows(count, n_u, t, u, acceleration, mass, part, least, n_steps, steps, found):
     """Store the rows that contradict the next one within a step in `found`, and return their number.
 
-    The mean rate of the velocities differs from the mean acceleration by more than `part` of the larger one.
+    The mean rate of the velocities differs from the mean acceleration by more than `part` of the larger one, and in a velocity
+    by more than its number in `least`.
     """
     contradicting = 0
     before = _weighted(n_u, acceleration, mass) if count > 0 else 0.0
@@ -45,11 +46,18 @@ def contradicting_rows(count, n_u, t, u, acceleration, mass, part, n_steps, step
         velocity = shifted(u, row * n_u)
         per_second = 1.0 / (t[row + 1] - t[row])
         total = 0.0
+        exceeds = False
         for k in range(n_u):
             off = (velocity[n_u + k] - velocity[k]) * per_second - 0.5 * (first[k] + second[k])
             total += mass[k] * off * off
+            if abs(off) > least[k]:
+                exceeds = True
         after = _weighted(n_u, second, mass)
-        if total > part * part * _larger(after, before) and _within_step(t[row], t[row + 1], n_steps, steps):
+        if (
+            exceeds
+            and total > part * part * _larger(after, before)
+            and _within_step(t[row], t[row + 1], n_steps, steps)
+        ):
             found[contradicting] = row
             contradicting += 1
         before = after
