@@ -31,7 +31,7 @@ from stiffmbs.dynamics.native.views import eliminated_view
 
 KEPT = 1e-3
 """Least pivot relative to its diagonal for elimination, which then loses at most three of sixteen digits."""
-CONTRACTION = 0.1
+CONTRACTION = 0.01
 """Part of a violation that a move by the factors of a nearby pose may leave."""
 LEFT = 1e-10
 """Allowed residual of accelerations relative to the terms of J u' = gamma: forces on light bodies amplify rounding."""
