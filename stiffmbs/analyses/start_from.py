@@ -16,6 +16,7 @@ from ..model.model_data import ModelData
 from ..model.settings import RunSettings
 from ..presolve.subsystems import counters_of
 from ..reading.files.quoted import listed
+from ..reading.joint_name import FREE_COORDINATES
 from ..reading.names import owner_of
 from ..results.body_axes import from_own_axes, rates_from_own_axes
 from ..results.saved_state import SavedState, read_state
@@ -71,6 +72,7 @@ def started_from(system: System, model: ModelData, state: SavedState | None) -> 
         system,
         q=np.concatenate([q, _turns(system, model, state), _states(system, state)]),
         u=u,
+        start_angles={name: x for name, x in channels.items() if name.rpartition(".")[2] in FREE_COORDINATES},
         open_rates=np.zeros(system.n_u, dtype=bool),
     )
 
@@ -81,7 +83,7 @@ def _turns(system: System, model: ModelData, state: SavedState) -> np.ndarray:
     first = system.n_pose
     turns = np.zeros(system.n_counters)
     for (name, k), place in counters_of(system).items():
-        known = state.turns.get(f"{name}/{k}")
+        known = state.turns.get(f"{name}/{k}", state.channels.get(name))
         if known is None and name not in of_requests and not state.is_new(name):
             raise InputError(
                 f"{state.source}: found no count of the turns of '{name}', expected a file .npz of the same mechanism"

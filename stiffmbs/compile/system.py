@@ -6,7 +6,7 @@ equation and coordinate of each.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -69,6 +69,8 @@ class System:
         True for rows with a position form, and for rows that are not redundant and therefore solved for.
     size : float
         Size of the mechanism at the start, m.
+    start_angles : mapping of str to float
+        Continuous angles of joints at a start from a saved state, rad, by channel.
     n_q, n_u, n_c : int
         Numbers of coordinates, velocities and constraint equations.
     n_pose, n_counters : int
@@ -101,6 +103,7 @@ class System:
     holonomic: np.ndarray
     active: np.ndarray
     size: float
+    start_angles: Mapping[str, float] = field(default_factory=dict)
     n_q: int = field(init=False)
     n_u: int = field(init=False)
     n_c: int = field(init=False)

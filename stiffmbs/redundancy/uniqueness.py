@@ -78,6 +78,10 @@ def forces_change(found: LoopRank, null_spaces: list[tuple[Pose, np.ndarray]]) -
     return False
 
 
+EFFORT = ".effort"
+"""Ending of the channel of a drive's effort."""
+
+
 def changes_of(equations: LoopEquations, pose: Pose, space: np.ndarray) -> dict[str, np.ndarray]:
     """Return the change of each channel along each null vector, scaled to a maximum of one, torques by arms."""
     state = equations.state
@@ -92,7 +96,8 @@ def changes_of(equations: LoopEquations, pose: Pose, space: np.ndarray) -> dict[
         name: (values[1:] - values[0]) / (equations.length if name.rpartition(".")[2] in TORQUES else 1.0)
         for name, values in reactions(state.system, np.array(rows)).items()
     }
-    largest = np.max([np.abs(change) for change in found.values()], axis=0)
+    compared = [np.abs(change) for name, change in found.items() if not name.endswith(EFFORT)]  # a force or a torque
+    largest = np.max(compared, axis=0)
     return {name: change / np.where(largest > 0, largest, 1.0) for name, change in found.items()}
 
 

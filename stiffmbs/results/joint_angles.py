@@ -35,10 +35,13 @@ class JointAngles:
         Places of each angle, its rate and its acceleration in the values of the output terms, by channel.
     counters : mapping of str to int
         Coordinate that counts the turns of some angles, by channel.
+    start : mapping of str to float
+        Known angles at the first instant, by channel; others begin in the turn around zero.
     """
 
     places: Mapping[str, tuple[int, ...]]
     counters: Mapping[str, int]
+    start: Mapping[str, float]
 
     def continuous(self, rows: OutputRows) -> dict[str, np.ndarray]:
         """Return the angles with their full revolutions by channel, shape (n,), rad."""
@@ -50,6 +53,10 @@ class JointAngles:
         if self.followed:
             change, predicted = self._changes(rows)
             angles = rows.values[:, [self.places[name][0] for name in self.followed]]
+            known = np.array(
+                [self.start.get(name, angle) for name, angle in zip(self.followed, angles[0], strict=True)]
+            )
+            angles += TURN * np.round((known - angles[0]) / TURN)
             angles[1:] += TURN * np.cumsum(np.round((predicted - change) / TURN), axis=0)
             found |= dict(zip(self.followed, angles.T, strict=True))
         return found
@@ -101,7 +108,7 @@ def joint_angles(system: System, joints: Mapping[str, Any]) -> JointAngles | Non
         for name in group.names
     }
     places = {name: found for name, found in angles.items() if min(found) >= 0}
-    return JointAngles(places, dict(_counters(system, joints))) if places else None
+    return JointAngles(places, dict(_counters(system, joints)), system.start_angles) if places else None
 
 
 def _counters(system: System, joints: Mapping[str, Any]) -> Iterator[tuple[str, int]]:
