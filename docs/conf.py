@@ -14,14 +14,15 @@ copyright = "the authors of stiffmbs"
 
 extensions = [
     "sphinx.ext.autodoc",
-    "sphinx.ext.mathjax",
     "numpydoc",
     "myst_nb",
     "sphinx_click",
     "sphinx_copybutton",
+    "sphinx_design",
     "matplotlib.sphinxext.plot_directive",
     "kinds",
-    "scenes",
+    "gallery",
+    "mathml",
     "measured",
     "shipped_parts",
 ]
@@ -32,12 +33,15 @@ default_role = "literal"
 html_theme = "furo"
 html_title = f"stiffmbs {version}"
 html_show_sphinx = False
+html_math_renderer = "mathml"
+html_static_path = ["_static"]
+html_css_files = ["style.css"]
 
 nb_execution_mode = "force"  # notebooks are stored without outputs
 nb_execution_raise_on_error = True
 nb_execution_timeout = 300
 
-myst_enable_extensions = ["dollarmath", "deflist"]
+myst_enable_extensions = ["colon_fence", "deflist", "dollarmath"]
 myst_heading_anchors = 3
 
 autodoc_typehints = "none"  # docstrings name types with their shapes and units

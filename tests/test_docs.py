@@ -178,3 +178,30 @@ def test_the_reference_names_each_kind_in_one_group(page):
     text = (HERE / "docs" / "reference" / f"{page}.rst").read_text(encoding="utf-8").partition(".. kinds::")[2]
     named = [kind for line in text.splitlines()[1:] for kind in line.partition(": ")[2].split()]
     assert sorted(named) == sorted(kinds.shipped)
+
+
+def test_each_public_name_is_on_one_page_of_the_python_reference():
+    pages = (HERE / "docs" / "reference" / "python").glob("*.md")
+    listed = [
+        name
+        for page in pages
+        for kind, text, _ in blocks(page)
+        if kind == "{interface} stiffmbs"
+        for name in text.split()
+    ]
+    kinds = [
+        element.__name__
+        for found in (model, spatial_model)
+        for element in (*found.JOINTS.values(), *found.FORCES.values())
+    ]
+    offered = [name for name in stiffmbs.__all__ if name not in kinds and name != "si"]
+    assert sorted(listed) == sorted(offered)
+
+
+def test_the_gallery_names_each_example_once():
+    text = (HERE / "docs" / "gallery.rst").read_text(encoding="utf-8").partition(".. gallery::")[2]
+    named = [name for line in text.splitlines() for name in line.partition(": ")[2].split()]
+    examples = [*(HERE / "examples").glob("*.yaml"), *(HERE / "examples").glob("*/*.yaml")]
+    assert sorted(named) == sorted(path.stem for path in examples)
+    films = HERE / "docs" / "_static" / "gallery"
+    assert all((films / f"{name}.webp").exists() for name in named)

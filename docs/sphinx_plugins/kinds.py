@@ -1,7 +1,7 @@
 """Reference pages made from the classes: every kind of joint and force, every described class, the Python interface.
 
 Directives: ``kinds`` and ``overview`` (``joints``, ``forces``, or those of space, ``spatial.joints`` ...), ``fields`` (a described
-class), ``interface`` (what a module's ``__all__`` lists besides elements).  A new kind appears by its existence.
+class), ``interface`` (names of a module: a table, and their documentation).  A new kind appears by its existence.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from pathlib import Path
 from textwrap import dedent, indent
 from typing import Any
 
+from as_rst import nodes_of
 from docutils import nodes
 from fields import field_table
 from sphinx.application import Sphinx
@@ -59,7 +60,7 @@ class Kinds(SphinxDirective):
             raise self.error(f"found {', '.join(wrong)}, expected kinds of {self.arguments[0]}, each once")
         groups["Other"] = sorted(set(kinds) - set(named))
         text = "\n".join(line for title, group in groups.items() if group for line in self._group(module, title, group))
-        return self.parse_text_to_nodes(text, allow_section_headings=True)
+        return nodes_of(self, text, allow_section_headings=True)
 
     def _group(self, module: str, title: str, group: list[str]) -> Iterator[str]:
         kinds = SECTIONS[self.arguments[0]][1]
@@ -74,7 +75,7 @@ class Overview(SphinxDirective):
     required_arguments = 1
 
     def run(self) -> list[nodes.Node]:
-        return self.parse_text_to_nodes("\n".join(overview(*SECTIONS[self.arguments[0]])))
+        return nodes_of(self, "\n".join(overview(*SECTIONS[self.arguments[0]])))
 
 
 class Fields(SphinxDirective):
@@ -85,22 +86,29 @@ class Fields(SphinxDirective):
     def run(self) -> list[nodes.Node]:
         module, _, name = self.arguments[0].rpartition(".")
         described = getattr(importlib.import_module(module), name)
-        return self.parse_text_to_nodes("\n".join(field_table(described)))
+        return nodes_of(self, "\n".join(field_table(described)))
 
 
 class Interface(SphinxDirective):
-    """What a module exports, but for the elements."""
+    """Names of a module: a table with the first sentence of each, and their documentation."""
 
     required_arguments = 1
+    has_content = True
 
     def run(self) -> list[nodes.Node]:
-        module = importlib.import_module(self.arguments[0])
-        elements = {element.__name__ for _, kinds in SECTIONS.values() for element in kinds.values()}
-        names = [
-            name for name in module.__all__ if name not in elements and not inspect.ismodule(getattr(module, name))
-        ]
-        text = "\n".join(line for name in sorted(names) for line in documented(module.__name__, name))
-        return self.parse_text_to_nodes(text)
+        module = self.arguments[0]
+        names = " ".join(self.content).split()
+        text = "\n".join([*summaries(module, names), *(line for name in names for line in documented(module, name))])
+        return nodes_of(self, text)
+
+
+def summaries(module: str, names: list[str]) -> Iterator[str]:
+    """The table of some names of a module."""
+    yield from (".. list-table::", "   :widths: 30 70", "")
+    for name in names:
+        words = inspect.cleandoc(getattr(importlib.import_module(module), name).__doc__ or "").split("\n\n")[0]
+        yield from (f"   * - :py:obj:`~{module}.{name}`", f"     - {' '.join(words.split())}")
+    yield ""
 
 
 def documented(module: str, name: str) -> Iterator[str]:
@@ -183,9 +191,20 @@ def sources(element: type[Element]) -> Iterator[str]:
             yield source.removeprefix("@staticmethod\n").removeprefix("@classmethod\n").rstrip()
 
 
-def without_signature(app: Sphinx, what: str, name: str, thing: Any, *_: Any) -> tuple[str, str] | None:
-    """Described classes take their fields by keyword: the table has them."""
-    return ("", "") if inspect.isclass(thing) and issubclass(thing, Described) else None
+LONGEST_SIGNATURE = 160
+"""Characters of a signature, two lines of a page."""
+
+
+def short_signature(
+    app: Sphinx, what: str, name: str, thing: Any, options: Any, signature: str | None, returned: str | None
+) -> tuple[str | None, str | None]:
+    """Leave out the fields of described classes, which the table has, and the last keywords of long signatures."""
+    if inspect.isclass(thing) and issubclass(thing, Described):
+        return "", None
+    if signature is None or len(signature) <= LONGEST_SIGNATURE:
+        return signature, returned
+    kept, _, _ = signature[:LONGEST_SIGNATURE].rpartition(", ")
+    return f"{kept}, ...)", returned
 
 
 def write_schema(app: Sphinx, error: Exception | None) -> None:
@@ -201,6 +220,6 @@ def setup(app: Sphinx) -> dict[str, Any]:
     app.add_directive("overview", Overview)
     app.add_directive("fields", Fields)
     app.add_directive("interface", Interface)
-    app.connect("autodoc-process-signature", without_signature)
+    app.connect("autodoc-process-signature", short_signature)
     app.connect("build-finished", write_schema)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

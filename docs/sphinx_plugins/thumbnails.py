@@ -1,0 +1,75 @@
+"""Make the films of the gallery's cards and of the landing page.
+
+    python docs/sphinx_plugins/thumbnails.py [NAME...]
+
+NAME is the stem of a scene's file in examples/; all of them by default.  The films are WebP, in docs/_static/gallery.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from gallery import examples
+from PIL import Image, ImageOps
+
+import stiffmbs
+from stiffmbs.show.drawing.derive import drawing_of
+from stiffmbs.show.drawing.film import Pace, pictures
+from stiffmbs.show.drawing.picture import Shown
+from stiffmbs.show.drawing.poses import poses_of
+from stiffmbs.show.drawing.view import view_named
+
+FOLDER = Path(__file__).parents[1] / "_static" / "gallery"
+LENGTH, RATE = 3.0, 10.0
+"""Duration of a film, s, and its pictures per second."""
+WIDTH = 360
+"""Width of a film, pixels."""
+HERO = "hero"
+"""Film of the landing page: a car over a bump."""
+
+
+def film(path: Path, changes: Sequence[tuple[str, str]] = (), view: str = "") -> Iterator[np.ndarray]:
+    """Yield the pictures of the run of a scene with some values changed."""
+    data = stiffmbs.load_scene(path, changes)
+    solution = stiffmbs.run(data)
+    drawing = replace(drawing_of(data), name=" ")  # no title
+    duration = float(solution.time[-1] - solution.time[0])
+    seen = view_named(view, drawing.dimensions, drawing.gravity)
+    poses = {"": poses_of(data, solution.time, solution.channels)}
+    return pictures(drawing, poses, seen, Pace(duration / LENGTH, RATE), Shown(names=False, forces=False), ())
+
+
+def cropped(frames: Iterator[np.ndarray]) -> list[Image.Image]:
+    """Return pictures without their common margin and without the clock in the lower left corner."""
+    found = [frame.copy() for frame in frames]
+    for frame in found:
+        frame[-40:, :150] = 255
+    ink = np.min([frame.min(axis=2) for frame in found], axis=0) < 250
+    rows, columns = np.flatnonzero(ink.any(axis=1)), np.flatnonzero(ink.any(axis=0))
+    box = (max(columns[0] - 8, 0), max(rows[0] - 8, 0), columns[-1] + 9, rows[-1] + 9)
+    return [Image.fromarray(frame).crop(box) for frame in found]
+
+
+def write_webp(path: Path, frames: Iterator[np.ndarray], width: int = WIDTH) -> None:
+    """Write pictures as an animated WebP of 16 to 10 that repeats forever."""
+    size = (width, width * 10 // 16)
+    images = [ImageOps.pad(image, size, Image.Resampling.LANCZOS, color="white") for image in cropped(frames)]
+    images[0].save(path, save_all=True, append_images=images[1:], duration=1000 / RATE, loop=0, quality=60, method=4)
+
+
+if __name__ == "__main__":
+    FOLDER.mkdir(parents=True, exist_ok=True)
+    for name in sys.argv[1:] or [*examples(), HERO]:
+        if name == HERO:
+            write_webp(
+                FOLDER / f"{HERO}.webp",
+                film(examples()["car"], [("choose.manoeuvre", "bump"), ("run.duration", "3 s")]),
+                720,
+            )
+            continue
+        write_webp(FOLDER / f"{name}.webp", film(examples()[name]))
+        print(name, (FOLDER / f"{name}.webp").stat().st_size)
