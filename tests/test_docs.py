@@ -198,10 +198,10 @@ def test_each_public_name_is_on_one_page_of_the_python_reference():
     assert sorted(listed) == sorted(offered)
 
 
-def test_the_gallery_names_each_example_once():
+def test_the_gallery_names_examples_once_each_with_a_film():
     text = (HERE / "docs" / "gallery.rst").read_text(encoding="utf-8").partition(".. gallery::")[2]
     named = [name for line in text.splitlines() for name in line.partition(": ")[2].split()]
     examples = [*(HERE / "examples").glob("*.yaml"), *(HERE / "examples").glob("*/*.yaml")]
-    assert sorted(named) == sorted(path.stem for path in examples)
+    assert len(named) == len(set(named)) and set(named) <= {path.stem for path in examples}
     films = HERE / "docs" / "_static" / "gallery"
     assert all((films / f"{name}.webp").exists() for name in named)
