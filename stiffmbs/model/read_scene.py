@@ -132,7 +132,7 @@ def _made_scene(
     found, chosen, changes = _chosen(unshared(found), changes, source)
     parts = found.get("parts")
     found, changes = placed_in_use(found, changes)
-    refuse_unused_parameters(found, changes, (*Scene.model_fields, "vehicle"))
+    refuse_unused_parameters(found, changes, (*Scene.model_fields, "vehicle", "path"))
     replaced = replaced_parameters(found, changes)
     names = {section: tuple(part) if isinstance(part := found.get(section), dict) else () for section in OF_ENTRIES}
     in_parts, own = [], []
@@ -244,6 +244,7 @@ def _validated(
 ) -> Scene:
     try:
         parameters = read_parameters(found.get("parameters"), replaced)
+        found = _with_path(found, parameters)
         tables = read_tables(found.get("tables"), parameters)
         raw = {
             key: repeat_entries(key, value, parameters) if key in SECTIONS else value for key, value in found.items()
@@ -283,6 +284,15 @@ def _with_flexible_bodies(raw: dict[str, Any], context: Mapping[str, Any]) -> di
     from .flexible import with_flexible_bodies
 
     return with_flexible_bodies(raw, context)
+
+
+def _with_path(raw: dict[str, Any], parameters: Mapping[str, Quantity]) -> dict[str, Any]:
+    """Return a scene with the tables of its path; their module is imported only for spatial scenes with one."""
+    if raw.get("path") is None or raw.get("dimensions") != 3:
+        return raw
+    from .paths.section import with_path
+
+    return with_path(raw, parameters)
 
 
 def _with_vehicle(raw: dict[str, Any], context: Mapping[str, Any]) -> dict[str, Any]:

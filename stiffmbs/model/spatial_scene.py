@@ -9,6 +9,7 @@ from pydantic import Field
 from ..elements.requests.names import OF_SPACE
 from ..elements.requests.output import Output
 from ..elements.requests.output_field import output_field
+from .paths.section import Path
 from .scene import Scene
 from .spatial_model import SpatialData
 from .vehicle import Vehicle
@@ -20,6 +21,7 @@ class SpatialScene(SpatialData, Scene):
     variables: dict[str, Annotated[Output, output_field(OF_SPACE)]] = Field(
         default_factory=dict, description="formulas by name, which other formulas use"
     )
+    path: Path | None = Field(None, description="the course that a driver follows")
     vehicle: Vehicle | None = Field(
         None, description="the sprung body whose motion is reported in the axes of ISO 8855"
     )

@@ -57,18 +57,8 @@ def test_a_leaf_sprung_car_on_bumps_is_the_same_by_both_integrators(examples):
         assert found[channel] == pytest.approx(exact[channel], abs=bound)
 
 
-def test_the_driver_follows_a_change_of_lane(examples):
-    found = stiffmbs.run(stiffmbs.load_scene(examples / "car.yaml", [("choose.manoeuvre", "lane_change")]))
-    y = found["chassis.y"]
-    assert found.success and not any("acts on a motion" in note for note in found.notes)
-    assert max(y) < 3.6 and y[-1] == pytest.approx(3.5, abs=0.02)
-
-
-@pytest.mark.parametrize("path", ["lane_change", "circle"])
-@pytest.mark.parametrize("word", ["bushing", "rigid"])
-def test_a_driver_who_steers_against_a_held_rack_is_reported(examples, path, word):
-    scene = stiffmbs.load_scene(examples / "car.yaml", [("choose.path", path), ("choose.compliance", word)])
-    assert any(
-        message.startswith("driver.servo acts on a motion that steer prescribes")
-        for message in stiffmbs.check(scene).messages
-    )
+def test_a_driver_who_steers_against_a_held_rack_is_reported(examples):
+    held = ("joints", "{steer: {type: drive, joint: steering.guide, position: 0 m}}")
+    scene = stiffmbs.load_scene(examples / "car.yaml", [("choose.manoeuvre", "circle"), held])
+    report = stiffmbs.check(scene)
+    assert any("driver.steer_drive" in message for message in report.messages)

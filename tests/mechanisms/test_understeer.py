@@ -15,7 +15,7 @@ RADIUS, ACCELERATIONS = 100.0, (0.5, 1.0, 1.5, 2.0, 2.5)
 
 
 def car(word, *changes):
-    """The car without air; its rack slides on the body, where the driver's servo holds it."""
+    """The car without air; its rack slides on the body, where the driver's drive holds it."""
     air = ("parts.air.parameters", "{drag_area: 0, side_area: 0, lift_area: 0}")
     rack = ("parts.steering.compliance", "rigid")
     return stiffmbs.load_scene(EXAMPLES / "car.yaml", [("choose.compliance", word), air, rack, *changes])
@@ -26,7 +26,7 @@ def on_circle(word):
     found = []
     for acceleration in ACCELERATIONS:
         speed = np.sqrt(acceleration * RADIUS)
-        circle = ("R", str(RADIUS)), ("choose.manoeuvre", "circle"), ("choose.path", "circle")
+        circle = ("R", str(RADIUS)), ("choose.manoeuvre", "circle")
         run = stiffmbs.run(car(word, ("V", str(speed)), *circle), duration=20, output=0.5, rtol=1e-6)
         assert np.ptp(run["rack_travel"][-3:]) < 1e-6
         speed, rate = np.hypot(run["chassis.vx"][-1], run["chassis.vy"][-1]), run["chassis.wz"][-1]

@@ -34,6 +34,8 @@ def combined(parts: Sequence[Weighted], *formulas: Formula) -> Formula:
         Formulas among the parts, and others whose parameters the sum keeps.
     """
     kept = [(weight, part) for weight, part in parts if weight]
+    if len(kept) == 1 and kept[0][0] == 1.0 and isinstance(kept[0][1], Formula):
+        return kept[0][1]
     terms = [_times(weight, ast.Name(part) if isinstance(part, str) else part.tree) for weight, part in kept]
     tree: ast.expr = ast.Constant(0.0)
     for k, term in enumerate(terms):

@@ -144,10 +144,11 @@ class _Placed:
         on, frame = self._mount(instance)
         self.mounts[instance.name] = on, frame
         in_ground = self._pose(on).then(frame)
-        mounts = {MOUNT: (on, frame), **self._further_mounts(instance, in_ground)}
+        further, joints = self._further_mounts(instance, in_ground)
+        mounts = {MOUNT: (on, frame), **further}
         for body, own_frame in mounts.values():
             self._add_markers(body, {instance.name: own_frame.placed(self.scene.origin)})
-        local = instance.local() | {name: f"{body}.{instance.name}" for name, (body, _) in mounts.items()}
+        local = instance.local() | {name: f"{body}.{instance.name}" for name, (body, _) in mounts.items()} | joints
         outside = self.context["parameters"]
         own = _Values({name: value for name, value in instance.parameters.items() if outside.get(name) != value})
         names = replace(self.context["names"], local=local, values=own, mounts=frozenset(mounts))
@@ -197,19 +198,22 @@ class _Placed:
             )
         return body, frame.mirror().then(own)
 
-    def _further_mounts(self, instance: Instance, in_ground: Any) -> dict[str, tuple[str, Any]]:
-        """Return the further bodies that an instance connects to by local name, and the part's frame in their axes."""
+    def _further_mounts(self, instance: Instance, in_ground: Any) -> tuple[dict[str, tuple[str, Any]], dict[str, str]]:
+        """Return what else an instance connects to by local name: bodies with the part's frame in their axes, and joints."""
         inside = Names(local=instance.outer.local()) if instance.outer else Names()
-        found = {}
+        found, joints = {}, {}
         for name, given in instance.mounts.items():
             body = self._named(given, instance, inside)
+            if body in (self.raw.get("joints") or {}):
+                joints[name] = body
+                continue
             if body != GROUND and body not in self._entries("bodies"):
                 raise InputError(
-                    f"use.{instance.name}.mounts.{name}: found '{given}', expected mount, ground, a body of the scene, or one of a "
-                    "part above"
+                    f"use.{instance.name}.mounts.{name}: found '{given}', expected mount, ground, a body or joint of the scene, or one "
+                    "of a part above"
                 )
             found[name] = body, self._pose(body).inverse().then(in_ground)
-        return found
+        return found, joints
 
     def _named(self, given: str, instance: Instance, inside: Names) -> str:
         if given == MOUNT:

@@ -1,0 +1,1 @@
+"""Paths for a driver: curves through points, circles, and the lanes of lane changes."""

@@ -1,0 +1,135 @@
+"""Plane curves over their arc length."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+FINEST = 2.5
+"""Distance between the stations of a curve, m, on short curves."""
+MOST_STATIONS = 2000
+"""Largest number of stations of a curve."""
+SAMPLES = 8
+"""Points between two stations with which the arc length is measured."""
+
+
+@dataclass(frozen=True)
+class Curve:
+    """Curve over its arc length.
+
+    Attributes
+    ----------
+    s : ndarray, shape (n,)
+        Stations, m.
+    x, y, curvature : ndarray, shape (n,)
+        Position, m, and curvature, positive to the left, 1/m.
+    cos, sin : ndarray, shape (n,)
+        Direction.
+    closed : bool
+        True if the last station is the first one.
+    """
+
+    s: np.ndarray
+    x: np.ndarray
+    y: np.ndarray
+    cos: np.ndarray
+    sin: np.ndarray
+    curvature: np.ndarray
+    closed: bool = False
+
+    def nearest(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the arc length of the nearest points, and the offsets from them, positive to the left, m."""
+        from scipy.interpolate import CubicSpline
+        from scipy.spatial import cKDTree
+
+        fine = np.linspace(self.s[0], self.s[-1], SAMPLES * len(self.s))
+        curve = CubicSpline(self.s, np.stack([self.x, self.y], axis=1))
+        points = np.stack([x, y], axis=1)
+        s = fine[cKDTree(curve(fine)).query(points)[1]]
+        for _ in range(3):  # Newton's iteration for the foot of the perpendicular
+            way, tangent = points - curve(s), curve(s, 1)
+            slope = np.sum(tangent**2 - way * curve(s, 2), axis=1)
+            s = np.clip(s + np.sum(way * tangent, axis=1) / np.maximum(slope, 0.1), self.s[0], self.s[-1])
+        way, tangent = points - curve(s), curve(s, 1)
+        return s, tangent[:, 0] * way[:, 1] - tangent[:, 1] * way[:, 0]
+
+
+def curve_through(points: np.ndarray, closed: bool = False) -> Curve:
+    """Return the parametric cubic spline through points, over its arc length.
+
+    Parameters
+    ----------
+    points : ndarray, shape (n, 2)
+        Distinct consecutive points, m.
+    closed : bool
+        True for a lap, whose last point joins the first one.
+
+    Raises
+    ------
+    ValueError
+        If there are fewer than two points (three of a lap), or two consecutive points coincide.
+    """
+    from scipy.interpolate import CubicSpline
+
+    least = 3 if closed else 2
+    if len(points) < least:
+        raise ValueError(f"found {len(points)} points, expected {least} or more")
+    if closed and np.any(points[0] != points[-1]):
+        points = np.vstack([points, points[:1]])
+    chords = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    if np.any(chords <= 0.0):
+        k = int(np.argmax(chords <= 0.0))
+        raise ValueError(f"found the point {tuple(map(float, points[k]))} twice in a row, expected distinct points")
+    parameter = np.concatenate([[0.0], np.cumsum(chords)])
+    ends = "periodic" if closed else "natural" if len(points) < 4 else "not-a-knot"
+    curve = CubicSpline(parameter, points, bc_type=ends)
+    count = int(np.clip(np.ceil(parameter[-1] / FINEST), 40, MOST_STATIONS))
+    fine = np.linspace(0.0, parameter[-1], SAMPLES * count + 1)
+    speed = np.linalg.norm(curve(fine, 1), axis=1)
+    middle = np.linalg.norm(curve((fine[1:] + fine[:-1]) / 2, 1), axis=1)
+    lengths = (speed[1:] + speed[:-1] + 4 * middle) / 6 * np.diff(fine)  # Simpson's rule
+    arc = np.concatenate([[0.0], np.cumsum(lengths)])
+    s = np.linspace(0.0, arc[-1], count + 1)
+    at = CubicSpline(arc, fine)(s)
+    at[[0, -1]] = fine[[0, -1]]
+    (x, y), (dx, dy), (ddx, ddy) = (curve(at, order).T for order in range(3))
+    rate = np.hypot(dx, dy)
+    curvature = (dx * ddy - dy * ddx) / rate**3
+    found = Curve(s, x, y, dx / rate, dy / rate, curvature, closed)
+    return _closing(found) if closed else found
+
+
+def _closing(curve: Curve) -> Curve:
+    for values in (curve.x, curve.y, curve.cos, curve.sin, curve.curvature):
+        values[-1] = values[0]
+    return curve
+
+
+def circle(radius: float, entry: float, transition: float, turns: float) -> Curve:
+    """Return a straight line along x, a transition of linear curvature (clothoid), and a circle.
+
+    Parameters
+    ----------
+    radius : float
+        Positive to the left, m.
+    entry, transition : float
+        Lengths of the straight line and of the transition, m.
+    turns : float
+        Number of turns on the circle.
+    """
+    length = entry + transition + 2 * np.pi * turns * abs(radius)
+    s = np.linspace(0.0, length, int(np.clip(np.ceil(length / FINEST), 40, MOST_STATIONS)) + 1)
+
+    def heading(at: np.ndarray) -> np.ndarray:
+        along = np.clip(at - entry, 0.0, transition)
+        on_circle = np.maximum(at - entry - transition, 0.0)
+        return (along**2 / (2 * transition) if transition else 0.0) / radius + on_circle / radius
+
+    nodes, weights = np.polynomial.legendre.leggauss(6)
+    half = np.diff(s)[:, None] / 2
+    within = heading((s[1:] + s[:-1])[:, None] / 2 + half * nodes)
+    x, y = (np.concatenate([[0.0], np.cumsum((half * weights * of(within)).sum(axis=1))]) for of in (np.cos, np.sin))
+    part = np.clip((s - entry) / transition, 0.0, 1.0) if transition else (s >= entry).astype(float)
+    angle = heading(s)
+    return Curve(s, x, y, np.cos(angle), np.sin(angle), part / radius)

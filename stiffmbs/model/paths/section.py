@@ -1,0 +1,142 @@
+"""Section `path` of a spatial scene: the course of a driver, as tables over its arc length."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal, Self
+
+import numpy as np
+from pydantic import Field, model_validator
+from pydantic import ValidationError as PydanticError
+
+from ...errors import InputError
+from ...reading.fields import Described, Measured, sentence
+from ...reading.units import si
+from .curves import Curve, circle, curve_through
+from .lanes import STANDARDS, path_through
+
+PATH = "path"
+COURSES = ("points", "circle", "lanes")
+Point2 = tuple[si.Length, si.Length]
+Station = tuple[si.Length, si.Velocity]
+
+
+class Path(Described):
+    """Section ``path``: one course on the road's x-y plane, which the part `driver` follows with ``path: course``.
+
+    The course is a spline through `points`, or a `circle`, or leads through the `lanes` of a standard. It becomes the
+    tables ``path_x path_y path_cos path_sin path_curvature`` over the arc length, for use in formulas.
+
+    Parameters
+    ----------
+    points : tuple of (float, float)
+        Points of a cubic spline, x and y, m.
+    closed : bool
+        True for a lap: the spline returns to its first point, and the course repeats.
+    circle : float
+        Radius, m, positive to the left.
+    entry, transition : float
+        Straight line before a circle, and the length over which its curvature grows, m.
+    turns : float
+        Turns on the circle.
+    lanes : str
+        ``iso3888-1`` or ``iso3888-2``.
+    width : float
+        Width of the vehicle, which determines the lanes, m.
+    start : float
+        Straight distance before the first lane, m.
+    speed : tuple of (float, float)
+        Arc length, m, and speed, m/s, of a speed profile: the table ``path_speed``.
+    """
+
+    points: tuple[Point2, ...] = Field((), description="points of a spline: x and y, m")
+    closed: bool = Field(False, description="whether the spline is a lap that returns to its first point")
+    circle: si.Length | None = Field(None, description="radius of a circle, m, positive to the left")
+    entry: Annotated[float, Measured("length", at_least=0)] = Field(
+        20.0, description="straight line before the circle, m"
+    )
+    transition: Annotated[float, Measured("length", at_least=0)] = Field(
+        30.0, description="length over which the curvature grows to that of the circle, m"
+    )
+    turns: si.PositiveNumber = Field(3.0, description="turns on the circle")
+    lanes: Literal["iso3888-1", "iso3888-2"] | None = Field(
+        None, description="the standard whose lanes it leads through"
+    )
+    width: si.PositiveLength = Field(1.8, description="of the vehicle, which determines the lanes, m")
+    start: Annotated[float, Measured("length", at_least=0)] = Field(
+        30.0, description="straight line before the first lane, m"
+    )
+    speed: tuple[Station, ...] = Field((), description="speed profile: arc length, m, and speed, m/s")
+
+    @model_validator(mode="after")
+    def _one_course(self) -> Self:
+        given = [name for name in COURSES if getattr(self, name)]
+        if len(given) != 1 and self.circle != 0.0:
+            raise ValueError(f"found {' and '.join(given) or 'no course'}, expected one of {', '.join(COURSES)}")
+        if self.circle == 0.0:
+            raise ValueError("circle: found 0, expected a radius that is not zero")
+        if self.speed and any(b[0] <= a[0] for a, b in zip(self.speed, self.speed[1:], strict=False)):
+            raise ValueError("speed: found arc lengths that do not increase, expected increasing ones")
+        return self
+
+    def curve(self) -> Curve:
+        """Return the course over its arc length.
+
+        Raises
+        ------
+        ValueError
+            If two consecutive points coincide.
+        """
+        if self.circle is not None:
+            return circle(self.circle, self.entry, self.transition, self.turns)
+        if self.lanes is not None:
+            lanes = tuple(lane.shifted(self.start) for lane in STANDARDS[self.lanes](self.width))
+            return curve_through(path_through(lanes, self.width, self.start, 100.0))
+        return curve_through(np.array(self.points, dtype=float), self.closed)
+
+
+def with_path(raw: dict[str, Any], parameters: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a scene with the tables of its section ``path``.
+
+    Parameters
+    ----------
+    raw : mapping
+    parameters : mapping of str to Quantity
+
+    Raises
+    ------
+    InputError
+        If the section is invalid, or a table of the scene has the name of one of its tables.
+    """
+    if raw.get(PATH) is None:
+        return raw
+    try:
+        path = Path.model_validate(raw[PATH], context={"parameters": parameters})
+        curve = path.curve()
+    except PydanticError as error:
+        message = sentence(error)
+        raise InputError(f"{PATH}: {message}" if message.startswith("found") else f"{PATH}.{message}") from None
+    except ValueError as error:
+        raise InputError(f"{PATH}.points: {error}") from None
+    tables = raw.get("tables") or {}
+    own = tables_of(curve)
+    if path.speed:
+        own[f"{PATH}_speed"] = {"table": [list(station) for station in path.speed]}
+        if len(path.speed) == 1:
+            own[f"{PATH}_speed"]["table"].append([path.speed[0][0] + 1.0, path.speed[0][1]])
+    for name in own:
+        if isinstance(tables, dict) and name in tables:
+            raise InputError(f"tables.{name}: found the name of a table of the section {PATH}, expected another")
+    return {**raw, PATH: path, "tables": {**tables, **own} if isinstance(tables, dict) else tables}
+
+
+def tables_of(curve: Curve) -> dict[str, Any]:
+    """Return position, direction and curvature over the arc length, by the names of their tables."""
+    ends = {"x": "not-a-knot", "y": "not-a-knot"}
+    return {
+        f"{PATH}_{name}": {
+            "table": np.stack([curve.s, getattr(curve, name)], axis=1).tolist(),
+            "ends": "periodic" if curve.closed else ends.get(name, "clamped"),
+        }
+        for name in ("x", "y", "cos", "sin", "curvature")
+    }

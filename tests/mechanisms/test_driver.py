@@ -1,0 +1,93 @@
+"""The driver: lateral error on standard courses and at all speeds, speed profile, pedal, and faults in a path."""
+
+import numpy as np
+import pytest
+
+import stiffmbs
+from stiffmbs.model.paths.curves import curve_through
+from stiffmbs.model.paths.lanes import STANDARDS, path_through
+
+from ..conftest import EXAMPLES
+
+
+def driven(manoeuvre, *changes, **settings):
+    run = stiffmbs.run(
+        stiffmbs.load_scene(EXAMPLES / "car.yaml", [("choose.manoeuvre", manoeuvre), *changes]), **settings
+    )
+    assert run.success
+    return run
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("word", ["bushing", "rigid"])
+def test_the_double_lane_change_of_iso_3888_at_80_km_h(word):
+    """The error is measured again in NumPy, as the distance from the points of the path."""
+    run = driven("lane_change", ("V", "80/3.6"), ("choose.compliance", word), duration=8)
+    lanes = tuple(lane.shifted(30) for lane in STANDARDS["iso3888-1"](1.8))
+    course = curve_through(path_through(lanes, 1.8, 30, 100))
+    errors = course.nearest(run["chassis.x"], run["chassis.y"])[1]
+    assert np.max(np.abs(errors)) < 0.15
+    assert run["driver.lateral_error"] == pytest.approx(errors, abs=2e-3)
+    for lane in lanes:
+        inside = (run["chassis.x"] > lane.start) & (run["chassis.x"] < lane.end)
+        assert np.all(np.abs(run["chassis.y"][inside] - lane.centre) < (lane.left - lane.right - 1.8) / 2), (
+            "no cone is hit"
+        )
+
+
+@pytest.mark.long
+def test_a_circle_of_100_m_at_20_m_s():
+    run = driven("circle", ("R", "100"))
+    assert np.max(np.abs(run["driver.lateral_error"])) < 0.15
+    x, y = run["chassis.x"][500:], run["chassis.y"][500:]
+    centre = np.linalg.lstsq(np.stack([2 * x, 2 * y, np.ones_like(x)], axis=1), x**2 + y**2, rcond=None)[0]
+    assert np.hypot(x - centre[0], y - centre[1]) == pytest.approx(np.full_like(x, 100), abs=0.03)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("speed", "radius", "duration"), [(1, 20, 40), (5, 40, 20), (40, 600, 10), (60, 1200, 12)])
+def test_the_driver_is_stable_from_1_to_60_m_s(speed, radius, duration):
+    run = driven("circle", ("V", str(speed)), ("R", str(-radius)), duration=duration, output=0.05)
+    assert np.max(np.abs(run["driver.lateral_error"])) < 0.2
+    assert np.max(np.abs(run["driver.lateral_error"][-10:])) < 0.1
+    turning = np.diff(np.sign(np.diff(run["driver.travel"][-60:])))
+    assert np.count_nonzero(turning) < 3 or np.ptp(run["driver.travel"][-60:]) < 1e-5, "it does not weave"
+
+
+def test_a_lap_closes_and_its_curvature_is_that_of_the_circle():
+    angles = np.linspace(0, 2 * np.pi, 40, endpoint=False)
+    lap = curve_through(50 * np.stack([np.cos(angles), np.sin(angles)], axis=1), closed=True)
+    assert lap.s[-1] == pytest.approx(2 * np.pi * 50, rel=1e-5)
+    assert lap.curvature == pytest.approx(np.full_like(lap.s, 0.02), rel=3e-3)
+    assert (lap.x[0], lap.y[0]) == (lap.x[-1], lap.y[-1])
+
+
+@pytest.mark.long
+def test_a_speed_profile_along_points_with_the_pedal_at_the_end():
+    points = "[[0, 0], [10, 0], [20, 0], [30, 0], [40, 0], [80, 4], [120, 4], [200, 0], [300, 0]]"
+    path = f"{{points: {points}, speed: [[0, 15 m/s], [60, 15 m/s], [110, 20 m/s], [400, 20 m/s]]}}"
+    changes = [("V", "15"), ("path", path), ("use.driver.pace", "profile"), ("use.driver.parameters.brakes", "9")]
+    run = driven("circle", *changes, duration=11)
+    assert np.max(np.abs(run["driver.lateral_error"])) < 0.15
+    at = np.searchsorted(run.time, 8.9)
+    assert run["driver.speed"][at] == pytest.approx(20, abs=0.2)
+    assert run["driver.speed"][-1] < 14, "braked"
+
+
+@pytest.mark.parametrize(
+    ("path", "message"),
+    [
+        ("{circle: 0 m}", "path.circle: found 0"),
+        ("{points: [[0, 0], [0, 0], [1, 1]]}", "path.points: found the point (0.0, 0.0) twice"),
+        ("{points: [[0, 0]]}", "path.points: found 1 points, expected 2 or more"),
+        ("{lanes: iso3888-3}", "path.lanes"),
+        ("{lanes: iso3888-1, circle: 50 m}", "path: found circle and lanes, expected one of points, circle, lanes"),
+        ("{}", "path: found no course"),
+        ("{circle: 50 m, speed: [[0, 1], [0, 2]]}", "path.speed: found arc lengths that do not increase"),
+        ("5", "path: found 5"),
+    ],
+)
+def test_a_fault_in_a_path_is_named(path, message):
+    with pytest.raises(stiffmbs.InputError) as error:
+        stiffmbs.load_scene(EXAMPLES / "car.yaml", [("choose.manoeuvre", "circle"), ("path", path)])
+    assert message in str(error.value)
