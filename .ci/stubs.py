@@ -17,6 +17,7 @@ from pydantic_core import PydanticUndefined
 
 import stiffmbs
 from stiffmbs.elements.element import Element
+from stiffmbs.elements.roads.envelope import Envelope
 from stiffmbs.elements.roads.road import Road
 from stiffmbs.elements.spatial.orientation import OrientationField
 from stiffmbs.elements.tyres.coefficients import TyreProperties
@@ -176,6 +177,7 @@ TAKEN: Mapping[type, str] = {
     Table: "given.Curve",
     Road: "given.Road",
     TyreProperties: "given.TyreProperties",
+    Envelope: "given.Envelope",
 }
 PLAIN = {bool: "bool", int: "int", str: "str", type(None): "None"}
 

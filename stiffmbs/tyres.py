@@ -7,8 +7,9 @@ Examples
 >>> tyre.wrench(load=4000, slip_angle=0.05)["lateral"]
 """
 
+from .elements.roads.envelope import Envelope
 from .elements.spatial.relaxation import DEFLECTIONS
 from .elements.spatial.tyre import Rolling, Tyre
 from .elements.tyres.coefficients import TyreProperties
 
-__all__ = ["DEFLECTIONS", "Rolling", "Tyre", "TyreProperties"]
+__all__ = ["DEFLECTIONS", "Envelope", "Rolling", "Tyre", "TyreProperties"]

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 
 if TYPE_CHECKING:
-    from ..elements.roads import road
+    from ..elements.roads import envelope, road
     from ..elements.tyres import coefficients
     from .handle import Handle
     from .marker import MarkerReference
@@ -33,6 +33,8 @@ Road: TypeAlias = "road.Road | Mapping[str, Any]"
 """Road made in Python, or its type and fields."""
 TyreProperties: TypeAlias = "coefficients.TyreProperties | str | Path | Mapping[str, Any]"
 """Property file, or its coefficients."""
+Envelope: TypeAlias = "envelope.Envelope | Mapping[str, Any]"
+"""Cams of the enveloping contact of a tyre."""
 Markers: TypeAlias = "Mapping[str, Any]"
 """Named points on a body."""
 Geometry: TypeAlias = "Mapping[str, Any] | Sequence[Mapping[str, Any]]"

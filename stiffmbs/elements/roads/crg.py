@@ -114,7 +114,7 @@ class CrgRoad(Road):
         x, y, level = self._at_its_place()
         columns = self._columns
         tables = tuple(
-            through_filter(_section(self.file.u, self.file.heights[:, k] - level), self.filter_radius) for k in columns
+            through_filter(_section(self.file.u, self.file.heights[:, k] - level), self.filter_shape) for k in columns
         )
         own = {"friction": self.friction, "lines": tables, "across": tuple(self.file.v[columns].tolist())}
         if self._line is not None:

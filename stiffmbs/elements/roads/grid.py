@@ -102,7 +102,7 @@ class GridRoad(Road):
 
     def in_equations(self) -> dict[str, Any]:
         """Return its tables along x, filtered with `filter_radius`, and their positions y."""
-        tables = tuple(through_filter(table, self.filter_radius) for table in self.file.tables)
+        tables = tuple(through_filter(table, self.filter_shape) for table in self.file.tables)
         return {"friction": self.friction, "lines": tables, "across": self.file.across}
 
     @staticmethod

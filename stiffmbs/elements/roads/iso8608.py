@@ -75,7 +75,7 @@ class Iso8608Road(Road):
         """Return the tables of its left and right track, filtered with `filter_radius`."""
         waves = self.track, self.length, self.longest, self.shortest, self.coherence
         tables = _tables(CLASSES.index(self.roughness), self.seed, *waves)
-        left, right = (through_filter(table, self.filter_radius) for table in tables)
+        left, right = (through_filter(table, self.filter_shape) for table in tables)
         own = {name: getattr(self, name) for name in ("friction", "track", "start", "entry")}
         return {**own, "left": left, "right": right}
 

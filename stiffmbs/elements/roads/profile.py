@@ -54,8 +54,10 @@ class TableRoad(Road):
     def in_equations(self) -> dict[str, Any]:
         """Return its tables, filtered with `filter_radius`."""
         own = dict(Component.in_equations(self))
-        radius = own.pop("filter_radius")
-        filtered = {name: own[name] and through_filter(own[name], radius) for name in ("profile", "left", "right")}
+        del own["filter_radius"]
+        filtered = {
+            name: own[name] and through_filter(own[name], self.filter_shape) for name in ("profile", "left", "right")
+        }
         return {**own, **filtered}
 
     @staticmethod

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
-from pydantic import Field, model_validator
+from pydantic import Field, PrivateAttr, model_validator
 
 from ...reading.fields import typed
 from ...reading.formula.field import FormulaOf
@@ -12,6 +12,7 @@ from ...reading.formula.formula import Formula
 from ...reading.table import Table
 from ...reading.units import si
 from ..element import Component, Symbolic
+from .rolling_filter import Cam
 
 if TYPE_CHECKING:
     import numpy as np
@@ -44,6 +45,8 @@ class Road(Component):
         None, description="of a disc, m: the heights are those that it rolls on; those of the road by default"
     )
 
+    _cam: Cam | None = PrivateAttr(None)
+
     @model_validator(mode="before")
     @classmethod
     def _of_its_kind(cls, found: Any) -> Any:
@@ -68,12 +71,34 @@ class Road(Component):
     def in_equations(self) -> dict[str, Any]:
         """Return its fields, and with `filter_radius` the table ``rolled`` of filtered heights."""
         own = dict(super().in_equations())
-        radius, extent = own.pop("filter_radius"), self.extent()
-        if radius is None or extent is None:
+        del own["filter_radius"]
+        shape, extent = self.filter_shape, self.extent()
+        if shape is None or extent is None:
             return own
         from .rolling_filter import rolled_profile
 
-        return {**own, "rolled": rolled_profile(self.profile_heights, extent, radius)}
+        return {**own, "rolled": rolled_profile(self.profile_heights, extent, shape)}
+
+    @property
+    def filter_shape(self) -> float | Cam | None:
+        """Disc or cam whose heights the equations have, or None for those of the road."""
+        return self._cam or self.filter_radius
+
+    def under_cams(self, cam: Cam) -> Road:
+        """Return the road with the heights that a cam rolls on, instead of those of `filter_radius`.
+
+        Raises
+        ------
+        ValueError
+            If the road has no extent.
+        """
+        if self.level:
+            return self
+        if self.extent() is None:
+            raise ValueError(f"found a road '{self.kind}' without an extent, expected a road that states one")
+        road = self.model_copy()
+        road._cam = cam
+        return road
 
     @staticmethod
     def height(r: Symbolic, x: Any, y: Any) -> Any:

@@ -1,14 +1,15 @@
-"""Rolling-radius filter: effective road heights for a rigid disc.
+"""Filters of road heights: the rolling radius, a rigid disc on the road, and an elliptical cam.
 
 A rigid disc of radius R on a profile h has its centre at the height max over s of h(x + s) + sqrt(R^2 - s^2). That
 height minus R is the road height for a tyre with a single contact point. The disc bridges narrow gaps, and a step
 becomes a circular arc. Captain, Boghani, Wormley, Analytical tire models for dynamic vehicle simulation, Vehicle System
-Dynamics 8 (1979) 1-32.
+Dynamics 8 (1979) 1-32. A cam (`stiffmbs.elements.roads.envelope`) does the same with another shape.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import lru_cache, partial
 from typing import TYPE_CHECKING, Any
 
@@ -28,13 +29,36 @@ BESIDE = 1.5
 """Distance from a profile, in radii, at which the disc no longer touches it."""
 
 
-def through_filter(table: Table, radius: float | None) -> Table:
-    """Return the filtered heights for a disc of the given radius; the profile itself without one."""
-    return table if radius is None else rolled(table, radius)
+@dataclass(frozen=True)
+class Cam:
+    """Lower half of a superellipse with horizontal and vertical half axes, m, that touches the road."""
+
+    length: float
+    height: float
+    order: float
+
+
+Shape = float | Cam
+"""Radius of a disc, m, or a cam."""
+
+
+def through_filter(table: Table, shape: Shape | None) -> Table:
+    """Return the filtered heights for a disc or a cam; the profile itself without one."""
+    return table if shape is None else rolled(table, shape)
+
+
+def _reach(shape: Shape) -> float:
+    """Return the largest horizontal distance at which a shape touches the road, m."""
+    return shape.length if isinstance(shape, Cam) else shape
+
+
+def _height(shape: Shape) -> float:
+    """Return the height of the shape's centre above its lowest point, m."""
+    return shape.height if isinstance(shape, Cam) else shape
 
 
 @lru_cache(maxsize=64)
-def rolled(table: Table, radius: float) -> Table:
+def rolled(table: Table, shape: Shape) -> Table:
     """Return the filtered heights over x.
 
     Raises
@@ -45,28 +69,28 @@ def rolled(table: Table, radius: float) -> Table:
     import numpy as np
 
     points = np.array(table.table)
-    x, centre = _centres(partial(heights_of, table), (points[0, 0], points[-1, 0]), radius)
-    _take_in(centre, x, points, radius)
+    x, centre = _centres(partial(heights_of, table), (points[0, 0], points[-1, 0]), shape)
+    _take_in(centre, x, points, shape)
     if table.ends == "periodic":
         centre[-1] = centre[0]
-    return table_of(x, centre - radius, "periodic" if table.ends == "periodic" else None)
+    return table_of(x, centre - _height(shape), "periodic" if table.ends == "periodic" else None)
 
 
-def rolled_profile(heights: Callable[[np.ndarray], np.ndarray], extent: tuple[float, float], radius: float) -> Table:
+def rolled_profile(heights: Callable[[np.ndarray], np.ndarray], extent: tuple[float, float], shape: Shape) -> Table:
     """Return the filtered heights of a profile given by a function, level outside its extent; errors as `rolled`."""
-    beside = BESIDE * radius
-    x, centre = _centres(heights, (extent[0] - beside, extent[1] + beside), radius)
-    return table_of(x, centre - radius)
+    beside = BESIDE * _reach(shape)
+    x, centre = _centres(heights, (extent[0] - beside, extent[1] + beside), shape)
+    return table_of(x, centre - _height(shape))
 
 
 def _centres(
-    heights: Callable[[np.ndarray], np.ndarray], extent: tuple[float, float], radius: float
+    heights: Callable[[np.ndarray], np.ndarray], extent: tuple[float, float], shape: Shape
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return positions along an extent, and the height of the disc's centre there."""
+    """Return positions along an extent, and the height of the centre of the disc or cam there."""
     import numpy as np
     from scipy.ndimage import grey_dilation
 
-    first, last = extent
+    (first, last), radius = extent, _reach(shape)
     radii = (last - first) / radius
     if radii * COARSE > MOST:
         raise InputError(
@@ -79,18 +103,19 @@ def _centres(
     margin = int(np.floor(radius / step))
     beside = step * np.arange(1, margin + 1)
     around = heights(np.concatenate([first - beside[::-1], x, last + beside]))
-    disc = _disc(step * np.arange(-margin, margin + 1), radius)
+    disc = _disc(step * np.arange(-margin, margin + 1), shape)
     centre = grey_dilation(around, footprint=np.ones(len(disc)), structure=disc, mode="nearest")
     return x[::parts], centre[margin : margin + len(x) : parts]
 
 
-def _take_in(centre: np.ndarray, x: np.ndarray, points: np.ndarray, radius: float) -> None:
-    """Raise the centre of the disc where it touches a point of the table between samples."""
+def _take_in(centre: np.ndarray, x: np.ndarray, points: np.ndarray, shape: Shape) -> None:
+    """Raise the centre of the disc or cam where it touches a point of the table between samples."""
     import numpy as np
 
+    radius = _reach(shape)
     ends = np.searchsorted(x, points[:, :1] + np.array([-radius, radius]))
     for (at, height), (begin, end) in zip(points, ends, strict=True):
-        np.maximum(centre[begin:end], height + _disc(x[begin:end] - at, radius), out=centre[begin:end])
+        np.maximum(centre[begin:end], height + _disc(x[begin:end] - at, shape), out=centre[begin:end])
 
 
 def heights_of(table: Table, x: np.ndarray) -> np.ndarray:
@@ -112,10 +137,14 @@ def heights_of(table: Table, x: np.ndarray) -> np.ndarray:
     return np.asarray(found(inside) + found(inside, 1) * (x - inside))
 
 
-def _disc(s: np.ndarray, radius: float) -> np.ndarray:
+def _disc(s: np.ndarray, shape: Shape) -> np.ndarray:
+    """Return the depth of the shape's lower edge below its centre, m, at horizontal distances."""
     import numpy as np
 
-    return np.sqrt(np.maximum(radius**2 - s**2, 0.0))
+    if isinstance(shape, Cam):
+        part = np.minimum(np.abs(s) / shape.length, 1.0)
+        return np.asarray(shape.height * (1 - part**shape.order) ** (1 / shape.order))
+    return np.sqrt(np.maximum(shape**2 - s**2, 0.0))
 
 
 def table_of(x: np.ndarray, values: np.ndarray, ends: Any = None) -> Table:

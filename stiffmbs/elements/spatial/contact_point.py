@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..element import Symbolic
+from ..roads.envelope import enveloped
 from ..roads.road import above_zero, magnitude
 from .wrench import along_axes, seen_from, velocity
 
@@ -55,10 +56,11 @@ def contact_point(e: Symbolic) -> ContactPoint:
     from sympy import asin
 
     centre, axis = e.named(e.i.point), e.named(e.i.y)
-    x, y, below, n = _surface(e, centre)
+    enveloping = e.envelope is not None and not e.road.level
+    x, y, below, n = _effective_surface(e, centre, axis) if enveloping else _surface(e, centre)
     forward, up = _heading(e, axis, n)
     radius = e.named(below / up.dot(n))
-    if not e.road.level:
+    if not e.road.level and not enveloping:
         point = e.named(centre - radius * up)
         x, y, below, n = _surface(e, point)
         forward, up = _heading(e, axis, n)
@@ -73,17 +75,32 @@ def contact_point(e: Symbolic) -> ContactPoint:
 
 def _surface(e: Symbolic, point: Any) -> tuple[Any, Any, Any, Any]:
     """Return a point's coordinates along and across the road, its distance from the tangent plane, and the normal."""
-    from sympy import Matrix, sqrt
-
     local = point if e.j is None else seen_from(point, e.j)
     x, y = e.variable(local[0]), e.variable(local[1])
     along, across = e.road.place(e, x, y)
     height = e.named(e.road.surface(along, across))
     slopes = e.named([e.slope(height, x), e.slope(height, y)])
+    return along, across, *_plane(e, local[2] - height, slopes)
+
+
+def _effective_surface(e: Symbolic, centre: Any, axis: Any) -> tuple[Any, Any, Any, Any]:
+    """Return the same for the effective plane of the cams of an enveloping tyre."""
+    local = centre if e.j is None else seen_from(centre, e.j)
+    direction = axis if e.j is None else [axis.dot(along) for along in (e.j.x, e.j.y, e.j.z)]
+    x, y = e.named(local[0]), e.named(local[1])
+    height, *slopes = enveloped(e, x, y, direction)
+    along, across = e.road.place(e, x, y)
+    return along, across, *_plane(e, local[2] - height, slopes)
+
+
+def _plane(e: Symbolic, above: Any, slopes: Any) -> tuple[Any, Any]:
+    """Return the distance of a point from a plane, given its height above it, and the plane's normal."""
+    from sympy import Matrix, sqrt
+
     upright = e.named(1 / sqrt(1 + slopes[0] ** 2 + slopes[1] ** 2))
     components = Matrix([-slopes[0] * upright, -slopes[1] * upright, upright])
     n = components if e.j is None else along_axes(components, e.j.axes)
-    return along, across, e.named((local[2] - height) * upright), e.named(n)
+    return e.named(above * upright), e.named(n)
 
 
 def _heading(e: Symbolic, axis: Any, n: Any) -> tuple[Any, Any]:

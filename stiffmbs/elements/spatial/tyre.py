@@ -5,10 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from ...reading.units import si
 from ..element import Force, Symbolic
+from ..roads.envelope import Envelope
 from ..roads.field import AnyRoad
 from ..roads.road import FlatRoad, above_zero
 from .contact_point import ContactPoint, contact_point, slips
@@ -92,9 +93,23 @@ class Tyre(Force):
     road: AnyRoad = Field(
         FlatRoad(), description="the name of a road of the scene, or a road; level at z = 0 by default"
     )
+    envelope: Envelope | None = Field(
+        None,
+        description="elliptical cams on which the tyre rolls over short obstacles; one point of contact by default",
+    )
     slow: si.PositiveVelocity = Field(
         1.0, description="speed below which slips are not the textbook's, m/s: see the guide on tyres"
     )
+
+    @model_validator(mode="after")
+    def _on_cams(self) -> Tyre:
+        if (cams := self.cams()) is not None:
+            self.__dict__.update(envelope=cams, road=self.road.under_cams(cams.cam))  # the model is frozen
+        return self
+
+    def cams(self) -> Envelope | None:
+        """Return the cams of the enveloping contact, or None."""
+        return self.envelope
 
     def spins_with(self) -> dict[str, str]:
         return {"i": "y"}

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from pathlib import Path
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import Field, model_validator
@@ -17,6 +18,7 @@ from ...reading.files.requested import unused_notes
 from ...reading.table import Table
 from ..element import Component
 from ..read_by import Context, JsonSchema, ReadBy
+from ..roads.envelope import MOST_TRACKS, Envelope
 from .formulas import OF_FITTYP, OF_FORMAT, VERSIONS, Version, plain
 from .names import AS_BEFORE, COMBINED, LATER, OF_THE_FILE, RANGES, REASONS, REQUIRED, TURN_SLIP, home
 from .property_file import PropertyFile, read_property_file
@@ -147,6 +149,21 @@ class TyreProperties(Component):
             return None
         numbers = {**self.formula.defaults, **self.coefficients}
         return numbers["INFLPRES"] or numbers["NOMPRES"]
+
+    @property
+    def envelope(self) -> Envelope | None:
+        """Cams of the enveloping contact by ELLIPS_SHIFT to ELLIPS_NWIDTH, for the contact patch at the nominal load."""
+        p = SimpleNamespace(**{**self.formula.defaults, **self.coefficients})
+        if not self.formula.has_pressure or min(p.ELLIPS_SHIFT, p.ELLIPS_LENGTH, p.ELLIPS_HEIGHT, p.Q_RA1) <= 0:
+            return None
+        from .deflection_6 import contact_patch
+
+        half_length, half_width = map(float, contact_patch(p, p.FNOMIN, 0.0))
+        return Envelope(
+            shift=p.ELLIPS_SHIFT * 2 * half_length, length=p.ELLIPS_LENGTH * p.UNLOADED_RADIUS,
+            height=p.ELLIPS_HEIGHT * p.UNLOADED_RADIUS, order=p.ELLIPS_ORDER or 2.0, width=2 * half_width,
+            tracks=min(max(int(p.ELLIPS_NWIDTH), 1), MOST_TRACKS),
+        )  # fmt: skip
 
     def in_equations(self) -> dict[str, Any]:
         """Return the names and values that the equations use."""

@@ -62,6 +62,7 @@ DIMENSIONS_6 = {
     **DIMENSIONS, "WIDTH": "length", "ASPECT_RATIO": "", "LONGITUDINAL_STIFFNESS": "stiffness",
     "LATERAL_STIFFNESS": "stiffness", "INFLPRES": "pressure", "NOMPRES": "pressure",
     **dict.fromkeys(_words("Q_RE0 Q_V1 Q_V2 Q_FZ2 Q_FCX Q_FCY PFZ1 Q_RA1 Q_RA2 Q_RB1 Q_RB2 Q_FCY2 Q_CAM3"), ""),
+    **dict.fromkeys(_words("ELLIPS_SHIFT ELLIPS_LENGTH ELLIPS_HEIGHT ELLIPS_ORDER ELLIPS_NWIDTH"), ""),
     "Q_CAM1": "", "Q_CAM2": "per length", "Q_FYS1": "force", "Q_FYS2": "force", "Q_FYS3": "force",
 }  # fmt: skip
 """Other numbers of MF-Tyre 6.1 and 6.2, with their dimensions."""
@@ -77,6 +78,7 @@ REASONS = {
     "*": {"QTZ1": "of the belt's couple, which needs MBELT too", "MBELT": "of the belt's couple, which needs QTZ1 too"},
     "[INERTIA]": {"*": "the mass properties are those of the wheel's body"},
     "[STRUCTURAL]": {"*": "the rigid ring of MF-Swift is not modelled"},
+    "[CONTACT_PATCH]": dict.fromkeys(("ELLIPS_NLENGTH", "ELLIPS_MAX_STEP"), "the cams of each track are a front and a rear one"),
     "[MODEL]": {
         "VXLOW": "the field slow of the tyre has its place", "ROAD_INCREMENT": "of the road", "ROAD_DIRECTION": "of the road",
     },
@@ -97,7 +99,9 @@ _HOMES = {
     "OPERATING_CONDITIONS": _words("INFLPRES NOMPRES"),
     "VERTICAL_FORCE_RANGE": _words("FZMIN FZMAX"),
     "STRUCTURAL": _words("LONGITUDINAL_STIFFNESS LATERAL_STIFFNESS PCFX1 PCFX2 PCFX3 PCFY1 PCFY2 PCFY3"),
-    "CONTACT_PATCH": _words("Q_RA1 Q_RA2 Q_RB1 Q_RB2"),
+    "CONTACT_PATCH": _words(
+        "Q_RA1 Q_RA2 Q_RB1 Q_RB2 ELLIPS_SHIFT ELLIPS_LENGTH ELLIPS_HEIGHT ELLIPS_ORDER ELLIPS_NWIDTH"
+    ),
     "VERTICAL": tuple(DIMENSIONS_6),
     "SCALING_COEFFICIENTS": (*SCALES, *SCALES_6, "LGYR"),
     "ALIGNING_COEFFICIENTS": ("QTZ1", "MBELT"),

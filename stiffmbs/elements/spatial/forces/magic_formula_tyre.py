@@ -10,6 +10,7 @@ from pydantic import Field, model_validator
 
 from ....reading.units import si
 from ...element import Symbolic
+from ...roads.envelope import Envelope
 from ...roads.road import above_zero, magnitude
 from ...tyres.coefficients import AnyProperties, TyreProperties
 from ...tyres.names import SAMPLE, SAMPLE_6
@@ -57,6 +58,9 @@ class MagicFormulaTyre(Tyre):
     transient: bool | None = Field(
         None, description="whether slips lag by relaxation lengths; as USE_MODE says by default"
     )
+    envelope: Envelope | Literal["file"] | None = Field(  # type: ignore[assignment]
+        None, description="elliptical cams for short obstacles: their sizes, or 'file' for ELLIPS_LENGTH and so on"
+    )
     pressure: si.PositivePressure | None = Field(
         None, description="inflation pressure of a tyre of 6.1 or 6.2, Pa; INFLPRES of the file by default"
     )
@@ -75,6 +79,16 @@ class MagicFormulaTyre(Tyre):
         if self._turns and not p.has_turn_slip:
             raise ValueError("turn_slip: found properties without its coefficients, expected some such as PDYP1, PHYP1")
         return self
+
+    def cams(self) -> Envelope | None:
+        """Return the cams of the enveloping contact, given or of the property file."""
+        if self.envelope != "file":
+            return self.envelope
+        if self.properties.envelope is None:
+            raise ValueError(
+                "envelope: found properties without ELLIPS_SHIFT, ELLIPS_LENGTH, ELLIPS_HEIGHT and Q_RA1, expected a file with these"
+            )
+        return self.properties.envelope
 
     @property
     def _turns(self) -> bool:
