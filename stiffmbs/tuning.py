@@ -1,4 +1,4 @@
-"""Parameters of the solvers in use: the defaults, or those that the settings of a run change.
+"""Parameters in use of solvers and checks: the defaults, or those that the settings of a run change.
 
 Each subsystem has one frozen dataclass of its parameters. Its instance of defaults is registered by `tuned`, which
 returns an object with the same attributes. Their values are the defaults, except within `in_use`. Compiled code
@@ -48,13 +48,16 @@ SUBSYSTEMS = {
     "polishing": "solve.error_control.native.parameters:POLISHING",
     "precision": "solve.error_control.precision:PRECISION",
     "radau": "solve.radau.parameters:RADAU",
+    "redundancy": "redundancy.parameters:REDUNDANCY",
     "relaxation": "solve.error_control.relaxation:RELAXATION",
     "restarts": "solve.events.restart:RESTARTS",
+    "run_checks": "run_checks.parameters:RUN_CHECKS",
     "stability_bound": "solve.explicit.stable_step:STABILITY_BOUND",
     "stability_limit": "solve.error_control.stability_limit:STABILITY_LIMIT",
     "sundae": "solve.ida.sundae:FALLBACK",
     "suspect": "solve.suspect:SUSPECT",
     "velocity_jumps": "solve.events.velocity_jumps:VELOCITY_JUMP",
+    "verification": "verification.parameters:VERIFICATION",
 }
 """Names of the subsystems in ``run.tuning``, and the places of their defaults."""
 Values = Mapping[str, Mapping[str, Any]]

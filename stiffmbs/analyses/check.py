@@ -135,6 +135,12 @@ def check(model: Runnable, settings: RunSettings | None = None, **changes: Unpac
     if isinstance(data, Scene) and data.stages:
         return _of_stages(data, [check(stage, settings, **changes) for stage in data.stage_scenes])
     found = examined(data, settings, **changes)
+    with in_use(found.settings.tuning):
+        return _of_run(found)
+
+
+def _of_run(found: Examined) -> Report:
+    """Return the report on an examined model."""
     redundancy, system = found.redundancy, found.redundancy.system
     cases = tuple(overconstraints(redundancy))
     against = tuple(inconsistency_sentences(redundancy))
@@ -155,8 +161,7 @@ def check(model: Runnable, settings: RunSettings | None = None, **changes: Unpac
         try:
             start = initial_values(dynamics, found.grid.start)
             free = idle_freedoms(dynamics, found.grid.start)
-            with in_use(found.settings.tuning):
-                subsystems = presolved(found.data, dynamics, start, found.grid, found.settings)
+            subsystems = presolved(found.data, dynamics, start, found.grid, found.settings)
             problems += [start.position_sentence(MOST_MOVES)] if start.moved_far else []
         except (AssemblyError, SolverError) as error:
             problems += [] if redundancy.extra_freedoms else [str(error)]

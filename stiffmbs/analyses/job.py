@@ -184,7 +184,8 @@ def examined(
             )
     order = [*(name for name in data.joints if name not in chosen.drop_first), *chosen.drop_first]
     system = compile_model(data)
-    refuse_far_away(system)
+    with in_use(chosen.tuning):
+        refuse_far_away(system)
     system = started_from(system, data, state)
-    with told_faults(system):
+    with told_faults(system), in_use(chosen.tuning):
         return Examined(data, chosen, grid, examine(system, grid.start, chosen.duration, order), state)

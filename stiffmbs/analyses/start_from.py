@@ -35,7 +35,9 @@ def state_to_start_from(given: StartFrom | None) -> SavedState | None:
             return given.state()
         case str() | Path():
             return read_state(given)
-    raise InputError(f"start_from: found a {type(given).__name__}, expected a file of results, a Solution, or a state of one")
+    raise InputError(
+        f"start_from: found a {type(given).__name__}, expected a file of results, a Solution, or a state of one"
+    )
 
 
 def starting_at(state: SavedState | None, given: RunSettings | None, changes: dict[str, Any]) -> dict[str, Any]:

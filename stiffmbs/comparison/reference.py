@@ -16,10 +16,11 @@ from ..results.scales import kind_of, scales
 from ..results.solution import Solution
 from ..solve.settings import changed, traits_of
 from ..solve.trajectory import Outcome
-from ..verification.solve_again import BDF, EXPLICIT, TIGHTEST_RTOL, Deadline
+from ..verification.parameters import VERIFICATION
+from ..verification.solve_again import BDF, EXPLICIT, Deadline
 from .measures import MEASURES, ROTATION, compared, difference, largest
 
-TIGHT, TIGHTER = 1e-12, TIGHTEST_RTOL
+TIGHT, TIGHTER = 1e-12, VERIFICATION.tightest_rtol
 LOOSER = tuple(float(f"1e{k}") for k in range(-11, -8))
 """Relative tolerances: the first, the next if the integrators disagree, the others if a run does not end.
 

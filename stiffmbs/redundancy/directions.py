@@ -9,9 +9,7 @@ import numpy as np
 
 from ..compile.quaternions import CONJUGATE, rotated, times
 from .loop_equations import LoopEquations, Pose
-
-SAME_DIRECTION = 1e-5
-"""Largest angle, rad, and relative perpendicular component of a force, for which directions count as equal."""
+from .parameters import REDUNDANCY
 
 
 class Direction(NamedTuple):
@@ -98,14 +96,14 @@ def _space(change: np.ndarray, negligible: float) -> tuple[int, np.ndarray]:
     axes, sizes, _ = np.linalg.svd(change, full_matrices=change.shape[1] < len(change))
     if sizes[0] <= negligible:
         return 0, axes[:, 0]
-    rank = int(np.sum(sizes > SAME_DIRECTION * sizes[0]))
+    rank = int(np.sum(sizes > REDUNDANCY.same_direction * sizes[0]))
     return rank, axes[:, 0] if rank == 1 else axes[:, -1]
 
 
 def _same(a: np.ndarray, b: np.ndarray) -> bool:
-    return bool(min(np.linalg.norm(a - b), np.linalg.norm(a + b)) < SAME_DIRECTION)
+    return bool(min(np.linalg.norm(a - b), np.linalg.norm(a + b)) < REDUNDANCY.same_direction)
 
 
 def _rounded(vector: np.ndarray) -> tuple[float, ...]:
-    largest = int(np.argmax(np.abs(vector) > np.abs(vector).max() - SAME_DIRECTION))
+    largest = int(np.argmax(np.abs(vector) > np.abs(vector).max() - REDUNDANCY.same_direction))
     return tuple(round(float(part), 9) + 0.0 for part in vector * np.sign(vector[largest]))

@@ -8,11 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .loop_rank import LoopRank
-
-WELL_CHOSEN = 0.1
-"""Smallest share of a dropped row in the null spaces, relative to the largest, unless no other row remains."""
-TAKES_PART = 1e-6
-"""Share in a combination, relative to its largest, below which a row is not part of it."""
+from .parameters import REDUNDANCY
 
 
 class Redundant(NamedTuple):
@@ -49,14 +45,14 @@ def redundant_rows(found: LoopRank, order: Sequence[str], holonomic: np.ndarray)
     spaces = [space for _, space in found.null_spaces]
     rests, chosen = list(spaces), list[int]()
     preference, shares = _preference(found, order, holonomic), _least_shares(rests)
-    for least in (WELL_CHOSEN, TAKES_PART):
+    for least in (REDUNDANCY.well_chosen, REDUNDANCY.takes_part):
         for row in preference:
             if len(chosen) < found.redundancy and shares[row] > least:
                 chosen.append(row)
                 rests = [_without(rest, row) for rest in rests]
                 shares = _least_shares(rests)
     circuits = [np.abs(space @ np.linalg.inv(space[chosen])) for space in spaces]
-    part = np.any([TAKES_PART * Z.max(axis=0) < Z for Z in circuits], axis=0)
+    part = np.any([REDUNDANCY.takes_part * Z.max(axis=0) < Z for Z in circuits], axis=0)
     return [
         Redundant(row, tuple(int(other) for other in np.flatnonzero(part[:, k]) if other not in chosen))
         for k, row in enumerate(chosen)
@@ -65,7 +61,7 @@ def redundant_rows(found: LoopRank, order: Sequence[str], holonomic: np.ndarray)
 
 def rank_of(rows: np.ndarray) -> int:
     """Return the rank of some rows of null vectors."""
-    return int(np.linalg.matrix_rank(rows, tol=TAKES_PART)) if rows.size else 0
+    return int(np.linalg.matrix_rank(rows, tol=REDUNDANCY.takes_part)) if rows.size else 0
 
 
 def _preference(found: LoopRank, order: Sequence[str], holonomic: np.ndarray) -> list[int]:
@@ -85,7 +81,7 @@ def _least_shares(spaces: Sequence[np.ndarray]) -> np.ndarray:
 def _shares(space: np.ndarray) -> np.ndarray:
     """Return each row's share in a null space, relative to the largest."""
     norms = np.linalg.norm(space, axis=1)
-    return norms / max(norms.max(), TAKES_PART)
+    return norms / max(norms.max(), REDUNDANCY.takes_part)
 
 
 def _without(space: np.ndarray, row: int) -> np.ndarray:

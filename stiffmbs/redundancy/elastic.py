@@ -9,9 +9,7 @@ from ..compile.quaternions import rotated
 from ..compile.state import State
 from ..compile.system import System
 from ..compile.terms import TERM_SETS
-
-STIFFNESS_ROUNDING = 1e-12
-"""Stiffness that counts as rounding, relative to the largest on the body."""
+from .parameters import REDUNDANCY
 
 
 def stiffnesses(state: State, t: float) -> dict[int, dict[str, np.ndarray]]:
@@ -92,12 +90,12 @@ def held(stiffness: dict[str, np.ndarray], ways: np.ndarray, scale: np.ndarray) 
     """
     scaled = {name: scale[:, None] * K * scale for name, K in stiffness.items()}
     largest = max((np.abs(K).max() for K in scaled.values()), default=0.0)
-    names = [name for name, K in scaled.items() if np.abs(K @ ways.T).max() > STIFFNESS_ROUNDING * largest]
+    names = [name for name, K in scaled.items() if np.abs(K @ ways.T).max() > REDUNDANCY.stiffness_rounding * largest]
     if not names:
         return [], ways
     _, values, free = np.linalg.svd(sum(scaled[name] for name in names) @ ways.T)
     values = np.pad(values, (0, len(ways) - len(values)))
-    return names, free[values <= STIFFNESS_ROUNDING * largest] @ ways
+    return names, free[values <= REDUNDANCY.stiffness_rounding * largest] @ ways
 
 
 def screwed(system: System, q: np.ndarray, body: int, twist: np.ndarray) -> np.ndarray:

@@ -9,14 +9,9 @@ import numpy as np
 
 from ..compile.system import System
 from ..dynamics.dynamics import Dynamics
-from .drop_first import TAKES_PART
 from .elastic import held, screwed, stiffnesses
-from .loop_rank import PERTURBATION
-from .loops import DEPENDENT
+from .parameters import REDUNDANCY
 from .unproven import by_functions
-
-FURTHER = 0.3
-"""Displacement along a free motion to a pose at which the stiffness of forces is checked again."""
 
 
 @dataclass(frozen=True)
@@ -63,7 +58,11 @@ def idle_freedoms(dynamics: Dynamics, t: float) -> list[IdleFreedom]:
     if not ways:
         return []
     q = state.q.copy()
-    step = PERTURBATION * np.random.default_rng(1).uniform(-1, 1, system.n_u) * system.per_velocity(system.size, 1.0)
+    step = (
+        REDUNDANCY.perturbation
+        * np.random.default_rng(1).uniform(-1, 1, system.n_u)
+        * system.per_velocity(system.size, 1.0)
+    )
     state.q[:] = system.of_body.moved(q, step)
     also = dict(_free_ways(dynamics, list(ways), t)) if dynamics.assemble(t) >= 0 else {}
     state.q[:] = q
@@ -115,7 +114,7 @@ def _held(dynamics: Dynamics, body: int, free: np.ndarray, t: float) -> tuple[li
     names, loose = held(stiffnesses(state, t).get(body, {}), free, scale)
     q = state.q.copy()
     for way in loose:
-        state.q[:] = screwed(dynamics.system, q, body, FURTHER * scale * way)
+        state.q[:] = screwed(dynamics.system, q, body, REDUNDANCY.further * scale * way)
         more, loose = held(stiffnesses(state, t).get(body, {}), loose, scale)
         names = list(dict.fromkeys([*names, *more]))
         state.q[:] = q
@@ -144,7 +143,7 @@ def _free_ways(dynamics: Dynamics, bodies: list[int], t: float) -> Iterator[tupl
         if not np.all(np.isfinite(J)):
             continue
         _, values, ways = np.linalg.svd(J)
-        free = ways[values <= DEPENDENT * values[0]]
+        free = ways[values <= REDUNDANCY.dependent * values[0]]
         if len(free):
             yield body, free
 
@@ -154,6 +153,6 @@ def _motion(ways: np.ndarray, linear: int) -> str:
     if len(ways) > 1:
         return "move"
     turning = ways[0, linear:]
-    if np.linalg.norm(turning) < TAKES_PART:
+    if np.linalg.norm(turning) < REDUNDANCY.takes_part:
         return "slide"
     return "turn"

@@ -9,19 +9,9 @@ import numpy as np
 
 from ..compile.gaps import Gap, position_gap, velocity_gap
 from .drop_first import Redundant
-from .loop_equations import AGREES, CLOSED, LoopEquations, Pose
-from .loop_rank import SOUND, LoopRank
-
-INSTANTS = (0.0137, 0.0931, 0.2113, 0.3719, 0.6131, 0.8677, 0.9941)
-"""Times of the check of time-dependent scenes, as fractions of the run."""
-NEARLY = 1e-3
-"""Largest violation at which equations count as redundant apart from their disagreement."""
-INDEPENDENT_ROW = 0.2
-"""Smallest component of a row of J perpendicular to others, relative to its norm, that makes it clearly independent."""
-LONGEST_MOVE = 20.0
-"""Largest displacement that satisfies the other equations, in gaps, for which the gap counts as a contradiction."""
-STRIDE, MOST_STRIDES = 0.2, 150
-"""Longest displacement (arms, rad) between two poses, to stay on one branch, and the largest number of poses."""
+from .loop_equations import LoopEquations, Pose
+from .loop_rank import LoopRank
+from .parameters import REDUNDANCY
 
 
 class Inconsistency(NamedTuple):
@@ -50,7 +40,7 @@ class Inconsistency(NamedTuple):
 
 def time_dependent(equations: LoopEquations, pose: Pose, duration: float) -> np.ndarray:
     """Return a mask of the rows that depend on time or prescribe velocities, evaluated at times of the run."""
-    rates = [equations.pose(pose.q, pose.t + part * duration).rates for part in (0.0, *INSTANTS)]
+    rates = [equations.pose(pose.q, pose.t + part * duration).rates for part in (0.0, *REDUNDANCY.instants)]
     return equations.timed | np.any(np.array(rates) != 0.0, axis=0)
 
 
@@ -60,14 +50,14 @@ def inconsistencies(found: LoopRank, redundant: list[Redundant], duration: float
     Each redundant equation must hold if the others do: in position at the assembled pose, and in velocity (J u + C_t =
     0 for the u of the others).
     """
-    if not redundant and not AGREES < found.start.gap < NEARLY:
+    if not redundant and not REDUNDANCY.agrees < found.start.gap < REDUNDANCY.nearly:
         return []
     equations = found.equations
     driven = time_dependent(equations, found.start, duration)
     for pose in _followed(equations, found.start, duration if redundant and driven.any() else 0.0):
         asked = redundant if pose is found.start else [r for r in redundant if driven[[r.row, *r.others]].any()]
         level, gaps = _disagreement(equations, redundant, pose)
-        if pose is found.start and pose.gap > AGREES and not gaps:
+        if pose is found.start and pose.gap > REDUNDANCY.agrees and not gaps:
             gaps = _nearby(equations, redundant, pose)
             asked = _blamed(pose, gaps)
         if against := [r for r in asked if r.row in gaps]:
@@ -93,18 +83,18 @@ def _followed(equations: LoopEquations, start: Pose, duration: float) -> Iterato
     """Yield the start and poses along a motion that the equations allow, up to the first that cannot be assembled."""
     yield start
     pose, strides = start, 0
-    for part in INSTANTS:
+    for part in REDUNDANCY.instants:
         end = start.t + part * duration
-        while pose.t < end and pose.gap <= AGREES:
+        while pose.t < end and pose.gap <= REDUNDANCY.agrees:
             u = np.linalg.lstsq(pose.J.dense(), -pose.rates)[0]
-            h = min(end - pose.t, STRIDE / max(float(np.linalg.norm(u)), 1e-300))
+            h = min(end - pose.t, REDUNDANCY.stride / max(float(np.linalg.norm(u)), 1e-300))
             while True:
                 strides += 1
                 t = end if h >= end - pose.t else pose.t + h
                 there = equations.assembled(equations.moved(pose.q, h * u), t)
-                if strides > MOST_STRIDES or not there.J.finite:
+                if strides > REDUNDANCY.most_strides or not there.J.finite:
                     return
-                if equations.distance(pose, there) <= 2 * STRIDE:
+                if equations.distance(pose, there) <= 2 * REDUNDANCY.stride:
                     break
                 h /= 2
             pose = there
@@ -117,16 +107,18 @@ def _disagreement(equations: LoopEquations, redundant: list[Redundant], pose: Po
     kept[[r.row for r in redundant]] = False
     if not pose.J.finite:
         return "", {}
-    if pose.gap <= AGREES:
-        return "velocity", _off(equations, _velocity_violations(pose, kept), AGREES * np.abs(pose.rates).max())
-    return "position", _off(equations, _position_violations(equations, pose, kept), AGREES)
+    if pose.gap <= REDUNDANCY.agrees:
+        return "velocity", _off(
+            equations, _velocity_violations(pose, kept), REDUNDANCY.agrees * np.abs(pose.rates).max()
+        )
+    return "position", _off(equations, _position_violations(equations, pose, kept), REDUNDANCY.agrees)
 
 
 def _nearby(equations: LoopEquations, redundant: list[Redundant], pose: Pose) -> dict[int, float]:
     """Return the violations of rows that do not hold if clearly independent rows do."""
     first = np.ones(len(pose.C), dtype=bool)
     first[[r.row for r in redundant]] = False
-    return _off(equations, _position_violations(equations, pose, _clearly_independent(pose, first)), AGREES)
+    return _off(equations, _position_violations(equations, pose, _clearly_independent(pose, first)), REDUNDANCY.agrees)
 
 
 def _off(equations: LoopEquations, gaps: np.ndarray, most: float) -> dict[int, float]:
@@ -140,7 +132,7 @@ def _velocity_violations(pose: Pose, kept: np.ndarray) -> np.ndarray:
     if not np.any(pose.rates):
         return np.zeros(len(pose.rates))
     u, _, _, values = np.linalg.lstsq(pose.J.of_rows(kept).dense(), -pose.rates[kept])
-    gaps: np.ndarray = np.abs(pose.J.times(u) + pose.rates) * ~kept * (values[-1] >= SOUND)
+    gaps: np.ndarray = np.abs(pose.J.times(u) + pose.rates) * ~kept * (values[-1] >= REDUNDANCY.sound)
     return gaps
 
 
@@ -148,7 +140,8 @@ def _position_violations(equations: LoopEquations, pose: Pose, kept: np.ndarray)
     """Return the violations of omitted rows at the nearest pose of the kept ones; zero if there is none."""
     alone = equations.assembled(pose.q, pose.t, kept)
     closes = (
-        np.abs(alone.C[kept]).max(initial=0.0) <= CLOSED and equations.distance(pose, alone) < LONGEST_MOVE * pose.gap
+        np.abs(alone.C[kept]).max(initial=0.0) <= REDUNDANCY.closed
+        and equations.distance(pose, alone) < REDUNDANCY.longest_move * pose.gap
     )
     gaps: np.ndarray = np.abs(alone.C) * ~kept * closes
     return gaps
@@ -162,7 +155,7 @@ def _clearly_independent(pose: Pose, first: np.ndarray) -> np.ndarray:
         rest = J[row] - basis.T @ (basis @ J[row])
         rest -= basis.T @ (basis @ rest)
         length = float(np.linalg.norm(rest))
-        if length > INDEPENDENT_ROW * np.linalg.norm(J[row]) > 0:
+        if length > REDUNDANCY.independent_row * np.linalg.norm(J[row]) > 0:
             basis, kept[row] = np.vstack([basis, rest / length]), True
     return kept
 
@@ -174,7 +167,7 @@ def _blamed(pose: Pose, gaps: dict[int, float]) -> list[Redundant]:
     row, J = next(iter(gaps)), pose.J.dense()
     others = np.delete(np.arange(len(J)), row)
     share = np.abs(np.linalg.lstsq(J[others].T, J[row])[0])
-    return [Redundant(row, tuple(others[share > INDEPENDENT_ROW * share.max()].tolist()))]
+    return [Redundant(row, tuple(others[share > REDUNDANCY.independent_row * share.max()].tolist()))]
 
 
 def _joints(equations: LoopEquations, redundant: Redundant, driven: np.ndarray) -> tuple[str, ...]:

@@ -9,20 +9,8 @@ import numpy as np
 
 from ..compile.state import State
 from .loops import Loop
+from .parameters import REDUNDANCY
 from .sparse_matrix import SparseMatrix
-
-CLOSED = 1e-11
-"""Largest violation of an assembled pose, relative to the loop's size."""
-AGREES = 1e-6
-"""Largest violation of an assembled pose with redundant equations of limited precision."""
-MOST_STEPS = 40
-"""Largest number of steps of an assembly."""
-LONGEST_STEP = 1.0
-"""Longest step (arms, rad), so that assembly stays near the described pose."""
-ROUNDING = 1e-9
-"""Slope of |C| relative to |C|, norm of a row relative to the others, and direction, below which they count as zero."""
-LEAST_DAMPING = 1e-13
-"""Smallest damping, which keeps C_q C_q^T regular with redundant equations."""
 
 
 class Pose(NamedTuple):
@@ -94,7 +82,7 @@ class LoopEquations:
     def scale_rows(self, matrices: list[SparseMatrix]) -> None:
         """Scale rows so that the largest norm of each in the given scaled matrices is one."""
         norms = np.max([J.norms() for J in matrices], axis=0)
-        self.row_scale /= np.maximum(norms, ROUNDING * np.median(norms) or 1.0)
+        self.row_scale /= np.maximum(norms, REDUNDANCY.rounding * np.median(norms) or 1.0)
 
     def pose(self, q: np.ndarray, t: float) -> Pose:
         """Return the equations at given coordinates of the loop's bodies."""
@@ -133,18 +121,18 @@ class LoopEquations:
         rows = np.ones(len(self.loop.rows), dtype=bool) if kept is None else kept
         pose = self.pose(q, t)
         closed = False  # one more step once closed; further ones would drift towards a pose with singular C_q
-        for _ in range(MOST_STEPS):
+        for _ in range(REDUNDANCY.most_steps):
             C, C_q = pose.C[rows], pose.C_q if kept is None else pose.C_q.of_rows(rows)
             if closed or not C_q.finite or not np.any(C):
                 break
-            closed = bool(np.abs(C).max() < CLOSED)
+            closed = bool(np.abs(C).max() < REDUNDANCY.closed)
             slope = C_q.transposed_times(C)
-            if not closed and np.linalg.norm(slope) < ROUNDING * np.linalg.norm(C):
+            if not closed and np.linalg.norm(slope) < REDUNDANCY.rounding * np.linalg.norm(C):
                 break
-            damping = max(float(C @ C), LEAST_DAMPING)
+            damping = max(float(C @ C), REDUNDANCY.least_damping)
             step = -C_q.transposed_times(C_q.solved_gram(damping, C))
             length = float(np.linalg.norm(step))
-            pose = self.pose(self.moved(pose.q, step * min(1.0, LONGEST_STEP / max(length, 1e-300))), t)
+            pose = self.pose(self.moved(pose.q, step * min(1.0, REDUNDANCY.longest_step / max(length, 1e-300))), t)
             if length < 1e-14 * len(C):
                 break
         self.state.count_anew(t)

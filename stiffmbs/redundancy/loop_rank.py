@@ -7,19 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .loop_equations import AGREES, CLOSED, LoopEquations, Pose
-from .loops import DEPENDENT
+from .loop_equations import LoopEquations, Pose
+from .parameters import REDUNDANCY
 from .sparse_matrix import SparseMatrix
-
-SOUND = 1e-5
-"""Smallest singular value of the scaled J above which the equations are clearly independent.
-
-A pose with singular values between `DEPENDENT` and this one is nearly singular. Relative to the least value in general,
-it is the bound of a singular start."""
-BY_GAP = 30.0
-"""Bound of redundancy in gaps of the start, for equations of limited precision."""
-POSES, PERTURBATION, SHRINKS = 3, 0.1, 5
-"""Number of poses that confirm the rank, the perturbation (arms, rad), and the number of its reductions."""
 
 
 class LoopRank(NamedTuple):
@@ -67,8 +57,8 @@ def loop_rank(equations: LoopEquations, q: np.ndarray, t: float) -> LoopRank:
     """
     start = equations.assembled(q, t)
     count = len(start.C)
-    if start.J.singular_values_above(SOUND):
-        return LoopRank(equations, start, count, count, SOUND, [])
+    if start.J.singular_values_above(REDUNDANCY.sound):
+        return LoopRank(equations, start, count, count, REDUNDANCY.sound, [])
     others = list(_perturbed(equations, start))
     poses = [start, *others]
     before = equations.row_scale.copy()
@@ -76,11 +66,11 @@ def loop_rank(equations: LoopEquations, q: np.ndarray, t: float) -> LoopRank:
     rescaled = equations.row_scale / before
     decomposed = [small_singular(pose.J.scaled(rescaled, np.ones(pose.J.shape[1]))) for pose in poses]
     values = [s for s, _ in decomposed]
-    gap = start.gap if CLOSED < start.gap <= AGREES else 0.0
+    gap = start.gap if REDUNDANCY.closed < start.gap <= REDUNDANCY.agrees else 0.0
     asked = (values[1:] if gap else _clear(values[1:])) or values[1:] or values
-    rank = max(int(np.sum(s > max(DEPENDENT, BY_GAP * gap))) for s in asked)
+    rank = max(int(np.sum(s > max(REDUNDANCY.dependent, REDUNDANCY.by_gap * gap))) for s in asked)
     least = max(float(s[rank - 1]) for s in asked) if rank else 0.0
-    start_rank = int(np.sum(values[0][:rank] > SOUND * least))
+    start_rank = int(np.sum(values[0][:rank] > REDUNDANCY.sound * least))
     general = [k for k, s in enumerate(values) if _is_general(s, rank, least, k == 0 or any(s is own for own in asked))]
     null_spaces = [(poses[k], _last(decomposed[k][1], count - rank)) for k in general]
     return LoopRank(equations, start, rank, start_rank, least, null_spaces)
@@ -92,42 +82,33 @@ def _last(vectors: np.ndarray, count: int) -> np.ndarray:
 
 def _clear(values: list[np.ndarray]) -> list[np.ndarray]:
     """Return the singular values of poses that are not nearly singular."""
-    return [s for s in values if not np.any((s > DEPENDENT) & (s < SOUND))]
+    return [s for s in values if not np.any((s > REDUNDANCY.dependent) & (s < REDUNDANCY.sound))]
 
 
 def _is_general(values: np.ndarray, rank: int, least: float, asked: bool) -> bool:
-    return asked and int(np.sum(values > SOUND * least)) == rank
+    return asked and int(np.sum(values > REDUNDANCY.sound * least)) == rank
 
 
 def _perturbed(equations: LoopEquations, start: Pose) -> Iterator[Pose]:
     """Yield assembled poses near the start, with smaller perturbations if larger ones cannot be assembled."""
     rng = np.random.default_rng(1)
-    size, found = PERTURBATION, 0
-    for _ in range(POSES + SHRINKS if start.gap <= AGREES else POSES):
+    size, found = REDUNDANCY.perturbation, 0
+    for _ in range(REDUNDANCY.poses + REDUNDANCY.shrinks if start.gap <= REDUNDANCY.agrees else REDUNDANCY.poses):
         move = size * rng.uniform(-1, 1, len(equations.loop.columns))
         pose = equations.assembled(equations.moved(start.q, move), start.t)
-        if pose.J.finite and pose.gap <= max(CLOSED, 2 * start.gap):
+        if pose.J.finite and pose.gap <= max(REDUNDANCY.closed, 2 * start.gap):
             yield pose
             found += 1
-            if found == POSES:
+            if found == REDUNDANCY.poses:
                 return
         else:
             size /= 4
 
 
-CLEARLY_REGULAR = 1e-3
-"""Singular value above which the singular vectors of a large matrix are not computed."""
-MORE, SHIFT, ITERATIONS = 10, 1e-10, 4
-"""Additional vectors of the subspace, shift of J J^T, and iterations.
-
-Each one reduces vectors of singular values above `CLEARLY_REGULAR` by SHIFT/CLEARLY_REGULAR^2.
-"""
-
-
 def small_singular(J: SparseMatrix) -> tuple[np.ndarray, np.ndarray]:
     """Return the singular values, shape (n,), in descending order, and left singular vectors of the last of them.
 
-    For a large matrix, one of those above `CLEARLY_REGULAR` replaces all larger ones.
+    For a large matrix, one of those above `REDUNDANCY.clearly_regular` replaces all larger ones.
 
     Parameters
     ----------
@@ -135,9 +116,9 @@ def small_singular(J: SparseMatrix) -> tuple[np.ndarray, np.ndarray]:
         With n rows.
     """
     n = J.shape[0]
-    count = None if J.is_small else J.singular_values_below(CLEARLY_REGULAR)
-    if count is not None and count + MORE < n:
-        return _by_iteration(J, count + MORE)
+    count = None if J.is_small else J.singular_values_below(REDUNDANCY.clearly_regular)
+    if count is not None and count + REDUNDANCY.more < n:
+        return _by_iteration(J, count + REDUNDANCY.more)
     vectors, values, _ = np.linalg.svd(J.dense(), full_matrices=n > J.shape[1])
     return np.pad(values, (0, n - len(values))), vectors
 
@@ -146,8 +127,8 @@ def _by_iteration(J: SparseMatrix, width: int) -> tuple[np.ndarray, np.ndarray]:
     """Compute the small ones by subspace iteration (Bathe and Wilson, J. Eng. Mech. Div. 98, 1972) and J^T on it."""
     n = J.shape[0]
     vectors = np.random.default_rng(1).standard_normal((n, width))
-    for _ in range(ITERATIONS):
-        vectors, _ = np.linalg.qr(J.solved_gram(SHIFT, vectors))
+    for _ in range(REDUNDANCY.iterations):
+        vectors, _ = np.linalg.qr(J.solved_gram(REDUNDANCY.shift, vectors))
     projected = J.transposed_times_all(vectors)
     _, values, turn = np.linalg.svd(projected, full_matrices=width > len(projected))
     values = np.pad(values, (0, width - len(values)))

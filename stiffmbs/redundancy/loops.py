@@ -12,9 +12,7 @@ from ..compile.state import State
 from ..compile.system import System
 from ..compile.terms import TERM_SETS
 from ..elements.element import Joint
-
-DEPENDENT = 1e-8
-"""Singular value, or determinant of the Gram matrix, of normalised rows below which they are dependent."""
+from .parameters import REDUNDANCY
 
 
 class LoopJoint(NamedTuple):
@@ -104,7 +102,7 @@ def _joints(system: System, state: State, g: int, group: Group) -> Iterator[tupl
     with np.errstate(invalid="ignore"):  # a joint that is undefined at this pose has no independent rows
         J /= np.where(norms > 0, norms, 1.0)
         parts = J.transpose(0, 2, 1, 3)
-        independent = np.linalg.det(parts @ parts.transpose(0, 1, 3, 2)) > DEPENDENT
+        independent = np.linalg.det(parts @ parts.transpose(0, 1, 3, 2)) > REDUNDANCY.dependent
     for e, (name, joint) in enumerate(zip(group.names, group.elements, strict=True)):
         assert isinstance(joint, Joint)
         on = [int(body) for body in group.bodies[e]]

@@ -14,15 +14,12 @@ from ..compile.system import System
 from ..compile.terms import TERM_SETS
 from ..reading.formula.formula import Formula
 from ..solve.trajectory import Grid
-from .loop_equations import ROUNDING
 from .overconstraint import listed
+from .parameters import REDUNDANCY
 
 if TYPE_CHECKING:
     from ..elements.element import Force
     from ..model.model_data import ModelData
-
-SAMPLES = 4
-"""Number of random states and times at which forces are compared, so that no gain is zero at all of them."""
 
 
 def opposed_sentences(system: System, data: ModelData, q: np.ndarray, grid: Grid) -> tuple[str, ...]:
@@ -111,7 +108,7 @@ class _Directions:
         rng = np.random.default_rng(1)
         system, q = self.system, self.state.q.copy()
         values = []
-        for part in np.linspace(0.0, 1.0, SAMPLES):
+        for part in np.linspace(0.0, 1.0, REDUNDANCY.samples):
             self.state.q[:] = q
             self.state.q[system.first_state :] += rng.uniform(-1.0, 1.0, system.n_q - system.first_state) * (part > 0)
             self.state.evaluate("motion", self._times[0] + part * (self._times[1] - self._times[0]))
@@ -132,7 +129,7 @@ class _Directions:
         J = np.delete(self._J, list(without), axis=0)
         J = J / np.maximum(np.linalg.norm(J, axis=1, keepdims=True), np.finfo(float).tiny)
         _, values, basis = np.linalg.svd(J, full_matrices=False)
-        return basis[values > ROUNDING * max(values, default=0.0)]
+        return basis[values > REDUNDANCY.rounding * max(values, default=0.0)]
 
     def of(self, force: str) -> Iterator[np.ndarray]:
         """Return the directions in which time and states change a force."""
@@ -153,14 +150,14 @@ class _Directions:
                 np.add.at(changes[k], column[moving], change[moving])
             changes /= self._scale
             _, values, ways = np.linalg.svd(changes, full_matrices=False)
-            yield from ways[values > ROUNDING * np.max(np.abs(samples), initial=np.finfo(float).tiny)]
+            yield from ways[values > REDUNDANCY.rounding * np.max(np.abs(samples), initial=np.finfo(float).tiny)]
 
     def elsewhere(self, way: np.ndarray, held: dict[int, set[int]]) -> Iterator[np.ndarray]:
         """Yield a direction, and its variants with the force moved to a body connected by a bushing."""
         yield way
         width, ground = self.system.of_body.n_u, len(self.system.bodies)
         parts = (way * self._scale).reshape(ground, width)
-        acted = [*np.flatnonzero(np.abs(parts).max(axis=1) > ROUNDING)]
+        acted = [*np.flatnonzero(np.abs(parts).max(axis=1) > REDUNDANCY.rounding)]
         for body in (*acted, *([ground] if len(acted) == 1 else [])):
             for other in held.get(int(body), ()):
                 moved = parts.copy()
@@ -169,7 +166,7 @@ class _Directions:
                     moved[body] = 0.0
                 if other < ground:
                     moved[other] += self._on(wrench, other)
-                if np.abs(moved).max() > ROUNDING:
+                if np.abs(moved).max() > REDUNDANCY.rounding:
                     yield moved.reshape(-1) / self._scale / np.linalg.norm(moved.reshape(-1) / self._scale)
 
     def _wrench(self, part: np.ndarray, body: int) -> np.ndarray:
@@ -194,7 +191,7 @@ class _Directions:
 def _lies_in(direction: np.ndarray, basis: np.ndarray) -> bool:
     """Return True if a unit vector lies in the span of an orthonormal basis."""
     rest = direction - basis.T @ (basis @ direction)
-    return bool(np.linalg.norm(rest) <= np.sqrt(ROUNDING))
+    return bool(np.linalg.norm(rest) <= np.sqrt(REDUNDANCY.rounding))
 
 
 def _moment(place: np.ndarray, force: np.ndarray) -> np.ndarray:

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ..compile.system import System
-from .drop_first import TAKES_PART, Redundant, rank_of
+from .drop_first import Redundant, rank_of
 from .loops import LoopJoint
+from .parameters import REDUNDANCY
 from .rank_result import LoopRankResult
 from .redundancy import Redundancy
 from .sharing import elastic_joints
@@ -17,8 +18,6 @@ from .uniqueness import Indeterminate, indeterminate
 
 if TYPE_CHECKING:
     from .replacements import Choice
-
-MOST_NAMES = 6
 
 
 class Overconstraint(NamedTuple):
@@ -65,8 +64,8 @@ def overconstraints(redundancy: Redundancy) -> Iterator[Overconstraint]:
 
 def listed(names: Sequence[str]) -> str:
     """Join names with commas and 'and'; a long list is shortened."""
-    if len(names) > MOST_NAMES:
-        names = [*names[: MOST_NAMES - 1], f"{len(names) - MOST_NAMES + 1} more"]
+    if len(names) > REDUNDANCY.most_names:
+        names = [*names[: REDUNDANCY.most_names - 1], f"{len(names) - REDUNDANCY.most_names + 1} more"]
     return f"{', '.join(names[:-1])} and {names[-1]}" if len(names) > 1 else "".join(names)
 
 
@@ -170,13 +169,13 @@ def _together(space: np.ndarray, own: list[np.ndarray], elastic: list[bool]) -> 
     rest = np.vstack([space, np.zeros(space.shape[1])])  # the last row pads joints with fewer rows
     while True:
         grams = rest[place] @ rest[place].transpose(0, 2, 1)
-        gains = np.sum(np.linalg.eigvalsh(grams) > TAKES_PART**2, axis=1).tolist()
+        gains = np.sum(np.linalg.eigvalsh(grams) > REDUNDANCY.takes_part**2, axis=1).tolist()
         best = max(range(len(own)), key=lambda k: (gains[k], elastic[k], k))
         if not gains[best]:
             return
         yield best
         _, sizes, directions = np.linalg.svd(rest[own[best]], full_matrices=False)
-        taken = directions[sizes > TAKES_PART]
+        taken = directions[sizes > REDUNDANCY.takes_part]
         rest = rest - (rest @ taken.T) @ taken
 
 

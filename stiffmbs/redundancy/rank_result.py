@@ -15,8 +15,9 @@ from ..compile.state import State
 from .drop_first import Redundant, redundant_rows
 from .inconsistent_constraints import Inconsistency, inconsistencies, time_dependent
 from .loop_equations import LoopEquations
-from .loop_rank import SOUND, LoopRank, loop_rank
+from .loop_rank import LoopRank, loop_rank
 from .loops import Loop
+from .parameters import REDUNDANCY
 from .uniqueness import Indeterminate, forces_change, indeterminate
 
 
@@ -48,7 +49,7 @@ class LoopRankResult(NamedTuple):
     @property
     def nearly_dependent(self) -> bool:
         """True if equations are so nearly dependent that the motion depends on rounding."""
-        return not self.extra_freedoms and self.rank.least < SOUND
+        return not self.extra_freedoms and self.rank.least < REDUNDANCY.sound
 
 
 def rank_result_of(

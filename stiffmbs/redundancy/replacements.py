@@ -15,12 +15,9 @@ import numpy as np
 from ..compile.placed_markers import marker_axes
 from .loop_equations import LoopEquations, Pose
 from .loops import LoopJoint
+from .parameters import REDUNDANCY
 from .uniqueness import changes_of
 
-INDEPENDENT_COMPONENT = 1e-3
-"""Smallest singular value of independent components, relative to the largest reaction."""
-MOST_JOINTS, MOST_CHANGED, MOST_TRIALS = 10, 4, 2000
-"""Largest numbers of joints to choose from (the last ones), of joints to change at once, and of choices to try."""
 IDEAL = ("spherical", "cylindrical", "revolute", "prismatic", "planar")
 """Kinds of real joints; the others are tried if these are not sufficient."""
 
@@ -57,7 +54,7 @@ def replacements(
     joints : sequence of LoopJoint
         Joints to choose from; the last is changed first.
     """
-    count, last = spaces[0][1].shape[1], joints[-MOST_JOINTS:]
+    count, last = spaces[0][1].shape[1], joints[-REDUNDANCY.most_joints :]
     seen = [_in_marker_axes(equations, pose, space, last) for pose, space in spaces]
     if not any(seen):  # a planar model
         return []
@@ -110,7 +107,7 @@ def _independent(choice: Sequence[_Option]) -> bool:
     count = sum(option.count for option in choice)
     for parts in zip(*(option.let_go for option in choice), strict=True):
         values = np.linalg.svd(np.vstack(parts), compute_uv=False)
-        if count > len(values) or values[count - 1] < INDEPENDENT_COMPONENT:
+        if count > len(values) or values[count - 1] < REDUNDANCY.independent_component:
             return False
     return True
 
@@ -122,12 +119,12 @@ def _one_each(alone: Sequence[tuple[_Option]]) -> Iterator[tuple[_Option]]:
 def _together(options: Sequence[Sequence[_Option]], count: int) -> Iterator[tuple[_Option, ...]]:
     """Yield sufficient choices of options of several joints."""
     trials = 0
-    for size in range(2, min(MOST_CHANGED, len(options)) + 1):
+    for size in range(2, min(REDUNDANCY.most_changed, len(options)) + 1):
         for joints in itertools.combinations(options, size):
             for choice in itertools.product(*joints):
                 if sum(option.count for option in choice) == count:
                     trials += 1
-                    if trials > MOST_TRIALS:
+                    if trials > REDUNDANCY.most_trials:
                         return
                     if _independent(choice):
                         yield choice

@@ -12,8 +12,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from .drop_first import TAKES_PART, rank_of
+from .drop_first import rank_of
 from .loops import LoopJoint
+from .parameters import REDUNDANCY
 
 
 def elastic_joints(joints: Sequence[LoopJoint], shares: Sequence[np.ndarray]) -> tuple[LoopJoint, ...]:
@@ -31,7 +32,9 @@ def elastic_joints(joints: Sequence[LoopJoint], shares: Sequence[np.ndarray]) ->
     tuple of LoopJoint
         Empty if too few joints can be replaced by elastic elements.
     """
-    usable = [k for k, share in enumerate(shares) if joints[k].element.elastic and np.abs(share).max() > TAKES_PART]
+    usable = [
+        k for k, share in enumerate(shares) if joints[k].element.elastic and np.abs(share).max() > REDUNDANCY.takes_part
+    ]
     for chosen in (_last_of_each_path(joints, usable), usable):
         if _decides([shares[k] for k in chosen]):
             return tuple(joints[k] for k in chosen)

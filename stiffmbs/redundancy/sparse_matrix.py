@@ -7,8 +7,7 @@ from typing import Any
 
 import numpy as np
 
-DENSE_UP_TO = 300
-"""Largest number of rows for dense factors, which need no import of SciPy's sparse ones."""
+from .parameters import REDUNDANCY
 
 
 @dataclass(frozen=True)
@@ -23,7 +22,7 @@ class SparseMatrix:
     @property
     def is_small(self) -> bool:
         """True if dense factors are used."""
-        return self.shape[0] <= DENSE_UP_TO
+        return self.shape[0] <= REDUNDANCY.dense_up_to
 
     @property
     def finite(self) -> bool:

@@ -9,9 +9,9 @@ import numpy as np
 from ..compile.reactions import reactions
 from ..reading.names import owner_of
 from .directions import Direction, directions
-from .drop_first import TAKES_PART
 from .loop_equations import LoopEquations, Pose
 from .loop_rank import LoopRank
+from .parameters import REDUNDANCY
 
 TORQUES = ("torque", "tx", "ty", "tz")
 
@@ -49,11 +49,11 @@ def indeterminate(found: LoopRank, null_spaces: list[tuple[Pose, np.ndarray]]) -
     changes = [changes_of(equations, pose, space) for pose, space in null_spaces]
     of_owner: dict[str, list[str]] = {}
     for name in changes[0]:
-        if any(np.abs(change[name]).max() > TAKES_PART for change in changes):
+        if any(np.abs(change[name]).max() > REDUNDANCY.takes_part for change in changes):
             of_owner.setdefault(owner_of(name), []).append(name)
     poses = [pose for pose, _ in null_spaces]
     return [
-        Indeterminate(owner, tuple(names), tuple(directions(equations, poses, changes, owner, TAKES_PART)))
+        Indeterminate(owner, tuple(names), tuple(directions(equations, poses, changes, owner, REDUNDANCY.takes_part)))
         for owner, names in of_owner.items()
     ]
 
@@ -73,7 +73,7 @@ def forces_change(found: LoopRank, null_spaces: list[tuple[Pose, np.ndarray]]) -
         state.u[columns] = equations.velocities(rng.uniform(-1, 1, len(columns)))  # friction is zero at rest
         for lam in (*_multipliers(equations, space).T, *-_multipliers(equations, space).T):
             at_zero, loaded = (_force(equations, part * lam, pose.t) for part in (0.0, 1.0))
-            if np.abs(loaded - at_zero).max() > TAKES_PART:
+            if np.abs(loaded - at_zero).max() > REDUNDANCY.takes_part:
                 return True
     return False
 

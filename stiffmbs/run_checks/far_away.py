@@ -8,9 +8,7 @@ import numpy as np
 
 from ..compile.system import System
 from ..errors import InputError
-
-COARSE = 1e-6
-"""Largest rounding of coordinates, relative to a mechanism's size."""
+from .parameters import RUN_CHECKS
 
 
 def refuse_far_away(system: System) -> None:
@@ -24,7 +22,7 @@ def refuse_far_away(system: System) -> None:
     farthest = np.abs(system.q[: system.n_pose].reshape(-1, of_body.n_q)[:, : of_body.linear]).max(axis=1)
     body = int(np.argmax(farthest))
     rounding, size = farthest[body] * sys.float_info.epsilon, system.size
-    if rounding > COARSE * size:
+    if rounding > RUN_CHECKS.coarse * size:
         raise InputError(
             f"bodies.{system.bodies[body]}.position: found {farthest[body]:.3g} m in a mechanism of {size:.3g} m, where neighbouring "
             f"numbers are {rounding:.1g} m apart, expected it nearer to the origin"

@@ -9,10 +9,7 @@ import numpy as np
 from ..compile.system import System
 from ..dynamics.dynamics import OutputRows
 from ..elements.spatial.flexible.layout import BODY, MODE, MODES, OF_MODE
-
-FAST = 0.03
-"""Angular velocity, relative to the lowest natural frequency of the free body, from which a note appears. A slender
-clamped body bends at a sixth of that frequency, and its stiffness changes by the square of the ratio: 3 %."""
+from .parameters import RUN_CHECKS
 
 
 def fast_rotation_notes(system: System, rows: OutputRows) -> Iterator[str]:
@@ -29,7 +26,7 @@ def fast_rotation_notes(system: System, rows: OutputRows) -> Iterator[str]:
             start = system.of_body.n_u * body + system.of_body.linear
             rate = float(np.linalg.norm(rows.u[:, start : start + 3], axis=1).max())
             lowest = float(np.sqrt(stiffness.min(initial=np.inf) / numbers[MODES - BODY["modal_mass"]]))
-            if rate > FAST * lowest:
+            if rate > RUN_CHECKS.fast * lowest:
                 yield (
                     f"'{group.names[e]}' turns at up to {rate:.3g} rad/s, {100 * rate / lowest:.2g} % of its lowest natural frequency "
                     f"of {lowest / (2 * np.pi):.3g} Hz: its stiffening by centrifugal forces is not included; compare with a body "

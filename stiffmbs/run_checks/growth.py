@@ -12,10 +12,7 @@ from ..compile.system import System
 from ..dynamics.dynamics import Dynamics, OutputRows
 from ..dynamics.storage import blocks, release
 from ..solve.events.refusals import DIVERGENCE, SPEED_OF_LIGHT, exponential, reaches
-from .far_away import COARSE
-
-OPEN, DRIFTED = 1e-6, 1e-2
-"""Largest opening of a joint in sizes of the mechanism: with projection onto the constraints, and with drift."""
+from .parameters import RUN_CHECKS
 
 
 def senseless(dynamics: Dynamics, rows: OutputRows, on_constraints: bool) -> Iterator[str]:
@@ -32,7 +29,7 @@ def _grown(system: System, rows: OutputRows) -> str:
     if not system.bodies:
         return ""
     of_places, of_rates = reaches(system), system.per_velocity(1.0, system.size)
-    limit, resolved = DIVERGENCE.unbounded * system.size, COARSE * system.size / float(np.finfo(float).eps)
+    limit, resolved = DIVERGENCE.unbounded * system.size, RUN_CHECKS.coarse * system.size / float(np.finfo(float).eps)
     if (
         np.ptp(rows.q) * of_places.max() <= min(limit, resolved)
         and np.abs(rows.u).max() * of_rates.max() <= SPEED_OF_LIGHT
@@ -53,7 +50,7 @@ def _grown(system: System, rows: OutputRows) -> str:
     if np.nanmax(speed) > SPEED_OF_LIGHT:
         return _growth_sentence(system, rows, speed, SPEED_OF_LIGHT, "the speed of light", fastest)
     if np.nanmax(far) > resolved and _connected(system):
-        what = f"where rounding takes more than {COARSE:.0e} of the mechanism's size of {system.size:.3g} m"
+        what = f"where rounding takes more than {RUN_CHECKS.coarse:.0e} of the mechanism's size of {system.size:.3g} m"
         return _growth_sentence(system, rows, far, resolved, what, farthest)
     return ""
 
@@ -107,7 +104,7 @@ def _open_joint(dynamics: Dynamics, rows: OutputRows, on_constraints: bool) -> s
     system, violation = dynamics.system, rows.position_violation
     if not system.n_c or np.isnan(violation).all():
         return ""
-    allowed = (OPEN if on_constraints else DRIFTED) * max(system.size, 1e-3)
+    allowed = (RUN_CHECKS.open if on_constraints else RUN_CHECKS.drifted) * max(system.size, 1e-3)
     worst = int(np.nanargmax(violation))
     if violation[worst] <= allowed:
         return ""

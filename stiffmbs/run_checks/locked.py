@@ -13,6 +13,7 @@ from ..redundancy.redundancy import Redundancy
 from ..redundancy.unproven import unproven
 from ..solve.trajectory import Trajectory
 from .instants import some_instants
+from .parameters import RUN_CHECKS
 
 
 def locked(dynamics: Dynamics, redundancy: Redundancy, way: Trajectory) -> tuple[int, str] | None:
@@ -38,10 +39,6 @@ def locked(dynamics: Dynamics, redundancy: Redundancy, way: Trajectory) -> tuple
         f"stopped at t = {t:.6g} s: joint '{joint}' (equation {equation}) was left out, as near the start it holds the same "
         f"as {names}; it does not hold there, so that the joints lock or contradict each other"
     )
-
-
-UNFOLLOWED_PART, UNFOLLOWED_VELOCITY = 1e-2, 1e-3
-"""Violation of a velocity equation that no tolerance explains: relative to its terms, and in m/s or rad/s at least."""
 
 
 Unfollowed = tuple[int, int, float]
@@ -80,21 +77,13 @@ def _first(dynamics: Dynamics, rows: np.ndarray, way: Trajectory, outputs: np.nd
     gaps, sizes = np.zeros((2, len(outputs), system.n_c))
     gaps[:, V.row] = np.abs(violations)
     np.add.at(sizes.T, row, np.abs(coefficients * way.u[outputs][:, column]).T)
-    excess = (gaps - np.maximum(UNFOLLOWED_PART * sizes, UNFOLLOWED_VELOCITY))[:, rows]
+    excess = (gaps - np.maximum(RUN_CHECKS.unfollowed_part * sizes, RUN_CHECKS.unfollowed_velocity))[:, rows]
     wrong = np.flatnonzero(np.any(excess > 0, axis=1))
     if not len(wrong):
         return None
     k = int(wrong[0])
     worst = int(rows[np.argmax(excess[k])])
     return int(outputs[k]), worst, float(gaps[k, worst])
-
-
-POSES = 10_000
-"""Number of poses to check in the whole motion, with one for each output at least."""
-LEFT_OUT = 10.0
-"""Largest violation of dropped equations, relative to that of the others, that is due to interpolation."""
-MOST_ASSEMBLIES = 500
-"""Largest number of poses between outputs that are assembled."""
 
 
 def departure(dynamics: Dynamics, rows: Sequence[int], way: Trajectory) -> tuple[int, float, int] | None:
@@ -115,12 +104,12 @@ def departure(dynamics: Dynamics, rows: Sequence[int], way: Trajectory) -> tuple
         state.evaluate("position", t)
         values = np.abs(state.values["position"])
         gaps = values[left_out]
-        if not gaps.max() > allowed + LEFT_OUT * values[kept].max(initial=0.0):
+        if not gaps.max() > allowed + RUN_CHECKS.left_out * values[kept].max(initial=0.0):
             continue
         assemblies += 1
         if dynamics.assemble(t) < 0:
             return output, t, rows[int(np.argmax(gaps))]
-        if assemblies == MOST_ASSEMBLIES:
+        if assemblies == RUN_CHECKS.most_assemblies:
             return None
     return None
 
@@ -128,7 +117,7 @@ def departure(dynamics: Dynamics, rows: Sequence[int], way: Trajectory) -> tuple
 def _poses(dynamics: Dynamics, way: Trajectory) -> Iterator[tuple[int, float, np.ndarray]]:
     """Yield poses at outputs and on Hermite interpolants between them: number of the output before, time, s, pose."""
     of_body, bodies = dynamics.system.of_body, dynamics.system.of_body.n_q * len(dynamics.system.bodies)
-    count = 1 + POSES // len(way.t)
+    count = 1 + RUN_CHECKS.poses // len(way.t)
     parts = np.arange(1, count + 1) / count
     for k in range(len(way.t) - 1):
         h, q = way.t[k + 1] - way.t[k], way.q[k]

@@ -15,6 +15,7 @@ from ..dynamics.dynamics import Dynamics, OutputRows
 from ..elements.element import Joint
 from ..results.joint_angles import joint_angles
 from .instants import some_instants
+from .parameters import RUN_CHECKS
 from .singular_passage import singular_passage_sentence
 
 
@@ -78,9 +79,6 @@ APART_FROM_COUNTERS = Routine(
     "void(int64, int64, float64*, float64*, int64, int64*, int64*, float64*, int64*)",
 )
 
-UNCERTAIN_TURN = 1.0
-"""Difference of an orientation and the integral of its rate, rad, from which on the turn is uncertain."""
-
 
 def lost_turns_sentence(dynamics: Dynamics, rows: OutputRows) -> Iterator[str]:
     """Yield a sentence on the angle that differs most from the counter of its turns, if the turn is uncertain."""
@@ -91,7 +89,7 @@ def lost_turns_sentence(dynamics: Dynamics, rows: OutputRows) -> Iterator[str]:
     counted = system.term("position", "continuous_angle")
     instants = solved[some_instants(len(solved))]
     apart = _apart(state, rows.t[instants], rows.q[instants], counted.source, counted.row)
-    if not np.nanmax(apart) > UNCERTAIN_TURN:
+    if not np.nanmax(apart) > RUN_CHECKS.uncertain_turn:
         return
     k, worst = np.unravel_index(int(np.nanargmax(apart)), apart.shape)
     name = writer(system, "position", int(counted.source[worst]))

@@ -21,17 +21,13 @@ from ..dynamics.dynamics import OutputRows
 from ..model.settings import RunSettings
 from ..solve.error_control.tolerances import absolute_tolerances
 from ..solve.trajectory import Trajectory
+from .parameters import RUN_CHECKS
 
 CONTRADICTING_ROWS = Routine(
     "stiffmbs.run_checks.native.contradictions",
     "contradicting_rows",
     "int64(int64, int64, float64*, float64*, float64*, float64*, float64, float64*, int64, float64*, int64*)",
 )
-
-OVERLOOKED_TOLERANCES = 3e5
-"""Velocity contradiction over a step, in tolerances, from which on an event counts as missed."""
-OVERLOOKED_PART = 0.3
-"""Velocity contradiction, relative to the larger mass-weighted acceleration times the interval, of a missed event."""
 
 
 @dataclass(frozen=True)
@@ -82,13 +78,15 @@ def overlooked(system: System, rows: OutputRows, trajectory: Trajectory, setting
     if len(steps) < 2 or not system.has_laws:
         return None
     absolute = absolute_tolerances(system, settings)[system.n_q :]
-    pairs = contradicting_rows(rows, system.mass, steps, OVERLOOKED_TOLERANCES * absolute / np.diff(steps).max())
+    pairs = contradicting_rows(
+        rows, system.mass, steps, RUN_CHECKS.overlooked_tolerances * absolute / np.diff(steps).max()
+    )
     if not len(pairs):
         return None
     number = np.searchsorted(steps, rows.t[pairs])
     step = steps[number] - steps[number - 1]
     tolerance = absolute + settings.rtol * np.abs(rows.u[pairs])
-    over_step = np.abs(_contradictions(rows, pairs)) * step[:, None] / (OVERLOOKED_TOLERANCES * tolerance)
+    over_step = np.abs(_contradictions(rows, pairs)) * step[:, None] / (RUN_CHECKS.overlooked_tolerances * tolerance)
     found = np.flatnonzero((over_step > 1).any(axis=1))
     if not len(found):
         return None
@@ -117,7 +115,7 @@ def contradicting_rows(rows: OutputRows, mass: np.ndarray, steps: np.ndarray, le
     t, u, acceleration, mass, least, steps = map(np.ascontiguousarray, arrays)
     *of_rows, at_least, at_steps, at_found = addresses(t, u, acceleration, mass, least, steps, found)
     count = CONTRADICTING_ROWS.call(
-        len(t), len(mass), *of_rows, OVERLOOKED_PART, at_least, len(steps), at_steps, at_found
+        len(t), len(mass), *of_rows, RUN_CHECKS.overlooked_part, at_least, len(steps), at_steps, at_found
     )
     return found[:count]
 

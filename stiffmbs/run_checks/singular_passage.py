@@ -13,18 +13,8 @@ import numpy as np
 
 from ..dynamics.dynamics import Dynamics, OutputRows
 from ..redundancy.overconstraint import listed
-from .singular_poses import NEARLY_SINGULAR, PosesOnTheWay, SingularPose
-
-DIP = 0.25
-"""Minimum of a parabola through the det at three outputs, relative to its ends, below which a rerun resolves it."""
-MOST_DIPS, INSTANTS = 5, 201
-"""Largest number of dips to check, the deepest ones, and of times within each."""
-MAGNIFIED = 10.0
-"""Error after the pose, as a fraction of the size, over rtol/d^2."""
-DECIDED, WORTH_TELLING = 0.1, 1e-3
-"""Expected errors, as fractions of the size, at which chance decides the branch, and at which they are reported."""
-LAST_DIGITS = 1e-10
-"""Smallest useful rtol, and relative rounding of lengths."""
+from .parameters import RUN_CHECKS
+from .singular_poses import PosesOnTheWay, SingularPose
 
 
 def singular_passage_sentence(
@@ -40,7 +30,7 @@ def singular_passage_sentence(
     poses = PosesOnTheWay(dynamics.system, rows.t, rows.q)
     if not poses.usual:
         return
-    first, *others = [np.linspace(rows.t[k - 1], rows.t[k + 1], INSTANTS) for k in sorted(dips)]
+    first, *others = [np.linspace(rows.t[k - 1], rows.t[k + 1], RUN_CHECKS.dip_instants) for k in sorted(dips)]
     dense = again(first)
     found, reached, asked = _nearest(poses, dense, [first]), dense.t, first[-1]
     if others and not _decided_by_chance(found[0]):
@@ -59,13 +49,13 @@ def singular_passage_sentence(
 
 def deepest_dips(log_determinant: np.ndarray) -> list[int]:
     """Return the outputs near which the joints may lose rank: det [M J^T; J 0] falls to a small part of its neighbours."""
-    if len(log_determinant) < 3 or np.ptp(log_determinant) < np.log(1.25 / (DIP + 0.25)):
+    if len(log_determinant) < 3 or np.ptp(log_determinant) < np.log(1.25 / (RUN_CHECKS.dip + 0.25)):
         return []  # a parabola falls below its smallest point by at most a quarter of its second difference
     D = np.nan_to_num(np.exp(log_determinant - np.nanmedian(log_determinant)))
     k = 1 + np.flatnonzero((D[1:-1] <= D[:-2]) & (D[1:-1] < D[2:]))
     part = _least(D[k - 1], D[k], D[k + 1]) / np.maximum(D[k - 1], D[k + 1])
-    deepest = np.argsort(part, kind="stable")[:MOST_DIPS]
-    return [int(k[i]) for i in deepest if part[i] < DIP]
+    deepest = np.argsort(part, kind="stable")[: RUN_CHECKS.most_dips]
+    return [int(k[i]) for i in deepest if part[i] < RUN_CHECKS.dip]
 
 
 def _least(before: np.ndarray, at: np.ndarray, after: np.ndarray) -> np.ndarray:
@@ -88,7 +78,7 @@ def _nearest_within(poses: PosesOnTheWay, dense: OutputRows, stretch: np.ndarray
     D = np.nan_to_num(np.exp(dense.log_determinant[inside] - np.nanmax(dense.log_determinant[inside])))
     least = int(np.argmin(D))
     k, d = int(inside[least]), poses.distance(int(inside[least]))
-    if d > NEARLY_SINGULAR:
+    if d > RUN_CHECKS.nearly_singular:
         return d, None
     if D[least] and 0 < least < len(D) - 1 and D[least] < D[least + 1]:
         d *= float(np.sqrt(max(0.0, _least(*D[least - 1 : least + 2]) / D[least])))
@@ -97,12 +87,12 @@ def _nearest_within(poses: PosesOnTheWay, dense: OutputRows, stretch: np.ndarray
 
 def _magnified(d: float) -> float:
     """Return the magnification of errors by a pose at a distance d."""
-    return float(MAGNIFIED / max(d * d, np.finfo(float).tiny))
+    return float(RUN_CHECKS.magnified / max(d * d, np.finfo(float).tiny))
 
 
 def _decided_by_chance(d: float) -> bool:
     """Return True if rounding of the geometry decides the motion after a pose at a distance d."""
-    return _magnified(d) * LAST_DIGITS >= DECIDED
+    return _magnified(d) * RUN_CHECKS.last_digits >= RUN_CHECKS.decided
 
 
 def _sentence(pose: SingularPose, d: float, rtol: float) -> Iterator[str]:
@@ -114,8 +104,8 @@ def _sentence(pose: SingularPose, d: float, rtol: float) -> Iterator[str]:
             f"passes a singular pose {at}: more than one motion may follow, and the motion depends on the last digits of the geometry "
             f"({where})"
         )
-    elif magnified * rtol >= WORTH_TELLING:
-        decided = "more than one motion may follow, and " if magnified * rtol >= DECIDED else ""
+    elif magnified * rtol >= RUN_CHECKS.worth_telling:
+        decided = "more than one motion may follow, and " if magnified * rtol >= RUN_CHECKS.decided else ""
         yield (
             f"passes beside a singular pose {at}: {decided}errors come back about {magnified:.1g} times as large; set a smaller rtol "
             f"({where})"

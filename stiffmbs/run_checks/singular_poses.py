@@ -11,17 +11,7 @@ import numpy as np
 from ..compile.state import State
 from ..compile.system import System
 from ..redundancy.loops import loops
-
-NEARLY_SINGULAR = 0.03
-"""Smallest singular value, relative to the usual one, below which a pose counts as nearly singular."""
-TAKES_PART = 0.3
-"""Smallest weight, relative to the largest, of an equation that contributes to the loss of rank."""
-FLOOR, ITERATIONS = 1e-14, 8
-"""Shift of squared singular values, so that factors exist at singular poses; steps of inverse iteration."""
-FEW_ROWS = 60
-"""Largest number of equations for which all singular values are computed by a dense decomposition."""
-MOST_POSES, USUAL_POSES, EFFORT = 400, 20, 5e8
-"""Largest number of poses to check in an interval, number in the whole motion, and limit of operations."""
+from .parameters import RUN_CHECKS
 
 
 class SingularPose(NamedTuple):
@@ -70,11 +60,11 @@ class PosesOnTheWay:
         """Largest smallest singular value at a few poses of the motion; 0 without loops."""
         if not self._loops:
             return 0.0
-        looked_at = np.linspace(0, len(self._t) - 1, min(len(self._t), USUAL_POSES)).astype(int)
-        if len(self._rows) > FEW_ROWS:
+        looked_at = np.linspace(0, len(self._t) - 1, min(len(self._t), RUN_CHECKS.usual_poses)).astype(int)
+        if len(self._rows) > RUN_CHECKS.few_rows:
             return max(self._least(int(k))[0] for k in looked_at)
         values = np.linalg.svd(np.array([self._scaled(int(k)) for k in looked_at]), compute_uv=False)
-        return float(np.sqrt(values[:, -1].max() ** 2 + FLOOR))
+        return float(np.sqrt(values[:, -1].max() ** 2 + RUN_CHECKS.floor))
 
     @property
     def products(self) -> float:
@@ -91,14 +81,14 @@ class PosesOnTheWay:
 
     def at_singular(self, k: int) -> slice:
         """Return poses around k without meaningful accelerations and reactions; empty if k is regular."""
-        if self.distance(k) >= NEARLY_SINGULAR:
+        if self.distance(k) >= RUN_CHECKS.nearly_singular:
             return slice(k, k)
         return slice(self._sound_from(k, -1) + 1, self._sound_from(k, 1))
 
     def _sound_from(self, k: int, way: int) -> int:
         """Return the first regular pose after k in strides that double."""
         stride = 1
-        while 0 <= k < len(self._t) and self.distance(k) < NEARLY_SINGULAR:
+        while 0 <= k < len(self._t) and self.distance(k) < RUN_CHECKS.nearly_singular:
             k, stride = k + way * stride, 2 * stride
         return max(-1, min(k, len(self._t)))
 
@@ -106,14 +96,14 @@ class PosesOnTheWay:
         """Return the most nearly singular pose between two times, s, or None."""
         inside = np.flatnonzero((self._t >= start) & (self._t <= end))
         effort = max(1, len(self._rows) ** 2 * self._system.n_u)
-        most = int(np.clip(EFFORT / effort, USUAL_POSES, MOST_POSES))
+        most = int(np.clip(RUN_CHECKS.effort / effort, RUN_CHECKS.usual_poses, RUN_CHECKS.most_poses))
         inside = inside[:: max(1, len(inside) // most)]
         distances = [self.distance(int(k)) for k in inside]
-        if not distances or min(distances) > NEARLY_SINGULAR:
+        if not distances or min(distances) > RUN_CHECKS.nearly_singular:
             return None
         k = int(inside[int(np.argmin(distances))])
         _, weights = self._least(k)
-        equations = self._rows[weights > TAKES_PART * weights.max()]
+        equations = self._rows[weights > RUN_CHECKS.takes_part * weights.max()]
         joints = tuple(dict.fromkeys(self._system.equations[row][0] for row in equations))
         bodies = sorted({body for loop in self._loops for body in loop.bodies})
         of_body = self._system.of_body
@@ -136,21 +126,21 @@ class PosesOnTheWay:
 
 def _smallest(J: np.ndarray) -> tuple[float, np.ndarray]:
     """Return the smallest singular value of J and the weights of its left vector, of many rows by inverse iteration."""
-    if len(J) <= FEW_ROWS:
+    if len(J) <= RUN_CHECKS.few_rows:
         vectors, values, _ = np.linalg.svd(J, full_matrices=False)
-        squares = values**2 + FLOOR
+        squares = values**2 + RUN_CHECKS.floor
         share = (
             squares[-1] / squares
-        ) ** ITERATIONS  # reduction by inverse iteration; several equally small values all count
+        ) ** RUN_CHECKS.iterations  # reduction by inverse iteration; several equally small values all count
         return float(np.sqrt(squares[-1])), np.sqrt(vectors**2 @ share**2)
     from scipy.sparse import csc_matrix, identity
     from scipy.sparse.linalg import splu
 
     rows = csc_matrix(J)
-    factors = splu((rows @ rows.T + FLOOR * identity(len(J))).tocsc())
+    factors = splu((rows @ rows.T + RUN_CHECKS.floor * identity(len(J))).tocsc())
     vector = np.random.default_rng(1).standard_normal(len(J))
     growth = 1.0
-    for _ in range(ITERATIONS):
+    for _ in range(RUN_CHECKS.iterations):
         vector = factors.solve(vector / np.linalg.norm(vector))
         growth = float(np.linalg.norm(vector))
     return 1 / np.sqrt(growth), np.abs(vector)

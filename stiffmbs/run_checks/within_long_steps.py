@@ -13,16 +13,8 @@ from ..model.settings import RunSettings
 from ..solve.error_control.tolerances import absolute_tolerances
 from ..solve.events.long_steps import LONG_STEP, LongSteps, Motion
 from ..solve.settings import near_constraints
-from .overlooked import OVERLOOKED_PART, Overlooked, acting
-
-CONTRADICTED_TOLERANCES = 1e4
-"""Velocity contradiction over a step, in tolerances, from which on an event counts as missed."""
-PARTS_OF_A_RUN = 20_000
-"""Number of samples over a run with Python functions, whose features are unknown."""
-WORTH_A_NOTE = 0.1
-"""Fraction of both bounds below which no event counts as missed, for accelerations at states that are not projected."""
-SLIGHT = 0.01
-"""Error of positions and velocities within a step, in tolerances, whose effect on stiff forces is tolerated."""
+from .overlooked import Overlooked, acting
+from .parameters import RUN_CHECKS
 
 
 def overlooked_in_long_steps(found: LongSteps, settings: RunSettings, end: float) -> Overlooked | None:
@@ -54,13 +46,16 @@ def _doubtful(found: LongSteps, count: int, settings: RunSettings) -> np.ndarray
         LONG_STEP.from_middle,
         states,
         tolerances,
-        (WORTH_A_NOTE * OVERLOOKED_PART, WORTH_A_NOTE * CONTRADICTED_TOLERANCES),
+        (
+            RUN_CHECKS.worth_a_note * RUN_CHECKS.overlooked_part,
+            RUN_CHECKS.worth_a_note * RUN_CHECKS.contradicted_tolerances,
+        ),
     )
 
 
 def _all_along(found: LongSteps, steps: np.ndarray, settings: RunSettings) -> tuple[np.ndarray, np.ndarray]:
     """Return steps and fractions of them, evenly spaced in time; an odd number in each includes its midpoint."""
-    spacing = settings.duration / PARTS_OF_A_RUN
+    spacing = settings.duration / RUN_CHECKS.parts_of_a_run
     counts = 2 * ((found.end - found.begin)[steps] / (2.0 * spacing)).astype(int) + 1
     first, of_number = (np.repeat(values, counts) for values in (np.cumsum(counts) - counts, counts))
     return np.repeat(steps, counts), (np.arange(len(first)) - first + 0.5) / of_number
@@ -73,13 +68,13 @@ def _judged(
     steps, rate = steps[:done], motion.rate[:done]
     off = rows.acceleration - rate
     size = np.fmax(rows.acceleration**2 @ system.mass, rate**2 @ system.mass)
-    places = np.flatnonzero(off**2 @ system.mass > OVERLOOKED_PART**2 * size)
+    places = np.flatnonzero(off**2 @ system.mass > RUN_CHECKS.overlooked_part**2 * size)
     if not len(places):
         return None
     length = (found.end - found.begin)[steps]
     tolerance = absolute_tolerances(system, settings)
     of_velocities = tolerance[system.n_q :] + settings.rtol * np.abs(rows.u[places])
-    over_step = np.abs(off[places]) * length[places, None] / (CONTRADICTED_TOLERANCES * of_velocities)
+    over_step = np.abs(off[places]) * length[places, None] / (RUN_CHECKS.contradicted_tolerances * of_velocities)
     peaks = _peaks(places[(over_step > 1.0).any(axis=1)], steps, size)
     peaks = [k for k in peaks if off[k] ** 2 @ system.mass > _of_errors(found, rows, k, settings) ** 2 @ system.mass]
     if not peaks:
@@ -99,7 +94,7 @@ def _peaks(places: np.ndarray, steps: np.ndarray, size: np.ndarray) -> list[int]
 def _of_errors(found: LongSteps, rows: OutputRows, k: int, settings: RunSettings) -> np.ndarray:
     """Return the change of accelerations at a row by errors far below the tolerance; stiff forces make it large."""
     dynamics, state = found.dynamics, np.concatenate([rows.q[k], rows.u[k]])
-    errors = SLIGHT * (absolute_tolerances(dynamics.system, settings) + settings.rtol * np.abs(state))
+    errors = RUN_CHECKS.slight * (absolute_tolerances(dynamics.system, settings) + settings.rtol * np.abs(state))
     states = np.vstack([state, state + np.diag(errors)])
     q, u = np.split(states, [dynamics.system.n_q], axis=1)
     accelerations = dynamics.report(np.full(len(states), rows.t[k]), q, u, False).acceleration

@@ -14,18 +14,8 @@ from ..results.error_bars import Fine
 from ..results.scales import ROUNDING, kind_of
 from ..results.solution import Solution
 from ..run_checks.singular_poses import PosesOnTheWay
+from .parameters import VERIFICATION
 from .solve_again import Again
-
-BLOWN_UP = 0.05
-"""Excess of a channel over its output values, relative to its scale, from which on a peak is reported and the pose is checked."""
-PARTS_OF_IMPLICIT_STEPS, PARTS = 2, 4
-"""Parts of an interval between two times, for implicit (order up to 5) and explicit steps (order 8)."""
-MOST_OF_INPUTS = 5000
-"""Largest number of times that resolve inputs."""
-MOST_VALUES = 3e7
-"""Largest number of values of a run, limited by memory."""
-MOST_PRODUCTS = 3e9
-"""Largest number of multiplications in the decompositions of poses."""
 
 
 @dataclass(frozen=True)
@@ -60,14 +50,16 @@ def more_instants(first: Solution, features: InputFeatures) -> np.ndarray:
     If inputs have features narrower than the output interval, a few times in each are added.
     """
     reported, own = first.time, first.step_times
-    most = int(MOST_VALUES / len(first))
+    most = int(VERIFICATION.most_values / len(first))
     found = reported
     start, end = float(reported[0]), float(reported[-1])
-    narrow = features.instants(start, end, float(np.max(np.diff(reported))), min(most // 4, MOST_OF_INPUTS))
+    narrow = features.instants(
+        start, end, float(np.max(np.diff(reported))), min(most // 4, VERIFICATION.most_of_inputs)
+    )
     ends = own[(own > reported[0]) & (own < reported[-1])]
     if len(found) + len(ends) <= most:
         found = np.union1d(found, apart(ends, found))
-    parts = PARTS_OF_IMPLICIT_STEPS if len(first.history.order) else PARTS
+    parts = VERIFICATION.parts_of_implicit_steps if len(first.history.order) else VERIFICATION.parts
     if parts * len(found) <= most:
         within = found[:-1, None] + np.diff(found)[:, None] * np.arange(1, parts) / parts
         found = np.union1d(found, apart(within.ravel(), found))
@@ -105,7 +97,7 @@ def dense_samples(job: Job, run: Again, sizes: Mapping[str, float]) -> DenseSamp
     seen: set[int] = set()
     while peaks := _peaks(solution, strained, sound, run.at, sizes) - seen:
         for k in peaks:
-            if poses.products > MOST_PRODUCTS:
+            if poses.products > VERIFICATION.most_products:
                 return None
             sound[poses.at_singular(k)] = False
         sound |= reported
@@ -124,7 +116,7 @@ def _peaks(
     for name in names:
         values = solution[name][kept]
         for excess, extreme in zip(beyond(values, reported), (np.nanargmin, np.nanargmax), strict=True):
-            if excess > BLOWN_UP * sizes[name]:
+            if excess > VERIFICATION.blown_up * sizes[name]:
                 found.add(int(kept[extreme(values)]))
     return found
 

@@ -14,16 +14,10 @@ from ..analyses.job import Job
 from ..results.error_bars import ErrorBar
 from ..results.solution import Solution
 from ..solve.settings import traits_of
-from .dense_sampling import BLOWN_UP, DenseSamples, beyond, poses_of
-from .divergence import SENSITIVE, Divergence, distance, divergence
+from .dense_sampling import DenseSamples, beyond, poses_of
+from .divergence import Divergence, distance, divergence
+from .parameters import VERIFICATION
 from .solve_again import Again
-
-AMPLIFIED, VISIBLE, LOOSE = 1e6, 1e-2, 100.0
-"""Acceptable error in tolerances, its limit as a fraction of the channel's scale, and its lower bound in tolerances."""
-CONVERGES = 2.0
-"""Smallest reduction of the error at a tolerance tighter by a factor of ten."""
-NAMED = 3
-"""Largest number of channels that a sentence names."""
 
 
 @dataclass(frozen=True)
@@ -55,8 +49,10 @@ class Comparison:
         """Largest error of a peak that is not reported, relative to its scale."""
         settings = self.job.settings
         if traits_of(settings).fixed_steps:
-            return VISIBLE
-        return max(min(AMPLIFIED * settings.rtol, VISIBLE), LOOSE * settings.rtol)
+            return VERIFICATION.visible
+        return max(
+            min(VERIFICATION.amplified * settings.rtol, VERIFICATION.visible), VERIFICATION.loose * settings.rtol
+        )
 
     @cached_property
     def uncertain(self) -> dict[str, float]:
@@ -106,7 +102,8 @@ def _divergence_sentence(comparison: Comparison, divergences: list[Divergence | 
     settings = comparison.job.settings
     if pose is not None:
         where = ", ".join(
-            f"{body} at {words}" for body, words in zip(pose.bodies[:NAMED], pose.poses[:NAMED], strict=True)
+            f"{body} at {words}"
+            for body, words in zip(pose.bodies[: VERIFICATION.named], pose.poses[: VERIFICATION.named], strict=True)
         )
         return (
             f"another branch: at t = {pose.t:.6g} s the mechanism passes a (nearly) singular pose ({where}); "
@@ -120,7 +117,7 @@ def _divergence_sentence(comparison: Comparison, divergences: list[Divergence | 
     if len(of_levels) > 1 and of_levels[0] and of_levels[1]:
         begin = comparison.job.grid.start
         later = of_levels[1].t - begin
-        if later < SENSITIVE * (of_levels[0].t - begin):
+        if later < VERIFICATION.sensitive * (of_levels[0].t - begin):
             return (
                 f"a sensitive (chaotic) motion: from t = {of_levels[0].t:.4g} s on {of_levels[0].body} is elsewhere in "
                 f"{names[1]}, and that parts from {names[2]} at t = {of_levels[1].t:.4g} s; a tighter tolerance puts "
@@ -135,7 +132,7 @@ def _divergence_sentence(comparison: Comparison, divergences: list[Divergence | 
 
 
 def _uncertain_sentence(comparison: Comparison, parted: bool) -> str:
-    worst = list(comparison.uncertain)[:NAMED]
+    worst = list(comparison.uncertain)[: VERIFICATION.named]
     peaks = ", ".join(_peak(comparison, name) for name in worst)
     more = len(comparison.uncertain) - len(worst)
     others = f" and {more} more channels" if more else ""
@@ -164,7 +161,7 @@ def _remedy(comparison: Comparison, name: str, parted: bool) -> str:
     once = max(abs(a - b) for a, b in zip(peaks[0], peaks[1], strict=True))
     twice = max(abs(a - b) for a, b in zip(peaks[1], peaks[2], strict=True))
     shrinks = once / twice if twice else math.inf
-    if shrinks < CONVERGES:
+    if shrinks < VERIFICATION.converges:
         return f"they do not settle with a tighter tolerance than {what}: differences shrink by {shrinks:.2g} only"
     needed = comparison.uncertain[name] / comparison.acceptable
     steps = math.ceil(math.log(needed) / math.log(min(shrinks, ratio)))
@@ -182,7 +179,7 @@ def _missed(comparison: Comparison) -> list[str]:
         for name in comparison.bars
         if comparison.sizes[name]
     }
-    return sorted((name for name, part in parts.items() if part > BLOWN_UP), key=lambda name: -parts[name])
+    return sorted((name for name, part in parts.items() if part > VERIFICATION.blown_up), key=lambda name: -parts[name])
 
 
 def _missed_sentence(comparison: Comparison, missed: list[str]) -> str:

@@ -10,14 +10,9 @@ import numpy as np
 from ..compile.bodies import SPACE
 from ..compile.quaternions import CONJUGATE, rotation_vector, times
 from ..results.scales import kind_of
+from .parameters import VERIFICATION
 
-DIVERGED = 0.05
-"""Smallest difference of positions or velocities, relative to the motion's size, or in rad, of diverged motions."""
-TOGETHER = 1e-3
-"""Fraction of `DIVERGED` at which the difference begins to grow."""
 TURNING = (*SPACE.positions[SPACE.linear :], *SPACE.velocities[SPACE.linear :])
-SENSITIVE = 2.0
-"""Smallest factor of time by which a tighter tolerance delays the divergence of a motion that is not sensitive."""
 
 
 @dataclass(frozen=True)
@@ -100,10 +95,10 @@ def divergence(times: np.ndarray, distances: Mapping[str, np.ndarray]) -> Diverg
     if not distances:
         return None
     bodies, rows = list(distances), np.array(list(distances.values()))
-    beyond = rows > DIVERGED
+    beyond = rows > VERIFICATION.diverged
     if not beyond.any():
         return None
     k = int(np.argmax(beyond.any(axis=0)))
     body = int(np.argmax(rows[:, k]))
-    together = np.flatnonzero(rows[:, :k].max(axis=0) < TOGETHER * DIVERGED)
+    together = np.flatnonzero(rows[:, :k].max(axis=0) < VERIFICATION.together * VERIFICATION.diverged)
     return Divergence(bodies[body], float(times[together[-1] if len(together) else 0]), float(times[k]))

@@ -16,20 +16,12 @@ from ..model.settings import RunSettings
 from ..results.solution import Solution
 from ..solve.settings import changed, traits_of
 from ..solve.trajectory import Grid, Outcome
+from .parameters import VERIFICATION
 
 EXPLICIT: dict[str, Any] = {"solver": "projected", "scheme": "dop853", "projection": True}
 BDF: dict[str, Any] = {"solver": "bdf", "formulation": "SI2"}
 RADAU: dict[str, Any] = {"solver": "radau", "formulation": "SI2"}
 """Integrators for the comparison with another formula."""
-TIGHTEST_RTOL = 1e-13
-"""Relative tolerance below which steps fail by rounding."""
-CLEARLY_TIGHTER = 2.0
-"""Smallest ratio of tolerances that makes a comparison useful."""
-MORE_STEPS, LEAST_STEPS = 4, 1000
-"""Ratio of the number of steps of a rerun with a shorter longest step, and its minimum."""
-
-LOOKS_AHEAD = 0.3
-"""Fraction of the allowed effort after which a run that would exceed it is stopped."""
 
 
 class OutOfTime(KeyboardInterrupt):
@@ -61,7 +53,7 @@ class Deadline:
     def __call__(self, t: float) -> None:
         spent = self._clock() - self._begun
         done = (t - self._start) / (self._end - self._start)
-        hopeless = spent > LOOKS_AHEAD * self._allowed and spent > 2 * done * self._allowed
+        hopeless = spent > VERIFICATION.looks_ahead * self._allowed and spent > 2 * done * self._allowed
         if spent > self._allowed or hopeless:
             self.passed = True
             raise OutOfTime
@@ -138,13 +130,17 @@ def solve_again(
 
 def levels_of(rtol: float) -> tuple[int, ...]:
     """Return the levels of tighter tolerances, in powers of ten: a hundredth and a tenth if rounding permits."""
-    return tuple(level for level, most in ((2, 10 * CLEARLY_TIGHTER), (1, 0.0)) if rtol > most * TIGHTEST_RTOL)
+    return tuple(
+        level
+        for level, most in ((2, 10 * VERIFICATION.clearly_tighter), (1, 0.0))
+        if rtol > most * VERIFICATION.tightest_rtol
+    )
 
 
 def tolerances(settings: RunSettings, level: int) -> dict[str, Any]:
     """Return tolerances tighter by powers of ten, down to the tightest; looser ones if that is hardly tighter."""
-    rtol = max(settings.rtol / 10**level, TIGHTEST_RTOL)
-    if settings.rtol < CLEARLY_TIGHTER * rtol:
+    rtol = max(settings.rtol / 10**level, VERIFICATION.tightest_rtol)
+    if settings.rtol < VERIFICATION.clearly_tighter * rtol:
         rtol = 10 * settings.rtol
     return {"rtol": rtol, **({"atol": settings.atol * rtol / settings.rtol} if settings.atol else {})}
 
@@ -153,8 +149,8 @@ def shorter_step(first: Solution) -> float:
     """Return a longest step, s, that multiplies the number of steps of a run."""
     steps, whole = np.diff(first.step_times), float(first.time[-1] - first.time[0])
     if not len(steps):
-        return whole / LEAST_STEPS
-    wanted = max(MORE_STEPS * len(steps), LEAST_STEPS)
+        return whole / VERIFICATION.least_steps
+    wanted = max(VERIFICATION.more_steps * len(steps), VERIFICATION.least_steps)
     few, many = whole / (8 * wanted), whole
     for _ in range(60):  # bisection of the number of steps, which decreases with their length
         middle = np.sqrt(few * many)

@@ -28,28 +28,8 @@ from ..solve.missing_rows import reported
 from ..solve.settings import changed, near_constraints, traits_of
 from ..solve.trajectory import Grid, Outcome
 from .dense_sampling import apart
-from .divergence import DIVERGED
-from .solve_again import EXPLICIT, TIGHTEST_RTOL, Deadline
-
-SAMPLES = 20_000
-"""Largest number of samples."""
-OF_EFFORT_LEFT = 0.25
-"""Fraction of the remaining effort for the sampling."""
-OPEN_BALANCE = 1e-3
-"""Imbalance of momentum in an interval that is checked, relative to the largest mass-weighted velocity."""
-ELSEWHERE = 1e-2
-"""Difference of velocities at the end of a repeated interval, relative to the same, or of kinetic energies, relative to
-the largest, between runs that are not equivalent; impacts magnify differences.
-"""
-SHARE = 1e-3
-"""Smallest change of a force law's reaction, relative to the largest change, for the law to be named."""
-STRETCHES = 4
-"""Largest number of intervals that are solved again."""
-SHORTER = 50
-"""Number of steps in an unbalanced interval when it is solved again."""
-FEWEST_STEPS = 4
-STRETCH_TOLERANCE = 1e-2
-"""Factor on the tolerance of a repeated interval without short steps."""
+from .parameters import VERIFICATION
+from .solve_again import EXPLICIT, Deadline
 
 
 @dataclass(frozen=True)
@@ -73,7 +53,7 @@ class SteppedOver:
     @property
     def max_step(self) -> float:
         """Longest step that resolves it, s."""
-        return float(f"{self.width / FEWEST_STEPS:.1g}")
+        return float(f"{self.width / VERIFICATION.fewest_steps:.1g}")
 
 
 @dataclass(frozen=True)
@@ -112,7 +92,7 @@ def looked_along(job: Job, first: Solution, allowed: float) -> Along:
         Evaluations of the job's equations.
     """
     begun = job.evaluations()
-    times = _instants(job, first, OF_EFFORT_LEFT * allowed)
+    times = _instants(job, first, VERIFICATION.of_effort_left * allowed)
     grid = Grid(job.grid.start, float(times[-1]), times)
     try:
         trajectory = replace(job, grid=grid).integrate(Deadline(grid.start, grid.end, allowed, job.evaluations))
@@ -134,7 +114,7 @@ def _same_way(first: Solution, t: np.ndarray, kinetic: np.ndarray) -> bool:
     """Return True if a run with more output times has the same kinetic energies."""
     at = np.minimum(np.searchsorted(t, first.time), len(t) - 1)
     own = first["energy.kinetic"]
-    return bool(np.nanmax(np.abs(own - kinetic[at])) <= ELSEWHERE * np.nanmax(own, initial=0.0))
+    return bool(np.nanmax(np.abs(own - kinetic[at])) <= VERIFICATION.elsewhere * np.nanmax(own, initial=0.0))
 
 
 def _instants(job: Job, first: Solution, allowed: float) -> np.ndarray:
@@ -144,7 +124,7 @@ def _instants(job: Job, first: Solution, allowed: float) -> np.ndarray:
     begun = job.evaluations()
     job.dynamics.report(np.array([start]), job.start.q[None], job.start.u[None], True)
     each = job.evaluations() - begun
-    most = int(np.clip(allowed / each, 2, SAMPLES))
+    most = int(np.clip(allowed / each, 2, VERIFICATION.samples))
     found = np.union1d(reported_at, apart(steps[(steps > start) & (steps < end)], reported_at))
     spread = np.linspace(start, end, most)[1:-1]
     return np.union1d(found, apart(spread, found)) if most > 2 else found
@@ -156,9 +136,9 @@ def _stepped_over(job: Job, rows: OutputRows, steps: np.ndarray, allowed: float)
     poses = PosesOnTheWay(system, rows.t, rows.q)
     missing, speed = _momentum(system, rows)
     end, looked = job.evaluations() + allowed, np.zeros(len(missing), dtype=bool)
-    for _ in range(STRETCHES):
+    for _ in range(VERIFICATION.stretches):
         worst = int(np.argmax(np.where(looked, 0.0, missing), axis=0)) if len(missing) else 0
-        if not len(missing) or looked[worst] or not missing[worst] > OPEN_BALANCE * speed:
+        if not len(missing) or looked[worst] or not missing[worst] > VERIFICATION.open_balance * speed:
             return
         left = end - job.evaluations()
         if left <= 0:
@@ -168,7 +148,10 @@ def _stepped_over(job: Job, rows: OutputRows, steps: np.ndarray, allowed: float)
         width, element = float(rows.t[worst + 1] - rows.t[worst]), _acting(system, rows, worst)
         if not element or poses.nearest(float(rows.t[first]), float(rows.t[last])) is not None:
             continue  # near a singular pose, any difference may decide the branch
-        if _parted(job, rows, first, last, width, left / 2, DIVERGED * speed) > ELSEWHERE * speed:
+        if (
+            _parted(job, rows, first, last, width, left / 2, VERIFICATION.diverged * speed)
+            > VERIFICATION.elsewhere * speed
+        ):
             yield SteppedOver(float(rows.t[worst]), width, element)
 
 
@@ -202,14 +185,19 @@ def _parted(job: Job, rows: OutputRows, first: int, last: int, width: float, all
     It is 0 if the solution stops early, or if a tighter tolerance alone causes much of a small difference.
     """
     roots = np.sqrt(job.dynamics.system.mass)
-    short = _solved_again(job, rows, first, last, {"max_step": width / SHORTER}, allowed)
+    short = _solved_again(job, rows, first, last, {"max_step": width / VERIFICATION.shorter}, allowed)
     if short is None:
         return 0.0
     off = float(np.linalg.norm((short - rows.u[last]) * roots))
     if off > much:
         return off
     tight = _solved_again(
-        job, rows, first, last, {"rtol": max(STRETCH_TOLERANCE * job.settings.rtol, TIGHTEST_RTOL)}, allowed
+        job,
+        rows,
+        first,
+        last,
+        {"rtol": max(VERIFICATION.stretch_tolerance * job.settings.rtol, VERIFICATION.tightest_rtol)},
+        allowed,
     )
     return off if tight is not None and np.linalg.norm((tight - short) * roots) > off / 2 else 0.0
 
@@ -241,4 +229,4 @@ def _acting(system: System, rows: OutputRows, k: int) -> str:
     laws = {name for group in system.groups if not group.record.n_equations or group.has_law for name in group.names}
     of_laws = {name: much for name, much in changes.items() if name.rpartition(".")[0] in laws}
     name = max(of_laws, key=lambda each: of_laws[each], default="")
-    return name.rpartition(".")[0] if name and of_laws[name] > SHARE * max(changes.values()) else ""
+    return name.rpartition(".")[0] if name and of_laws[name] > VERIFICATION.share * max(changes.values()) else ""

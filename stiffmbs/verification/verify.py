@@ -32,19 +32,14 @@ from ..results.scales import scales
 from ..results.solution import Solution
 from ..solve.settings import changed, traits_of
 from ..solve.trajectory import Outcome, ProgressCallback
+from ..tuning import in_use
 from .dense_sampling import DenseSamples, dense_samples, more_instants
 from .diagnostics import Comparison, diagnostics
 from .divergence import distance, divergence
+from .parameters import VERIFICATION
 from .solve_again import Again, levels_of, other_integrators, shorter_step, solve_again, tolerances
 from .step_diagnostics import by_luck, step_diagnostics
 from .stepped_over import Along, SteppedOver, looked_along
-
-MOST_EFFORT, EFFORT_ALLOWED = 10.0, 2.5e7
-"""Evaluations of all reruns, in those of the first run; and their minimum, times the number of unknowns."""
-OTHER_OF_FIXED = 1e-10
-"""Relative tolerance of the other solver if the first has fixed steps."""
-CHANNEL_ROUNDING = 1e-13
-"""Rounding of a channel, relative to its scale."""
 
 
 @takes_settings
@@ -70,9 +65,10 @@ def verify(
     if first.outcome is Outcome.INTERRUPTED:
         return replace(first, verification=("not verified: interrupted by the user",))
     try:
-        system = job.dynamics.system
-        least = EFFORT_ALLOWED / (system.n_q + system.n_u + system.n_c)
-        return verified(job, first, max(least, MOST_EFFORT * job.evaluations()))
+        with in_use(job.settings.tuning):
+            system = job.dynamics.system
+            least = VERIFICATION.effort_allowed / (system.n_q + system.n_u + system.n_c)
+            return verified(job, first, max(least, VERIFICATION.most_effort * job.evaluations()))
     except KeyboardInterrupt:
         return replace(first, verification=("verification interrupted by the user",))
 
@@ -88,7 +84,8 @@ def verified(job: Job, first: Solution, allowed: float) -> Solution:
     allowed : float
         Evaluations of the job's equations for all reruns.
     """
-    return _Verification(job, first, allowed).result()
+    with in_use(job.settings.tuning):
+        return _Verification(job, first, allowed).result()
 
 
 class _Verification:
@@ -225,7 +222,7 @@ class _Verification:
 
     def _ask_the_other(self) -> None:
         settings, reported = self._job.settings, self._first.time
-        tighter = {"rtol": OTHER_OF_FIXED} if self._traits.fixed_steps else tolerances(settings, 2)
+        tighter = {"rtol": VERIFICATION.other_of_fixed} if self._traits.fixed_steps else tolerances(settings, 2)
         for integrator in other_integrators(self._first, settings):
             changes = self._other_settings = {**integrator, **tighter}
             name = f"{traits_of(changed(settings, changes)).name} at rtol {changes['rtol']:.3g}"
@@ -250,7 +247,7 @@ class _Verification:
                 self._first[name],
                 [run.reported(name) for run in runs],
                 self._dense.fine(name) if self._dense else None,
-                CHANNEL_ROUNDING * self._sizes[name],
+                VERIFICATION.channel_rounding * self._sizes[name],
             )
             for name in self._first
             if name not in self._first.not_unique and not name.startswith("constraint.")

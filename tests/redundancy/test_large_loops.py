@@ -1,5 +1,7 @@
 """Loops of hundreds of bodies: their rank by sparse factors is that of singular values."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -8,11 +10,18 @@ from stiffmbs import Body, Marker, Model, Revolute
 from stiffmbs.redundancy import loop_rank
 from stiffmbs.redundancy import sparse_matrix as entries_module
 from stiffmbs.redundancy.sparse_matrix import SparseMatrix
+from stiffmbs.tuning import parameters_of
+
+
+def dense_up_to(monkeypatch, rows):
+    """Set the largest number of rows for dense factors."""
+    changed = replace(parameters_of(entries_module.REDUNDANCY), dense_up_to=rows)
+    monkeypatch.setattr(entries_module, "REDUNDANCY", changed)
 
 
 @pytest.fixture(params=["dense", "sparse"])
 def way(request, monkeypatch):
-    monkeypatch.setattr(entries_module, "DENSE_UP_TO", {"dense": 10**9, "sparse": 0}[request.param])
+    dense_up_to(monkeypatch, {"dense": 10**9, "sparse": 0}[request.param])
 
 
 def matrix(n, m, seed, least=None):
@@ -76,7 +85,7 @@ def test_every_cell_of_a_ladder_leaves_one_freedom():
 
 def test_a_large_ladder_is_examined_as_a_small_one(monkeypatch):
     by_sparse = stiffmbs.check(ladder(50))
-    monkeypatch.setattr(entries_module, "DENSE_UP_TO", 10**9)
+    dense_up_to(monkeypatch, 10**9)
     assert stiffmbs.check(ladder(50)) == by_sparse
 
 
@@ -91,9 +100,9 @@ def test_small_singular_values_alone_are_those_of_the_whole(monkeypatch, redunda
     row, column = np.nonzero(A)
     entries = SparseMatrix(row, column, A[row, column], A.shape)
     whole, whole_vectors = loop_rank.small_singular(entries)
-    monkeypatch.setattr(entries_module, "DENSE_UP_TO", 0)
+    dense_up_to(monkeypatch, 0)
     values, vectors = loop_rank.small_singular(entries)
-    assert (len(values), vectors.shape[1]) == (len(whole), redundant + 1 + loop_rank.MORE)
+    assert (len(values), vectors.shape[1]) == (len(whole), redundant + 1 + loop_rank.REDUNDANCY.more)
     np.testing.assert_allclose(values[-redundant - 1 :], whole[-redundant - 1 :], rtol=1e-6, atol=1e-13)
     null, whole_null = (v[:, v.shape[1] - redundant :] for v in (vectors, whole_vectors))
     np.testing.assert_allclose(null @ null.T, whole_null @ whole_null.T, atol=1e-9)

@@ -1,5 +1,7 @@
 """What begins and ends within a long step is found without an output instant there, and the run is taken again."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -8,6 +10,7 @@ from stiffmbs.analyses.job import prepare
 from stiffmbs.run_checks import within_long_steps
 from stiffmbs.run_checks.within_long_steps import overlooked_in_long_steps
 from stiffmbs.solve.events.long_steps import LONG_STEP, WHOLE, LongSteps
+from stiffmbs.tuning import parameters_of
 
 SOLVERS = (
     {"solver": "bdf"},
@@ -41,7 +44,8 @@ def told(solution):
 
 @pytest.mark.parametrize("how", SOLVERS, ids=lambda how: how.get("scheme", how["solver"]))
 def test_a_python_function_that_no_output_meets(how, monkeypatch):
-    monkeypatch.setattr(within_long_steps, "PARTS_OF_A_RUN", 1000)
+    few = replace(parameters_of(within_long_steps.RUN_CHECKS), parts_of_a_run=1000)
+    monkeypatch.setattr(within_long_steps, "RUN_CHECKS", few)
     found = stiffmbs.run(ball(5e-3), duration=1.0, points=2, rtol=1e-6, **how)
     (note,) = told(found)
     assert "passed over 'push' at t = " in note and "taken again" in note

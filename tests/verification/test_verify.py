@@ -3,6 +3,7 @@
 import itertools
 import json
 import time
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -258,10 +259,11 @@ def test_what_is_done_does_not_depend_on_the_clock(monkeypatch):
 
 
 def test_what_takes_too_long_is_given_up_and_said(monkeypatch):
+    from stiffmbs.tuning import parameters_of
     from stiffmbs.verification import verify
 
-    monkeypatch.setattr(verify, "MOST_EFFORT", 0)
-    monkeypatch.setattr(verify, "EFFORT_ALLOWED", 0)
+    none = replace(parameters_of(verify.VERIFICATION), most_effort=0, effort_allowed=0)
+    monkeypatch.setattr(verify, "VERIFICATION", none)
     found = stiffmbs.verify(example("cart_pendulum"))
     assert len(found.time) == 1001
     assert any("no effort was left" in told or "given up" in told for told in found.verification)

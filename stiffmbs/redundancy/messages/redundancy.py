@@ -9,8 +9,8 @@ from ...compile.system import System
 from ...errors import AssemblyError
 from ..directions import Direction
 from ..inconsistent_constraints import Inconsistency
-from ..loop_equations import AGREES, CLOSED
 from ..overconstraint import Overconstraint, listed, overconstraints
+from ..parameters import REDUNDANCY
 from ..rank_result import LoopRankResult
 from ..redundancy import Redundancy
 from ..uniqueness import Indeterminate
@@ -81,7 +81,9 @@ def _inconsistency_sentence(system: System, rank_result: LoopRankResult, inconsi
 
 def singular_sentence(redundancy: Redundancy) -> Iterator[str]:
     """Yield a sentence if the start is a singular pose."""
-    assembled = [rank_result for rank_result in redundancy.rank_results if rank_result.rank.start.gap <= AGREES]
+    assembled = [
+        rank_result for rank_result in redundancy.rank_results if rank_result.rank.start.gap <= REDUNDANCY.agrees
+    ]
     bodies = [
         redundancy.system.bodies[body]
         for rank_result in assembled
@@ -108,7 +110,7 @@ def pose_sentences(redundancy: Redundancy) -> Iterator[str]:
                 f"{listed(joints)} nearly repeat each other (smallest singular value {rank_result.rank.least:.1g}): the motion "
                 "depends on the last digits of their geometry, expected either an exact or a clear difference"
             )
-        if rank_result.redundant and CLOSED < rank_result.rank.start.gap <= AGREES:
+        if rank_result.redundant and REDUNDANCY.closed < rank_result.rank.start.gap <= REDUNDANCY.agrees:
             yield (
                 f"{listed(joints)} agree to {rank_result.rank.start.gap:.1g} of their size only: the equations left out stay open by "
                 "so much"
