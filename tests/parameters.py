@@ -63,30 +63,32 @@ def _scene(name: str) -> Any:
     return stiffmbs.read_scene(name) if "{" in name else stiffmbs.load_scene(EXAMPLES / f"{name}.yaml")
 
 
+_RUNS: tuple[tuple[Any, ...], ...] = (
+    ("cart_pendulum", 2.0, {}, {"solver": "projected"}, {"rtol": 1e-10}, {"solver": "radau"}),
+    ("half_car", 0.5, {}, {"solver": "auto"}, {"solver": "radau"}, {"rtol": 1e-9}, {"solver": "auto", "rtol": 1e-3}),
+    ("bouncing_ball", 1.0, {}, {"solver": "projected"}, {"solver": "radau"}),
+    ("stick_slip", 2.0, {}, {"solver": "projected"}),
+    ("cam_follower", 1.0, {}, {"solver": "projected"}, {"solver": "projected", "scheme": "dopri5"}),
+    ("crank_slider", 1.0, {"solver": "kinematic"}, {"solver": "auto"}),
+    ("andrews", 0.03, {}, {"solver": "projected"}, {"rtol": 1e-3}),
+    ("dead_centres", 2.0, {}, {"solver": "projected"}),
+    ("simple_pendulum", 1.0, {"solver": "projected", "scheme": "rk4", "step": 3e-3}),
+    ("dzhanibekov", 5.0, {}, {"solver": "projected"}, {"solver": "projected", "rtol": 1e-12}),
+    ("heavy_top", 1.0, {}, {"solver": "radau"}),
+    (NARROW, 5.0, {}, {"solver": "projected"}),
+    (SLIDING, 1.0, {}, {"solver": "projected"}, {"solver": "projected", "scheme": "rk4"}),
+    (GROWING, 20.0, {}, {"solver": "projected"}),
+    (DAMPED, 1.0, {}, {"solver": "auto"}),
+    ("chain", 0.5, {}, {"solver": "projected"}),
+    ("four_bars", 0.5, {}, {"solver": "radau"}),
+    ("spatial_chain", 0.2, {}, {"solver": "projected"}),
+)  # fmt: skip
+"""Scenes, durations in s, and settings of each run."""
 CASES = tuple(
     Case(scene, {"duration": duration, "points": 101, **settings})
-    for scene, duration, *variants in (
-        ("cart_pendulum", 2.0, {}, {"solver": "projected"}, {"rtol": 1e-10}, {"solver": "radau"}),
-        ("half_car", 0.5, {}, {"solver": "auto"}, {"solver": "radau"}, {"rtol": 1e-9}, {"solver": "auto", "rtol": 1e-3}),
-        ("bouncing_ball", 1.0, {}, {"solver": "projected"}, {"solver": "radau"}),
-        ("stick_slip", 2.0, {}, {"solver": "projected"}),
-        ("cam_follower", 1.0, {}, {"solver": "projected"}, {"solver": "projected", "scheme": "dopri5"}),
-        ("crank_slider", 1.0, {"solver": "kinematic"}, {"solver": "auto"}),
-        ("andrews", 0.03, {}, {"solver": "projected"}, {"rtol": 1e-3}),
-        ("dead_centres", 2.0, {}, {"solver": "projected"}),
-        ("simple_pendulum", 1.0, {"solver": "projected", "scheme": "rk4", "step": 3e-3}),
-        ("dzhanibekov", 5.0, {}, {"solver": "projected"}, {"solver": "projected", "rtol": 1e-12}),
-        ("heavy_top", 1.0, {}, {"solver": "radau"}),
-        (NARROW, 5.0, {}, {"solver": "projected"}),
-        (SLIDING, 1.0, {}, {"solver": "projected"}, {"solver": "projected", "scheme": "rk4"}),
-        (GROWING, 20.0, {}, {"solver": "projected"}),
-        (DAMPED, 1.0, {}, {"solver": "auto"}),
-        ("chain", 0.5, {}, {"solver": "projected"}),
-        ("four_bars", 0.5, {}, {"solver": "radau"}),
-        ("spatial_chain", 0.2, {}, {"solver": "projected"}),
-    )
+    for scene, duration, *variants in _RUNS
     for settings in variants
-)  # fmt: skip
+)
 
 
 @cache
