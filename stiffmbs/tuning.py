@@ -152,6 +152,15 @@ def numbers_of(parameters: Any) -> dict[str, Any]:
     }
 
 
+def changes_in_use() -> Iterator[str]:
+    """Yield each changed parameter with its value and its default."""
+    for name, used in _CHANGED.get().items():
+        usual = numbers_of(defaults_of(name))
+        for field, value in numbers_of(used).items():
+            if value != usual[field]:
+                yield f"{name}.{field} = {value} (default {usual[field]})"
+
+
 def described() -> Iterator[str]:
     """Yield a line for each subsystem, with its parameters in use; changed ones are followed by their defaults."""
     for name in SUBSYSTEMS:

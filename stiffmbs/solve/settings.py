@@ -9,6 +9,7 @@ import numpy as np
 
 from ..compile.system import System
 from ..model.settings import RunSettings
+from ..tuning import changes_in_use
 from . import SOLVERS
 from .solver import Traits
 from .trajectory import Grid
@@ -67,6 +68,8 @@ def settings_notes(settings: RunSettings, system: System) -> Iterator[str]:
     """Yield notes on settings without effect and on events that steps may miss."""
     traits = traits_of(settings)
     yield from _ignored(settings, traits)
+    if changes := ", ".join(changes_in_use()):
+        yield f"run.tuning changes parameters of solvers or checks: {changes}"
     if not traits.locates_events and system.n_values("event_function"):
         yield (
             f"{traits.name} does not locate the breakpoints that forces have in the state (contacts, step, abs, tables), and a step of "

@@ -112,6 +112,20 @@ def test_a_wrong_entry_is_refused(changes, message):
         stiffmbs.run(EXAMPLE, tuning=changes)
 
 
+def test_a_check_uses_changed_parameters():
+    """The last message names at most as many joints as the parameter allows."""
+    joints = ", ".join(f"r{k}: {{type: revolute, i: a, j: ground}}" for k in range(9))
+    scene = stiffmbs.read_scene(f"{{bodies: {{a: {{mass: 1, inertia: 1}}}}, joints: {{{joints}}}}}")
+    assert "r4 and 4 more" in stiffmbs.check(scene).messages[-1]
+    assert "all of r0 and 8 more" in stiffmbs.check(scene, tuning={"redundancy": {"most_names": 2}}).messages[-1]
+
+
+def test_a_run_notes_its_changed_parameters():
+    found = stiffmbs.run(EXAMPLE, duration=0.1, tuning={"newton": {"loosest": 0.01, "last": 3}})
+    assert "run.tuning changes parameters of solvers or checks: newton.loosest = 0.01 (default 0.03)" in found.notes
+    assert not any("tuning" in note for note in stiffmbs.run(EXAMPLE, duration=0.1, tuning={"newton": {}}).notes)
+
+
 def test_the_command_prints_the_parameters_of_the_run():
     call = ["run", EXAMPLE, "-vv", "--json", "--duration", "0.1", "--set", "run.tuning.newton.loosest=0.01"]
     found = CliRunner().invoke(main, call)
