@@ -99,7 +99,7 @@ class ModelMethods(NotebookMethods):
 
     def draw(
         self: Any, path: str | Path | None = None, at: float | None = None, described: bool = False, checked: bool = False,
-        view: str = "", names: bool = True, forces: bool = True,
+        view: str = "", names: bool = True, forces: bool | None = None,
     ) -> Sheet | None:  # fmt: skip
         """Draw the model at a given time; parameters, result and errors are those of `stiffmbs.draw`."""
         return stiffmbs.draw(self, path, at, described, checked, view, names, forces)

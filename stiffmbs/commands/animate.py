@@ -33,12 +33,14 @@ from .scene import changes_of, file_beside, output_option, refuse_own_input, ref
     help="A marker, such as coupler.tip, or a body whose path is drawn; any number of times.",
 )
 @click.option("--names/--no-names", default=False, show_default=True, help="Whether a film shows names.")
-@click.option("--forces/--no-forces", default=True, show_default=True, help="Whether a film shows forces, to scale.")
+@click.option(
+    "--forces/--no-forces", default=None, help="Whether a film shows forces, to scale; by default in the plane alone."
+)
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line on what was written.")
 @solving_options
 def animate(
     scene: str, results: tuple[Path, ...], output: Path | None, view: str, speed: float, rate: float, traces: tuple[str, ...],
-    names: bool, forces: bool, as_json: bool, **options: Any,
+    names: bool, forces: bool | None, as_json: bool, **options: Any,
 ) -> None:  # fmt: skip
     """Animate SCENE: its run, or RESULTS (.npz) of runs and of mode shapes, drawn over each other.
 

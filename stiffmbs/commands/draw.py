@@ -22,14 +22,16 @@ from .scene import changes_of, file_beside, in_file, output_option, refuse_own_i
     "--view", default="", help="front, side, top, isometric, a plane such as xz, or AZIMUTH,ELEVATION in degrees."
 )
 @click.option("--names/--no-names", default=True, show_default=True, help="Whether names are written.")
-@click.option("--forces/--no-forces", default=True, show_default=True, help="Whether forces are drawn, to scale.")
+@click.option(
+    "--forces/--no-forces", default=None, help="Whether forces are drawn, to scale; by default in the plane alone."
+)
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line on what was drawn.")
 @solving_options
 def draw(
-    scene: str, output: Path | None, at: float | None, described: bool, checked: bool, view: str, names: bool, forces: bool,
+    scene: str, output: Path | None, at: float | None, described: bool, checked: bool, view: str, names: bool, forces: bool | None,
     as_json: bool, **options: Any,
 ) -> None:  # fmt: skip
-    """Draw SCENE at an instant: bodies, joints, forces and ground by their symbols, force arrows to scale.
+    """Draw SCENE at an instant: bodies, joints, forces and ground by their symbols, force arrows in the plane to scale.
 
     Exit status: 0 done, 1 no such state is found, or the file could not be written, 2 the input is wrong.
     """

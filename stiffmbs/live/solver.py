@@ -156,7 +156,7 @@ def shown(found: Solved, channels: Sequence[str]) -> dict[str, Any]:
     figure = solution.figure.y if solution.figure else ()
     wanted = [name for name in channels if name in solution.channels] or list(figure) or ["energy.total"]
     poses = poses_of(scene, solution.time, solution.channels)
-    page = page_data(drawing_of(scene), {"": poses}, solution, wanted, only=wanted, level=FAST)
+    page = page_data(drawing_of(scene, along=poses), {"": poses}, solution, wanted, only=wanted, level=FAST)
     told = verdict(solution)
     return {
         "status": told.status, "message": told.headline, "notes": list(told.to_check), "digits": told.digits_words,

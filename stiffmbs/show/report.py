@@ -88,7 +88,7 @@ def report_page(scene: Scene, solution: Solution, text: str = "", sections: Sequ
     if len(solution.step_times) > 1:
         figures.append(step_history(solution.history))
     poses, shown = poses_of(scene, solution.time, solution.channels), scene.figure.y if scene.figure else ()
-    moving = page_data(drawing_of(scene, marks_of(report)), {"": poses}, solution, shown)
+    moving = page_data(drawing_of(scene, marks_of(report), along=poses), {"": poses}, solution, shown)
     chosen = scene.run.model_fields_set  # shown first
     settings = dict(sorted(scene.run, key=lambda field: field[0] not in chosen))
     points = len(solution.time) + len(solution.step_times)

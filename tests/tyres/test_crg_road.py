@@ -85,6 +85,20 @@ def test_heights_beside_the_reference_line(tmp_path, layout, bend):
         assert error_at(road, *at, height(along, v)) == pytest.approx(0, abs=2e-5)
 
 
+@pytest.mark.parametrize("bend", [BEND, 0.0])
+def test_drawn_points_lie_on_the_road(tmp_path, bend):
+    road = CrgRoad(file=written(tmp_path / "road.crg", bend=bend), placed="file")
+    u = STEP * np.arange(COUNT)
+    points = road.surface_points(COUNT)
+    np.testing.assert_allclose(points[..., 2], height(u[:, None], np.array(SECTIONS)), atol=1e-6)
+    _, x, y = line(u, bend)
+    heading = HEADING + bend * u
+    for k, v in enumerate(SECTIONS):
+        np.testing.assert_allclose(points[2:-2, k, 0], (x - v * np.sin(heading))[2:-2], atol=0.01)
+        np.testing.assert_allclose(points[2:-2, k, 1], (y + v * np.cos(heading))[2:-2], atol=0.01)
+    assert len(road.surface_points(50)) <= 50
+
+
 def test_a_road_begins_at_the_origin_along_x(tmp_path):
     """As OpenCRG places a file that says nothing else; x and y from the circle's own centre."""
     road = CrgRoad(file=written(tmp_path / "road.crg"))

@@ -2,6 +2,7 @@
 
 import math
 
+import numpy as np
 import pytest
 
 from stiffmbs import InputError, load_scene, run
@@ -43,6 +44,11 @@ def deflection(road, x, y):
     state = State(system)
     state.evaluate("output", 0.0)
     return float(reactions(system, state.values["output"][None, :])["tyre.deflection"][0])
+
+
+def test_drawn_heights_are_interpolated_between_lines(grid):
+    x, y = np.array([3.0, 3.0, 4.0, 8.0, 4.0]), np.array([2.5, 1.0, 0.5, -1.0, -1.0])
+    assert GridRoad(file=grid()).heights(x, y).tolist() == pytest.approx([0.04, 0.02, 0.01, 0.5, 0.3])
 
 
 @pytest.mark.long

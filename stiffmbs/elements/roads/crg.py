@@ -126,6 +126,20 @@ class CrgRoad(Road):
             "start": (float(x[0]), float(y[0]), float(self.file.u[0])),
         }
 
+    def surface_points(self, most: int) -> np.ndarray:
+        """Return points of the road for drawings, m, shape (along, across, 3), at most as many along as given."""
+        import numpy as np
+
+        x, y, level = self._at_its_place()
+        step = max(1, -(-len(x) // most))
+        turn = np.unwrap(np.arctan2(np.gradient(y), np.gradient(x)))[::step]
+        columns = self._columns
+        v = np.asarray(self.file.v)[columns]
+        z = self.file.heights[::step][:, columns] - level
+        return np.stack(
+            [x[::step, None] - v * np.sin(turn)[:, None], y[::step, None] + v * np.cos(turn)[:, None], z], axis=-1
+        )
+
     @staticmethod
     def place(r: Symbolic, e: Symbolic, x: Any, y: Any) -> tuple[Any, Any]:
         """Return u and v of the point."""

@@ -48,6 +48,10 @@ class FormulaRoad(Road):
 
     def profile_heights(self, x: np.ndarray) -> np.ndarray:
         """Return the heights, m, of the formula at positions x, m."""
+        return self.heights(x, 0.0 * x)
+
+    def heights(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        """Return the heights, m, of the formula."""
         from numpy import broadcast_to
 
         from ...reading.formula.functions import IN_FORMULAS
@@ -56,7 +60,7 @@ class FormulaRoad(Road):
 
         functions = {name: function.array for name, function in IN_FORMULAS.items()}
         tables = {name: partial(heights_of, table) for name, table in self.z.tables.items()}
-        found = evaluate(self.z.tree, {**self.z.values, "x": x}.__getitem__, {**functions, **tables})
+        found = evaluate(self.z.tree, {**self.z.values, "x": x, "y": y}.__getitem__, {**functions, **tables})
         return broadcast_to(found, x.shape)
 
     @staticmethod

@@ -68,6 +68,18 @@ class Road(Component):
         """Return the heights, m, at positions x, m, for the rolling-radius filter; they are independent of y."""
         raise NotImplementedError
 
+    def heights(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        """Return the unfiltered heights, m, at points along and across the road, m, for drawings.
+
+        Raises
+        ------
+        NotImplementedError
+            If the road states no numbers.
+        """
+        import numpy as np
+
+        return np.zeros(x.shape) if self.level else np.asarray(self.profile_heights(x.ravel())).reshape(x.shape)
+
     def in_equations(self) -> dict[str, Any]:
         """Return its fields, and with `filter_radius` the table ``rolled`` of filtered heights."""
         own = dict(super().in_equations())

@@ -82,6 +82,7 @@ class Tyre(Force):
     elastic energy of a tyre.
     """
 
+    symbol = "tyre"
     channels = CHANNELS
     may_keep_energy = False
     reflected = {"j": "z"}

@@ -86,8 +86,8 @@ def write_animation(
     InputError
         If a run belongs to another model, or a marker is unknown.
     """
-    drawing = drawing_of(data)
     poses = {name: poses_of(data, run.time, run.channels) for name, run in runs.items()}
+    drawing = drawing_of(data, along=next(iter(poses.values())))
     anchors = traced(data, traces)
     if path.suffix == ".html":
         first = next(iter(runs.values()))
@@ -102,7 +102,7 @@ def write_animation(
 
 def animate(
     model: Any, path: str | Path, runs: Solution | Mapping[str, Solution] | None = None, view: str = "", speed: float = 1.0,
-    rate: float = 25.0, names: bool = False, forces: bool = True, traces: Sequence[str] = (), **changes: Any,
+    rate: float = 25.0, names: bool = False, forces: bool | None = None, traces: Sequence[str] = (), **changes: Any,
 ) -> None:  # fmt: skip
     """Write an animation of a model, as a film or a page.
 
@@ -120,8 +120,10 @@ def animate(
         Seconds of the model per second of a film.
     rate : float
         Pictures per second of a film.
-    names, forces : bool
-        True if a film shows names, and arrows for the forces of joints and force elements.
+    names : bool
+        True if a film shows names.
+    forces : bool, optional
+        True for arrows of the forces of joints and force elements; by default in the plane alone.
     traces : sequence of str
         Markers, such as ``coupler.tip``, or bodies, whose paths are drawn.
     **changes

@@ -15,12 +15,14 @@ from .mesh_file import read_mesh
 from .scene_graph import Line, Part, Solid
 
 Shapes = tuple[tuple[Solid, ...], tuple[Line, ...]]
+SAME_WHEEL = 0.2
+"""Difference of radii below which a cylinder is the wheel that a tyre draws, relative."""
 SAME_POINT = 1e-3
 """Distance below which points count as one, relative to the mechanism's size."""
 
 
-def given_shapes(name: str, body: Any, dimensions: int, size: float) -> list[Part]:
-    """Return the shapes of a body in its scene.
+def given_shapes(name: str, body: Any, dimensions: int, size: float, wheel: float = 0.0) -> list[Part]:
+    """Return the shapes of a body in its scene; cylinders of the radius of a drawn wheel are left out.
 
     Raises
     ------
@@ -30,6 +32,8 @@ def given_shapes(name: str, body: Any, dimensions: int, size: float) -> list[Par
     origin = np.zeros(3) if dimensions == 2 else -np.array(body.center_of_mass)
     parts = []
     for k, shape in enumerate(body.geometry):
+        if wheel and shape.type == "cylinder" and abs(shape.radius / wheel - 1) < SAME_WHEEL:
+            continue
         found, lines = _shape(shape, dimensions, f"bodies.{name}.geometry.{k}", size)
         point, axes = np.zeros(3), np.eye(3)
         if shape.type != "polyline":
@@ -142,13 +146,20 @@ def _planar(points: np.ndarray, thick: float) -> Shapes:
 
 
 def _spatial(points: np.ndarray, thick: float) -> Shapes:
-    """Return a rod through points on a line, or else the hull of small spheres about the points."""
+    """Return a rod through points on a line, or else rods: a triangle of three points, a star of more."""
     spread = points - points.mean(axis=0)
     _, widths, ways = np.linalg.svd(spread, full_matrices=False)
     if len(widths) < 2 or widths[1] < 0.5 * thick:
         along = spread @ ways[0]
         a, b = points[np.argmin(along)], points[np.argmax(along)]
-        rod = solids.cylinder(0.6 * thick, float(np.linalg.norm(b - a)), 14)
-        return _with_edges(solids.moved(rod, (a + b) / 2, axes_along(b - a)))
-    ball = 0.45 * thick * np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
-    return _with_edges(solids.hull(np.vstack([point + ball for point in points])))
+        return _with_edges(_rod(a, b, 0.5 * thick))
+    ends = [(k, (k + 1) % 3) for k in range(3)] if len(points) == 3 else [(k, -1) for k in range(len(points))]
+    places = points if len(points) == 3 else np.vstack([points, points.mean(axis=0)])
+    rods = [_rod(places[a], places[b], 0.36 * thick) for a, b in ends if np.linalg.norm(places[a] - places[b]) > 0]
+    balls = [solids.moved(solids.sphere(0.5 * thick, 10), place, np.eye(3)) for place in places]
+    return (*rods, *balls), ()
+
+
+def _rod(a: np.ndarray, b: np.ndarray, radius: float) -> Solid:
+    rod = solids.cylinder(radius, float(np.linalg.norm(b - a)), 12)
+    return solids.moved(rod, (a + b) / 2, axes_along(b - a))

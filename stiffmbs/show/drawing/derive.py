@@ -19,6 +19,8 @@ from .draft import Draft, Site
 from .palette import body_colors
 from .poses import Poses, described_poses, placed
 from .scene_graph import Anchor, Drawing, Mark, Name, Part
+from .surroundings import with_surroundings
+from .symbols.wheel import radius_of
 
 UNIT, CROWDED = 0.024, 10
 """Unit of symbols relative to the mechanism's size, and number of elements above which symbols become smaller."""
@@ -29,7 +31,9 @@ FRONT = 2.0
 Joints = dict[str, tuple[Any, Site | None, Site | None]]
 
 
-def drawing_of(data: ModelData, marks: Mapping[str, Mark] | None = None, scale: float = 1.0) -> Drawing:
+def drawing_of(
+    data: ModelData, marks: Mapping[str, Mark] | None = None, scale: float = 1.0, along: Poses | None = None
+) -> Drawing:
     """Return the drawing of a model.
 
     Parameters
@@ -38,6 +42,8 @@ def drawing_of(data: ModelData, marks: Mapping[str, Mark] | None = None, scale: 
         Joints to mark.
     scale : float
         Factor on the usual size of symbols.
+    along : Poses, optional
+        Motion along which a drawing in space shows the road or the floor.
 
     Raises
     ------
@@ -46,7 +52,11 @@ def drawing_of(data: ModelData, marks: Mapping[str, Mark] | None = None, scale: 
     """
     poses = described_poses(data)
     sites = _Sites(data, poses)
-    shaped = {name: given_shapes(name, body, data.dimensions, 1.0) for name, body in data.bodies.items()}
+    wheels = _wheels(data)
+    shaped = {
+        name: given_shapes(name, body, data.dimensions, 1.0, wheels.get(name, 0.0))
+        for name, body in data.bodies.items()
+    }
     size = _size(data, sites, shaped)
     colors = body_colors(data.bodies)
     unit = scale * UNIT * size * math.sqrt(min(1.0, CROWDED / max(1, len(data.joints) + len(data.forces))))
@@ -56,7 +66,7 @@ def drawing_of(data: ModelData, marks: Mapping[str, Mark] | None = None, scale: 
     points = sites.on_bodies()
     for name, body in data.bodies.items():
         places = {tuple(np.round(point / (1e-3 * size)).astype(int)) for point in points[name]}
-        if not shaped[name] and not (name in having and len(places) <= 1):
+        if not shaped[name] and not wheels.get(name) and not (name in having and len(places) <= 1):
             shaped[name] = [derived_shape(name, body, data.dimensions, points[name], size, THICK * unit / scale)]
     bodies = [part for found in shaped.values() for part in found]
     gravity = np.zeros(3)
@@ -68,10 +78,16 @@ def drawing_of(data: ModelData, marks: Mapping[str, Mark] | None = None, scale: 
         for draft in drafts  # an element drawn at a joint's point may act on its body as a whole
         if draft.i is not None and not (isinstance(draft.element, Joint) and any(draft.element.parts(JointName)))
     }
-    return Drawing(
+    drawing = Drawing(
         data.name, data.dimensions, size, unit, colors, (*bodies, *parts), tuple(link for d in drafts for link in d.links),
         tuple(_names(data, drafts)), loads, heaviest, gravity, weight, marks or {},
     )  # fmt: skip
+    return drawing if along is None else with_surroundings(drawing, data, along)
+
+
+def _wheels(data: ModelData) -> dict[str, float]:
+    """Return the radius of the wheel that a tyre draws, by body, m."""
+    return {tyre.i.body: radius_of(tyre) for tyre in data.forces.values() if tyre.symbol == "tyre"}  # type: ignore[attr-defined]
 
 
 def _elements(data: ModelData) -> Iterator[tuple[str, Element]]:

@@ -67,12 +67,14 @@ def state_drawn(
     marks = marks_of(check(model, **changes)) if checked else {}
     if described:
         data = data_of(model)
-        return drawing_of(data, marks), described_poses(data)
+        poses = described_poses(data)
+        return drawing_of(data, marks, along=poses), poses
     found = at_state(model, None, at, **changes)
     state, time = found.dynamics.state, np.array([found.t])
     rows = found.dynamics.report(time, state.q[None].copy(), state.u[None].copy(), project=False)
     channels = channels_of(found.data, found.dynamics.system, rows)
-    return drawing_of(found.data, marks), poses_of(found.data, time, channels)
+    poses = poses_of(found.data, time, channels)
+    return drawing_of(found.data, marks, along=poses), poses
 
 
 def marks_of(report: Report) -> dict[str, Mark]:
@@ -81,7 +83,7 @@ def marks_of(report: Report) -> dict[str, Mark]:
     return marks | {joint: "redundant" for joint, _ in report.redundant}
 
 
-def write_drawing(path: Path, drawing: Drawing, poses: Poses, view: str, names: bool, forces: bool) -> None:
+def write_drawing(path: Path, drawing: Drawing, poses: Poses, view: str, names: bool, forces: bool | None) -> None:
     """Write a drawing to a file, completely or not at all."""
     if path.suffix == ".json":
         text = json.dumps({"drawing": drawing_json(drawing), "poses": poses_json(poses)})
@@ -94,7 +96,7 @@ def write_drawing(path: Path, drawing: Drawing, poses: Poses, view: str, names: 
 
 def draw(
     model: Any, path: str | Path | None = None, at: float | None = None, described: bool = False,
-    checked: bool = False, view: str = "", names: bool = True, forces: bool = True, **changes: Any,
+    checked: bool = False, view: str = "", names: bool = True, forces: bool | None = None, **changes: Any,
 ) -> Sheet | None:  # fmt: skip
     """Draw a model at an instant: bodies by their geometry, joints and forces by the symbols of the field.
 
@@ -115,7 +117,7 @@ def draw(
         default along z in the plane and isometric in space.
     names : bool
         True to write names.
-    forces : bool
+    forces : bool, optional
         True to draw the forces of joints and force elements as arrows, to scale.
     **changes
         Fields of the run's settings to change.

@@ -14,7 +14,7 @@ import numpy as np
 
 from ...errors import InputError
 from ..style import COLORS
-from .painted import extent, largest_force, painted
+from .painted import extent, painted
 from .picture import Shown, empty_sheet, explain, paint, prepare, widened, write_names
 from .poses import Poses, followed_body, seen_from, way_of
 from .scene_graph import Anchor, Drawing
@@ -92,7 +92,7 @@ def pictures(
     known = {name: poses.resampled(poses.time) for name, poses in runs.items()}
     first = next(iter(known.values()))
     instants = pace.instants(first.time[0], max(poses.time[-1] for poses in known.values()))
-    largest = largest_force(drawing, first) if shown.forces else 0.0
+    largest = shown.longest(drawing, first)
     body = followed_body(drawing, first)
     corners = [
         extent(drawing, seen_from(body, poses) if body else poses, view, largest if poses is first else 0.0)

@@ -3,24 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ...reading.marker import GROUND
 from ...results.scales import ROUNDING
 from .frames import across
 from .palette import LOAD, LOAD_NOT_UNIQUE, edge_color, face_color, shaded
-from .poses import Poses
+from .poses import FAR, Poses
 from .scene_graph import Drawing, Line, Link, Part, Solid
 from .solids import face_normal
+from .surroundings import shadows
 from .view import View
 
 LIGHT = np.array([0.35, 0.5, 0.8])
 """Direction towards the light: to the right, up, towards the viewer."""
-SYMBOLS_BEFORE = 0.05
+SYMBOLS_BEFORE = 0.03
 """Distance of symbols in front of the bodies around them, relative to the size."""
 FOREMOST = 0.004
 """Distance of lines in front of faces at the same place, relative to the size."""
+FLOOR_BEHIND, SHADOW = 1e3, 0.07
+"""Distance of the floor behind all else, relative to the size, and opacity of one shadow."""
 LONGEST_ARROW = 0.22
 """Length of the longest force arrow, relative to the size."""
 HEAD = 1.25
@@ -62,11 +66,18 @@ def painted(drawing: Drawing, poses: Poses, k: int, view: View, longest: float =
     found: list[Patch] = []
     for part in drawing.parts:
         found += _part(drawing, part, poses, k, view)
+    found += _shadows(drawing, poses, k, view)
     for link in drawing.links:
         found += _link(drawing, link, poses, k, view)
     if longest > 0:
         found += _loads(drawing, poses, k, view, longest)
     return sorted(found, key=lambda patch: patch.depth)
+
+
+def _shadows(drawing: Drawing, poses: Poses, k: int, view: View) -> Iterator[Patch]:
+    """Yield faint shadows of the bodies on a level floor, over the floor and below all else."""
+    for points in shadows(drawing, poses, k):
+        yield Patch(view.seen(points)[:, :2], -FLOOR_BEHIND * drawing.size / 2, face="#000000", opacity=SHADOW)
 
 
 def _wider(drawing: Drawing, owner: str) -> float:
@@ -80,6 +91,8 @@ def _part(drawing: Drawing, part: Part, poses: Poses, k: int, view: View) -> Ite
     wider = _wider(drawing, part.owner)
     nearer = np.zeros(3)
     nearer[2] = 0.0 if part.role == "body" or drawing.dimensions == 2 else SYMBOLS_BEFORE * drawing.size
+    if part.role == "floor":
+        nearer[2] = -FLOOR_BEHIND * drawing.size
     for solid in part.solids:
         seen = view.seen(origin + solid.vertices @ axes.T) + nearer
         yield from _solid(seen, solid, face, (edge, wider), drawing.dimensions == 2)
@@ -165,11 +178,22 @@ def largest_force(drawing: Drawing, poses: Poses) -> float:
     return largest if largest > ROUNDING * drawing.weight else 0.0
 
 
+def _far(drawing: Drawing, part: Part, poses: Poses, k: int) -> bool:
+    """Return True for a part of the ground that a travelling mechanism has left."""
+    if part.body != GROUND or not drawing.heaviest:
+        return False
+    place = poses.pose(drawing.heaviest, k)[0]
+    shapes = (*(solid.vertices for solid in part.solids), *(line.points for line in part.lines))
+    return all(float(np.linalg.norm(points - place, axis=1).min()) > FAR * drawing.size for points in shapes)
+
+
 def extent(drawing: Drawing, poses: Poses, view: View, longest: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
     """Return the lower left and upper right corners of the drawing over all instants; parameters as for `painted`."""
     low, high = np.full(2, np.inf), np.full(2, -np.inf)
     count = len(poses.time)
+    shown = tuple(part for part in drawing.parts if part.role != "floor")
     for k in np.unique(np.linspace(0, count - 1, min(count, 24)).astype(int)):
-        for patch in painted(drawing, poses, k, view, longest):
+        bare = replace(drawing, parts=tuple(part for part in shown if not _far(drawing, part, poses, k)))
+        for patch in painted(bare, poses, k, view, longest):
             low, high = np.minimum(low, patch.points.min(axis=0)), np.maximum(high, patch.points.max(axis=0))
     return low, high

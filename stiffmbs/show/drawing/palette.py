@@ -10,9 +10,11 @@ BODIES = ("#56b4e9", "#e6c229", "#2f9e8f", "#d48fb5", "#8fb339", "#c9733a", "#8d
 """Colors of bodies, in turn."""
 ROLES: Mapping[Role, str] = {
     "body": "#56b4e9", "ground": "#8a8a8a", "joint": "#f2f2f2", "drive": "#7b3294", "force": "#00633c", "rubber": "#4d4d4d",
+    "floor": "#fbfbfa",
 }  # fmt: skip
 EDGES: Mapping[Role, str] = {
     "body": "#333333", "ground": "#555555", "joint": "#1a1a1a", "drive": "#7b3294", "force": "#00633c", "rubber": "#1a1a1a",
+    "floor": "#d4d4d0",
 }  # fmt: skip
 MARKS: Mapping[Mark, str] = {"redundant": "#d55e00", "not unique": "#e69f00"}
 LOAD, LOAD_NOT_UNIQUE = "#b2182b", "#e69f00"

@@ -34,17 +34,22 @@ class Shown:
 
     Attributes
     ----------
-    forces : bool
-        True for arrows of the forces of joints and force elements, to scale.
+    forces : bool, optional
+        True for arrows of the forces of joints and force elements, to scale; by default in the plane alone.
     """
 
     names: bool = True
-    forces: bool = True
+    forces: bool | None = None
+
+    def longest(self, drawing: Drawing, poses: Poses) -> float:
+        """Return the force of the longest arrow, N; zero without arrows."""
+        wanted = drawing.dimensions == 2 if self.forces is None else self.forces
+        return largest_force(drawing, poses) if wanted else 0.0
 
 
 def picture(drawing: Drawing, poses: Poses, view: View, shown: Shown, on_screen: bool = False) -> Sheet:
     """Return a sheet with the mechanism at the first instant; on screen, a figure of pyplot."""
-    largest = largest_force(drawing, poses.at(np.array([0]))) if shown.forces else 0.0
+    largest = shown.longest(drawing, poses.at(np.array([0])))
     low, high = framed(drawing, poses.at(np.array([0])), view, largest)
     sheet, axes = empty_sheet(low, high, on_screen)
     paint(axes, painted(drawing, poses, 0, view, largest))

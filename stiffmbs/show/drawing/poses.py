@@ -17,7 +17,7 @@ from .frames import rotation
 from .scene_graph import Anchor, Drawing
 
 Channels = Mapping[str, np.ndarray]
-FAR = 3.0
+FAR = 2.0
 """Displacement of the heaviest body, relative to the mechanism's size, above which the view follows it."""
 
 

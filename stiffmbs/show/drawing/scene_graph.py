@@ -12,7 +12,7 @@ from typing import Literal
 
 import numpy as np
 
-Role = Literal["body", "ground", "joint", "drive", "force", "rubber"]
+Role = Literal["body", "ground", "joint", "drive", "force", "rubber", "floor"]
 """Role of a drawn object; it determines the color."""
 Mark = Literal["redundant", "not unique"]
 """Findings of `stiffmbs check` on a joint."""

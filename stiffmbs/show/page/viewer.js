@@ -103,21 +103,34 @@ const MOVING = (() => {
         geometry.setIndex(solid.triangles.flat());
         const shaded = geometry.toNonIndexed();
         shaded.computeVertexNormals();
+        const floor = part.role === "floor";
         const mesh = new THREE.Mesh(shaded, material(flat ? THREE.MeshBasicMaterial : THREE.MeshLambertMaterial, part.color, 0, {
           side: THREE.DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1, ...(flat && ghost === undefined ? { opacity: 0.92 } : {}),
         }));
         mesh.renderOrder = order(solid.vertices) + number * 1e-6;
+        mesh.userData.floor = floor;
+        mesh.receiveShadow = floor;
+        mesh.castShadow = !flat && !floor && ghost === undefined;
         into.add(mesh);
         if (solid.edges.length) into.add(line(solid.vertices, part.edge, false, solid.edges));
       }
       for (const stroke of part.lines) {
         const found = line(stroke.points, part.edge, stroke.dashed);
         found.renderOrder = order(stroke.points) + 1e-3;
+        found.userData.floor = part.role === "floor";
         into.add(found);
       }
     });
     for (const link of drawing.links) {
       for (const profile of link.profiles) {
+        if (!flat && !link.dashed && link.width > 1 && ghost === undefined) {
+          const found = new THREE.Mesh(tube(profile.length), material(THREE.MeshLambertMaterial, link.edge, 0, { side: THREE.DoubleSide }));
+          found.frustumCulled = false;
+          found.castShadow = true;
+          root.add(found);
+          links.push({ link, profile, found, radius: 0.07 * drawing.unit * link.width });
+          continue;
+        }
         const found = line(profile.map(() => [0, 0, 0]), link.edge, link.dashed);
         found.frustumCulled = false;
         found.renderOrder = 1;
@@ -138,17 +151,52 @@ const MOVING = (() => {
         a.x + s * way.x + u * one.x + v * other.x, a.y + s * way.y + u * one.y + v * other.y, a.z + s * way.z + u * one.z + v * other.z));
       positions.needsUpdate = true;
     };
+    /* A tube along a stretched profile: rings about its points. */
+    const center = new THREE.BufferAttribute(new Float32Array(3 * 1000), 3), ahead = new THREE.Vector3(), side = new THREE.Vector3(), over = new THREE.Vector3(), spot = new THREE.Vector3();
+    const wrap = (profile, a, b, radius, geometry) => {
+      stretch(profile, a, b, center);
+      const n = profile.length, positions = geometry.attributes.position, fixed = b.clone().sub(a).normalize();
+      for (let k = 0; k < n; k++) {
+        ahead.fromBufferAttribute(center, Math.min(k + 1, n - 1)).sub(spot.fromBufferAttribute(center, Math.max(k - 1, 0)));
+        side.crossVectors(ahead, fixed);
+        if (side.lengthSq() < 1e-6 * ahead.lengthSq()) side.crossVectors(ahead, Math.abs(ahead.x) > Math.abs(ahead.z) ? over.set(0, 0, 1) : over.set(1, 0, 0));
+        side.normalize();
+        over.crossVectors(ahead, side).normalize();
+        spot.fromBufferAttribute(center, k);
+        for (let m = 0; m < SIDES; m++) {
+          const c = radius * Math.cos((2 * Math.PI * m) / SIDES), s = radius * Math.sin((2 * Math.PI * m) / SIDES);
+          positions.setXYZ(k * SIDES + m, spot.x + c * side.x + s * over.x, spot.y + c * side.y + s * over.y, spot.z + c * side.z + s * over.z);
+        }
+      }
+      positions.needsUpdate = true;
+      geometry.computeVertexNormals();
+    };
     const update = (t) => {
       for (const [body, found] of Object.entries(groups)) {
         if (body === "ground") continue;
         posed(run, body, t, found.position, found.quaternion);
       }
-      for (const { link, profile, found } of links) {
+      for (const { link, profile, found, radius } of links) {
+        if (radius) { wrap(profile, anchored(link.i, t), anchored(link.j, t), radius, found.geometry); continue; }
         stretch(profile, anchored(link.i, t), anchored(link.j, t), found.geometry.attributes.position);
         if (link.dashed) found.computeLineDistances();
       }
     };
     return { root, update, anchored };
+  }
+
+  const SIDES = 6;
+  function tube(n) {
+    const geometry = new THREE.BufferGeometry(), index = [];
+    geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(3 * n * SIDES), 3));
+    for (let k = 0; k + 1 < n; k++) {
+      for (let m = 0; m < SIDES; m++) {
+        const a = k * SIDES + m, b = k * SIDES + ((m + 1) % SIDES);
+        index.push(a, b, b + SIDES, a, b + SIDES, a + SIDES);
+      }
+    }
+    geometry.setIndex(index);
+    return geometry;
   }
 
   /* The path of a point over a whole run. */
@@ -191,9 +239,14 @@ const MOVING = (() => {
     renderer.setClearColor(0xffffff);
     renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     const scene = new THREE.Scene();
-    scene.add(new THREE.HemisphereLight(0xffffff, 0x9a9aa5, 2.2), new THREE.AmbientLight(0xffffff, 0.5));
-    const lamp = new THREE.DirectionalLight(0xffffff, 1.4);
-    scene.add(lamp, lamp.target);
+    scene.add(new THREE.HemisphereLight(0xffffff, 0x9a9aa5, 1.7), new THREE.AmbientLight(0xffffff, 0.3));
+    const lamp = new THREE.DirectionalLight(0xffffff, 0.8);
+    const sun = new THREE.DirectionalLight(0xffffff, 1.1);
+    scene.add(lamp, lamp.target, sun, sun.target);
+    renderer.shadowMap.enabled = true;
+    sun.shadow.mapSize.set(1024, 1024);
+    sun.shadow.radius = 5;
+    sun.shadow.intensity = 0.55;
     const camera = new THREE.OrthographicCamera(-1, 1, 1, -1, -50, 50);
     const controls = new THREE.OrbitControls(camera, canvas);
     controls.enableDamping = false;
@@ -236,7 +289,7 @@ const MOVING = (() => {
       controls.touches.ONE = flat ? 1 : 0;
       controls.enableRotate = !flat;
       const box = new THREE.Box3(), corner = new THREE.Vector3();
-      framed((root) => root.children.forEach((part) => { if (!part.userData.floor) box.expandByObject(part, true); }));
+      framed((root) => root.traverse((part) => { if (part.geometry && !part.userData.floor) box.expandByObject(part, true); }));
       box.getCenter(middle);
       reach = box.getSize(new THREE.Vector3()).length() || drawing.size;
       home();
@@ -253,6 +306,12 @@ const MOVING = (() => {
         }
       }));
       wide = 0;
+      sun.castShadow = !flat;
+      sun.intensity = flat ? 0 : 1.0;
+      const far = 0.75 * reach;
+      Object.assign(sun.shadow.camera, { left: -far, right: far, top: far, bottom: -far, near: 0.1 * reach, far: 6 * reach });
+      sun.shadow.camera.updateProjectionMatrix();
+      sun.shadow.normalBias = 0.004 * reach;
     }
     function clear() {
       clearTraces();
@@ -354,6 +413,8 @@ const MOVING = (() => {
         if (found.visible) { found.position.copy(machines[0].anchored(load, t)); found.pointTo(force.normalize(), length); }
       }
       lamp.position.copy(camera.position).add(new THREE.Vector3(0.3, 0.6, 0.2).multiplyScalar(data.drawing.size));
+      sun.target.position.copy(state.follow && before ? before : middle);
+      sun.position.copy(sun.target.position).add(upright === "z" ? new THREE.Vector3(-0.5, -0.7, 2.6).multiplyScalar(reach) : new THREE.Vector3(-0.5, 2.6, 0.7).multiplyScalar(reach));
       camera.updateMatrixWorld();
       renderer.render(scene, camera);
       measure();

@@ -23,8 +23,9 @@ def ball(d: Draft, site: Site, radius: float = 0.6) -> None:
     d.put(site, "joint", solids.sphere(radius * d.u))
 
 
-def rail(d: Draft, i: Site, j: Site, half: float = 0.25) -> None:
-    """Line on j along its z, on which i slides."""
+def rail(d: Draft, i: Site, j: Site) -> None:
+    """Line on j along its z, on which i slides; shorter on a moving body."""
+    half = 0.25 if j.on_ground else 0.1
     start = float(j.turned[:, 2] @ (i.in_ground - j.in_ground))
     ends = np.array([[0, 0, start - half * d.size], [0, 0, start + half * d.size]])
     d.put(j, "ground" if j.on_ground else "joint", Line(ends, 1.8))

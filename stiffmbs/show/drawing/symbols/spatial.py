@@ -30,6 +30,7 @@ from .shared import (  # fmt: skip
     torque,
 )
 from .spatial_forces import beam, bushing, contact, elastic, spring_damper
+from .wheel import wheel
 
 
 @at_first
@@ -165,5 +166,6 @@ SYMBOLS: Mapping[str, Symbol] = {
     "revolute_spherical": revolute_spherical, "coupler": coupling, "gear": gear, "rack_and_pinion": rack_and_pinion, "drive": drive, "spring_damper": spring_damper,
     "torsion_spring": spiral, "bushing": bushing, "beam": beam, "field": elastic, "contact": contact,
     "sphere_contact": contact, "line_force": line_force, "force": force, "torque": torque, "joint_friction": rubbing,
+    "tyre": wheel,
     "joint": any_joint, "any_force": any_force,
 }  # fmt: skip
