@@ -24,7 +24,7 @@ SYMBOLS_BEFORE = 0.03
 FOREMOST = 0.004
 """Distance of lines in front of faces at the same place, relative to the size."""
 FLOOR_BEHIND, SHADOW = 1e3, 0.07
-"""Distance of the floor behind all else, relative to the size, and opacity of one shadow."""
+"""Distance of the floor below all else, relative to the size, and opacity of one shadow."""
 LONGEST_ARROW = 0.22
 """Length of the longest force arrow, relative to the size."""
 HEAD = 1.25

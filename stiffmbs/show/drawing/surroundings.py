@@ -23,8 +23,8 @@ class SurroundingsParameters:
 
     Attributes
     ----------
-    beside : float
-        Width of a road or floor beside the mechanism, relative to its size; chosen by eye, as are all of these.
+    margin : float
+        Width of a road or floor outside the mechanism, relative to its size; chosen by eye, as are all of these.
     along, across : int
         Largest number of points of a road along and across.
     dense : int
@@ -37,7 +37,7 @@ class SurroundingsParameters:
         Instants at which the lowest point is looked for.
     """
 
-    beside: float = 0.5
+    margin: float = 0.5
     along: int = 240
     across: int = 9
     dense: int = 160
@@ -78,7 +78,7 @@ def _floor(drawing: Drawing, poses: Poses) -> Part | None:
     level = low[up] if drawing.gravity[up] < 0 else high[up]
     if not np.isfinite([*low, *high]).all():
         return None
-    beside = CHOSEN.beside * max(drawing.size, float((high - low).max()))
+    beside = CHOSEN.margin * max(drawing.size, float((high - low).max()))
     step = _round(max(CHOSEN.lines * drawing.size, float((high - low).max()) / 40))
     first, second = (k for k in range(3) if k != up)
     ends = [
@@ -125,7 +125,7 @@ def _road(road: Road, wheels: list[str], drawing: Drawing, poses: Poses) -> Part
     path = path[np.isfinite(path).all(axis=1)]
     if not len(path):
         return None
-    beside = CHOSEN.beside * drawing.size
+    beside = CHOSEN.margin * drawing.size
     low, high = path.min(axis=0) - beside, path.max(axis=0) + beside
     x = _along(road, float(low[0]), float(high[0]), drawing.size)
     y = np.linspace(low[1], high[1], CHOSEN.across)
