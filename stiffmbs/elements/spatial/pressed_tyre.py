@@ -7,14 +7,16 @@ which need the formula of Fx and Fy alone, and differentiated by the implicit fu
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ..element import Symbolic
 from ..roads.road import above_zero
-from ..tyres.deflection_6 import Stiffening
 from .contact_point import ContactPoint, contact_point, slips, yaw_rate
 from .relaxation import lagged
 from .tyre import Touch
+
+if TYPE_CHECKING:
+    from ..tyres.deflection_6 import Stiffening
 
 VARIABLES = ("radius", "camber", "vx", "vy", "vz", "spin", "friction")
 """Quantities of the contact through which load and forces depend on the state."""
@@ -90,7 +92,7 @@ class _Pressed:
 
         e, contact = self.e, self.contact
         z = stiffening(e.properties, contact.radius, self.free, contact.spin, self.dpi, self.gamma)
-        z = Stiffening(*(e.named(x) for x in vars(z).values()))
+        z = type(z)(*(e.named(x) for x in vars(z).values()))
         damping = e.named(-e.properties.VERTICAL_DAMPING * contact.vz)
         variables = [x for x in (*(getattr(contact, name) for name in VARIABLES), self.yaw, *e.own) if x is not None]
 
