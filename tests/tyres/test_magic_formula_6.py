@@ -9,7 +9,7 @@ import pytest
 
 import stiffmbs
 from stiffmbs import InputError
-from stiffmbs.spatial import MagicFormulaTyre
+from stiffmbs.spatial import Body, MagicFormulaTyre, Model
 from stiffmbs.tyres import TyreProperties
 
 from .wheels import reported, wheel
@@ -246,3 +246,45 @@ def test_a_cambered_wheel_stops_and_reverses_while_it_is_steered():
         assert np.isfinite(solution["tyre.aligning"]).all()
         for channel in ("fork.x", "fork.y", "fork.vx"):
             assert solution[channel] == pytest.approx(runs[0][channel], abs=2e-4), channel
+
+
+@pytest.mark.long
+def test_a_turning_wheel_has_the_turn_slip_of_its_yaw_rate_and_a_mirrored_one_the_opposite():
+    """phi_t is the yaw rate over the speed of the contact point, the camber's part included."""
+    turning = TyreProperties(coefficients={**NUMBERS, **TURNING}, version="6.2")
+    speed, yaw, found = 18.0, 1.5, []
+    for hand in (1, -1):
+        gamma, alpha = 0.1 * hand, 0.05 * hand
+        axis = (0, math.cos(gamma), math.sin(gamma))
+        model = Model("wheel", gravity=(0, 0, -9.81))
+        omega = (0, 60 + yaw * hand * math.sin(gamma), yaw * hand * math.cos(gamma))
+        model.add(
+            "wheel",
+            Body(
+                mass=20, inertia=(0.7, 1.2, 0.7), position=(0, 0, 0.305 * math.cos(gamma)),
+                orientation={"x": (1, 0, 0), "y": axis}, velocity=(speed, speed * math.tan(alpha), 0), omega=omega,
+            ),
+        )  # fmt: skip
+        model.add("tyre", MagicFormulaTyre(i="wheel", properties=turning, hand=hand, turn_slip=True, transient=False))
+        found.append(reported(model))
+    one, other = found
+    state = turning.steady_state(
+        one["load"],
+        one["slip"],
+        one["slip_angle"],
+        one["camber"],
+        Vx=speed,
+        phit=yaw * math.cos(one["slip_angle"]) / speed,
+    )
+    without = turning.steady_state(one["load"], one["slip"], one["slip_angle"], one["camber"], Vx=speed)
+    for channel, column in {
+        "longitudinal": "Fx",
+        "lateral": "Fy",
+        "aligning": "Mz",
+        "overturning": "Mx",
+        "deflection": "rho",
+    }.items():
+        assert one[channel] == pytest.approx(float(state[column]), rel=1e-6), channel
+        sign = 1 if channel in ("longitudinal", "deflection") else -1
+        assert other[channel] == pytest.approx(sign * one[channel], rel=1e-10), channel
+    assert abs(one["lateral"] - float(without["Fy"])) > 10
