@@ -23,6 +23,7 @@ SUBSYSTEMS = {
     "chattering": "solve.events.chattering:CHATTERING",
     "cost": "solve.cost:COSTS",
     "divergence": "solve.events.refusals:DIVERGENCE",
+    "equilibria": "equilibria.parameters:EQUILIBRIA",
     "error_filter": "solve.error_control.native.parameters:FILTER",
     "error_test": "solve.error_control.error_test:PLANAR",
     "error_test_in_space": "solve.error_control.error_test:SPATIAL",

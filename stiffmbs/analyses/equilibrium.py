@@ -10,6 +10,7 @@ import numpy as np
 from ..model.scene import Scene
 from ..model.settings import RunSettings, Settings, SteadyMotion, takes_settings
 from ..results.solution import Solution
+from ..tuning import in_use
 from .job import Job, Runnable, data_of, prepare
 from .settled import Settled, settled
 from .solution_at_rest import solution_at_rest
@@ -127,9 +128,10 @@ def equilibrium(
 
 
 def _settled(job: Job, motion: SteadyMotion | None) -> Settled:
-    if motion is None:
-        return settled(job.dynamics, job.start, job.grid.start)
-    return settled_in_motion(job.data, job.dynamics, job.start, job.grid.start, motion)
+    with in_use(job.settings.tuning):
+        if motion is None:
+            return settled(job.dynamics, job.start, job.grid.start)
+        return settled_in_motion(job.data, job.dynamics, job.start, job.grid.start, motion)
 
 
 def _message(found: Settled) -> str:

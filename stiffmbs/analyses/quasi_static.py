@@ -14,6 +14,7 @@ from ..errors import AssemblyError, SolverError
 from ..model.scene import Scene
 from ..model.settings import RunSettings, Settings, takes_settings
 from ..results.solution import Solution
+from ..tuning import in_use
 from .job import Job, Runnable, data_of, prepare
 from .solution_at_rest import solution_at_rest
 
@@ -66,7 +67,9 @@ def equilibria_over_time(job: Job, times: np.ndarray) -> Iterator[Equilibrium]:
     """
     job.dynamics.state.q[:] = job.start.q
     for t in times:
-        yield _next(job.dynamics, float(t))
+        with in_use(job.settings.tuning):
+            found = _next(job.dynamics, float(t))
+        yield found
 
 
 def _next(dynamics: Dynamics, t: float) -> Equilibrium:

@@ -22,21 +22,8 @@ from scipy.sparse.linalg import splu
 from ..dynamics.dynamics import Dynamics
 from ..errors import SolverError
 from .force_balance import Balance, balance_at, moved, way
+from .parameters import EQUILIBRIA
 from .steady_motion import SteadyMotion, at_rest
-
-MOST_MOVES = 2000
-TRANSLATION, ROTATION = 0.25, 0.5
-"""Longest move of a body, relative to the mechanism's size, and rad (Adams: EQUILIBRIUM/TLIMIT, ALIMIT)."""
-LEAST_SHIFT, LARGEST_SHIFT = 1e-3, 1e15
-"""Bounds of sqrt(s), rad/s. The lower one keeps free directions in place."""
-SHIFT_FALLS, SHIFT_RISES = 0.1, 4.0
-WANTED_RATIO, LAST_MOVE, DIVERGING_MOVE = 0.1, 0.05, 0.6
-"""Ratio of Newton's moves for which s is chosen; moves that end, and that reject, a step, relative to its length."""
-MOST_CORRECTIONS = 8
-WORTH_ANOTHER_MOVE = 0.5
-"""Largest residual ratio of a polishing move that counts as convergence."""
-MOST_MISSES = 2
-"""Successive polishing moves without convergence that are allowed; after more, rounding governs."""
 
 
 @dataclass(frozen=True)
@@ -82,14 +69,14 @@ def find_equilibrium(dynamics: Dynamics, t: float, motion: SteadyMotion | None =
     state = dynamics.state
     shift, moves = 1.0, 0
     known = balance_at(dynamics, t, motion or at_rest(dynamics.system.of_body.dimensions))
-    while moves < MOST_MOVES and shift < LARGEST_SHIFT:
+    while moves < EQUILIBRIA.most_moves and shift < EQUILIBRIA.largest_shift:
         if known.balanced:
             known, more = _polished(dynamics, t, known)
             return as_equilibrium(dynamics, t, known, moves + more)
         before = state.q.copy()
         step = _step(dynamics, t, shift, known)
         moves += step.moves
-        shift = max(LEAST_SHIFT, step.factor * shift)
+        shift = max(EQUILIBRIA.least_shift, step.factor * shift)
         if step.known is None:
             state.q[:] = before
             known.motion.put(dynamics, t)
@@ -111,11 +98,13 @@ def _step(dynamics: Dynamics, t: float, shift: float, known: Balance) -> _Step:
     """Take an implicit step from the current pose and motion; the pose is left where the step ended."""
     system, state = dynamics.system, dynamics.state
     of_states = np.maximum(system.state_scales, np.abs(state.q[system.first_state :]))
-    of_speeds = np.zeros(0) if known.speeds is None else TRANSLATION * known.speeds.sizes
-    limits = np.concatenate([system.per_velocity(TRANSLATION * system.size, ROTATION), of_states, of_speeds])
+    of_speeds = np.zeros(0) if known.speeds is None else EQUILIBRIA.translation * known.speeds.sizes
+    limits = np.concatenate(
+        [system.per_velocity(EQUILIBRIA.translation * system.size, EQUILIBRIA.rotation), of_states, of_speeds]
+    )
     start, first, n = state.q.copy(), 0.0, len(known.left)
     faster = np.zeros(len(of_speeds))
-    for count in range(1, MOST_CORRECTIONS + 1):
+    for count in range(1, EQUILIBRIA.most_corrections + 1):
         whole = np.append(way(system, start, state.q), faster)
         move = newton_move(dynamics, shift, known, whole)
         if (
@@ -125,7 +114,7 @@ def _step(dynamics: Dynamics, t: float, shift: float, known: Balance) -> _Step:
         longest, longest_of_all = (float(np.max(np.abs(way) / limits, initial=0.0)) for way in (move, whole + move))
         if longest_of_all > 1.0:
             return _Step(None, max(2.0, float(np.sqrt(longest_of_all))), count)
-        if count > 1 and longest > DIVERGING_MOVE * longest_of_all:
+        if count > 1 and longest > EQUILIBRIA.diverging_move * longest_of_all:
             break
         found = moved_on(dynamics, t, known, state.q, move)
         if found is None:
@@ -133,11 +122,13 @@ def _step(dynamics: Dynamics, t: float, shift: float, known: Balance) -> _Step:
         known, first, faster = found, first or longest, faster + move[n:]
         if known.balanced:
             return _Step(known, 1.0, count)
-        if count > 1 and longest <= LAST_MOVE * longest_of_all:
+        if count > 1 and longest <= EQUILIBRIA.last_move * longest_of_all:
             ratio = (longest / first) ** (1 / (count - 1))
-            factor = np.sqrt(np.clip(max(ratio / WANTED_RATIO, longest_of_all), SHIFT_FALLS**2, 1.0))
+            factor = np.sqrt(
+                np.clip(max(ratio / EQUILIBRIA.wanted_ratio, longest_of_all), EQUILIBRIA.shift_falls**2, 1.0)
+            )
             return _Step(known, float(factor), count)
-    return _Step(None, SHIFT_RISES, count)
+    return _Step(None, EQUILIBRIA.shift_rises, count)
 
 
 def moved_on(dynamics: Dynamics, t: float, known: Balance, q: np.ndarray, move: np.ndarray) -> Balance | None:
@@ -179,13 +170,13 @@ def _polished(dynamics: Dynamics, t: float, known: Balance) -> tuple[Balance, in
     """
     state = dynamics.state
     best, there, misses, moves = known, state.q.copy(), 0, 0
-    while misses < MOST_MISSES and moves < MOST_CORRECTIONS:
-        move = newton_move(dynamics, LEAST_SHIFT, known, at_start(known))
+    while misses < EQUILIBRIA.most_misses and moves < EQUILIBRIA.most_corrections:
+        move = newton_move(dynamics, EQUILIBRIA.least_shift, known, at_start(known))
         found = moved_on(dynamics, t, known, state.q.copy(), move) if np.all(np.isfinite(move)) else None
         if found is None:
             break
         known, moves = found, moves + 1
-        if np.max(np.abs(known.left)) < WORTH_ANOTHER_MOVE * np.max(np.abs(best.left)):
+        if np.max(np.abs(known.left)) < EQUILIBRIA.worth_another_move * np.max(np.abs(best.left)):
             best, there, misses = known, state.q.copy(), 0
         else:
             misses += 1

@@ -14,16 +14,8 @@ from ..dynamics.algebraic_states import failure
 from ..dynamics.dynamics import Dynamics
 from ..errors import SolverError
 from .found_speeds import FoundSpeeds, found_speeds
-from .steady_motion import NO_EFFECT, SteadyMotion
-
-BALANCED, ROUNDING = 1e-10, 8
-"""Imbalance that counts as zero, relative to the largest force; roundings of the coordinates allowed in the forces."""
-SLOWEST = 1e-5
-"""Rate, rad/s. A force is negligible if it moves its body by less than the mechanism's size, or 1 rad, in 1/SLOWEST."""
-SLOW_STATE = 1e-3
-"""Rate of a state relative to itself, 1/s, that scales the allowed residual of its equation."""
-PASSED_ON = 1e-8
-"""Largest allowed rounding transmitted by joints from other bodies, relative to the largest force."""
+from .parameters import EQUILIBRIA
+from .steady_motion import SteadyMotion
 
 
 @dataclass(frozen=True)
@@ -100,16 +92,16 @@ def balance_at(dynamics: Dynamics, t: float, motion: SteadyMotion) -> Balance:
     )
     stiffness, jacobian = _derivatives(dynamics, t, motion, lam)
     farthest = np.max(np.abs(state.q[system.straight[0]]), initial=system.size)
-    rounding = ROUNDING * np.finfo(float).eps * (abs(stiffness) @ system.per_velocity(float(farthest), 1.0))
+    rounding = EQUILIBRIA.rounding * np.finfo(float).eps * (abs(stiffness) @ system.per_velocity(float(farthest), 1.0))
     roots = np.sqrt(system.mass)  # the balance is a projection in this metric, which does not increase rounding
-    passed_on = np.minimum(roots * np.max(rounding / roots, initial=0.0), PASSED_ON * largest)
-    negligible = system.mass * system.per_velocity(system.size, 1.0) * SLOWEST**2
+    passed_on = np.minimum(roots * np.max(rounding / roots, initial=0.0), EQUILIBRIA.passed_on * largest)
+    negligible = system.mass * system.per_velocity(system.size, 1.0) * EQUILIBRIA.slowest**2
     left = system.mass * _beside_the_constraints(acceleration - steady, system.mass, jacobian)
     found = Balance(
         left,
         lam,
         float(largest),
-        np.maximum.reduce([np.full(len(left), BALANCED * largest), rounding, passed_on, negligible]),
+        np.maximum.reduce([np.full(len(left), EQUILIBRIA.balanced * largest), rounding, passed_on, negligible]),
         stiffness,
         jacobian,
         jacobian.T,
@@ -127,7 +119,7 @@ def balance_at(dynamics: Dynamics, t: float, motion: SteadyMotion) -> Balance:
 def _beside_the_constraints(acceleration: np.ndarray, mass: np.ndarray, jacobian: csc_array) -> np.ndarray:
     """Remove accelerations that constraints impose, such as those of a drive that accelerates at the start."""
     asked = jacobian @ acceleration
-    if np.all(np.abs(asked) <= NO_EFFECT * (abs(jacobian) @ np.abs(acceleration))):
+    if np.all(np.abs(asked) <= EQUILIBRIA.no_effect * (abs(jacobian) @ np.abs(acceleration))):
         return acceleration
     matrix = block_array([[diags_array(mass), jacobian.T], [jacobian, None]], format="csc")
     found: np.ndarray = splu(matrix).solve(np.concatenate([mass * acceleration, 0.0 * asked]))
@@ -152,8 +144,8 @@ def with_states(dynamics: Dynamics, known: Balance, rates: np.ndarray, motion: S
     reactions = [[known.reactions], [-sparse_term(dynamics, "rate_lam")[own][:, active]]]
     sizes = system.per_coordinate(system.size, 1.0)
     sizes[own] = system.state_scales
-    allowed = BALANCED * (abs(of_rates) @ np.maximum(sizes, np.abs(q)) + SLOW_STATE * sizes[own])
-    rounding = ROUNDING * np.finfo(float).eps * (abs(of_states) @ np.maximum(sizes, np.abs(q))[own])
+    allowed = EQUILIBRIA.balanced * (abs(of_rates) @ np.maximum(sizes, np.abs(q)) + EQUILIBRIA.slow_state * sizes[own])
+    rounding = EQUILIBRIA.rounding * np.finfo(float).eps * (abs(of_states) @ np.maximum(sizes, np.abs(q))[own])
     return replace(
         known,
         left=np.append(known.left, rates),

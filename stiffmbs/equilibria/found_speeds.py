@@ -11,7 +11,8 @@ import numpy as np
 from scipy.sparse import csc_array
 
 from ..dynamics.dynamics import Dynamics
-from .steady_motion import NO_EFFECT, SteadyMotion
+from .parameters import EQUILIBRIA
+from .steady_motion import SteadyMotion
 
 
 @dataclass(frozen=True)
@@ -47,7 +48,7 @@ def with_found_spins(dynamics: Dynamics, motion: SteadyMotion, by_velocity: csc_
     if motion.is_rest or not len(motion.spinning):
         return motion
     effects = abs(by_velocity).max(axis=0).toarray().ravel()
-    depends = effects[motion.spinning] > NO_EFFECT * np.max(effects, initial=0.0)
+    depends = effects[motion.spinning] > EQUILIBRIA.no_effect * np.max(effects, initial=0.0)
     return replace(motion, found=np.flatnonzero(depends & ~motion.told_by_rolling(dynamics)))
 
 

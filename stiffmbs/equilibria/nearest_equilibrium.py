@@ -10,32 +10,21 @@ import numpy as np
 from ..compile.system import System
 from ..dynamics.dynamics import Dynamics
 from ..errors import SolverError
-from .equilibrium import (
-    LEAST_SHIFT,
-    ROTATION,
-    TRANSLATION,
-    Equilibrium,
-    as_equilibrium,
-    at_start,
-    moved_on,
-    newton_move,
-    unbalanced,
-)
+from .equilibrium import Equilibrium, as_equilibrium, at_start, moved_on, newton_move, unbalanced
 from .force_balance import Balance, balance_at
+from .parameters import EQUILIBRIA
 from .steady_motion import SteadyMotion
-
-MOST_MOVES, MOST_HALVINGS = 100, 12
 
 
 def nearest_equilibrium(dynamics: Dynamics, t: float, motion: SteadyMotion) -> Equilibrium:
     """Find the equilibrium in steady motion nearest to the pose; parameters and errors as for `find_equilibrium`."""
     system = dynamics.system
-    limits = system.per_velocity(TRANSLATION * system.size, ROTATION)
+    limits = system.per_velocity(EQUILIBRIA.translation * system.size, EQUILIBRIA.rotation)
     known = balance_at(dynamics, t, motion)
-    for count in range(MOST_MOVES):
+    for count in range(EQUILIBRIA.most_nearest_moves):
         if known.balanced:
             return as_equilibrium(dynamics, t, known, count)
-        move = newton_move(dynamics, LEAST_SHIFT, known, at_start(known))
+        move = newton_move(dynamics, EQUILIBRIA.least_shift, known, at_start(known))
         part = 1.0 / max(1.0, float(np.max(np.abs(move[: system.n_u]) / limits)))
         found = _along(dynamics, t, known, part * move) if np.isfinite(part) else None
         if found is None:
@@ -47,7 +36,7 @@ def nearest_equilibrium(dynamics: Dynamics, t: float, motion: SteadyMotion) -> E
 def _along(dynamics: Dynamics, t: float, known: Balance, move: np.ndarray) -> Balance | None:
     """Return the balance after the longest fraction of a move that reduces the residual, or None."""
     system, before = dynamics.system, dynamics.state.q.copy()
-    for halving in range(MOST_HALVINGS):
+    for halving in range(EQUILIBRIA.most_halvings):
         found = moved_on(dynamics, t, known, before, 0.5**halving * move)
         if found is not None and _left(system, known, found) < _left(system, known, known):
             return found

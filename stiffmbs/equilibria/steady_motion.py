@@ -17,9 +17,7 @@ from scipy.sparse import block_diag, csc_array
 from ..compile.quaternions import CONJUGATE, rotated
 from ..compile.system import System
 from ..dynamics.dynamics import Dynamics
-
-NO_EFFECT = 1e-9
-"""Relative effect of a velocity on forces, rates or constraints that counts as zero; also the rank tolerance of spins."""
+from .parameters import EQUILIBRIA
 
 
 @dataclass(frozen=True)
@@ -90,7 +88,7 @@ class SteadyMotion:
         rows, across = self._rolling(dynamics)
         if not across.size:
             return np.zeros(len(self.spinning))
-        found: np.ndarray = -np.linalg.lstsq(across, rows @ by_speed, rcond=NO_EFFECT)[0]
+        found: np.ndarray = -np.linalg.lstsq(across, rows @ by_speed, rcond=EQUILIBRIA.no_effect)[0]
         return found
 
     def _ahead(self) -> np.ndarray:
@@ -100,7 +98,7 @@ class SteadyMotion:
     def told_by_rolling(self, dynamics: Dynamics) -> np.ndarray:
         """Return a mask of the spins that a rolling constraint determines."""
         _, across = self._rolling(dynamics)
-        return np.asarray(np.linalg.norm(across, axis=0) > NO_EFFECT)
+        return np.asarray(np.linalg.norm(across, axis=0) > EQUILIBRIA.no_effect)
 
     def carried(self, dynamics: Dynamics) -> np.ndarray:
         """Return the velocities of all bodies as parts of one rigid body, at the current pose."""
@@ -119,7 +117,7 @@ class SteadyMotion:
             if rolls.any():
                 _, across = self._rolling(dynamics)
                 missing = state.vector("motion", "V")[~dynamics.system.holonomic] + across @ spins
-                spins[rolls] -= np.linalg.lstsq(across[:, rolls], missing, rcond=NO_EFFECT)[0]
+                spins[rolls] -= np.linalg.lstsq(across[:, rolls], missing, rcond=EQUILIBRIA.no_effect)[0]
             state.u[self.spinning] += spins
 
     def turning(self, system: System) -> csc_array:
@@ -189,7 +187,7 @@ class SteadyMotion:
         missing = (
             state.matrix("tangent", "V_q")[~dynamics.system.holonomic] @ rates.toarray() + rows @ by_move.toarray()
         )
-        return csc_array(-np.linalg.lstsq(across, missing, rcond=NO_EFFECT)[0]) if len(rows) else csc_array((len(self.spinning), missing.shape[1]))  # fmt: skip
+        return csc_array(-np.linalg.lstsq(across, missing, rcond=EQUILIBRIA.no_effect)[0]) if len(rows) else csc_array((len(self.spinning), missing.shape[1]))  # fmt: skip
 
     def _rolling(self, dynamics: Dynamics, term_set: str = "motion") -> tuple[np.ndarray, np.ndarray]:
         """Return the rows of the nonholonomic constraints in J, and their columns of the spins."""
