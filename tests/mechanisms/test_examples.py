@@ -8,7 +8,7 @@ import stiffmbs
 from ..conftest import EXAMPLE_SCENES, EXAMPLES
 
 OVERCONSTRAINED = ("bricard", "door")
-LONG = ("bushing_axle", "leaf_sprung_car", "quarter_car")
+LONG = ("bushing_axle", "formula_student", "hatchback", "leaf_sprung_car", "motorcycle", "quarter_car", "truck")
 """Their kinds take seconds to compile; `car` and `front_axle` stand for them."""
 
 

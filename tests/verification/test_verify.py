@@ -191,7 +191,10 @@ def test_another_branch_after_a_singular_pose_is_told_with_time_pose_and_remedy(
         assert part in told
 
 
-LONG = ("bricard", "bushing_axle", "car", "governor", "leaf_sprung_car", "quarter_car", "spatial_chain")
+LONG = (
+    "bricard", "bushing_axle", "car", "formula_student", "governor", "hatchback", "leaf_sprung_car", "motorcycle", "quarter_car",
+    "spatial_chain", "truck",
+)  # fmt: skip
 
 
 @pytest.mark.long

@@ -17,6 +17,8 @@ from ...reading.marker import GROUND
 from .bodies_of_axle import bodies_at, bodies_of, stays
 
 SIDES = ("left", "right")
+STEERING = ("guide", "prismatic"), ("steering", "revolute")
+"""Names and kinds of the joints that steer unless one is named."""
 AXIS_ALONG_Y = 0.7
 """Smallest component along y of a wheel's axis as described; x is forward on the rig (ISO 8855)."""
 SAME_AXLE = 0.3
@@ -116,7 +118,8 @@ def axle_of(
     body : str, optional
         Body to clamp; by default ``chassis``, or else the body to which most elements of the axle are attached.
     steering : str, optional
-        Joint that steers; by default the only prismatic joint named ``guide`` among those of the axle, if any.
+        Joint that steers; by default the only prismatic ``guide`` or revolute ``steering`` of the axle, if
+        any.
     wheels : sequence of str
         Bodies of the wheels, instead of the search by `name`.
     radius : float, optional
@@ -285,8 +288,7 @@ def _steering(model: ModelData, given: str | None, bodies: frozenset[str]) -> st
     guides = [
         name
         for name in slides
-        if name.rpartition(".")[2] == "guide"
-        and model.joints[name].kind == "prismatic"
+        if (name.rpartition(".")[2], model.joints[name].kind) in STEERING
         and set(bodies_at(model.joints[name])) <= bodies | {GROUND}
     ]
     return given or (guides[0] if len(guides) == 1 else None)

@@ -189,3 +189,13 @@ parts:
 def test_what_is_wrong_in_a_part_that_is_placed_at_once_is_told_with_its_line(old, new, changes, message):
     with pytest.raises(InputError, match=message):
         stiffmbs.read_scene(PLACED_AT_ONCE.replace(old, new), changes)
+
+
+@pytest.mark.parametrize("steering", ["none", "kingpins"])
+def test_a_rigid_axle_on_rigid_leaf_springs_is_no_singular_mechanism(steering):
+    """It heaves, rolls, winds up, and moves sideways against the axial stiffness of the eyes; wheels spin, a pitman arm steers."""
+    entry = {"rear": {"use": "rigid_axle", "compliance": "rigid", "steering": steering}}
+    report = stiffmbs.check(stiffmbs.read_scene(json.dumps({"dimensions": 3, "parts": entry})))
+    assert report.degrees_of_freedom == (4 if steering == "none" else 5) + 2
+    assert not report.redundant
+    assert not [message for message in report.messages if "singular" in message]

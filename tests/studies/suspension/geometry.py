@@ -81,9 +81,16 @@ class Corner:
         seat, tower = map(np.asarray, self.strut)
         if self.on_arm is None:
             return np.linalg.norm(at(seat) - tower)
+        return np.linalg.norm(self._on_arm_at(seat, at) - tower)
+
+    def _on_arm_at(self, point, at):
         front, rear, ball = map(np.asarray, self.on_arm)
         before, after = _frame(front, rear, ball), _frame(front, rear, at(ball))
-        return np.linalg.norm(front + after @ before.T @ (seat - front) - tower)
+        return front + after @ before.T @ (point - front)
+
+    def on_arm_at(self, point, *state):
+        """A point of the lower arm."""
+        return self._on_arm_at(point, lambda outer: self.point(outer, *state))
 
     def length(self, *state):
         return self._strut_length(lambda point: self.point(point, *state))
