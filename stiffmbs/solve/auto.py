@@ -267,7 +267,9 @@ class _AutoRun:
         fastest = fastest_rate(self._dynamics, t, start.q, start.u)
         rate = self._stable_rate(fastest)
         starts = starts_for_first_trial(self.parameters, self._excitation(start, fastest))
-        if not self._pays(rate, t, start.q, start.u, starts):
+        breakpoints = self._dynamics.input_features(t, self._grid.end).breakpoints
+        of_radau = self.parameters.trial_starts_at_rest + 1 + int(np.sum(breakpoints > t))  # long steps in each piece
+        if not self._pays(rate, t, start.q, start.u, starts, min(starts, of_radau)):
             return None
         return _Switch(f"{self._implicit.name}, as the fastest rate is {fastest:.3g} 1/s", rate, self.thresholds)
 
@@ -292,7 +294,7 @@ class _AutoRun:
             return None  # these include rejected and short steps, which cost more than the rate indicates
         fastest = fastest_rate(self._dynamics, work.t, work.q, work.u)
         rate = self._stable_rate(fastest)
-        if not self._pays(rate, work.t, work.q, work.u, starts):
+        if not self._pays(rate, work.t, work.q, work.u, starts, starts):
             return None
         reason = (
             f"{self._implicit.name} from t = {work.t:.4g} s on, as stability held back {100 * steps.limited / steps.accepted:.0f} % of the "
@@ -322,16 +324,18 @@ class _AutoRun:
         change = np.abs(start.acceleration) * (DOP853.stability / fastest)
         return float((change / (tolerances[system.n_q :] + settings.rtol * np.abs(start.u))).max(initial=0.0))
 
-    def _pays(self, explicit_rate: float, t: float, q: np.ndarray, u: np.ndarray, starts: float) -> bool:
-        """Return True if explicit steps from t to the end cost more than a number of implicit starts.
+    def _pays(
+        self, explicit_rate: float, t: float, q: np.ndarray, u: np.ndarray, starts: float, of_radau: float
+    ) -> bool:
+        """Return True if explicit steps from t to the end cost more than a number of starts of bdf or of radau.
 
         If they cost more than by the lower bound of a start, the integrator is created for a better estimate.
         """
         explicit_cost = (self._grid.end - t) * explicit_rate
-        if not explicit_cost > starts * self._implicit.cost.start:
+        if not explicit_cost > min(starts, of_radau) * self._implicit.cost.start:
             return False
         self._implicit.create(self.parameters, t, q, u)
-        return explicit_cost > starts * self._implicit.cost.start
+        return explicit_cost > (of_radau if self._implicit.name == "radau" else starts) * self._implicit.cost.start
 
     def explicit_cost(self, duration: float, restarts: int) -> float:
         """Return the cost of explicit steps over a time of the motion, s, with restarts."""

@@ -33,7 +33,7 @@ class AutoParameters:
     at_rest : float
         Velocity change in an explicit step, in tolerances, below which a start excites no vibration.
     trial_starts_at_rest : float
-        Value of `trial_starts` for such a start, from which implicit steps soon grow.
+        Value of `trial_starts` for such a start, from which implicit steps soon grow. For `radau`, in addition to one start for each piece between breakpoints.
     check_cost : float
         Cost of the implicit steps between two checks, in their starts without their small steps.
     fewest_steps : int

@@ -98,7 +98,7 @@ class Radau:
         Cost of a complex matrix, in real ones.
     """
 
-    polishes = True
+    one_step = True
 
     def __init__(
         self,

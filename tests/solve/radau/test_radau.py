@@ -159,3 +159,20 @@ def test_a_drifting_run_ends_before_it_follows_another_mechanism():
     assert any("SI2_exact" in note for note in found.notes)
     assert swing_of(2, 3.2, found) < 1e-4
     assert found.solver["steps"] < 1000
+
+
+@pytest.mark.parametrize("rtol", [1e-3, 1e-6, 1e-8])
+def test_the_first_step_within_a_short_interval_of_a_law_is_in_that_interval(rtol):
+    """A force of 1 N s over 1 ms, up and down in straight lines from an event on, within a run of 10 s."""
+    scene = stiffmbs.read_scene(
+        """
+bodies:
+  pushed: {mass: 1, inertia: 1}
+  guide: {mass: 1, inertia: 1, velocity: [1, 0]}
+tables: {roof: {table: [[-1, 0], [0, 0], [0.5, 1], [1, 0], [2, 0]], lines: true}}
+forces: {push: {type: force, i: pushed, force: ["2000*roof((guide.x - 5)/0.001)", 0]}}
+run: {duration: 10 s, points: 11, solver: radau}
+"""
+    )
+    found = stiffmbs.run(scene, rtol=rtol)
+    assert found["pushed.vx"][-1] == pytest.approx(1, abs=max(1e-4, 10 * rtol))

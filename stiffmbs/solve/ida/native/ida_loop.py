@@ -87,6 +87,8 @@ def _longest_to_see(c, bound, t):
             longest = min(longest, w.target - t)
         if t < w.passed:
             longest = min(longest, w.passage if c.size > 0.0 else w.first)
+            if c.one_step:
+                longest = min(longest, w.passed - t)
     return max(longest, LOOP.most_tiny * LOOP.tiny * abs(t))
 
 

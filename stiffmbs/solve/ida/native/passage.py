@@ -1,12 +1,13 @@
 """Passages: short times from a restart of IDA until the motion leaves a law, which a first step must resolve.
 
 The error estimate of a step of order 1 compares the forces at its ends.  If these agree, as before and after a short
-interval of another law, the step is accepted without the forces in between.
+interval of another law, the step is accepted without the forces in between.  A one-step method begins with long steps,
+whose stages may all be after such an interval.
 """
 
 from __future__ import annotations
 
-from stiffmbs.compile.machine.native.access import compiled, equations_view, shifted
+from stiffmbs.compile.machine.native.access import address_of, compiled, equations_view, shifted
 from stiffmbs.compile.machine.native.calls import call_int
 from stiffmbs.compile.machine.native.evaluate import SWITCH, add_products, evaluate
 from stiffmbs.solve.events.native.ahead import go_ahead
@@ -23,6 +24,8 @@ def bound_passage(c, w, s, toward, stop):
     a passage is limited for periodic laws, because smaller changes add up over their periods.  The same holds at the
     beginning of a run, where closed contacts open and close by rounding.
     """
+    if c.one_step:
+        call_int(c.next_step_of, (c.memory, address_of(c.next_size)))
     if c.returned < w.begins:
         w.begins = c.returned
     w.passage, w.first = float("inf"), float("inf")
@@ -43,6 +46,8 @@ def _passage(c, w, s, toward, stop):
     """Return the time after which the motion leaves a law; 0 if it does not soon."""
     ahead = NEXT_STEP.start_difference * (toward - c.returned)
     most = stop - c.returned if w.n_turns > 0 else NEXT_STEP.soon * (toward - c.returned)
+    if c.one_step:
+        most = min(max(most, c.next_size), stop - c.returned)
     while ahead < most and not _another_side(c, w, s, ahead):
         ahead *= 2.0
     if not ahead < most:
@@ -63,7 +68,7 @@ def _another_side(c, w, s, ahead):
     go_ahead(c, s, ahead)
     values = evaluate(s, SWITCH, c.returned + ahead)
     others = 0
-    for k in range(w.n if w.n_turns > 0 else w.n_event_functions):
+    for k in range(w.n if w.n_turns > 0 or c.one_step else w.n_event_functions):
         others += zone(w, k, values[k]) != zone(w, k, w.value_before[k])
     return others > 0
 

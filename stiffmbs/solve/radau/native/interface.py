@@ -11,7 +11,7 @@ from stiffmbs.compile.machine.native.statuses import OK, ROOT_RETURN, STOP_RETUR
 from stiffmbs.solve.ida.native.output_correction import output_correction_view
 from stiffmbs.solve.radau.native.memory import collocation_view, polynomial, polynomial_rates, radau_view
 from stiffmbs.solve.radau.native.newton import closed
-from stiffmbs.solve.radau.native.steps import EXCLUDED, set_weights, step
+from stiffmbs.solve.radau.native.steps import EXCLUDED, first_step, set_weights, step
 
 BAD_ORDER, BAD_TIME = -25, -26
 """IDA_BAD_K and IDA_BAD_T."""
@@ -73,7 +73,7 @@ def _step_back(x, begin, h):
 
 
 @compiled
-def _stepped(x, toward):
+def _stepped(x):
     """Take a step, up to just before an event if the change of law makes its error estimate invalid.
 
     The tolerance of the estimate, of order s, is that of smooth solutions; a step over a jump has to meet the requested
@@ -81,7 +81,7 @@ def _stepped(x, toward):
     """
     for _ in range(MOST_RETAKEN):
         begin = x.t
-        flag = step(x, toward)
+        flag = step(x)
         if flag < 0 or x.n_functions == 0:
             return flag
         _event_functions(x, x.t, x.y, x.yp, x.after)
@@ -107,7 +107,7 @@ def solve(memory, toward, returned, y, yp, task):
     if x.n_functions > 0 and x.h_past == 0.0:
         _event_functions(x, x.t, x.y, x.yp, x.before)
     begin = x.t
-    flag = _stepped(x, toward)
+    flag = _stepped(x)
     if flag < 0:
         return int32(flag)
     returned[0] = x.t
@@ -278,6 +278,9 @@ def step_of(memory, result):
 def next_step_of(memory, result):
     """Store the size of the next step (IDAGetCurrentStep)."""
     x = radau_view(ints(memory))
+    if x.h == 0.0:
+        set_weights(x)
+        x.h = first_step(x)
     result[0] = x.h
     return int32(OK)
 

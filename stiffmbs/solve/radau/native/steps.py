@@ -102,7 +102,7 @@ def _estimate_below(x, c, lower, t, h):
 
 
 @compiled
-def first_step(x, toward):
+def first_step(x):
     """Return a first step by the rates of the state (Hairer, Norsett, Wanner I, ch. II.4)."""
     if x.first > 0.0:
         return x.first
@@ -203,12 +203,11 @@ def _choose_unknowns(x):
 
 
 @compiled
-def _begun(x, toward):
+def _begun(x):
     """Prepare a step; return its length without regard to the stop time."""
     set_weights(x)
     if x.h == 0.0:
-        x.h = first_step(x, toward)
-        x.rate = 1.0
+        x.h = first_step(x)
     _choose_unknowns(x)
     x.rejected = 0
     x.failures = 0
@@ -282,21 +281,22 @@ def _choose_next(x, c, h, planned, at_stop):
         following = min(following, h * x.slowest / x.contraction)
     if x.rejected:
         following = min(following, h)
+    first = x.h_accepted == 0.0
     x.h_accepted = h
     x.last_error = max(LEAST_ERROR, x.error_size)
     x.rate_kept = 1 if x.contraction <= c.keep else 0
     if x.rate_kept and h <= following <= x.keep_high * h:
         following = h
-    x.h = max(following, planned) if at_stop and not x.rejected else following
+    x.h = max(following, planned) if at_stop and not (first or x.rejected) else following
 
 
 @compiled
-def step(x, toward):
+def step(x):
     """Take one step that passes the error test, not beyond the stop time.
 
     Returns 0 or a negative flag of IDA.
     """
-    h = _begun(x, toward)
+    h = _begun(x)
     first = x.h_past == 0.0
     c = collocation_view(ints(x.methods[x.method]))
     while True:
