@@ -6,6 +6,7 @@ from scipy import constants
 from stiffmbs import InputError, load_scene
 from stiffmbs.elements.tyres.names import AS_BEFORE, LATER
 from stiffmbs.elements.tyres.property_file import UNITS
+from stiffmbs.spatial import MagicFormulaTyre
 from stiffmbs.tyres import TyreProperties
 
 FILE = """$ a tyre
@@ -137,6 +138,24 @@ def test_the_belt_of_pac2002_has_its_mass_in_the_units_of_the_file(read):
     assert found.belt == pytest.approx(0.2 * 5.4 * 0.5)
     assert found.is_pac2002
     assert any("needs relaxation lengths" in note for note in found.notes())
+
+
+def test_a_missing_nominal_pressure_is_noted(read):
+    text = FILE.replace("LONGVL", "FITTYP = 62\nLONGVL")
+    for added, pressure in (("", 2e5), ("[OPERATING_CONDITIONS]\nINFLPRES = 0.0003\n", 3e5)):
+        found = read(text + added)
+        assert found.coefficients["NOMPRES"] == pytest.approx(pressure)
+        assert any("there is no NOMPRES" in note for note in found.notes())
+
+
+def test_a_pressure_outside_its_range_is_noted(read):
+    text = FILE.replace("LONGVL", "FITTYP = 61\nLONGVL")
+    file = read(
+        f"{text}[INFLATION_PRESSURE_RANGE]\nPRESMIN = 0.0001\nPRESMAX = 0.0005\n[OPERATING_CONDITIONS]\nNOMPRES = 0.0002\n"
+    )
+    assert list(MagicFormulaTyre(i="wheel", properties=file).own_notes()) == []
+    (note,) = MagicFormulaTyre(i="wheel", properties=file, pressure="600 kPa").own_notes()
+    assert "the pressure of 600000 Pa is outside the valid range of its data, 100000 to 500000 Pa" in note
 
 
 def test_values_without_effect_are_not_noted(read):

@@ -108,3 +108,22 @@ def test_a_tyre_in_the_air_leaves_no_range(tyre):
     properties = tyre("[LONG_SLIP_RANGE]\nKPUMAX = 0.001\n[INCLINATION_ANGLE_RANGE]\nCAMMAX = 1\n")
     model = wheel(MagicFormulaTyre(i="wheel", properties=properties), 0.32, -0.2, camber=0.1)
     assert not any("leaves the valid ranges" in note for note in stiffmbs.run(model, duration=0.01).notes)
+
+
+def test_the_deflection_at_a_load_is_that_of_the_curve():
+    """At its points, and beyond them with the slope of its end."""
+    numbers = {
+        "FNOMIN": 4e3,
+        "UNLOADED_RADIUS": 0.32,
+        "VERTICAL_STIFFNESS": 2e5,
+        "PCX1": 1.6,
+        "PDX1": 1.0,
+        "PKX1": 20.0,
+    }
+    numbers |= {"PCY1": 1.3, "PDY1": 1.0, "PKY1": -14.0, "PKY2": 1.8}
+    curve = {"table": [[0, 0], [0.01, 1900], [0.03, 6500]]}
+    tyre = TyreProperties(coefficients=numbers, deflection_load=curve)
+    assert tyre.steady_state([0, 1900, 6500])["rho"] == pytest.approx([0, 0.01, 0.03], abs=1e-12)
+    ends = tyre.steady_state([6501, 6502, 7500])["rho"]
+    assert (ends[2] - 0.03) == pytest.approx(1000 * (ends[1] - ends[0]), rel=1e-8)
+    assert tyre.steady_state([6500])["Rl"] == pytest.approx([0.29])

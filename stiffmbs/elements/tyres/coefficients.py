@@ -19,7 +19,7 @@ from ...reading.table import Table
 from ..element import Component
 from ..read_by import Context, JsonSchema, ReadBy
 from ..roads.envelope import MOST_TRACKS, Envelope
-from .formulas import OF_FITTYP, OF_FORMAT, VERSIONS, Version, plain
+from .formulas import NOMINAL_PRESSURE, OF_FITTYP, OF_FORMAT, VERSIONS, Version, plain
 from .names import AS_BEFORE, COMBINED, LATER, OF_THE_FILE, RANGES, REASONS, REQUIRED, TURN_SLIP, home
 from .property_file import PropertyFile, read_property_file
 
@@ -339,6 +339,9 @@ def _of_file(file: PropertyFile) -> TyreProperties:
         read["deflection_load"] = _curve(file, "DEFLECTION_LOAD_CURVE")
         read["belt"] = _belt(file)
         read["is_pac2002"] = plain(file.text("PROPERTY_FILE_FORMAT")) == "PAC2002"
+    if formula.has_pressure and "NOMPRES" not in found:
+        found["NOMPRES"] = found.get("INFLPRES") or NOMINAL_PRESSURE
+        remarks.append(f"there is no NOMPRES: the coefficients are taken to hold at {found['NOMPRES']:g} Pa")
     for name in OF_THE_FILE:
         file.entry(name)
     remarks += unused_notes([*file.sections.values(), file.tables], REASONS)
