@@ -3,8 +3,8 @@
     python -m tests.parameters [SUBSYSTEM...] [--json] [--all]
 
 A value outside of its range is replaced by the middle between the default and the bound.  A result is every channel, counter,
-note and message of a run; elapsed times are left out.  Runs with changed parameters compile the routines that read them, so that
-all subsystems take about an hour; set STIFFMBS_CACHE to a folder of its own.
+note and message of a run; elapsed times are left out.  Runs with changed parameters compile the routines that read them, so that a
+scan of all subsystems takes hours; set STIFFMBS_CACHE to a folder of its own.
 """
 
 from __future__ import annotations
