@@ -22,6 +22,7 @@ SECTIONS = {
     },
     "Flexible bodies": {
         "flexible": "flexible",
+        "stresses": "stresses",
     },
     "Many runs": {
         "study": "study",

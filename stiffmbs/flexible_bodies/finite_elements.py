@@ -10,6 +10,7 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 
 from ..errors import InputError
+from .solid import Solid
 
 SYMMETRY = 1e-8
 """Tolerance of symmetry, relative to the largest entry."""
@@ -31,6 +32,8 @@ class FiniteElements:
         Named sets of nodes, numbered from 0.
     cells : mapping of str to ndarray of int
         Nodes of the elements by type, in the names and order of meshio, for pictures; may be empty.
+    solid : Solid, optional
+        Shape functions and material, for stresses and geometric stiffening.
     """
 
     nodes: np.ndarray
@@ -38,6 +41,7 @@ class FiniteElements:
     mass: csr_array
     groups: Mapping[str, np.ndarray] = field(default_factory=dict)
     cells: Mapping[str, np.ndarray] = field(default_factory=dict)
+    solid: Solid | None = None
 
     def rigid_modes(self, about: np.ndarray) -> np.ndarray:
         """Return displacements by unit translations and rotations about a point, shape (3 n, 6)."""

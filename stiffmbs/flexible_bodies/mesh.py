@@ -13,6 +13,7 @@ from scipy.spatial import cKDTree
 
 from ..errors import InputError, needs
 from .finite_elements import FiniteElements
+from .solid import Solid
 
 SOLIDS = {
     "tetra": ("tetra", "ElementTetP1", 2),
@@ -60,10 +61,10 @@ def from_mesh(path: Path, length: float, modulus: float, poisson: float, density
     if nodes.shape[1] != 3:
         raise InputError(f"found nodes with {nodes.shape[1]} coordinates, expected x, y and z")
     _check_volumes(nodes, cells, kind)
-    stiffness, mass = _assembled(nodes, cells, kind, modulus, poisson, density)
+    stiffness, mass, solid = _assembled(nodes, cells, kind, modulus, poisson, density)
     numbers = np.full(len(mesh.points), -1)
     numbers[used] = np.arange(len(used))
-    return FiniteElements(nodes, stiffness, mass, _groups(mesh, numbers), {kind: cells})
+    return FiniteElements(nodes, stiffness, mass, _groups(mesh, numbers), {kind: cells}, solid)
 
 
 def _read(path: Path) -> Any:
@@ -99,7 +100,7 @@ def _check_volumes(nodes: np.ndarray, cells: np.ndarray, kind: str) -> None:
 
 def _assembled(
     nodes: np.ndarray, cells: np.ndarray, kind: str, modulus: float, poisson: float, density: float
-) -> tuple[csr_array, csr_array]:
+) -> tuple[csr_array, csr_array, Solid]:
     with needs("skfem", "flexible"):
         import skfem
         from skfem.helpers import dot
@@ -116,7 +117,8 @@ def _assembled(
         number[corners] = np.arange(len(corners))
         mesh = meshio.Mesh(nodes[corners], [(geometry, number[cells[:, : CORNERS[kind]]])])
     with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
-        basis = skfem.Basis(from_meshio(mesh), skfem.ElementVector(getattr(skfem, element)()), intorder=order)
+        of_skfem, scalar = from_meshio(mesh), getattr(skfem, element)()
+        basis = skfem.Basis(of_skfem, skfem.ElementVector(scalar), intorder=order)
     distance, node = cKDTree(nodes).query(basis.doflocs.T)
     if distance.max() > APART * np.ptp(nodes, axis=0).max():
         raise InputError(
@@ -135,7 +137,7 @@ def _assembled(
     for form in (linear_elasticity(*lame_parameters(modulus, poisson)), inertia):
         matrix = form.assemble(basis).tocoo()
         found.append(csr_array((matrix.data, (place[matrix.row], place[matrix.col])), shape=(3 * len(nodes),) * 2))
-    return found[0], found[1]
+    return found[0], found[1], Solid(of_skfem, scalar, order, node[basis.element_dofs[::3]], modulus, poisson)
 
 
 def _groups(mesh: Any, numbers: np.ndarray) -> dict[str, np.ndarray]:

@@ -45,7 +45,7 @@ def reduced_body(body: FlexibleBody, folder: Path) -> ReducedBody:
     _check_mass(body, rigid_body(model)[0])
     interfaces = [interface.on(name, model) for name, interface in body.interfaces.items()]
     count, highest = (None, body.modes.up_to) if isinstance(body.modes, UpTo) else (body.modes, None)
-    found = reduce(model, interfaces, count, highest)
+    found = reduce(model, interfaces, count, highest, body.stiffening)
     out = io.BytesIO()
     np.savez(out, **{field.name: getattr(found, field.name) for field in fields(found)})
     folder_of_bodies().write(name, out.getvalue())

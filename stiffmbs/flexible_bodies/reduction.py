@@ -17,6 +17,7 @@ from scipy.linalg import block_diag, eigh, null_space
 from ..errors import InputError
 from .finite_elements import FiniteElements, rigid_displacements
 from .interfaces import Interface, check_interfaces
+from .second_order import second_order
 from .static_solver import StaticSolver
 
 DEPENDENT = 1e-10
@@ -27,6 +28,8 @@ ZERO = 10.0
 """Frequency of the lowest elastic mode that is refused as zero, relative to the highest of the rigid modes."""
 SAME_IN_ALL = 1e-6
 """Tolerance of the mass along x, y and z, relative to it."""
+STIFFENED = 12
+"""Lowest modes whose pairs have displacements of second order: geometric stiffening."""
 MORE_MODES = 20
 """Modes of the first search up to a frequency, doubled until one is above it."""
 
@@ -68,6 +71,8 @@ class ReducedBody:
         sum m psi_l psi_k^T by l and k.
     dependent : int
         Number of combinations of modes left out as linearly dependent.
+    second_nodes, second_markers, second_moments : ndarray
+        Displacements of second order (`stiffmbs.flexible_bodies.second_order.SecondOrder`).
     """
 
     mass: float
@@ -86,6 +91,9 @@ class ReducedBody:
     second: np.ndarray
     pairs: np.ndarray
     dependent: int
+    second_nodes: np.ndarray
+    second_markers: np.ndarray
+    second_moments: np.ndarray
 
     def held_frequencies(self, held: Sequence[int]) -> np.ndarray:
         """Return the natural frequencies with some interfaces held, Hz.
@@ -108,8 +116,9 @@ class ReducedBody:
 
 
 def reduce(
-    model: FiniteElements, interfaces: Sequence[Interface], count: int | None, highest: float | None = None
-) -> ReducedBody:
+    model: FiniteElements, interfaces: Sequence[Interface], count: int | None, highest: float | None = None,
+    stiffening: bool = True,
+) -> ReducedBody:  # fmt: skip
     """Reduce a model to its interfaces and normal modes.
 
     Parameters
@@ -120,6 +129,8 @@ def reduce(
         Number of normal modes with all interfaces held.
     highest : float, optional
         Frequency up to which these are kept, Hz, without a count.
+    stiffening : bool
+        Compute displacements of second order.
 
     Raises
     ------
@@ -145,12 +156,14 @@ def reduce(
             f"stiffness: found a seventh frequency of {frequencies[0]:.2g} Hz with six of up to {zeros.max():.2g} Hz, "
             "expected six zero frequencies: a part of the body moves freely"
         )
+    second = second_order(model, interfaces, solver, static, rigid, modes, STIFFENED if stiffening else 0)
     return ReducedBody(
         mass, centre, inertia, frequencies, modes, zeros, np.sqrt(squares) / (2 * np.pi),
         participation**2 / mass, condition, _marker_modes(model, interfaces, modes),
         np.array([interface.point for interface in interfaces]).reshape(-1, 3),
         np.array([interface.size for interface in interfaces], dtype=int),
         *_moments(model, centre, modes), shapes.shape[1] - basis.shape[1],
+        second.nodes, second.markers, second.moments,
     )  # fmt: skip
 
 

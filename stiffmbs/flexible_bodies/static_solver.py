@@ -83,6 +83,11 @@ class StaticSolver:
         """Return free displacements under forces, with prescribed values of the functionals."""
         return self._factors.solve(np.concatenate([force, self._scale * prescribed]))[: self._n]
 
+    def held_response(self, force: np.ndarray) -> np.ndarray:
+        """Return the displacements of all nodes under forces, with the interfaces held, shape (3 n,)."""
+        own = self._solve((self.shapes.T @ force)[: self._n], np.zeros(len(self._functionals)))
+        return self.shapes[:, : self._n] @ own  # type: ignore[no-any-return]
+
     def static_modes(self) -> np.ndarray:
         """Return displacements of all nodes by unit interface coordinates, shape (3 n, interface coordinates)."""
         columns, exact, functional = [], self._n, 0

@@ -82,7 +82,7 @@ def with_flexible_bodies(raw: dict[str, Any], context: Mapping[str, Any]) -> dic
             reduced = reduced_body(body, Path(context.get(FOLDER) or ""))
         except InputError as error:
             raise InputError(f"bodies.{name}: {error}") from None
-        parts = _Parts(name, body, reduced)
+        parts = _Parts(name, body, reduced, Path(context.get(FOLDER) or ""))
         added_bodies |= dict(parts.bodies())
         added_joints |= dict(parts.joints())
     return {**raw, "bodies": added_bodies, "joints": added_joints}
@@ -95,8 +95,8 @@ class _Parts:
     of the finite element model.
     """
 
-    def __init__(self, name: str, body: SceneFlexibleBody, reduced: ReducedBody) -> None:
-        self._name, self._body, self._reduced = name, body, reduced
+    def __init__(self, name: str, body: SceneFlexibleBody, reduced: ReducedBody, folder: Path) -> None:
+        self._name, self._body, self._reduced, self._folder = name, body, reduced, folder
         self._share = SHARE * reduced.mass
         self._moment = self._share * SMALL**2 * float(np.linalg.eigvalsh(reduced.inertia)[-1]) / reduced.mass
         self._count = -(-len(reduced.frequencies) // BY_BODY)
@@ -115,7 +115,12 @@ class _Parts:
         fields = {name: getattr(frame, name) for name in Body.model_fields}
         yield (
             f"{self._name}.{FRAME}",
-            FloatingFrame(**fields, numbers=_Numbers(self._numbers(frame)), modes=tuple(self._of_modes())),
+            FloatingFrame(
+                **fields,
+                numbers=_Numbers(self._numbers(frame)),
+                modes=tuple(self._of_modes()),
+                source=(self._body, self._folder),
+            ),
         )
         for name in self._of_modes():
             yield name, ModalCoordinates(mass=reduced.mass, inertia=(reduced.mass,) * 3)
@@ -143,7 +148,14 @@ class _Parts:
                 i=Marker(body=f"{self._name}.{FRAME}", point=tuple(self._reduced.points[k])),
                 j=Marker(body=f"{self._name}.{name}"), modes=modes,
                 displacements=tuple(shapes[:, :3].ravel()), rotations=tuple(shapes[:, 3:].ravel()),
+                second=tuple(self._second(k).ravel()),
             )  # fmt: skip
+
+    def _second(self, k: int) -> np.ndarray:
+        """Return the second derivatives of an interface's displacement and rotation by pairs k <= l, shape (pairs, 6)."""
+        second = self._reduced.mass * self._reduced.second_markers[k]
+        rows, columns = np.tril_indices(second.shape[1])
+        return second[:, rows, columns].T
 
     def _by_coordinates(self, modes: np.ndarray) -> np.ndarray:
         """Return values by mode as values by modal coordinate in m, zero for the unused ones of the last body."""
@@ -158,25 +170,38 @@ class _Parts:
         offset = np.zeros(3)
         square = np.trace(reduced.inertia) / 2 * np.eye(3) - reduced.inertia
         first, second = self._by_coordinates(reduced.first), self._by_coordinates(reduced.second)
-        pairs = np.zeros((n, n, 3, 3))
-        own = len(reduced.pairs)
+        own, p = len(reduced.pairs), len(reduced.second_moments)
+        pairs, second_moments, second_first = np.zeros((n, n, 3, 3)), np.zeros((n, n, 3, 3)), np.zeros((n, n, 3))
         pairs[:own, :own] = reduced.mass * reduced.pairs
-        for point, marker in zip(reduced.points - reduced.centre, reduced.markers, strict=True):
+        second_moments[:p, :p] = reduced.mass * reduced.second_moments
+        lumps = zip(reduced.points - reduced.centre, reduced.markers, reduced.second_markers, strict=True)
+        for point, marker, second_marker in lumps:
             shape = self._by_coordinates(marker.T)[:, :3]
             offset -= self._share * point
             square -= self._share * np.outer(point, point) + self._moment / 2 * np.eye(3)
             first -= self._share * shape
             second -= self._share * np.einsum("a,kb->kab", point, shape)
             pairs -= self._share * np.einsum("la,kb->lkab", shape, shape)
+            moved = self._share * reduced.mass * second_marker[:3].transpose(1, 2, 0)
+            second_first[:p, :p] -= moved
+            second_moments[:p, :p] -= np.einsum("a,klb->klab", point, moved)
         for k in range(own, n):  # unused coordinates: unit modal mass
             pairs[k, k] += np.eye(3) * reduced.mass / 3
         stiffness, damping = self._stiffness_and_damping(n)
         of_modes = np.column_stack(
             [stiffness, damping, first @ to_axes.T, np.einsum("ia,jb,kab->kij", to_axes, to_axes, second).reshape(n, 9)]
         )
+        pairs, second_moments = (
+            np.einsum("ia,jb,lkab->lkij", to_axes, to_axes, each) for each in (pairs, second_moments)
+        )
+        axial = np.stack([pairs[..., i, j] - pairs[..., j, i] for i, j in ((1, 2), (2, 0), (0, 1))], axis=-1)
+        of_pairs = [
+            (pairs + second_moments).reshape(n, n, 9), axial, np.trace(pairs, axis1=2, axis2=3)[..., None],
+            second_first @ to_axes.T,
+        ]  # fmt: skip
         return np.concatenate([
             np.zeros(3), to_axes @ offset, (to_axes @ square @ to_axes.T).ravel(), frame.principal_moments(), [reduced.mass],
-            of_modes.ravel(), np.einsum("ia,jb,lkab->lkij", to_axes, to_axes, pairs).ravel(),
+            of_modes.ravel(), np.concatenate(of_pairs, axis=-1).ravel(),
         ])  # fmt: skip
 
     def _stiffness_and_damping(self, n: int) -> tuple[np.ndarray, np.ndarray]:

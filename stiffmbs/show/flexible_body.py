@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..flexible_bodies.reduction import ReducedBody
+
+if TYPE_CHECKING:
+    from ..results.flexible_motion import FlexibleMotion
 
 MOST_FREQUENCIES = 12
 LARGE_CONDITION = 1e12
@@ -91,3 +94,57 @@ def _listed(values: np.ndarray) -> str:
     more = len(values) - MOST_FREQUENCIES
     shown = " ".join(f"{value:.7g}" for value in values[:MOST_FREQUENCIES])
     return f"{shown}{f' and {more} more' if more > 0 else ''}" if len(values) else "none"
+
+
+def flexible_motion_as_dict(scene: str, motion: FlexibleMotion, nodes: Sequence[int]) -> dict[str, Any]:
+    """Return the stresses, strain energy and displacements of a flexible body in a run, for JSON.
+
+    Parameters
+    ----------
+    scene : str
+        Name of the file.
+    motion : FlexibleMotion
+    nodes : sequence of int
+        Nodes whose displacements are reported.
+    """
+    energy = motion.strain_energy()
+    peaks = motion.peaks() if motion.model.solid is not None else {}
+    found: dict[str, Any] = {
+        "scene": scene,
+        "body": motion.name,
+        "stress": {
+            name: {"value": peak.value, "node": peak.node, "point": list(peak.point), "time": peak.time}
+            | ({} if (bar := motion.error_of_stress(peak.node)) is None else {"error": bar})
+            for name, peak in peaks.items()
+        },
+        "strain_energy": {"largest": float(energy.sum(axis=1).max()), "by_mode": energy.max(axis=0).tolist()},
+        "frequencies": motion.reduced.frequencies.tolist(),
+        "displacement": {},
+    }
+    for node, own in zip(nodes, motion.displacement(nodes).transpose(1, 0, 2), strict=True):
+        size = np.linalg.norm(own, axis=1)
+        row = int(size.argmax())
+        found["displacement"][str(node)] = {
+            "largest": float(size[row]), "time": float(motion.t[row]), "last": own[-1].tolist(),
+        }  # fmt: skip
+    return found
+
+
+def flexible_motion_text(report: Mapping[str, Any]) -> str:
+    """Return the report of `flexible_motion_as_dict` as text."""
+    lines = [f"{report['body']} in {report['scene']}"]
+    for name, peak in report["stress"].items():
+        bar = f" +- {peak['error'] / 1e6:.2g}" if "error" in peak else ""
+        point = _numbers(np.array(peak["point"]))
+        lines.append(
+            f"{name:20}{peak['value'] / 1e6:.6g}{bar} MPa at node {peak['node']} ({point} m), {peak['time']:.6g} s"
+        )
+    if not report["stress"]:
+        lines.append("stress              none: K and M have no shape functions; use a mesh")
+    of_modes = np.array(report["strain_energy"]["by_mode"])
+    lines.append(f"{'strain energy':20}{report['strain_energy']['largest']:.6g} J at most")
+    for k in np.argsort(of_modes)[::-1][:MOST_FREQUENCIES]:
+        lines.append(f"{'  mode':20}{k + 1} ({report['frequencies'][k]:.6g} Hz): {of_modes[k]:.4g} J at most")
+    for node, own in report["displacement"].items():
+        lines.append(f"{f'node {node}':20}{own['largest']:.6g} m at {own['time']:.6g} s, at most")
+    return "\n".join(lines)

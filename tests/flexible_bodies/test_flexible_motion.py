@@ -179,6 +179,10 @@ def test_derivatives_of_the_kernels(folder):
     numbers[19 : 19 + 14 * n].reshape(n, 14)[:, :2] = random.uniform(
         1, 2, (n, 2)
     )  # soft: differences keep their digits
+    pairs = numbers[19 + 14 * n :][: 16 * n * n].reshape(n, n, 16)
+    for part in (slice(0, 9), slice(13, 16)):  # of second order: symmetric by pairs
+        second = random.standard_normal(pairs[..., part].shape)
+        pairs[..., part] += second + second.swapaxes(0, 1)
     q, u, a = (random.standard_normal(len(each)) for each in (state.q, state.u, state.a))
     q[3:7] /= np.linalg.norm(q[3:7])
 

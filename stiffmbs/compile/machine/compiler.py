@@ -99,7 +99,7 @@ def _called(with_geometry: bool) -> str:
     """Return a digest of the modules that generated sources call."""
     here = Path(__file__).parent
     names = ("nonsmooth", "spline", "rotation_vector", "python_call")
-    files = [here / "native" / f"{name}.py" for name in names]
+    files = [here / "native" / f"{name}.py" for name in names] + python_files(here / "native" / "flexible")
     return digest_of(files + python_files(here / "geometry") * with_geometry)
 
 

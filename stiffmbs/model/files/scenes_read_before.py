@@ -88,7 +88,7 @@ def _reader() -> str:
     import pydantic
 
     package = Path(__file__).parents[2]
-    rooms = "reading", "elements", "model"
+    rooms = "reading", "flexible_bodies", "elements", "model"
     files = [package / "solver_names.py", *(file for room in rooms for file in files_within(package / room))]
     return digest(sys.version, numpy.__version__, pydantic.VERSION, digest_of(files))
 

@@ -26,9 +26,12 @@ class FloatingFrame(Body):
         gravity.
     modes : tuple of str
         Bodies with its modal coordinates.
+    source : tuple of FlexibleBody and Path
+        Description of the body and the folder of its files.
     """
 
     rigid: ClassVar[bool] = False
 
     numbers: Any = Field(None, exclude=True, repr=False)
     modes: tuple[str, ...] = ()
+    source: Any = Field(None, exclude=True, repr=False)

@@ -8,18 +8,18 @@ from pydantic import Field
 
 from ...element import Joint, Symbolic
 from ..marker import Marker
-from ..primitives import COINCIDE, ORIENT, perpendicular
+from ..primitives import COINCIDE
 
 
 class FlexibleInterface(Joint):
     """Joint that moves a body with an interface of a flexible body; created with it.
 
-    The point is that of the interface with its modal displacement psi q, and the axes are those of the frame turned by
-    the small rotation theta q. The three equations of orientation are exact to the first order in that rotation.
+    The point is that of the interface with its modal displacement, and the axes are those of the frame turned by its
+    modal rotation vector. Both are psi q + 1/2 sum theta_kl q_k q_l.
     """
 
     kind: ClassVar[str] = "flexible_interface"
-    equations: ClassVar[tuple[str, ...]] = (*COINCIDE, *ORIENT)
+    equations: ClassVar[tuple[str, ...]] = (*COINCIDE, "about_x", "about_y", "about_z")
     transmits: ClassVar[tuple[str, ...]] = ("fx", "fy", "fz", "tx", "ty", "tz")
 
     i: Marker = Field(description="marker of the floating frame at the interface")
@@ -28,15 +28,18 @@ class FlexibleInterface(Joint):
     displacements: tuple[float, ...] = Field(description="displacement by mode along x, y and z")
     rotations: tuple[float, ...] = Field(description="rotation by mode about x, y and z")
 
+    second: tuple[float, ...] = Field((), description="second derivatives of both by pairs k, l <= k of modes")
+
     @staticmethod
     def position(e: Symbolic) -> Any:
         modal = [mode.body.origin[k] for mode in e.modes for k in range(3)]
-        moved, turned = (
-            [sum(y * shapes[3 * k + axis] for k, y in enumerate(modal)) for axis in range(3)]
-            for shapes in (e.displacements, e.rotations)
-        )
-        x, y, z = e.i.axes
-        theta = turned[0] * x + turned[1] * y + turned[2] * z
-        x, y, z = (axis + theta.cross(axis) for axis in (x, y, z))
-        apart = e.j.point - e.i.point - moved[0] * e.i.x - moved[1] * e.i.y - moved[2] * e.i.z
-        return [*apart, perpendicular(x, e.j.y), perpendicular(y, e.j.z), perpendicular(z, e.j.x)]
+        factors = [y * modal[l] / (1 + (l == k)) for k, y in enumerate(modal) for l in range(k + 1)]
+        along = []
+        for row in range(6):
+            shapes = e.displacements if row < 3 else e.rotations
+            first = sum(y * shapes[3 * k + row % 3] for k, y in enumerate(modal))
+            of_pairs = e.second[row::6]
+            along.append(e.named(first + sum(x * y for x, y in zip(of_pairs, factors[: len(of_pairs)], strict=True))))
+        moved = sum((d * axis for d, axis in zip(along, e.i.axes, strict=False)), e.i.point)
+        turned = e.relative_rotation(e.j, e.i).rotation
+        return [*(e.j.point - moved), *(angle - shape for angle, shape in zip(turned, along[3:], strict=True))]

@@ -8,20 +8,23 @@ from stiffmbs.compile.machine.native.flexible.sums import (
     body_view,
     centrifugal,
     coordinate,
+    coriolis,
     cross,
     dot,
     first_moment,
+    first_moment_of_mode,
     first_rate,
+    first_rate_of_mode,
     mode,
     mode_view,
     moment_of_rotation,
+    moment_rate_of_mode,
     pair,
-    rate_sum_of_mode,
+    pair_view,
     rigid_momentum,
     second_moments,
     sum_of_mode,
     times,
-    trace,
     transposed_times,
     velocity,
 )
@@ -31,40 +34,44 @@ from stiffmbs.compile.machine.native.flexible.sums import (
 def add_forces(n, number, index, q, A, u, f):
     """Compute the quadratic velocity terms, elastic and damping forces, and the weight of the first moment."""
     w = shifted(u, index[1] + 3)
-    d, s, g, x, y, I, K = room(3), room(3), room(3), room(3), room(3), room(9), room(9)
+    d, s, g, x, y, z, I, K = room(3), room(3), room(3), room(3), room(3), room(3), room(9), room(9)
     first_moment(n, number, index, q, d)
-    first_rate(n, number, index, u, s)
+    first_rate(n, number, index, q, u, s)
     transposed_times(A, body_view(number).gravity, g)
     second_moments(n, number, index, q, u, I, K)
     for i in range(3):
         s[i] *= 2.0
     rigid_momentum(w, d, s, x)
     cross(w, x, y)
-    times(A, y, f)
-    for i in range(3):
-        f[i] = -f[i]
     times(I, w, x)
-    cross(w, x, y)
+    cross(w, x, z)
     moment_of_rotation(K, w, x)
     cross(d, g, s)
     for i in range(3):
-        f[3 + i] = -y[i] - 2.0 * x[i] + s[i]
-    N, P = room(9), room(9)
+        f[3 + i] = -z[i] - 2.0 * x[i] + s[i]
+    N, D = room(9), room(3)
     for k in range(n):
         of_mode = mode_view(mode(number, k))
+        rate = u[velocity(index, k)]
         sum_of_mode(n, k, number, index, q, N)
-        rate_sum_of_mode(n, k, number, index, u, P)
-        elastic = of_mode.stiffness[0] * q[coordinate(index, k)] + of_mode.damping[0] * u[velocity(index, k)]
-        total = dot(of_mode.S, g) + centrifugal(N, w) - elastic
+        coriolis(n, k, number, index, u, x)
+        first_moment_of_mode(n, k, number, index, q, D)
+        elastic = of_mode.stiffness[0] * q[coordinate(index, k)] + of_mode.damping[0] * rate
+        f[6 + k] = dot(D, g) + centrifugal(N, w) - elastic - 2.0 * dot(w, x)
+        first_rate_of_mode(n, k, number, index, u, s)
+        moment_rate_of_mode(n, k, number, index, u, x)
         for i in range(3):
-            total -= 2.0 * w[i] * axial(P, i)
-        f[6 + k] = total
+            y[i] += rate * s[i]
+            f[3 + i] -= rate * x[i]
+    times(A, y, f)
+    for i in range(3):
+        f[i] = -f[i]
 
 
 @compiled
 def add_inertia(n, number, index, q, A, u, m):
     """Compute the entries of the mass matrix besides its diagonal part, in the order of `FlexibleInertia.compiled_terms`."""
-    d, x, y, I, K, N = room(3), room(3), room(3), room(9), room(9), room(9)
+    d, x, y, D, I, K, N = room(3), room(3), room(3), room(3), room(9), room(9), room(9)
     first_moment(n, number, index, q, d)
     for c in range(3):
         for i in range(3):
@@ -79,7 +86,8 @@ def add_inertia(n, number, index, q, A, u, m):
         m[18 + i] = I[i]
     for k in range(n):
         sum_of_mode(n, k, number, index, q, N)
-        times(A, mode_view(mode(number, k)).S, x)
+        first_moment_of_mode(n, k, number, index, q, D)
+        times(A, D, x)
         of_mode = shifted(m, 27 + 12 * k)
         for i in range(3):
             of_mode[i] = x[i]
@@ -93,7 +101,7 @@ def add_inertia(n, number, index, q, A, u, m):
 @compiled
 def modal_mass(n, number, l, k):
     """Return an entry of the modal mass matrix, less its diagonal part."""
-    return trace(pair(n, number, l, k)) - (body_view(number).modal_mass[0] if l == k else 0.0)
+    return pair_view(pair(n, number, l, k)).trace[0] - (body_view(number).modal_mass[0] if l == k else 0.0)
 
 
 @compiled
@@ -102,7 +110,7 @@ def kinetic_energy(n, number, index, q, A, u):
     v, w = shifted(u, index[1]), shifted(u, index[1] + 3)
     d, s, x, y, I, K = room(3), room(3), room(3), room(3), room(9), room(9)
     first_moment(n, number, index, q, d)
-    first_rate(n, number, index, u, s)
+    first_rate(n, number, index, q, u, s)
     second_moments(n, number, index, q, u, I, K)
     rigid_momentum(w, d, s, x)
     times(A, x, y)

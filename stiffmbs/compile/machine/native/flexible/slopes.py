@@ -11,23 +11,28 @@ from stiffmbs.compile.machine.native.flexible.sums import (
     axial,
     body_view,
     centrifugal,
+    coriolis,
     cross,
     dot,
     first_moment,
+    first_moment_of_mode,
     first_rate,
+    first_rate_of_mode,
     inertia_by_mode,
     mode,
     mode_view,
     mode_with_rates,
     moment_of_rotation,
+    moment_rate_of_mode,
     pair,
-    rate_sum_of_mode,
+    pair_view,
     rigid_momentum,
     second_moments,
     sum_of_mode,
     times,
     trace,
     transposed_times,
+    velocity,
 )
 
 
@@ -46,9 +51,9 @@ def by_quaternion(turn, j, y):
 
 
 @compiled
-def _by_rotation(n, number, turn, d, of_frame, field, sign, to):
+def _by_rotation(n, number, index, q, turn, d, of_frame, field, sign, to):
     """Compute the derivatives by the quaternion of a rotated vector A `of_frame` and of moments by a field in ground axes."""
-    x, y, z, turned = room(3), room(3), room(3), room(3)
+    x, y, z, turned, D = room(3), room(3), room(3), room(3), room(3)
     times(turn, of_frame, z)
     h = room(3)
     for i in range(3):
@@ -63,7 +68,8 @@ def _by_rotation(n, number, turn, d, of_frame, field, sign, to):
             to[(4 + n) * i + j] = y[i]
             to[(4 + n) * (3 + i) + j] = z[i]
         for k in range(n):
-            to[(4 + n) * (6 + k) + j] = dot(mode_view(mode(number, k)).S, turned)
+            first_moment_of_mode(n, k, number, index, q, D)
+            to[(4 + n) * (6 + k) + j] = dot(D, turned)
 
 
 @compiled
@@ -94,46 +100,49 @@ def _by_angular_velocity(n, A, w, d, s, I, K, f_u):
 @compiled
 def _of_frame_by_mode(n, l, number, index, q, A, u, w, g, f_q, f_u):
     """Compute the derivatives of the forces on the frame by a modal coordinate and its velocity."""
-    S = mode_view(mode(number, l)).S
-    N, P, x, y, z, turned = room(9), room(9), room(3), room(3), room(3), room(3)
-    cross(w, S, x)
-    cross(w, x, y)
+    N, P, D, s, x, y, z, turned = room(9), room(9), room(3), room(3), room(3), room(3), room(3), room(3)
+    first_moment_of_mode(n, l, number, index, q, D)
+    first_rate_of_mode(n, l, number, index, u, s)
+    cross(w, D, x)
+    for i in range(3):
+        z[i] = x[i] + 2.0 * s[i]
+        s[i] += x[i]
+    cross(w, z, y)
     times(A, y, z)
-    times(A, x, turned)
+    times(A, s, turned)
     for i in range(3):
         f_q[(4 + n) * i + 4 + l] = -z[i]
         f_u[(3 + n) * i + 3 + l] = -2.0 * turned[i]
     sum_of_mode(n, l, number, index, q, N)
     inertia_by_mode(N, w, x)
     cross(w, x, y)
-    cross(S, g, z)
+    cross(D, g, z)
     mode_with_rates(n, l, number, index, u, P)
     moment_of_rotation(P, w, x)
     moment_of_rotation(N, w, turned)
+    moment_rate_of_mode(n, l, number, index, u, s)
     for i in range(3):
         f_q[(4 + n) * (3 + i) + 4 + l] = -y[i] - 2.0 * x[i] + z[i]
-        f_u[(3 + n) * (3 + i) + 3 + l] = -2.0 * turned[i]
+        f_u[(3 + n) * (3 + i) + 3 + l] = -2.0 * (turned[i] + s[i])
 
 
 @compiled
-def _of_mode(n, l, number, index, q, u, w, f_q, f_u):
+def _of_mode(n, l, number, index, q, u, w, g, f_q, f_u):
     """Compute the derivatives of all modal forces by a modal coordinate and its velocity, and of one by w."""
-    N, P = room(9), room(9)
+    N, x = room(9), room(3)
     sum_of_mode(n, l, number, index, q, N)
-    rate_sum_of_mode(n, l, number, index, u, P)
+    coriolis(n, l, number, index, u, x)
     for i in range(3):
-        total = 2.0 * w[i] * trace(N) - 2.0 * axial(P, i)
+        total = 2.0 * w[i] * trace(N) - 2.0 * x[i]
         for j in range(3):
             total -= w[j] * (N[3 * i + j] + N[3 * j + i])
         f_u[(3 + n) * (6 + l) + i] = total
     for k in range(n):
-        Z = pair(n, number, l, k)
-        by_u = 0.0
-        for i in range(3):
-            by_u -= 2.0 * w[i] * axial(Z, i)
+        of_pair = pair_view(pair(n, number, l, k))
         of_mode = mode_view(mode(number, k))
-        f_q[(4 + n) * (6 + k) + 4 + l] = centrifugal(Z, w) - (of_mode.stiffness[0] if k == l else 0.0)
-        f_u[(3 + n) * (6 + k) + 3 + l] = by_u - (of_mode.damping[0] if k == l else 0.0)
+        by_q = centrifugal(of_pair.ZW, w) + dot(of_pair.T, g)
+        f_q[(4 + n) * (6 + k) + 4 + l] = by_q - (of_mode.stiffness[0] if k == l else 0.0)
+        f_u[(3 + n) * (6 + k) + 3 + l] = -2.0 * dot(w, of_pair.axial) - (of_mode.damping[0] if k == l else 0.0)
 
 
 @compiled
@@ -142,18 +151,22 @@ def add_force_slopes(n, number, index, q, turn, u, f_q, f_u):
     w, gravity = shifted(u, index[1] + 3), body_view(number).gravity
     d, s, g, x, y, I, K = room(3), room(3), room(3), room(3), room(3), room(9), room(9)
     first_moment(n, number, index, q, d)
-    first_rate(n, number, index, u, s)
+    first_rate(n, number, index, q, u, s)
     transposed_times(turn, gravity, g)
     second_moments(n, number, index, q, u, I, K)
     for i in range(3):
         s[i] *= 2.0
     rigid_momentum(w, d, s, x)
     cross(w, x, y)
-    _by_rotation(n, number, turn, d, y, gravity, -1.0, f_q)
+    for k in range(n):
+        first_rate_of_mode(n, k, number, index, u, x)
+        for i in range(3):
+            y[i] += u[velocity(index, k)] * x[i]
+    _by_rotation(n, number, index, q, turn, d, y, gravity, -1.0, f_q)
     _by_angular_velocity(n, turn, w, d, s, I, K, f_u)
     for l in range(n):
         _of_frame_by_mode(n, l, number, index, q, turn, u, w, g, f_q, f_u)
-        _of_mode(n, l, number, index, q, u, w, f_q, f_u)
+        _of_mode(n, l, number, index, q, u, w, g, f_q, f_u)
 
 
 @compiled
@@ -162,21 +175,27 @@ def add_inertia_slopes(n, number, index, q, turn, a, m_q):
     v, w = shifted(a, index[1]), shifted(a, index[1] + 3)
     d, s, b, x, y, z, N, P = room(3), room(3), room(3), room(3), room(3), room(3), room(9), room(9)
     first_moment(n, number, index, q, d)
-    first_rate(n, number, index, a, s)
+    first_rate(n, number, index, q, a, s)
     transposed_times(turn, v, b)
     rigid_momentum(w, d, s, x)
-    _by_rotation(n, number, turn, d, x, v, 1.0, m_q)
+    _by_rotation(n, number, index, q, turn, d, x, v, 1.0, m_q)
+    D, T = room(3), room(3)
     for l in range(n):
-        S = mode_view(mode(number, l)).S
-        cross(w, S, x)
+        first_moment_of_mode(n, l, number, index, q, D)
+        first_rate_of_mode(n, l, number, index, a, T)
+        cross(w, D, x)
+        for i in range(3):
+            x[i] += T[i]
         times(turn, x, y)
-        cross(S, b, z)
+        cross(D, b, z)
         sum_of_mode(n, l, number, index, q, N)
         inertia_by_mode(N, w, x)
         mode_with_rates(n, l, number, index, a, P)
         for k in range(n):
-            Z = pair(n, number, l, k)
-            m_q[(4 + n) * (6 + k) + 4 + l] = w[0] * axial(Z, 0) + w[1] * axial(Z, 1) + w[2] * axial(Z, 2)
+            of_pair = pair_view(pair(n, number, l, k))
+            Z = of_pair.ZW
+            by_q = w[0] * axial(Z, 0) + w[1] * axial(Z, 1) + w[2] * axial(Z, 2)
+            m_q[(4 + n) * (6 + k) + 4 + l] = by_q + dot(of_pair.T, b)
         for i in range(3):
             m_q[(4 + n) * i + 4 + l] = y[i]
             m_q[(4 + n) * (3 + i) + 4 + l] = z[i] + x[i] + axial(P, i)

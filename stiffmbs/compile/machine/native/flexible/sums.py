@@ -1,9 +1,11 @@
 """Sums over the mass of a flexible body in a floating frame, from its modal coordinates.
 
-A point x of the body is at r = t + A (x + u) with u = sum_k psi_k q_k. All terms are sums over nodes with the mass
-matrix, contracted beforehand: d0 = sum m x, X = sum m x x^T, S_k = sum m psi_k, Y_k = sum m x psi_k^T and
-Z_lk = sum m psi_l psi_k^T (Zwoelfer & Gerstmayr, Multibody System Dynamics 51, 2021). Each is less the part of the
-rigid frame and of the unit modal masses, which the diagonal of the mass matrix contains.
+A point x of the body is at r = t + A (x + u) with u = sum_k psi_k q_k + 1/2 sum_kl theta_kl q_k q_l. All terms are sums
+over nodes with the mass matrix, contracted beforehand: d0 = sum m x, X = sum m x x^T, S_k = sum m psi_k,
+Y_k = sum m x psi_k^T and Z_lk = sum m psi_l psi_k^T (Zwoelfer & Gerstmayr, Multibody System Dynamics 51, 2021), and of
+second order T_lk = sum m theta_lk and W_lk = sum m x theta_lk^T. The kinetic energy is complete up to the first order in
+theta; the modal mass is constant. Each is less the part of the rigid frame and of the unit modal masses, which the
+diagonal of the mass matrix contains.
 
 The layout of the numbers of a body is in `stiffmbs.elements.spatial.flexible.layout`. Vectors are in body axes, apart
 from gravity. Matrices have nine entries by rows.
@@ -12,10 +14,11 @@ from gravity. Matrices have nine entries by rows.
 from __future__ import annotations
 
 from stiffmbs.compile.machine.native.access import compiled, parts_of, room, shifted
-from stiffmbs.elements.spatial.flexible.layout import BODY, MODE, MODES, OF_MODE
+from stiffmbs.elements.spatial.flexible.layout import BODY, MODE, MODES, OF_MODE, OF_PAIR, PAIR
 
 body_view = parts_of("FlexibleBody", BODY)
 mode_view = parts_of("FlexibleMode", MODE)
+pair_view = parts_of("FlexiblePair", PAIR)
 
 
 @compiled
@@ -26,8 +29,8 @@ def mode(number, k):
 
 @compiled
 def pair(n, number, l, k):
-    """Return Z_lk."""
-    return shifted(number, MODES + OF_MODE * n + 9 * (n * l + k))
+    """Return the numbers of a pair of modes."""
+    return shifted(number, MODES + OF_MODE * n + OF_PAIR * (n * l + k))
 
 
 @compiled
@@ -88,62 +91,101 @@ def trace(N):
 
 @compiled
 def sum_of_mode(n, k, number, index, q, N):
-    """Compute N_k = sum m (x + u) psi_k^T from the modal coordinates."""
+    """Compute N_k = sum m r psi_k(q)^T, the derivative of sum m r r^T / 2 by a modal coordinate."""
     of_mode = mode_view(mode(number, k))
     for i in range(9):
         N[i] = of_mode.Y[i]
     for l in range(n):
-        Z = pair(n, number, l, k)
+        Z = pair_view(pair(n, number, l, k)).ZW
         y = q[coordinate(index, l)]
         for i in range(9):
             N[i] += y * Z[i]
 
 
 @compiled
-def rate_sum_of_mode(n, k, number, index, rate, P):
-    """Compute sum m u' psi_k^T from modal velocities or accelerations."""
-    for i in range(9):
-        P[i] = 0.0
+def coriolis(n, k, number, index, rate, x):
+    """Compute sum m u' x psi_k from modal velocities."""
+    for i in range(3):
+        x[i] = 0.0
     for l in range(n):
-        Z = pair(n, number, l, k)
+        a = pair_view(pair(n, number, l, k)).axial
         y = rate[velocity(index, l)]
-        for i in range(9):
-            P[i] += y * Z[i]
+        for i in range(3):
+            x[i] += y * a[i]
 
 
 @compiled
 def mode_with_rates(n, l, number, index, rate, P):
-    """Compute sum m psi_l u'^T from modal velocities or accelerations."""
+    """Compute the derivative of sum m r u'^T by a modal coordinate, from modal velocities or accelerations."""
     for i in range(9):
         P[i] = 0.0
     for k in range(n):
-        Z = pair(n, number, l, k)
+        Z = pair_view(pair(n, number, l, k)).ZW
         y = rate[velocity(index, k)]
         for i in range(9):
             P[i] += y * Z[i]
 
 
 @compiled
+def first_moment_of_mode(n, k, number, index, q, D):
+    """Compute D_k = S_k + sum T_kl q_l, the derivative of the first moment by a modal coordinate."""
+    of_mode = mode_view(mode(number, k))
+    for i in range(3):
+        D[i] = of_mode.S[i]
+    for l in range(n):
+        T = pair_view(pair(n, number, l, k)).T
+        y = q[coordinate(index, l)]
+        for i in range(3):
+            D[i] += y * T[i]
+
+
+@compiled
+def first_rate_of_mode(n, k, number, index, rate, s):
+    """Compute sum T_kl rate_l of modal velocities or accelerations."""
+    for i in range(3):
+        s[i] = 0.0
+    for l in range(n):
+        T = pair_view(pair(n, number, l, k)).T
+        y = rate[velocity(index, l)]
+        for i in range(3):
+            s[i] += y * T[i]
+
+
+@compiled
+def moment_rate_of_mode(n, k, number, index, rate, s):
+    """Compute the axial vector of sum W_kl rate_l of modal velocities."""
+    for i in range(3):
+        s[i] = 0.0
+    for l in range(n):
+        of_pair = pair_view(pair(n, number, l, k))
+        y = rate[velocity(index, l)]
+        for i in range(3):
+            s[i] += y * (axial(of_pair.ZW, i) - of_pair.axial[i])
+
+
+@compiled
 def first_moment(n, number, index, q, d):
-    """Compute the first moment of mass d = d0 + sum S_k q_k."""
-    b = body_view(number)
+    """Compute the first moment of mass d = d0 + sum S_k q_k + 1/2 sum T_kl q_k q_l."""
+    b, D = body_view(number), room(3)
     for i in range(3):
         d[i] = b.d0[i]
     for k in range(n):
         of_mode = mode_view(mode(number, k))
+        first_moment_of_mode(n, k, number, index, q, D)
         for i in range(3):
-            d[i] += of_mode.S[i] * q[coordinate(index, k)]
+            d[i] += 0.5 * (of_mode.S[i] + D[i]) * q[coordinate(index, k)]
 
 
 @compiled
-def first_rate(n, number, index, rate, s):
-    """Compute sum S_k rate_k of modal velocities or accelerations."""
+def first_rate(n, number, index, q, rate, s):
+    """Compute sum D_k rate_k of modal velocities or accelerations."""
+    D = room(3)
     for i in range(3):
         s[i] = 0.0
     for k in range(n):
-        of_mode = mode_view(mode(number, k))
+        first_moment_of_mode(n, k, number, index, q, D)
         for i in range(3):
-            s[i] += of_mode.S[i] * rate[velocity(index, k)]
+            s[i] += D[i] * rate[velocity(index, k)]
 
 
 @compiled

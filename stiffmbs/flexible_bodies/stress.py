@@ -1,0 +1,58 @@
+"""Stresses at the nodes of a mesh."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..errors import InputError
+from .finite_elements import FiniteElements
+
+PLACES = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0))
+"""Entries of the stress tensor: xx, yy, zz, xy, yz, zx."""
+
+
+def nodal_stresses(model: FiniteElements, displacements: np.ndarray) -> np.ndarray:
+    """Return the stresses of displacements at the nodes, the mean of the elements there.
+
+    Parameters
+    ----------
+    model : FiniteElements
+    displacements : ndarray, shape (3 n, k)
+
+    Returns
+    -------
+    ndarray, shape (k, n, 6)
+        xx, yy, zz, xy, yz, zx, N/m^2.
+
+    Raises
+    ------
+    InputError
+        If the model has no shape functions.
+    """
+    solid = model.solid
+    if solid is None:
+        raise InputError("found a body described by matrices, expected a mesh: stresses need its shape functions")
+    gradients, _ = solid.gradients(at_nodes=True)
+    count = np.bincount(solid.nodes.ravel(), minlength=len(model.nodes))
+    found = np.zeros((displacements.shape[1], len(model.nodes), 6))
+    for own, displacement in zip(found, displacements.T, strict=True):
+        stress = solid.stress(solid.displacement_gradient(gradients, displacement))
+        for k, (a, b) in enumerate(PLACES):
+            np.add.at(own[:, k], solid.nodes, stress[a, b].T)  # (elements, nodes) by (nodes, elements)
+        own /= count[:, None]
+    return found
+
+
+def von_mises(stress: np.ndarray) -> np.ndarray:
+    """Return the von Mises stress; the last axis of the argument has the six components."""
+    xx, yy, zz, xy, yz, zx = np.moveaxis(stress, -1, 0)
+    squares = (xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2 + 6 * (xy**2 + yz**2 + zx**2)
+    return np.sqrt(squares / 2)  # type: ignore[no-any-return]
+
+
+def principal_stresses(stress: np.ndarray) -> np.ndarray:
+    """Return the three principal stresses, the largest first, on the last axis."""
+    tensor = np.empty((*stress.shape[:-1], 3, 3))
+    for k, (a, b) in enumerate(PLACES):
+        tensor[..., a, b] = tensor[..., b, a] = stress[..., k]
+    return np.linalg.eigvalsh(tensor)[..., ::-1]  # type: ignore[no-any-return]

@@ -1,0 +1,252 @@
+"""Deformation, strain energy and stresses of a flexible body in a run."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..compile.quaternions import rotated
+from ..elements.spatial.flexible.bodies import FloatingFrame
+from ..errors import InputError, needs
+from ..flexible_bodies.finite_elements import FiniteElements
+from ..flexible_bodies.reduction import ReducedBody
+from ..flexible_bodies.stress import nodal_stresses, principal_stresses, von_mises
+from ..reading.did_you_mean import did_you_mean
+
+AT_ONCE = 50_000_000
+"""Numbers of stresses computed at once."""
+
+
+@dataclass(frozen=True)
+class Peak:
+    """Largest value of a stress over all nodes and output times.
+
+    Attributes
+    ----------
+    value : float
+        N/m^2.
+    node : int
+        From 0.
+    point : tuple of float
+        Position of the node in the mesh, m.
+    time : float
+        s.
+    """
+
+    value: float
+    node: int
+    point: tuple[float, float, float]
+    time: float
+
+
+class FlexibleMotion:
+    """Motion of a flexible body at the output times of a run.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene that was run.
+    solution : mapping of str to ndarray
+        Its solution, or other channels over time with an entry ``time``-like attribute `t`.
+    body : str
+        Name of the flexible body.
+
+    Attributes
+    ----------
+    t : ndarray, shape (times,)
+    modal : ndarray, shape (times, modes)
+        Coordinates of modes with unit modal mass, m kg^(1/2).
+
+    Raises
+    ------
+    InputError
+        If there is no such body.
+    """
+
+    def __init__(self, scene: Any, solution: Any, body: str) -> None:
+        self.check(scene, body)
+        frame = scene.bodies[f"{body}.frame"]
+        self.name, self.t = body, np.asarray(solution.t)
+        self._source = frame.source
+        self._frame = np.array([solution[f"{body}.frame.{axis}"] for axis in ["x", "y", "z", "q0", "q1", "q2", "q3"]]).T
+        places = [f"{body}.modes{1 + k // 3}.{'xyz'[k % 3]}" for k in range(len(self.reduced.frequencies))]
+        values = np.array([solution[place] for place in places]).reshape(len(places), len(self.t))
+        self.modal = values.T * np.sqrt(self.reduced.mass)
+        errors = getattr(solution, "errors", {})
+        self._modal_errors = (
+            np.array([errors[place].over_time for place in places]) * np.sqrt(self.reduced.mass)
+            if places and all(place in errors for place in places)
+            else None
+        )
+
+    @staticmethod
+    def check(scene: Any, body: str) -> None:
+        """Refuse the name of another body.
+
+        Raises
+        ------
+        InputError
+        """
+        names = [name.removesuffix(".frame") for name, each in scene.bodies.items() if isinstance(each, FloatingFrame)]
+        if body not in names:
+            listed = ", ".join(names) or "none in this scene"
+            raise InputError(f"found no flexible body '{body}'{did_you_mean(body, names)}, expected one of {listed}")
+
+    @cached_property
+    def reduced(self) -> ReducedBody:
+        """Reduced body with its mode shapes."""
+        from ..flexible_bodies.reduced import reduced_body
+
+        return reduced_body(*self._source)
+
+    @cached_property
+    def model(self) -> FiniteElements:
+        """Finite element model."""
+        body, folder = self._source
+        return body.model(folder)  # type: ignore[no-any-return]
+
+    def displacement(self, nodes: Sequence[int] | None = None, at: Any = slice(None)) -> np.ndarray:
+        """Return the displacements of nodes in the floating frame, m, in the axes of the mesh.
+
+        Parameters
+        ----------
+        nodes : sequence of int, optional
+            All by default.
+        at : slice or ndarray of int
+            Output times by number.
+
+        Returns
+        -------
+        ndarray, shape (times, nodes, 3)
+        """
+        chosen = np.arange(len(self.reduced.modes) // 3) if nodes is None else self._checked(nodes)
+        entries = (3 * chosen[:, None] + np.arange(3)).ravel()
+        modal = self.modal[at]
+        found = modal @ self.reduced.modes[entries].T
+        second = self.reduced.second_nodes[entries]
+        p = second.shape[1]
+        if p:
+            found += np.einsum("ikl,tk,tl->ti", second, modal[:, :p], modal[:, :p], optimize=True) / 2
+        return found.reshape(len(modal), len(chosen), 3)
+
+    def position(self, nodes: Sequence[int] | None = None, at: Any = slice(None)) -> np.ndarray:
+        """Return the positions of nodes in ground axes, m; parameters and shape as `displacement`."""
+        chosen = np.arange(len(self.reduced.modes) // 3) if nodes is None else self._checked(nodes)
+        own = self.displacement(nodes, at) + self.model.nodes[chosen] - self.reduced.centre
+        turned = np.array([rotated(pose[3:], points) for pose, points in zip(self._frame[at], own, strict=True)])
+        return self._frame[at][:, None, :3] + turned.reshape(own.shape)
+
+    def strain_energy(self) -> np.ndarray:
+        """Return the strain energy of each mode, J, shape (times, modes)."""
+        return (2 * np.pi * self.reduced.frequencies * self.modal) ** 2 / 2  # type: ignore[no-any-return]
+
+    @cached_property
+    def _stress_modes(self) -> np.ndarray:
+        """Stresses xx yy zz xy yz zx at the nodes by mode, shape (modes, nodes, 6)."""
+        return nodal_stresses(self.model, self.reduced.modes)
+
+    def stress(self, at: Any = slice(None)) -> np.ndarray:
+        """Return the stresses at the nodes, N/m^2, in the axes of the mesh.
+
+        They are linear in the modal coordinates, and the mean of the elements at a node.
+
+        Parameters
+        ----------
+        at : slice or ndarray of int
+            Output times by number.
+
+        Returns
+        -------
+        ndarray, shape (times, nodes, 6)
+            xx, yy, zz, xy, yz, zx.
+
+        Raises
+        ------
+        InputError
+            If the body is described by matrices.
+        """
+        return np.tensordot(self.modal[at], self._stress_modes, 1)
+
+    def von_mises(self, at: Any = slice(None)) -> np.ndarray:
+        """Return the von Mises stresses at the nodes, N/m^2, shape (times, nodes); see `stress`."""
+        return von_mises(self.stress(at))
+
+    def principal(self, at: Any = slice(None)) -> np.ndarray:
+        """Return the principal stresses at the nodes, N/m^2, the largest first, shape (times, nodes, 3); see `stress`."""
+        return principal_stresses(self.stress(at))
+
+    def peaks(self) -> dict[str, Peak]:
+        """Return the largest von Mises and principal stress and the smallest principal stress, with place and time."""
+        found: dict[str, Peak] = {}
+        step = max(1, AT_ONCE // max(1, 6 * len(self.reduced.modes) // 3))
+        for first in range(0, len(self.t), step):
+            stress = self.stress(slice(first, first + step))
+            principal = principal_stresses(stress)
+            for name, values, sign in (
+                ("von Mises", von_mises(stress), 1), ("largest principal", principal[..., 0], 1),
+                ("smallest principal", principal[..., 2], -1),
+            ):  # fmt: skip
+                row, node = np.unravel_index(int((sign * values).argmax()), values.shape)
+                value = float(values[row, node])
+                if name not in found or sign * value > sign * found[name].value:
+                    x, y, z = self.model.nodes[node].tolist()
+                    found[name] = Peak(value, int(node), (x, y, z), float(self.t[first + row]))
+        return found
+
+    def error_of_stress(self, node: int) -> float | None:
+        """Return the error bar of the von Mises stress at a node, N/m^2, if the run was verified."""
+        if self._modal_errors is None:
+            return None
+        return float(von_mises(self._stress_modes[:, node]) @ self._modal_errors)
+
+    def write(self, path: Path, at: Any = slice(None), scale: float = 1.0) -> None:
+        """Write the moving and deformed mesh over time for ParaView, with displacement and stresses.
+
+        Parameters
+        ----------
+        path : Path
+            An XDMF file (.xdmf).
+        at : slice or ndarray of int
+            Output times by number.
+        scale : float
+            Factor of the deformation in the positions.
+
+        Raises
+        ------
+        InputError
+            If the type of the file is another one.
+        OSError
+        """
+        if path.suffix.lower() != ".xdmf":
+            raise InputError(f"-o {path}: found the type '{path.suffix}', expected .xdmf")
+        with needs("meshio", "flexible"):
+            import meshio
+        cells = list(dict(self.model.cells or {"vertex": np.arange(len(self.model.nodes))[:, None]}).items())
+        with meshio.xdmf.TimeSeriesWriter(path, data_format="XML") as writer:
+            writer.write_points_cells(self.model.nodes, cells)
+            for k in np.arange(len(self.t))[at]:
+                writer.write_data(float(self.t[k]), point_data=self._fields(int(k), scale))
+
+    def _fields(self, k: int, scale: float) -> Mapping[str, np.ndarray]:
+        """Return the fields of one output time."""
+        row = np.array([k])
+        own = self.displacement(at=row)[0]
+        moved = self.position(at=row)[0]
+        if scale != 1.0:
+            moved = moved + rotated(self._frame[k, 3:], (scale - 1.0) * own)
+        fields = {"displacement": own, "moved": moved - self.model.nodes}
+        if self.model.solid is not None:
+            fields |= {"von Mises": self.von_mises(row)[0], "largest principal": self.principal(row)[0, :, 0]}
+        return fields
+
+    def _checked(self, nodes: Sequence[int]) -> np.ndarray:
+        chosen, count = np.asarray(nodes, dtype=np.int64), len(self.reduced.modes) // 3
+        if chosen.size and not 0 <= chosen.min() <= chosen.max() < count:
+            wrong = chosen.max() if chosen.min() >= 0 else chosen.min()
+            raise InputError(f"nodes: found node {wrong}, expected 0 to {count - 1}")
+        return chosen
