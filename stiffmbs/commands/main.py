@@ -21,8 +21,8 @@ SECTIONS = {
         "response": "response",
     },
     "Flexible bodies": {
-        "flexible": "flexible",
-        "stresses": "stresses",
+        "flexible": "flexible_bodies.flexible",
+        "stresses": "flexible_bodies.stresses",
     },
     "Many runs": {
         "study": "study",

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import click
 
-from ..errors import InputError
-from .process import Status
-from .scene import CHANGES, is_written, refusing
+from ...errors import InputError
+from ..process import Status
+from ..scene import CHANGES, is_written, refusing
 
 
 @click.command(short_help="Reduction of a flexible body.")
@@ -33,9 +33,9 @@ def flexible(
 
     Exit status: 0 done, 1 a file could not be written, 2 the input is wrong.
     """
-    from ..flexible_bodies.read import read_flexible_body
-    from ..flexible_bodies.reduced import reduced_body
-    from ..show.flexible_body import flexible_body_as_dict, flexible_body_text
+    from ...flexible_bodies.read import read_flexible_body
+    from ...flexible_bodies.reduced import reduced_body
+    from ...show.flexible_body import flexible_body_as_dict, flexible_body_text
 
     with refusing(body, as_json):
         described = read_flexible_body(body, changes)
@@ -47,12 +47,12 @@ def flexible(
             raise InputError(f"{body}: {error}") from None
         frequencies = {f"{text} held": found.held_frequencies(numbers) for text, numbers in sets.items()}
         if output is not None:
-            from ..flexible_bodies.shapes import check_shapes_file
+            from ...flexible_bodies.shapes import check_shapes_file
 
             check_shapes_file(output)
     written = True
     if output is not None:
-        from ..flexible_bodies.shapes import write_shapes
+        from ...flexible_bodies.shapes import write_shapes
 
         written = is_written(output, lambda: write_shapes(output, described.model(folder), found))
     click.echo(

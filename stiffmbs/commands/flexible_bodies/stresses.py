@@ -9,10 +9,10 @@ from typing import Any
 
 import click
 
-from ..analyses.load_scene import load_scene
-from ..errors import InputError
-from .process import Status
-from .scene import changes_of, is_written, output_option, refuse_own_input, refusing, solve_scene, solving_options
+from ...analyses.load_scene import load_scene
+from ...errors import InputError
+from ..process import Status
+from ..scene import changes_of, is_written, output_option, refuse_own_input, refusing, solve_scene, solving_options
 
 
 @click.command(short_help="Deformation and stresses of a flexible body.")
@@ -33,9 +33,9 @@ def stresses(
 
     Exit status: 0 done, 1 stopped early or not written, 2 the input is wrong.
     """
-    from ..results.flexible_motion import FlexibleMotion
-    from ..results.solution import Solution
-    from ..show.flexible_body import flexible_motion_as_dict, flexible_motion_text
+    from ...results.flexible_motion import FlexibleMotion
+    from ...results.solution import Solution
+    from ...show.flexible_body import flexible_motion_as_dict, flexible_motion_text
 
     with refusing(scene, as_json, output):
         if output is not None:
