@@ -84,6 +84,8 @@ from .show.html import html as html
 from .show.summary import summary as summary
 from .studies.fit import Fit as Fit
 from .studies.fit import fit as fit
+from .studies.handling.study import Handling as Handling
+from .studies.handling.study import handling as handling
 from .studies.optimise import Optimum as Optimum
 from .studies.optimise import optimise as optimise
 from .studies.sensitivities.sensitivities import Sensitivity as Sensitivity

@@ -35,6 +35,7 @@ _LATER = {
     "verify": ".verification.verify", "sweep": ".studies.sweep", "Range": ".reading.variation", "Fit": ".studies.fit", "fit": ".studies.fit",
     "Optimum": ".studies.optimise", "optimise": ".studies.optimise",
     "Sensitivity": ".studies.sensitivities.sensitivities", "sensitivities": ".studies.sensitivities.sensitivities",
+    "Handling": ".studies.handling.study", "handling": ".studies.handling.study",
     "RoadLoads": ".studies.suspension.road_loads", "road_loads": ".studies.suspension.road_loads",
     "KinematicsAndCompliance": ".studies.suspension.kinematics_and_compliance",
     "kinematics_and_compliance": ".studies.suspension.kinematics_and_compliance", "VehicleOptions": ".studies.suspension.vehicle",

@@ -78,6 +78,8 @@ from .studies.fit import Fit as Fit
 from .studies.fit import fit as fit
 from .studies.fmu.build import build_fmu as build_fmu
 from .studies.follow import follow as follow
+from .studies.handling.study import Handling as Handling
+from .studies.handling.study import handling as handling
 from .studies.optimise import Optimum as Optimum
 from .studies.optimise import optimise as optimise
 from .studies.sensitivities.sensitivities import Sensitivity as Sensitivity

@@ -32,9 +32,10 @@ SECTIONS = {
         "compare": "compare",
         "bench": "bench",
     },
-    "Suspensions": {
+    "Suspensions and vehicles": {
         "kc": "suspension.kc",
         "loads": "suspension.loads",
+        "handling": "suspension.handling",
     },
     "Tyres": {
         "tyre": "suspension.tyre",

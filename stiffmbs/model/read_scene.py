@@ -129,7 +129,7 @@ def _made_scene(
     found: dict[str, Any], changes: Sequence[tuple[str, Any]], source: str, line_of: LineOf, folder: Path | None,
     known: Unchanged, kept: WrittenScene | None,
 ) -> Scene:  # fmt: skip
-    found, chosen, changes = _chosen(unshared(found), changes, source)
+    found, chosen, changes = chosen_options(unshared(found), changes, source)
     parts = found.get("parts")
     found, changes = placed_in_use(found, changes)
     refuse_unused_parameters(found, changes, (*Scene.model_fields, "vehicle", "path"))
@@ -159,7 +159,7 @@ def _made_scene(
     return scene
 
 
-def _chosen(
+def chosen_options(
     found: dict[str, Any], changes: Sequence[tuple[str, Any]], source: str
 ) -> tuple[dict[str, Any], dict[str, Any], Sequence[tuple[str, Any]]]:
     """Return a scene with its chosen options merged, the choices for parts, and the other changes."""

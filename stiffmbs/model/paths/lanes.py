@@ -112,7 +112,7 @@ def path_through(lanes: tuple[Lane, ...], width: float, before: float, after: fl
     x = np.arange(first.start - before, last.end + after + SPACING / 2, SPACING)
     centre, free = np.full((2, len(x)), np.nan)
     for lane in lanes:
-        inside = (x >= lane.start) & (x <= lane.end)
+        inside = (x >= lane.start - SPACING / 2) & (x <= lane.end + SPACING / 2)
         centre[inside], free[inside] = lane.centre, USED * max(lane.left - lane.right - width, 0.0)
     for outside, lane in ((x < first.start, first), (x > last.end, last)):
         centre[outside], free[outside] = lane.centre, np.inf

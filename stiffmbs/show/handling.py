@@ -1,0 +1,85 @@
+"""Handling tests as text and as a page (needs jinja2 and matplotlib, the extra ``report``)."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..results.files import write_text
+from ..studies.handling.standards import TESTS
+from ..studies.handling.study import Handling, Tested
+from .page.moving import environment
+from .style import data_url, dress
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+PAGE = """<!doctype html>
+<html lang="en"><head><meta charset="utf-8"><title>{{ name }}: handling</title><style>
+body { font-family: sans-serif; max-width: 60em; margin: 2em auto; }
+table { border-collapse: collapse; } td, th { padding: 0.2em 0.8em; border-bottom: 1px solid #ccc; text-align: left; }
+</style></head><body><h1>{{ name }}: handling</h1>
+<p>Wheelbase {{ wheelbase }} m, track {{ track }} m; the wheels steer by {{ ratio }} for a unit of steering.</p>
+{% for title, message, rows, figure in sections %}<h2>{{ title }}</h2>
+{% if message %}<p>Not done: {{ message }}</p>{% else %}
+<table><tr><th>metric</th><th>value</th><th>unit</th></tr>
+{% for row in rows %}<tr>{% for cell in row %}<td>{{ cell }}</td>{% endfor %}</tr>
+{% endfor %}</table><p><img src="{{ figure }}" alt="{{ title }}"></p>{% endif %}
+{% endfor %}</body></html>
+"""
+
+
+def handling_text(scene: str, found: Handling) -> str:
+    """Return a line for each metric of each test."""
+    car = found.car
+    lines = [f"{scene}: wheelbase {car.wheelbase:.4g} m, track {car.track:.4g} m, steered by {car.steering}"]
+    for name, one in found.tests.items():
+        lines.append(f"{name}: {TESTS[name].title}" + (f": not done: {one.message}" if one.message else ""))
+        lines += [f"  {metric:52} {value:>10} {unit}" for metric, value, unit in _rows(one)]
+    return "\n".join(lines)
+
+
+def write_handling(path: Path, found: Handling) -> None:
+    """Write the page of all tests, completely or not at all.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be written.
+    """
+    sections = [
+        (TESTS[name].title, one.message, _rows(one), "" if one.message else data_url(_figure(name, one), "svg", 100))
+        for name, one in found.tests.items()
+    ]
+    template = environment().from_string(PAGE)
+    write_text(
+        path,
+        template.render(
+            name=found.name, wheelbase=f"{found.car.wheelbase:.4g}", track=f"{found.car.track:.4g}", ratio=f"{found.ratio:.4g}",
+            sections=sections,
+        ),
+    )  # fmt: skip
+
+
+def _rows(one: Tested) -> list[tuple[str, str, str]]:
+    """Return the metrics as cells; a value without a number was not reached."""
+    return [
+        (name, f"{value:.5g}" if np.isfinite(value) else "not reached", unit)
+        for name, (value, unit) in one.metrics.items()
+    ]
+
+
+def _figure(name: str, one: Tested) -> Figure:
+    from matplotlib.figure import Figure
+
+    sheet = Figure(figsize=(7, 3.2), layout="constrained")
+    axes = sheet.subplots()
+    x, y = TESTS[name].shown
+    for run in one.runs:
+        axes.plot(run[x], run[y])
+    axes.set_xlabel(x)
+    axes.set_ylabel(y)
+    dress(axes)
+    return sheet

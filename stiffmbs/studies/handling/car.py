@@ -1,0 +1,250 @@
+"""Car of a scene for handling tests: its body, wheels and steering, and the scene with a manoeuvre attached."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ...elements.spatial.tyre import Tyre
+from ...errors import InputError
+from ...model.parts.placing import placed_in_use
+from ...model.read_scene import chosen_options, made_scene
+from ...model.scene import Scene
+from ...reading.did_you_mean import did_you_mean
+
+DRIVER = "handling_driver"
+STEER = "handling_steer"
+ROAD = "handling_road"
+CORNERS = ("front_left", "front_right", "rear_left", "rear_right")
+
+
+@dataclass(frozen=True)
+class Car:
+    """Car of a scene.
+
+    Attributes
+    ----------
+    body : str
+        Sprung body.
+    tyres, wheels, uprights : mapping of str to str
+        By corner: ``front_left`` ... ``rear_right``.
+    steering : str
+        Joint that steers.
+    angular : bool
+        True if its coordinate is an angle.
+    wheelbase, track : float
+        m; the track is the mean of both axles.
+    radius : float
+        Mean height of the wheels' centres, m.
+    rear : float
+        Distance from the body's origin back to the rear axle, m.
+    height : float
+        Height of the centre of mass of all bodies in the described pose, m.
+    """
+
+    body: str
+    tyres: Mapping[str, str]
+    wheels: Mapping[str, str]
+    uprights: Mapping[str, str]
+    steering: str
+    angular: bool
+    wheelbase: float
+    track: float
+    radius: float
+    rear: float
+    height: float
+
+
+def car_of(scene: Scene, body: str | None = None, steering: str | None = None) -> Car:
+    """Return the car of a scene.
+
+    Parameters
+    ----------
+    scene : Scene
+        With four tyres, each on a wheel that a revolute joint holds.
+    body : str, optional
+        Sprung body; by default that of the section ``vehicle``, or ``chassis``.
+    steering : str, optional
+        Joint that steers; by default the revolute joint ``steering_wheel``, or the prismatic joint ``guide``.
+
+    Raises
+    ------
+    InputError
+        If a part is missing.
+    """
+    if scene.dimensions != 3:
+        raise InputError("found a scene in the plane, expected a car in space")
+    vehicle = getattr(scene, "vehicle", None)
+    body = body or (vehicle.body if vehicle else "chassis")
+    if body not in scene.bodies:
+        near = did_you_mean(body, scene.bodies)
+        raise InputError(
+            f"found no body '{body}'{near}, expected the sprung body: vehicle: {{body: NAME}}, or --body NAME"
+        )
+    tyres = [name for name, force in scene.forces.items() if isinstance(force, Tyre)]
+    if len(tyres) != 4:
+        raise InputError(f"found {len(tyres)} tyres ({', '.join(tyres) or 'none'}), expected the 4 of a car")
+    places = {name: np.array(scene.point(scene.forces[name].i)) for name in tyres}
+    by_x = sorted(tyres, key=lambda name: -places[name][0])
+    corners = {}
+    for axle, pair in (("front", by_x[:2]), ("rear", by_x[2:])):
+        left, right = sorted(pair, key=lambda name: -places[name][1])
+        corners |= {f"{axle}_left": left, f"{axle}_right": right}
+    wheels = {corner: scene.forces[name].i.body for corner, name in corners.items()}
+    at = {corner: places[name] for corner, name in corners.items()}
+    masses = {name: each.mass for name, each in scene.bodies.items()}
+    centre = sum(masses[name] * np.array(each.coordinates()[:3]) for name, each in scene.bodies.items()) / sum(
+        masses.values()
+    )
+    joint = _steering(scene, steering)
+    return Car(
+        body, corners, wheels, {corner: _upright(scene, wheel) for corner, wheel in wheels.items()}, joint,
+        scene.joints[joint].kind == "revolute",
+        float((at["front_left"] + at["front_right"] - at["rear_left"] - at["rear_right"])[0] / 2),
+        float((at["front_left"] - at["front_right"] + at["rear_left"] - at["rear_right"])[1] / 2),
+        float(np.mean([place[2] for place in at.values()])),
+        float(scene.bodies[body].position[0] - at["rear_left"][0]), float(centre[2]),
+    )  # fmt: skip
+
+
+def _upright(scene: Scene, wheel: str) -> str:
+    """Return the body on which a wheel rotates."""
+    for joint in scene.joints.values():
+        if joint.kind == "revolute" and wheel in (joint.i.body, joint.j.body):
+            return joint.j.body if joint.i.body == wheel else joint.i.body  # type: ignore[no-any-return]
+    raise InputError(f"found no revolute joint of the wheel '{wheel}', expected one that holds it")
+
+
+def _steering(scene: Scene, given: str | None) -> str:
+    known = [name for name, joint in scene.joints.items() if joint.kind in ("prismatic", "revolute")]
+    if given is not None:
+        if given not in known:
+            near = did_you_mean(given, known)
+            raise InputError(f"found no prismatic or revolute joint '{given}'{near}, expected the joint that steers")
+        return given
+    for last in ("steering_wheel", "guide"):
+        found = [name for name in known if name.rpartition(".")[2] == last]
+        if len(found) == 1:
+            return found[0]
+    raise InputError(
+        "found no single joint named steering_wheel or guide, expected the joint that steers: --steering JOINT"
+    )
+
+
+@dataclass(frozen=True)
+class Manoeuvre:
+    """Manoeuvre that a test attaches to a car.
+
+    Attributes
+    ----------
+    speed : float
+        At the start, m/s.
+    duration : float
+        s.
+    steer : str
+        Formula of time for the steering joint; empty if the driver keeps a path.
+    driver : mapping
+        Parameters of the driver.
+    path : mapping or None
+        Section ``path``, which the driver keeps.
+    road : mapping
+    output : float
+        s.
+    """
+
+    speed: float
+    duration: float
+    steer: str = ""
+    driver: Mapping[str, Any] | None = None
+    path: Mapping[str, Any] | None = None
+    road: Mapping[str, Any] | None = None
+    output: float = 0.01
+
+
+def with_manoeuvre(scene: Scene, car: Car, manoeuvre: Manoeuvre) -> Scene:
+    """Return the scene of a car with a manoeuvre in place of its own driver, steering, roads, start and stages.
+
+    Raises
+    ------
+    InputError
+        If the scene was built in Python, or the manoeuvre does not fit it.
+    """
+    kept = scene.written
+    if kept is None:
+        raise InputError("found a scene built in Python, expected one that was read from a file or a text")
+    content, chosen, changes = chosen_options(copy.deepcopy(dict(kept.content)), kept.changes, kept.source)
+    content, changes = placed_in_use(content, changes)
+    removed = _strip(content, car)
+    left = [(path, value) for path, value in changes if not path.startswith(removed)]
+    _attach(content, car, manoeuvre)
+    words = {name: word for name, word in chosen["words"].items() if word is not None}
+    content |= {"choose": words, "options": {name: {word: {}} for name, word in words.items()}} if words else {}
+    return made_scene(content, left, kept.source, lambda _: None, kept.folder)
+
+
+def _strip(content: dict[str, Any], car: Car) -> tuple[str, ...]:
+    """Remove what a manoeuvre replaces; return the beginnings of the paths of changes that concern it."""
+    gone = ["run.", "start", "figure", "stages", "at_start", "path", "requests."]
+    for section in ("figure", "stages", "at_start", "path", "start", "requests"):
+        content.pop(section, None)
+    use = content.get("use") or {}
+    for name in [name for name, entry in use.items() if isinstance(entry, dict) and entry.get("part") == "driver"]:
+        content.setdefault("_driver", use.pop(name))
+        gone.append(f"use.{name}.")
+    joints = content.get("joints") or {}
+    for name in [
+        name for name, entry in joints.items() if isinstance(entry, dict) and entry.get("joint") == car.steering
+    ]:
+        del joints[name]
+        gone.append(f"joints.{name}")
+    _set_roads(content)
+    return tuple(gone)
+
+
+def _set_roads(content: Any) -> None:
+    """Replace the roads of all tyres, also in definitions of parts."""
+    if isinstance(content, dict):
+        if str(content.get("type", "")).endswith("tyre"):
+            content["road"] = ROAD
+        for value in content.values():
+            _set_roads(value)
+    elif isinstance(content, list):
+        for value in content:
+            _set_roads(value)
+
+
+def _attach(content: dict[str, Any], car: Car, manoeuvre: Manoeuvre) -> None:
+    own = content.pop("_driver", None) or {}
+    mounts = {**car.wheels, **{f"{corner}_upright": upright for corner, upright in car.uprights.items()}}
+    parameters = {
+        **(own.get("parameters") or {}), "target": manoeuvre.speed, "begins": -1, "radius": car.radius, "rear": car.rear,
+        "largest": 10.0 if car.angular else 0.12, "fastest": 20.0 if car.angular else 0.6, **(manoeuvre.driver or {}),
+    }  # fmt: skip
+    driver = {
+        "part": "driver", "on": car.body, "drive": own.get("drive", "rear"), "mounts": {**mounts, "steering": car.steering},
+        "parameters": parameters, "path": "course" if manoeuvre.path else "none", "pace": "given",
+    }  # fmt: skip
+    use = content.get("use") or {}
+    content["use"] = {**use, DRIVER: driver}
+    content["roads"] = {**(content.get("roads") or {}), ROAD: dict(manoeuvre.road or {"type": "flat"})}
+    vehicle = {key: value for key, value in (content.get("vehicle") or {}).items() if key != "steering"}
+    content["vehicle"] = {"body": car.body, **vehicle}
+    content["requests"] = {STEER + "_seen": f"{car.steering}.{'angle' if car.angular else 'displacement'}"}
+    if manoeuvre.path:
+        content["path"] = dict(manoeuvre.path)
+    else:
+        drive = {"type": "drive", "joint": car.steering, "position": manoeuvre.steer or "0"}
+        content["joints"] = {**(content.get("joints") or {}), STEER: drive}
+    content["start"] = {"velocity": [manoeuvre.speed, 0, 0], "speed": "found", "rolling": list(car.wheels.values())}
+    kept = {key: value for key, value in (content.get("run") or {}).items() if key in ("solver", "rtol", "atol")}
+    content["run"] = {
+        "rtol": 1e-4,
+        "solver": "auto",
+        **kept,
+        "duration": manoeuvre.duration,
+        "output": manoeuvre.output,
+    }

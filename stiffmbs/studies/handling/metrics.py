@@ -1,0 +1,240 @@
+"""Handling metrics of the standards, from time histories in SI units and the axes of ISO 8855."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...errors import InputError
+
+LINEAR = 4.0
+"""Lateral acceleration up to which the gradients at zero are fitted, m/s^2."""
+
+
+def gradient_at_zero(x: np.ndarray, y: np.ndarray, limit: float = LINEAR) -> float:
+    """Return dy/dx at x = 0 by a cubic fit over abs(x) <= limit.
+
+    Raises
+    ------
+    InputError
+        If fewer than five values lie within the limit.
+    """
+    inside = np.abs(x) <= limit
+    if np.count_nonzero(inside) < 5:
+        raise InputError(f"found {np.count_nonzero(inside)} values within {limit:g}, expected 5 or more")
+    return float(np.polynomial.Polynomial.fit(x[inside], y[inside], 3).deriv()(0.0))
+
+
+def understeer_gradient(
+    lateral_acceleration: np.ndarray, steer: np.ndarray, ratio: float, wheelbase: float = 0.0, speed: float = np.inf
+) -> float:
+    """Return the understeer gradient of ISO 4138 at zero lateral acceleration, rad/(m/s^2).
+
+    Parameters
+    ----------
+    lateral_acceleration, steer : ndarray, shape (n,)
+        Quasi-steady turns, m/s^2, and the steering-wheel angle, rad, or the travel of a rack, m.
+    ratio : float
+        Steer angle of the wheels per steering-wheel angle or travel.
+    wheelbase, speed : float
+        Of the method at constant speed, m and m/s: L/V^2 is subtracted. With the defaults, the method at constant radius.
+    """
+    return ratio * gradient_at_zero(lateral_acceleration, steer) - wheelbase / speed**2
+
+
+@dataclass(frozen=True)
+class StepResponse:
+    """Response to a step input, ISO 7401.
+
+    Attributes
+    ----------
+    steady, gain : float
+        Mean over the end, and its ratio to the input.
+    response_time, peak_time : float
+        From half of the input to 90 % of the steady value, and to the peak, s.
+    overshoot : float
+        (peak - steady)/steady.
+    """
+
+    steady: float
+    gain: float
+    response_time: float
+    peak_time: float
+    overshoot: float
+
+
+def step_response(time: np.ndarray, steer: np.ndarray, response: np.ndarray, settled: float = 0.5) -> StepResponse:
+    """Return the response times, overshoot and gain of ISO 7401 for a step input from zero.
+
+    Parameters
+    ----------
+    time, steer, response : ndarray, shape (n,)
+        The input may be negative; the response counts in the direction of its steady value.
+    settled : float
+        Length of the end over which the steady values are averaged, s.
+
+    Raises
+    ------
+    InputError
+        If input or response stay zero.
+    """
+    end = time >= time[-1] - settled
+    final, steady = float(np.mean(steer[end])), float(np.mean(response[end]))
+    if final == 0.0 or steady == 0.0:
+        raise InputError("found no step of the input or no response to it, expected both other than zero at the end")
+    start = _first(time, steer / final, 0.5)
+    part = response / steady
+    after = time >= start
+    peak = int(np.argmax(np.where(after, part, -np.inf)))
+    return StepResponse(
+        steady, steady / final, _first(time, np.where(after, part, 0.0), 0.9) - start, float(time[peak]) - start,
+        float(part[peak]) - 1.0,
+    )  # fmt: skip
+
+
+def _first(time: np.ndarray, values: np.ndarray, level: float) -> float:
+    """Return the first time at which values rise to a level, by linear interpolation; NaN without one."""
+    above = np.flatnonzero(values >= level)
+    if not len(above):
+        return float("nan")
+    k = int(above[0])
+    if k == 0:
+        return float(time[0])
+    part = (level - values[k - 1]) / (values[k] - values[k - 1])
+    return float(time[k - 1] + part * (time[k] - time[k - 1]))
+
+
+@dataclass(frozen=True)
+class FrequencyResponse:
+    """Frequency response by cross spectra.
+
+    Attributes
+    ----------
+    frequency, gain, phase, coherence : ndarray, shape (n,)
+        Hz; ratio of amplitudes; rad, negative for a lag; between 0 and 1.
+    """
+
+    frequency: np.ndarray
+    gain: np.ndarray
+    phase: np.ndarray
+    coherence: np.ndarray
+
+    def at(self, frequency: float) -> tuple[float, float]:
+        """Return gain and phase at a frequency."""
+        return tuple(float(np.interp(frequency, self.frequency, values)) for values in (self.gain, self.phase))  # type: ignore[return-value]
+
+
+def frequency_response(
+    time: np.ndarray, steer: np.ndarray, response: np.ndarray, segment: float = 10.0
+) -> FrequencyResponse:
+    """Return the frequency response of ISO 7401 from a sweep or a random input: H1 = Sxy/Sxx with Welch's method.
+
+    Parameters
+    ----------
+    time, steer, response : ndarray, shape (n,)
+        At equal time steps.
+    segment : float
+        Length of a segment, s: the resolution is its reciprocal.
+    """
+    from scipy.signal import coherence, csd, welch
+
+    rate = (len(time) - 1) / (time[-1] - time[0])
+    settings = {"fs": rate, "nperseg": min(len(time), round(segment * rate)), "detrend": False}
+    frequency, cross = csd(steer, response, **settings)
+    transfer = cross / welch(steer, **settings)[1]
+    kept = frequency > 0
+    return FrequencyResponse(
+        frequency[kept], np.abs(transfer)[kept], np.unwrap(np.angle(transfer[kept])),
+        coherence(steer, response, **{key: settings[key] for key in ("fs", "nperseg", "detrend")})[1][kept],
+    )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class SineWithDwell:
+    """Stability and responsiveness of ISO 19365.
+
+    Attributes
+    ----------
+    ratio_1, ratio_1_75 : float
+        Yaw rate 1 s and 1.75 s after the end of steering, relative to its peak in the second half of the sine.
+    displacement : float
+        Lateral displacement 1.07 s after the begin of steering, m, positive in the direction of the first steering.
+    """
+
+    ratio_1: float
+    ratio_1_75: float
+    displacement: float
+
+    @property
+    def stable(self) -> bool:
+        """Return True if the yaw rate has fallen to 35 % after 1 s and to 20 % after 1.75 s."""
+        return self.ratio_1 <= 0.35 and self.ratio_1_75 <= 0.2
+
+
+def sine_with_dwell(
+    time: np.ndarray, steer: np.ndarray, yaw_rate: np.ndarray, lateral: np.ndarray, begin: float, end: float
+) -> SineWithDwell:
+    """Return the metrics of ISO 19365.
+
+    Parameters
+    ----------
+    time, steer, yaw_rate : ndarray, shape (n,)
+    lateral : ndarray, shape (n,)
+        Lateral displacement of the vehicle from its straight path, m, positive to the left.
+    begin, end : float
+        Begin and end of steering, s.
+    """
+    sign = np.sign(steer[np.argmax((time >= begin) & (np.abs(steer) > 0.1 * np.max(np.abs(steer))))])
+    reversed_steer = (time >= begin) & (sign * steer < 0)
+    peak = float(np.max(-sign * yaw_rate[reversed_steer | (time > end)]))
+    first, second = (float(np.interp(end + after, time, -sign * yaw_rate)) / peak for after in (1.0, 1.75))
+    displacement = sign * float(np.interp(begin + 1.07, time, lateral) - np.interp(begin, time, lateral))
+    return SineWithDwell(first, second, displacement)
+
+
+def mean_deceleration(time: np.ndarray, speed: np.ndarray) -> float:
+    """Return the mean fully developed deceleration of ISO 21994: (v1^2 - v2^2)/(2 s) from 80 % to 10 % of the speed, m/s^2.
+
+    Raises
+    ------
+    InputError
+        If the speed does not fall to 10 % of the first one.
+    """
+    distance = np.concatenate([[0.0], np.cumsum((speed[1:] + speed[:-1]) / 2 * np.diff(time))])
+    first, second = (_first(time, speed[0] - speed, (1 - part) * speed[0]) for part in (0.8, 0.1))
+    if not np.isfinite(second):
+        raise InputError(f"found a lowest speed of {speed.min():.3g} m/s, expected {0.1 * speed[0]:.3g} m/s or less")
+    way = np.interp(second, time, distance) - np.interp(first, time, distance)
+    return float((0.8**2 - 0.1**2) * speed[0] ** 2 / (2 * way))
+
+
+def yaw_rate_ratio(
+    time: np.ndarray, yaw_rate: np.ndarray, speed: np.ndarray, begin: float, after: float = 1.0
+) -> float:
+    """Return the yaw rate some time after braking begins, relative to that of the initial radius (ISO 7975).
+
+    The reference is the yaw rate of the initial curvature at the current speed: 1 means that the car keeps its radius.
+    """
+    rate, v = np.interp(begin + after, time, yaw_rate), np.interp(begin + after, time, speed)
+    curvature = np.interp(begin, time, yaw_rate) / np.interp(begin, time, speed)
+    return float(rate / (curvature * v))
+
+
+def static_stability_factor(track: float, height: float) -> float:
+    """Return T/(2 h), the lateral acceleration in g at which a rigid vehicle tips."""
+    return track / (2 * height)
+
+
+def rollover_threshold(lateral_acceleration: np.ndarray, inner_loads: np.ndarray) -> float:
+    """Return the lateral acceleration at which the last inner wheel lifts off, m/s^2; NaN if it does not.
+
+    Parameters
+    ----------
+    lateral_acceleration : ndarray, shape (n,)
+        Magnitude, slowly increasing, m/s^2.
+    inner_loads : ndarray, shape (n, wheels)
+        Loads of the inner wheels, N.
+    """
+    lifted = np.all(inner_loads <= 0.0, axis=1)
+    return float(lateral_acceleration[np.argmax(lifted)]) if lifted.any() else float("nan")

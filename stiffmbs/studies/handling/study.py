@@ -1,0 +1,182 @@
+"""Handling tests of a car as a study: preliminary runs, then all manoeuvres on all processor cores."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from concurrent.futures import Executor, ProcessPoolExecutor
+from contextlib import ExitStack
+from dataclasses import dataclass, field
+from multiprocessing import get_context
+from typing import Any
+
+import numpy as np
+
+from ...analyses.load_scene import load_scene
+from ...analyses.run import run
+from ...errors import InputError, SolverError, StiffmbsError
+from ...model.scene import Scene
+from ...reading.did_you_mean import did_you_mean
+from .car import Car, car_of, with_manoeuvre
+from .standards import PROBE, SPEED, TESTS, Known, Metrics, Run, curvature_of, probe, ramp, up_to_the_limit
+
+WIDER = 0.2
+"""Width of the body beyond the track, m, unless given: tyres and wings."""
+
+
+@dataclass(frozen=True)
+class Tested:
+    """Result of one test.
+
+    Attributes
+    ----------
+    metrics : dict of str to (float, str)
+        Value and unit by name; empty if the test failed.
+    runs : list of mapping
+        Channels of its runs.
+    message : str
+        Why it failed; empty if it was done.
+    """
+
+    metrics: Metrics = field(default_factory=dict)
+    runs: list[Run] = field(default_factory=list)
+    message: str = ""
+
+
+@dataclass(frozen=True)
+class Handling:
+    """Handling tests of a car.
+
+    Attributes
+    ----------
+    name : str
+        Name of the scene.
+    car : Car
+    ratio : float
+        Steer angle of the wheels per steering, rad/rad or rad/m.
+    tests : dict of str to Tested
+    """
+
+    name: str
+    car: Car
+    ratio: float
+    tests: dict[str, Tested]
+
+    def __getitem__(self, test: str) -> dict[str, float]:
+        """Return the values of the metrics of a test."""
+        return {name: value for name, (value, _) in self.tests[test].metrics.items()}
+
+    def as_dict(self, scene: str) -> dict[str, Any]:
+        """Return the content of ``stiffmbs handling --json``; values without a number are null."""
+        found = {
+            test: {
+                "message": one.message,
+                "metrics": {
+                    name: {"value": value if np.isfinite(value) else None, "unit": unit}
+                    for name, (value, unit) in one.metrics.items()
+                },
+            }
+            for test, one in self.tests.items()
+        }
+        failed = [test for test, one in self.tests.items() if one.message]
+        return {
+            "scene": scene, "status": "stopped" if failed else "done",
+            "message": "; ".join(f"{test}: {self.tests[test].message}" for test in failed),
+            "wheelbase": self.car.wheelbase, "track": self.car.track, "steer_per_steering": self.ratio, "tests": found,
+        }  # fmt: skip
+
+
+def handling(
+    model: Scene | str | Any, tests: Sequence[str] | None = None, *, body: str | None = None, steering: str | None = None,
+    width: float | None = None, workers: int | None = None,
+) -> Handling:  # fmt: skip
+    """Run handling and ride tests of the standards on a car.
+
+    The car is the scene without its own driver, roads, start and drives of the steering joint; each test attaches the
+    part `driver`, a level road and its steering or course. Preliminary runs at 10 m/s and a slow ramp at 80 km/h scale
+    the amplitudes to the lateral accelerations of the standards.
+
+    Parameters
+    ----------
+    model : Scene, str or Path
+        Scene in space with four tyres.
+    tests : sequence of str, optional
+        Names among `stiffmbs.studies.handling.standards.TESTS`; all by default.
+    body, steering : str, optional
+        Sprung body and joint that steers; see `stiffmbs.studies.handling.car.car_of`.
+    width : float, optional
+        Width of the vehicle, m; by default the track and 0.2 m.
+    workers : int, optional
+        Number of processes; by default one for each core.
+
+    Returns
+    -------
+    Handling
+
+    Raises
+    ------
+    InputError
+        If the scene is not a car, or there is no such test.
+    SolverError
+        If a preliminary run stops.
+    """
+    scene = model if isinstance(model, Scene) else load_scene(model)
+    names = list(TESTS if tests is None else tests)
+    for name in names:
+        if name not in TESTS:
+            raise InputError(f"found the test '{name}'{did_you_mean(name, TESTS)}, expected one of {', '.join(TESTS)}")
+    car = car_of(scene, body, steering)
+    with ExitStack() as stack:
+        count = workers or os.cpu_count() or 1
+        pool = stack.enter_context(ProcessPoolExecutor(count, get_context("spawn"))) if count > 1 else None
+        known = _preliminary(scene, car, width or car.track + WIDER)
+        return Handling(scene.name, car, known.ratio, _solved(scene, car, known, names, pool))
+
+
+def _preliminary(scene: Scene, car: Car, width: float) -> Known:
+    first = solved(with_manoeuvre(scene, car, probe(car)))
+    low = float(first["handling_steer_seen"][-1] / curvature_of(first))
+    slow = up_to_the_limit(solved(with_manoeuvre(scene, car, ramp(car, low))))
+    linear, driven = (_per_curvature(slow, ay) for ay in (1.0, 4.0))
+    over = SPEED**2 - PROBE**2
+    return Known(car, low - (linear - low) / over * PROBE**2, (driven - low) / over, width, slow)
+
+
+def _per_curvature(slow: Run, acceleration: float) -> float:
+    """Return the steering per curvature of the ramp at a lateral acceleration, or at 70 % of its largest one."""
+    at = int(np.argmax(slow["vehicle.ay"] >= min(acceleration, 0.7 * slow["vehicle.ay"][-1])))
+    return float(slow["handling_steer_seen"][at] * slow["vehicle.speed"][at] / slow["vehicle.yaw_rate"][at])
+
+
+def _solved(scene: Scene, car: Car, known: Known, names: list[str], pool: Executor | None) -> dict[str, Tested]:
+    waiting: dict[str, list[Any]] = {}
+    found: dict[str, Tested] = {}
+    for name in names:
+        try:
+            scenes = [with_manoeuvre(scene, car, each) for each in TESTS[name].manoeuvres(known)]
+        except StiffmbsError as error:
+            found[name] = Tested(message=str(error))
+            continue
+        waiting[name] = [pool.submit(solved, each) if pool else each for each in scenes]
+    for name, jobs in waiting.items():
+        try:
+            runs = [job.result() if pool else solved(job) for job in jobs]
+            metrics = TESTS[name].metrics(known, runs)
+            found[name] = Tested(metrics, runs or [known.ramp])
+        except StiffmbsError as error:
+            found[name] = Tested(message=str(error))
+    return {name: found[name] for name in names}
+
+
+def solved(scene: Scene) -> Run:
+    """Return the channels of a run, with its times.
+
+    Raises
+    ------
+    SolverError
+        If it stops early.
+    """
+    solution = run(scene)
+    if not solution.success:
+        raise SolverError(solution.message)
+    return {**{name: np.array(values) for name, values in solution.items()}, "time": np.array(solution.time)}

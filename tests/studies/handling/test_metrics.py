@@ -1,0 +1,150 @@
+"""Handling and ride metrics against closed forms, a bicycle model and the tables of ISO 2631-1."""
+
+import numpy as np
+import pytest
+from scipy.signal import lsim
+
+import stiffmbs
+from stiffmbs.studies.handling import metrics, vibration
+
+MASS, YAW_INERTIA, TO_FRONT, TO_REAR, FRONT, REAR, SPEED = 1500.0, 2600.0, 1.2, 1.5, 9e4, 1.2e5, 22.0
+WHEELBASE = TO_FRONT + TO_REAR
+GRADIENT = MASS / WHEELBASE * (TO_REAR / FRONT - TO_FRONT / REAR)
+
+
+def bicycle():
+    """State space of the linear bicycle model: steer angle to yaw rate and lateral acceleration."""
+    a = np.array(
+        [
+            [-(FRONT + REAR) / (MASS * SPEED), -SPEED - (TO_FRONT * FRONT - TO_REAR * REAR) / (MASS * SPEED)],
+            [
+                -(TO_FRONT * FRONT - TO_REAR * REAR) / (YAW_INERTIA * SPEED),
+                -(TO_FRONT**2 * FRONT + TO_REAR**2 * REAR) / (YAW_INERTIA * SPEED),
+            ],
+        ]
+    )
+    b = np.array([[FRONT / MASS], [TO_FRONT * FRONT / YAW_INERTIA]])
+    return a, b, np.array([[0, 1], [a[0, 0], a[0, 1] + SPEED]]), np.array([[0], b[0]])
+
+
+def answer(time, steer):
+    yaw_rate, acceleration = lsim(bicycle(), steer, time)[1].T
+    return yaw_rate, acceleration
+
+
+def steady_gain():
+    return SPEED / (WHEELBASE + GRADIENT * SPEED**2)
+
+
+def test_the_understeer_gradient_of_both_methods():
+    ay = np.linspace(0, 6, 60)
+    at_constant_speed = ay * WHEELBASE / SPEED**2 + GRADIENT * ay + 2e-5 * ay**3
+    at_constant_radius = WHEELBASE / 100 + GRADIENT * ay + 2e-5 * ay**3
+    of = metrics.understeer_gradient
+    assert of(ay, at_constant_speed * 16, 1 / 16, WHEELBASE, SPEED) == pytest.approx(GRADIENT, rel=1e-6)
+    assert of(ay, at_constant_radius * 16, 1 / 16) == pytest.approx(GRADIENT, rel=1e-6)
+    with pytest.raises(stiffmbs.InputError, match="found 0 values within"):
+        of(ay + 10, ay, 1.0)
+
+
+def test_a_step_response_is_that_of_the_bicycle_model():
+    time = np.arange(0, 6, 0.002)
+    steer = 0.02 * np.clip((time - 1) / 0.1, 0, 1)
+    yaw_rate, _ = answer(time, steer)
+    found = metrics.step_response(time, steer, yaw_rate)
+    assert found.gain == pytest.approx(steady_gain(), rel=1e-4)
+    a = bicycle()[0]
+    natural, damping = np.sqrt(np.linalg.det(a)), -np.trace(a) / 2 / np.sqrt(np.linalg.det(a))
+    lead = YAW_INERTIA * 0 + MASS * SPEED * TO_FRONT / (WHEELBASE * REAR)  # zero of the yaw rate, s
+    fine = np.arange(0, 4, 1e-4)
+    damped = natural * np.sqrt(1 - damping**2)
+    decay = np.exp(-damping * natural * fine)
+    step = 1 - decay * (
+        np.cos(damped * fine) + (damping * natural - lead * natural**2) / damped * np.sin(damped * fine)
+    )
+    assert found.overshoot == pytest.approx(step.max() - 1, rel=0.03)
+    assert found.response_time == pytest.approx(fine[np.argmax(step >= 0.9)], rel=0.1), "the ramp lasts 0.1 s"
+    assert metrics.step_response(time, -steer, -yaw_rate).overshoot == pytest.approx(found.overshoot)
+    with pytest.raises(stiffmbs.InputError, match="no step"):
+        metrics.step_response(time, 0 * steer, yaw_rate)
+
+
+def test_the_frequency_response_is_that_of_the_bicycle_model():
+    time = np.arange(0, 60, 0.01)
+    steer = 0.01 * np.sin(2 * np.pi * (0.1 * time + 0.04 * time**2 / 2))
+    yaw_rate, _ = answer(time, steer)
+    found = metrics.frequency_response(time, steer, yaw_rate)
+    a, b, c, d = bicycle()
+    for frequency in (0.4, 0.8, 1.5):
+        exact = (c @ np.linalg.solve(2j * np.pi * frequency * np.eye(2) - a, b) + d)[0, 0]
+        gain, phase = found.at(frequency)
+        assert gain == pytest.approx(abs(exact), rel=0.03)
+        assert phase == pytest.approx(np.angle(exact), abs=0.03)
+        assert np.interp(frequency, found.frequency, found.coherence) > 0.95
+
+
+def test_sine_with_dwell_of_a_yaw_rate_that_decays():
+    time = np.arange(0, 6, 0.001)
+    begin, end = 1.0, 1.0 + 1 / 0.7 + 0.5
+    steer = np.where(
+        (time > begin) & (time < begin + 0.714), 1.0, np.where((time >= begin + 0.714) & (time < end), -1.0, 0.0)
+    )
+    yaw_rate = 0.5 * steer - np.where(time >= end, 0.5 * np.exp(-(time - end) / 0.5), 0.0)
+    for sign in (1, -1):
+        found = metrics.sine_with_dwell(time, sign * steer, sign * yaw_rate, sign * 2 * (time - begin), begin, end)
+        assert found.ratio_1 == pytest.approx(np.exp(-2), rel=1e-2)
+        assert found.ratio_1_75 == pytest.approx(np.exp(-3.5), rel=1e-2)
+        assert found.displacement == pytest.approx(2 * 1.07)
+        assert found.stable
+
+
+def test_braking_at_constant_deceleration():
+    time = np.arange(0, 4.9, 0.001)
+    speed = np.maximum(27 - 6 * time, 0)
+    assert metrics.mean_deceleration(time, speed) == pytest.approx(6, rel=1e-3)
+    with pytest.raises(stiffmbs.InputError, match="lowest speed"):
+        metrics.mean_deceleration(time[:2000], speed[:2000])
+    assert metrics.yaw_rate_ratio(time, speed / 100, speed, 1.0) == pytest.approx(1)
+
+
+def test_a_rigid_vehicle_tips_at_its_static_stability_factor():
+    track, height = 1.5, 0.6
+    assert metrics.static_stability_factor(track, height) == pytest.approx(1.25)
+    ay = np.linspace(0, 20, 2001)
+    inner = np.maximum(MASS * 9.81 / 2 - MASS * ay * height / track, 0)[:, None] / 2 * np.ones(2)
+    assert metrics.rollover_threshold(ay, inner) == pytest.approx(1.25 * 9.81, rel=1e-3)
+    assert np.isnan(metrics.rollover_threshold(ay[:100], inner[:100]))
+
+
+@pytest.mark.parametrize(
+    ("name", "frequencies", "factors"),
+    [
+        ("Wk", (0.5, 1, 2, 4, 6.3, 8, 16, 31.5, 80), (418, 482, 531, 967, 1054, 1036, 768, 405, 132)),
+        ("Wd", (0.5, 1, 2, 4, 6.3, 8, 16), (853, 1011, 890, 512, 323, 253, 125)),
+    ],
+)
+def test_weightings_are_those_of_the_tables_of_iso_2631(name, frequencies, factors):
+    step, seconds = 0.001, 40
+    time = np.arange(0, seconds, step)
+    for frequency, factor in zip(frequencies, factors, strict=True):
+        vibrating = np.sqrt(2) * np.sin(2 * np.pi * round(frequency * seconds) / seconds * time)
+        assert vibration.weighted_rms(vibrating, step, name) == pytest.approx(factor / 1000, rel=0.004)
+
+
+def test_spectra_keep_the_power_and_transmissibility_is_that_of_a_mass_on_a_spring():
+    generator, step = np.random.default_rng(1), 0.002
+    time = np.arange(0, 200, step)
+    source = generator.normal(size=len(time))
+    frequency, density = vibration.power_spectrum(source, step)
+    assert np.trapezoid(density, frequency) == pytest.approx(np.var(source), rel=0.02)
+    w, zeta = 2 * np.pi * 3, 0.3
+    moved = lsim(([2 * zeta * w, w**2], [1, 2 * zeta * w, w**2]), source, time)[1]
+    frequency, found = vibration.transmissibility(source, moved, step)
+    s = 2j * np.pi * np.array([1.0, 3.0, 6.0])
+    exact = np.abs((2 * zeta * w * s + w**2) / (s**2 + 2 * zeta * w * s + w**2))
+    assert np.interp([1.0, 3.0, 6.0], frequency, found) == pytest.approx(exact, rel=0.03)
+
+
+def test_an_unknown_weighting_is_refused():
+    with pytest.raises(stiffmbs.InputError, match="did you mean 'Wk'"):
+        vibration.weighted(np.ones(9), 0.1, "WK")
