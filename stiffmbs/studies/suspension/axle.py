@@ -131,6 +131,8 @@ def axle_of(
         If a suspension, its markers or a named part is missing in the scene.
     """
     start = f"{name}." if name else ""
+    if radius is not None and not 0 < radius < np.inf:
+        raise InputError(f"radius: found {radius}, expected a length above zero, m")
     if wheels:
         found = tuple(_of_body(model, each, radius) for each in wheels)
     else:
@@ -225,10 +227,12 @@ def _of_body(model: ModelData, body: str, radius: float | None) -> Wheel:
 
 
 def _radius(tyre: Tyre) -> float | None:
-    """Return the unloaded radius of a tyre, m."""
-    found = getattr(tyre, "radius", None)
-    if found is None:
-        found = getattr(getattr(tyre, "properties", None), "UNLOADED_RADIUS", None)
+    """Return the unloaded radius of a tyre, m, from its field or its property file."""
+    properties = getattr(tyre, "properties", None)
+    if properties is not None:
+        found = dict(properties.coefficients).get("UNLOADED_RADIUS")
+    else:
+        found = getattr(tyre, "radius", None)
     return None if found is None else float(found)
 
 
@@ -281,8 +285,9 @@ def _steering(model: ModelData, given: str | None, bodies: frozenset[str]) -> st
     slides = [name for name, joint in model.joints.items() if joint.kind in ("prismatic", "revolute")]
     if given is not None and given not in slides:
         near = did_you_mean(given, slides)
-        slides = [name for name in slides if model.joints[name].kind == "prismatic"]
-        raise InputError(f"found no prismatic joint '{given}'{near}, expected one of {', '.join(slides) or 'none'}")
+        raise InputError(
+            f"found no prismatic or revolute joint '{given}'{near}, expected one of {', '.join(slides) or 'none'}"
+        )
     if given is not None and not set(bodies_at(model.joints[given])) & (bodies - {GROUND}):
         raise InputError(f"steering: found the joint '{given}' on other bodies, expected one that steers the axle")
     guides = [

@@ -113,6 +113,7 @@ def test_wheels_are_found_by_their_tyres():
     [
         ({"wheels": ["hull"]}, r"found no body 'hull', expected that of a wheel"),
         ({"wheels": ["front.left.upright"]}, r"expected the radius of the wheel|found . revolute joints"),
+        ({"wheels": ["front.left.wheel"], "radius": -0.3}, r"radius: found -0\.3, expected a length above zero"),
         ({"wheels": ["front.left.wheel"]}, r"front\.left\.wheel: found no tyre with a radius"),
         ({"steering": "front.right.hub", "wheels": ["front.left.wheel"], "radius": 0.3}, r"found the joint 'front\.right\.hub' on other bodies"),
     ],
@@ -149,3 +150,10 @@ def test_the_command_prints_one_object_with_all_measures(tmp_path):
     assert found["measures"]["left.fvsa_length"]["unit"] == "mm"
     assert np.shape(found["compliance"]["contact"]) == (12, 12)
     assert CliRunner().invoke(main, [*arguments, "--brake-share", "3"]).exit_code == 2
+
+
+@pytest.mark.long
+def test_the_radius_follows_from_a_property_file(examples):
+    found = measures(examples / "car.yaml", wheels=["front.left.wheel", "front.right.wheel"], bump=5)
+    assert found["axle.track"] == pytest.approx(1520, abs=1)
+    assert found["left.brake_angle"] != found["left.drive_angle"]

@@ -128,7 +128,7 @@ def test_the_rack_steers_and_the_bar_adds_to_roll(examples):
         ({"axle": "rear"}, r"found no body 'rear\.left\.upright', expected a suspension with one: front\.left, front\.right"),
         ({"swim": 3}, "swim=3: found no such case"),
         ({"body": "hull"}, "found no body 'hull' to clamp"),
-        ({"steering": "slide"}, "found no prismatic joint 'slide', expected one of none"),
+        ({"steering": "slide"}, r"found no prismatic or revolute joint 'slide', expected one of front\.left\.hub"),
     ],
 )  # fmt: skip
 def test_what_is_wrong_is_told(arguments, sentence):
