@@ -38,7 +38,7 @@ def swing_error(solution: Solution) -> float:
 
     The inertia about the feet is n/3 + 1 and the weight's arm n/2 + 1, of n cranks and the coupler.
     """
-    n = sum(name.startswith("crank") and name.endswith(".angle") for name in solution)
+    n = sum(name.startswith("crank") and name.endswith(".omega") for name in solution)
     rate = np.sqrt(GRAVITY * (n / 2 + 1) / (n / 3 + 1))
     start, speed = solution["crank0.angle"][0] + np.pi / 2, solution["crank0.omega"][0]
     expected = swing(solution.t - solution.t[0], start, rate, speed)

@@ -73,7 +73,7 @@ ALLOWED_NAMES = (
 CASES = (
     *(
         refused(f"{kind} in {dimensions}D with the field '{name}'", "names that stand for something else",
-                partial(own, kind, dimensions, (name,)), f"Own: found the field '{name}', expected names other than a, angle, ")
+                partial(own, kind, dimensions, (name,)), f"Own: found the field '{name}', expected names other than a, ")
         for kind, dimensions, name in REFUSED
     ),
     *(
