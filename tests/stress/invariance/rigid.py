@@ -195,7 +195,7 @@ def _back(channels: Channels, placing: Placing) -> Channels:
             if values is not None:
                 moved = values - placing.translation[:, None] if kind == "{}" else values
                 with_vector(found, owner, labels, inverse @ moved)
-        if f"{owner}.angle" in channels:
+        if {f"{owner}.angle", f"{owner}.omega"} <= channels.keys():  # bodies; joints have angles too
             found[f"{owner}.angle"] = channels[f"{owner}.angle"] - placing.angle
         if f"{owner}.q0" in channels:
             turned = conjugate(from_matrix(placing.rotation))
