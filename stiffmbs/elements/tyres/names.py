@@ -129,8 +129,8 @@ SAMPLE = dict.fromkeys(
 )
 """Coefficients of the usual tyre, for compilation in advance."""
 SAMPLE_6 = {
-    **SAMPLE, **dict.fromkeys(_words("LONGITUDINAL_STIFFNESS LATERAL_STIFFNESS NOMPRES Q_RE0 Q_FCX Q_FCY WIDTH"), 1.0),
+    **SAMPLE, **dict.fromkeys(_words("LONGITUDINAL_STIFFNESS LATERAL_STIFFNESS NOMPRES Q_RE0 WIDTH"), 1.0),
     "VERTICAL_STIFFNESS": 3.0, "PPX1": 0.1, "PPY1": 0.1, "QSY7": 0.9, "Q_V1": 0.01, "Q_V2": 0.1, "Q_FZ2": 0.5, "Q_FCY2": -0.4,
-    "Q_CAM1": 1.0, "Q_CAM2": 1.0, "Q_FYS1": 0.1,
+    "Q_CAM1": 1.0, "Q_CAM2": 1.0, "Q_FYS1": 0.1, "Q_FCX": 4e-3, "Q_FCY": 2e-3,
 }  # fmt: skip
 """Coefficients of a tyre of 6.2, for compilation in advance."""
