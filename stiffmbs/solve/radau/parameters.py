@@ -30,8 +30,6 @@ class RadauParameters:
         Ratio of costs per time below which another number of stages is chosen.
     solution_cost : float
         Cost of the solutions of an iteration, in those of the matrices of a step.
-    fewer_stages : float
-        Convergence rate of Newton's iteration above which the number of stages falls.
     slowest : float
         Convergence rate of Newton's iteration that the next step may have.
     after_failure : float
@@ -49,7 +47,6 @@ class RadauParameters:
     stages_after: int = 4
     gain: float = 0.8
     solution_cost: float = 0.1
-    fewer_stages: float = 0.8
     slowest: float = 0.3
     after_failure: float = 0.5
     loosest: float = 0.03

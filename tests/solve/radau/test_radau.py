@@ -5,6 +5,7 @@ import pytest
 
 import stiffmbs
 from stiffmbs import Body, Drive, Model, Prismatic, Revolute, SpringDamper, spatial
+from tests.bench.solvers.stiff_and_light import CAR_AXIS
 from tests.stress.families.stiffness.stiffness import bar_on_bushing
 from tests.stress.families.structure.headline import loop, swing_of
 from tests.stress.mechanisms.pendulum import bar_rate, swing
@@ -176,3 +177,12 @@ run: {duration: 10 s, points: 11, solver: radau}
     )
     found = stiffmbs.run(scene, rtol=rtol)
     assert found["pushed.vx"][-1] == pytest.approx(1, abs=max(1e-4, 10 * rtol))
+
+
+def test_the_car_axis_of_the_test_set():
+    """Values at 3 s published by Mazzia and Magherini, Test Set for Initial Value Problem Solvers, release 2.4."""
+    found = stiffmbs.run(stiffmbs.read_scene(CAR_AXIS), solver="radau", rtol=1e-8, points=2)
+    ends = [found[name][-1] for name in ("left.x", "left.y", "right.x", "right.y")]
+    np.testing.assert_allclose(
+        ends, [0.0493455784275403, 0.496989460230171, 1.04174252488542, 0.373911027265361], atol=1e-7
+    )

@@ -138,9 +138,7 @@ def _choose_method(x, c, longest):
     error = x.error_size * c.relaxed
     below = max(_estimate_below(x, c, lower, x.t - x.h_past, x.h_past), 1e-300)
     cost = _cost_rate(x, c, x.h_past, x.error_size, longest)
-    if number > 0 and (
-        x.contraction > x.fewer_stages or _cost_rate(x, lower, x.h_past, below / lower.relaxed, longest) < x.gain * cost
-    ):
+    if number > 0 and _cost_rate(x, lower, x.h_past, below / lower.relaxed, longest) < x.gain * cost:
         x.method = number - 1
     elif number + 1 < x.n_methods and error < below:
         higher = collocation_view(ints(x.methods[number + 1]))
