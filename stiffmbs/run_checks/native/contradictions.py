@@ -36,8 +36,8 @@ def _within_step(begin, end, n_steps, steps):
 def contradicting_rows(count, n_u, t, u, acceleration, mass, part, least, n_steps, steps, found):
     """Store the rows that contradict the next one within a step in `found`, and return their number.
 
-    The mean rate of the velocities differs from the mean acceleration by more than `part` of the larger one, and in a velocity
-    by more than its number in `least`.
+    In such a row the mean rate of the velocities differs from the mean acceleration by more than `part` of the larger one.
+    The difference in a velocity is also more than its number in `least`.
     """
     contradicting = 0
     before = _weighted(n_u, acceleration, mass) if count > 0 else 0.0

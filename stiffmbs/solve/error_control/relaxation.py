@@ -14,6 +14,7 @@ from ...errors import SolverError
 from ...model.settings import RunSettings
 from ...tuning import tuned
 from ..events.restart import INDISTINCT
+from ..suspect import suspect
 from ..trajectory import Trajectory
 from .tolerances import absolute_tolerances
 
@@ -188,6 +189,7 @@ def refuse_drift(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, set
         if (drift := creep_at(dynamics, t, u, settings)) > RELAXATION.refused:
             raise SolverError(
                 f"stopped at t = {t:.9g} s: relaxed constraints let velocities creep by {drift:.2g} tolerances"
+                f"{suspect(dynamics, t, q, u)}"
             )
 
 
