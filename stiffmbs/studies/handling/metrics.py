@@ -168,8 +168,8 @@ class SineWithDwell:
 
     @property
     def stable(self) -> bool:
-        """Return True if the yaw rate has fallen to 35 % after 1 s and to 20 % after 1.75 s."""
-        return self.ratio_1 <= 0.35 and self.ratio_1_75 <= 0.2
+        """Return True if the yaw rate in either direction has fallen to 35 % after 1 s and to 20 % after 1.75 s."""
+        return abs(self.ratio_1) <= 0.35 and abs(self.ratio_1_75) <= 0.2
 
 
 def sine_with_dwell(

@@ -97,9 +97,19 @@ def ramp(car: Car, per_curvature: float) -> Manoeuvre:
     return Manoeuvre(SPEED, 31.0, f"({most!r})*max(t - 1, 0)/30", output=0.05)
 
 
+SPUN = 0.25
+"""Sideslip or roll beyond which a car no longer turns quasi-steadily, rad."""
+DROP = 0.9
+"""Part of the largest lateral acceleration so far below which the limit is passed."""
+
+
 def up_to_the_limit(run: Run) -> Run:
-    """Return a ramp up to its largest lateral acceleration."""
-    last = int(np.argmax(run["vehicle.ay"])) + 1
+    """Return a ramp up to its largest lateral acceleration before the car slides, spins or tips over."""
+    ay = run["vehicle.ay"]
+    lost = (np.abs(run["vehicle.sideslip"]) > SPUN) | (np.abs(run["vehicle.roll"]) > SPUN)
+    lost |= (ay < DROP * np.maximum.accumulate(ay)) & (np.maximum.accumulate(ay) > 1.0)
+    end = int(np.argmax(lost)) if lost.any() else len(ay)
+    last = int(np.argmax(ay[:end])) + 1
     return {name: values[:last] for name, values in run.items()}
 
 

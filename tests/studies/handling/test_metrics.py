@@ -5,7 +5,7 @@ import pytest
 from scipy.signal import lsim
 
 import stiffmbs
-from stiffmbs.studies.handling import metrics, vibration
+from stiffmbs.studies.handling import metrics, standards, vibration
 
 MASS, YAW_INERTIA, TO_FRONT, TO_REAR, FRONT, REAR, SPEED = 1500.0, 2600.0, 1.2, 1.5, 9e4, 1.2e5, 22.0
 WHEELBASE = TO_FRONT + TO_REAR
@@ -96,6 +96,17 @@ def test_sine_with_dwell_of_a_yaw_rate_that_decays():
         assert found.ratio_1_75 == pytest.approx(np.exp(-3.5), rel=1e-2)
         assert found.displacement == pytest.approx(2 * 1.07)
         assert found.stable
+    spun = metrics.sine_with_dwell(time, steer, yaw_rate + np.where(time > end, 1.0, 0.0), time, begin, end)
+    assert not spun.stable, "it spins in the direction of the first steering"
+
+
+def test_a_ramp_ends_before_the_car_spins():
+    time = np.arange(0, 30, 0.05)
+    ay = np.where(time < 20, 0.4 * time, 14.0)
+    run = {"time": time, "vehicle.ay": ay, "vehicle.sideslip": np.where(time < 20, 0.0, 1.5), "vehicle.roll": 0.01 * ay}
+    assert standards.up_to_the_limit(run)["vehicle.ay"].max() == pytest.approx(8, abs=0.05)
+    slid = {**run, "vehicle.ay": np.where(time < 20, 0.4 * time, 0.0), "vehicle.sideslip": 0 * time}
+    assert len(standards.up_to_the_limit(slid)["time"]) == 400
 
 
 def test_braking_at_constant_deceleration():
