@@ -43,6 +43,8 @@ def from_archive(content: bytes, length: float, mass: float, time: float) -> Fin
         raise InputError(
             f"found no NumPy archive ({_line(error)}), expected arrays nodes, K and M (numpy.savez)"
         ) from None
+    if (imaginary := next((key for key, array in arrays.items() if np.iscomplexobj(array)), None)) is not None:
+        raise InputError(f"{imaginary}: found complex numbers, expected real ones")
     name = next((name for name in NODES if name in arrays), None)
     if name is None:
         raise InputError(f"found the arrays {', '.join(arrays) or 'none'}, expected nodes, K and M")

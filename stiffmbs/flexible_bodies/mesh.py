@@ -26,6 +26,8 @@ SOLIDS = {
 CORNERS = {"tetra": 4, "tetra10": 4, "hexahedron": 8, "hexahedron20": 8, "hexahedron27": 8}
 APART = 1e-6
 """Largest distance of a node from its place in the element, relative to the size of the body."""
+NASTRAN = {".bdf", ".fem", ".nas"}
+"""Suffixes of Nastran files."""
 HARMLESS = {"vertex", "line", "line3", "triangle", "triangle6", "quad", "quad8", "quad9"}
 """Elements of a mesh that are not solids and are used only as groups."""
 
@@ -60,16 +62,20 @@ def from_mesh(path: Path, length: float, modulus: float, poisson: float, density
     nodes = np.asarray(mesh.points, dtype=float)[used] * length
     if nodes.shape[1] != 3:
         raise InputError(f"found nodes with {nodes.shape[1]} coordinates, expected x, y and z")
+    if not np.isfinite(nodes).all():
+        raise InputError("nodes: found a position that is not finite, expected numbers")
     _check_volumes(nodes, cells, kind)
-    stiffness, mass, solid = _assembled(nodes, cells, kind, modulus, poisson, density)
+    stiffness, mass, shapes = _assembled(nodes, cells, kind, modulus, poisson, density)
     numbers = np.full(len(mesh.points), -1)
     numbers[used] = np.arange(len(used))
-    return FiniteElements(nodes, stiffness, mass, _groups(mesh, numbers), {kind: cells}, solid)
+    return FiniteElements(nodes, stiffness, mass, _groups(mesh, numbers), {kind: cells}, shapes)
 
 
 def _read(path: Path) -> Any:
     with needs("meshio", "flexible"):
         import meshio
+    if path.suffix.lower() in NASTRAN and not _is_complete(path):
+        raise InputError("found no line ENDDATA after BEGIN BULK, expected a complete Nastran file")
     try:
         with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
             return meshio.read(path)
@@ -78,6 +84,12 @@ def _read(path: Path) -> Any:
     except Exception as error:  # readers raise many types
         reason = (str(error).splitlines() or [type(error).__name__])[0]
     raise InputError(f"found no mesh ({reason}), expected Gmsh .msh, Abaqus .inp, Nastran .bdf, VTK .vtu or .vtk")
+
+
+def _is_complete(path: Path) -> bool:
+    """Return True if the bulk data of a Nastran file end; the reader would never return otherwise."""
+    _, begin, bulk = path.read_text(encoding="utf-8", errors="replace").partition("BEGIN BULK")
+    return not begin or any(line.startswith("ENDDATA") for line in bulk.splitlines())
 
 
 def _check_volumes(nodes: np.ndarray, cells: np.ndarray, kind: str) -> None:

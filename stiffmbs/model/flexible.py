@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import Field, ValidationError
@@ -23,7 +23,7 @@ from ..errors import InputError
 from ..flexible_bodies.description import FlexibleBody
 from ..flexible_bodies.reduced import reduced_body
 from ..flexible_bodies.reduction import ReducedBody
-from ..reading.fields import Described, sentence
+from ..reading.fields import Described, Measured, sentence
 from ..reading.files.files_read import FOLDER
 from ..reading.units import si
 
@@ -39,7 +39,7 @@ BY_BODY = 3
 class Rayleigh(Described):
     """Damping proportional to mass and stiffness: c = mass m + stiffness k."""
 
-    mass: si.NumberOrZero = Field(0.0, description="factor of the mass matrix, 1/s")
+    mass: Annotated[float, Measured("frequency", at_least=0)] = Field(0.0, description="factor of the mass matrix, 1/s")
     stiffness: si.TimeOrZero = Field(0.0, description="factor of the stiffness matrix, s")
 
 
@@ -55,7 +55,10 @@ class SceneFlexibleBody(FlexibleBody):
     omega: tuple[si.AngularVelocity, si.AngularVelocity, si.AngularVelocity] = Field(
         (0.0, 0.0, 0.0), description="angular velocity at the start, in the axes of the mesh, rad/s"
     )
-    damping: si.NumberOrZero | Rayleigh = Field(0.0, description="damping ratio of all modes, or mass and stiffness")
+    damping: si.NumberOrZero | Rayleigh | Annotated[tuple[si.NumberOrZero, ...], Field(min_length=1)] = Field(
+        0.0,
+        description="damping ratio of all modes, of each mode of the free body (the last one for further modes), or mass and stiffness",
+    )
 
 
 def with_flexible_bodies(raw: dict[str, Any], context: Mapping[str, Any]) -> dict[str, Any]:
@@ -210,7 +213,10 @@ class _Parts:
         mass, given = self._reduced.mass, self._body.damping
         if isinstance(given, Rayleigh):
             return mass * rates**2, mass * (given.mass + given.stiffness * rates**2)
-        return mass * rates**2, 2 * given * mass * rates
+        of_modes = given if isinstance(given, tuple) else (given,)
+        ratios = np.full(n, of_modes[-1])
+        ratios[: len(of_modes)] = of_modes[:n]
+        return mass * rates**2, 2 * ratios * mass * rates
 
 
 class _Numbers:

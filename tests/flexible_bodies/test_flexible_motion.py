@@ -154,6 +154,23 @@ def test_natural_modes_of_the_clamped_bar_are_those_of_the_reduction(folder):
     np.testing.assert_allclose([mode.natural_frequency for mode in found.modes], body.held_frequencies([0]), rtol=1e-6)
 
 
+@pytest.mark.parametrize(
+    ("damping", "expected"),
+    [
+        ("0.02", lambda rate, k: 0.02),
+        ("[0.01, 0.03, 0.02]", lambda rate, k: (0.01, 0.03, 0.02)[min(k, 2)]),
+        ("{mass: 20/s, stiffness: 1e-6 s}", lambda rate, k: (20 / rate + 1e-6 * rate) / 2),
+    ],
+)
+def test_damping_of_the_free_modes(folder, damping, expected):
+    """The same ratio for all modes, one by mode (the last for further ones), and that of Rayleigh."""
+    found = modes(scene(folder, bodies__bar__damping=damping)).modes
+    elastic = [mode for mode in found if mode.natural_frequency > 1][:6]
+    assert len(elastic) == 6
+    for k, mode in enumerate(elastic):
+        assert mode.damping_ratio == pytest.approx(expected(2 * np.pi * mode.natural_frequency, k), rel=1e-4)
+
+
 def test_the_clamped_bar_sags_by_its_weight(folder):
     found = equilibrium(scene(folder, CLAMP, gravity="[0, -9.81, 0]"))
     sag = MASS * 9.81 * LENGTH**3 / (8 * E * HEIGHT * WIDTH**3 / 12)
