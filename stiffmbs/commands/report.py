@@ -14,14 +14,17 @@ from ..analyses.load_scene import load_scene
 from ..errors import StiffmbsError
 from ..reading.files.text_file import STANDARD_INPUT, file_text
 from .process import Status
+from .runs import runs_of
 from .scene import changes_of, file_beside, output_option, refuse_own_input, refusing, solve_scene, solving_options
 
 if TYPE_CHECKING:
+    from ..results.solution import Solution
     from ..show.sections import Section
 
 
 @click.command(short_help="One page on a scene and its run.")
 @click.argument("scene")
+@click.argument("other", required=False)
 @output_option("Where to write the page: .html.")
 @click.option("--verify/--no-verify", default=True, show_default=True, help="Whether peaks get error bars.")
 @click.option("--equilibrium", is_flag=True, help="With the static equilibrium.")
@@ -30,10 +33,13 @@ if TYPE_CHECKING:
 @click.option("--loads", is_flag=True, help="With the largest loads of all bushings.")
 @solving_options
 def report(
-    scene: str, output: Path | None, verify: bool, equilibrium: bool, compare: bool, kc: tuple[str, ...], loads: bool,
+    scene: str, other: str | None, output: Path | None, verify: bool, equilibrium: bool, compare: bool, kc: tuple[str, ...], loads: bool,
     **options: Any,
 ) -> None:  # fmt: skip
     """Check and solve SCENE and write a report: findings, settings, peaks with error bars, figures, solver steps.
+
+    With OTHER, a scene or a file of results (.npz), the page begins with the differences of SCENE from OTHER, and shows both
+    motions. Options such as --set apply to SCENE.
 
     If there is no equilibrium, no such axle or no reference for a comparison, the page states the reason.
 
@@ -54,6 +60,7 @@ def report(
         check_report(path)
         refuse_own_input("-o", scene, path)
         loaded = load_scene(scene, changes_of(options))
+        compared_with = _run_of(other) if other else None
         solution = solve_scene(scene, loaded, verify)
         asked: list[tuple[str, Callable[[], Section]]] = [
             *(
@@ -73,11 +80,19 @@ def report(
         ]
         sections = [_section(title, made) for title, made in asked]
         text = "" if scene == STANDARD_INPUT else file_text(scene)
-        write_report(path, loaded, solution, text, sections)
+        write_report(path, loaded, solution, text, sections, compared_with)
     for note in solution.notes:
         click.echo(f"note: {note}")
     click.echo(f"report: {path}")
     sys.exit(0 if solution.outcome.name == "DONE" else Status.FAILED)
+
+
+def _run_of(other: str) -> tuple[str, Solution]:
+    """Return the name and the run of another scene, or of a file of results."""
+    solution = next(
+        iter(runs_of(other, (), {"changes": [], **dict.fromkeys(("rtol", "duration", "solver", "scheme"))}).values())
+    )
+    return Path(other).name, solution
 
 
 def _section(title: str, made: Callable[[], Section]) -> Section:

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..analyses.check import check
 from ..analyses.linearised.modes import modes
-from ..errors import StiffmbsError, refuse_missing
+from ..errors import InputError, StiffmbsError, refuse_missing
 from ..model.scene import Figure, Scene
 from ..results.energy_balance_notes import balance_words
 from ..results.error_bars import UNKNOWN
@@ -22,12 +22,13 @@ from ..results.scales import scales
 from ..results.solution import Solution, channel_ranges
 from ..solve.trajectory import History
 from .counters import solver_lines
+from .differences import differences_section
 from .digits import with_bar
 from .drawing.derive import drawing_of
 from .drawing.draw import marks_of
-from .drawing.poses import poses_of
+from .drawing.poses import Poses, poses_of
 from .figure import drawn
-from .force_table import LOADS
+from .force_table import LOADS, elements_of, reactions_of
 from .html import MOST_ROWS
 from .joint_forces import joint_forces
 from .modes import modes_text
@@ -35,6 +36,7 @@ from .page.data import page_data
 from .page.moving import environment, page_parts
 from .sections import Section
 from .style import COLORS, data_url, dress
+from .verdict import verdict
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Sheet
@@ -59,8 +61,9 @@ def check_report(path: Path) -> None:
 
 
 def write_report(
-    path: Path, scene: Scene, solution: Solution, text: str = "", sections: Sequence[Section] = ()
-) -> None:
+    path: Path, scene: Scene, solution: Solution, text: str = "", sections: Sequence[Section] = (),
+    other: tuple[str, Solution] | None = None,
+) -> None:  # fmt: skip
     """Write the page to a file, completely or not at all.
 
     Parameters
@@ -73,33 +76,79 @@ def write_report(
         Text of the scene's file.
     sections : sequence of Section
         Additional sections.
+    other : (str, Solution), optional
+        Name and solution of another run; the page begins with the differences, and shows both motions.
+
+    Raises
+    ------
+    InputError
+        If the other run has no channels or times in common with this one.
     """
-    page = report_page(scene, solution, text, sections)
+    page = report_page(scene, solution, text, sections, other)
     write_text(path, page)
 
 
 @np.errstate(all="ignore")  # sums of a diverged run overflow
-def report_page(scene: Scene, solution: Solution, text: str = "", sections: Sequence[Section] = ()) -> str:
-    """Return the page as HTML, with its figures."""
+def report_page(
+    scene: Scene, solution: Solution, text: str = "", sections: Sequence[Section] = (),
+    other: tuple[str, Solution] | None = None,
+) -> str:  # fmt: skip
+    """Return the page as HTML, with its figures; parameters and errors as for `write_report`."""
     template = environment().from_string(files(__package__).joinpath("report.html").read_text(encoding="utf-8"))
     report = check(scene)
-    figures = [drawn(solution, scene.figure)] if scene.figure else []
-    figures.append(drawn(solution, ENERGIES))
-    if len(solution.step_times) > 1:
-        figures.append(step_history(solution.history))
+    figures = [drawn(solution, figure) for figure in relevant_figures(solution, scene.figure)]
+    steps = [step_history(solution.history)] if len(solution.step_times) > 1 else []
+    first = [differences_section(solution, *other)] if other else []
     poses, shown = poses_of(scene, solution.time, solution.channels), scene.figure.y if scene.figure else ()
-    moving = page_data(drawing_of(scene, marks_of(report), along=poses), {"": poses}, solution, shown)
+    moving = page_data(drawing_of(scene, marks_of(report), along=poses), _motions(scene, poses, other), solution, shown)
     chosen = scene.run.model_fields_set  # shown first
     settings = dict(sorted(scene.run, key=lambda field: field[0] not in chosen))
     points = len(solution.time) + len(solution.step_times)
     return template.render(
-        solution=solution, check=report, settings=settings, peaks=_peaks(solution),
-        start=float(solution.time[0]), end=float(solution.time[-1]), energy=balance_words(solution.balance, float(solution.channels["energy.total"][0])),
+        solution=solution, verdict=verdict(solution), check=report, settings=settings, peaks=_peaks(solution),
+        energy=balance_words(solution.balance, float(solution.channels["energy.total"][0])),
         figures=[_embedded(sheet, points) for sheet in figures], version=version("stiffmbs"),
-        sections=[(section, [_embedded(sheet, 0) for sheet in section.figures]) for section in sections],
+        sections=_with_figures(sections), first=_with_figures(first), steps=[_embedded(sheet, points) for sheet in steps],
         counted=[f"{label}: {text}" for label, text in solver_lines(solution.solver)], violation=float(np.nanmax(solution.channels["constraint.position"])),
         forces=joint_forces(solution), modes=_modes(scene), text=text, moving=moving, **page_parts(),
     )  # fmt: skip
+
+
+def _with_figures(sections: Sequence[Section]) -> list[tuple[Section, list[str]]]:
+    return [(section, [_embedded(sheet, 0) for sheet in section.figures]) for section in sections]
+
+
+def _motions(scene: Scene, poses: Poses, other: tuple[str, Solution] | None) -> dict[str, Poses]:
+    """Return the motions that are drawn over each other; another run only if it has the same bodies."""
+    if other is None:
+        return {"": poses}
+    try:
+        return {"this run": poses, other[0]: poses_of(scene, other[1].time, other[1].channels)}
+    except (InputError, KeyError):
+        return {"": poses}
+
+
+def relevant_figures(solution: Solution, own: Figure | None) -> list[Figure]:
+    """Return the three figures that are shown first: of the scene, of the largest force, and of the energies."""
+    shown = own.y if own else ()
+    sizes = {
+        element: float(np.nanmax(np.abs([solution.channels[f"{element}.{part}"] for part in parts])))
+        for element in elements_of(solution)
+        for parts in [[part for part in reactions_of(solution) if part[0] == "f"]]
+        if not any(name.startswith(f"{element}.") for name in shown)
+    }
+    largest = max(sizes, key=lambda element: np.nan_to_num(sizes[element]), default="")
+    force = (
+        [
+            Figure(
+                title=f"force of {largest} (N)",
+                y=tuple(f"{largest}.{p}" for p in reactions_of(solution) if p[0] == "f"),
+            )
+        ]
+        if largest and sizes[largest] > 0
+        else []
+    )
+    return [*([own] if own else []), *force, ENERGIES]
 
 
 def _modes(scene: Scene) -> list[str]:

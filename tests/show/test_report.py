@@ -57,7 +57,7 @@ def page_of(tmp_path):
 def test_a_page_holds_check_peaks_figures_and_settings(page_of):
     page = page_of("cart_pendulum", "--rtol", "1e-7")
     assert page.headings == [
-        "Motion", "Joint forces", "Check", "Verification", "Figures", "Peaks", "Solver", "Modes", "Settings", "Scene",
+        "Motion", "Figures", "Joint forces", "Check", "Verification", "Peaks", "Modes", "Solver", "Settings", "Scene",
     ]  # fmt: skip
     assert not page.open
     text = "\n".join(page.texts)
@@ -76,7 +76,7 @@ def test_a_page_holds_check_peaks_figures_and_settings(page_of):
 @pytest.mark.long
 def test_a_page_needs_nothing_from_elsewhere(page_of):
     page = page_of("cart_pendulum", "--duration", "2")
-    assert len(page.addresses) == 3
+    assert len(page.addresses) == 4  # the scene's figure, the largest force, energies, steps
     for address in page.addresses:
         kind, content = re.fullmatch(r"data:image/([a-z+]+);base64,(.*)", address).groups()
         image = base64.b64decode(content)
@@ -88,6 +88,35 @@ def test_a_run_is_not_verified_where_one_says_so(page_of):
     page = page_of("bar_pendulum", "--no-verify")
     assert "not verified: peaks have no error bars" in page.texts
     assert not any("\u00b1" in text for text in page.texts)
+
+
+@pytest.mark.long
+def test_the_verdict_stands_first(page_of):
+    page = page_of("cart_pendulum", "--duration", "2")
+    assert page.texts.index("Completed: 0 s to 2 s") < page.texts.index("Motion")
+    assert any(
+        re.search(r"positions to \d digits, velocities to \d digits, forces to \d digits", text) for text in page.texts
+    )
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("as_results", [False, True])
+def test_two_runs_are_compared_differences_first(tmp_path, as_results):
+    """The mass of a ball that falls differs: its force does, its motion does not."""
+    text = "gravity: [0, -10]\nbodies: {ball: {mass: %s, inertia: 1}}\nforces: {hold: {type: force, i: ball, force: [0, %s]}}\nrun: {duration: 1, points: 11}\n"
+    (tmp_path / "a.yaml").write_text(text % (2, 8))
+    (tmp_path / "b.yaml").write_text(text % (1, 4))
+    other = tmp_path / "b.yaml"
+    if as_results:
+        other = tmp_path / "b.npz"
+        assert stiffmbs("run", tmp_path / "b.yaml", "-o", other).exit_code == 0
+    result = stiffmbs("report", tmp_path / "a.yaml", other, "-o", tmp_path / "page.html", "--no-verify")
+    assert result.exit_code == 0, result.output
+    page = Page((tmp_path / "page.html").read_text(encoding="utf-8"))
+    assert page.headings[0] == f"Differences from {other.name}" and page.headings[1] == "Motion"
+    assert "hold.fy" in page.texts and "ball.y" not in page.texts[: page.texts.index("Motion")]
+    row = page.texts[page.texts.index("hold.fy") :]
+    assert [text for text in row if text][:7] == ["hold.fy", "N", "4", "1", "0", "8", "4"]
 
 
 @pytest.mark.long
@@ -114,11 +143,12 @@ def test_names_are_no_markup(tmp_path):
         (EXAMPLES / "cart_pendulum.yaml", "page.pdf", "expected one of .html"),
         (EXAMPLES / "cart_pendulum.yaml", "nowhere/page.html", "found no folder"),
         ("missing.yaml", "page.html", "missing.yaml"),
+        (f"{EXAMPLES / 'cart_pendulum.yaml'} missing.npz", "page.html", "missing.npz"),
     ],
 )
 def test_wrong_input_gets_one_sentence(scene, output, part, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    result = stiffmbs("report", scene, "-o", output)
+    result = stiffmbs("report", *str(scene).split(" "), "-o", output)
     assert result.exit_code == 2
     assert part in result.output and "Traceback" not in result.output
     assert not list(tmp_path.iterdir())

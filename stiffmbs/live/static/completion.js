@@ -120,7 +120,7 @@ const COMPLETION = (() => {
           for (const node of within(nodes, "")) {
             const kind = typeOf(node) ?? "body";
             if (options.some((one) => one.label === kind)) continue;
-            options.push({ label: kind, type: "class", detail: "new entry", info: (node.description ?? "").split("\n")[0], apply: `${place.path[0] === "bodies" ? "body" : kind}_1: ${template(node)}`, boost: 9 });
+            options.push({ label: kind, type: "class", detail: "new entry", info: (node.description ?? "").split("\n")[0], apply: `${place.path[0] === "bodies" ? "body" : kind}_1: ${template(node)}`, boost: kind === "body" ? 10 : 9 });
           }
         }
       } else {

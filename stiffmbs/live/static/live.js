@@ -6,7 +6,7 @@ const LIVE = (() => {
   const PAUSE = 150;  // ms of no typing before the scene is solved
   const PATIENCE = 1500;  // ms that a slider waits for the run of its last position
   const NUMBER = /^([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)(?:\s+((?:1\/)?[A-Za-zµ°%][\w\s/^.*-]*))?$/;
-  const SKELETON = "name: \ngravity: [0, -9.81]\n\nbodies:\n  \n\njoints:\n  \n\nrun: {duration: 2 s}\n";
+  const SKELETON = "name: New mechanism\ngravity: [0, -9.81]\n\nbodies:\n  \n\njoints:\n  \n\nrun: {duration: 2 s}\n";
   const it = { shown: null, answers: 0, errors: [], last: null, numbers: {}, saved: "", digest: "", channels: [] };
   let editor = null, timer = null, running = false, again = null, begun = 0, lost = false, allowed = false;
 
