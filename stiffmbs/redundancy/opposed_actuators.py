@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import cache
 from itertools import chain
 from typing import TYPE_CHECKING
 
@@ -44,12 +45,13 @@ def opposed_sentences(system: System, data: ModelData, q: np.ndarray, grid: Grid
         return ()
     found = _Directions(State(system), q, (grid.start, grid.end))
     rows = {name: found.rows_of(name) for name in drives}
-    everything, undriven = found.space(()), found.space(chain(*rows.values()))
+    everything = found.space(())
+    undriven = cache(lambda: found.space(chain(*rows.values())))
     held = _held_by_bushings(data, system)
     sentences = []
     for name in controllers:
         for direction in (moved for way in found.of(name) for moved in found.elsewhere(way, held)):
-            if _lies_in(direction, everything) and not _lies_in(direction, undriven):
+            if _lies_in(direction, everything) and not _lies_in(direction, undriven()):
                 needed = [drive for drive in drives if not _lies_in(direction, found.space(rows[drive]))]
                 sentences.append(_sentence(name, needed or drives))
                 break

@@ -217,3 +217,83 @@ def test_uncertain_turns_are_noted_unless_they_are_counted():
     assert not any("whole turns of hinge.angle are not certain" in note for note in counted.notes)
     frequency = np.sqrt(2000 / 0.5)
     np.testing.assert_allclose(counted["hinge.angle"], 1500 / frequency * np.sin(frequency * counted.time), atol=1e-2)
+
+
+ARM = """
+dimensions: 3
+gravity: [0, 0, -9.81]
+parameters: {c: 0.3}
+parts:
+  arm:
+    bodies:
+      beam:
+        mass: 1
+        inertia: [0.02, 0.03, 0.01]
+        position: [0.3, 0.1, 0]
+        markers: {pin: {point: [-0.3, 0, 0], orientation: {z: [0, 1, 0], x: [1, 0, 0]}}}
+    markers: {pin: {point: [0, 0.1, 0], orientation: {z: [0, 1, 0], x: [1, 0, 0]}}}
+    joints: {hinge: {type: revolute, i: beam.pin, j: mount.pin}}
+    states: {turned: {rate: "ANGLE_RATE"}}
+    forces: {damper: {type: torque, i: beam, torque: [0, "-c*ANGLE_RATE - 5*ANGLE + turned", 0]}}
+use:
+  left: {part: arm, position: [0, 1, 0]}
+  right: {part: arm, position: [0, -1, 0], mirror: "y"}
+run: {duration: 0.5, rtol: 1e-9, points: 51}
+"""
+
+
+def arms(angle, angle_rate, **settings):
+    return stiffmbs.run(stiffmbs.read_scene(ARM.replace("ANGLE_RATE", angle_rate).replace("ANGLE", angle)), **settings)
+
+
+@pytest.mark.parametrize("solver", ["bdf", "radau"])
+def test_formulas_of_forces_and_states_in_mirrored_parts_use_coordinates(solver):
+    found = arms("hinge.angle", "hinge.angle_rate", solver=solver)
+    measured = arms("az(beam.pin, mount.pin)", "wz(beam.pin, mount.pin, mount.pin)", solver=solver)
+    for name in ("left.beam.z", "right.beam.z", "left.turned", "left.hinge.angle"):
+        np.testing.assert_allclose(found[name], measured[name], atol=1e-7)
+    np.testing.assert_allclose(found["right.hinge.angle"], -found["left.hinge.angle"], atol=1e-9)
+    np.testing.assert_allclose(found["left.turned"], found["left.hinge.angle"], atol=1e-7)
+
+
+SLIDER = """
+gravity: [0, -9.81]
+parameters: {m: 1}
+bodies: {bar: {mass: m, inertia: 0.02, position: [0.3, 0], omega: 20, velocity: [0, 6]}, cart: {mass: 1, inertia: 0.1}}
+joints:
+  hinge: {type: revolute, i: {body: bar, point: [-0.3, 0]}, j: cart}
+  rail: {type: prismatic, i: cart, j: ground}
+  motor: {type: drive, joint: rail, position: 0.1*sin(3*t)}
+run: {duration: 1, rtol: 1e-9, points: 101}
+"""
+
+
+def test_the_effort_of_a_drive_is_its_force_along_the_coordinate_and_its_power_that_of_the_energy():
+    solution = stiffmbs.run(stiffmbs.read_scene(SLIDER), points=2001)
+    np.testing.assert_allclose(solution["motor.effort"], solution["motor.fx"], atol=1e-9)
+    power = solution["motor.effort"] * solution["rail.displacement_rate"]
+    work = np.concatenate([[0], np.cumsum((power[1:] + power[:-1]) / 2 * np.diff(solution.time))])
+    change = solution["energy.total"] - solution["energy.total"][0]
+    np.testing.assert_allclose(work, change, atol=1e-4 * np.abs(change).max())
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("channel", ["hinge.angle", "hinge.angle_rate", "hinge.angle_acceleration", "motor.effort"])
+def test_sensitivities_of_coordinates_and_efforts(channel):
+    found = stiffmbs.sensitivities(stiffmbs.read_scene(SLIDER), of=f"final({channel})", to=["m"]).to["m"]
+    high, low = (stiffmbs.run(stiffmbs.read_scene(SLIDER, [("m", m)]))[channel][-1] for m in (1.001, 0.999))
+    np.testing.assert_allclose(found, (high - low) / 0.002, rtol=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("formula", "sentence"),
+    [
+        ("-hinge.angel", r"'hinge.angel' \(did you mean 'angle'\?\).*expected one of hinge.angle, hinge.angle_rate"),
+        ("-hinge.angle_acceleration", "which is an acceleration, expected one of hinge.angle, hinge.angle_rate"),
+        ("motor.angle", "a joint of the type drive, which has no coordinates"),
+        ("3 N*hinge.angle_rate", r"expected a torque in N m"),
+    ],
+)
+def test_names_that_are_no_coordinates_are_refused(formula, sentence):
+    with pytest.raises(stiffmbs.InputError, match=sentence):
+        stiffmbs.read_scene(SLIDER + f"forces: {{f: {{type: torque, i: bar, torque: {formula}}}}}")
