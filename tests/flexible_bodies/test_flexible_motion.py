@@ -96,7 +96,7 @@ def test_free_flight_keeps_energy_momentum_and_angular_momentum(folder, solver):
     strain = np.array([u.ravel() @ (model.stiffness @ u.ravel()) for u in offset]) / 2
     assert np.abs(offset).max() > 5e-6  # the bar does deform
     for kept in (kinetic + strain, by_mass.sum(axis=1), np.cross(position, by_mass).sum(axis=1)):
-        assert np.abs(kept - kept[0]).max() < 2e-8 * np.abs(kept).max()
+        assert np.abs(kept - kept[0]).max() < 1e-10 * np.abs(kept).max()
     np.testing.assert_allclose(solution["energy.kinetic"], kinetic, rtol=1e-6)
     np.testing.assert_allclose(solution["energy.total"], solution["energy.total"][0], rtol=1e-8)
 
