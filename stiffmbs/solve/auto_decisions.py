@@ -107,7 +107,7 @@ Steps = TypeVar("Steps", ExplicitSteps, ImplicitSteps)
 
 def since(before: Steps, counted: Steps) -> Steps:
     """Return the steps taken after an earlier count."""
-    return type(counted)(*(now - then for now, then in zip(counted, before, strict=True)))
+    return counted._make(now - then for now, then in zip(counted, before, strict=True))
 
 
 @dataclass(frozen=True)

@@ -90,7 +90,7 @@ def car_of(scene: Scene, body: str | None = None, steering: str | None = None) -
         raise InputError(f"found {len(tyres)} tyres ({', '.join(tyres) or 'none'}), expected the 4 of a car")
     places = {name: np.array(scene.point(scene.forces[name].i)) for name in tyres}
     by_x = sorted(tyres, key=lambda name: -places[name][0])
-    corners = {}
+    corners: dict[str, str] = {}
     for axle, pair in (("front", by_x[:2]), ("rear", by_x[2:])):
         left, right = sorted(pair, key=lambda name: -places[name][1])
         corners |= {f"{axle}_left": left, f"{axle}_right": right}

@@ -12,6 +12,7 @@ import argparse
 import math
 import time
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -67,7 +68,7 @@ run: {duration: 2 s, points: 201}
 def closed_by_bushing(stiffness: float) -> Any:
     """Return a parallelogram of three cranks; a bushing replaces the redundant pin, with a damping ratio of about 0.02."""
     model = parallelogram(3)
-    pin = model.joints.pop("crank2_top")
+    pin: Any = model.joints.pop("crank2_top")
     damping = 0.04 * math.sqrt(stiffness)
     model.add("bushing", Bushing(i=pin.i, j=pin.j, stiffness=(stiffness, stiffness, 0), damping=(damping, damping, 0)))
     return model
@@ -82,7 +83,7 @@ PROBLEMS: dict[str, tuple[Callable[[], Any], dict[str, Any]]] = {
     "half car, 1e9 N/m": (example("half_car", ("k_b", "1e9 N/m"), ("zeta", "0.02")), {}),
     "elastic bearing": (example("elastic_bearing"), {}),
     **{
-        f"bushing for a joint, {k:.0e} N/m": (lambda k=k: closed_by_bushing(k), {"duration": 2.0, "points": 201})
+        f"bushing for a joint, {k:.0e} N/m": (partial(closed_by_bushing, k), {"duration": 2.0, "points": 201})
         for k in (1e4, 1e6, 1e8, 1e10, 1e12)
     },
     "light overdamped node": (lambda: stiffmbs.read_scene(NODE), {}),
