@@ -6,7 +6,7 @@ They are functions of measured costs. Costs are in the unit of `stiffmbs.solve.c
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import NamedTuple, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 from ..tuning import tuned
 
@@ -107,7 +107,9 @@ Steps = TypeVar("Steps", ExplicitSteps, ImplicitSteps)
 
 def since(before: Steps, counted: Steps) -> Steps:
     """Return the steps taken after an earlier count."""
-    return counted._make(now - then for now, then in zip(counted, before, strict=True))
+    kind: Any = type(counted)  # mypy does not resolve the constructors of a constrained type variable
+    steps: Steps = kind(*(now - then for now, then in zip(counted, before, strict=True)))
+    return steps
 
 
 @dataclass(frozen=True)
