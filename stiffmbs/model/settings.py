@@ -87,7 +87,7 @@ class RunSettings(Described):
     presolve : bool
         Whether the model is reduced to a smaller problem with the same results, if possible.
     drop_first : tuple of str
-        Joints whose equations are dropped first if the scene has redundant ones.
+        Joints whose equations are dropped first if the scene has redundant ones, the last name first.
     tuning : mapping
         Changed parameters of solvers, by subsystem and name (`stiffmbs.tuning`), for experts.
     """

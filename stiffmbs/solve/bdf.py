@@ -84,6 +84,7 @@ def integrated(
     rows.append(grid.start, start.q, start.u)
     with Ending() as ending:
         for reached in integrator.run(start, grid, passing=not is_logged()):
+            # multipliers are in no error test: those of the output times follow from the accelerations at q and u
             rows.extend(reached.times, *integrator.equations.states(reached.rows))
             if is_logged() and (step := integrator.engine.last_step()):
                 log_step(reached.t, *step)

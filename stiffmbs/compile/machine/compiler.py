@@ -96,10 +96,11 @@ def _compiled_source(source: str, name: str, signature: str, of: Description) ->
 
 @cache
 def _called(with_geometry: bool) -> str:
-    """Return a digest of the modules that generated sources call."""
+    """Return a digest of the modules that generated sources call, and of what these read."""
     here = Path(__file__).parent
-    names = ("nonsmooth", "spline", "rotation_vector", "python_call")
+    names = ("access", "nonsmooth", "spline", "rotation_vector", "python_call")
     files = [here / "native" / f"{name}.py" for name in names] + python_files(here / "native" / "flexible")
+    files += [here / "layout.py", here.parents[1] / "elements" / "spatial" / "flexible" / "layout.py"]
     return digest_of(files + python_files(here / "geometry") * with_geometry)
 
 
@@ -119,8 +120,8 @@ def compiled_routines(module: str, signatures: Signatures, unrolled: bool, chang
 
 @cache
 def _language() -> str:
-    """Return a digest of the translator."""
-    return digest_of(python_files(Path(__file__).parent / "translate"))
+    """Return a digest of the translator and of the settings of the compiler."""
+    return digest_of([*python_files(Path(__file__).parent / "translate"), Path(__file__)])
 
 
 @cache
