@@ -59,6 +59,9 @@ class SceneFlexibleBody(FlexibleBody):
         0.0,
         description="damping ratio of all modes, of each mode of the free body (the last one for further modes), or mass and stiffness",
     )
+    deformation_scale: si.NumberOrZero = Field(
+        1.0, description="factor of the deformation in pictures and films", repr=False
+    )
 
 
 def with_flexible_bodies(raw: dict[str, Any], context: Mapping[str, Any]) -> dict[str, Any]:

@@ -35,7 +35,7 @@ def drawing_json(drawing: Drawing) -> dict[str, Any]:
             {"name": name, "body": anchor.body, "point": _numbers(anchor.point, drawing.size)}
             for name, anchor in drawing.loads.items()
         ],
-        "marks": dict(drawing.marks), "load_color": LOAD,
+        "deformations": dict(drawing.deformations), "marks": dict(drawing.marks), "load_color": LOAD,
     }  # fmt: skip
 
 
@@ -62,7 +62,8 @@ def _part(part: Part, drawing: Drawing) -> dict[str, Any]:
         "owner": part.owner, "role": part.role, "body": part.body, "color": face_color(drawing, part),
         "edge": edge_color(drawing, part.owner, part.role),
         "solids": [
-            {"vertices": _numbers(solid.vertices, drawing.size), "triangles": triangles(solid).tolist(), "edges": solid.edges[:, :2].tolist()}
+            {"vertices": _numbers(solid.vertices, drawing.size), "triangles": triangles(solid).tolist(), "edges": solid.edges[:, :2].tolist(),
+             "modes": {body: [_numbers(shape, np.abs(shapes).max() or 1.0) for shape in shapes] for body, shapes in solid.modes.items()}}
             for solid in part.solids
         ],
         "lines": [

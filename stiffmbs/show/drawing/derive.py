@@ -10,11 +10,14 @@ from typing import Any
 import numpy as np
 
 from ...elements.element import Element, Joint
+from ...elements.spatial.flexible.bodies import FloatingFrame
+from ...elements.spatial.flexible.interface import FlexibleInterface
 from ...model.model_data import ModelData
 from ...reading.formula.formula import Formula
 from ...reading.joint_name import JointName
 from ...reading.marker import GROUND, MarkerReference
 from .bodies import derived_shape, given_shapes
+from .deformed import deformation_scales, deformed_body, interface_bodies, modal_bodies
 from .draft import Draft, Site
 from .palette import body_colors
 from .poses import Poses, described_poses, placed
@@ -57,22 +60,30 @@ def drawing_of(
         name: given_shapes(name, body, data.dimensions, 1.0, wheels.get(name, 0.0))
         for name, body in data.bodies.items()
     }
+    of_interfaces, modal = interface_bodies(data), modal_bodies(data)
+    for name, body in data.bodies.items():
+        if isinstance(body, FloatingFrame) and (surface := deformed_body(name, body)) is not None:
+            shaped[name] = [surface]
     size = _size(data, sites, shaped)
-    colors = body_colors(data.bodies)
+    colors = body_colors(name for name in data.bodies if name not in of_interfaces and name not in modal)
+    colors |= {name: colors[frame] for name, frame in of_interfaces.items()}
     unit = scale * UNIT * size * math.sqrt(min(1.0, CROWDED / max(1, len(data.joints) + len(data.forces))))
     drafts = [_drawn(name, element, data, sites, size, colors, unit) for name, element in _elements(data)]
     parts = [part for draft in drafts for part in draft.parts]
     having = {part.body for part in parts if part.role == "body"}
     points = sites.on_bodies()
     for name, body in data.bodies.items():
+        if name in of_interfaces or name in modal:
+            continue
         places = {tuple(np.round(point / (1e-3 * size)).astype(int)) for point in points[name]}
         if not shaped[name] and not wheels.get(name) and not (name in having and len(places) <= 1):
             shaped[name] = [derived_shape(name, body, data.dimensions, points[name], size, THICK * unit / scale)]
     bodies = [part for found in shaped.values() for part in found]
     gravity = np.zeros(3)
     gravity[: data.dimensions] = data.gravity
-    weight = sum(body.mass for body in data.bodies.values()) * (float(np.linalg.norm(gravity)) or 1.0)
-    heaviest = max(data.bodies, key=lambda name: data.bodies[name].mass, default="")
+    masses = {name: body.mass for name, body in data.bodies.items() if name not in modal}
+    weight = sum(masses.values()) * (float(np.linalg.norm(gravity)) or 1.0)
+    heaviest = max(masses, key=lambda name: masses[name], default="")
     loads = {
         draft.owner: draft.i.anchor
         for draft in drafts  # an element drawn at a joint's point may act on its body as a whole
@@ -80,7 +91,7 @@ def drawing_of(
     }
     drawing = Drawing(
         data.name, data.dimensions, size, unit, colors, (*bodies, *parts), tuple(link for d in drafts for link in d.links),
-        tuple(_names(data, drafts)), loads, heaviest, gravity, weight, marks or {},
+        tuple(_names(masses, drafts)), loads, heaviest, gravity, weight, marks or {}, deformation_scales(data),
     )  # fmt: skip
     return drawing if along is None else with_surroundings(drawing, data, along)
 
@@ -91,7 +102,11 @@ def _wheels(data: ModelData) -> dict[str, float]:
 
 
 def _elements(data: ModelData) -> Iterator[tuple[str, Element]]:
-    yield from data.joints.items()
+    """Yield all elements with a place in space: none that hold modal coordinates or interfaces."""
+    modal = modal_bodies(data)
+    for name, joint in data.joints.items():
+        if not isinstance(joint, FlexibleInterface) and getattr(getattr(joint, "i", None), "body", "") not in modal:
+            yield name, joint
     yield from data.forces.items()
 
 
@@ -101,6 +116,9 @@ class _Sites:
     def __init__(self, data: ModelData, poses: Poses) -> None:
         self.data, self.poses = data, poses
         self.used: dict[str, list[np.ndarray]] = {name: [] for name in (*data.bodies, GROUND)}
+        for joint in data.joints.values():
+            if isinstance(joint, FlexibleInterface):
+                self.of(joint.i)
 
     def of(self, marker: MarkerReference) -> Site:
         """Return the place of a marker on its body and in ground axes."""
@@ -119,14 +137,14 @@ class _Sites:
 
     def in_ground(self) -> np.ndarray:
         """Return all points in ground axes, shape (n, 3)."""
-        every = {**self.on_bodies(), GROUND: self.used[GROUND]}
+        every, modal = {**self.on_bodies(), GROUND: self.used[GROUND]}, modal_bodies(self.data)
         return np.array(
             [
                 self.poses.pose(name, 0)[0] + self.poses.pose(name, 0)[1] @ point
                 for name, points in every.items()
                 for point in points
             ]
-            + [self.poses.pose(name, 0)[0] for name in self.data.bodies]
+            + [self.poses.pose(name, 0)[0] for name in self.data.bodies if name not in modal]
         )
 
 
@@ -202,8 +220,8 @@ def _of_formula(element: Element, data: ModelData, sites: _Sites) -> Site | None
     return None
 
 
-def _names(data: ModelData, drafts: Iterable[Draft]) -> Iterator[Name]:
-    for name in data.bodies:
+def _names(bodies: Iterable[str], drafts: Iterable[Draft]) -> Iterator[Name]:
+    for name in bodies:
         yield Name(name, "body", Anchor(name, np.zeros(3)))
     for draft in drafts:
         if draft.i is not None:

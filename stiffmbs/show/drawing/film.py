@@ -95,7 +95,7 @@ def pictures(
     largest = shown.longest(drawing, first)
     body = followed_body(drawing, first)
     corners = [
-        extent(drawing, seen_from(body, poses) if body else poses, view, largest if poses is first else 0.0)
+        extent(drawing, seen_from(body, drawing, poses) if body else poses, view, largest if poses is first else 0.0)
         for poses in known.values()
     ]
     low, high = np.min([c[0] for c in corners], axis=0), np.max([c[1] for c in corners], axis=0)

@@ -94,7 +94,7 @@ def _part(drawing: Drawing, part: Part, poses: Poses, k: int, view: View) -> Ite
     if part.role == "floor":
         nearer[2] = -FLOOR_BEHIND * drawing.size
     for solid in part.solids:
-        seen = view.seen(origin + solid.vertices @ axes.T) + nearer
+        seen = view.seen(origin + poses.vertices(solid, k) @ axes.T) + nearer
         yield from _solid(seen, solid, face, (edge, wider), drawing.dimensions == 2)
     for line in part.lines:
         seen = view.seen(origin + line.points @ axes.T) + nearer

@@ -193,5 +193,7 @@ def explain(axes: Axes, drawing: Drawing, largest: float) -> None:
         )
     for mark in dict.fromkeys(drawing.marks.values()):
         entries.append(Line2D([], [], color=MARKS[mark], lw=4, label=MARK_WORDS[mark]))
+    for body, scale in drawing.deformations.items():
+        entries.append(Line2D([], [], linestyle="none", label=f"{body}: deformation x {scale:g}"))
     if entries:
         axes.legend(handles=entries, loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=2, frameon=False, fontsize=8)

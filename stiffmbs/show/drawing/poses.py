@@ -14,7 +14,7 @@ from ...model.model_data import ModelData
 from ...reading.marker import GROUND, MarkerReference
 from ...results.marker_motion import place
 from .frames import rotation
-from .scene_graph import Anchor, Drawing
+from .scene_graph import Anchor, Drawing, Solid
 
 Channels = Mapping[str, np.ndarray]
 FAR = 2.0
@@ -47,6 +47,12 @@ class Poses:
         if body == GROUND:
             return np.zeros(3), np.eye(3)
         return self.points[body][k], rotation(self.orientations[body][k])
+
+    def vertices(self, solid: Solid, k: int) -> np.ndarray:
+        """Return the vertices of a solid at the k-th instant, deformed by its modes, shape (n, 3)."""
+        return np.asarray(
+            sum((np.tensordot(self.points[body][k], shapes, 1) for body, shapes in solid.modes.items()), solid.vertices)
+        )
 
     def at(self, rows: np.ndarray) -> Poses:
         """Return the poses at some of the instants."""
@@ -170,7 +176,9 @@ def way_of(body: str, poses: Poses) -> np.ndarray:
     return np.asarray(poses.points[body] - poses.points[body][0])
 
 
-def seen_from(body: str, poses: Poses) -> Poses:
+def seen_from(body: str, drawing: Drawing, poses: Poses) -> Poses:
     """Return the poses relative to a body's displacement, without its rotation."""
     way = way_of(body, poses)
-    return Poses(poses.time, {name: p - way for name, p in poses.points.items()}, poses.orientations, poses.forces)
+    modal = {name for part in drawing.parts for solid in part.solids for name in solid.modes}
+    points = {name: p if name in modal else p - way for name, p in poses.points.items()}
+    return Poses(poses.time, points, poses.orientations, poses.forces)

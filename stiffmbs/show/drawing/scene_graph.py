@@ -31,12 +31,15 @@ class Solid:
         True if the surface encloses a volume, so that faces that point away are hidden.
     edges : ndarray of int, shape (m, 4)
         Edges to draw: two vertices, and the two adjacent faces.
+    modes : mapping of str to ndarray, shape (3, n, 3)
+        Displacements of the vertices by unit coordinates x, y, z of bodies that hold modal coordinates.
     """
 
     vertices: np.ndarray
     faces: tuple[np.ndarray, ...]
     closed: bool = True
     edges: np.ndarray = field(default_factory=lambda: np.zeros((0, 4), dtype=int))
+    modes: Mapping[str, np.ndarray] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,6 +144,8 @@ class Drawing:
         Weight of all bodies, N (at 1 m/s^2 without gravity).
     marks : mapping of str to Mark
         Joints to mark.
+    deformations : mapping of str to float
+        Factors of the drawn deformation of flexible bodies.
     """
 
     name: str
@@ -156,3 +161,4 @@ class Drawing:
     gravity: np.ndarray
     weight: float
     marks: Mapping[str, Mark] = field(default_factory=dict)
+    deformations: Mapping[str, float] = field(default_factory=dict)

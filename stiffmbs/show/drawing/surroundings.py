@@ -105,7 +105,7 @@ def _reached(drawing: Drawing, poses: Poses) -> tuple[np.ndarray, np.ndarray]:
             if part.role != "body" and part.body == GROUND:
                 continue
             origin, axes = poses.pose(part.body, k)
-            for shape in (*(solid.vertices for solid in part.solids), *(line.points for line in part.lines)):
+            for shape in (*(poses.vertices(solid, k) for solid in part.solids), *(line.points for line in part.lines)):
                 points = origin + shape @ axes.T
                 low, high = np.minimum(low, points.min(axis=0)), np.maximum(high, points.max(axis=0))
     return low, high
@@ -180,7 +180,7 @@ def shadows(drawing: Drawing, poses: Poses, k: int) -> list[np.ndarray]:
             continue
         origin, axes = poses.pose(part.body, k)
         for solid in part.solids:
-            points = origin + solid.vertices @ axes.T
+            points = origin + poses.vertices(solid, k) @ axes.T
             points[:, up] = float(np.median(heights))
             try:
                 corners = ConvexHull(points[:, across]).vertices

@@ -75,7 +75,7 @@ const MOVING = (() => {
 
   /* The mechanism of one run as objects of three.js. */
   function mechanism(drawing, run, ghost) {
-    const flat = drawing.dimensions === 2, groups = {}, root = new THREE.Group(), links = [];
+    const flat = drawing.dimensions === 2, groups = {}, root = new THREE.Group(), links = [], bent = [];
     const group = (body) => {
       if (!groups[body]) { groups[body] = new THREE.Group(); groups[body].userData.body = body; root.add(groups[body]); }
       return groups[body];
@@ -112,7 +112,13 @@ const MOVING = (() => {
         mesh.receiveShadow = floor;
         mesh.castShadow = !flat && !floor && ghost === undefined;
         into.add(mesh);
-        if (solid.edges.length) into.add(line(solid.vertices, part.edge, false, solid.edges));
+        const edges = solid.edges.length ? line(solid.vertices, part.edge, false, solid.edges) : null;
+        if (edges) into.add(edges);
+        if (Object.keys(solid.modes).length) {
+          mesh.frustumCulled = false;
+          if (edges) edges.frustumCulled = false;
+          bent.push({ solid, index: solid.triangles.flat(), faces: shaded, edges: edges?.geometry });
+        }
       }
       for (const stroke of part.lines) {
         const found = line(stroke.points, part.edge, stroke.dashed);
@@ -171,7 +177,24 @@ const MOVING = (() => {
       positions.needsUpdate = true;
       geometry.computeVertexNormals();
     };
+    /* Move the vertices of a flexible body by its modal coordinates. */
+    const bend = ({ solid, index, faces, edges }, t) => {
+      const points = solid.vertices.map((p) => [...p]);
+      for (const [body, shapes] of Object.entries(solid.modes)) {
+        posed(run, body, t, point, turn);
+        [point.x, point.y, point.z].forEach((y, k) => shapes[k].forEach((shape, n) => {
+          for (let axis = 0; axis < 3; axis++) points[n][axis] += y * shape[axis];
+        }));
+      }
+      index.forEach((n, k) => faces.attributes.position.setXYZ(k, ...points[n]));
+      faces.attributes.position.needsUpdate = true;
+      faces.computeVertexNormals();
+      if (!edges) return;
+      points.forEach((p, n) => edges.attributes.position.setXYZ(n, ...p));
+      edges.attributes.position.needsUpdate = true;
+    };
     const update = (t) => {
+      bent.forEach((found) => bend(found, t));
       for (const [body, found] of Object.entries(groups)) {
         if (body === "ground") continue;
         posed(run, body, t, found.position, found.quaternion);
@@ -371,6 +394,7 @@ const MOVING = (() => {
       };
       if (data.runs.length > 1) data.runs.forEach((run, k) => entry(k ? COLORS[k % COLORS.length] : "#56b4e9", run.name || "run"));
       for (const mark of new Set(Object.values(data.drawing.marks))) entry(mark === "redundant" ? "#d55e00" : "#e69f00", mark === "redundant" ? "redundant equations" : "force not unique");
+      for (const [body, factor] of Object.entries(data.drawing.deformations)) entry("", `${body}: deformation x ${factor}`).key.remove();
       if (state.forces && data.longest.force > 0) scale = entry(data.drawing.load_color, "");
       legend.hidden = !legend.children.length;
     }

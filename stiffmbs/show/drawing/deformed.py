@@ -1,0 +1,97 @@
+"""Surfaces of flexible bodies, deformed by their modal coordinates."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from ...elements.spatial.flexible.bodies import FloatingFrame, ModalCoordinates
+from ...elements.spatial.flexible.interface import FlexibleInterface
+from ...flexible_bodies.finite_elements import FiniteElements
+from ...flexible_bodies.reduced import reduced_body
+from ...model.model_data import ModelData
+from . import solids
+from .scene_graph import Part, Solid
+
+QUADRATIC = (
+    (0, 8, 1, 9, 2, 10, 3, 11), (4, 12, 5, 13, 6, 14, 7, 15), (0, 8, 1, 17, 5, 12, 4, 16),
+    (1, 9, 2, 18, 6, 13, 5, 17), (2, 10, 3, 19, 7, 14, 6, 18), (3, 11, 0, 16, 4, 15, 7, 19),
+)  # fmt: skip
+FACES: Mapping[str, tuple[tuple[int, ...], ...]] = {
+    "tetra": ((0, 1, 2), (0, 1, 3), (1, 2, 3), (0, 2, 3)),
+    "tetra10": ((0, 4, 1, 5, 2, 6), (0, 4, 1, 8, 3, 7), (1, 5, 2, 9, 3, 8), (0, 6, 2, 9, 3, 7)),
+    "hexahedron": tuple(face[::2] for face in QUADRATIC),
+    "hexahedron20": QUADRATIC,
+    "hexahedron27": QUADRATIC,
+}
+"""Nodes around each face of an element, in the order of meshio."""
+MOST_FACES = 5_000
+"""Number of faces above which only the faces are drawn, without the edges of elements."""
+SHARP = 2.0
+"""Largest cosine between the normals of two faces with a drawn edge: all edges."""
+
+
+def deformed_body(name: str, frame: FloatingFrame) -> Part | None:
+    """Return the surface of a flexible body with its mode shapes; None if its file has no elements.
+
+    The displacement is linear in the modal coordinates and multiplied by the `deformation_scale` of the body.
+
+    Parameters
+    ----------
+    name : str
+        Name of the floating frame.
+
+    Raises
+    ------
+    InputError
+        If a file of the body cannot be read.
+    """
+    body, folder = frame.source
+    model, reduced = body.model(folder), reduced_body(body, folder)
+    faces = surface(model)
+    if not faces:
+        return None
+    used, inverse = np.unique(np.concatenate(faces), return_inverse=True)
+    ends = np.cumsum([len(face) for face in faces])[:-1]
+    shapes = np.zeros((3 * len(frame.modes), len(used), 3))
+    scale = body.deformation_scale * np.sqrt(reduced.mass)
+    shapes[: reduced.modes.shape[1]] = scale * reduced.modes.T.reshape(-1, len(model.nodes), 3)[:, used]
+    modes = {modal: shapes[3 * k : 3 * k + 3] for k, modal in enumerate(frame.modes)}
+    solid = Solid(model.nodes[used] - reduced.centre, tuple(np.split(inverse, ends)), modes=modes)
+    return Part(name, "body", name, (solids.edged(solid, SHARP) if len(faces) < MOST_FACES else solid,))
+
+
+def surface(model: FiniteElements) -> list[np.ndarray]:
+    """Return the nodes around each face that belongs to one element only, counterclockwise as seen from outside."""
+    found: list[np.ndarray] = []
+    for kind, cells in model.cells.items():
+        table = np.array(FACES[kind])
+        every = cells[:, table].reshape(-1, table.shape[1])
+        middle = np.repeat(model.nodes[cells].mean(axis=1), len(table), axis=0)
+        _, first, count = np.unique(np.sort(every, axis=1), axis=0, return_index=True, return_counts=True)
+        for face in first[count == 1]:
+            points = model.nodes[every[face]]
+            outward = solids.face_normal(points) @ (points.mean(axis=0) - middle[face]) >= 0
+            found.append(every[face] if outward else every[face][::-1])
+    return found
+
+
+def modal_bodies(data: ModelData) -> set[str]:
+    """Return the bodies that hold modal coordinates and have no place in space."""
+    return {name for name, body in data.bodies.items() if isinstance(body, ModalCoordinates)}
+
+
+def interface_bodies(data: ModelData) -> dict[str, str]:
+    """Return the floating frame of each body of an interface."""
+    return {
+        joint.j.body: joint.i.body for joint in data.joints.values() if isinstance(joint, FlexibleInterface)
+    }  # fmt: skip
+
+
+def deformation_scales(data: ModelData) -> dict[str, float]:
+    """Return the factor of the drawn deformation of each flexible body."""
+    return {
+        name.rpartition(".")[0]: body.source[0].deformation_scale
+        for name, body in data.bodies.items() if isinstance(body, FloatingFrame)
+    }  # fmt: skip
