@@ -25,7 +25,8 @@ from stiffmbs.model.read_scene import SECTIONS
 from stiffmbs.model.scene import PlanarScene
 
 HERE = Path(__file__).parent.parent
-PAGES = [HERE / "README.md", *sorted((HERE / "docs").rglob("*.md"))]
+GENERATED = HERE / "docs" / "gallery"
+PAGES = [HERE / "README.md", *sorted(page for page in (HERE / "docs").rglob("*.md") if page.parent != GENERATED)]
 TESTED = {"yaml", "python", "console"}
 QUICK = r"\$ stiffmbs (run|check|equilibrium|modes|response) "
 """Commands that are run; those that measure take long, and never print the same twice."""
