@@ -91,6 +91,14 @@ WITHOUT: Mapping[str, str] = MappingProxyType(
         "python_force": "a function of Python is no part of a scene file",
         "exact_beam": "the line body of the type beam creates it, and tests/beams has its scenes",
         "driver": "it needs a car with four wheels on tyres, which examples/car.yaml is",
+        **dict.fromkeys(
+            ("twist_beam", "pushrod_wishbone", "trailer_hitch", "telescopic_fork", "swingarm"),
+            "it belongs to one kind of vehicle, with an example in examples/vehicles",
+        ),
+        **dict.fromkeys(
+            ("air_spring", "hydromount", "viscoelastic_bushing"),
+            "it carries a stated load, and tests/mechanisms/test_springs_of_vehicles.py compares it with its formula",
+        ),
     }
 )
 """Kinds and parts without a generator, with reasons."""
