@@ -144,8 +144,13 @@ def test_every_part_is_a_valid_scene_by_itself_and_is_listed():
         mounts = {mount: f"of_{mount}" for mount in shipped_part(name).get("mounts") or {}}
         for word in ("rigid", "bushing") if "compliance" in (shipped_part(name).get("options") or {}) else (None,):
             entry = {"use": name, "on": "base", "mounts": mounts, **({"compliance": word} if word else {})}
-            bodies = {body: {"mass": 1, "inertia": [1, 1, 1]} for body in ("base", *mounts.values())}
-            stiffmbs.read_scene(json.dumps({"dimensions": 3, "bodies": bodies, "parts": {"one": entry}}))
+            bodies = {body: {"mass": 1, "inertia": [1, 1, 1]} for body in ("base", "rack", *mounts.values())}
+            steering = mounts.get("steering", "free")  # the mount of this name is a joint
+            bodies.pop(steering, None)
+            joints = {steering: {"type": "prismatic", "i": "rack", "j": "base"}}
+            stiffmbs.read_scene(
+                json.dumps({"dimensions": 3, "bodies": bodies, "joints": joints, "parts": {"one": entry}})
+            )
     listed = json.loads(CliRunner().invoke(main, ["parts", "--json"]).output)["parts"]
     assert listed.keys() == set(shipped_parts())
     assert "lower_ball" in CliRunner().invoke(main, ["parts", "double_wishbone"]).output
