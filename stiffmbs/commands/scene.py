@@ -23,21 +23,22 @@ if TYPE_CHECKING:
 Command = TypeVar("Command", bound=Callable[..., Any])
 
 
-def _pairs(_: click.Context, __: click.Parameter, values: tuple[str, ...]) -> list[tuple[str, str]]:
-    pairs = []
+def pairs(_: click.Context, __: click.Parameter, values: tuple[str, ...]) -> list[tuple[str, str]]:
+    """Return paths and values of an option PATH=VALUE."""
+    found = []
     for value in values:
         path, equals, text = value.partition("=")
         if not equals or not path:
             raise click.BadParameter(f"found '{value}', expected PATH=VALUE such as bodies.cart.mass=12")
-        pairs.append((path.strip(), text))
-    return pairs
+        found.append((path.strip(), text))
+    return found
 
 
 CHANGES = click.option(
     "--set",
     "changes",
     multiple=True,
-    callback=_pairs,
+    callback=pairs,
     metavar="PATH=VALUE",
     help="Change a value of the scene, such as bodies.cart.mass=12, or a parameter, N=40; any number of times.",
 )

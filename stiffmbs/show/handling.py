@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import fields
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..reading.units.units import DIMENSIONS
 from ..results.files import write_text
 from ..studies.handling.standards import TESTS
 from ..studies.handling.study import Handling, Tested
@@ -36,7 +38,7 @@ def handling_text(scene: str, found: Handling) -> str:
     car = found.car
     lines = [f"{scene}: wheelbase {car.wheelbase:.4g} m, track {car.track:.4g} m, steered by {car.steering}"]
     for name, one in found.tests.items():
-        lines.append(f"{name}: {TESTS[name].title}" + (f": not done: {one.message}" if one.message else ""))
+        lines.append(f"{name}: {_title(name, one)}" + (f": not done: {one.message}" if one.message else ""))
         lines += [f"  {metric:52} {value:>10} {unit}" for metric, value, unit in _rows(one)]
     return "\n".join(lines)
 
@@ -50,7 +52,7 @@ def write_handling(path: Path, found: Handling) -> None:
         If the file cannot be written.
     """
     sections = [
-        (TESTS[name].title, one.message, _rows(one), "" if one.message else data_url(_figure(name, one), "svg", 100))
+        (_title(name, one), one.message, _rows(one), "" if one.message else data_url(_figure(name, one), "svg", 100))
         for name, one in found.tests.items()
     ]
     template = environment().from_string(PAGE)
@@ -61,6 +63,25 @@ def write_handling(path: Path, found: Handling) -> None:
             sections=sections,
         ),
     )  # fmt: skip
+
+
+def _title(name: str, one: Tested) -> str:
+    """Return the title of a test with its parameters in SI units."""
+    units = {
+        each.name: DIMENSIONS.get(each.metadata["dimension"], ("", ""))[1] for each in fields(TESTS[name].parameters)
+    }
+    told = [
+        f"{key.replace('_', ' ')} {_number(value)} {units[key] if units[key] != '1' else ''}".rstrip()
+        for key, value in one.parameters.items()
+        if value is not None
+    ]
+    return f"{TESTS[name].title} ({', '.join(told)})"
+
+
+def _number(value: Any) -> str:
+    if isinstance(value, tuple):
+        return " ".join(map(_number, value))
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
 
 
 def _rows(one: Tested) -> list[tuple[str, str, str]]:

@@ -10,7 +10,7 @@ import click
 
 from ...analyses.load_scene import load_scene
 from ..process import Status
-from ..scene import CHANGES, in_file, is_written, output_option, refuse_own_input, refusing
+from ..scene import CHANGES, in_file, is_written, output_option, pairs, refuse_own_input, refusing
 
 
 @click.command(short_help="Handling and ride tests of the standards on a car.")
@@ -22,12 +22,20 @@ from ..scene import CHANGES, in_file, is_written, output_option, refuse_own_inpu
 @click.option("--steering", help="The joint that steers; steering_wheel or the only one named guide by default.")
 @click.option("--width", type=float, help="Width of the vehicle, m; the track and 0.2 m by default.")
 @click.option("--workers", type=click.IntRange(1), help="Number of processes; one for each core by default.")
+@click.option(
+    "--set-test",
+    "parameters",
+    multiple=True,
+    callback=pairs,
+    metavar="NAME=VALUE",
+    help="Change a parameter of a test, such as step_steer.speed='100 km/h', or of each test that has it, speed=30; any number of times.",
+)
 @output_option("Write a page: .html.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line instead of a table.")
 @CHANGES
 def handling(
     scene: str, tests: tuple[str, ...], body: str | None, steering: str | None, width: float | None,
-    workers: int | None, output: Path | None, as_json: bool, changes: list[tuple[str, str]],
+    workers: int | None, parameters: list[tuple[str, str]], output: Path | None, as_json: bool, changes: list[tuple[str, str]],
 ) -> None:  # fmt: skip
     """Drive the car of SCENE through tests of the standards, and print their metrics.
 
@@ -47,7 +55,15 @@ def handling(
             refuse_own_input("-o", scene, output)
         loaded = load_scene(scene, changes)
         with in_file(scene):
-            found = handled(loaded, tests or None, body=body, steering=steering, width=width, workers=workers)
+            found = handled(
+                loaded,
+                tests or None,
+                body=body,
+                steering=steering,
+                width=width,
+                workers=workers,
+                parameters=dict(parameters),
+            )
     written = output is None or is_written(output, lambda: write_handling(output, found))
     told = found.as_dict(scene)
     click.echo(json.dumps(told) if as_json else handling_text(scene, found))

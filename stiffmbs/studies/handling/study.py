@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor, ProcessPoolExecutor
 from contextlib import ExitStack
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from multiprocessing import get_context
 from typing import Any
 
@@ -17,8 +17,9 @@ from ...analyses.run import run
 from ...errors import InputError, SolverError, StiffmbsError
 from ...model.scene import Scene
 from ...reading.did_you_mean import did_you_mean
-from .car import Car, car_of, with_manoeuvre
-from .standards import PROBE, SPEED, TESTS, Known, Metrics, Run, curvature_of, probe, ramp, up_to_the_limit
+from .car import Car, Manoeuvre, car_of, with_manoeuvre
+from .parameters import SPEED, with_changes
+from .standards import PROBE, TESTS, Known, Metrics, Run, curvature_of, probe, ramp, up_to_the_limit
 
 WIDER = 0.2
 """Width of the body beyond the track, m, unless given: tyres and wings."""
@@ -36,11 +37,14 @@ class Tested:
         Channels of its runs.
     message : str
         Why it failed; empty if it was done.
+    parameters : dict of str to value
+        Parameters of the test, SI units.
     """
 
     metrics: Metrics = field(default_factory=dict)
     runs: list[Run] = field(default_factory=list)
     message: str = ""
+    parameters: dict[str, Any] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -71,6 +75,7 @@ class Handling:
         found = {
             test: {
                 "message": one.message,
+                "parameters": one.parameters,
                 "metrics": {
                     name: {"value": value if np.isfinite(value) else None, "unit": unit}
                     for name, (value, unit) in one.metrics.items()
@@ -88,13 +93,13 @@ class Handling:
 
 def handling(
     model: Scene | str | Any, tests: Sequence[str] | None = None, *, body: str | None = None, steering: str | None = None,
-    width: float | None = None, workers: int | None = None,
+    width: float | None = None, workers: int | None = None, parameters: Mapping[str, float | str | Sequence[float]] | None = None,
 ) -> Handling:  # fmt: skip
     """Run handling and ride tests of the standards on a car.
 
     The car is the scene without its own driver, roads, start and drives of the steering joint; each test attaches the
-    part `driver`, a level road and its steering or course. Preliminary runs at 10 m/s and a slow ramp at 80 km/h scale
-    the amplitudes to the lateral accelerations of the standards.
+    part `driver`, a level road and its steering or course. Preliminary runs at 10 m/s and slow ramps at 80 km/h and at
+    the speeds of the tests scale the amplitudes to the lateral accelerations of the standards.
 
     Parameters
     ----------
@@ -108,6 +113,9 @@ def handling(
         Width of the vehicle, m; by default the track and 0.2 m.
     workers : int, optional
         Number of processes; by default one for each core.
+    parameters : mapping of str to number or str, optional
+        Changed parameters of the tests: ``{"step_steer.speed": "100 km/h"}``, or ``speed`` for each test that has it.
+        Numbers are in SI units; see `stiffmbs.studies.handling.parameters`.
 
     Returns
     -------
@@ -116,7 +124,7 @@ def handling(
     Raises
     ------
     InputError
-        If the scene is not a car, or there is no such test.
+        If the scene is not a car, or there is no such test or parameter.
     SolverError
         If a preliminary run stops.
     """
@@ -125,12 +133,13 @@ def handling(
     for name in names:
         if name not in TESTS:
             raise InputError(f"found the test '{name}'{did_you_mean(name, TESTS)}, expected one of {', '.join(TESTS)}")
+    changed = with_changes(parameters or {}, {name: TESTS[name].parameters for name in names})
     car = car_of(scene, body, steering)
     with ExitStack() as stack:
         count = workers or os.cpu_count() or 1
         pool = stack.enter_context(ProcessPoolExecutor(count, get_context("spawn"))) if count > 1 else None
         known = _preliminary(scene, car, width or car.track + WIDER)
-        return Handling(scene.name, car, known.ratio, _solved(scene, car, known, names, pool))
+        return Handling(scene.name, car, known.ratio, _solved(scene, car, known, changed, pool))
 
 
 def _preliminary(scene: Scene, car: Car, width: float) -> Known:
@@ -148,24 +157,46 @@ def _per_curvature(slow: Run, acceleration: float) -> float:
     return float(slow["handling_steer_seen"][at] * slow["vehicle.speed"][at] / slow["vehicle.yaw_rate"][at])
 
 
-def _solved(scene: Scene, car: Car, known: Known, names: list[str], pool: Executor | None) -> dict[str, Tested]:
-    waiting: dict[str, list[Any]] = {}
-    found: dict[str, Tested] = {}
-    for name in names:
+def _solved(scene: Scene, car: Car, known: Known, tests: Mapping[str, Any], pool: Executor | None) -> dict[str, Tested]:
+    waiting: dict[str, tuple[Known, list[Any]]] = {}
+    found = {name: Tested(parameters=asdict(parameters)) for name, parameters in tests.items()}
+    at_speed = _ramps(scene, car, known)
+
+    def solve(manoeuvre: Manoeuvre) -> Run:
+        return solved(with_manoeuvre(scene, car, manoeuvre))
+
+    for name, parameters in tests.items():
         try:
-            scenes = [with_manoeuvre(scene, car, each) for each in TESTS[name].manoeuvres(known)]
+            of_test = at_speed(parameters.speed) if TESTS[name].ramped else known
+            scenes = [with_manoeuvre(scene, car, each) for each in TESTS[name].manoeuvres(of_test, parameters)]
         except StiffmbsError as error:
-            found[name] = Tested(message=str(error))
+            found[name] = replace(found[name], message=str(error))
             continue
-        waiting[name] = [pool.submit(solved, each) if pool else each for each in scenes]
-    for name, jobs in waiting.items():
+        waiting[name] = of_test, [pool.submit(solved, each) if pool else each for each in scenes]
+    for name, (of_test, jobs) in waiting.items():
+        test, parameters = TESTS[name], tests[name]
         try:
             runs = [job.result() if pool else solved(job) for job in jobs]
-            metrics = TESTS[name].metrics(known, runs)
-            found[name] = Tested(metrics, runs or [known.ramp])
+            metrics = test.metrics(of_test, parameters, runs) | (
+                test.search(of_test, parameters, solve) if test.search else {}
+            )
+            found[name] = replace(found[name], metrics=metrics, runs=runs or [of_test.ramp])
         except StiffmbsError as error:
-            found[name] = Tested(message=str(error))
-    return {name: found[name] for name in names}
+            found[name] = replace(found[name], message=str(error))
+    return found
+
+
+def _ramps(scene: Scene, car: Car, known: Known) -> Callable[[float], Known]:
+    """Return a function that returns `Known` with the slow ramp at a speed, each of which is solved once."""
+    done = {SPEED: known}
+
+    def at_speed(speed: float) -> Known:
+        if speed not in done:
+            slow = solved(with_manoeuvre(scene, car, ramp(car, known.per_curvature, speed)))
+            done[speed] = replace(known, ramp=up_to_the_limit(slow))
+        return done[speed]
+
+    return at_speed
 
 
 def solved(scene: Scene) -> Run:

@@ -9,7 +9,8 @@ from click.testing import CliRunner
 
 import stiffmbs
 from stiffmbs.commands.main import main
-from stiffmbs.studies.handling.standards import SPEED, TESTS
+from stiffmbs.studies.handling.parameters import SPEED, StepSteer, StraightBraking, names_of, with_changes
+from stiffmbs.studies.handling.standards import TESTS, SineWithDwell, dwell_formula, highest
 
 EXAMPLES = Path(stiffmbs.__file__).parents[1] / "examples"
 CAR = EXAMPLES / "car.yaml"
@@ -55,6 +56,81 @@ def test_a_misspelt_test_and_a_scene_that_is_no_car_are_refused():
     assert "did you mean 'steering.guide'?" in found.stderr
 
 
-def test_the_guide_lists_all_tests():
+def test_the_guide_lists_all_tests_and_their_parameters():
     text = (EXAMPLES.parent / "docs" / "handling.md").read_text(encoding="utf-8")
-    assert all(f"| `{name}` |" in text for name in TESTS)
+    for name, test in TESTS.items():
+        line = next(each for each in text.splitlines() if each.startswith(f"| `{name}` | `"))
+        assert all(f"`{each}`" in line for each in names_of(test.parameters))
+
+
+@pytest.mark.long
+def test_changed_parameters_on_the_command_line():
+    options = ["--test", "straight_braking", "--test", "step_steer", "--workers", "1", "--json"]
+    for change in (
+        "straight_braking.speed=60 km/h",
+        "pedal=9 kN",
+        "step_steer.speed=100 km/h",
+        "lateral_acceleration=2",
+    ):
+        options += ["--set-test", change]
+    found = CliRunner().invoke(main, ["handling", str(CAR), *options])
+    assert found.exit_code == 0, found.output
+    tests = json.loads(found.stdout)["tests"]
+    braking, step = tests["straight_braking"], tests["step_steer"]
+    assert braking["parameters"] == {"speed": pytest.approx(60 / 3.6), "pedal": 9000}
+    values = {name: one["value"] for name, one in braking["metrics"].items()}
+    mass = sum(body.mass for body in stiffmbs.load_scene(CAR).bodies.values())
+    deceleration = values["mean fully developed deceleration"]
+    assert deceleration == pytest.approx(9000 / mass, rel=0.03), "the inertia of the wheels and drag nearly cancel"
+    assert values["distance"] == pytest.approx((60 / 3.6) ** 2 / (2 * deceleration) + 0.15 * 60 / 3.6, rel=0.05)
+    values = {name: one["value"] for name, one in step["metrics"].items()}
+    assert values["lateral acceleration, steady"] == pytest.approx(2, rel=0.05)
+    assert values["lateral acceleration, steady"] == pytest.approx(100 / 3.6 * values["yaw rate, steady"], rel=0.02)
+
+
+def test_parameters_are_changed_for_one_test_or_for_all_that_have_them():
+    defaults = {"step_steer": StepSteer(), "straight_braking": StraightBraking(), "sine_with_dwell": SineWithDwell()}
+    found = with_changes({"step_steer.speed": "100 km/h", "speed": 30, "sine_with_dwell.factors": "[2, 4]"}, defaults)
+    assert found["step_steer"] == StepSteer(speed=100 / 3.6), "the more particular one counts, in any order"
+    assert found["straight_braking"] == StraightBraking(speed=30)
+    assert found["sine_with_dwell"] == SineWithDwell(speed=30, factors=(2, 4))
+    assert defaults["step_steer"].speed == SPEED
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        ("step_steer.sped=3", "did you mean 'speed'?"),
+        ("ride.speed=3", "expected one that runs: step_steer, frequency_response"),
+        ("speed=3 kg", "which is in kg, expected a velocity in m/s"),
+        ("rise=0", "expected a value above zero"),
+        ("first=4 Hz", "expected first below last"),
+        ("speed", "expected PATH=VALUE"),
+    ],
+)
+def test_a_wrong_parameter_is_refused(change, sentence):
+    options = ["--test", "step_steer", "--test", "frequency_response", "--set-test", change]
+    found = CliRunner().invoke(main, ["handling", str(CAR), *options])
+    assert found.exit_code == 2
+    assert sentence in found.stderr
+
+
+def test_the_highest_speed_is_found_to_its_resolution():
+    for limit in (10.1, 13.37, 21.9):
+        tried = []
+
+        def passes(speed, limit=limit, tried=tried):
+            tried.append(speed)
+            return speed <= limit
+
+        assert limit - 0.25 < highest(passes, 8, 22, 0.25) <= limit
+        assert len(tried) == 2 + np.ceil(np.log2(14 / 0.25))
+    assert np.isnan(highest(lambda speed: False, 8, 22, 0.25))
+    assert highest(lambda speed: True, 8, 22, 0.25) == np.inf
+
+
+def test_a_sine_with_dwell_has_the_frequency_and_dwell_of_its_parameters():
+    formula = dwell_formula(2.0, SineWithDwell(frequency=0.5, dwell=1.0))
+    for t, exact in ((0.5, 0), (1.5, 2), (2, 0), (2.5, -2), (3.4, -2), (3.5, -2), (4, 0), (5, 0)):
+        value = eval(formula, {"t": t, "min": min, "max": max, "sin": np.sin, "pi": np.pi})
+        assert value == pytest.approx(exact, abs=1e-9), t
