@@ -96,6 +96,10 @@ WITHOUT: Mapping[str, str] = MappingProxyType(
             "it belongs to one kind of vehicle, with an example in examples/vehicles",
         ),
         **dict.fromkeys(
+            ("step_steer", "ramp_steer", "sine_with_dwell"),
+            "it drives a joint as a drive does, and tests/model/parts/test_manoeuvres.py compares it with its formula",
+        ),
+        **dict.fromkeys(
             ("air_spring", "hydromount", "viscoelastic_bushing"),
             "it carries a stated load, and tests/mechanisms/test_springs_of_vehicles.py compares it with its formula",
         ),
