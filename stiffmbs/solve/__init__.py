@@ -9,4 +9,4 @@ SOLVERS = {
     "projected": loaded_when_used(".explicit.projected", __name__),
     "kinematic": loaded_when_used(".kinematic", __name__),
 }
-"""Solvers by their name in the settings. A new solver needs an entry here and its name in `RunSettings.solver`."""
+"""Solvers by their name in the settings. A new solver needs an entry here and its name in `SolverName` (`stiffmbs.solver_names`)."""

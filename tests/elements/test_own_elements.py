@@ -11,7 +11,7 @@ import pytest
 import sympy
 
 import stiffmbs
-from stiffmbs import Body, InputError, Marker, Model, spatial
+from stiffmbs import Body, Drive, InputError, Joint, Marker, Model, spatial
 from stiffmbs.analyses.warm import usual_elements
 from stiffmbs.compile import record
 from stiffmbs.elements import own_elements
@@ -320,3 +320,31 @@ def test_only_joints_and_forces_are_registered():
     for wrong in (Body, 3):
         with pytest.raises(InputError, match=r"found no subclass of Joint or Force, expected one"):
             stiffmbs.register(wrong)
+
+
+class Track(Joint):
+    """A point on a line, whose displacement has a name of its own."""
+
+    kind = "track_of_tests"
+    equations = ("y",)
+    coordinates = ("along",)
+
+    i: Marker
+    j: Marker
+
+    @staticmethod
+    def position(e):
+        return [(e.i.point - e.j.point)[1]]
+
+    @staticmethod
+    def along(e):
+        return (e.i.point - e.j.point)[0]
+
+
+def test_a_drive_refuses_a_coordinate_that_is_neither_an_angle_nor_a_displacement():
+    model = Model()
+    model.add("b", Body(mass=1, inertia=1))
+    model.add("track", Track(i="b", j="ground"))
+    model.add("motor", Drive(joint="track", position="t"))
+    with pytest.raises(InputError, match="found 'track' of the type track_of_tests, expected a joint with a coordinate"):
+        stiffmbs.run(model)

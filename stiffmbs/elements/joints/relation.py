@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Self, cast
 
-from ...reading.joint_name import JointName
+from ...reading.joint_name import COORDINATES, JointName
 from ...reading.units import si
 from ..element import Element, Joint, Symbolic
 from ..initial_pose import initial_element
@@ -87,7 +87,7 @@ def unfit_joints(
         found, meant = f"found '{name}' of the type {joint.kind}, expected", name.coordinate_of(joint)
         if joint.coordinates and meant is None:
             yield field, f"{found} {' or '.join(f'{name.joint}.{own}' for own in joint.coordinates)}"
-        elif meant is None or sort not in (None, meant):
+        elif meant not in COORDINATES or sort not in (None, meant):
             yield field, f"{found} {SORTS[sort]}"
 
 
