@@ -150,7 +150,7 @@ def with_changes(given: Mapping[str, object], defaults: Mapping[str, Any]) -> di
                 f"test parameter {path}: found no parameter '{name}'{did_you_mean(name, known)}, expected one of {', '.join(known)}"
             )
         for each in reached:
-            found[each] = replace(found[each], **{name: _value(path, value, found[each], name)})
+            found[each] = replace(found[each], **{name: _value(f"{each}.{name}", value, found[each], name)})
     for test, one in found.items():
         for low, high in PAIRS:
             if hasattr(one, low) and getattr(one, low) >= getattr(one, high):

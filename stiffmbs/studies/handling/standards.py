@@ -262,7 +262,12 @@ def of_dwell(known: Known, test: SineWithDwell, runs: list[Run]) -> Metrics:
     displacements = []
     for factor, run in zip(test.factors, runs, strict=True):
         one = sine_with_dwell(
-            run["time"], run[STEER + "_seen"], run["vehicle.yaw_rate"], run["vehicle.y"], DWELL_BEGIN, dwell_end(test)
+            run["time"],
+            run[STEER + "_seen"] * known.ratio,
+            run["vehicle.yaw_rate"],
+            run["vehicle.y"],
+            DWELL_BEGIN,
+            dwell_end(test),
         )
         found[f"yaw rate ratio after 1 s, {factor:g} A"] = 100 * one.ratio_1, "%"
         found[f"yaw rate ratio after 1.75 s, {factor:g} A"] = 100 * one.ratio_1_75, "%"

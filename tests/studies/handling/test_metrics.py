@@ -1,5 +1,7 @@
 """Handling and ride metrics against closed forms, a bicycle model and the tables of ISO 2631-1."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from scipy.signal import lsim
@@ -98,6 +100,26 @@ def test_sine_with_dwell_of_a_yaw_rate_that_decays():
         assert found.stable
     spun = metrics.sine_with_dwell(time, steer, yaw_rate + np.where(time > end, 1.0, 0.0), time, begin, end)
     assert not spun.stable, "it spins in the direction of the first steering"
+
+
+@pytest.mark.parametrize("direction", [1, -1])
+def test_the_verdict_does_not_depend_on_the_direction_in_which_a_rack_steers(direction):
+    test = standards.SineWithDwell(factors=(5.0,))
+    time = np.arange(0, 6, 0.001)
+    end = standards.dwell_end(test)
+    left = np.select([time < 1, time < 1.714, time < end], [0.0, 1.0, -1.0], 0.0)
+    yaw_rate = 0.5 * left - np.where(time >= end, 0.5 * np.exp(-(time - end) / 0.5), 0.0)
+    run = {
+        "time": time,
+        "handling_steer_seen": direction * left,
+        "vehicle.yaw_rate": yaw_rate,
+        "vehicle.y": 2 * (time - 1),
+    }
+    known = standards.Known(SimpleNamespace(wheelbase=2.5), direction * 0.3, 0.0, 1.8, {})
+    found = standards.of_dwell(known, test, [run])
+    assert found["yaw rate ratio after 1 s, 5 A"][0] == pytest.approx(100 * np.exp(-2), rel=1e-2)
+    assert found["lateral displacement, 5 A and more"][0] == pytest.approx(2 * 1.07)
+    assert found["stable (1 yes, 0 no)"][0] == 1
 
 
 def test_a_ramp_ends_before_the_car_spins():
