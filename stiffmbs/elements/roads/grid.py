@@ -46,7 +46,7 @@ def read_grid(path: Path) -> Grid:
     InputError
         If it cannot be read; the message contains the line.
     """
-    rows = list(_rows(file_text(path), str(path)))
+    rows = list(_rows(file_text(path, expected="a grid of heights"), str(path)))
     if len(rows) < 3:
         raise InputError(
             f"{path}: found {len(rows)} rows of numbers, expected one of y and two or more of x and heights"

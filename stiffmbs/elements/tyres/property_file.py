@@ -153,7 +153,7 @@ def read_property_file(path: Path) -> PropertyFile:
     InputError
         If it cannot be read, or a line is neither a section, a key with a value, a row of numbers nor a comment.
     """
-    return parse_properties(file_text(path, otherwise="latin-1"), str(path))
+    return parse_properties(file_text(path, otherwise="latin-1", expected="a tyre property file"), str(path))
 
 
 def parse_properties(text: str, source: str) -> PropertyFile:

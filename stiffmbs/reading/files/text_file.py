@@ -31,7 +31,7 @@ def source_name(path: str | Path) -> str:
     return "standard input" if str(path) == STANDARD_INPUT else str(path)
 
 
-def file_text(path: str | Path, otherwise: str = "", zero: str = "") -> str:
+def file_text(path: str | Path, otherwise: str = "", zero: str = "", expected: str = "a scene") -> str:
     """Read a text file, or standard input for the name ``-``.
 
     Parameters
@@ -40,6 +40,8 @@ def file_text(path: str | Path, otherwise: str = "", zero: str = "") -> str:
         Encoding of a file that is neither UTF-8 nor UTF-16; such a file is refused if it is empty.
     zero : str
         Replacement of zero bytes; files with zero bytes are refused if it is empty.
+    expected : str
+        Kind of file, for messages.
 
     Raises
     ------
@@ -52,7 +54,7 @@ def file_text(path: str | Path, otherwise: str = "", zero: str = "") -> str:
     try:
         content = _standard_input() if str(path) == STANDARD_INPUT else content_of(path)
     except FileNotFoundError:
-        raise InputError(f"{source}: found no such file, expected a scene") from None
+        raise InputError(f"{source}: found no such file, expected {expected}") from None
     except (OSError, ValueError) as error:  # a name may contain characters that no file system accepts
         reason = getattr(error, "strerror", None) or error
         raise InputError(f"{quoted(source)}: the file cannot be read ({reason})") from None
