@@ -27,7 +27,7 @@ def read_flexible_body(path: str, changes: Sequence[tuple[str, str]] = ()) -> Fl
     InputError
         The message names the file and the line.
     """
-    text, source = file_text(path, expected="a mesh or matrices"), source_name(path)
+    text, source = file_text(path, expected="the description of a flexible body"), source_name(path)
     found = read_yaml(text, source)
     if not isinstance(found, dict):
         raise InputError(

@@ -345,5 +345,7 @@ def test_a_drive_refuses_a_coordinate_that_is_neither_an_angle_nor_a_displacemen
     model = Model()
     model.add("b", Body(mass=1, inertia=1))
     model.add("track", Track(i="b", j="ground"))
-    with pytest.raises(InputError, match="found 'track' of the type track_of_tests, expected a joint with a coordinate"):
+    with pytest.raises(
+        InputError, match="found 'track' of the type track_of_tests, expected a joint with a coordinate"
+    ):
         model.add("motor", Drive(joint="track", position="t"))
