@@ -54,10 +54,10 @@ class _FullNames(ast.NodeTransformer):
     def _taken(self, node: ast.expr) -> ast.expr:
         if not isinstance(node, ast.Name | ast.Attribute) or not self._names.dotted:
             return node
-        text = self._names.full(ast.unparse(node))
+        text = ast.unparse(node)
         body, marker = self._names.body_and_marker(text)
         known = body in self._names.bodies or body == GROUND
-        return _owned(body, marker) if known else _owned(*_halves(text))
+        return _owned(body, marker) if known else _owned(*_halves(self._names.full(text)))
 
 
 def _halves(text: str) -> tuple[str, str]:
