@@ -27,9 +27,14 @@ FOLDER = Path(__file__).with_name("shipped")
 
 
 @functools.cache
+def _files() -> dict[str, Path]:
+    """Return the file of each part of the package."""
+    return {file.stem: file for pattern in ("*.yaml", "driveline/*.yaml") for file in FOLDER.glob(pattern)}
+
+
 def shipped_parts() -> tuple[str, ...]:
     """Return the names of all parts of the package."""
-    return tuple(sorted(file.stem for file in FOLDER.glob("*.yaml")))
+    return tuple(sorted(_files()))
 
 
 def shipped_part(name: str) -> dict[str, Any] | None:
@@ -39,7 +44,7 @@ def shipped_part(name: str) -> dict[str, Any] | None:
 
 def shipped_text(name: str) -> str:
     """Return the text of the file of a part of the package."""
-    return (FOLDER / f"{name}.yaml").read_text(encoding="utf-8")
+    return _files()[name].read_text(encoding="utf-8")
 
 
 def about(name: str) -> str:
@@ -51,13 +56,13 @@ def included_texts(name: str) -> tuple[str, ...]:
     """Return the texts of the files that a part of the package includes."""
     found = read_yaml(shipped_text(name), f"{name}.yaml").get("include") or []
     names = [found] if isinstance(found, str) else found
-    return tuple((FOLDER / each).read_text(encoding="utf-8") for each in names)
+    return tuple((_files()[name].parent / each).read_text(encoding="utf-8") for each in names)
 
 
 @functools.cache
 def _read(name: str) -> dict[str, Any]:
     found: dict[str, Any]
-    found, _ = read_including(shipped_text(name), f"{name}.yaml", FOLDER / f"{name}.yaml")
+    found, _ = read_including(shipped_text(name), f"{name}.yaml", _files()[name])
     return found
 
 

@@ -100,6 +100,10 @@ WITHOUT: Mapping[str, str] = MappingProxyType(
             "it drives a joint as a drive does, and tests/model/parts/test_manoeuvres.py compares it with its formula",
         ),
         **dict.fromkeys(
+            ("steering_column", "differential", "driveline", "powertrain"),
+            "it connects bodies that rotate or slide, and tests/model/parts/test_driveline_parts.py compares it with hand calculations",
+        ),
+        **dict.fromkeys(
             ("air_spring", "hydromount", "viscoelastic_bushing"),
             "it carries a stated load, and tests/mechanisms/test_springs_of_vehicles.py compares it with its formula",
         ),
