@@ -7,6 +7,7 @@ import pytest
 
 import stiffmbs
 
+from ..conftest import EXAMPLE_SCENES
 from .scenes import cantilever, flying, flying_in_space, pendulum, right_angle, spin_up
 
 
@@ -113,6 +114,22 @@ joints:
 """)
     found = sorted(mode.frequency * math.tau for mode in stiffmbs.modes(scene).modes)[1:5]
     assert found == pytest.approx([191.83284, 196.15700, 953.53732, 1080.93587], rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("spin", "expected"),
+    [
+        (200, [191.83284, 196.15700, 953.53732, 1080.93587]),
+        (400, [189.46186, 198.12374, 883.13087, 1131.68886]),
+    ],
+)
+def test_whirl_of_the_rotor_of_the_examples(spin, expected):
+    """Whirl frequencies at two speeds, rad/s, from the same finite element model."""
+    changes = [("spin", spin), ("unbalance", 0), ("c", 0), ("n", 24)]
+    scene = stiffmbs.load_scene(EXAMPLE_SCENES["rotor"], changes)
+    rates = sorted(mode.natural_frequency * math.tau for mode in stiffmbs.modes(scene).modes)
+    found = [rate for rate in rates if rate > 1][:4]
+    assert found == pytest.approx(expected, rel=1e-4)
 
 
 def test_damping_is_that_of_the_stiffness():

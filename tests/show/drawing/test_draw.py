@@ -12,7 +12,7 @@ from stiffmbs import Body, Force, InputError, Joint, Model, Prismatic, Revolute,
 from stiffmbs.commands.main import main
 from stiffmbs.compile.quaternions import rotated
 from stiffmbs.show.drawing.as_json import drawing_json, poses_json
-from stiffmbs.show.drawing.deformed import modal_bodies
+from stiffmbs.show.drawing.deformed import interface_bodies, modal_bodies
 from stiffmbs.show.drawing.derive import drawing_of
 from stiffmbs.show.drawing.draw import state_drawn
 from stiffmbs.show.drawing.painted import LONGEST_ARROW, extent, largest_force, painted, stretched
@@ -51,7 +51,8 @@ def test_examples_are_drawn_as_they_are_described(scene):
     """Each body, and each element with a place, is on the picture, within the size that symbols are scaled to."""
     data = stiffmbs.load_scene(EXAMPLE_SCENES[scene])
     drawing, poses = state_drawn(data, described=True)
-    assert {part.body for part in drawing.parts} >= set(data.bodies) - modal_bodies(data)
+    hidden = modal_bodies(data) | set(interface_bodies(data))
+    assert {part.body for part in drawing.parts} >= set(data.bodies) - hidden
     view = view_named("", data.dimensions, drawing.gravity)
     assert all(np.isfinite(patch.points).all() for patch in painted(drawing, poses, 0, view))
     low, high = extent(drawing, poses, view)  # without road and floor
