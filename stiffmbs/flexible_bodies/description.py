@@ -166,7 +166,7 @@ class FlexibleBody(Described):
     mass : float, optional
         Stated mass, kg, compared with that of the model.
     stiffening : bool
-        Geometric stiffening, for a mesh.
+        True for geometric stiffening, of a mesh whose interfaces carry no heavy loads.
     """
 
     mesh: str | None = Field(None, description="file of a mesh of tetrahedra or hexahedra")
@@ -176,7 +176,7 @@ class FlexibleBody(Described):
     interfaces: dict[str, InterfaceOfNodes] = Field(default_factory=dict, description="nodes that move with markers")
     modes: int | UpTo = Field(20, description="number of normal modes, or up_to: a frequency")
     mass: si.PositiveMass | None = Field(None, description="stated mass, kg, to check units and density")
-    stiffening: bool = Field(True, description="geometric stiffening, by displacements of second order; of meshes only")
+    stiffening: bool = Field(False, description="geometric stiffening, by displacements of second order; of meshes only")
 
     @field_validator("modes", mode="before")
     @classmethod

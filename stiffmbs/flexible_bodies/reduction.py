@@ -117,7 +117,7 @@ class ReducedBody:
 
 def reduce(
     model: FiniteElements, interfaces: Sequence[Interface], count: int | None, highest: float | None = None,
-    stiffening: bool = True,
+    stiffening: bool = False,
 ) -> ReducedBody:  # fmt: skip
     """Reduce a model to its interfaces and normal modes.
 

@@ -38,8 +38,8 @@ def fast_rotation_notes(system: System, rows: OutputRows) -> Iterator[str]:
                 )
 
 
-INCLUDED = "included by displacements of second order"
-NOT_INCLUDED = "not included; describe the body by a mesh, or compare with a body divided into several"
+INCLUDED = "included by displacements of second order; compare with an exact beam if an interface carries a heavy load"
+NOT_INCLUDED = "not included; set stiffening: true for a mesh, or compare with a body divided into several"
 
 
 def _of_second_order(pairs: np.ndarray) -> bool:

@@ -88,7 +88,7 @@ def test_a_bent_bar_becomes_shorter(tmp_path):
     from stiffmbs.flexible_bodies.reduction import reduce
 
     model = bar(tmp_path, "hexahedron27", along=10, across=1)
-    body = reduce(model, [face(model, 0.0, "a"), face(model, LENGTH, "b")], 4)
+    body = reduce(model, [face(model, 0.0, "a"), face(model, LENGTH, "b")], 4, stiffening=True)
     axis = np.flatnonzero(np.linalg.norm(model.nodes[:, 1:] - (WIDTH / 2, HEIGHT / 2), axis=1) < 1e-9)
     axis = axis[np.argsort(model.nodes[axis, 0])]
     for mode in (0, 1):  # along z, then along y
