@@ -176,7 +176,9 @@ class FlexibleBody(Described):
     interfaces: dict[str, InterfaceOfNodes] = Field(default_factory=dict, description="nodes that move with markers")
     modes: int | UpTo = Field(20, description="number of normal modes, or up_to: a frequency")
     mass: si.PositiveMass | None = Field(None, description="stated mass, kg, to check units and density")
-    stiffening: bool = Field(False, description="geometric stiffening, by displacements of second order; of meshes only")
+    stiffening: bool = Field(
+        False, description="geometric stiffening, by displacements of second order; of meshes only"
+    )
 
     @field_validator("modes", mode="before")
     @classmethod

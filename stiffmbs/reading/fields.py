@@ -28,6 +28,7 @@ from pydantic_core import core_schema
 from ..errors import InputError
 from .did_you_mean import did_you_mean
 from .files.quoted import quoted, written
+from .files.yaml_text import quotes_hint
 from .formula.text import FormulaError
 from .units.quantity import in_si
 from .units.units import DIMENSIONS, one
@@ -117,6 +118,7 @@ class Described(_Base):
                 if key not in known:
                     raise ValueError(
                         f"found the unknown key '{quoted(key)}'{did_you_mean(key, known)}, expected one of {', '.join(known)}"
+                        f"{quotes_hint(key)}"
                     )
         return found
 

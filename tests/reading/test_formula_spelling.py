@@ -4,6 +4,7 @@ import ast
 
 import pytest
 
+import stiffmbs
 from stiffmbs.reading.formula.nodes import measured_markers
 from stiffmbs.reading.formula.text import FormulaError, parse
 
@@ -29,3 +30,10 @@ def test_a_formula_without_units_is_kept():
 def test_a_marker_that_is_named_often_is_made_once():
     first, again = (measured_markers(parse("dx(wheel, hub.axis)")) for _ in range(2))
     assert all(a is b for a, b in zip(first, again, strict=True))
+
+
+@pytest.mark.parametrize("law", ["step(t, 0, 0, 3, 1.5)", "step(t, 0, 1, 3, 1.5)"])
+def test_a_formula_whose_commas_split_a_mapping_gets_a_hint(law):
+    scene = f"bodies: {{b: {{mass: 1, inertia: 1}}}}\njoints:\n  m: {{type: drive, coordinate: b.x, position: {law}}}\n"
+    with pytest.raises(stiffmbs.InputError, match="a formula with commas needs quotes between braces"):
+        stiffmbs.read_scene(scene)

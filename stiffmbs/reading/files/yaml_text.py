@@ -13,6 +13,7 @@ from .quoted import quoted
 
 _DECIMAL = re.compile(r"-?(0|[1-9][0-9]{0,14})(\.[0-9]{1,15})?")
 """Numbers that YAML and Python read alike."""
+_PART_OF_FORMULA = re.compile(r"^[-+.]?\d|\)$")
 _OTHER_ENDS = re.compile("[\x85\u2028\u2029]")
 """Line ends of YAML 1.1 that YAML 1.2 does not have; it has only LF and CR."""
 
@@ -62,11 +63,16 @@ def _first_line(error: Exception) -> str:
     return next(iter(str(error).split("\n")), "") or type(error).__name__
 
 
+def quotes_hint(key: object) -> str:
+    """Return a hint if a key looks like a part of a formula whose commas a mapping in braces has split."""
+    return ": a formula with commas needs quotes between braces" if _PART_OF_FORMULA.search(str(key)) else ""
+
+
 def _reason(error: Any) -> str:
     problem = _first_line(Exception(error.problem or ""))
     if "duplicate key" in problem:
         key = problem.split('"')[1]
-        return f"found the name '{key}' twice, expected each name once"
+        return f"found the name '{key}' twice, expected each name once{quotes_hint(key)}"
     return f"found text that is not YAML ({problem})"
 
 
