@@ -80,7 +80,11 @@ def test_nothing_without_the_token(page, token):
 def test_another_host_or_origin_is_refused(page, heads, scene):
     before = scene.read_text()
     for path, content in (("start", None), ("save", {"text": "x", "over": True}), ("job", {"what": "solve"})):
-        assert Client(page).ask(path, content, **heads)[0] in (400, 403)
+        try:
+            status = Client(page).ask(path, content, **heads)[0]
+        except ConnectionError:  # the server closes an invalid request before it reads the body
+            continue
+        assert status in (400, 403)
     assert scene.read_text() == before
 
 
