@@ -310,3 +310,15 @@ def test_long_formulas_are_looked_through_once(monkeypatch, ending):
     assert len(of_time.inputs_of(system)) == (ending == "t")
     assert ends.first_input_end(system, 0.0, 1.0) is None
     assert len(asked) <= 30 * terms
+
+
+@pytest.mark.parametrize("solver", ["bdf", "radau", "auto"])
+def test_a_pulse_by_a_hyperbolic_cosine_is_not_missed(solver):
+    """The impulse of F/cosh((t - 3)/T) is pi F T: the velocity of 1 kg."""
+    width = 2e-4
+    scene = stiffmbs.read_scene(
+        "gravity: [0, 0]\nbodies: {b: {mass: 1, inertia: 1}}\n"
+        f"forces: {{f: {{type: force, i: b, force: [1e3/cosh((t - 3)/{width}), 0]}}}}\n"
+        f"run: {{duration: 10, points: 3, rtol: 1e-6, solver: {solver}}}\n"
+    )
+    assert stiffmbs.run(scene)["b.vx"][-1] == pytest.approx(1e3 * np.pi * width, rel=1e-3)

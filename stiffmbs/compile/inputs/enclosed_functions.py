@@ -33,6 +33,51 @@ def _turned(phase: float) -> Callable[[Enclosure], Enclosure]:
 sin, cos = _turned(np.pi / 2), _turned(0.0)
 
 
+def _hyperbolic(even: bool) -> Callable[[Enclosure], Enclosure]:
+    """Return cosh or sinh, which are each other's derivatives."""
+
+    def of(x: Enclosure) -> Enclosure:
+        def outer(k: int) -> Range:
+            rising = even != (k % 2 == 0)
+            return (np.sinh(x.value) if rising else between_turns(np.cosh, x.value, (0.0,))) / factorial(k)
+
+        return x.composed(outer)
+
+    return of
+
+
+sinh, cosh = _hyperbolic(False), _hyperbolic(True)
+
+
+def tanh(x: Enclosure) -> Enclosure:
+    """Return tanh: T' = 1 - T^2, T''/2 = -T T', T'''/6 = -T' (1 - 3 T^2)/3."""
+    T = np.tanh(x.value)
+    rate = between_turns(lambda z: 1 / np.cosh(z) ** 2, x.value, (0.0,))
+
+    def outer(k: int) -> Range:
+        third = (3 * power_range(T, 2) - 1) / 3
+        return (T, rate, -product(T, rate)[::-1], product(rate, third))[k]
+
+    return x.composed(outer)
+
+
+def atan(x: Enclosure) -> Enclosure:
+    """Return the arctangent: with x = tan(a), its derivatives have extrema at fixed angles."""
+    angle = np.arctan(x.value)
+
+    def outer(k: int) -> Range:
+        return (
+            lambda: angle,
+            lambda: between_turns(lambda a: np.cos(a) ** 2, angle, (0.0,)),
+            lambda: between_turns(lambda a: -np.sin(a) * np.cos(a) ** 3, angle, (-np.pi / 6, np.pi / 6)),
+            lambda: between_turns(
+                lambda a: (4 * np.sin(a) ** 2 - 1) * np.cos(a) ** 4 / 3, angle, (-np.pi / 4, 0.0, np.pi / 4)
+            ),
+        )[k]()
+
+    return x.composed(outer)
+
+
 def asin(x: Enclosure) -> Enclosure:
     """Return the arcsine; with P = 1 - x^2 its coefficients are P^(-1/2), x P^(-3/2)/2, (1 + 2 x^2) P^(-5/2)/6."""
     inside = np.clip(x.value, -1.0, 1.0)

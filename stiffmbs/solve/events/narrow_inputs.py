@@ -47,7 +47,7 @@ def hidden_peak(inputs: Sequence[Input], features: InputFeatures, times: np.ndar
         times[0], times[-1], float(np.max(np.diff(times), initial=0.0)), NARROW_INPUTS.most_samples
     )
     between = np.concatenate([parts.ravel(), narrow, features.breakpoints])
-    for given in inputs:
+    for given in inputs if len(between) else ():
         with np.errstate(all="ignore"):
             shown, values = given.at(times), given.at(between)
         if not (np.isfinite(shown).all() and np.isfinite(values).all()):
