@@ -35,17 +35,9 @@ ENCODING = "latin-1"
 def read_adams(text: str, changes: Sequence[tuple[str, str]] = (), source: str = "dataset") -> Scene:
     """Read a scene from the text of a dataset.
 
-    Parameters
-    ----------
-    changes : sequence of (path, text)
-        Values that replace those of the dataset, such as ``("bodies.PART_2.mass", "12 kg")``.
-    source : str
-        Name of the dataset in messages.
-
-    Raises
-    ------
-    InputError
-        If a statement cannot be read, or the dataset is not a valid model; names the line and the statement.
+    `changes`: values that replace those of the dataset, such as ``("bodies.PART_2.mass", "12 kg")``. `source`: name of
+    the dataset in messages. Raises InputError if a statement cannot be read, or the dataset is not a valid model; names
+    the line and the statement.
     """
     dataset, found = _scene(text, source)
     return made_scene(found, changes, source, lambda path: _line(dataset, path))

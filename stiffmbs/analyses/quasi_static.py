@@ -60,10 +60,7 @@ def quasi_static(model: Runnable, settings: RunSettings | None = None, **changes
 def equilibria_over_time(job: Job, times: np.ndarray) -> Iterator[Equilibrium]:
     """Yield the equilibria at given times, s, each from the pose of the previous one; the state is set to it.
 
-    Raises
-    ------
-    AssemblyError, SolverError
-        As for `quasi_static`.
+    Raises AssemblyError, SolverError as for `quasi_static`.
     """
     job.dynamics.state.q[:] = job.start.q
     for t in times:

@@ -32,14 +32,9 @@ def settled_in_motion(
 ) -> Settled:
     """Find an equilibrium in steady motion and assess its stability.
 
-    The search begins at the pose of `start`, with its spins of bodies that neither rolling constraints nor forces determine.
-
-    Raises
-    ------
-    InputError
-        If the motion has another number of dimensions, or a body cannot spin.
-    SolverError
-        If none is found, a joint prevents the motion, or the forces do not stay in balance.
+    The search begins at the pose of `start`, with its spins of bodies that neither rolling constraints nor forces
+    determine. Raises InputError if the motion has another number of dimensions, or a body cannot spin. Raises
+    SolverError if none is found, a joint prevents the motion, or the forces do not stay in balance.
     """
     found = _found(model, dynamics, start, t, described)
     values = _eigenvalues(dynamics, t, found)

@@ -17,14 +17,7 @@ class NotOwnError(Exception):
 def check_folder(path: Path) -> None:
     """Refuse a folder in which another user may replace files.
 
-    Parameters
-    ----------
-    path : Path
-        A nonexistent one is not refused.
-
-    Raises
-    ------
-    NotOwnError
+    `path`: a nonexistent one is not refused. Raises NotOwnError.
     """
     try:
         found = path.stat()
@@ -42,17 +35,8 @@ def check_folder(path: Path) -> None:
 def read_own(path: Path, secret: bool = False) -> bytes | None:
     """Return the content of a regular file of the user; None if it does not exist or cannot be read.
 
-    Parameters
-    ----------
-    path : Path
-        Symbolic links are not followed; pipes and devices do not block.
-    secret : bool
-        Whether to refuse files that others may read.
-
-    Raises
-    ------
-    NotOwnError
-        When it is not a regular file, or others may have written it.
+    `path`: symbolic links are not followed; pipes and devices do not block. `secret`: whether to refuse files that
+    others may read. Raises NotOwnError when it is not a regular file, or others may have written it.
     """
     flags = os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_CLOEXEC", 0)
     try:

@@ -118,10 +118,7 @@ def _with_standard_files() -> bool:
 def _flushed(told: bool) -> bool:
     """Flush standard output and return True on success; otherwise discard it, so that Python does not retry.
 
-    Parameters
-    ----------
-    told : bool
-        True if a failure was already reported: an unwritable buffer fails here a second time.
+    `told`: true if a failure was already reported: an unwritable buffer fails here a second time.
     """
     try:
         sys.stdout.flush()

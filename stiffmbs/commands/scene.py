@@ -89,10 +89,7 @@ def changes_of(options: dict[str, Any]) -> list[tuple[str, str]]:
 def start_of(scene: Scene, state: str | None, at: float | None, changes: list[tuple[str, str]]) -> dict[str, Any]:
     """Return the values of `state_options` as keywords of a job; the start is the state's time unless ``--set`` has it.
 
-    Raises
-    ------
-    InputError
-        If there is no such state.
+    Raises InputError if there is no such state.
     """
     if state is None:
         if at is not None:
@@ -108,10 +105,7 @@ def start_of(scene: Scene, state: str | None, at: float | None, changes: list[tu
 def solve_scene(path: str, scene: Scene, verified: bool, **start: Any) -> Solution:
     """Solve a scene with a progress bar, from the start of `start_of`.
 
-    Raises
-    ------
-    InputError, AssemblyError
-        The message names the file.
+    Raises InputError, AssemblyError: The message names the file.
     """
     from .progress import ProgressBar
 

@@ -37,19 +37,8 @@ def value_at_error(points: Iterable[tuple[float, float]], target: float) -> floa
     """Return the value at an error: on a line through several points about it, or between two neighbours.
 
     A point with a smaller error and a smaller value than the line counts with its own value.  Looser settings may take
-    longer where stability, not the error, limits steps; they make no solver slower.
-
-    Parameters
-    ----------
-    points : iterable of (float, float)
-        Errors and values, each positive.
-    target : float
-        Error.
-
-    Returns
-    -------
-    float or None
-        None if all errors are larger than the target, or there are none.
+    longer where stability, not the error, limits steps; they make no solver slower. `points`: errors and values, each
+    positive. `target`: error. The result: none if all errors are larger than the target, or there are none.
     """
     own = sorted(points, key=lambda point: point[0])
     if not own or own[0][0] > target:
@@ -150,10 +139,7 @@ def decades(rows: Sequence[Row], measure: str, resolved: float) -> list[float]:
 def times_at(rows: Sequence[Row], measure: str, resolved: float, targets: Sequence[float]) -> Iterator[AtError]:
     """Yield run times at given errors, interpolated between the neighbouring measurements.
 
-    Parameters
-    ----------
-    resolved : float
-        Error below which errors are not resolved.
+    `resolved`: error below which errors are not resolved.
     """
     done = [row for row in rows if row.errors and np.isfinite(row.errors[measure])]
     for target in targets:

@@ -153,10 +153,7 @@ def compare(
 def measured(swept: Iterator[Point], plan: Plan, tell: Tell) -> tuple[list[Point], bool]:
     """Return points with their times, and True if the user ended this early.
 
-    Raises
-    ------
-    KeyboardInterrupt
-        If the user ends it before there is any point.
+    Raises KeyboardInterrupt if the user ends it before there is any point.
     """
     points: list[Point] = []
     try:

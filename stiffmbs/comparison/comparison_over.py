@@ -153,12 +153,7 @@ class ComparisonOver:
 def crossings(values: Sequence[float], at: Sequence[AtError | None], entries: Sequence[Entry]) -> Iterator[Crossing]:
     """Yield the crossings of the best implicit and the best explicit integrator.
 
-    Parameters
-    ----------
-    values : sequence of float
-        Values of the parameter, in order.
-    at : sequence of AtError or None
-        Times at the error, by value.
+    `values`: values of the parameter, in order. `at`: times at the error, by value.
     """
     kinds = [[entry.name for entry in entries if entry.implicit], [entry.name for entry in entries if entry.explicit]]
     if not all(kinds):

@@ -62,17 +62,9 @@ class Entry:
 def entries_of(solvers: Sequence[str], formulations: Sequence[str], settings: RunSettings) -> tuple[Entry, ...]:
     """Return the requested solver configurations.
 
-    Parameters
-    ----------
-    solvers : sequence of str
-        ``bdf``, ``auto``, ``kinematic``, schemes of `projected`, or ``all``, which is all but ``kinematic``.
-    formulations : sequence of str
-        Formulations of bdf; by default that of the settings.
-
-    Raises
-    ------
-    InputError
-        If a name is unknown, or formulations are given without bdf among the solvers.
+    `solvers`: ``bdf``, ``auto``, ``kinematic``, schemes of `projected`, or ``all``, which is all but ``kinematic``.
+    `formulations`: formulations of bdf; by default that of the settings. Raises InputError if a name is unknown, or
+    formulations are given without bdf among the solvers.
     """
     names = [name for given in solvers for name in (KNOWN[:-1] if given == ALL else [given])]
     names = [DEFAULT_SCHEME if name == PROJECTED else name for name in dict.fromkeys(names)]

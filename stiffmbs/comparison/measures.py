@@ -34,13 +34,7 @@ MEASURES = {
 
 
 def measure_of(name: str) -> Measure:
-    """Return a measure by its name.
-
-    Raises
-    ------
-    InputError
-        If there is no such measure.
-    """
+    """Return a measure by its name. Raises InputError if there is no such measure."""
     if name not in MEASURES:
         near = did_you_mean(name, MEASURES)
         raise InputError(f"measure: found '{name}'{near}, expected one of {', '.join(MEASURES)}")

@@ -91,15 +91,8 @@ def plan_of(
 def numbers_of(found: Variation, per_decade: int) -> tuple[float, ...]:
     """Return the values of a variation in increasing order.
 
-    Parameters
-    ----------
-    per_decade : int
-        Number of values per decade of a range with equal ratios that has no count.
-
-    Raises
-    ------
-    InputError
-        If a value is not a number.
+    `per_decade`: number of values per decade of a range with equal ratios that has no count. Raises InputError if a
+    value is not a number.
     """
     if found.range is not None and not found.values:
         low, high = found.range.low, found.range.high
@@ -113,10 +106,7 @@ def numbers_of(found: Variation, per_decade: int) -> tuple[float, ...]:
 def base_settings(model: ModelData, settings: RunSettings | None, changes: Mapping[str, object]) -> RunSettings:
     """Return the settings of a comparison: the scene's own with changes, and output instants common to all solvers.
 
-    Raises
-    ------
-    InputError
-        If a setting is invalid, or is one that the comparison varies itself.
+    Raises InputError if a setting is invalid, or is one that the comparison varies itself.
     """
     own = [name for name in changes if name in OF_SOLVERS]
     if own:

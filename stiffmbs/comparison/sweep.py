@@ -66,12 +66,7 @@ class Sweep:
     def points(self, entry: Entry, values: Sequence[float], target: tuple[str, float] | None = None) -> Iterator[Point]:
         """Yield points from loose to tight, up to a run beyond the time limit, or to two settings beyond the target.
 
-        Parameters
-        ----------
-        values : sequence of float
-            Tolerances or steps, the loosest first.
-        target : (str, float), optional
-            A measure, and the required error.
+        `values`: tolerances or steps, the loosest first. `target`: a measure, and the required error.
         """
         beyond = 0
         for value in values:

@@ -64,10 +64,7 @@ class Document:
     def save(self, text: str, digest: str) -> str:
         """Write the file and return the digest of its new content.
 
-        Raises
-        ------
-        InputError
-            If there is no file, or if it is not that of the digest any more.
+        Raises InputError if there is no file, or if it is not that of the digest any more.
         """
         if self.file is None or not self.editable:
             raise InputError("found no file to save to, expected a page that was opened with one; use 'Download scene'")

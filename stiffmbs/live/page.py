@@ -107,10 +107,7 @@ def open(model: Any, port: int = 0, browser: bool = True, **changes: Any) -> Liv
 def _file(path: Path) -> Path:
     """Return the file of a scene, which may be a new one.
 
-    Raises
-    ------
-    InputError
-        If it has another suffix, or there is no such folder.
+    Raises InputError if it has another suffix, or there is no such folder.
     """
     if path.suffix.lower() not in SCENES:
         raise InputError(f"{path}: found '{path.suffix}', expected a scene in .yaml; stiffmbs convert makes one")

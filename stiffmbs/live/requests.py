@@ -59,13 +59,7 @@ class Request:
         return [str(name) for name in found] if isinstance(found, list) else []
 
     def number(self, field: str, least: float, greatest: float) -> float:
-        """Return a field that is a number within bounds.
-
-        Raises
-        ------
-        InputError
-            If it is not.
-        """
+        """Return a field that is a number within bounds. Raises InputError if it is not."""
         found = self.rest.get(field)
         if not isinstance(found, int | float) or not least <= found <= greatest:
             raise InputError(f"{field}: found {found!r}, expected a number from {least:g} to {greatest:g}")

@@ -77,12 +77,8 @@ class LiveSolver:
     def scene(self, text: str, numbers: Numbers) -> ModelData:
         """Return the scene of a text with other numbers.
 
-        Raises
-        ------
-        InputError
-            If it is not valid; the message contains the line.
-        NeedsConsent
-            If it runs Python functions, before `allow`.
+        Raises InputError if it is not valid; the message contains the line. Raises NeedsConsent if it runs Python
+        functions, before `allow`.
         """
         found = self._found(text, numbers)
         if not self._allowed:
@@ -114,10 +110,7 @@ class LiveSolver:
     def solve(self, text: str, numbers: Numbers, watch: ProgressCallback) -> Solved:
         """Solve a text with other numbers; return the last solution if they are the same.
 
-        Raises
-        ------
-        StiffmbsError
-            As for `stiffmbs.run`.
+        Raises StiffmbsError as for `stiffmbs.run`.
         """
         asked = tuple(numbers.items())
         if self.last is not None and (self.last.text, self.last.numbers) == (text, asked):

@@ -67,9 +67,7 @@ class SceneFlexibleBody(FlexibleBody):
 def with_flexible_bodies(raw: dict[str, Any], context: Mapping[str, Any]) -> dict[str, Any]:
     """Return a scene whose flexible bodies are replaced by their frames, modal coordinates and interfaces.
 
-    Raises
-    ------
-    InputError
+    Raises InputError.
     """
     if raw.get("dimensions", 2) != 3:
         raise InputError("dimensions: found a flexible body, expected 3: flexible bodies are in space")

@@ -25,11 +25,8 @@ SECTIONS = ("markers", "bodies", "states", "inputs", "joints", "forces", "reques
 def model_text(data: ModelData) -> str:
     """Return the text of a scene file of a model, with the parameters and tables that its formulas use.
 
-    Raises
-    ------
-    InputError
-        If two formulas have different values of a parameter, or different tables of the same name, or if a body is
-        flexible.
+    Raises InputError if two formulas have different values of a parameter, or different tables of the same name, or if
+    a body is flexible.
     """
     for name, body in data.bodies.items():
         if not body.rigid:

@@ -100,17 +100,8 @@ class Vehicle(Described):
 def with_vehicle(raw: dict[str, Any], context: Mapping[str, Any]) -> dict[str, Any]:
     """Return a scene with the channels of its section ``vehicle`` among its requests.
 
-    Parameters
-    ----------
-    raw : mapping
-        Spatial scene with its parts expanded.
-    context : mapping
-        Validation context.
-
-    Raises
-    ------
-    InputError
-        If the section is invalid, or names a body or a tyre that the scene lacks.
+    `raw`: spatial scene with its parts expanded. `context`: validation context. Raises InputError if the section is
+    invalid, or names a body or a tyre that the scene lacks.
     """
     if raw.get(VEHICLE) is None:
         return raw

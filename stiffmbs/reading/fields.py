@@ -191,17 +191,8 @@ class Measured:
 def named_entries(section: str, found: Any, values: str) -> Iterator[tuple[str, Any]]:
     """Yield the entries of a section of a scene.
 
-    Parameters
-    ----------
-    found : mapping or None
-        The section as written.
-    values : str
-        Kind of the entries, for messages.
-
-    Raises
-    ------
-    InputError
-        If the section is not a mapping, or a name is not an identifier.
+    `found`: the section as written. `values`: kind of the entries, for messages. Raises InputError if the section is
+    not a mapping, or a name is not an identifier.
     """
     if found is not None and not isinstance(found, dict):
         raise InputError(f"{section}: found {written(found)}, expected a mapping of names to {values}")

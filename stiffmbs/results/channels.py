@@ -56,11 +56,7 @@ def channels_of_model(rows: OutputRows) -> dict[str, np.ndarray]:
 def state_channels(system: System, q: np.ndarray, values: np.ndarray) -> dict[str, np.ndarray]:
     """Return values and rates of states, and the outputs of their equations, by name.
 
-    Parameters
-    ----------
-    q : ndarray, shape (n, n_q)
-    values : ndarray
-        Values of the set ``output``, one row per instant.
+    `q` of shape (n, n_q). `values`: values of the set ``output``, one row per instant.
     """
     channels = {name: q[:, system.first_state + k] for k, name in enumerate(system.states)}
     algebraic = {name for name, is_algebraic in zip(system.states, system.algebraic, strict=True) if is_algebraic}
@@ -94,10 +90,7 @@ def named(channels: Mapping[str, np.ndarray], name: str) -> np.ndarray:
 def series_of(model: ModelData, system: System, rows: OutputRows, name: str) -> np.ndarray:
     """Return one channel; for a joint or force, without computing the others.
 
-    Raises
-    ------
-    ChannelError
-        If there is no such channel.
+    Raises ChannelError if there is no such channel.
     """
     turns = name.rpartition(".")[2] in FREE_COORDINATES and system.of_body.dimensions == 3
     at = -1 if turns else system.reported.get(name, -1)
@@ -105,12 +98,7 @@ def series_of(model: ModelData, system: System, rows: OutputRows, name: str) -> 
 
 
 def turns_of(system: System, q: np.ndarray) -> dict[str, np.ndarray]:
-    """Return the revolution counters of angles, rad, by element and number: ``spring/0``.
-
-    Parameters
-    ----------
-    q : ndarray, shape (n, n_q)
-    """
+    """Return the revolution counters of angles, rad, by element and number: ``spring/0``. `q` of shape (n, n_q)."""
     if not system.n_counters:
         return {}
     return {f"{name}/{k}": q[:, place] for (name, k), place in counters_of(system).items()}

@@ -24,12 +24,7 @@ RAISED = (
 def readable(path: Path) -> Iterator[None]:
     """Read a regular file with arbitrary content.
 
-    Raises
-    ------
-    OSError
-        If it is not a regular file, or cannot be read.
-    ValueError
-        If its content cannot be read.
+    Raises OSError if it is not a regular file, or cannot be read. Raises ValueError if its content cannot be read.
     """
     check_regular(path)
     try:

@@ -108,10 +108,7 @@ class Balance:
 def energy_balance(system: System, rows: OutputRows, steps: np.ndarray) -> Balance:
     """Return the balance at the instants of a run; those without values are skipped.
 
-    Parameters
-    ----------
-    steps : ndarray
-        Ends of the solver's own steps, s; empty if unknown.
+    `steps`: ends of the solver's own steps, s; empty if unknown.
     """
     thinned, keeps_energy = slice(None, None, 1 + len(rows.t) // MOST_INSTANTS), system.keeps_energy
     with np.errstate(all="ignore"):  # a diverged run has no balance

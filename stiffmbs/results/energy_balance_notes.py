@@ -59,10 +59,7 @@ def balance_notes(
 ) -> Iterator[str]:
     """Yield a sentence if a balance is certainly broken.
 
-    Parameters
-    ----------
-    steps : ndarray
-        Ends of the solver's own steps, s; empty if unknown.
+    `steps`: ends of the solver's own steps, s; empty if unknown.
     """
     allowed = may_be_missing(system, balance, rows, settings)
     if balance.keeps_energy:

@@ -105,10 +105,7 @@ WRITERS: dict[str, Callable[[Path, Solution], None]] = {
 def check_output(path: Path, option: str = "-o") -> None:
     """Check that a file can be written, before anything is solved.
 
-    Raises
-    ------
-    InputError
-        If the suffix is unknown, or the folder or a package is missing.
+    Raises InputError if the suffix is unknown, or the folder or a package is missing.
     """
     refuse_path(option, path, WRITERS)
     if path.suffix == ".nc":
@@ -118,10 +115,7 @@ def check_output(path: Path, option: str = "-o") -> None:
 def refuse_path(option: str, path: Path, endings: Collection[str]) -> None:
     """Reject a file with an unknown suffix, or in a folder that is missing or not writable.
 
-    Raises
-    ------
-    InputError
-        The message names the option.
+    Raises InputError: The message names the option.
     """
     if path.suffix not in endings:
         raise InputError(f"{option} {path}: found the ending '{path.suffix}', expected one of {', '.join(endings)}")
@@ -160,10 +154,7 @@ def write_text(path: Path, text: str) -> None:
 def written_whole(path: Path, write_to: Callable[[Path], object]) -> None:
     """Write a file next to its place, and move it there when it is complete.
 
-    Parameters
-    ----------
-    write_to : callable
-        Function that writes to a given path.
+    `write_to`: function that writes to a given path.
     """
     if path.exists() and not path.is_file():  # a pipe or device
         write_to(path)

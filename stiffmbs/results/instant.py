@@ -83,13 +83,7 @@ class Instant(Mapping[str, np.ndarray]):
             self.__dict__.pop(kept, None)
 
     def value(self, name: str) -> float:
-        """Return a channel.
-
-        Raises
-        ------
-        ChannelError
-            If there is no such channel.
-        """
+        """Return a channel. Raises ChannelError if there is no such channel."""
         if name not in self._known:
             self._known[name] = self._request(name) if name in self._outputs else self._channel(name)
         return self._known[name]
@@ -158,10 +152,7 @@ class Instant(Mapping[str, np.ndarray]):
     def term(self, term: Term) -> float:
         """Return a measure between markers, or a component of an action.
 
-        Raises
-        ------
-        NotCompiledError
-            For a measure that few requests use.
+        Raises NotCompiledError for a measure that few requests use.
         """
         if term.element:
             return self._action(term)

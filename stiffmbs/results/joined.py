@@ -28,12 +28,8 @@ def joined(name: str, solutions: Sequence[Solution]) -> Solution:
     """Join the results of runs that follow each other in time.
 
     At each transition there are two rows of one time, before and after it; only the second is kept if no channel
-    changes. Channels that a run lacks are zero if they are forces or torques of an element, otherwise nan.
-
-    Parameters
-    ----------
-    solutions : sequence of Solution
-        At least one.
+    changes. Channels that a run lacks are zero if they are forces or torques of an element, otherwise nan. `solutions`:
+    at least one.
     """
     first = solutions[0]
     if len(solutions) == 1:

@@ -27,19 +27,9 @@ _FUNCTIONS: Functions = {name: function.array for name, function in FUNCTIONS.it
 def requested(model: ModelData, time: np.ndarray, channels: Channels, counters: Channels) -> dict[str, np.ndarray]:
     """Return the requests of a model at each instant.
 
-    Parameters
-    ----------
-    time : ndarray, shape (n,)
-        Times, s.
-    channels : mapping of str to ndarray
-        Channels of bodies, joints, forces and the whole model, shape (n,).
-    counters : mapping of str to ndarray
-        Revolution counters of angles, as `ModelData.angle_counters` names them, rad, shape (n,).
-
-    Returns
-    -------
-    dict of str to ndarray
-        Values by channel, shape (n,), in the order of the model.
+    `time` of shape (n,): times, s. `channels`: channels of bodies, joints, forces and the whole model, shape (n,).
+    `counters`: revolution counters of angles, as `ModelData.angle_counters` names them, rad, shape (n,). The result:
+    values by channel, shape (n,), in the order of the model.
     """
     outputs = model.outputs()
     functions = {name: _functions_of(output) for name, output in outputs.items()}

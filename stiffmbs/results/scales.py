@@ -60,18 +60,8 @@ def scales(
 ) -> dict[str, float]:
     """Return the size of each channel: the largest value of its body or element, but at least a part of all.
 
-    Parameters
-    ----------
-    size : float
-        Size of the mechanism, m.
-    requested : mapping of str to str
-        Channels that are requests, with their units.
-
-    Returns
-    -------
-    dict of str to float
-        Size in the unit of the channel; for requests the largest value of their components; zero where nothing moves or
-        acts.
+    `size`: size of the mechanism, m. `requested`: channels that are requests, with their units. The result: size in the
+    unit of the channel; for requests the largest value of their components; zero where nothing moves or acts.
     """
     own: dict[tuple[str, str], float] = {}
     kinds = {name: _kind(name, requested) for name in channels}

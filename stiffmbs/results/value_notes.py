@@ -20,12 +20,7 @@ def range_notes(
 ) -> Iterator[str]:
     """Yield a sentence for each element, with the extremes of its channels outside their ranges.
 
-    Parameters
-    ----------
-    ranges : mapping of str to (mapping of str to (float, float))
-        Valid ranges by element and channel.
-    series : callable
-        Returns the values of a channel at the output times.
+    `ranges`: valid ranges by element and channel. `series`: returns the values of a channel at the output times.
     """
     for name, of_element in ranges.items():
         acts = series(f"{name}.{ACTING}") > 0 if ACTING in of_element else slice(None)

@@ -53,10 +53,8 @@ WORLD = Placed(np.zeros(3), IDENTITY, np.zeros(3), np.zeros(3))
 def frames(robot: Robot, coordinates: Mapping[str, float], rates: Mapping[str, float]) -> dict[str, tuple[Placed, ...]]:
     """Return the frames of each link: on its parent, then after each of its joints; the last is the link's own.
 
-    Parameters
-    ----------
-    coordinates, rates : mappings of str to float
-        Coordinates of hinges and slides by name, rad or m, and their rates; missing ones are as drawn, and at rest.
+    `coordinates`, `rates`: coordinates of hinges and slides by name, rad or m, and their rates; missing ones are as
+    drawn, and at rest.
     """
     found: dict[str, tuple[Placed, ...]] = {}
     for link in robot.links:

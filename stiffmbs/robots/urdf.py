@@ -36,12 +36,8 @@ def read_urdf(text: str) -> Robot:
     """Read a robot from the text of a URDF file.
 
     The root link is fixed to ground. Joints with a ``<transmission>`` have an effort as input. If the file has no
-    transmission, joints with a positive effort limit have one.
-
-    Raises
-    ------
-    RobotFault
-        If the text is not URDF, or its links and joints are not a tree; names the link or joint.
+    transmission, joints with a positive effort limit have one. Raises RobotFault if the text is not URDF, or its links
+    and joints are not a tree; names the link or joint.
     """
     root = _parsed(text)
     links = dict(_named(root, "link"))

@@ -77,13 +77,7 @@ def _child(tag: str) -> str:
 
 
 def parsed(text: str, expected: str, defaults: Mapping[str, Mapping[str, Any]]) -> Node:
-    """Read an XML file; namespace prefixes need not be declared.
-
-    Raises
-    ------
-    RobotFault
-        For text that is not well-formed.
-    """
+    """Read an XML file; namespace prefixes need not be declared. Raises RobotFault for text that is not well-formed."""
     builder, parser = TreeBuilder(), ParserCreate()
     parser.StartElementHandler, parser.EndElementHandler = builder.start, builder.end
     parser.CharacterDataHandler = builder.data

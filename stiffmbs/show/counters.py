@@ -21,10 +21,7 @@ RESTARTS = {"breakpoints": ("input breakpoint", "input breakpoints"), "events": 
 def solver_lines(solver: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     """Yield label and text of each line on the solver of a run: its name, its steps, and their cost.
 
-    Parameters
-    ----------
-    solver : mapping of str
-        The statistics of a `Solution`.
+    `solver`: the statistics of a `Solution`.
     """
     chosen = {"scheme": "scheme", "linear_solver": "linear solver"}
     yield (

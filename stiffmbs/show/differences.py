@@ -20,15 +20,7 @@ NONE = 1e-9
 def differences_section(solution: Solution, name: str, other: Solution) -> Section:
     """Return the largest differences of a run from another one.
 
-    Parameters
-    ----------
-    name : str
-        Name of the other run.
-
-    Raises
-    ------
-    InputError
-        If the runs have no channels or times in common.
+    `name`: name of the other run. Raises InputError if the runs have no channels or times in common.
     """
     found = sorted(differences(solution, other), key=lambda one: -np.nan_to_num(one.relative))
     unequal = [one for one in found if one.relative > NONE]

@@ -55,10 +55,7 @@ class EscapingStream:
     def write(self, text: str | bytes) -> int:
         """Write text, or bytes in UTF-8, and return the length.
 
-        Raises
-        ------
-        TypeError
-            For empty bytes, with which click tests for a text stream.
+        Raises TypeError for empty bytes, with which click tests for a text stream.
         """
         if not text and not isinstance(text, str):
             raise TypeError("found bytes, expected text")

@@ -29,10 +29,7 @@ LARGEST = 1e100
 def check_figure(option: str, path: Path) -> None:
     """Check that a figure can be drawn to the path of an option, before anything is solved.
 
-    Raises
-    ------
-    InputError
-        If the suffix is unknown, or the folder or matplotlib is missing.
+    Raises InputError if the suffix is unknown, or the folder or matplotlib is missing.
     """
     refuse_path(option, path, ENDINGS)
     refuse_missing("matplotlib", "'stiffmbs[plot]'", f"{option} {path}: ")
@@ -103,10 +100,7 @@ def figure_of(
 ) -> Figure:
     """Return the figure to draw: the given channels, by default the scene's own figure or the total energy.
 
-    Raises
-    ------
-    InputError
-        If a run has no such channel.
+    Raises InputError if a run has no such channel.
     """
     if channels:
         figure = Figure(y=tuple(channels), x=against, z=z, title=title, equal=equal)
@@ -127,17 +121,8 @@ def draw_on(sheet: Sheet, solution: Solution, figure: Figure) -> None:
 def draw_runs(sheet: Sheet, runs: Mapping[str, Solution], figure: Figure) -> None:
     """Draw the same channels of several runs, with one plot for each unit and a legend below.
 
-    Parameters
-    ----------
-    sheet : matplotlib.figure.Figure
-        Empty sheet.
-    runs : mapping of str to Solution
-        Runs by their names in the legend; a single run may have no name.
-
-    Raises
-    ------
-    InputError
-        If a run has no such channel.
+    `sheet`: empty sheet. `runs`: runs by their names in the legend; a single run may have no name. Raises InputError if
+    a run has no such channel.
     """
     first = next(iter(runs.values()))
     units = [""] if figure.z else list(dict.fromkeys(first.unit(channel) for channel in figure.y))

@@ -99,13 +99,7 @@ def _listed(values: np.ndarray) -> str:
 def flexible_motion_as_dict(scene: str, motion: FlexibleMotion, nodes: Sequence[int]) -> dict[str, Any]:
     """Return the stresses, strain energy and displacements of a flexible body in a run, for JSON.
 
-    Parameters
-    ----------
-    scene : str
-        Name of the file.
-    motion : FlexibleMotion
-    nodes : sequence of int
-        Nodes whose displacements are reported.
+    `scene`: name of the file. `nodes`: nodes whose displacements are reported.
     """
     energy = motion.strain_energy()
     peaks = motion.peaks() if motion.model.solid is not None else {}

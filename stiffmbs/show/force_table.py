@@ -42,10 +42,7 @@ LOADS = Loads()
 def force_table(solution: Solution, most: int | None = None) -> Table:
     """Return a table with a row for each element; in space one for its force, and one for its torque if it has any.
 
-    Parameters
-    ----------
-    most : int, optional
-        Number of elements, those of the largest loads in the order of the scene; all by default.
+    `most`: number of elements, those of the largest loads in the order of the scene; all by default.
     """
     from rich.table import Table
 

@@ -44,13 +44,7 @@ def handling_text(scene: str, found: Handling) -> str:
 
 
 def write_handling(path: Path, found: Handling) -> None:
-    """Write the page of all tests, completely or not at all.
-
-    Raises
-    ------
-    OSError
-        If the file cannot be written.
-    """
+    """Write the page of all tests, completely or not at all. Raises OSError if the file cannot be written."""
     sections = [
         (_title(name, one), one.message, _rows(one), "" if one.message else data_url(_figure(name, one), "svg", 100))
         for name, one in found.tests.items()

@@ -169,13 +169,7 @@ def kc_figure(found: KinematicsAndCompliance) -> Sheet:
 
 
 def draw_kc(path: Path | str, found: KinematicsAndCompliance) -> None:
-    """Write the figure to a file.
-
-    Raises
-    ------
-    OSError
-        If the file cannot be written.
-    """
+    """Write the figure to a file. Raises OSError if the file cannot be written."""
     sheet = kc_figure(found)
     written_whole(Path(path), lambda part: sheet.savefig(part))
 

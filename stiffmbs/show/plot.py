@@ -35,10 +35,7 @@ def _has_screen() -> bool:
 def plotted_runs(runs: Mapping[str, Solution], figure: Figure, in_window: bool = False) -> Sheet:
     """Return the plots on a sheet; in a window, a figure of pyplot.
 
-    Parameters
-    ----------
-    runs : mapping of str to Solution
-        Runs by their names in the legend; a single run may have no name.
+    `runs`: runs by their names in the legend; a single run may have no name.
     """
     first = next(iter(runs.values()))
     plots = 1 if figure.z else len({first.unit(channel) for channel in figure.y})
@@ -55,24 +52,8 @@ def write_plot(path: Path, sheet: Sheet) -> None:
 def show_live(solutions: Iterator[Solution], channels: Sequence[str], against: str, title: str = "") -> Figure:
     """Draw each of the solutions as it arrives, in one window, until the last one or until the window is closed.
 
-    Parameters
-    ----------
-    solutions : iterator of Solution
-        Solutions as `stiffmbs.follow` yields them.
-    channels : sequence of str
-        Channels; by default the scene's own figure.
-    against : str
-        A channel, or time.
-
-    Returns
-    -------
-    Figure
-        Figure that was drawn.
-
-    Raises
-    ------
-    InputError
-        If a run has no such channel.
+    `solutions`: solutions as `stiffmbs.follow` yields them. `channels`: channels; by default the scene's own figure.
+    `against`: a channel, or time. The result: figure that was drawn. Raises InputError if a run has no such channel.
     """
     from matplotlib import pyplot
 

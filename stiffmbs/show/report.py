@@ -50,10 +50,7 @@ ENERGIES = Figure(title="energy (J)", y=("energy.kinetic", "energy.potential", "
 def check_report(path: Path) -> None:
     """Check that a report can be written, before anything is solved.
 
-    Raises
-    ------
-    InputError
-        If the suffix is not .html, or the folder or a package is missing.
+    Raises InputError if the suffix is not .html, or the folder or a package is missing.
     """
     refuse_path("-o", path, (".html",))
     for package in NEEDED:

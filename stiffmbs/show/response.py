@@ -12,11 +12,7 @@ from ..linear_analysis.transfer import Transfer
 def response_text(scene: str, found: Transfer, frequencies: np.ndarray, values: np.ndarray) -> str:
     """Return the gain and phase of each input and output at both ends, and at the peaks, as text.
 
-    Parameters
-    ----------
-    frequencies : ndarray, shape (n,)
-        Frequencies, Hz.
-    values : ndarray, shape (n, outputs, inputs)
+    `frequencies` of shape (n,): frequencies, Hz. `values` of shape (n, outputs, inputs).
     """
     lines = [f"{scene}: gain and phase from {frequencies[0]:g} Hz to {frequencies[-1]:g} Hz"]
     for i, name in enumerate(found.inputs):

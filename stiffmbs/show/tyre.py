@@ -47,13 +47,7 @@ def _label(curve: TyreCurve) -> str:
 
 
 def draw_tyre(path: Path, title: str, curves: Sequence[TyreCurve]) -> None:
-    """Write the figure to a file.
-
-    Raises
-    ------
-    OSError
-        If the file cannot be written.
-    """
+    """Write the figure to a file. Raises OSError if the file cannot be written."""
     sheet = tyre_figure(title, curves)
     written_whole(path, lambda part: sheet.savefig(part, dpi=120))
 

@@ -98,10 +98,7 @@ class CaseSolver:
     def scene(self, values: Sequence[Any]) -> Scene:
         """Return the scene of a case.
 
-        Raises
-        ------
-        InputError
-            If a value is not valid, or a file has changed since the study began.
+        Raises InputError if a value is not valid, or a file has changed since the study began.
         """
         found = self._other_forces.scene(values) if self._other_forces and len(values) else None
         if found is not None:
@@ -165,10 +162,7 @@ class CaseSolver:
     def job(self, scene: Scene, settings: RunSettings | None = None) -> Job:
         """Return a job for a scene, with changed numbers if the structure is known; errors as for `stiffmbs.run`.
 
-        Parameters
-        ----------
-        settings : RunSettings, optional
-            Settings of the run; by default those of the scene with the task's changes.
+        `settings`: settings of the run; by default those of the scene with the task's changes.
         """
         settings = settings or self._settings(scene.run)
         for k, known in enumerate(self._jobs):
@@ -203,10 +197,8 @@ def read_changed(written: WrittenScene, changes: Sequence[tuple[str, Any]], unch
 def written_scene(model: Any) -> WrittenScene:
     """Return the source from which the cases of a model are read.
 
-    Raises
-    ------
-    InputError
-        If the file cannot be read, the scene is a changed copy, or the model cannot be written as a scene.
+    Raises InputError if the file cannot be read, the scene is a changed copy, or the model cannot be written as a
+    scene.
     """
     from ..analyses.job import data_of
     from ..model.model_text import model_text

@@ -54,17 +54,9 @@ class Cases:
 def cases_of(variations: Sequence[Variation], sample: str | None = None, seed: int = 0) -> Cases:
     """Return the cases of variations.
 
-    Parameters
-    ----------
-    sample : str, optional
-        ``lhs:500``, ``sobol:512`` or ``random:500``; the full grid by default.
-    seed : int
-        Seed of the sample, which is reproducible.
-
-    Raises
-    ------
-    InputError
-        If a name occurs twice, a range of a grid has no count, there are too many cases, or the sample is invalid.
+    `sample`: ``lhs:500``, ``sobol:512`` or ``random:500``; the full grid by default. `seed`: seed of the sample, which
+    is reproducible. Raises InputError if a name occurs twice, a range of a grid has no count, there are too many cases,
+    or the sample is invalid.
     """
     names = [one.name for one in variations]
     if not names:

@@ -94,10 +94,7 @@ def _array(name: str, values: Sequence[Any]) -> np.ndarray:
 def check_output(path: Path) -> None:
     """Check that a file can be written, before anything is solved.
 
-    Raises
-    ------
-    InputError
-        If the suffix is unknown, or the folder or a package is missing.
+    Raises InputError if the suffix is unknown, or the folder or a package is missing.
     """
     from ..results.files import refuse_path
 

@@ -46,10 +46,7 @@ def rows_of(
 ) -> None:
     """Solve chunks of cases by an executor, and keep their rows as they are completed.
 
-    Raises
-    ------
-    SolverError
-        If workers of the executor end repeatedly.
+    Raises SolverError if workers of the executor end repeatedly.
     """
     if executor is None:
         for chunk in chunks:

@@ -58,10 +58,7 @@ class InputNumbers:
     def set(self, values: Mapping[str, float]) -> bool:
         """Change inputs; return True if any of them has a new value.
 
-        Raises
-        ------
-        InputError
-            If there is no such input, or its value is invalid.
+        Raises InputError if there is no such input, or its value is invalid.
         """
         changed = {name: value for name, value in values.items() if self.values.get(name) != value}
         if not changed:

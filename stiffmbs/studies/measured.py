@@ -34,15 +34,8 @@ class Measured:
 def measured(data: Any) -> Measured:
     """Return the data of a fit.
 
-    Parameters
-    ----------
-    data : mapping, Solution, pandas.DataFrame, str or Path
-        Channels by name with ``time``; a frame whose index is the time; or a file .csv, .npz or .nc of these.
-
-    Raises
-    ------
-    InputError
-        If times do not increase, or a channel has another length or no values.
+    `data`: channels by name with ``time``; a frame whose index is the time; or a file .csv, .npz or .nc of these.
+    Raises InputError if times do not increase, or a channel has another length or no values.
     """
     time, channels = _read(data)
     time = np.asarray(time, dtype=float)

@@ -70,10 +70,7 @@ class Output:
     def value(self, solution: Reported) -> float | np.ndarray:
         """Return the number, or the series over the output instants, of a run.
 
-        Raises
-        ------
-        InputError
-            If the formula names an unknown channel.
+        Raises InputError if the formula names an unknown channel.
         """
         with np.errstate(all="ignore"):
             found = _value(parsed(self.text).body, solution)
@@ -98,10 +95,7 @@ class Output:
 def outputs_of(found: Mapping[str, str] | list[str] | tuple[str, ...] | str) -> tuple[Output, ...]:
     """Return the outputs of a study from formulas, or from formulas by name.
 
-    Raises
-    ------
-    InputError
-        If a formula is invalid.
+    Raises InputError if a formula is invalid.
     """
     if isinstance(found, str):
         found = [found]

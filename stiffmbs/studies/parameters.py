@@ -29,10 +29,7 @@ class Sought:
     def point(self, values: Mapping[str, float]) -> np.ndarray:
         """Return the point of given values; missing values are the middle of their range.
 
-        Raises
-        ------
-        InputError
-            If a value is out of its range, or belongs to no parameter.
+        Raises InputError if a value is out of its range, or belongs to no parameter.
         """
         for name in values:
             if name not in self.names:
@@ -52,10 +49,7 @@ class Sought:
 def sought(parameters: Mapping[str, Any], scene: WrittenScene) -> Sought:
     """Return parameters of a scene with their ranges, each a `Range`, its text, or a pair of its ends.
 
-    Raises
-    ------
-    InputError
-        If there is no parameter, or a range is invalid.
+    Raises InputError if there is no parameter, or a range is invalid.
     """
     if not parameters:
         raise InputError("parameters: found none, expected one or more with their ranges")

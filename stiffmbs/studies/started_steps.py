@@ -44,17 +44,8 @@ class StartedSteps:
     def advance(self, t: float, end: float, features: InputFeatures) -> None:
         """Advance the state from time t to a later time.
 
-        Parameters
-        ----------
-        t, end : float
-            Times, s.
-        features : InputFeatures
-            Features of the inputs around these times.
-
-        Raises
-        ------
-        SolverError
-            If the end cannot be reached; the state is then unchanged.
+        `t`, `end`: times, s. `features`: features of the inputs around these times. Raises SolverError if the end
+        cannot be reached; the state is then unchanged.
         """
         if not (self.compiled and self._quickly(t, end, features) and self.compiled.advance(t, end)):
             self._run(t, end)
@@ -77,13 +68,7 @@ class StartedSteps:
 
 
 def sound(integrator: Integrator, reached: Reached) -> Reached:
-    """Return the state that an integrator has reached.
-
-    Raises
-    ------
-    SolverError
-        If the integrator fails.
-    """
+    """Return the state that an integrator has reached. Raises SolverError if the integrator fails."""
     integrator.reached = reached
     if reached.failure:
         raise SolverError(f"stopped at t = {reached.t:.9g} s: {reached.failure}")

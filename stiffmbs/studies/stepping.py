@@ -34,13 +34,7 @@ class Stepper(Protocol):
     u: np.ndarray
 
     def advance(self, t: float) -> None:
-        """Advance to a later time.
-
-        Raises
-        ------
-        SolverError
-            If it cannot be reached.
-        """
+        """Advance to a later time. Raises SolverError if it cannot be reached."""
 
     def jump(self) -> None:
         """Discard the history before the current state, as inputs jump here."""

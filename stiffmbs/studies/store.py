@@ -88,13 +88,7 @@ class Store:
             ) from None
 
     def _claim(self, parts: Mapping[str, str]) -> None:
-        """Assign a new file to a study, or check that it belongs to the study.
-
-        Raises
-        ------
-        InputError
-            If it does not.
-        """
+        """Assign a new file to a study, or check that it belongs to the study. Raises InputError if it does not."""
         tables = self._file.execute("select count(*) from sqlite_master").fetchone()[0]
         if tables and self._file.execute("pragma user_version").fetchone()[0] != FORMAT:
             raise self._of_another("stiffmbs")
@@ -138,10 +132,7 @@ class Store:
     def add(self, rows: Iterable[Row]) -> None:
         """Write rows, all or none of them.
 
-        Raises
-        ------
-        ChangedFileError
-            If a file that the case of a row names had different content in another case.
+        Raises ChangedFileError if a file that the case of a row names had different content in another case.
         """
         self._unwritten |= {row.case: row for row in rows}
         if failed := self._write_rest():

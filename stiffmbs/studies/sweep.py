@@ -205,10 +205,7 @@ def study_of(
 def _refuse_unfit(task: Task, cases: Cases) -> None:
     """Reject names that the scene does not have, and channels that no run has.
 
-    Raises
-    ------
-    InputError, AssemblyError
-        If neither the first nor the last case can be prepared.
+    Raises InputError, AssemblyError if neither the first nor the last case can be prepared.
     """
     solver, values_of = CaseSolver(task), cases.drawn or tuple(one.values for one in cases.variations)
     faults = []

@@ -77,10 +77,7 @@ class TyreCurve:
 def tyre_curves(tyre: TyreProperties, sweep: TyreSweep) -> list[TyreCurve]:
     """Return the curves of a tyre, load by load and pressure by pressure.
 
-    Raises
-    ------
-    InputError
-        For a pressure of a tyre of version 5.2.
+    Raises InputError for a pressure of a tyre of version 5.2.
     """
     if sweep.pressure and not tyre.formula.has_pressure:
         raise InputError("found a pressure for a tyre of version 5.2, expected a tyre of 6.1 or 6.2")

@@ -40,13 +40,8 @@ def of_separate_noise(J: Sequence[np.ndarray], r: Sequence[np.ndarray]) -> Uncer
 
     A channel loses as many degrees of freedom to the parameters as the sum of its leverages.  The variance of a
     parameter is a sum over channels, whose degrees of freedom are those of Satterthwaite, Biometrics Bulletin 2 (1946)
-    110-114.  If a channel has none left, common noise is assumed.
-
-    Parameters
-    ----------
-    J : sequence of ndarrays, shapes (n_k, p)
-        Derivatives of each channel's residuals, weighted so that all have about the same noise.
-    r : sequence of ndarrays, shapes (n_k,)
+    110-114.  If a channel has none left, common noise is assumed. `J`: derivatives of each channel's residuals,
+    weighted so that all have about the same noise.
     """
     information = np.array([part.T @ part for part in J])
     squares, counts = np.array([part @ part for part in r]), np.array([float(len(part)) for part in r])

@@ -19,19 +19,9 @@ Read = Callable[[str], str]
 def all_commands(text: str, read: Read | None = None, within: tuple[str, ...] = ()) -> Iterator[Statement]:
     """Yield the commands of a text and of the files that it executes; the latter have the line of their FILE/COMMAND.
 
-    Parameters
-    ----------
-    text : str
-        The content of a command file.
-    read : callable, optional
-        Reads another command file; without it FILE/COMMAND is refused.
-    within : tuple of str
-        The names of the files that execute this one.
-
-    Raises
-    ------
-    DatasetFault
-        If a file cannot be read, or executes itself.
+    `text`: the content of a command file. `read`: reads another command file; without it FILE/COMMAND is refused.
+    `within`: the names of the files that execute this one. Raises DatasetFault if a file cannot be read, or executes
+    itself.
     """
     for command in commands(text):
         name = command_file_of(command)

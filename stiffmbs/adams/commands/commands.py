@@ -88,15 +88,8 @@ class Commands:
 def read_commands(text: str, known: Collection[Key] = (), read: Read | None = None) -> Commands:
     """Read a command file for a dataset whose statements are `known` by name and number.
 
-    Parameters
-    ----------
-    read : callable, optional
-        Returns the text of another command file by its name; without it FILE/COMMAND is refused.
-
-    Raises
-    ------
-    DatasetFault
-        If the file cannot be read, or contains an unsupported command that changes results.
+    `read`: returns the text of another command file by its name; without it FILE/COMMAND is refused. Raises
+    DatasetFault if the file cannot be read, or contains an unsupported command that changes results.
     """
     segments: list[Segment] = []
     changes, settings = Changes(), dict[str, float]()

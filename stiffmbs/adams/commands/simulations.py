@@ -50,10 +50,7 @@ class Simulation:
     def length(self, start: float) -> float:
         """Return the length of the simulation from a given start, in the dataset's units.
 
-        Raises
-        ------
-        DatasetFault
-            If it ends before it starts.
+        Raises DatasetFault if it ends before it starts.
         """
         length = self.duration if self.end is None else self.end - start
         if length is None or not length > 0:
@@ -91,13 +88,7 @@ class Simulation:
 
 
 def read_simulation(command: Statement) -> Simulation:
-    """Read a SIMULATE command.
-
-    Raises
-    ------
-    DatasetFault
-        If it cannot be read, or has no end.
-    """
+    """Read a SIMULATE command. Raises DatasetFault if it cannot be read, or has no end."""
     found = Arguments(with_first_argument(command), "SIMULATE", (*KINDS, "END", "DURATION", "STEPS", "DTOUT"))
     analysis = found.one_of(*KINDS) or "TRANSIENT"
     limit, sampled = found.one_of("END", "DURATION"), found.one_of("STEPS", "DTOUT")
@@ -114,10 +105,7 @@ def read_simulation(command: Statement) -> Simulation:
 def one_run(simulations: Sequence[Simulation], units: Units) -> dict[str, Any] | None:
     """Return the settings of one run equivalent to consecutive simulations; None if they need several runs.
 
-    Raises
-    ------
-    DatasetFault
-        If a simulation ends before it starts.
+    Raises DatasetFault if a simulation ends before it starts.
     """
     first, time, between = simulations[0], 0.0, []
     for simulation in simulations:
@@ -143,10 +131,7 @@ def _same(one: float | None, other: float | None) -> bool:
 def refuse_velocities(line: int, dataset: Dataset) -> None:
     """Refuse a static simulation of a dataset with initial velocities: a run from equilibrium starts at rest.
 
-    Raises
-    ------
-    DatasetFault
-        With the first part or joint that has an initial velocity other than zero.
+    Raises DatasetFault with the first part or joint that has an initial velocity other than zero.
     """
     moving = [p.label for p in dataset.parts if any((*(p.velocity or ()), *(p.omega or ())))]
     moving += [joint.label for joint in dataset.joints.values() if any(velocity for *_, velocity in joint.start)]

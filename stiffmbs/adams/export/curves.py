@@ -60,10 +60,7 @@ class Curves:
     def pair(self, name: str) -> Iterator[str]:
         """Yield the statements of two curves in contact at the first joint of their body; nothing at its other joints.
 
-        Raises
-        ------
-        Refusal
-            If the joint does not belong to such a pair.
+        Raises Refusal if the joint does not belong to such a pair.
         """
         if name in self._parts_of_a_pair:
             return

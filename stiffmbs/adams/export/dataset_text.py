@@ -24,15 +24,8 @@ UNITS = ("FORCE = NEWTON", "MASS = KILOGRAM", "LENGTH = METER", "TIME = SECOND")
 def dataset_text(scene: SpatialData, source: str = "scene") -> str:
     """Return a spatial scene as an Adams/Solver dataset in SI units.
 
-    Parameters
-    ----------
-    source : str
-        Name of the scene in messages.
-
-    Raises
-    ------
-    InputError
-        If elements of the scene have no equivalent in Adams/Solver; names all of them.
+    `source`: name of the scene in messages. Raises InputError if elements of the scene have no equivalent in
+    Adams/Solver; names all of them.
     """
     numbering, names = Numbering(scene, touching(scene)), state_names(scene)
     functions = Functions(numbering, names, reactions(scene))

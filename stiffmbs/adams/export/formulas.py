@@ -46,15 +46,8 @@ class Functions:
     def text(self, law: Formula | Table | float, variable: str = "TIME") -> str:
         """Return the expression of a formula, a table of a variable, or a number.
 
-        Parameters
-        ----------
-        variable : str
-            Expression of the law's own variable, such as the deflection of a spring.
-
-        Raises
-        ------
-        Refusal
-            If Adams has no equivalent function.
+        `variable`: expression of the law's own variable, such as the deflection of a spring. Raises Refusal if Adams
+        has no equivalent function.
         """
         if isinstance(law, Table):
             return self._curve("of an element", law, variable)
@@ -63,13 +56,7 @@ class Functions:
         return self._with(dict.fromkeys(law.variables, f"({variable})"))._written(law.tree, law)
 
     def output(self, output: Output) -> str:
-        """Return the expression of a request for measures, coordinates and states.
-
-        Raises
-        ------
-        Refusal
-            As `text`.
-        """
+        """Return the expression of a request for measures, coordinates and states. Raises Refusal as `text`."""
         values = {name: quantity.value for name, quantity in output.quantities.items()}
         law = Formula(output.text, output.tree, (), values, velocities=True, tables=output.tables)
         terms = {placeholder(k): self._term(term) for k, term in enumerate(output.terms)}

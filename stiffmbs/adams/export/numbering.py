@@ -68,10 +68,7 @@ class Numbering:
     def spline(self, name: str, table: Table) -> tuple[str, int]:
         """Return the function that evaluates a table, and the number of its spline.
 
-        Raises
-        ------
-        Refusal
-            If Adams has no such interpolation, or the table has too few points.
+        Raises Refusal if Adams has no such interpolation, or the table has too few points.
         """
         way = table.ends if table.interpolation == "spline" else table.interpolation
         if way is None or way not in CURVES:

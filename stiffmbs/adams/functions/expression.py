@@ -37,10 +37,7 @@ class ExpressionError(ValueError):
 def parse(text: str) -> ast.expr:
     """Parse an expression of numbers, names, calls and the operators ``+ - * / **``; names become upper case.
 
-    Raises
-    ------
-    ExpressionError
-        If the text is not an expression.
+    Raises ExpressionError if the text is not an expression.
     """
     spelt = " ".join(_python_tokens(text))
     try:

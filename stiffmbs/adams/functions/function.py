@@ -56,10 +56,7 @@ class Function:
 def read_function(found: Arguments, name: str) -> Function | None:
     """Return the expression of an argument; None if it is missing.
 
-    Raises
-    ------
-    DatasetFault
-        If it is not an expression, or is a user subroutine.
+    Raises DatasetFault if it is not an expression, or is a user subroutine.
     """
     if name not in found:
         return None

@@ -24,10 +24,7 @@ PLANTS = {"PINVAL": "PINPUT", "POUVAL": "POUTPUT"}
 def input_values(dataset: Dataset) -> dict[str, float]:
     """Return the scene's inputs by name, in the dataset's units.
 
-    Raises
-    ------
-    DatasetFault
-        If an input or output is not a VARIABLE.
+    Raises DatasetFault if an input or output is not a VARIABLE.
     """
     found = {}
     for plant in _plants(dataset):

@@ -118,12 +118,7 @@ class Law:
         """Return the prescribed position or velocity of a drive by its field name.
 
         A velocity is prescribed directly if the motion starts at the initial pose. Otherwise it is integrated to a
-        position, as is an acceleration.
-
-        Parameters
-        ----------
-        initial : float
-            The displacement at the initial pose, m or rad.
+        position, as is an acceleration. `initial`: the displacement at the initial pose, m or rad.
         """
         order = self._motion.order
         if order == 0 or (order == 1 and (self._start is None or abs(self._start - initial) <= ROUNDING)):
@@ -145,10 +140,7 @@ class Law:
     def _integrated(self) -> str:
         """Return the function integrated from 0 to t, once or twice.
 
-        Raises
-        ------
-        DatasetFault
-            If the integral is not a formula.
+        Raises DatasetFault if the integral is not a formula.
         """
         import sympy as sp
 

@@ -51,13 +51,7 @@ def _vector(joint: Joint, letter: str, on_j: bool, mechanism: Mechanism) -> list
 
 
 def component_of(name: str, number_of_it: int, function: Function) -> str:
-    """Return the component with a given number.
-
-    Raises
-    ------
-    DatasetFault
-        If there is no such component.
-    """
+    """Return the component with a given number. Raises DatasetFault if there is no such component."""
     if not 1 <= number_of_it <= len(COMPONENTS):
         raise function.fault(f"found the component {number_of_it} of {name}, expected 1 to {len(COMPONENTS)}")
     return COMPONENTS[number_of_it - 1]

@@ -28,10 +28,7 @@ def spline_value(
 ) -> ast.expr:
     """Return the value of a spline and add its table to the mechanism.
 
-    Raises
-    ------
-    DatasetFault
-        If the spline does not exist, or a derivative is requested.
+    Raises DatasetFault if the spline does not exist, or a derivative is requested.
     """
     x, _, *rest = [*arguments, *[ast.Constant(0)] * 5][: max(4, len(arguments))]
     if name == "INTERP":

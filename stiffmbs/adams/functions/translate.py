@@ -60,10 +60,7 @@ class Translation:
     def formula(self, function: Function, unit: float = 1.0) -> str:
         """Return an expression as a formula, times a unit.
 
-        Raises
-        ------
-        DatasetFault
-            If it uses functions that scene formulas lack.
+        Raises DatasetFault if it uses functions that scene formulas lack.
         """
         return ast.unparse(times(self.translated(function), unit))
 

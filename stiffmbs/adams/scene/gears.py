@@ -24,10 +24,7 @@ from .relations import coupled_joint
 def gears(mechanism: Mechanism) -> dict[str, Any]:
     """Return the scene's gears by name.
 
-    Raises
-    ------
-    DatasetFault
-        If a joint is not on the carrier, or does not let the teeth move.
+    Raises DatasetFault if a joint is not on the carrier, or does not let the teeth move.
     """
     return {
         gear.name: meshed(gear, gear.joints, mechanism.place(gear.contact, gear, "CV"), mechanism)
@@ -38,10 +35,7 @@ def gears(mechanism: Mechanism) -> dict[str, Any]:
 def meshed(user: Numbered, joints: tuple[int, int], contact: Place, mechanism: Mechanism) -> dict[str, Any]:
     """Return the tooth constraint of two parts that mesh at a carrier marker; reported on the first joint's part.
 
-    Raises
-    ------
-    DatasetFault
-        As `gears`.
+    Raises DatasetFault as `gears`.
     """
     one, other = (_Wheel(user, ident, contact, mechanism) for ident in joints)
     gap = [one.displacement(), times(other.displacement(), -1.0)]

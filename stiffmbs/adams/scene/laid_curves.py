@@ -77,10 +77,7 @@ class LaidCurve:
 def laid_curve(user: Numbered, number: int, owner: Place, mechanism: Mechanism) -> LaidCurve:
     """Return the curve of a constraint in the axes of a marker.
 
-    Raises
-    ------
-    DatasetFault
-        If the curve does not exist, or cannot be represented as a spline over x or the angle.
+    Raises DatasetFault if the curve does not exist, or cannot be represented as a spline over x or the angle.
     """
     points, closed = _points(user, number, mechanism)
     frame = _plane(points, closed)

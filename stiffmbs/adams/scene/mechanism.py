@@ -159,13 +159,7 @@ class Mechanism:
             yield f"EXACT of {', '.join(exact)} is left out: assembly may move every part"
 
     def place(self, ident: int, user: Numbered | Function, name: str = "I") -> Place:
-        """Return a marker that a statement refers to.
-
-        Raises
-        ------
-        DatasetFault
-            If there is no such marker.
-        """
+        """Return a marker that a statement refers to. Raises DatasetFault if there is no such marker."""
         marker = self.dataset.markers.get(ident)
         if marker is None:
             raise user.fault(f"found {name} = {ident}, expected the number of a marker")

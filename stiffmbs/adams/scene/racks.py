@@ -28,11 +28,7 @@ def rolling(joint: Joint, mechanism: Mechanism) -> dict[str, Any]:
     """Return the tooth constraint, whose force acts on the pinion at the pitch line.
 
     If one carrier has the pinion on a hinge and the rack on a guide, it is the position-level constraint of a gear.
-
-    Raises
-    ------
-    DatasetFault
-        If neither the rack's position nor marker I defines the side of the pinion.
+    Raises DatasetFault if neither the rack's position nor marker I defines the side of the pinion.
     """
     i, j = mechanism.ends(joint)
     outward = _outward(joint, i, j)

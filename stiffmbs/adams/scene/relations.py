@@ -47,10 +47,7 @@ def _tied(tied: list[Joint], sorts: list[str], scales: list[float], mechanism: M
 def coupled_joint(user: Numbered, ident: int, mechanism: Mechanism) -> Joint:
     """Return a joint of a coupler or a gear.
 
-    Raises
-    ------
-    DatasetFault
-        If the joint does not exist, or has no displacement to couple.
+    Raises DatasetFault if the joint does not exist, or has no displacement to couple.
     """
     joint = mechanism.dataset.joints.get(ident)
     if joint is None:

@@ -24,13 +24,7 @@ SHAPES = {SPHERE: "ellipsoid", ELLIPSOID: "ellipsoid", CYLINDER: "cylinder", BOX
 
 
 def between_solids(contact: Contact, first: Shape, second: Shape, mechanism: Mechanism) -> dict[str, Any]:
-    """Return the element of a contact.
-
-    Raises
-    ------
-    DatasetFault
-        If no element supports this pair of shapes.
-    """
+    """Return the element of a contact. Raises DatasetFault if no element supports this pair of shapes."""
     one, other = (second, first) if is_swapped(first, second) else (first, second)
     kind = PAIRS.get((one.sort, other.sort))
     if kind is None and not (one.sort in SHAPES and other.sort in SHAPES):

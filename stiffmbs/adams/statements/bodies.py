@@ -72,12 +72,7 @@ _PART = (
 
 
 def read_part(statement: Statement, units: Units) -> Part:
-    """Read a part; its mass is checked once all markers are known.
-
-    Raises
-    ------
-    DatasetFault
-    """
+    """Read a part; its mass is checked once all markers are known. Raises DatasetFault."""
     found = Arguments(statement, "PART", _PART)
     frame = read_frame(found, "QG", "XG", "ZG", units.length)
     moments = found.numbers("IP", 3, 6) or (0.0,) * 6

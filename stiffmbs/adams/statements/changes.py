@@ -43,10 +43,7 @@ class Changes:
     def switched(self, command: Statement, active: bool, known: Collection[Key] = ()) -> Changes:
         """Return the changes after an ACTIVATE or DEACTIVATE command, by ID or by a RANGE of the `known` statements.
 
-        Raises
-        ------
-        DatasetFault
-            If the command names no statement, or one that cannot be deactivated.
+        Raises DatasetFault if the command names no statement, or one that cannot be deactivated.
         """
         found = Arguments(command, "ACTIVATE" if active else "DEACTIVATE", ("ID", "RANGE"))
         name = keyword(command.ident.upper())
@@ -71,10 +68,7 @@ class Changes:
     def applied(self, named: Sequence[tuple[str | None, Statement]]) -> list[tuple[str | None, Statement]]:
         """Return the statements of a dataset after the changes, without inactive ones.
 
-        Raises
-        ------
-        DatasetFault
-            If a changed statement does not exist.
+        Raises DatasetFault if a changed statement does not exist.
         """
         known = {key_of(statement) for _, statement in named}
         for key, line in (*((key, c[0].line) for key, c in self.altered.items()), *self.inactive.items()):

@@ -129,13 +129,7 @@ def _friction(found: Arguments) -> Friction | None:
 
 
 def read_shape(statement: Statement) -> Shape:
-    """Return the solid or the plane of a GRAPHICS statement.
-
-    Raises
-    ------
-    DatasetFault
-        If it is of another kind.
-    """
+    """Return the solid or the plane of a GRAPHICS statement. Raises DatasetFault if it is of another kind."""
     words = [piece.text.strip().upper() for piece in statement.pieces]
     sort = next((full for word in words for full in _SHAPES if len(word) > 2 and full.startswith(word)), "no kind")
     if sort not in _SIZES:

@@ -112,10 +112,7 @@ class Dataset:
 def read_dataset(text: str, changes: Changes = NO_CHANGES) -> Dataset:
     """Read the text of a dataset and apply the changes of commands.
 
-    Raises
-    ------
-    InputError
-        If a statement cannot be read, or defines an unsupported mass, force or constraint.
+    Raises InputError if a statement cannot be read, or defines an unsupported mass, force or constraint.
     """
     title, found, ended = all_statements(text)
     named = changes.applied([(keyword(statement.word), statement) for statement in found])
@@ -187,9 +184,7 @@ def _data(
 def read_statement(name: str, statement: Statement, units: Units, before: Part | None = None) -> Any:
     """Read a statement by its full name; `before` is the preceding part, which carries a marker.
 
-    Raises
-    ------
-    DatasetFault
+    Raises DatasetFault.
     """
     if name == "MARKER":
         return read_marker(statement, units, before)

@@ -43,17 +43,9 @@ class Frame:
 def read_frame(found: Arguments, origin: str, x_point: str, z_point: str, length: float) -> Frame:
     """Return the frame of a statement, given by a point and Euler angles, or by points on its axes.
 
-    Parameters
-    ----------
-    origin, x_point, z_point : str
-        Names of the three points: QP, XP, ZP of a marker, QG, XG, ZG of a part.
-    length : float
-        The dataset's unit of length, m.
-
-    Raises
-    ------
-    DatasetFault
-        If both angles and points are given, or points coincide with the origin or are collinear with it.
+    `origin`, `x_point`, `z_point`: names of the three points: QP, XP, ZP of a marker, QG, XG, ZG of a part. `length`:
+    the dataset's unit of length, m. Raises DatasetFault if both angles and points are given, or points coincide with
+    the origin or are collinear with it.
     """
     point = np.array(found.numbers(origin, 3) or (0.0, 0.0, 0.0)) * length
     angles = found.numbers("REULER", 3)

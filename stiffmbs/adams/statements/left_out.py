@@ -41,12 +41,7 @@ _ARRAY = re.compile(r"\s*(?:X|XD|Y)\s*=\s*(\d+)\s*", re.IGNORECASE)
 def is_unread_system(name: str | None, statement: Statement, every: Sequence[Statement]) -> bool:
     """Return True for a GSE if no function reads its arrays X, XD or Y.
 
-    Parameters
-    ----------
-    name : str or None
-        Full name of the statement.
-    every : sequence of Statement
-        All statements of the dataset.
+    `name`: full name of the statement. `every`: all statements of the dataset.
     """
     if name != "GSE":
         return False

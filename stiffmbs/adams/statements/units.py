@@ -58,13 +58,7 @@ _SYSTEMS = {
 
 
 def read_units(statement: Statement) -> Units:
-    """Read a UNITS statement.
-
-    Raises
-    ------
-    DatasetFault
-        If a unit is unknown, or some of the four are missing.
-    """
+    """Read a UNITS statement. Raises DatasetFault if a unit is unknown, or some of the four are missing."""
     found = Arguments(statement, "UNITS", (*_KINDS, "SYSTEM", "UCF"))
     if found.one_of("SYSTEM", "UCF") == "SYSTEM":
         return Units(*map(_factor, _named(found, "SYSTEM", _SYSTEMS)))

@@ -37,12 +37,8 @@ def at_state(
 ) -> AtState:
     """Return a model at its start, or at a time of its motion, s; `start_from` and changes of settings as for `stiffmbs.run`.
 
-    Raises
-    ------
-    InputError, AssemblyError
-        As for `stiffmbs.run`.
-    SolverError
-        If the run does not reach that time, or no accelerations are found there.
+    Raises InputError, AssemblyError as for `stiffmbs.run`. Raises SolverError if the run does not reach that time, or
+    no accelerations are found there.
     """
     job = prepare(model, settings, start_from, **changes)
     t = job.grid.start

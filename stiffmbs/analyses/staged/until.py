@@ -74,12 +74,8 @@ def run_until(
 ) -> Ended:
     """Solve up to the condition that ends the stage, or over the whole time, with changes of settings and ``start_from``.
 
-    `interval` is the time between output points, s; None for the solver's own steps.
-
-    Raises
-    ------
-    InputError
-        If a condition names no request, is true at the start, or becomes true more than `MOST` times.
+    `interval` is the time between output points, s; None for the solver's own steps. Raises InputError if a condition
+    names no request, is true at the start, or becomes true more than `MOST` times.
     """
     given, ended_by = dict(inputs or {}), ""
     parts: list[Solution] = []

@@ -14,10 +14,7 @@ INSTALLED_IN = ("share", "stiffmbs", "examples")
 def examples_folder() -> Path:
     """Return the folder of the examples, in the source tree from which the package is imported or installed.
 
-    Raises
-    ------
-    InputError
-        If there is none.
+    Raises InputError if there is none.
     """
     from importlib.metadata import PackageNotFoundError, files
 
@@ -46,10 +43,7 @@ def scene_files() -> dict[str, Path]:
 def scene_file(name: str) -> Path:
     """Return the file of an example, by its name with or without ``.yaml``.
 
-    Raises
-    ------
-    InputError
-        If there is no such example.
+    Raises InputError if there is no such example.
     """
     found = scene_files()
     path = found.get(name.removesuffix(".yaml"))

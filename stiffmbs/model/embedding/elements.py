@@ -30,19 +30,8 @@ from .fields import oriented, plain, same
 def element_in_space(element: Element, angles: Angles) -> Written:
     """Return the fields of the equivalent spatial element in the x-y plane.
 
-    By default that is the spatial kind of the same name, with fields of the same meaning.
-
-    Parameters
-    ----------
-    element : Element
-        Planar element.
-    angles : Angles
-        Angles of its model.
-
-    Raises
-    ------
-    InputError
-        If there is no equivalent.
+    By default that is the spatial kind of the same name, with fields of the same meaning. `element`: planar element.
+    `angles`: angles of its model. Raises InputError if there is no equivalent.
     """
     kinds = JOINTS if isinstance(element, Joint) else FORCES
     if element.kind not in kinds:

@@ -31,10 +31,7 @@ CHANNELS = {"omega": "wz", "alpha": "wdz", "torque": "tz"}
 def scene_in_space(data: PlanarData) -> Written:
     """Return the spatial scene of a planar model in the x-y plane of the ground.
 
-    Raises
-    ------
-    InputError
-        For an element without a spatial counterpart; the message names it.
+    Raises InputError for an element without a spatial counterpart; the message names it.
     """
     angles = Angles(data)
     joints = _elements("joints", data.joints, angles)

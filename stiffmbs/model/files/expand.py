@@ -33,10 +33,7 @@ _BRACES = re.compile(r"\{([^{}]*)\}")
 def set_value(scene: dict[str, Any], path: str, value: Any) -> None:
     """Set the value at a path such as ``bodies.cart.mass``, ``run.rtol`` or the bare name of a parameter.
 
-    Raises
-    ------
-    InputError
-        If the path passes through a value that has no keys.
+    Raises InputError if the path passes through a value that has no keys.
     """
     if path in (scene.get("parameters") or {}):
         path = f"parameters.{path}"
@@ -85,15 +82,8 @@ def refuse_unused_parameters(
 ) -> None:
     """Refuse a change that adds a parameter which no other change uses; a misspelt name would have no effect.
 
-    Parameters
-    ----------
-    sections : collection of str
-        Sections that a scene may have.
-
-    Raises
-    ------
-    InputError
-        If there is no such parameter; lists the parameters of the scene.
+    `sections`: sections that a scene may have. Raises InputError if there is no such parameter; lists the parameters of
+    the scene.
     """
     known = scene.get("parameters") or {}
     added = {
@@ -118,15 +108,8 @@ def refuse_unused_parameters(
 def read_parameters(found: Any, replaced: Mapping[str, Quantity] | None = None) -> dict[str, Quantity]:
     """Read the parameters of a scene; each may use the ones above it.
 
-    Parameters
-    ----------
-    replaced : mapping of str to Quantity, optional
-        Original values of parameters set from outside: a plain number takes the SI unit of the value that it replaces.
-
-    Raises
-    ------
-    InputError
-        If a name is not an identifier or is the name of a unit, or a value is not a number.
+    `replaced`: original values of parameters set from outside: a plain number takes the SI unit of the value that it
+    replaces. Raises InputError if a name is not an identifier or is the name of a unit, or a value is not a number.
     """
     parameters: dict[str, Quantity] = {}
     for name, value in named_entries("parameters", found, "numbers"):
@@ -161,10 +144,7 @@ def replaced_parameters(scene: dict[str, Any], changes: Sequence[tuple[str, Any]
 def read_tables(found: Any, parameters: Mapping[str, Quantity]) -> dict[str, Table]:
     """Read the tables of a scene, which its formulas can call as functions.
 
-    Raises
-    ------
-    InputError
-        If a name is not an identifier or has a meaning in formulas, or a table cannot be read.
+    Raises InputError if a name is not an identifier or has a meaning in formulas, or a table cannot be read.
     """
     tables = {}
     for name, table in named_entries("tables", found, "tables"):
@@ -180,10 +160,7 @@ def read_tables(found: Any, parameters: Mapping[str, Quantity]) -> dict[str, Tab
 def repeat_entries(section: str, entries: Any, parameters: Mapping[str, Quantity]) -> Any:
     """Replace each entry with a ``for`` by the entries that it generates.
 
-    Raises
-    ------
-    InputError
-        If the loop cannot be read, or two entries have the same name.
+    Raises InputError if the loop cannot be read, or two entries have the same name.
     """
     if not isinstance(entries, dict):
         return entries

@@ -37,12 +37,7 @@ OF_SCENES = frozenset(("stiffmbs", "ast", "builtins", "collections", "numpy", "p
 def read_scene_file(text: str, changes: Sequence[tuple[str, Any]], source: str, file: Path) -> Scene:
     """Read a scene, or its cached form; results and errors are those of `stiffmbs.model.read_scene.read_scene`.
 
-    Parameters
-    ----------
-    text : str
-        Text of the file.
-    source : str
-        Name of the scene in messages.
+    `text`: text of the file. `source`: name of the scene in messages.
     """
     with uncollected():
         name = f"{SCENE}-{digest(str(file.resolve()), str(file), source, repr([tuple(pair) for pair in changes]))}"

@@ -111,10 +111,7 @@ class Stage(Described):
 def written_stages(scene: WrittenScene, stages: Sequence[Stage]) -> list[WrittenScene]:
     """Return each stage as a scene of its own.
 
-    Raises
-    ------
-    InputError
-        If a change from outside concerns a setting that each stage has for itself.
+    Raises InputError if a change from outside concerns a setting that each stage has for itself.
     """
     for path, _ in scene.changes if len(stages) > 1 else ():
         if path.partition(".")[0] == "run" and path.partition(".")[2] in OWN_SETTINGS:
@@ -179,10 +176,7 @@ AT_START = "at_start"
 def with_held(scene: WrittenScene) -> WrittenScene:
     """Return the scene with the initial-condition joints among its own.
 
-    Raises
-    ------
-    InputError
-        If one of them has the name of a permanent joint.
+    Raises InputError if one of them has the name of a permanent joint.
     """
     content = dict(scene.content)
     held, joints = content.pop(AT_START, None), dict(content.get("joints") or {})

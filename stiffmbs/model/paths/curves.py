@@ -58,17 +58,8 @@ class Curve:
 def curve_through(points: np.ndarray, closed: bool = False) -> Curve:
     """Return the parametric cubic spline through points, over its arc length.
 
-    Parameters
-    ----------
-    points : ndarray, shape (n, 2)
-        Distinct consecutive points, m.
-    closed : bool
-        True for a lap, whose last point joins the first one.
-
-    Raises
-    ------
-    ValueError
-        If there are fewer than two points (three of a lap), or two consecutive points coincide.
+    `points` of shape (n, 2): distinct consecutive points, m. `closed`: true for a lap, whose last point joins the first
+    one. Raises ValueError if there are fewer than two points (three of a lap), or two consecutive points coincide.
     """
     from scipy.interpolate import CubicSpline
 

@@ -50,12 +50,7 @@ class Lane:
 def iso3888_1(width: float, offset: float = 3.5) -> tuple[Lane, ...]:
     """Return the lanes of the double lane change of ISO 3888-1, from x = 0, with the second one to the left.
 
-    Parameters
-    ----------
-    width : float
-        Width of the vehicle without mirrors, m.
-    offset : float
-        Distance between the centre lines, m.
+    `width`: width of the vehicle without mirrors, m. `offset`: distance between the centre lines, m.
     """
     rows = ((0.0, 15.0, 1.1, 0.0), (45.0, 70.0, 1.2, offset), (95.0, 125.0, 1.3, 0.0))
     return tuple(_lane(start, end, centre, factor * width + 0.25) for start, end, factor, centre in rows)
@@ -64,10 +59,7 @@ def iso3888_1(width: float, offset: float = 3.5) -> tuple[Lane, ...]:
 def iso3888_2(width: float) -> tuple[Lane, ...]:
     """Return the lanes of the obstacle avoidance of ISO 3888-2, from x = 0; the second one is 1 m to the left.
 
-    Parameters
-    ----------
-    width : float
-        Width of the vehicle without mirrors, m.
+    `width`: width of the vehicle without mirrors, m.
     """
     first, second, third = 1.1 * width + 0.25, width + 1.0, max(1.3 * width + 0.25, 3.0)
     avoiding = first / 2 + 1.0 + second / 2
@@ -90,21 +82,9 @@ def _lane(start: float, end: float, centre: float, width: float) -> Lane:
 def path_through(lanes: tuple[Lane, ...], width: float, before: float, after: float) -> np.ndarray:
     """Return points of the smoothest path of a vehicle's centre through lanes.
 
-    The squares of the second and third derivatives of y(x) are minimal, while the vehicle stays within part of the
-    free width of each lane.
-
-    Parameters
-    ----------
-    lanes : tuple of Lane
-    width : float
-        Width of the vehicle, m.
-    before, after : float
-        Straight distances before the first and after the last lane, m.
-
-    Returns
-    -------
-    ndarray, shape (n, 2)
-        x and y, m.
+    The squares of the second and third derivatives of y(x) are minimal, while the vehicle stays within part of the free
+    width of each lane. `width`: width of the vehicle, m. `before`, `after`: straight distances before the first and
+    after the last lane, m. The result of shape (n, 2): x and y, m.
     """
     from scipy.optimize import lsq_linear
 

@@ -98,15 +98,7 @@ class Path(Described):
 def with_path(raw: dict[str, Any], parameters: Mapping[str, Any]) -> dict[str, Any]:
     """Return a scene with the tables of its section ``path``.
 
-    Parameters
-    ----------
-    raw : mapping
-    parameters : mapping of str to Quantity
-
-    Raises
-    ------
-    InputError
-        If the section is invalid, or a table of the scene has the name of one of its tables.
+    Raises InputError if the section is invalid, or a table of the scene has the name of one of its tables.
     """
     if raw.get(PATH) is None:
         return raw

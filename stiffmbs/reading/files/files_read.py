@@ -54,10 +54,7 @@ def file_beside(context: Mapping[str, Any], name: str | Path) -> Path:
 def content_of(path: str | Path, largest: int = LARGEST) -> bytes:
     """Read a regular file of at most `largest` bytes, and record its digest; pipes and devices are refused.
 
-    Raises
-    ------
-    OSError, ValueError
-        If it cannot be read, is not a regular file, is larger, or has an invalid name.
+    Raises OSError, ValueError if it cannot be read, is not a regular file, is larger, or has an invalid name.
     """
     record({str(path): ""})
     handle = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))

@@ -47,17 +47,9 @@ class Sources:
 def read_including(text: str, source: str, file: Path | None) -> tuple[Any, Callable[[tuple[Any, ...]], str | None]]:
     """Read a YAML text and the files that it includes; return the content, and `Sources.line` as a function of a path.
 
-    Parameters
-    ----------
-    source : str
-        Name of the text in messages.
-    file : Path or None
-        File of the text; included files are relative to its folder, or to the working folder if it is None.
-
-    Raises
-    ------
-    InputError
-        For a file that cannot be read, that includes itself, or that has a name twice.
+    `source`: name of the text in messages. `file`: file of the text; included files are relative to its folder, or to
+    the working folder if it is None. Raises InputError for a file that cannot be read, that includes itself, or that
+    has a name twice.
     """
     sources = Sources([(source, text, ())])
     found = read_yaml_file(text, source, file)

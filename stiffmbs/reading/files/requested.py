@@ -66,10 +66,7 @@ class Fields(Mapping[str, Value]):
 def unused_notes(elements: Iterable[Fields[Any]], reasons: Mapping[str, Mapping[str, str]] | None = None) -> list[str]:
     """Return notes on the fields that were not requested, one for each known reason.
 
-    Parameters
-    ----------
-    reasons : mapping of str to (mapping of str to str)
-        Reasons why a field has no effect, by kind and name; ``*`` matches any kind or name.
+    `reasons`: reasons why a field has no effect, by kind and name; ``*`` matches any kind or name.
     """
     owners: dict[str, dict[str, list[str]]] = {}
     for element in elements:

@@ -34,19 +34,9 @@ def source_name(path: str | Path) -> str:
 def file_text(path: str | Path, otherwise: str = "", zero: str = "", expected: str = "a scene") -> str:
     """Read a text file, or standard input for the name ``-``.
 
-    Parameters
-    ----------
-    otherwise : str
-        Encoding of a file that is neither UTF-8 nor UTF-16; such a file is refused if it is empty.
-    zero : str
-        Replacement of zero bytes; files with zero bytes are refused if it is empty.
-    expected : str
-        Kind of file, for messages.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read, is not a regular file, is larger than `LARGEST`, or is not text.
+    `otherwise`: encoding of a file that is neither UTF-8 nor UTF-16; such a file is refused if it is empty. `zero`:
+    replacement of zero bytes; files with zero bytes are refused if it is empty. `expected`: kind of file, for messages.
+    Raises InputError if the file cannot be read, is not a regular file, is larger than `LARGEST`, or is not text.
     """
     source = source_name(path)
     if str(path) == STANDARD_INPUT and sys.stdin is None:
@@ -109,10 +99,7 @@ def lines(text: str) -> list[str]:
 def finite_number(text: str, where: str) -> float:
     """Return a finite number in a file of another program, whose exponent may be D as in Fortran.
 
-    Raises
-    ------
-    InputError
-        For any other text; the message begins with `where`.
+    Raises InputError for any other text; the message begins with `where`.
     """
     try:
         value = float(re.sub("[dD]", "e", text))

@@ -21,10 +21,8 @@ _OTHER_ENDS = re.compile("[\x85\u2028\u2029]")
 def read_yaml(text: str, source: str) -> Any:
     """Return the content of a text, called `source` in messages, as mappings, lists, numbers and text.
 
-    Raises
-    ------
-    InputError
-        If it is not YAML, contains a key twice, or is too large to be a scene; the message contains the line.
+    Raises InputError if it is not YAML, contains a key twice, or is too large to be a scene; the message contains the
+    line.
     """
     if _DECIMAL.fullmatch(text):
         return float(text) if "." in text else int(text)
@@ -168,10 +166,7 @@ class _Walk:
 def check_content(found: Any, source: str) -> None:
     """Refuse content that is too large or too deeply nested for a scene.
 
-    Raises
-    ------
-    InputError
-        For recursive or too many aliases, deep nesting, integers beyond 1e308, and control characters.
+    Raises InputError for recursive or too many aliases, deep nesting, integers beyond 1e308, and control characters.
     """
     walk = _Walk()
     try:

@@ -23,10 +23,7 @@ def dimension_of(
 ) -> Known:
     """Return the dimension of a checked syntax tree with functions of markers and tables of these dimensions.
 
-    Raises
-    ------
-    FormulaError
-        For a sum of different dimensions, and for an argument of the wrong dimension.
+    Raises FormulaError for a sum of different dimensions, and for an argument of the wrong dimension.
     """
 
     def of(node: ast.expr) -> Known:

@@ -12,12 +12,8 @@ from .text import UNIT, as_written
 def with_full_names(tree: ast.expr, names: Names, takers: Container[str], own: Container[str] = ()) -> ast.expr:
     """Return a formula's tree with full names; a state, and the body of a coordinate or marker, is one node, also with dots.
 
-    Parameters
-    ----------
-    takers : container of str
-        Functions whose arguments are names of markers, joints or forces.
-    own : container of str
-        Names defined by the formula's field.
+    `takers`: functions whose arguments are names of markers, joints or forces. `own`: names defined by the formula's
+    field.
     """
     return _FullNames(names, takers, own).visit(tree) if names.dotted or names.states else tree
 

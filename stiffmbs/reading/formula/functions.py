@@ -204,12 +204,8 @@ def check_functions(
 ) -> None:
     """Refuse calls of unknown functions, and calls with a wrong number of arguments, by a FormulaError.
 
-    Parameters
-    ----------
-    measures : collection of str
-        Functions of markers, whose arguments are checked elsewhere.
-    listed : collection of str
-        Names of measures that the message lists.
+    `measures`: functions of markers, whose arguments are checked elsewhere. `listed`: names of measures that the
+    message lists.
     """
     for node in within(tree):
         match node:

@@ -68,19 +68,9 @@ def dimension_within(
 ) -> Known:
     """Return the dimension of a formula's value; without a unit it is taken to be in SI units.
 
-    Parameters
-    ----------
-    used : mapping of str to Quantity
-        Parameters, units and constants in it.
-    own : mapping of str to Known
-        Names defined by the formula's field.
-    tables : mapping of str to (Known, Known)
-        Dimensions of the arguments and values of the tables that it calls.
-
-    Raises
-    ------
-    FormulaError
-        If it contains a unit and its dimensions do not fit.
+    `used`: parameters, units and constants in it. `own`: names defined by the formula's field. `tables`: dimensions of
+    the arguments and values of the tables that it calls. Raises FormulaError if it contains a unit and its dimensions
+    do not fit.
     """
     names: dict[str, Quantity | Known] = {"t": TIME, **own, **used}
     try:

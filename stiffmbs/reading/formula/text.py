@@ -42,10 +42,8 @@ UNARY: dict[type[ast.unaryop], Callable[[Any], Any]] = {ast.UAdd: operator.pos, 
 def parse(text: str) -> ast.expr:
     """Read a formula such as ``"20 deg"`` or ``"cart.y - 0.1*sin(cart.x)"`` into a checked syntax tree.
 
-    Raises
-    ------
-    FormulaError
-        If the text is not a formula, or has other parts than arithmetic, names, ``name.name`` and calls by name.
+    Raises FormulaError if the text is not a formula, or has other parts than arithmetic, names, ``name.name`` and calls
+    by name.
     """
     if len(text) > LONGEST_TEXT:
         raise FormulaError(f"found a formula of {len(text)} characters, expected at most {LONGEST_TEXT}")
@@ -180,14 +178,8 @@ def evaluate(
 ) -> Any:
     """Evaluate a checked tree in any algebra (numbers, arrays, SymPy expressions).
 
-    Parameters
-    ----------
-    names : callable
-        Returns the value of a name such as ``L`` or ``cart.x``; raises `FormulaError` for an unknown one.
-    number : callable
-        Converts a literal to a value of the algebra.
-    binary : mapping
-        Operators of the algebra.
+    `names`: returns the value of a name such as ``L`` or ``cart.x``; raises `FormulaError` for an unknown one.
+    `number`: converts a literal to a value of the algebra. `binary`: operators of the algebra.
     """
 
     def of(node: ast.expr) -> Any:

@@ -13,10 +13,7 @@ from .text import OF_NUMBERS, FormulaError, evaluate
 def formula_value(formula: Formula, node: ast.expr | None = None, **variables: float) -> float:
     """Return the value of a formula without coordinates and measures, or of its part `node`, for given variables and time ``t``.
 
-    Raises
-    ------
-    FormulaError
-        If it divides by zero, overflows, or has no real value.
+    Raises FormulaError if it divides by zero, overflows, or has no real value.
     """
 
     def names(name: str) -> float:

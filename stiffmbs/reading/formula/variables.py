@@ -19,10 +19,7 @@ from .text import UNIT, FormulaError, as_written, parse
 def with_variables(tree: ast.expr, variables: Mapping[str, ast.expr], own: Collection[str] = ()) -> ast.expr:
     """Return a formula with its variables substituted, except for the formula's `own` names, such as s in the law of a spring.
 
-    Raises
-    ------
-    FormulaError
-        If the result is too large, or a variable uses a parameter with one of the own names.
+    Raises FormulaError if the result is too large, or a variable uses a parameter with one of the own names.
     """
     named = [name for name in _names(tree) if name in variables and name not in own] if variables else []
     if not named:
@@ -43,10 +40,8 @@ def with_variables(tree: ast.expr, variables: Mapping[str, ast.expr], own: Colle
 def resolved(formulas: Mapping[str, str | float], known: Collection[str]) -> dict[str, ast.expr]:
     """Return the trees of variables, with the variables in them substituted; parameters, constants and time are `known`.
 
-    Raises
-    ------
-    FormulaError
-        If one cannot be read, becomes too large, or depends on itself; the message begins with its name.
+    Raises FormulaError if one cannot be read, becomes too large, or depends on itself; the message begins with its
+    name.
     """
     trees: dict[str, ast.expr] = {}
     # a unit without a number, as m in N/m, is marked as one; otherwise s in a law of s would be ambiguous

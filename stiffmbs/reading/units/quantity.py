@@ -45,10 +45,7 @@ def _named(text: str, tree: ast.expr, known: Mapping[str, Quantity]) -> Callable
 def quantity(text: str, parameters: Mapping[str, Quantity] | None = None) -> Quantity:
     """Evaluate arithmetic with units, such as ``"125 mm"`` or ``"2*sin(20 deg)"``, with parameters of the scene.
 
-    Raises
-    ------
-    FormulaError
-        For an unknown name or function, mixed units, or a value that is not finite.
+    Raises FormulaError for an unknown name or function, mixed units, or a value that is not finite.
     """
     known = parameters or {}
     used = tuple((name, known[name]) for name in _parsed(text)[1] if name in known)

@@ -139,10 +139,7 @@ class _Entries:
 def model_fields(spec: Any, model: RequestedModel) -> Iterator[Fields[Any]]:
     """Yield the fields of the elements of a compiled specification, with a record of the requested ones.
 
-    Parameters
-    ----------
-    model : RequestedModel
-        The compiled model, after reading.
+    `model`: the compiled model, after reading.
     """
     defaults = _defaults()
     for kind, several in LISTS.items():

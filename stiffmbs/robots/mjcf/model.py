@@ -28,12 +28,8 @@ KINDS: tuple[JointKind, ...] = ("free", "ball", "slide", "hinge")
 def read_mjcf(path: str | Path) -> Robot:
     """Read a robot from an MJCF file, compiled by MuJoCo with its defaults, included files and inertias of shapes.
 
-    Raises
-    ------
-    RobotFault
-        If MuJoCo refuses the file, or it contains features without an equivalent in a scene.
-    InputError
-        If the file cannot be read.
+    Raises RobotFault if MuJoCo refuses the file, or it contains features without an equivalent in a scene. Raises
+    InputError if the file cannot be read.
     """
     spec, compiled = _compiled(path)
     m = RequestedModel(compiled)
@@ -156,11 +152,7 @@ FOLDERS = ("assetdir", "meshdir", "texturedir")
 def check_assets(path: Path) -> None:
     """Refuse an MJCF file that refers, directly or through included files, to anything but regular files.
 
-    Raises
-    ------
-    RobotFault
-    InputError
-        If an included file cannot be read as text.
+    Raises RobotFault or InputError if an included file cannot be read as text.
     """
     waiting, seen = [path], set[Path]()
     while waiting:

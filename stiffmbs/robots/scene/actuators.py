@@ -67,10 +67,7 @@ def _force(found: Actuators, mechanism: Mechanism, transmission: Transmission, h
 def _of_total(transmission: Transmission, name: str, along: list[str]) -> str:
     """Return the force of an actuator; MuJoCo bounds the total force on a tendon before that of each actuator.
 
-    Raises
-    ------
-    RobotFault
-        If the bounds of the total force of several actuators do not enclose zero.
+    Raises RobotFault if the bounds of the total force of several actuators do not enclose zero.
     """
     if transmission.total is None:
         return name

@@ -30,10 +30,7 @@ FILMS: dict[str, Callable[..., None]] = {".gif": write_gif, ".mp4": write_mp4}
 def check_animation(path: Path) -> None:
     """Check that an animation can be written, before anything is solved.
 
-    Raises
-    ------
-    InputError
-        If the suffix is unknown, or the folder or a program to write it is missing.
+    Raises InputError if the suffix is unknown, or the folder or a program to write it is missing.
     """
     refuse_path("-o", path, (*FILMS, ".html"))
     if path.suffix == ".html":

@@ -17,10 +17,7 @@ DIGITS = 6
 def drawing_json(drawing: Drawing) -> dict[str, Any]:
     """Return the drawables: vertices and triangles, lines, stretched profiles, names, colors.
 
-    Returns
-    -------
-    dict
-        Lengths in metres, in the axes of bodies relative to their centres of mass; ready for `json.dumps`.
+    The result: lengths in metres, in the axes of bodies relative to their centres of mass; ready for `json.dumps`.
     """
     return {
         "name": drawing.name, "dimensions": drawing.dimensions, "size": drawing.size, "unit": drawing.unit, "bodies": list(drawing.bodies),

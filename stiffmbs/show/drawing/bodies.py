@@ -24,10 +24,7 @@ SAME_POINT = 1e-3
 def given_shapes(name: str, body: Any, dimensions: int, size: float, wheel: float = 0.0) -> list[Part]:
     """Return the shapes of a body in its scene; cylinders of the radius of a drawn wheel are left out.
 
-    Raises
-    ------
-    InputError
-        If a mesh cannot be read.
+    Raises InputError if a mesh cannot be read.
     """
     origin = np.zeros(3) if dimensions == 2 else -np.array(body.center_of_mass)
     parts = []

@@ -35,17 +35,8 @@ SHARP = 2.0
 def deformed_body(name: str, frame: FloatingFrame) -> Part | None:
     """Return the surface of a flexible body with its mode shapes; None if its file has no elements.
 
-    The displacement is linear in the modal coordinates and multiplied by the `deformation_scale` of the body.
-
-    Parameters
-    ----------
-    name : str
-        Name of the floating frame.
-
-    Raises
-    ------
-    InputError
-        If a file of the body cannot be read.
+    The displacement is linear in the modal coordinates and multiplied by the `deformation_scale` of the body. `name`:
+    name of the floating frame. Raises InputError if a file of the body cannot be read.
     """
     body, folder = frame.source
     model, reduced = body.model(folder), reduced_body(body, folder)

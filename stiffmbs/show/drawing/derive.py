@@ -39,19 +39,8 @@ def drawing_of(
 ) -> Drawing:
     """Return the drawing of a model.
 
-    Parameters
-    ----------
-    marks : mapping of str to Mark, optional
-        Joints to mark.
-    scale : float
-        Factor on the usual size of symbols.
-    along : Poses, optional
-        Motion along which a drawing in space shows the road or the floor.
-
-    Raises
-    ------
-    InputError
-        If a mesh cannot be read.
+    `marks`: joints to mark. `scale`: factor on the usual size of symbols. `along`: motion along which a drawing in
+    space shows the road or the floor. Raises InputError if a mesh cannot be read.
     """
     poses = described_poses(data)
     sites = _Sites(data, poses)

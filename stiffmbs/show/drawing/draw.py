@@ -32,10 +32,7 @@ ENDINGS = (".svg", ".png", ".pdf", ".json")
 def check_drawing(path: Path) -> None:
     """Check that a drawing can be written, before anything is solved.
 
-    Raises
-    ------
-    InputError
-        If the suffix is unknown, or the folder or matplotlib is missing.
+    Raises InputError if the suffix is unknown, or the folder or matplotlib is missing.
     """
     refuse_path("-o", path, ENDINGS)
     if path.suffix != ".json":

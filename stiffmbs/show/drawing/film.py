@@ -41,13 +41,7 @@ class Pace:
     rate: float = 25.0
 
     def instants(self, start: float, end: float) -> np.ndarray:
-        """Return the instants of all pictures, s.
-
-        Raises
-        ------
-        InputError
-            If there are more than `MOST_FRAMES` pictures.
-        """
+        """Return the instants of all pictures, s. Raises InputError if there are more than `MOST_FRAMES` pictures."""
         count = int((end - start) / self.speed * self.rate) + 1
         if count > MOST_FRAMES:
             raise InputError(
@@ -80,12 +74,8 @@ def pictures(
 ) -> Iterator[np.ndarray]:
     """Yield the pictures of a film, shape (height, width, 3), bytes.
 
-    Parameters
-    ----------
-    runs : mapping of str to Poses
-        Runs drawn over each other, by their names in the legend; the first one in full colors.
-    traces : sequence of Anchor
-        Points whose paths are drawn.
+    `runs`: runs drawn over each other, by their names in the legend; the first one in full colors. `traces`: points
+    whose paths are drawn.
     """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
@@ -169,13 +159,7 @@ def write_gif(path: Path, frames: Iterator[np.ndarray], rate: float) -> None:
 
 
 def write_mp4(path: Path, frames: Iterator[np.ndarray], rate: float) -> None:
-    """Write pictures as H.264, which every browser plays.
-
-    Raises
-    ------
-    InputError
-        If ffmpeg cannot encode them.
-    """
+    """Write pictures as H.264, which every browser plays. Raises InputError if ffmpeg cannot encode them."""
     first = next(frames)
     height, width = first.shape[0] // 2 * 2, first.shape[1] // 2 * 2
     command = [

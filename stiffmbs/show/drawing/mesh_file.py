@@ -18,17 +18,7 @@ FACET = np.dtype([("floats", "<f4", 12), ("rest", "<u2")])
 def read_mesh(path: Path, where: str) -> Solid:
     """Read the mesh of a file, in the file's units.
 
-    Parameters
-    ----------
-    path : Path
-        Name in .stl or .obj.
-    where : str
-        Name of the shape in messages.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read.
+    `path`: name in .stl or .obj. `where`: name of the shape in messages. Raises InputError if the file cannot be read.
     """
     try:
         data = content_of(path)

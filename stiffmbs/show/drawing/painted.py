@@ -56,13 +56,7 @@ class Patch:
 
 
 def painted(drawing: Drawing, poses: Poses, k: int, view: View, longest: float = 0.0) -> list[Patch]:
-    """Return the picture at the k-th instant.
-
-    Parameters
-    ----------
-    longest : float
-        Force of the longest arrow, N; no arrows are drawn for 0.
-    """
+    """Return the picture at the k-th instant. `longest`: force of the longest arrow, N; no arrows are drawn for 0."""
     found: list[Patch] = []
     for part in drawing.parts:
         found += _part(drawing, part, poses, k, view)

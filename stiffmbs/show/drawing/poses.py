@@ -119,15 +119,7 @@ def described_poses(data: ModelData) -> Poses:
 def poses_of(data: ModelData, time: np.ndarray, channels: Channels) -> Poses:
     """Return the poses of a run, and the forces of all elements that report one.
 
-    Parameters
-    ----------
-    time : ndarray, shape (n,)
-    channels : mapping of str to ndarray, shape (n,)
-
-    Raises
-    ------
-    InputError
-        If the run belongs to another model.
+    `time` of shape (n,). `channels` of shape (n,). Raises InputError if the run belongs to another model.
     """
     points, orientations = {}, {}
     for name in data.bodies:

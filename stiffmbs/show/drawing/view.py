@@ -32,14 +32,8 @@ class View:
 def from_angles(azimuth: float, elevation: float, up: str = "z") -> View:
     """Return the view from a direction.
 
-    Parameters
-    ----------
-    azimuth : float
-        Angle of the viewer about the upright axis, deg.
-    elevation : float
-        Angle above the horizontal, deg.
-    up : {"y", "z"}
-        Upright axis.
+    `azimuth`: angle of the viewer about the upright axis, deg. `elevation`: angle above the horizontal, deg. `up`:
+    upright axis.
     """
     a, e = math.radians(azimuth), math.radians(elevation)
     right = np.array([-math.sin(a), math.cos(a), 0.0])
@@ -63,13 +57,9 @@ NAMED = {
 def view_named(text: str, dimensions: int, gravity: np.ndarray) -> View:
     """Return the view that a text names.
 
-    Parameters
-    ----------
-    text : str
-        ``front``, ``back``, ``side``, ``top``, ``isometric``, a plane such as ``xz``, ``AZIMUTH,ELEVATION`` in degrees,
-        or empty: along z in the plane, isometric in space.
-    gravity : ndarray, shape (3,)
-        If it is along y, y is the upright axis of views by angles.
+    `text`: ``front``, ``back``, ``side``, ``top``, ``isometric``, a plane such as ``xz``, ``AZIMUTH,ELEVATION`` in
+    degrees, or empty: along z in the plane, isometric in space. `gravity` of shape (3,): if it is along y, y is the
+    upright axis of views by angles.
     """
     if text in NAMED or (not text and dimensions == 2):
         right, up = NAMED[text or "xy"]

@@ -20,13 +20,7 @@ def page_parts() -> dict[str, str]:
 
 
 def moving_page(title: str, data: dict[str, str]) -> str:
-    """Return the page as HTML; it needs no network.
-
-    Parameters
-    ----------
-    data : mapping
-        Result of `stiffmbs.show.page.data.page_data`.
-    """
+    """Return the page as HTML; it needs no network. `data`: result of `stiffmbs.show.page.data.page_data`."""
     template = environment().from_string(files(__package__).joinpath("moving.html").read_text(encoding="utf-8"))
     return template.render(title=title or "Mechanism", **data, **page_parts())
 

@@ -23,13 +23,8 @@ def changed_channels(
 ) -> dict[str, np.ndarray]:
     """Return the derivatives of the channels of bodies, elements and energies, each of shape (instants, directions).
 
-    Parameters
-    ----------
-    u : ndarray, shape (instants, n_u)
-    numbers : sequence of Numbers
-        Numbers of the directions.
-    values : ndarray, shape (instants, directions, values)
-        Derivatives of the output terms.
+    `u` of shape (instants, n_u). `numbers`: numbers of the directions. `values` of shape (instants, directions,
+    values): derivatives of the output terms.
     """
     of_body, channels = system.of_body, dict[str, np.ndarray]()
     shape = len(changes), len(numbers)
@@ -58,14 +53,8 @@ def changed_requests(
 ) -> dict[str, np.ndarray]:  # fmt: skip
     """Return the derivatives of requests, by central differences of their formulas, shape (n, directions).
 
-    Parameters
-    ----------
-    channels : mapping of str to ndarray
-        Channels that formulas read, shape (n,).
-    slopes : mapping of str to ndarray
-        Their derivatives, shape (n, directions).
-    moved_q : ndarray, shape (n, directions, n_q)
-        Derivatives of the coordinates, including revolution counters.
+    `channels`: channels that formulas read, shape (n,). `slopes`: their derivatives, shape (n, directions). `moved_q`
+    of shape (n, directions, n_q): derivatives of the coordinates, including revolution counters.
     """
     columns = []
     for k, set_up in enumerate(set_ups):

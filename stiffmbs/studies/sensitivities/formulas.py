@@ -149,10 +149,7 @@ class Formula:
     def _at_extreme(self, name: str, series: np.ndarray, slope: np.ndarray) -> np.ndarray:
         """Return the derivative of the selected value.
 
-        Raises
-        ------
-        SolverError
-            If several output times have this value with different derivatives.
+        Raises SolverError if several output times have this value with different derivatives.
         """
         k = SELECTED[name](series)
         slopes = slope[k] * (np.sign(series[k])[:, None] if name == "peak" else 1.0)

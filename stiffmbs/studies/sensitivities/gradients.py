@@ -37,10 +37,7 @@ class Gradients:
     def at(self, point: np.ndarray) -> list[np.ndarray]:
         """Return the derivatives of each output by the coordinates of a point, shape (..., parameters).
 
-        Raises
-        ------
-        StiffmbsError
-            As for `stiffmbs.sensitivities`.
+        Raises StiffmbsError as for `stiffmbs.sensitivities`.
         """
         names, values = self._ranges.names, self._ranges.values(point)
         scenes = self._scenes.at(list(zip(names, values, strict=True)))

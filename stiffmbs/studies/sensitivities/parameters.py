@@ -56,13 +56,7 @@ class Scenes:
         return Scenes(replace(self._written, changes=(*self._written.changes, *changes)), self._unchanged)
 
     def changed(self, changes: Sequence[tuple[str, Any]]) -> Scene:
-        """Return the scene with other values.
-
-        Raises
-        ------
-        InputError
-            If a value is invalid.
-        """
+        """Return the scene with other values. Raises InputError if a value is invalid."""
         names, values = [path for path, _ in changes], [value for _, value in changes]
         if names and self._unchanged.scene is self.known:
             if tuple(names) not in self._other_forces:
@@ -108,13 +102,7 @@ class Parameter:
         return self._path, _replaced(self._whole, self._places, ALMOST_ZERO)
 
     def scene(self, value: float) -> Scene:
-        """Return the scene with another value.
-
-        Raises
-        ------
-        InputError
-            If the value is invalid.
-        """
+        """Return the scene with another value. Raises InputError if the value is invalid."""
         return self._scenes.changed([(self._path, _replaced(self._whole, self._places, value))])
 
 

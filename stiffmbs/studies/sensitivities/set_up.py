@@ -192,10 +192,7 @@ class SetUp:
     def breakpoint_rate(self, t: float, needed: bool) -> float:
         """Return the derivative of the breakpoint in time at t.
 
-        Raises
-        ------
-        SolverError
-            If it is required, and other values have no such breakpoint.
+        Raises SolverError if it is required, and other values have no such breakpoint.
         """
         known, *others = self._breakpoints
         place = int(np.flatnonzero(self._near(t))[0])

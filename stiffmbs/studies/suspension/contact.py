@@ -30,14 +30,9 @@ def contact_at(centre: np.ndarray, axis: np.ndarray, place: tuple[float, float, 
 def contact_velocity(axis: np.ndarray, arm: np.ndarray, v: np.ndarray, omega: np.ndarray) -> np.ndarray:
     """Return the velocity of the contact with an arm from the centre, for a motion of the carrier.
 
-    The wheel's axes rotate with omega - s axis, where s keeps `forward` horizontal.
-
-    Parameters
-    ----------
-    axis, arm : ndarray, shape (3,)
-        Axis of the wheel, and contact from its centre, m.
-    v, omega : ndarray, shape (3,)
-        Velocity of the centre and angular velocity of the carrier.
+    The wheel's axes rotate with omega - s axis, where s keeps `forward` horizontal. `axis`, `arm` of shape (3,): axis
+    of the wheel, and contact from its centre, m. `v`, `omega` of shape (3,): velocity of the centre and angular
+    velocity of the carrier.
     """
     forward, _, upward = wheel_axes(axis)
     spin = -np.cross(omega, forward)[2] / upward[2]

@@ -33,15 +33,9 @@ class SteeringAxis:
 def steering_axis(locked: Twist | None, held: Twist, bump: Twist) -> SteeringAxis | None:
     """Return the steering axis of a wheel, or None if it does not steer about an axis.
 
-    Parameters
-    ----------
-    locked : Twist or None
-        Motion of the carrier, at the centre of the wheel, by steering with the springs locked. Without it the axis is
-        that of the pure rotation nearest to `held` among the sums of `held` and a multiple of `bump`.
-    held : Twist
-        Motion by steering with the heights of the contacts held.
-    bump : Twist
-        Motion by lifting.
+    `locked`: motion of the carrier, at the centre of the wheel, by steering with the springs locked. Without it the
+    axis is that of the pure rotation nearest to `held` among the sums of `held` and a multiple of `bump`. `held`:
+    motion by steering with the heights of the contacts held. `bump`: motion by lifting.
     """
     twist = locked or _rotation(held, bump)
     square = float(twist.omega @ twist.omega)

@@ -163,10 +163,7 @@ class Changes:
     def moved(self, joint: str) -> np.ndarray:
         """Return the change of the pose per displacement that a joint prescribes.
 
-        Raises
-        ------
-        SolverError
-            If the other constraints prevent it.
+        Raises SolverError if the other constraints prevent it.
         """
         right = np.zeros((len(self._rows) + len(self._locked), 1))
         right[np.flatnonzero(self._rows == self._tangent.row(joint))] = 1.0
