@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -13,6 +16,7 @@ from ..equilibria.equilibrium import Equilibrium, find_equilibrium
 from ..equilibria.force_balance import balance_at, forces_by_velocity
 from ..equilibria.found_speeds import with_found_spins
 from ..equilibria.nearest_equilibrium import nearest_equilibrium
+from ..equilibria.parameters import EQUILIBRIA
 from ..equilibria.steady_motion import SteadyMotion
 from ..errors import InputError, SolverError
 from ..linear_analysis.steady_motion import eigenvalues_beside
@@ -61,17 +65,40 @@ def _found(model: ModelData, dynamics: Dynamics, start: InitialValues, t: float,
     if len(motion.spinning):
         balance_at(dynamics, t, motion)
         motion = with_found_spins(dynamics, motion, forces_by_velocity(dynamics))
-    try:
-        found = find_equilibrium(dynamics, t, motion)
-    except SolverError:
-        dynamics.state.q[:] = start.q
-        found = nearest_equilibrium(dynamics, t, motion)
+    turning = replace(motion, upright=_rotation(model, 1.0))
+    searches = [partial(find_equilibrium, motion=motion), partial(nearest_equilibrium, motion=motion)]
+    if described.rotation == "found":
+        searches = [partial(find_equilibrium, motion=turning)]
+    elif np.any(motion.velocity) and "rotation" not in described.model_fields_set:
+        few = EQUILIBRIA.most_straight_moves
+        searches = [
+            partial(find_equilibrium, motion=motion, most=few),
+            partial(find_equilibrium, motion=turning),
+            *searches,
+        ]
+    found = _first_found(dynamics, t, start, searches)
     _refuse_joints(dynamics, t)
     _refuse_unsteady(dynamics, t, found.motion)
     return found
 
 
+def _first_found(
+    dynamics: Dynamics, t: float, start: InitialValues, searches: Sequence[Callable[[Dynamics, float], Equilibrium]]
+) -> Equilibrium:
+    """Return the result of the first search from the start that succeeds; raise the error of the last one if none does."""
+    for search in searches[:-1]:
+        dynamics.state.q[:] = start.q
+        with suppress(SolverError):
+            return search(dynamics, t)
+    dynamics.state.q[:] = start.q
+    return searches[-1](dynamics, t)
+
+
 def _moving(start: InitialValues, found: Equilibrium, notes: tuple[str, ...]) -> InitialValues:
+    motion = found.motion
+    if motion.upright is not None:
+        rate = float(motion.rotation @ motion.upright)
+        notes = (*notes, f"the forces do not balance on a straight line: the steady motion turns at {rate:.3g} rad/s")
     return replace(start, q=found.q, u=found.u, acceleration=found.acceleration, lam=found.lam, moved=(), notes=notes)
 
 
@@ -98,7 +125,11 @@ def _stability(values: np.ndarray | None, n_u: int) -> str:
 def _motion(model: ModelData, dynamics: Dynamics, start: InitialValues, described: Described) -> SteadyMotion:
     system, state = dynamics.system, dynamics.state
     velocity, about = (_vector(system, name, getattr(described, name)) for name in ("velocity", "about"))
-    rotation = _rotation(model, described)
+    if described.rotation == "found" and not np.any(velocity):
+        raise InputError(
+            "rotation: found no velocity, expected one: forces determine a rotation of bodies that move ahead"
+        )
+    rotation = _rotation(model, 0.0 if described.rotation == "found" else described.rotation)
     spinning = np.array([_spin(system, name) for name in described.rolling], dtype=int)
     found = described.speed == "found" and bool(np.any(velocity))
     motion = SteadyMotion(velocity, rotation, about, spinning, np.zeros(len(spinning)), found)
@@ -114,9 +145,8 @@ def _vector(system: System, name: str, found: tuple[float, ...]) -> np.ndarray:
     return np.array(found or [0.0] * dimensions)
 
 
-def _rotation(model: ModelData, described: Described) -> np.ndarray:
+def _rotation(model: ModelData, found: float | tuple[float, ...]) -> np.ndarray:
     """Return W; in space a single number is about the direction against gravity, or about z without gravity."""
-    found = described.rotation
     if model.dimensions == 2:
         if isinstance(found, tuple):
             raise InputError("rotation: found 3 numbers, expected one in the plane")

@@ -33,7 +33,8 @@ if TYPE_CHECKING:
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line instead of a table.")
 @click.option("--velocity", help="Seek it at constant speed: VX,VY or VX,VY,VZ, m/s, or with units.")
 @click.option(
-    "--rotation", help="Seek it on circles: an angular velocity, rad/s; in space about the vertical, or WX,WY,WZ."
+    "--rotation",
+    help="Seek it on circles: an angular velocity, rad/s, or found; in space about the vertical, or WX,WY,WZ.",
 )
 @click.option("--about", help="A point of the axis of the rotation: X,Y or X,Y,Z, m; the origin without it.")
 @click.option("--rolling", multiple=True, metavar="BODY", help="A body that rolls, or spins as described, besides.")

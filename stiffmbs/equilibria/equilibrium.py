@@ -25,6 +25,9 @@ from .force_balance import Balance, balance_at, moved, way
 from .parameters import EQUILIBRIA
 from .steady_motion import SteadyMotion, at_rest
 
+FAR = 1e100
+"""Move in place of an infinite one, m or rad, whose products with forces are finite."""
+
 
 @dataclass(frozen=True)
 class Equilibrium:
@@ -49,7 +52,9 @@ class Equilibrium:
     motion: SteadyMotion
 
 
-def find_equilibrium(dynamics: Dynamics, t: float, motion: SteadyMotion | None = None) -> Equilibrium:
+def find_equilibrium(
+    dynamics: Dynamics, t: float, motion: SteadyMotion | None = None, most: int | None = None
+) -> Equilibrium:
     """Find the stable equilibrium that a system reaches from its pose in overdamped motion; the state is set to it.
 
     Parameters
@@ -60,6 +65,8 @@ def find_equilibrium(dynamics: Dynamics, t: float, motion: SteadyMotion | None =
         Time at which forces and drives are evaluated, s.
     motion : SteadyMotion, optional
         Steady motion of the equilibrium; at rest by default.
+    most : int, optional
+        Largest number of moves.
 
     Raises
     ------
@@ -69,7 +76,7 @@ def find_equilibrium(dynamics: Dynamics, t: float, motion: SteadyMotion | None =
     state = dynamics.state
     shift, moves = 1.0, 0
     known = balance_at(dynamics, t, motion or at_rest(dynamics.system.of_body.dimensions))
-    while moves < EQUILIBRIA.most_moves and shift < EQUILIBRIA.largest_shift:
+    while moves < (most or EQUILIBRIA.most_moves) and shift < EQUILIBRIA.largest_shift:
         if known.balanced:
             known, more = _polished(dynamics, t, known)
             return as_equilibrium(dynamics, t, known, moves + more)
@@ -108,7 +115,7 @@ def _step(dynamics: Dynamics, t: float, shift: float, known: Balance) -> _Step:
         whole = np.append(way(system, start, state.q), faster)
         move = newton_move(dynamics, shift, known, whole)
         if (
-            count == 1 and not system.states and not known.left @ np.nan_to_num(move[:n]) >= 0
+            count == 1 and not system.states and not known.left @ np.nan_to_num(move[:n], posinf=FAR, neginf=-FAR) >= 0
         ):  # towards an unstable equilibrium
             break
         longest, longest_of_all = (float(np.max(np.abs(way) / limits, initial=0.0)) for way in (move, whole + move))

@@ -1,6 +1,7 @@
 """Speeds of a steady motion that forces determine, such as that of a car against drag or of a wheel.
 
-Each replaces a displacement that changes no force: of all bodies along the motion, or of the wheel about its axis.
+Each replaces a displacement that changes no force: of all bodies along the motion or, for a rate of rotation, to its
+side, or of the wheel about its axis.
 """
 
 from __future__ import annotations
@@ -56,6 +57,6 @@ def found_speeds(dynamics: Dynamics, motion: SteadyMotion, by_velocity: csc_arra
     """Return the derivatives of the balance by the unknown speeds; parameters as for `with_found_spins`."""
     mass, by = dynamics.system.mass[:, None], motion.by_speeds(dynamics)
     others = np.zeros((by_velocity.shape[0] - len(by), by.shape[1]))
-    inertia = np.concatenate([mass * (motion.by_move(dynamics) @ by), others])
-    momentum = np.concatenate([mass * by, others])
+    inertia = np.concatenate([mass * motion.accelerated_by_speeds(dynamics, by), others])
+    momentum = np.concatenate([mass * motion.replaced(dynamics, by), others])
     return FoundSpeeds(inertia - by_velocity @ by, momentum, momentum.T, motion.speed_sizes(dynamics.system.size))

@@ -16,6 +16,8 @@ class EquilibriumParameters:
 
     most_moves: int = 2000
     """Largest number of moves of a search."""
+    most_straight_moves: int = 200
+    """Largest number of moves of a search for a straight motion, after which one that turns is sought."""
     translation: float = 0.25
     """Longest move of a body, relative to the mechanism's size (Adams: EQUILIBRIUM/TLIMIT)."""
     rotation: float = 0.5

@@ -38,6 +38,8 @@ class SteadyMotion:
         Whether forces determine the speed along V.
     found : ndarray of int
         Positions in `spinning` of the spins that forces determine.
+    upright : ndarray, shape (1,) or (3,), optional
+        Direction of a rotation whose rate forces determine; None for a given rotation.
     """
 
     velocity: np.ndarray
@@ -47,6 +49,7 @@ class SteadyMotion:
     spins: np.ndarray = field(default_factory=lambda: np.zeros(0))
     speed_is_found: bool = False
     found: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=int))
+    upright: np.ndarray | None = None
 
     @property
     def is_rest(self) -> bool:
@@ -55,33 +58,60 @@ class SteadyMotion:
 
     @property
     def n_found(self) -> int:
-        """Number of unknown speeds: that along V, and those of `found`."""
-        return int(self.speed_is_found) + len(self.found)
+        """Number of unknown speeds: that along V, the rate of rotation, and the spins of `found`."""
+        return self._first_spin + len(self.found)
+
+    @property
+    def _first_spin(self) -> int:
+        return int(self.speed_is_found) + int(self.upright is not None)
 
     def faster(self, changes: np.ndarray) -> SteadyMotion:
-        """Return the motion with changed unknown speeds, that along V first."""
-        along, spins = np.split(changes, [int(self.speed_is_found)])
+        """Return the motion with changed unknown speeds: that along V, the rate of rotation, spins."""
+        along, rate, spins = np.split(changes, [int(self.speed_is_found), self._first_spin])
         velocity = self.velocity + along.sum() * self._ahead()
+        rotation = self.rotation if self.upright is None else self.rotation + rate.sum() * self.upright
         changed = self.spins.copy()
         changed[self.found] += spins
-        return replace(self, velocity=velocity, spins=changed)
+        return replace(self, velocity=velocity, rotation=rotation, spins=changed)
 
     def speed_sizes(self, size: float) -> np.ndarray:
         """Return the magnitudes of the unknown speeds, in a mechanism of a size, m."""
         speed = float(np.linalg.norm(self.velocity))
         spins = np.maximum(np.abs(self.spins[self.found]), speed / size)
-        return np.append(np.full(int(self.speed_is_found), speed), spins)
+        turns = np.full(int(self.upright is not None), speed / size)
+        return np.concatenate([np.full(int(self.speed_is_found), speed), turns, spins])
 
     def by_speeds(self, dynamics: Dynamics) -> np.ndarray:
         """Return derivatives of the velocities by the unknown speeds, shape (n_u, speeds)."""
-        of_body, n_u = dynamics.system.of_body, dynamics.system.n_u
+        of_body, n_u, first = dynamics.system.of_body, dynamics.system.n_u, self._first_spin
         by = np.zeros((n_u, self.n_found))
+        by_body = by.reshape(-1, of_body.n_u, self.n_found)
         if self.speed_is_found:
-            by.reshape(-1, of_body.n_u, self.n_found)[:, : of_body.linear, 0] = self._ahead()
-            by[self.spinning, 0] += self._spins_with(dynamics, by[:, 0])
-        spins = np.arange(len(self.found))
-        by[self.spinning[self.found], int(self.speed_is_found) + spins] = 1.0
+            by_body[:, : of_body.linear, 0] = self._ahead()
+        if self.upright is not None:
+            by[:, first - 1] = replace(self, velocity=0 * self.velocity, rotation=self.upright).carried(dynamics)
+        for k in range(first):
+            by[self.spinning, k] += self._spins_with(dynamics, by[:, k])
+        by[self.spinning[self.found], first + np.arange(len(self.found))] = 1.0
         return by
+
+    def accelerated_by_speeds(self, dynamics: Dynamics, by: np.ndarray) -> np.ndarray:
+        """Return derivatives of the accelerations by the unknown speeds, given those of the velocities."""
+        found = self.by_move(dynamics) @ by
+        if self.upright is not None:
+            turned = replace(self, rotation=self.upright)
+            found[:, self._first_spin - 1] += turned.by_move(dynamics) @ dynamics.state.u
+        return found
+
+    def replaced(self, dynamics: Dynamics, by: np.ndarray) -> np.ndarray:
+        """Return the displacement that each unknown speed replaces; for a rotation one to the side, as of a car."""
+        if self.upright is None:
+            return by
+        of_body, found = dynamics.system.of_body, by.copy()
+        aside = found.reshape(-1, of_body.n_u, by.shape[1])[:, :, self._first_spin - 1]
+        aside[:] = 0.0
+        aside[:, : of_body.linear] = _cross(self.upright, self._ahead())
+        return found
 
     def _spins_with(self, dynamics: Dynamics, by_speed: np.ndarray) -> np.ndarray:
         """Return derivatives of the spins that rolling determines by the speed."""

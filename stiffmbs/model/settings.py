@@ -184,7 +184,8 @@ class SteadyMotion(Described):
         for zero.
     rotation : float or tuple of float
         Angular velocity, rad/s: a number in the plane; in space a vector in ground axes, or a number for a rotation
-        about the direction opposite to gravity.
+        about the direction opposite to gravity. ``found`` if forces determine that number, as of a car that pulls to
+        one side; it is sought too if nothing is given and the forces do not balance on a straight line.
     about : tuple of float
         Point on the axis of rotation, m; by default the origin.
     rolling : tuple of str
@@ -196,9 +197,9 @@ class SteadyMotion(Described):
     """
 
     velocity: tuple[si.Velocity, ...] = Field((), description="of every point, in ground axes, m/s")
-    rotation: si.AngularVelocity | tuple[si.AngularVelocity, si.AngularVelocity, si.AngularVelocity] = Field(
-        0.0, description="angular velocity, rad/s; a number in space is about the vertical"
-    )
+    rotation: (
+        Literal["found"] | si.AngularVelocity | tuple[si.AngularVelocity, si.AngularVelocity, si.AngularVelocity]
+    ) = Field(0.0, description="angular velocity, rad/s, or `found`; a number in space is about the vertical")
     about: tuple[si.Length, ...] = Field(
         (), description="a point of the axis of the rotation, m; the origin without it"
     )

@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 from click.testing import CliRunner
-from scipy.optimize import brentq
+from scipy.optimize import brentq, fsolve
 
 import stiffmbs
 from stiffmbs import SteadyMotion
@@ -232,3 +232,44 @@ def test_an_unstable_state_is_found_by_shortened_newton_steps(few_moves):
     found = stiffmbs.equilibrium(scene, motion=SteadyMotion(velocity=(20, 0)))
     assert found.channels["p"] == pytest.approx(0.0, abs=1e-9)
     assert "unstable" in found.notes[0]
+
+
+PULLING_CAR = """
+parameters: {C1: 6e4, C2: 7e4, V: 20}
+bodies: {car: {mass: 1200, inertia: 1500, position: [3, 2], markers: {front: {point: [1.2, 0]}, rear: {point: [-1.4, 0]}, side: {point: [0.3, 0]}}}}
+forces:
+  front: {type: force, i: car.front, axes: body, force: [0, "-C1*vy(car.front, ground, car)/V"]}
+  rear: {type: force, i: car.rear, axes: body, force: [0, "-C2*vy(car.rear, ground, car)/V"]}
+  wind: {type: force, i: car.side, axes: body, force: [0, 400]}
+  drive: {type: force, i: car, axes: body, force: ["500 - 30*vx(car, ground, car)", 0]}
+"""
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("asked", ["", "rotation: found, "])
+def test_a_car_that_pulls_to_one_side_turns_at_the_rate_of_the_bicycle_model(asked):
+    start = f"start: {{{asked}velocity: [18, 0], speed: found}}\nrun: {{duration: 20 s, rtol: 1e-9}}\n"
+    scene = stiffmbs.read_scene(PULLING_CAR + start)
+
+    def left(unknown):
+        vx, vy, r = unknown
+        front, rear = -6e4 * (vy + 1.2 * r) / 20, -7e4 * (vy - 1.4 * r) / 20
+        return (
+            500 - 30 * vx + 1200 * r * vy,
+            front + rear + 400 - 1200 * r * vx,
+            1.2 * front - 1.4 * rear + 0.3 * 400,
+        )
+
+    vx, vy, r = fsolve(left, [18.0, 0.0, 0.0], xtol=1e-13)
+    assert abs(r) > 5e-3
+    found = stiffmbs.equilibrium(scene)
+    assert found.channels["car.omega"] == pytest.approx(r, rel=1e-8)
+    assert np.hypot(found.channels["car.vx"], found.channels["car.vy"]) == pytest.approx(np.hypot(vx, vy), rel=1e-9)
+    run = stiffmbs.run(scene)
+    assert run["car.omega"] == pytest.approx(np.full(len(run.time), r), rel=1e-6)
+    assert any("turns at" in note for note in run.notes)
+
+
+def test_forces_determine_a_rotation_only_of_bodies_that_move():
+    with pytest.raises(stiffmbs.InputError, match="rotation: found no velocity"):
+        stiffmbs.equilibrium(stiffmbs.read_scene(PULLING_CAR), motion=SteadyMotion(rotation="found"))

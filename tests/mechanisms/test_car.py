@@ -32,6 +32,22 @@ def test_the_body_moves_slowly_and_the_wheels_hop(examples):
     assert min(each.frequency for each in swinging) > 0.7
 
 
+def test_a_car_with_a_steering_column_starts_in_the_steady_motion_to_which_it_pulls(examples, tmp_path):
+    """The steering wheel is 0.35 m to the left; the run that starts turning keeps its yaw rate, loads and speed."""
+    text = (examples / "car.yaml").read_text().replace("properties: car.tir", f"properties: {examples / 'car.tir'}")
+    column = "column: {use: steering_column, on: chassis, mounts: {rack: steering.rack, housing: steering.housing}}"
+    text = text.replace("  air: {use", f"  {column}\n  air: {{use")
+    text = text.replace("joint: steering.guide, position: 0 m", "joint: column.bearing, position: 0")
+    path = tmp_path / "car.yaml"
+    path.write_text(text)
+    found = stiffmbs.run(path, duration=3, rtol=1e-7)
+    assert abs(found["yaw_rate"][0]) > 1e-5
+    for name in ("yaw_rate", "chassis.wx", "chassis.wy"):
+        assert np.ptp(found[name]) < 1e-7
+    assert np.ptp(found["front.left.tyre.load"]) < 1e-2
+    assert any("turns at" in note for note in found.notes)
+
+
 @pytest.mark.parametrize("manoeuvre", ["bump", "rough", "step_steer", "sine_sweep"])
 def test_manoeuvres_run_and_the_driver_keeps_the_speed(examples, manoeuvre):
     scene = stiffmbs.load_scene(examples / "car.yaml", [("choose.manoeuvre", manoeuvre)])

@@ -65,7 +65,8 @@ def scene_in_space(data: PlanarData) -> Written:
 def _start(start: str | SteadyMotion) -> str | Written | None:
     if isinstance(start, SteadyMotion):
         vectors = {name: [*getattr(start, name), 0] for name in ("velocity", "about") if getattr(start, name)}
-        return {**vectors, "rotation": [0, 0, start.rotation], "rolling": list(start.rolling), "speed": start.speed}
+        rotation = start.rotation if start.rotation == "found" else [0, 0, start.rotation]
+        return {**vectors, "rotation": rotation, "rolling": list(start.rolling), "speed": start.speed}
     return start if start != Scene.model_fields["start"].default else None
 
 
