@@ -50,9 +50,12 @@ class Material(Described):
 class Matrices(Described):
     """Files of the matrices of a finite element model."""
 
-    stiffness: str = Field(description="Matrix Market file of K")
-    mass: str = Field(description="Matrix Market file of M")
-    nodes: str = Field(description="text file with x, y and z of one node on each line")
+    stiffness: str = Field(description="file of K: .mtx, .op2, .op4, .pch, .full or .sti")
+    mass: str = Field(description="file of M: .mtx, .op2, .op4, .pch, .full or .mas")
+    nodes: str = Field(description="file of the nodes: .bdf, .inp, .cdb, or lines of x, y and z, also after a number")
+    rows: str | None = Field(None, description="file of CalculiX with node and component of each row: .dof")
+    stiffness_name: str | None = Field(None, description="name of K in a file with several matrices, such as KGG")
+    mass_name: str | None = Field(None, description="name of M in such a file")
 
 
 class Sphere(Described):
@@ -80,7 +83,9 @@ class Plane(Described):
 class InterfaceOfNodes(Described):
     """Interface: nodes of the body that move with a marker."""
 
-    nodes: tuple[int, ...] | None = Field(None, description="numbers of nodes, from 0 in the order of the file")
+    nodes: tuple[int, ...] | None = Field(
+        None, description="numbers of nodes: those of a file of nodes, otherwise from 0 in its order"
+    )
     group: str | None = Field(None, description="named group of nodes of the file")
     sphere: Sphere | None = Field(None, description="all nodes within a sphere")
     plane: Plane | None = Field(None, description="all nodes on a plane")
@@ -127,12 +132,14 @@ class InterfaceOfNodes(Described):
             across = np.array(self.plane.normal) / np.linalg.norm(self.plane.normal)
             return np.flatnonzero(np.abs((model.nodes - self.plane.point) @ across) <= within)
         assert self.nodes is not None
-        if self.nodes and not 0 <= min(self.nodes) <= max(self.nodes) < len(model.nodes):
+        numbers = np.arange(len(model.nodes)) if model.numbers is None else model.numbers
+        unknown = np.setdiff1d(self.nodes, numbers)
+        if len(unknown):
             raise InputError(
-                f"interfaces.{name}.nodes: found node {max(self.nodes) if min(self.nodes) >= 0 else min(self.nodes)}, "
-                f"expected 0 to {len(model.nodes) - 1}"
+                f"interfaces.{name}.nodes: found node {unknown[0]}, expected {numbers[0]} to {numbers[-1]}"
+                f"{'' if len(numbers) > numbers[-1] - numbers[0] else ' (numbers of the file)'}"
             )
-        return self.nodes
+        return np.searchsorted(numbers, self.nodes)
 
 
 class UpTo(Described):
@@ -156,7 +163,7 @@ class FlexibleBody(Described):
     mesh : str, optional
         Mesh of solid elements; it needs a material.
     matrices : str or mapping, optional
-        NumPy archive with nodes, K and M, or Matrix Market files.
+        NumPy archive with nodes, K and M, or files of finite element programs.
     units : Units
         Units of the file.
     material : Material, optional
@@ -170,7 +177,7 @@ class FlexibleBody(Described):
     """
 
     mesh: str | None = Field(None, description="file of a mesh of tetrahedra or hexahedra")
-    matrices: str | Matrices | None = Field(None, description="NumPy archive (.npz), or Matrix Market files")
+    matrices: str | Matrices | None = Field(None, description="NumPy archive (.npz), or files of K, M and nodes")
     units: Units = Field(description="units of the file")
     material: Material | None = Field(None, description="of a mesh")
     interfaces: dict[str, InterfaceOfNodes] = Field(default_factory=dict, description="nodes that move with markers")
@@ -208,7 +215,8 @@ class FlexibleBody(Described):
     def files(self) -> tuple[str, ...]:
         """Names of the files of the body."""
         if isinstance(self.matrices, Matrices):
-            return self.matrices.stiffness, self.matrices.mass, self.matrices.nodes
+            found = self.matrices.stiffness, self.matrices.mass, self.matrices.nodes, self.matrices.rows
+            return tuple(name for name in found if name is not None)
         return (self.mesh or self.matrices or "",)
 
     def model(self, folder: Path) -> FiniteElements:
@@ -228,15 +236,19 @@ class FlexibleBody(Described):
         return found
 
     def _read(self, folder: Path) -> FiniteElements:
-        from .matrices import from_archive, from_matrix_market
-
         units = self.units.length, self.units.mass, self.units.time
         contents = [content_of_file(folder / name) for name in self.files]
+        if isinstance(files := self.matrices, Matrices):
+            from .matrix_files import from_files
+
+            stiffness, mass, nodes = (folder / name for name in (files.stiffness, files.mass, files.nodes))
+            rows = None if files.rows is None else folder / files.rows
+            names = files.stiffness_name, files.mass_name
+            return from_files(stiffness, mass, nodes, rows, names, *units)
         try:
-            if isinstance(self.matrices, Matrices):
-                stiffness, mass, nodes = contents
-                return from_matrix_market(stiffness, mass, nodes, *units)
             if self.matrices is not None:
+                from .matrices import from_archive
+
                 return from_archive(contents[0], *units)
             from .mesh import from_mesh
 

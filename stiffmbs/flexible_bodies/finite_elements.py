@@ -14,6 +14,8 @@ from .solid import Solid
 
 SYMMETRY = 1e-8
 """Tolerance of symmetry, relative to the largest entry."""
+SAME_IN_ALL = 1e-6
+"""Tolerance of a mass along x, y and z, relative to the largest entry."""
 RIGID = 1e-6
 """Largest force of a rigid displacement, relative to the force of a displacement of each node alone."""
 
@@ -34,6 +36,8 @@ class FiniteElements:
         Nodes of the elements by type, in the names and order of meshio, for pictures; may be empty.
     solid : Solid, optional
         Shape functions and material, for stresses and geometric stiffening.
+    numbers : ndarray of int, shape (n,), optional
+        Increasing numbers by which the file names the nodes; from 0 without them.
     """
 
     nodes: np.ndarray
@@ -42,6 +46,7 @@ class FiniteElements:
     groups: Mapping[str, np.ndarray] = field(default_factory=dict)
     cells: Mapping[str, np.ndarray] = field(default_factory=dict)
     solid: Solid | None = None
+    numbers: np.ndarray | None = None
 
     def rigid_modes(self, about: np.ndarray) -> np.ndarray:
         """Return displacements by unit translations and rotations about a point, shape (3 n, 6)."""
@@ -76,6 +81,7 @@ class FiniteElements:
             raise InputError("nodes: found a position that is not finite, expected numbers")
         self._check_parts()
         self._check_diagonals()
+        self._check_mass()
         self._check_rigid_modes()
 
     def _check_parts(self) -> None:
@@ -99,6 +105,20 @@ class FiniteElements:
                     f"{name}: found {diagonal[worst]:.3g} on the diagonal at node {worst // 3}, "
                     "expected positive numbers; are its elements inverted?"
                 )
+
+    def _check_mass(self) -> None:
+        """Refuse a mass matrix that is not the same along x, y and z: of beams, shells, or reduced to fewer nodes."""
+        largest = np.abs(self.mass.data).max()
+        along_x = self.mass[::3, ::3]
+        for a in range(3):
+            for b in range(3):
+                block = self.mass[a::3, b::3]
+                off = np.abs((block - along_x if a == b else block).data).max(initial=0.0)
+                if off > SAME_IN_ALL * largest:
+                    raise InputError(
+                        f"mass: found entries of {off / largest:.2g} of the largest that depend on the direction "
+                        f"({'xyz'[a]}, {'xyz'[b]}), expected the mass matrix of solid elements, not reduced"
+                    )
 
     def _check_rigid_modes(self) -> None:
         centre = self.nodes.mean(axis=0)

@@ -1,4 +1,4 @@
-"""Finite element models given by matrices: NumPy archives, and Matrix Market files."""
+"""Finite element models given by a NumPy archive."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from scipy.io import mmread
 from scipy.sparse import csr_array
 
 from ..errors import InputError
@@ -60,38 +59,6 @@ def from_archive(content: bytes, length: float, mass: float, time: float) -> Fin
         elif array.ndim == 2 and CELL.match(key) and array.shape[1] in CELL_TYPES:
             cells[CELL_TYPES[array.shape[1]]] = _node_numbers(key, array, len(nodes))
     return FiniteElements(nodes * length, stiffness * (mass / time**2), of_mass * mass, groups, cells)
-
-
-def from_matrix_market(
-    stiffness: bytes, mass_matrix: bytes, nodes: bytes, length: float, mass: float, time: float
-) -> FiniteElements:
-    """Return the model of two matrices in Matrix Market files and a text file of node positions, one per line.
-
-    Parameters
-    ----------
-    stiffness, mass_matrix, nodes : bytes
-        Contents of the files.
-    length, mass, time : float
-        Units of the files in m, kg and s.
-
-    Raises
-    ------
-    InputError
-    """
-    matrices = []
-    for name, content in (("stiffness", stiffness), ("mass", mass_matrix)):
-        try:
-            matrices.append(csr_array(mmread(io.BytesIO(content))))
-        except Exception as error:  # the reader raises many types
-            raise InputError(
-                f"{name}: found no Matrix Market file ({_line(error)}), expected one that begins with %%MatrixMarket"
-            ) from None
-    try:
-        text = nodes.decode()
-        positions = np.loadtxt(io.StringIO(text), delimiter="," if "," in text else None, ndmin=2)
-    except ValueError as error:
-        raise InputError(f"nodes: found no table ({_line(error)}), expected lines of x, y and z") from None
-    return FiniteElements(_positions(positions) * length, matrices[0] * (mass / time**2), matrices[1] * mass)
 
 
 def _line(error: Exception) -> str:

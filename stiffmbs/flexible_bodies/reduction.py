@@ -15,7 +15,7 @@ import numpy as np
 from scipy.linalg import block_diag, eigh, null_space
 
 from ..errors import InputError
-from .finite_elements import FiniteElements, rigid_displacements
+from .finite_elements import SAME_IN_ALL, FiniteElements, rigid_displacements
 from .interfaces import Interface, check_interfaces
 from .second_order import second_order
 from .static_solver import StaticSolver
@@ -26,8 +26,6 @@ HELD = 1e-10
 """Singular value below which an equation of a held interface is dependent, relative to the largest."""
 ZERO = 10.0
 """Frequency of the lowest elastic mode that is refused as zero, relative to the highest of the rigid modes."""
-SAME_IN_ALL = 1e-6
-"""Tolerance of the mass along x, y and z, relative to it."""
 STIFFENED = 12
 """Lowest modes whose pairs have displacements of second order: geometric stiffening."""
 MORE_MODES = 20

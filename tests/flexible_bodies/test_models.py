@@ -5,11 +5,10 @@ import io
 import meshio
 import numpy as np
 import pytest
-from scipy.io import mmwrite
 
 from stiffmbs.errors import InputError
 from stiffmbs.flexible_bodies.finite_elements import FiniteElements
-from stiffmbs.flexible_bodies.matrices import from_archive, from_matrix_market
+from stiffmbs.flexible_bodies.matrices import from_archive
 from stiffmbs.flexible_bodies.mesh import SOLIDS, from_mesh
 from stiffmbs.flexible_bodies.reduction import rigid_body
 
@@ -62,20 +61,6 @@ def test_nodes_without_an_element_are_left_out(tmp_path):
     mesh = mesh_of_bar("hexahedron")
     meshio.Mesh(np.vstack([mesh.points, [[9e3, 9e3, 9e3]]]), mesh.cells).write(tmp_path / "bar.vtu")
     assert len(from_mesh(tmp_path / "bar.vtu", 1e-3, E, NU, DENSITY).nodes) == len(mesh.points)
-
-
-def test_matrix_market_files_in_millimetres_and_tonnes(tmp_path):
-    model = bar(tmp_path, "hexahedron")
-    files = []
-    for matrix in (model.stiffness / 1e3, model.mass / 1e3):  # N/mm and tonnes
-        out = io.BytesIO()
-        mmwrite(out, matrix.tocoo(), symmetry="symmetric")
-        files.append(out.getvalue())
-    nodes = "\n".join(",".join(f"{1e3 * part:.12g}" for part in node) for node in model.nodes).encode()
-    found = from_matrix_market(*files, nodes, 1e-3, 1e3, 1.0)
-    np.testing.assert_allclose(found.nodes, model.nodes, atol=1e-12)
-    assert np.abs((found.stiffness - model.stiffness).data).max() < 1e-6 * np.abs(model.stiffness.data).max()
-    assert rigid_body(found)[0] == pytest.approx(MASS, rel=1e-6)
 
 
 def _changed(model, **parts):
