@@ -32,6 +32,9 @@ class RadauParameters:
         Cost of the solutions of an iteration, in those of the matrices of a step.
     slowest : float
         Convergence rate of Newton's iteration that the next step may have.
+    converging : float
+        Ratio of successive Chebyshev coefficients of a step's polynomial above which the error estimate has no order, and its
+        tolerance is the requested one.
     after_failure : float
         Factor of the step after a failed iteration.
     loosest : float
@@ -48,6 +51,7 @@ class RadauParameters:
     gain: float = 0.8
     solution_cost: float = 0.1
     slowest: float = 0.3
+    converging: float = 0.25
     after_failure: float = 0.5
     loosest: float = 0.03
 

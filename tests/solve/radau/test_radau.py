@@ -45,6 +45,19 @@ def test_errors_at_all_output_times_follow_the_tolerance(stages, rtol):
     np.testing.assert_allclose(found["mass.vx"], -0.6 * np.pi * np.sin(2 * np.pi * found.t), atol=20 * rtol)
 
 
+@pytest.mark.parametrize("rtol", [1e-6, 1e-8])
+@pytest.mark.parametrize("frequency", [20.0, 100.0])
+def test_a_small_vibration_about_a_position_of_rest_is_not_damped(frequency, rtol):
+    """Rates at the start are small, and the estimate of a step over many periods is small too: the method is L-stable."""
+    speed = 1000 * rtol
+    model = Model()
+    model.add("mass", Body(mass=1, inertia=1, position=(1, 1), velocity=(speed, 0)))
+    rest = stiffmbs.Marker(body="ground", point=(1, 1))
+    model.add("held", stiffmbs.Bushing(i="mass", j=rest, stiffness=(frequency**2,) * 3))
+    found = stiffmbs.run(model, duration=4.0, points=401, solver="radau", rtol=rtol)
+    np.testing.assert_allclose(found["mass.vx"], speed * np.cos(frequency * found.t), atol=0.1 * speed)
+
+
 @pytest.mark.parametrize("stiffness", [1e6, 1e9, 1e12])
 def test_steps_and_forces_do_not_depend_on_the_stiffness(stiffness):
     """A bar that swings on a bushing, against a hinge, once the ringing of the start is over."""

@@ -81,7 +81,30 @@ def _estimate(x, c, t, h, y):
             x.yp_stage[k] += factor * z[k]
     size = _solved_defect(x, t, y)
     copied(x.error, x.x, x.n)
-    return max(size / c.relaxed, ROUNDING)
+    return max(size / c.relaxed, ROUNDING, _unresolved(x, c) if size > 1.0 else 0.0)
+
+
+@compiled
+def _unresolved(x, c):
+    """Return the size of the error estimate in unknowns whose polynomial does not converge, in tolerances.
+
+    Of its coefficients of degrees s, s - 1 and s - 2 in Chebyshev polynomials, the first is not small: the step is long for a
+    vibration, which the method damps.
+    """
+    total = 0.0
+    for k in range(x.n):
+        highest = 0.0
+        second = 0.0
+        third = 0.0
+        for j in range(c.stages):
+            difference = c.weights[j + 1] * x.z[j * x.n_all + k]
+            highest += difference
+            second += c.nodes[j] * difference
+            third += c.nodes[j] * (c.nodes[j] - 1.0) * difference
+        if abs(highest) > x.converging * max(4.0 * abs(second), 16.0 * abs(third)):
+            part = x.error[k] * x.weight[k]
+            total += part * part
+    return sqrt(total / x.n_tested)
 
 
 @compiled
@@ -108,7 +131,10 @@ def first_step(x):
         return x.first
     of_state = _size(x, x.y)
     of_rates = _size(x, x.yp)
-    return PART * of_state / of_rates if min(of_state, of_rates) > NEGLIGIBLE else SHORT
+    if min(of_state, of_rates) <= NEGLIGIBLE:
+        return SHORT
+    order = collocation_view(ints(x.methods[0])).stages
+    return min(PART * of_state / of_rates, (PART / of_rates) ** (1.0 / (1.0 + order)))
 
 
 @compiled
