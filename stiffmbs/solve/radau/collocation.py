@@ -12,6 +12,9 @@ from functools import cache
 import numpy as np
 from numpy.polynomial import Legendre, Polynomial
 
+MOST_BETWEEN = 4
+"""Largest number of corrections of a polynomial between the nodes."""
+
 
 @dataclass(frozen=True)
 class Collocation:
@@ -32,6 +35,8 @@ class Collocation:
     alpha, beta : ndarrays, shape ((s - 1) / 2,)
     error : ndarray, shape (s,)
         d with y_hat - y = (gamma/h M - f_y)^-1 (f(y_n) + M sum_i d_i Z_i / h), a difference of order s.
+    between : ndarray, shape (s + 3,)
+        Places at which corrections of the polynomial are interpolated: the nodes within the step, then the best others.
     weights : ndarray, shape (s + 1,)
         Barycentric weights of the nodes 0, c_1 to c_s.
     bubble : ndarray, shape (s + 2,)
@@ -50,6 +55,7 @@ class Collocation:
     error: np.ndarray
     weights: np.ndarray
     bubble: np.ndarray
+    between: np.ndarray
 
     @property
     def stages(self) -> int:
@@ -68,7 +74,18 @@ def radau(stages: int) -> Collocation:
     at_start = _barycentric(nodes) * np.prod(-nodes) / -nodes
     error, inverse = -derivative.T @ at_start, np.linalg.inv(transform)
     bubble = gamma / np.prod(-nodes) * Polynomial.fromroots(nodes).integ().coef
-    return Collocation(nodes, derivative, transform, inverse, gamma, alpha, beta, error, weights, bubble)
+    return Collocation(
+        nodes, derivative, transform, inverse, gamma, alpha, beta, error, weights, bubble, _between(points)
+    )
+
+
+def _between(points: np.ndarray) -> np.ndarray:
+    """Return places in which the product of the distances from all earlier points and places is largest (Leja points)."""
+    places = np.linspace(0.0, 1.0, 2001)
+    for _ in range(MOST_BETWEEN):
+        distances = np.abs(places[:, None] - points).prod(axis=1)
+        points = np.append(points, places[distances.argmax()])
+    return np.concatenate([points[1 : -MOST_BETWEEN - 1], points[-MOST_BETWEEN:]])
 
 
 def _nodes(stages: int) -> np.ndarray:

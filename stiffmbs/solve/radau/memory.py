@@ -18,7 +18,7 @@ from ..ida.libraries import Libraries
 from ..ida.matrices import Assembled, Matrix
 from ..ida.session import Session
 from ..linear_solvers.block_lu import BlockLU
-from .collocation import Collocation, radau
+from .collocation import MOST_BETWEEN, Collocation, radau
 from .condensed import condensed_efforts
 from .interface import RadauFunctions
 from .native.layouts import COLLOCATION, RADAU
@@ -164,6 +164,7 @@ class Radau:
             "n_all": n_all, **efforts, "lever": np.zeros(efforts["n_levers"]), "slope": np.zeros(efforts["n_slopes"]),
             "misfit": np.zeros(self._most * n_efforts), "r": np.zeros(self._most * n),
             **{name: np.zeros(n) for name in ("yp", "yp_stage", "error", "weight", "atol")},
+            "corrections": np.zeros((self._most - 1 + MOST_BETWEEN) * n_all),
             **{name: np.zeros(n_all) for name in ("y", "y_stage", "y_past")},
             **{name: np.zeros(self._most * n_all) for name in ("z", "d", "past")},
             "n_functions": functions, "functions": connection.event_functions if functions else 0, "ida": connection.words,
@@ -189,7 +190,7 @@ class Radau:
 def _arrays(c: Collocation) -> dict[str, Any]:
     """Return the contents of the table of a method."""
     arrays = {name: np.ascontiguousarray(value) for name, value in vars(c).items() if isinstance(value, np.ndarray)}
-    return {**arrays, "stages": c.stages, "pairs": len(c.alpha), "gamma": c.gamma}
+    return {**arrays, "stages": c.stages, "pairs": len(c.alpha), "gamma": c.gamma, "n_between": len(c.between)}
 
 
 def _costs(stages: int, cost: ImplicitCost, pair_cost: float, parameters: RadauParameters) -> dict[str, float]:

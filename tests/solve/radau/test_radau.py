@@ -81,6 +81,15 @@ def test_a_stiff_car_over_a_bump(examples, k_b):
     assert found.solver["steps"] < 200
 
 
+@pytest.mark.parametrize("k_b", ["1e8 N/m", "1e10 N/m"])
+def test_forces_are_as_accurate_at_many_outputs_as_at_few(examples, k_b):
+    """Many outputs within a step share interpolated corrections; a few are corrected one by one."""
+    scene = stiffmbs.load_scene(examples / "half_car.yaml", [("k_b", k_b), ("zeta", "0.05")])
+    many, few = (stiffmbs.run(scene, rtol=1e-6, solver="radau", points=points) for points in (4001, 81))
+    largest = np.abs(few["front_bushing.fy"]).max()
+    np.testing.assert_allclose(many["front_bushing.fy"][::50], few["front_bushing.fy"], atol=5e-5 * largest)
+
+
 @pytest.mark.parametrize("formulation", ["SI2", "SI2_exact", "SI1", "I3", "index1"])
 def test_formulations_give_one_motion(examples, formulation):
     scene = stiffmbs.load_scene(examples / "cart_pendulum.yaml")

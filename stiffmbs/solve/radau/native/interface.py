@@ -8,9 +8,8 @@ from stiffmbs.compile.machine.native.access import compiled, floats, ints
 from stiffmbs.compile.machine.native.calls import call_address, call_int, int32
 from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.statuses import OK, ROOT_RETURN, STOP_RETURN
-from stiffmbs.solve.ida.native.output_correction import output_correction_view
+from stiffmbs.solve.radau.native.between_steps import dense_output
 from stiffmbs.solve.radau.native.memory import collocation_view, polynomial, polynomial_rates, radau_view
-from stiffmbs.solve.radau.native.newton import closed
 from stiffmbs.solve.radau.native.steps import EXCLUDED, first_step, set_weights, step
 
 BAD_ORDER, BAD_TIME = -25, -26
@@ -133,22 +132,6 @@ def solve(memory, toward, returned, y, yp, task):
     return int32(OK)
 
 
-@compiled
-def _dense_output(x, t, place, target):
-    """Compute the state at a place of the last step.
-
-    In a step that is long for the stiff forces, the interpolation errors of positions would make large forces: one
-    Newton correction with the factors of the step restores the equilibrium.
-    """
-    if not (x.h_past > output_correction_view(x.output_correction).long and x.h_factored > 0.0 and place < 1.0):
-        polynomial(x, place, x.n, target)
-        return
-    polynomial(x, place, x.n_all, x.y_stage)
-    polynomial_rates(x, place, x.yp_stage)
-    closed(x, t)
-    copied(target, x.y_stage, x.n)
-
-
 def interpolate(memory, t, order, target):
     """Evaluate the polynomial of the last step, or its derivative (IDAGetDky)."""
     x = radau_view(ints(memory))
@@ -163,7 +146,7 @@ def interpolate(memory, t, order, target):
     if order == 1:
         polynomial_rates(x, place, _data(x, target))
     else:
-        _dense_output(x, t, place, _data(x, target))
+        dense_output(x, t, place, _data(x, target))
     return int32(OK)
 
 

@@ -6,7 +6,7 @@ from stiffmbs.compile.machine.layout import FLOAT_CELL, FLOATS, INDICES, INT, IN
 
 COLLOCATION = Layout({
     "stages": INT, "pairs": INT, "nodes": FLOATS, "derivative": FLOATS, "transform": FLOATS, "inverse": FLOATS, "gamma": FLOAT_CELL, "relaxed": FLOAT_CELL, "alpha": FLOATS,
-    "beta": FLOATS, "error": FLOATS, "weights": FLOATS, "bubble": FLOATS, "setup_cost": FLOAT_CELL, "iteration_cost": FLOAT_CELL, "keep": FLOAT_CELL,
+    "beta": FLOATS, "error": FLOATS, "weights": FLOATS, "bubble": FLOATS, "n_between": INT, "between": FLOATS, "setup_cost": FLOAT_CELL, "iteration_cost": FLOAT_CELL, "keep": FLOAT_CELL,
 })  # fmt: skip
 """Coefficients of `stiffmbs.solve.radau.collocation.Collocation`; `relaxed` is the tolerance of the error estimate
 relative to the requested one. Costs of the matrices of a step and of an iteration, in any unit. Convergence rate below
@@ -24,6 +24,7 @@ RADAU = Layout({
     "atol": FLOATS, "rtol": FLOAT_CELL, "newton": FLOAT_CELL, "part": FLOAT_CELL, "loosest": FLOAT_CELL, "longest": FLOAT_CELL, "first": FLOAT_CELL, "stop": FLOAT_CELL, "stops": INT_CELL,
     "t": FLOAT_CELL, "h": FLOAT_CELL, "h_past": FLOAT_CELL, "method": INT_CELL, "method_past": INT_CELL, "begun": INT_CELL,
     "h_factored": FLOAT_CELL, "method_factored": INT_CELL, "current": INT_CELL, "rate_kept": INT_CELL, "rejected": INT_CELL, "failures": INT_CELL, "renewed": INT_CELL, "error_size": FLOAT_CELL, "left": FLOAT_CELL, "closing": FLOAT_CELL, "suggested": FLOAT_CELL,
+    "corrections": FLOATS, "n_corrections": INT_CELL, "suffice": INT_CELL, "outputs": INT_CELL,
     "rate": FLOAT_CELL, "contraction": FLOAT_CELL, "last_error": FLOAT_CELL, "h_accepted": FLOAT_CELL, "since_change": INT_CELL, "iterations_taken": INT_CELL,
     "n_functions": INT, "functions": INT, "ida": INTS, "before": FLOATS, "after": FLOATS, "within": FLOATS, "fired": INTS,
     "steps": INT_CELL, "residuals": INT_CELL, "jacobians": INT_CELL, "factorizations": INT_CELL, "error_failures": INT_CELL,
@@ -43,5 +44,6 @@ step with its beginning; error estimate and inverse tolerances.
 Cells: tolerances, the requested relative one, part that Newton's iteration may leave; largest and first step, stop
 time; time, next step, last step, methods of both; step size, method and time of the factors, 1 if the matrix belongs to
 the beginning of the step; convergence rate of Newton's iteration, its last ratio, and what it left, in tolerances; error and size of the last
-accepted step; steps since a change of the method.  Event functions at both ends of the step.  Counters, then the parameters of
+accepted step; steps since a change of the method.  Corrections between steps (`stiffmbs.solve.radau.native.between_steps`),
+their number, 1 if they suffice, and outputs of the step. Event functions at both ends of the step.  Counters, then the parameters of
 `stiffmbs.solve.radau.parameters`."""

@@ -11,8 +11,15 @@ from math import isfinite, sqrt
 
 from stiffmbs.compile.machine.native.access import compiled, equations_view, floats, ints, shifted, state_view
 from stiffmbs.compile.machine.native.calls import call_int, copy_bytes
-from stiffmbs.compile.machine.native.evaluate import EFFORT, EFFORT_TANGENT, add_entries, add_products, evaluate, load
-from stiffmbs.compile.machine.native.memory import copied
+from stiffmbs.compile.machine.native.evaluate import (
+    EFFORT,
+    EFFORT_TANGENT,
+    add_entries,
+    add_products,
+    call_kernels,
+    evaluate,
+    load,
+)
 from stiffmbs.compile.machine.native.statuses import OK
 from stiffmbs.solve.ida.native.output_correction import output_correction_view
 from stiffmbs.solve.radau.native.memory import basis, collocation_view
@@ -21,8 +28,6 @@ MOST_ITERATIONS = 7
 """Largest number of iterations with three stages; each further stage adds two and a half."""
 ROUNDINGS = 4e-16
 """Distance of the last stage from a stop time, relative to the time."""
-MOST_CLOSINGS, CLOSED = 5, 1.0
-"""Largest number of corrections of a state between steps, and misfit that remains, in rtol of the largest effort."""
 LEAST_RATE = 1e-4
 """Least rate of convergence expected of the next step. That of a linear motion is no larger than rounding, and would let
 the first correction past a change of law."""
@@ -44,12 +49,18 @@ def residual(x, t, y, yp, target, misfit):
     add_products(e, evaluate(s, e.residual_set, t), y, yp, target)
     x.residuals += 1
     if x.acting > 0:
-        values = evaluate(s, EFFORT, t)
-        for k in range(x.n_efforts):
-            misfit[k] = values[x.effort_source[k]] - y[x.n + k]
+        values = call_kernels(s, EFFORT, t)
+        store_misfit(x, values, y, misfit)
         for k in range(x.n_levers):
             changed = x.lever_factor[k] * values[x.lever_source[k]] - x.lever[k]
             target[x.lever_unknown[k]] += changed * misfit[x.lever_effort[k]]
+
+
+@compiled
+def store_misfit(x, values, y, misfit):
+    """Compute F(q, u) - F from the values of the efforts and those stored in y."""
+    for k in range(x.n_efforts):
+        misfit[k] = values[x.effort_source[k]] - y[x.n + k]
 
 
 @compiled
@@ -155,36 +166,6 @@ def factored(x, c, h, t, y, yp, renewed):
 def solved_real(x):
     """Solve the real system for the vectors of the table."""
     call_int(x.solve, (x.solver[0], x.matrix[0], x.at_x, x.at_b, 0.0))
-
-
-@compiled
-def closed(x, t):
-    """Move the state in `x.y_stage` so that joints are closed and forces agree with the stored efforts."""
-    largest = 0.0
-    for k in range(x.n, x.n_all):
-        largest = max(largest, abs(x.y_stage[k]))
-    before = 0.0
-    for count in range(MOST_CLOSINGS):
-        residual(x, t, x.y_stage, x.yp_stage, x.b, x.misfit)
-        apart = 0.0
-        for k in range(x.n_efforts):
-            apart = max(apart, abs(x.misfit[k]))
-        if count > 0:
-            if apart <= CLOSED * x.rtol * largest:
-                return
-            x.closing = apart / before
-        before = max(apart, 1e-300)
-        for k in range(x.n):
-            x.b[k] = 0.0 if x.weight[k] > 0.0 else -x.b[k]
-        for k in range(x.n_levers):
-            x.b[x.lever_unknown[k]] += x.lever[k] * x.misfit[x.lever_effort[k]]
-        solved_real(x)
-        copied(x.d, x.x, x.n)
-        add_efforts(x, x.d, x.misfit)
-        for k in range(x.n_all):
-            x.y_stage[k] += x.d[k]
-        if x.closing * apart <= CLOSED * x.rtol * largest:
-            return
 
 
 @compiled

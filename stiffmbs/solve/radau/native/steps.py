@@ -8,12 +8,12 @@ from stiffmbs.compile.machine.native.access import compiled, ints, shifted
 from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.solve.ida.native.error_norm import error_norm_view
 from stiffmbs.solve.ida.native.output_correction import output_correction_view
+from stiffmbs.solve.radau.native.between_steps import close_end
 from stiffmbs.solve.radau.native.memory import basis, collocation_view
 from stiffmbs.solve.radau.native.newton import (
     CONVERGED,
     SLOW,
     add_efforts,
-    closed,
     extrapolated,
     factored,
     iterated,
@@ -173,20 +173,6 @@ def _choose_method(x, c, longest):
 
 
 @compiled
-def _close_end(x, c, t, h):
-    """Close the state at the end of the step."""
-    last = shifted(x.z, (c.stages - 1) * x.n_all)
-    for k in range(x.n_all):
-        x.y_stage[k] = x.y[k] + last[k]
-    for k in range(x.n):
-        x.yp_stage[k] = 0.0
-    x.closing = 1.0
-    closed(x, stage_time(x, t + h))
-    for k in range(x.n_all):
-        last[k] = x.y_stage[k] - x.y[k]
-
-
-@compiled
 def _accept(x, c, t, h):
     """Make the end of the step the state; keep its polynomial."""
     n = x.n
@@ -205,6 +191,7 @@ def _accept(x, c, t, h):
     x.t = t + h
     x.h_past = h
     x.method_past = x.method
+    x.outputs = 0
     x.steps += 1
 
 
@@ -351,7 +338,7 @@ def step(x):
     x.error_size = error
     _choose_next(x, c, h, x.h, at_stop)
     if x.acting > 0:
-        _close_end(x, c, x.t, h)
+        close_end(x, c, stage_time(x, x.t + h), h)
     _accept(x, c, x.t, h)
     if at_stop:
         x.t = x.stop

@@ -1,0 +1,138 @@
+"""States of the last step in which joints are closed and stiff forces are in equilibrium.
+
+The interpolation errors of positions would make large forces. In a step that is long for the stiff forces, a state is
+therefore moved by Newton corrections with the factors of the step. Joints are then closed, and forces agree with the
+polynomial of the efforts. Many outputs of a step share a few such corrections, which are interpolated (Newton's form).
+"""
+
+from __future__ import annotations
+
+from stiffmbs.compile.machine.native.access import compiled, equations_view, ints, shifted, state_view
+from stiffmbs.compile.machine.native.evaluate import EFFORT, evaluate, load
+from stiffmbs.compile.machine.native.memory import copied
+from stiffmbs.solve.ida.native.output_correction import output_correction_view
+from stiffmbs.solve.radau.native.memory import collocation_view, polynomial, polynomial_rates
+from stiffmbs.solve.radau.native.newton import add_efforts, residual, solved_real, store_misfit
+
+MOST_CORRECTIONS, CLOSED = 5, 1.0
+"""Largest number of corrections of a state, and misfit that remains, in rtol of the largest effort."""
+FEW = 2
+"""Outputs of a step that are corrected one by one."""
+
+
+@compiled
+def _defects(x, t):
+    """Compute the negative residuals of joints in `x.b`, with zeros elsewhere, and the misfit of efforts."""
+    if x.n_tested < x.n:
+        residual(x, t, x.y_stage, x.yp_stage, x.b, x.misfit)
+        for k in range(x.n):
+            x.b[k] = 0.0 if x.weight[k] > 0.0 else -x.b[k]
+        return
+    s = state_view(x.state)
+    load(s, equations_view(x.equations), x.y_stage, x.yp_stage)
+    store_misfit(x, evaluate(s, EFFORT, t), x.y_stage, x.misfit)
+    for k in range(x.n):
+        x.b[k] = 0.0
+
+
+@compiled
+def closed(x, t):
+    """Close the state in `x.y_stage`; return True if its forces had agreed with the efforts before."""
+    allowed = 0.0
+    for k in range(x.n, x.n_all):
+        allowed = max(allowed, abs(x.y_stage[k]))
+    allowed *= CLOSED * x.rtol
+    first = 0.0
+    before = 0.0
+    for count in range(MOST_CORRECTIONS):
+        _defects(x, t)
+        apart = 0.0
+        for k in range(x.n_efforts):
+            apart = max(apart, abs(x.misfit[k]))
+        if count == 0:
+            first = apart
+        if apart <= allowed and (count > 0 or x.n_tested == x.n):
+            break
+        if count > 0:
+            x.closing = apart / before
+        before = max(apart, 1e-300)
+        for k in range(x.n_levers):
+            x.b[x.lever_unknown[k]] += x.lever[k] * x.misfit[x.lever_effort[k]]
+        solved_real(x)
+        copied(x.d, x.x, x.n)
+        add_efforts(x, x.d, x.misfit)
+        for k in range(x.n_all):
+            x.y_stage[k] += x.d[k]
+        if x.closing * apart <= allowed:
+            break
+    return first <= allowed
+
+
+@compiled
+def close_end(x, c, t, h):
+    """Close the state at the end of the step, at a time t before the stop time."""
+    last = shifted(x.z, (c.stages - 1) * x.n_all)
+    for k in range(x.n_all):
+        x.y_stage[k] = x.y[k] + last[k]
+    for k in range(x.n):
+        x.yp_stage[k] = 0.0
+    x.closing = 1.0
+    closed(x, t)
+    for k in range(x.n_all):
+        last[k] = x.y_stage[k] - x.y[k]
+
+
+@compiled
+def _corrected(x, c, place, count):
+    """Compute the state in `x.y_stage`, with the first corrections; return their common factor at the place."""
+    polynomial(x, place, x.n_all, x.y_stage)
+    factor = place * (1.0 - place)
+    for j in range(count):
+        correction = shifted(x.corrections, j * x.n_all)
+        for k in range(x.n_all):
+            x.y_stage[k] += factor * correction[k]
+        factor *= place - c.between[j]
+    return factor
+
+
+@compiled
+def _closed_at(x, c, t, place):
+    _corrected(x, c, place, 0)
+    if x.n_tested < x.n:
+        polynomial_rates(x, place, x.yp_stage)
+    return closed(x, t)
+
+
+@compiled
+def _find_corrections(x, c):
+    """Close the state at a few places of the step, until the corrections at earlier places make that unnecessary."""
+    x.suffice = 0
+    for j in range(c.n_between):
+        place = c.between[j]
+        factor = _corrected(x, c, place, j)
+        correction = shifted(x.corrections, j * x.n_all)
+        copied(correction, x.y_stage, x.n_all)
+        x.n_corrections = j + 1
+        agreed = closed(x, x.t - (1.0 - place) * x.h_past)
+        for k in range(x.n_all):
+            correction[k] = (x.y_stage[k] - correction[k]) / factor
+        if agreed and j + 1 >= c.stages:
+            x.suffice = 1
+            return
+
+
+@compiled
+def dense_output(x, t, place, target):
+    """Compute the state at a place of the last step."""
+    if not (x.h_past > output_correction_view(x.output_correction).long and x.h_factored > 0.0 and place < 1.0):
+        polynomial(x, place, x.n, target)
+        return
+    c = collocation_view(ints(x.methods[x.method_past]))
+    x.outputs += 1
+    if x.outputs == FEW + 1 and x.n_tested == x.n:
+        _find_corrections(x, c)
+    if x.outputs > FEW and x.suffice:
+        _corrected(x, c, place, x.n_corrections)
+    else:
+        _closed_at(x, c, t, place)
+    copied(target, x.y_stage, x.n)
