@@ -37,10 +37,11 @@ def balance_words(balance: Balance, start: float) -> str:
     change, work = float(balance.change[-1]), float(balance.work[-1])
     if balance.keeps_energy:
         return f"{start:.9g} J; changes by at most {balance.imbalance:.3g} J"
-    resolved = " (resolved at the output times only)" if balance.resolved > balance.imbalance else ""
+    coarse = max(balance.resolved, balance.between) > balance.imbalance
+    error = balance.furthest if coarse else balance.imbalance
     return (
         f"{start:.9g} J -> {start + change:.9g} J; non-conservative work {work:.6g} J; "
-        f"balance error {balance.imbalance:.2g} J{resolved}"
+        f"balance error {error:.2g} J{' (the output times do not resolve the work)' if coarse else ''}"
     )
 
 

@@ -12,7 +12,7 @@ from stiffmbs.commands.main import main
 from stiffmbs.compile.compile_model import compile_model
 from stiffmbs.elements.planar_kinds import FORCES, JOINTS
 from stiffmbs.results.energy_balance import Balance
-from stiffmbs.results.energy_balance_notes import within_steps
+from stiffmbs.results.energy_balance_notes import balance_words, within_steps
 from stiffmbs.show.report import report_page
 from stiffmbs.solve.events.refusals import exponential
 
@@ -106,6 +106,7 @@ def test_intervals_of_many_steps_do_not_count_as_open():
     change, work = np.array([0.0, 1.0, 1.0, 1.0]), np.zeros(4)
     found = Balance(t, change, work, np.zeros(3), np.array([9, 0, 0]), 0.0, 1.0, False)
     assert found.imbalance == 0.0 and found.between == 1.0
+    assert "balance error 1 J (the output times do not resolve the work)" in balance_words(found, 0.0)
 
 
 @pytest.mark.parametrize("power", [1, 2, 4])
