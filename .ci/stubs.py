@@ -57,6 +57,7 @@ from .elements.states.linear_system import PID as PID
 from .elements.states.state import AlgebraicState as AlgebraicState
 from .elements.states.linear_system import LinearSystem as LinearSystem
 from .elements.states.linear_system import TransferFunction as TransferFunction
+from .elements.states.state import SampledState as SampledState
 from .elements.states.state import State as State
 from .reading.table import Table as Table
 from .reading.units import si as si

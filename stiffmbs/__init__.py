@@ -24,7 +24,7 @@ _KINDS = ".elements.planar_kinds"
 _LATER = {
     "AlgebraicState": ".elements.states.state", "BeamBody": ".model.beams.planar", "Body": ".elements.body", "Force": ".elements.element", "Joint": ".elements.element",
     "LinearSystem": ".elements.states.linear_system", "Marker": ".reading.marker", "Model": ".model.model", "PID": ".elements.states.linear_system",
-    "PythonFunction": ".reading.python_function", "RunSettings": ".model.settings", "Scene": ".model.scene", "State": ".elements.states.state",
+    "PythonFunction": ".reading.python_function", "RunSettings": ".model.settings", "Scene": ".model.scene", "State": ".elements.states.state", "SampledState": ".elements.states.state",
     "SteadyMotion": ".model.settings", "Table": ".reading.table", "TransferFunction": ".elements.states.linear_system",
     "ground": ".reading.marker:GROUND", "load_scene": ".analyses.load_scene", "read_scene": ".model.read_scene", "register": ".elements.own_elements",
     "scene_schema": ".model.schema",

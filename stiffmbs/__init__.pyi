@@ -46,6 +46,7 @@ from .elements.states.linear_system import PID as PID
 from .elements.states.linear_system import LinearSystem as LinearSystem
 from .elements.states.linear_system import TransferFunction as TransferFunction
 from .elements.states.state import AlgebraicState as AlgebraicState
+from .elements.states.state import SampledState as SampledState
 from .elements.states.state import State as State
 from .errors import AssemblyError as AssemblyError
 from .errors import InputError as InputError

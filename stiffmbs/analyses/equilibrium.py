@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Unpack
 
 import numpy as np
@@ -10,6 +10,7 @@ import numpy as np
 from ..model.scene import Scene
 from ..model.settings import RunSettings, Settings, SteadyMotion, takes_settings
 from ..results.solution import Solution
+from ..solve.sampling import held
 from ..tuning import in_use
 from .job import Job, Runnable, data_of, prepare
 from .settled import Settled, settled
@@ -130,8 +131,10 @@ def equilibrium(
 def _settled(job: Job, motion: SteadyMotion | None) -> Settled:
     with in_use(job.settings.tuning):
         if motion is None:
-            return settled(job.dynamics, job.start, job.grid.start)
-        return settled_in_motion(job.data, job.dynamics, job.start, job.grid.start, motion)
+            found = settled(job.dynamics, job.start, job.grid.start)
+        else:
+            found = settled_in_motion(job.data, job.dynamics, job.start, job.grid.start, motion)
+    return replace(found, notes=(*found.notes, *held(job.dynamics.system)))
 
 
 def _message(found: Settled) -> str:

@@ -23,6 +23,7 @@ from ..results.saved_state import SavedState
 from ..run_checks.far_away import refuse_far_away
 from ..solve import SOLVERS
 from ..solve.events.input_ends import solve_up_to_the_inputs_end
+from ..solve.sampling import held
 from ..solve.settings import changed, near_constraints, output_grid
 from ..solve.subsystems import Subsystem, presolved, solve_subsystems
 from ..solve.trajectory import Grid, ProgressCallback, Trajectory, unwatched
@@ -122,6 +123,8 @@ def prepare(
     LOGGER.info("assembling %s", found.data.name)
     with told_faults(dynamics.system), in_use(found.settings.tuning):
         start = _start(found.data, dynamics, found.grid.start, found.start_from)
+        if isinstance(found.data, Scene) and found.data.start != "described":
+            start = replace(start, notes=(*start.notes, *held(dynamics.system)))
         subsystems = presolved(found.data, dynamics, start, found.grid, found.settings)
     dynamics.system.known_terms.clear()
     return Job(found.data, found.settings, found.grid, found.redundancy, dynamics, start, subsystems, found.start_from)

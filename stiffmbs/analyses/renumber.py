@@ -12,6 +12,7 @@ from ..compile.group import Group
 from ..compile.kind import sorted_out
 from ..compile.system import System
 from ..elements.element import Element
+from ..elements.states.state import StateValue
 from ..model.model_data import ModelData
 from ..model.scene import Scene
 from ..presolve.presolve import may_be_apart
@@ -102,9 +103,9 @@ def _same_states(before: ModelData, after: ModelData) -> bool:
     return _same(before.states, after.states) and _same(before.inputs, after.inputs)
 
 
-def _beginnings(data: ModelData) -> dict[str, tuple[float, float, bool]]:
-    """Return the initial values of the states, the scales of their tolerances, and which are algebraic."""
-    return {name: (value.start, value.scale, value.algebraic) for name, value in data.state_values().items()}
+def _beginnings(data: ModelData) -> dict[str, StateValue]:
+    """Return the states without their formulas: initial values, scales of tolerances, kinds and times of samples."""
+    return {name: replace(value, rate=None) for name, value in data.state_values().items()}
 
 
 def _held_by_states(data: ModelData) -> bool:

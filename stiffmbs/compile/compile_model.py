@@ -55,11 +55,12 @@ def compile_model(model: Compilable | ModelBuilder) -> System:
     principal_axes = np.empty((len(bodies), 0))
     if model.dimensions == 3:
         principal_axes = np.array([body.principal_axes() for body in model.bodies.values()])
-    return System(
+    system = System(
         bodies=bodies,
         states=tuple(states),
         state_scales=np.array([value.scale for value in states.values()]),
         algebraic=np.array([value.algebraic for value in states.values()], dtype=bool),
+        sampling=np.array([(value.period, value.offset) for value in states.values()]).reshape(-1, 2),
         of_body=of_body,
         q=np.array([*numbers.coordinates, *[0.0] * n_counters, *(value.start for value in states.values())]),
         u=np.array(numbers.rates),
@@ -73,6 +74,20 @@ def compile_model(model: Compilable | ModelBuilder) -> System:
         active=np.ones(len(equations), dtype=bool),
         size=size,
     )
+    if system.sampled.any():
+        _refuse_jumps_of_positions(system)
+    return system
+
+
+def _refuse_jumps_of_positions(system: System) -> None:
+    """Refuse sampled states in constraints of positions, which would jump with them."""
+    by_states = system.term("tangent", "C_x")
+    for row, column in zip(by_states.row, by_states.column, strict=True):
+        if column >= system.first_state and system.sampled[column - system.first_state]:
+            raise InputError(
+                f"'{system.equations[row][0]}': found the sampled state '{system.states[column - system.first_state]}' in a constraint of "
+                "positions, which would jump; expected one of velocities, or a state that follows the sampled one"
+            )
 
 
 def kinds_of(model: Compilable) -> list[Kind]:

@@ -212,7 +212,7 @@ def _rates_of_states(values: Mapping[str, StateValue], model: Compilable, data: 
                 f"found the algebraic state '{name}' in a constraint, or in the rate of a state there, expected states with rates: "
                 "the constraint has to be differentiated"
             )
-        yield _shape(values[name].rate, model, data)
+        yield _shape(0.0 if values[name].period else values[name].rate, model, data)
         slot += 1
 
 

@@ -48,6 +48,8 @@ class System:
         Characteristic magnitudes of the states.
     algebraic : ndarray of bool, shape (states,)
         True for states without a rate, determined by an equation at every time.
+    sampling : ndarray, shape (states, 2)
+        Period and offset of the samples of each state, s; a period of 0 for states that are not sampled.
     of_body : BodyKind
         Coordinates and velocities of each body.
     q, u : ndarrays
@@ -91,6 +93,7 @@ class System:
     states: tuple[str, ...]
     state_scales: np.ndarray
     algebraic: np.ndarray
+    sampling: np.ndarray
     of_body: BodyKind
     q: np.ndarray
     u: np.ndarray
@@ -142,6 +145,16 @@ class System:
     def algebraic_coordinates(self) -> np.ndarray:
         """Indices of the coordinates that are algebraic states."""
         return self.first_state + np.flatnonzero(self.algebraic)
+
+    @property
+    def sampled(self) -> np.ndarray:
+        """Mask of the states that are constant between samples, shape (states,)."""
+        return np.asarray(self.sampling[:, 0] > 0)
+
+    @property
+    def without_rate(self) -> np.ndarray:
+        """Mask of the states that are algebraic or sampled, shape (states,)."""
+        return self.algebraic | self.sampled
 
     @cached_property
     def following_reactions(self) -> np.ndarray:
@@ -246,6 +259,16 @@ class System:
     def reported(self) -> dict[str, int]:
         """Channels of joints and forces with their index in the values of the output terms; -1 for zero."""
         return dict(reported_terms(self))
+
+    @cached_property
+    def signals(self) -> dict[str, int]:
+        """Positions among the values of the set ``output`` of rates and next values of states, and of reported formulas."""
+        place = 1 + TERM_SETS["output"].index("signal")
+        return {
+            name: int(self.places["output"][g, place]) + k
+            for g, group in enumerate(self.groups)
+            for k, name in enumerate(group.names if group.entries["signal"] else ())
+        }
 
     @cached_property
     def timed(self) -> np.ndarray:

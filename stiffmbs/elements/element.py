@@ -181,6 +181,7 @@ class Element(Described):
         """Return the markers whose bodies may spin without changing the equations, by field, with the conditions.
 
         ``x``, ``y`` or ``z``: the marker's point is on the spin axis, which is parallel to this axis of the marker.
+        ``along x`` and so on: the spin axis is parallel to it, at any distance.
         ``point``: its point is on the spin axis. ``body``: no condition. A body with any other marker keeps its spin in
         its quaternion (`stiffmbs.presolve.spinning_bodies`).
         """

@@ -49,7 +49,7 @@ class Linearised:
         Transformation from ground axes to those of u, and w x of every body in ground axes: the variation of u' is
         own_axes (v' - w x v).
     algebraic : Algebraic
-        Elimination of algebraic states.
+        Elimination of algebraic states, and of sampled ones, which are constant.
     """
 
     mass: csr_array
@@ -108,6 +108,7 @@ def linearised(dynamics: Dynamics, t: float, acceleration: np.ndarray) -> Linear
     mass = axes @ (diags_array(system.mass) + csr_array(term("inertia"))) @ back
     own = slice(system.first_state, None)
     by_states, rate_by_states = axes @ (term("f_q") - term("G_lam"))[:, own], term("rate_q")[own, own]
+    rate_by_states[system.sampled, system.sampled] = 1.0  # sampled states are constant: 0 = dx
     linear = Linearised(
         mass=mass,
         stiffness=axes @ (term("f_q") - term("G_lam") - term("inertia_q")) @ to_coordinates,
@@ -128,7 +129,7 @@ def linearised(dynamics: Dynamics, t: float, acceleration: np.ndarray) -> Linear
         rate_by_reactions=term("rate_lam")[own, rows],
         own_axes=back,
         spin=spin,
-        algebraic=algebraic_of(system.algebraic, by_states, rate_by_states),
+        algebraic=algebraic_of(system.without_rate, by_states, rate_by_states),
     )
     return without_algebraic(linear)
 

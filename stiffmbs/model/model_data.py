@@ -17,7 +17,7 @@ from ..elements.requests.names import OutputNames
 from ..elements.requests.order import dimensions
 from ..elements.requests.output import Output
 from ..elements.states.amount import InputValue, formulas_of_inputs
-from ..elements.states.equation import FormulaOfRate, Reported, StateName, own_state
+from ..elements.states.equation import FormulaOfRate, Reported, SampledUpdate, StateName, own_state
 from ..elements.states.section import (
     AnyState,
     check_reactions,
@@ -177,10 +177,11 @@ class ModelData(NotebookMethods, Described):
         yield from self.inertial(self.bodies)
 
     def state_equations(self) -> Iterator[tuple[str, Element]]:
-        """Yield the rates of the states by their names, and the outputs of their equations."""
+        """Yield the rates or updates of the states by their names, and the outputs of their equations."""
         for name, state in self.states.items():
             for full, value in state.values(name):
-                yield full, FormulaOfRate.model_construct(state=StateName(full), formula=value.rate)
+                equation = SampledUpdate if value.period else FormulaOfRate
+                yield full, equation.model_construct(state=StateName(full), formula=value.rate)
         for full, formula in self.state_outputs().items():
             yield full, Reported.model_construct(formula=formula)
 

@@ -124,7 +124,7 @@ def spinning(model: Compilable, turns: Mapping[str, np.ndarray]) -> SpinningBodi
     return SpinningBodies(model, spun) if spun else None
 
 
-REFUSED, POINT, BODY = "", "point", "body"
+REFUSED, POINT, BODY, ALONG = "", "point", "body", "along "
 """Requirements on a marker other than an axis (`stiffmbs.elements.element.Element.spins_with`)."""
 
 
@@ -140,12 +140,13 @@ class _Demand(NamedTuple):
         if self.what in (REFUSED, BODY):
             return self.what == BODY
         beside = np.abs(np.delete(np.array(self.placed.point), axis)).max()
-        return bool(beside <= ALIKE * size and (self.what == POINT or self._tilt(axis) <= ALIKE))
+        on_axis = self.what.startswith(ALONG) or beside <= ALIKE * size
+        return bool(on_axis and (self.what == POINT or self._tilt(axis) <= ALIKE))
 
     def _tilt(self, axis: int) -> float:
         from ..elements.spatial.orientation import matrix
 
-        along = matrix(self.placed.orientation)[:, AXES.index(self.what)]
+        along = matrix(self.placed.orientation)[:, AXES.index(self.what[-1])]
         return float(np.abs(np.delete(along, axis)).max())
 
 

@@ -96,7 +96,7 @@ def part_of(system: System, bodies: np.ndarray) -> System:
         system,
         bodies=tuple(system.bodies[k] for k in bodies),
         states=tuple(system.states[k] for k in own_states), state_scales=system.state_scales[own_states],
-        algebraic=system.algebraic[own_states],
+        algebraic=system.algebraic[own_states], sampling=system.sampling[own_states],
         q=system.q[np.append(q, behind)], u=system.u[u], open_rates=system.open_rates[u], mass=system.mass[u], followed=system.followed[u], principal_axes=system.principal_axes[bodies],
         groups=tuple(_part(group, inside, place, new_row, new_behind) for group, inside in chosen if inside.any()),
         equations=tuple(system.equations[row] for row in rows),

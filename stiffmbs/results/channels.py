@@ -8,7 +8,6 @@ import numpy as np
 
 from ..compile.reactions import reactions
 from ..compile.system import System
-from ..compile.terms import TERM_SETS
 from ..dynamics.dynamics import OutputRows
 from ..errors import ChannelError
 from ..model.model_data import ModelData
@@ -54,18 +53,15 @@ def channels_of_model(rows: OutputRows) -> dict[str, np.ndarray]:
 
 
 def state_channels(system: System, q: np.ndarray, values: np.ndarray) -> dict[str, np.ndarray]:
-    """Return values and rates of states, and the outputs of their equations, by name.
+    """Return values and rates of states, and the outputs of their equations, by name; a sampled state has no rate.
 
     `q` of shape (n, n_q). `values`: values of the set ``output``, one row per instant.
     """
     channels = {name: q[:, system.first_state + k] for k, name in enumerate(system.states)}
-    algebraic = {name for name, is_algebraic in zip(system.states, system.algebraic, strict=True) if is_algebraic}
-    place = 1 + TERM_SETS["output"].index("signal")
-    for g, group in enumerate(system.groups):
-        for k, name in enumerate(group.names if group.entries["signal"] else ()):
-            if name not in algebraic:  # the signal of an algebraic state is always zero
-                signal = values[:, system.places["output"][g, place] + k]
-                channels[f"{name}.rate" if name in channels else name] = signal
+    without_rate = {name for name, has_none in zip(system.states, system.without_rate, strict=True) if has_none}
+    for name, place in system.signals.items():
+        if name not in without_rate:  # the signal of an algebraic state is always zero
+            channels[f"{name}.rate" if name in channels else name] = values[:, place]
     return channels
 
 

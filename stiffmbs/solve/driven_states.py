@@ -42,7 +42,7 @@ def states_after(dynamics: Dynamics, before: Instant, t: float) -> np.ndarray:
         When the states cannot be integrated, or would require too many evaluations.
     """
     system = dynamics.system
-    states, changing = before.q[system.first_state :].copy(), ~system.algebraic
+    states, changing = before.q[system.first_state :].copy(), ~system.without_rate
     if not changing.any() or t <= before.t:
         return states
     from scipy.integrate import solve_ivp
@@ -65,7 +65,7 @@ class _Along:
     def __init__(self, dynamics: Dynamics, before: Instant, end: float) -> None:
         self._dynamics, self._before, self._end = dynamics, before, end
         self._evaluations, self._looked_at = 0, before.t
-        self._places = dynamics.system.first_state + np.flatnonzero(~dynamics.system.algebraic)
+        self._places = dynamics.system.first_state + np.flatnonzero(~dynamics.system.without_rate)
 
     def rates(self, t: float, values: np.ndarray) -> np.ndarray:
         """Return x' at a time, NaN where the motion has no solution.

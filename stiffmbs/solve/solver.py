@@ -9,6 +9,7 @@ from importlib import import_module
 from typing import Any, NamedTuple
 
 from ..model.settings import RunSettings
+from .sampling import solved_between_samples
 from .trajectory import Solver, Trajectory
 
 FOR_ALL_SOLVERS = frozenset({"duration", "start", "output", "points", "solver", "presolve", "drop_first", "tuning"})
@@ -79,8 +80,7 @@ def loaded_when_used(module: str, package: str) -> Registered:
         return import_module(module, package)
 
     def solve(*asked: Any) -> Trajectory:
-        found: Trajectory = loaded().solve(*asked)
-        return found
+        return solved_between_samples(loaded().solve, *asked)
 
     def traits(settings: RunSettings) -> Traits:
         found: Traits = loaded().traits(settings)

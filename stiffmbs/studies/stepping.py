@@ -46,7 +46,7 @@ class Stepper(Protocol):
 def stepper_of(job: Job, start: InitialValues, t: float) -> Stepper:
     """Return a stepper: with the own steps of bdf and radau with the native engine, else with short runs."""
     made = {"bdf": Integrator, "radau": radau_integrator}.get(job.settings.solver)
-    if made is not None:
+    if made is not None and not job.dynamics.system.sampled.any():
         integrator = made(job.dynamics, job.settings)
         if isinstance(integrator.engine, NativeEngine):
             return ImplicitSteps(job, integrator, start, t)

@@ -22,6 +22,7 @@ from stiffmbs.spatial import (
     Revolute,
     Spherical,
     TorsionSpring,
+    WheelTorque,
 )
 
 AXLE = {"z": (0, 1, 0)}
@@ -84,8 +85,16 @@ def test_a_car_takes_steps_that_do_not_depend_on_speed(examples):
     assert max(counts) <= 1.2 * min(counts)
 
 
+def with_torque_off_the_axle():
+    model = rolling(15)
+    model.add("motor", WheelTorque(i=Marker(body="wheel", point=(0.1, 0, 0.05)), j="fork", torque="60*sin(3*t)"))
+    return model
+
+
 @pytest.mark.parametrize(
-    "model", [rolling(15, DRIVEN), rolling(15, DRIVEN, inertia=(0.7, 0.7, 0.7)), top(80)], ids=["wheel", "ball", "top"]
+    "model",
+    [rolling(15, DRIVEN), rolling(15, DRIVEN, inertia=(0.7, 0.7, 0.7)), top(80), with_torque_off_the_axle()],
+    ids=["wheel", "ball", "top", "torque off the axle"],
 )
 def test_the_numbers_are_those_of_the_plain_body(model):
     settings = {"duration": 0.6, "output": 0.02, "rtol": 1e-8}

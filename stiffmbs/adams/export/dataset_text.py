@@ -101,6 +101,8 @@ def states(scene: SpatialData) -> Iterator[tuple[str, Write]]:
 def _state(k: int, value: StateValue, functions: Functions) -> Iterator[str]:
     if value.rate is None:
         raise Refusal("found the state of an element, expected one of the section states")
+    if value.period:
+        raise Refusal("found a sampled state, expected one with a rate: discrete states of a GSE need a subroutine")
     implicit = ["IMPLICIT"] if value.algebraic else []
     law = functions.text(value.rate)
     yield statement("DIFF", k, f"IC = {number(value.start)}", *implicit, f"FUNCTION = {law}")

@@ -17,6 +17,7 @@ from ...linear_analysis.tangent_space import linearised
 from ...model.settings import RunSettings, Settings, takes_settings
 from ...results.energy_balance import energy_balance
 from ...results.solution import Solution
+from ...solve.sampling import held
 from ..job import Runnable
 from ..solution_at_rest import solution_of_rows
 from ..start_from import StartFrom
@@ -171,6 +172,7 @@ def _notes(found: AtState, state: StateMatrix) -> Iterator[str]:
     extra = state.degrees_of_freedom - found.redundancy.degrees_of_freedom
     if extra > 0:
         yield f"the state is a singular pose: {extra} degrees of freedom more than in general"
+    yield from held(system)
 
 
 UNHURRIED = 1.0

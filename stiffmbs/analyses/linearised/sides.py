@@ -65,7 +65,7 @@ def kink_at(found: AtState, state: StateMatrix, linear: Linearised, moves: Moves
         [_side(found, state, linear, sign * size * move) for sign in (-1.0, 1.0)] for size in (moves.wide, moves.narrow)
     )
     names = [system.name_of(k, system.of_body.velocities) for k in range(system.n_u)]
-    states = [name for name, algebraic in zip(system.states, system.algebraic, strict=True) if not algebraic]
+    states = [system.states[k] for k in np.flatnonzero(~system.without_rate)]
     rows = [*_moving(state, scale, names), *states]
     jump = np.abs(narrow[1].forces - narrow[0].forces)
     smooth = moves.steep * 2 * moves.narrow * np.maximum(narrow[0].parts, narrow[1].parts) @ np.abs(move)
@@ -121,7 +121,7 @@ def _side(found: AtState, state: StateMatrix, linear: Linearised, z: np.ndarray)
         at.evaluate("motion", found.t)
         force, rate = (
             at.vector("motion", "f").copy(),
-            at.vector("motion", "rate")[system.first_state :][~system.algebraic],
+            at.vector("motion", "rate")[system.first_state :][~system.without_rate],
         )
     free = state.velocities[:, state.n_poses : state.n_poses + state.degrees_of_freedom]
     s = np.eye(len(z))[len(z) - state.n_states :]

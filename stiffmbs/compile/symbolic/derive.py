@@ -14,7 +14,7 @@ from functools import partial
 import sympy as sp
 
 from ...elements.element import Force, Joint
-from ...elements.states.equation import AngleCounter, Reported, StateEquation
+from ...elements.states.equation import AngleCounter, Reported, SampledUpdate, StateEquation
 from ...errors import InputError
 from ..kind import Kind
 from .continuous_angle import away_from_pole
@@ -215,6 +215,8 @@ def _rates(
 def _derived_state(kind: Kind, symbols: Symbols) -> Derived:
     """Return the rate of a state, in the row of that state, and its reported value."""
     e, element = symbols.element, kind.element
+    if issubclass(element, SampledUpdate):
+        return Derived(0, 0, symbols, {"signal": [Entry(sp.sympify(e.formula), 0)]}, [])
     formula = sp.sympify(element.rate(e) if issubclass(element, StateEquation) else e.formula)
     value = sp.Matrix([formula])
     joint_lam = symbols.pressed

@@ -107,7 +107,7 @@ def channels_of_states(model: Any) -> set[str]:
     """Return the channels of the model's states: values, outputs and rates."""
     values = {full: value for name, state in model.states.items() for full, value in state.values(name)}
     outputs = {full for name, state in model.states.items() for full, _ in state.outputs(name)} | set(model.inputs)
-    rates = {f"{name}.rate" for name, value in values.items() if not value.algebraic}
+    rates = {f"{name}.rate" for name, value in values.items() if not (value.algebraic or value.period)}
     return set(values) | outputs | rates
 
 

@@ -49,6 +49,12 @@ class FormulaOfRate(StateEquation):
         return e.formula
 
 
+class SampledUpdate(StateEquation):
+    """Next value of a sampled state; it has no rate, and changes of the formula are no events."""
+
+    formula: OfMotion
+
+
 class Reported(Element):
     """Formula reported under the name of its element, such as the output of a transfer function."""
 

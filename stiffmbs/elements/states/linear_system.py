@@ -18,7 +18,7 @@ from ...reading.given import Law, Laws, Number, Numbers
 from ...reading.given import Matrix as GivenMatrix
 from ...reading.table import Table
 from ...reading.units import si
-from .state import AlgebraicState, Entry, State, StateValue
+from .state import AlgebraicState, Entry, SampledState, State, StateValue
 
 Weighted = tuple[float, Formula | str]
 """Weight, and the formula or state that it multiplies."""
@@ -257,7 +257,7 @@ class PID(Entry):
         yield name, self._sum(self.kp + derivative, *others)
 
 
-StateEntry = State | AlgebraicState | TransferFunction | LinearSystem | PID
+StateEntry = State | AlgebraicState | SampledState | TransferFunction | LinearSystem | PID
 
 
 def _trimmed(coefficients: Sequence[float]) -> list[float]:

@@ -17,10 +17,10 @@ from ...reading.marker import GROUND, check_marker, listed
 from ...reading.units.units import CONSTANTS, UNITS
 from ..read_by import Context, JsonSchema, ReadBy
 from .linear_system import PID, LinearSystem, StateEntry, TransferFunction
-from .state import AlgebraicState, State, dimension_of_state
+from .state import AlgebraicState, SampledState, State, dimension_of_state
 
 KINDS: dict[str, type[StateEntry]] = {
-    "rate": State, "zero": AlgebraicState, "numerator": TransferFunction, "denominator": TransferFunction, "a": LinearSystem, "pid": PID,
+    "rate": State, "zero": AlgebraicState, "update": SampledState, "numerator": TransferFunction, "denominator": TransferFunction, "a": LinearSystem, "pid": PID,
 }  # fmt: skip
 """Kinds of entries by a key that only they have."""
 

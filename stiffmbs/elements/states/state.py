@@ -1,4 +1,4 @@
-"""User-defined states: solutions of a differential equation (Adams: DIFF), or of an algebraic one (implicit VARIABLE)."""
+"""User-defined states: of a differential equation (Adams: DIFF), an algebraic one (implicit VARIABLE), or sampled (GSE)."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from ...reading.formula.dimension import Known, measured_in, product
 from ...reading.formula.field import OfMotion
 from ...reading.formula.formula import Formula
 from ...reading.given import Law, Number
+from ...reading.units import si
 from ...reading.units.units import named_unit
 from .amount import Amount, AnyAmount, positive, stated_dimension
 
@@ -26,19 +27,24 @@ class StateValue:
     Attributes
     ----------
     rate : Formula or None
-        Its rate of change, or the residual of an algebraic state; None if an element defines it.
+        Its rate of change, the residual of an algebraic state, or the next value of a sampled one; None if an element
+        defines it.
     start : float
         Initial value, SI units; for an algebraic state the initial guess.
     scale : float
         Characteristic size: its absolute tolerance is that of an angle times this.
     algebraic : bool
         Whether its equation is 0 = formula, without a rate.
+    period, offset : float
+        Times between the samples of a sampled state, and of its first one, s; a period of 0 for all other states.
     """
 
     rate: Formula | None
     start: float
     scale: float
     algebraic: bool = False
+    period: float = 0.0
+    offset: float = 0.0
 
 
 class Entry(Described):
@@ -83,13 +89,9 @@ class State(Entry):
 
     @model_validator(mode="after")
     def _rate_fits(self) -> State:
-        expected = product(self.start.known, measured_in("time"), -1)
-        if self.start.known.stated and not self.rate.dimension.agrees_with(expected):
-            assert self.rate.dimension.exponents is not None and expected.exponents is not None
-            raise ValueError(
-                f"rate: found '{self.rate.text}', which is in {named_unit(self.rate.dimension.exponents)}, expected "
-                f"{named_unit(expected.exponents)}, the unit of start over time"
-            )
+        _refuse_other_dimension(
+            "rate", self.rate, self.start, product(self.start.known, measured_in("time"), -1), " over time"
+        )
         return self
 
     def values(self, name: str) -> Iterator[tuple[str, StateValue]]:
@@ -127,6 +129,55 @@ class AlgebraicState(Entry):
     def values(self, name: str) -> Iterator[tuple[str, StateValue]]:
         """Yield its unknowns by full name."""
         yield name, StateValue(self.zero, float(self.start), float(self.scale), algebraic=True)
+
+
+class SampledState(Entry):
+    """Variable x that takes the value of a formula at the times offset + k period and keeps it in between.
+
+    The formula is evaluated just before each sample; the names of sampled states in it are their previous values, also
+    those that are sampled at the same time. Forces and other formulas use the value by its name.
+
+    Examples
+    --------
+    A controller with a sample time of 10 ms, with parameters kp, ki and goal::
+
+        states:
+          integral: {update: "integral + ki*(goal - cart.x)*0.01", period: 10 ms}
+          push: {update: "kp*(goal - cart.x) + integral", period: 10 ms}
+        forces: {motor: {type: force, i: cart, force: [push, 0]}}
+
+    This is a discrete state of Adams' GSE, or a variable of a clock of FMI 3.
+    """
+
+    update: OfMotion = Field(
+        description="its next value: a formula of time, coordinates, velocities, reactions and states, sampled ones with their previous values"
+    )
+    period: si.PositiveTime = Field(description="time between two samples, s")
+    offset: si.Time = Field(0.0, description="time of a sample, s: the others are whole periods before and after it")
+    start: AnyAmount = Field(Amount(0.0), description="value before the first sample; a unit tells its dimension")
+
+    if TYPE_CHECKING:
+
+        def __init__(self, *, update: Law, period: Number, offset: Number = 0.0, start: Number = 0.0) -> None: ...
+
+    @model_validator(mode="after")
+    def _update_fits(self) -> SampledState:
+        _refuse_other_dimension("update", self.update, self.start, self.start.known, "")
+        return self
+
+    def values(self, name: str) -> Iterator[tuple[str, StateValue]]:
+        """Yield its unknowns by full name."""
+        yield name, StateValue(self.update, float(self.start), 1.0, period=self.period, offset=self.offset)
+
+
+def _refuse_other_dimension(field: str, formula: Formula, start: Amount, expected: Known, per: str) -> None:
+    """Refuse a formula whose known dimension differs from the expected one, if the start has a unit."""
+    if start.known.stated and not formula.dimension.agrees_with(expected):
+        assert formula.dimension.exponents is not None and expected.exponents is not None
+        raise ValueError(
+            f"{field}: found '{formula.text}', which is in {named_unit(formula.dimension.exponents)}, expected "
+            f"{named_unit(expected.exponents)}, the unit of start{per}"
+        )
 
 
 def dimension_of_state(entry: Any, parameters: Any) -> Known:

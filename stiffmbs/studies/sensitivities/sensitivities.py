@@ -200,9 +200,15 @@ class DifferentiatedRun:
     def __init__(self, scenes: Scenes, names: Sequence[str], job: Job, times: np.ndarray | None = None) -> None:
         parameters = [Parameter(scenes, name) for name in names]
         self._job = job
-        if job.dynamics.system.has_coupled_inertia:
+        system = job.dynamics.system
+        if system.has_coupled_inertia:
             raise InputError(
                 "bodies: found a flexible body, expected rigid ones: sensitivities do not include flexible bodies"
+            )
+        if system.sampled.any():
+            name = system.states[int(np.argmax(system.sampled))]
+            raise InputError(
+                f"states.{name}: found a sampled state, expected none: sensitivities do not include the jumps of samples"
             )
         self._set_ups = [SetUp(job, parameter) for parameter in parameters]
         self._numbers = [set_up.numbers for set_up in self._set_ups]

@@ -21,7 +21,7 @@ class AxleForce(Force):
     )
 
     def spins_with(self) -> dict[str, str]:
-        return {"i": "y", "j": "body"}
+        return {"i": "along y", "j": "body"}
 
     @staticmethod
     def spin(e: Symbolic) -> Any:

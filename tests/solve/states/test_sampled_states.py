@@ -1,0 +1,161 @@
+"""Sampled states against exact discrete solutions, in runs, restarts, simulations and analyses of one instant."""
+
+import numpy as np
+import pytest
+from scipy.linalg import expm
+
+import stiffmbs
+
+M, K, C = 2.0, 50.0, 0.4
+KP, KI, GOAL = 30.0, 120.0, 0.1
+SCENE = """
+bodies: {block: {mass: 2, inertia: 0.1, position: [0.2, 0], velocity: [0.3, 0]}}
+joints: {rail: {type: prismatic, i: block, j: ground}}
+parameters: {goal: 0.1, kp: 30, ki: 120, Ts: 0.037, Tf: 0.037, late: 0}
+states:
+  integral: {update: integral + ki*Ts*(goal - block.x), period: Ts}
+  push: {update: kp*(goal - block.x) - 2*block.vx + integral, period: Tf, offset: late}
+forces: {spring: {type: force, i: block, force: [-50*block.x - 0.4*block.vx + push, 0]}}
+"""
+SOLVERS = [
+    ({"solver": "bdf", "rtol": 1e-9}, 1e-6),
+    ({"solver": "radau", "rtol": 1e-9}, 1e-8),
+    ({"solver": "projected", "scheme": "dop853", "rtol": 1e-9}, 1e-9),
+    ({"solver": "projected", "scheme": "rk4", "step": 1e-3}, 1e-8),
+    ({"solver": "auto", "rtol": 1e-9}, 1e-9),
+]
+
+
+def exact(times, slow=0.037, fast=0.037, late=0.0):
+    """Return x, v, push and integral by matrix exponentials from sample to sample; at a sample those before it."""
+    block = np.zeros((3, 3))
+    block[:2] = [[0, 1, 0], [-K / M, -C / M, 1 / M]]
+    x, push, integral, now, found = np.array([0.2, 0.3]), 0.0, 0.0, 0.0, []
+    counts = {"slow": 0, "fast": 0}
+    for end in times:
+        while True:
+            at = {"slow": counts["slow"] * slow, "fast": late + counts["fast"] * fast}
+            t = min(at.values())
+            if t >= end - 1e-9:
+                break
+            x, now = (expm(block * (t - now)) @ [*x, push])[:2], t
+            before = integral
+            if at["slow"] < t + 1e-9:
+                integral, counts["slow"] = before + KI * slow * (GOAL - x[0]), counts["slow"] + 1
+            if at["fast"] < t + 1e-9:
+                push, counts["fast"] = KP * (GOAL - x[0]) - 2 * x[1] + before, counts["fast"] + 1
+        found.append([*(expm(block * (end - now)) @ [*x, push])[:2], push, integral])
+    return np.array(found).T
+
+
+def differences(found, *rates):
+    names = ("block.x", "block.vx", "push", "integral")
+    return [np.abs(found[name] - known).max() for name, known in zip(names, exact(found.time, *rates), strict=True)]
+
+
+@pytest.mark.parametrize(
+    ("settings", "error"), SOLVERS, ids=lambda x: x.get("scheme", x["solver"]) if isinstance(x, dict) else ""
+)
+def test_a_sampled_controller_follows_the_exact_discrete_solution(settings, error):
+    """Output every 20 ms falls between samples, and on one at 0.74 s and 1.48 s, where it is the state before it."""
+    assert max(differences(stiffmbs.run(stiffmbs.read_scene(SCENE), duration=2, output=0.02, **settings))) < error
+
+
+def test_states_of_two_rates_are_sampled_at_their_own_times():
+    changes = [("Ts", "0.05"), ("Tf", "0.02"), ("late", "0.005")]
+    scene = stiffmbs.read_scene(SCENE, changes)
+    found = stiffmbs.run(scene, duration=1, output=0.01, rtol=1e-10, solver="projected", scheme="dop853")
+    assert max(differences(found, 0.05, 0.02, 0.005)) < 1e-9
+    steps = stiffmbs.run(scene, duration=1, points="steps", rtol=1e-10, solver="radau")
+    assert max(differences(steps, 0.05, 0.02, 0.005)) < 1e-7
+    assert np.all(np.diff(steps.time) > 0)
+
+
+@pytest.mark.parametrize("solver", ["radau", "auto"])
+def test_runs_and_simulations_in_pieces_take_each_sample_once(solver):
+    """From a state saved at a sample, and by steps that end at samples up to rounding (ten times 0.1 is not 1)."""
+    scene, settings = stiffmbs.read_scene(SCENE, [("Ts", "0.1"), ("Tf", "0.1")]), {"rtol": 1e-9, "solver": solver}
+    first = stiffmbs.run(scene, duration=0.7, output=0.1, **settings)
+    rest = stiffmbs.run(scene, start_from=first, duration=0.5, output=0.1, **settings)
+    assert max(differences(rest, 0.1, 0.1)) < 1e-8
+    simulation = stiffmbs.simulation(scene, **settings)
+    for _ in range(30):
+        simulation.step(0.1)
+        x, _, push, _ = exact([simulation.t], 0.1, 0.1)[:, 0]
+        assert [simulation["block.x"], simulation["push"]] == pytest.approx([x, push], abs=1e-8)
+
+
+def test_a_sampled_velocity_command_turns_a_drive_in_steps():
+    """The velocity is t_k in each interval, so that the angle is a sum; kinematics and dynamics agree."""
+    scene = """
+bodies: {arm: {mass: 1, inertia: 0.2}}
+joints: {hinge: {type: revolute, i: arm, j: ground}, motor: {type: drive, joint: hinge, velocity: speed}}
+states: {speed: {update: t, period: 0.1 s}}
+"""
+    found = stiffmbs.run(stiffmbs.read_scene(scene), duration=1, output=0.05, rtol=1e-9)
+    k = np.floor(found.time / 0.1 - 1e-9)
+    expected = 0.1 * (0.1 * k * (k - 1) / 2) + 0.1 * k * (found.time - 0.1 * k)
+    assert found["arm.angle"] == pytest.approx(np.where(k < 0, 0, expected), abs=1e-8)
+
+
+def test_a_sample_reads_reactions_and_comparisons_of_an_update_are_no_events():
+    """The hook carries 9.81 N of each kg; the drive alone moves nothing else."""
+    scene = """
+gravity: [0, -9.81]
+bodies: {load: {mass: 3, inertia: 0.1}}
+joints: {held: {type: fixed, i: load, j: ground}, }
+states:
+  weighed: {update: fy(held), period: 0.1 s, start: 0 N}
+  side: {update: "sign(t - 0.25 s)", period: 0.1 s}
+"""
+    found = stiffmbs.run(stiffmbs.read_scene(scene), duration=0.5, output=0.05)
+    assert found["weighed"][1:] == pytest.approx(np.full(10, 3 * 9.81))
+    assert found["side"].tolist() == [0] + 6 * [-1] + 4 * [1]
+
+
+def test_analyses_of_one_instant_keep_sampled_values():
+    """Without the sampled force the oscillator has its own mode; the equilibrium is that of the held force."""
+    scene = stiffmbs.read_scene(SCENE.replace("offset: late", "offset: late, start: 5"))
+    modes = stiffmbs.modes(scene)
+    (mode,) = modes.modes
+    assert mode.frequency == pytest.approx(np.sqrt(K / M - (C / M / 2) ** 2) / (2 * np.pi), rel=1e-9)
+    still = stiffmbs.equilibrium(scene)
+    assert still.channels["block.x"] == pytest.approx(5 / K, rel=1e-9)
+    for found in (modes, still):
+        assert "sampled states keep their values: integral, push" in found.notes
+
+
+WRONG = [
+    ("update: t, period: 0", "period: found 0"),
+    ("update: t", r"states\.push\.period: found nothing"),
+    ("update: t, period: 10 ms, rate: 1", "found the unknown key"),
+    (
+        "update: 3 m/s, period: 10 ms, start: 0 N",
+        "update: found '3 m/s', which is in m/s, expected N, the unit of start",
+    ),
+    ("update: blok.x, period: 10 ms", "found the unknown body 'blok'"),
+]
+
+
+@pytest.mark.parametrize(("entry", "message"), WRONG)
+def test_wrong_entries_are_refused(entry, message):
+    text = SCENE.replace("update: kp*(goal - block.x) - 2*block.vx + integral, period: Tf, offset: late", entry)
+    with pytest.raises(stiffmbs.InputError, match=message):
+        stiffmbs.read_scene(text.replace(", Tf: 0.037, late: 0", ""))
+
+
+def test_positions_do_not_jump_with_samples_and_sensitivities_do_not_include_them():
+    drive = SCENE.replace("j: ground}}", "j: ground}, motor: {type: drive, joint: rail, position: push}}")
+    with pytest.raises(
+        stiffmbs.InputError, match=r"'motor': found the sampled state 'push' in a constraint of positions"
+    ):
+        stiffmbs.run(stiffmbs.read_scene(drive))
+    with pytest.raises(stiffmbs.InputError, match=r"states\.integral: found a sampled state"):
+        stiffmbs.sensitivities(stiffmbs.read_scene(SCENE), "kp", "block.x")
+
+
+def test_a_sample_without_a_value_stops_the_run_and_names_the_state():
+    scene = stiffmbs.read_scene(SCENE.replace("integral + ki*Ts*(goal - block.x)", "sqrt(block.x)"))
+    found = stiffmbs.run(scene, duration=3, output=0.01, rtol=1e-8)
+    assert not found.success and found["block.x"][-1] < 0
+    assert "the formula of the sampled state 'integral' has no finite value" in found.message
