@@ -159,9 +159,9 @@ def _finished(job: Job, watch: ProgressCallback | None) -> Finished:
 def _flexible_body_notes(job: Job, rows: OutputRows) -> Iterator[str]:
     """Yield the notes on flexible bodies."""
     if job.dynamics.system.has_coupled_inertia:
-        from ..run_checks.fast_rotation import fast_rotation_notes
+        from ..run_checks.geometric_stiffness import geometric_stiffness_notes
 
-        yield from fast_rotation_notes(job.dynamics.system, rows)
+        yield from geometric_stiffness_notes(job.dynamics.system, rows)
 
 
 def _range_notes(job: Job, rows: OutputRows) -> Iterator[str]:

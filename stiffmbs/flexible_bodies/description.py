@@ -172,8 +172,8 @@ class FlexibleBody(Described):
         Normal modes with all interfaces held.
     mass : float, optional
         Stated mass, kg, compared with that of the model.
-    stiffening : bool
-        True for geometric stiffening, of a mesh whose interfaces carry no heavy loads.
+    stiffening : bool or str
+        Geometric stiffening, which needs a mesh; ``auto`` for that of every mesh.
     """
 
     mesh: str | None = Field(None, description="file of a mesh of tetrahedra or hexahedra")
@@ -183,8 +183,8 @@ class FlexibleBody(Described):
     interfaces: dict[str, InterfaceOfNodes] = Field(default_factory=dict, description="nodes that move with markers")
     modes: int | UpTo = Field(20, description="number of normal modes, or up_to: a frequency")
     mass: si.PositiveMass | None = Field(None, description="stated mass, kg, to check units and density")
-    stiffening: bool = Field(
-        False, description="geometric stiffening, by displacements of second order; of meshes only"
+    stiffening: bool | Literal["auto"] = Field(
+        "auto", description="geometric stiffening; auto: of a body that is described by a mesh"
     )
 
     @field_validator("modes", mode="before")
@@ -209,7 +209,16 @@ class FlexibleBody(Described):
             raise ValueError(
                 f"found {found}, expected {'E, nu and density for a mesh' if self.mesh else 'none: K and M have it'}"
             )
+        if self.stiffening is True and self.mesh is None:
+            raise ValueError(
+                "found stiffening: true with matrices, expected a mesh: geometric stiffening needs its shape functions"
+            )
         return self
+
+    @property
+    def is_stiffened(self) -> bool:
+        """True if geometric stiffening is included."""
+        return self.mesh is not None and self.stiffening is not False
 
     @property
     def files(self) -> tuple[str, ...]:
@@ -234,6 +243,15 @@ class FlexibleBody(Described):
         found = self._read(folder)
         found.check()
         return found
+
+    def interfaces_on(self, model: FiniteElements) -> list[Interface]:
+        """Return the interfaces on a model.
+
+        Raises
+        ------
+        InputError
+        """
+        return [interface.on(name, model) for name, interface in self.interfaces.items()]
 
     def _read(self, folder: Path) -> FiniteElements:
         units = self.units.length, self.units.mass, self.units.time

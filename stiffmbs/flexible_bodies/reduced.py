@@ -16,8 +16,9 @@ from ..cache.source_files import digest_of, python_files
 from ..errors import InputError
 from .description import FlexibleBody, UpTo, content_of_file
 from .reduction import ReducedBody, reduce, rigid_body
+from .second_order import SecondOrder
 
-FOLDER, BODY = "bodies", "body"
+FOLDER, BODY, SECOND = "bodies", "body", "second_order"
 MOST, MOST_BYTES = 100, 2_000_000_000
 """Limits on the number of entries and on their total size in bytes."""
 SAME_MASS = 0.05
@@ -43,11 +44,14 @@ def reduced_body(body: FlexibleBody, folder: Path) -> ReducedBody:
         return _loaded(stored)
     model = body.model(folder)
     _check_mass(body, rigid_body(model)[0])
-    interfaces = [interface.on(name, model) for name, interface in body.interfaces.items()]
     count, highest = (None, body.modes.up_to) if isinstance(body.modes, UpTo) else (body.modes, None)
-    found = reduce(model, interfaces, count, highest, body.stiffening)
+    found = reduce(model, body.interfaces_on(model), count, highest)
     out = io.BytesIO()
-    np.savez(out, **{field.name: getattr(found, field.name) for field in fields(found)})
+    np.savez(
+        out,
+        **{name: value for name, value in vars(found).items() if name != SECOND},
+        **{f"{SECOND}.{name}": value for name, value in vars(found.second_order).items()},
+    )
     folder_of_bodies().write(name, out.getvalue())
     folder_of_bodies().keep_newest(MOST, MOST_BYTES)
     return found
@@ -79,4 +83,5 @@ def _key(body: FlexibleBody, folder: Path) -> str:
 def _loaded(content: bytes) -> ReducedBody:
     with np.load(io.BytesIO(content)) as arrays:
         found: dict[str, Any] = {name: arrays[name] if arrays[name].ndim else arrays[name].item() for name in arrays}
-        return ReducedBody(**found)
+    second = {name: found.pop(f"{SECOND}.{name}") for name in (field.name for field in fields(SecondOrder))}
+    return ReducedBody(**found, second_order=SecondOrder(**second))

@@ -17,7 +17,7 @@ from scipy.linalg import block_diag, eigh, null_space
 from ..errors import InputError
 from .finite_elements import SAME_IN_ALL, FiniteElements, rigid_displacements
 from .interfaces import Interface, check_interfaces
-from .second_order import second_order
+from .second_order import SecondOrder, second_order
 from .static_solver import StaticSolver
 
 DEPENDENT = 1e-10
@@ -26,8 +26,6 @@ HELD = 1e-10
 """Singular value below which an equation of a held interface is dependent, relative to the largest."""
 ZERO = 10.0
 """Frequency of the lowest elastic mode that is refused as zero, relative to the highest of the rigid modes."""
-STIFFENED = 12
-"""Lowest modes whose pairs have displacements of second order: geometric stiffening."""
 MORE_MODES = 20
 """Modes of the first search up to a frequency, doubled until one is above it."""
 
@@ -69,8 +67,8 @@ class ReducedBody:
         sum m psi_l psi_k^T by l and k.
     dependent : int
         Number of combinations of modes left out as linearly dependent.
-    second_nodes, second_markers, second_moments : ndarray
-        Displacements of second order (`stiffmbs.flexible_bodies.second_order.SecondOrder`).
+    second_order : SecondOrder
+        Terms of second order, of a mesh: geometric stiffening.
     """
 
     mass: float
@@ -89,9 +87,7 @@ class ReducedBody:
     second: np.ndarray
     pairs: np.ndarray
     dependent: int
-    second_nodes: np.ndarray
-    second_markers: np.ndarray
-    second_moments: np.ndarray
+    second_order: SecondOrder
 
     def held_frequencies(self, held: Sequence[int]) -> np.ndarray:
         """Return the natural frequencies with some interfaces held, Hz.
@@ -114,9 +110,8 @@ class ReducedBody:
 
 
 def reduce(
-    model: FiniteElements, interfaces: Sequence[Interface], count: int | None, highest: float | None = None,
-    stiffening: bool = False,
-) -> ReducedBody:  # fmt: skip
+    model: FiniteElements, interfaces: Sequence[Interface], count: int | None, highest: float | None = None
+) -> ReducedBody:
     """Reduce a model to its interfaces and normal modes.
 
     Parameters
@@ -127,8 +122,6 @@ def reduce(
         Number of normal modes with all interfaces held.
     highest : float, optional
         Frequency up to which these are kept, Hz, without a count.
-    stiffening : bool
-        Compute displacements of second order.
 
     Raises
     ------
@@ -138,12 +131,10 @@ def reduce(
     mass, centre, inertia = rigid_body(model)
     rigid = model.rigid_modes(centre)
     by_rigid = model.mass @ rigid
-    solver = StaticSolver(model, interfaces, _missing_supports(model, interfaces, rigid, by_rigid))
+    solver, held = static_solver(model, interfaces, rigid)
     squares, normal = _normal_modes(solver, count, highest)
     static = solver.static_modes()
-    if not _holds(model, interfaces, rigid):
-        static = np.hstack([static, rigid])
-    shapes = np.hstack([static, normal])
+    shapes = np.hstack([static, *([] if held else [rigid]), normal])
     shapes /= np.sqrt(np.einsum("ij,ij->j", shapes, model.mass @ shapes))
     basis, condition = _independent(shapes, model)
     participation = (normal.T @ by_rigid)[:, :3]
@@ -154,14 +145,13 @@ def reduce(
             f"stiffness: found a seventh frequency of {frequencies[0]:.2g} Hz with six of up to {zeros.max():.2g} Hz, "
             "expected six zero frequencies: a part of the body moves freely"
         )
-    second = second_order(model, interfaces, solver, static, rigid, modes, STIFFENED if stiffening else 0)
     return ReducedBody(
         mass, centre, inertia, frequencies, modes, zeros, np.sqrt(squares) / (2 * np.pi),
         participation**2 / mass, condition, _marker_modes(model, interfaces, modes),
         np.array([interface.point for interface in interfaces]).reshape(-1, 3),
         np.array([interface.size for interface in interfaces], dtype=int),
         *_moments(model, centre, modes), shapes.shape[1] - basis.shape[1],
-        second.nodes, second.markers, second.moments,
+        second_order(model, interfaces, solver, static, held, centre, modes),
     )  # fmt: skip
 
 
@@ -201,13 +191,27 @@ def _holds(model: FiniteElements, interfaces: Sequence[Interface], rigid: np.nda
     return len(held) > 0 and np.linalg.matrix_rank(np.vstack(held), tol=1e-6) == 6
 
 
-def _missing_supports(
-    model: FiniteElements, interfaces: Sequence[Interface], rigid: np.ndarray, by_rigid: np.ndarray
-) -> np.ndarray:
-    """Return functionals that hold the mean motion of a body that its interfaces do not hold, shape (3 n, 0 or 6)."""
-    if _holds(model, interfaces, rigid):
-        return np.empty((len(rigid), 0))
-    return by_rigid / np.sqrt(np.einsum("ij,ij->j", rigid, by_rigid)) / np.sqrt(model.mass.diagonal().max())
+def static_solver(
+    model: FiniteElements, interfaces: Sequence[Interface], rigid: np.ndarray
+) -> tuple[StaticSolver, bool]:
+    """Return the static solver of a body, and whether its interfaces hold it; otherwise its mean motion is held, too.
+
+    Parameters
+    ----------
+    model : FiniteElements
+    interfaces : sequence of Interface
+    rigid : ndarray, shape (3 n, 6)
+        Rigid motions about the centre of mass.
+
+    Raises
+    ------
+    InputError
+    """
+    held, supports = _holds(model, interfaces, rigid), np.empty((len(rigid), 0))
+    if not held:
+        by_rigid = model.mass @ rigid
+        supports = by_rigid / np.sqrt(np.einsum("ij,ij->j", rigid, by_rigid)) / np.sqrt(model.mass.diagonal().max())
+    return StaticSolver(model, interfaces, supports), held
 
 
 def _normal_modes(solver: StaticSolver, count: int | None, highest: float | None) -> tuple[np.ndarray, np.ndarray]:

@@ -1,10 +1,16 @@
-"""Displacements of second order in the modal coordinates, which contain geometric stiffening.
+"""Geometric stiffening: displacements of second order with held interfaces, and the stretch that interfaces must follow.
 
-The displacement is u = sum psi_k q_k + 1/2 sum theta_kl q_k q_l. The static modal derivatives theta_kl make the strain
-energy of the nonlinear body a quadratic function up to the third order: they contain the foreshortening of a bent
-beam. The work of all forces on them is the geometric stiffness: of centrifugal forces as of those at interfaces
-(Wallrapp & Schwertassek, Representation of geometric stiffening in multibody system simulation, Int. J. Numer. Methods
-Eng. 32 (1991); Wu & Tiso, Multibody System Dynamics 36 (2016)).
+The displacement is u = sum psi_k q_k + 1/2 sum theta_kl q_k q_l. The displacements theta_kl relax the strain of second
+order, E = G^T G / 2 by displacement gradients G, inside of the body. Rigid interfaces turn by finite rotations. The work
+of inertial forces and of weight on theta_kl is their geometric stiffness. The strain of second order in equilibrium with
+interface forces remains: such as the foreshortening of a bent beam with held ends. Its energy is complete,
+
+    U = 1/2 p^T K p,  p = q + sum_i b_i g_i,  g_i = 1/2 q^T Gamma_i q,
+
+with the static shapes b_i of the interfaces, orthonormal in the strain energy. The forces (b_i . K p) Gamma_i q are the
+geometric stiffness of interface forces. All matrices are those of initial stress, integrals of grad psi_k . sigma . grad
+psi_l, with the stress of static solutions: of twelve inertial loads and of the shapes b_i (Wallrapp & Schwertassek,
+Representation of geometric stiffening in multibody system simulation, Int. J. Numer. Methods Eng. 32 (1991)).
 """
 
 from __future__ import annotations
@@ -13,101 +19,124 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.linalg import eigh
 
 from .finite_elements import FiniteElements
-from .interfaces import RIGID, Interface
+from .interfaces import Interface
 from .static_solver import StaticSolver
+
+RIGID_MOTIONS = 6
 
 
 @dataclass(frozen=True, eq=False)
 class SecondOrder:
-    """Second derivatives of displacements by pairs of the lowest p modes with unit modal mass.
+    """Terms of second order by pairs of n modes with unit modal mass; without entries for bodies without a mesh.
 
     Attributes
     ----------
-    nodes : ndarray, shape (3 nodes, p, p)
-        1/(kg m).
-    markers : ndarray, shape (interfaces, 6, p, p)
-        Displacement and rotation vector of each interface.
-    moments : ndarray, shape (p, p, 3, 3)
+    first : ndarray, shape (n, n, 3)
+        sum m theta_kl.
+    moments : ndarray, shape (n, n, 3, 3)
         sum m x theta_kl^T, x from the centre of mass.
+    static : ndarray, shape (n, r)
+        Modal coordinates b_i of the static shapes of interfaces with unit strain energy b_i^T K b_i.
+    stretch : ndarray, shape (r, n, n)
+        Gamma_i.
     """
 
-    nodes: np.ndarray
-    markers: np.ndarray
+    first: np.ndarray
     moments: np.ndarray
+    static: np.ndarray
+    stretch: np.ndarray
 
 
 def second_order(
-    model: FiniteElements, interfaces: Sequence[Interface], solver: StaticSolver, static: np.ndarray, rigid: np.ndarray,
-    modes: np.ndarray, count: int,
+    model: FiniteElements, interfaces: Sequence[Interface], solver: StaticSolver, static: np.ndarray, held: bool,
+    centre: np.ndarray, modes: np.ndarray,
 ) -> SecondOrder:  # fmt: skip
-    """Return the displacements of second order.
+    """Return the terms of second order of modes in the mean-axes frame.
 
     Parameters
     ----------
     model : FiniteElements
     interfaces : sequence of Interface
     solver : StaticSolver
-    static : ndarray, shape (3 n, k)
-        Modes that span the interface coordinates and the rigid motions.
-    rigid : ndarray, shape (3 n, 6)
-        Rigid motions about the centre of mass.
-    modes : ndarray, shape (3 n, elastic modes)
-    count : int
-        Number p of modes of which pairs are taken; none without the shape functions of a mesh.
+    static : ndarray, shape (3 nodes, coordinates)
+        Displacements by unit interface coordinates.
+    held : bool
+        True if held interfaces leave the body no rigid motion.
+    centre : ndarray, shape (3,)
+        Centre of mass.
+    modes : ndarray, shape (3 nodes, n)
     """
-    p = min(count, modes.shape[1]) if model.solid is not None else 0
-    nodes = np.zeros((len(modes), p, p))
-    if model.solid is not None and p:
-        forces = model.solid.second_order_forces(modes[:, :p])
-        free = _FreeBody(model, solver, static, rigid)
-        for k in range(p):
-            for l in range(k + 1):
-                turned = _turned_interfaces(model, interfaces, modes[:, k], modes[:, l])
-                nodes[:, k, l] = nodes[:, l, k] = free.response(-forces[k, l], turned)
-    markers = np.zeros((len(interfaces), 6, p, p))
-    for own, interface in zip(markers, interfaces, strict=True):
-        own[: interface.size] = np.einsum("ij,jkl->ikl", interface.mean(model), nodes[interface.entries])
-    by_mass = (model.mass @ nodes.reshape(len(nodes), p * p)).reshape(len(nodes) // 3, 3, p, p)
-    points = np.column_stack([rigid[1::3, 5], rigid[2::3, 3], rigid[0::3, 4]])
-    return SecondOrder(nodes, markers, np.einsum("ia,ibkl->klab", points, by_mass))
+    n = modes.shape[1]
+    if model.solid is None or n == 0:
+        return SecondOrder(np.zeros((n, n, 3)), np.zeros((n, n, 3, 3)), np.zeros((n, 0)), np.zeros((0, n, n)))
+    work = _WorkOfStress(model, interfaces, modes)
+    fields = np.einsum("nf,bc->nbfc", np.column_stack([np.ones(len(model.nodes)), model.nodes - centre]), np.eye(3))
+    loads = model.mass @ fields.reshape(-1, 12)
+    inertial = np.array([work.of(-solver.held_response(load), load) for load in loads.T])
+    first, *moments = inertial.reshape(4, 3, n, n)
+    shapes = _static_shapes(model, static, RIGID_MOTIONS if held else 0)
+    return SecondOrder(
+        first.transpose(1, 2, 0), np.array(moments).transpose(2, 3, 0, 1), modes.T @ (model.mass @ shapes),
+        np.array([work.of(shape) for shape in shapes.T]).reshape(-1, n, n),
+    )  # fmt: skip
 
 
-def _turned_interfaces(
-    model: FiniteElements, interfaces: Sequence[Interface], first: np.ndarray, second: np.ndarray
+def displacement_of_second_order(
+    model: FiniteElements, interfaces: Sequence[Interface], solver: StaticSolver, displacement: np.ndarray
 ) -> np.ndarray:
-    """Return the second derivative of the displacements of rigid interfaces by two rotations, shape (3 n,)."""
-    found = np.zeros(len(first))
+    """Return the part of second order of a displacement, shape (3 nodes,), with held interfaces."""
+    assert model.solid is not None
+    turned = np.zeros(len(displacement))
     for interface in interfaces:
-        if interface.kind == RIGID:
-            mean = interface.mean(model)[3:]
-            a, b = mean @ first[interface.entries], mean @ second[interface.entries]
+        if interface.size == RIGID_MOTIONS:
+            turn = interface.mean(model)[3:] @ displacement[interface.entries]
             arm = model.nodes[interface.nodes] - interface.point
-            turned = np.cross(a, np.cross(b, arm)) + np.cross(b, np.cross(a, arm))
-            found[interface.entries] = turned.ravel() / 2
-    return found
+            turned[interface.entries] = np.cross(turn, np.cross(turn, arm)).ravel() / 2
+    force = model.solid.second_order_force(displacement) + model.stiffness @ turned
+    return turned - solver.held_response(force)
 
 
-class _FreeBody:
-    """Static displacements of the free body under forces balanced by its rigid acceleration (inertia relief)."""
+def _static_shapes(model: FiniteElements, static: np.ndarray, rigid: int) -> np.ndarray:
+    """Return combinations of static displacements with unit strain energies, without rigid motions, shape (3 nodes, r)."""
+    if static.shape[1] <= rigid:
+        return static[:, :0]
+    stiffness = static.T @ (model.stiffness @ static)
+    scale = 1 / np.sqrt(stiffness.diagonal())
+    energies, vectors = eigh(scale[:, None] * stiffness * scale)
+    return static @ (scale[:, None] * vectors[:, rigid:] / np.sqrt(energies[rigid:]))  # type: ignore[no-any-return]
 
-    def __init__(self, model: FiniteElements, solver: StaticSolver, static: np.ndarray, rigid: np.ndarray) -> None:
-        self._model, self._solver = model, solver
-        self._rigid = rigid
-        self._by_mass = model.mass @ rigid
-        self._inertia = rigid.T @ self._by_mass
-        self._static = static / np.sqrt(np.einsum("ij,i,ij->j", static, model.stiffness.diagonal(), static))
-        stiffness = self._static.T @ (model.stiffness @ self._static)
-        held = self._static.T @ self._by_mass
-        held /= np.linalg.norm(held, axis=0)
-        self._factor = np.linalg.pinv(stiffness + held @ held.T)
 
-    def response(self, force: np.ndarray, prescribed: np.ndarray) -> np.ndarray:
-        """Return the displacement that is orthogonal to rigid motions and contains prescribed relative displacements."""
-        force = force - self._model.stiffness @ prescribed
-        force = force - self._by_mass @ np.linalg.solve(self._inertia, self._rigid.T @ force)
-        found = self._solver.held_response(force)
-        rest = self._static.T @ (force - self._model.stiffness @ found)
-        found = prescribed + found + self._static @ (self._factor @ rest)
-        return found - self._rigid @ np.linalg.solve(self._inertia, self._by_mass.T @ found)  # type: ignore[no-any-return]
+class _WorkOfStress:
+    """Work of the stress of displacements on the strains of second order of pairs of modes."""
+
+    def __init__(self, model: FiniteElements, interfaces: Sequence[Interface], modes: np.ndarray) -> None:
+        self._model, self._modes = model, modes
+        assert model.solid is not None
+        self._initial_stress = model.solid.initial_stress()
+        self._turning = [
+            (each.entries, model.nodes[each.nodes] - each.point, each.mean(model)[3:] @ modes[each.entries])
+            for each in interfaces
+            if each.size == RIGID_MOTIONS
+        ]
+
+    def of(self, displacement: np.ndarray, load: np.ndarray | float = 0.0) -> np.ndarray:
+        """Return sigma : grad psi_k^T grad psi_l, and the work at turned interfaces of forces there, shape (n, n).
+
+        Parameters
+        ----------
+        displacement : ndarray, shape (3 nodes,)
+            Displacement that causes the stress sigma; its elastic forces and the load act at the interfaces.
+        load : ndarray, shape (3 nodes,), optional
+        """
+        n = self._modes.shape[1]
+        by_nodes = self._initial_stress.matrix(displacement)
+        shapes = self._modes.reshape(-1, 3 * n)
+        found = np.einsum("ick,icl->kl", shapes.reshape(-1, 3, n), (by_nodes @ shapes).reshape(-1, 3, n), optimize=True)
+        force = self._model.stiffness @ displacement + load
+        for entries, arm, turn in self._turning:
+            moment = arm.T @ force[entries].reshape(-1, 3)
+            found += turn.T @ ((moment + moment.T) / 2 - np.trace(moment) * np.eye(3)) @ turn
+        return (found + found.T) / 2  # type: ignore[no-any-return]

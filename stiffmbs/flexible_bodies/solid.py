@@ -1,4 +1,4 @@
-"""Solid elements of a mesh: gradients of their shape functions, stresses, and forces of second order."""
+"""Solid elements of a mesh: gradients of their shape functions, stresses, and initial stress."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from scipy.sparse import csr_array
 
 from ..errors import needs
 
@@ -70,39 +71,50 @@ class Solid:
         of_nodes = displacement.reshape(-1, 3)[self.nodes]
         return np.einsum("nea,nbep->abep", of_nodes, gradients, optimize=True)
 
-    def second_order_forces(self, shapes: np.ndarray) -> np.ndarray:
-        """Return the second derivatives of the nodal forces by the amplitudes of pairs of displacements.
+    def second_order_force(self, displacement: np.ndarray) -> np.ndarray:
+        """Return the nodal forces of the strain of second order G^T G / 2 of a displacement, shape (3 n,)."""
+        at, weights = self.gradients()
+        slope = self.displacement_gradient(at, displacement)
+        stress = self.stress(np.einsum("caep,cbep->abep", slope, slope) / 2)
+        found = np.zeros(len(displacement))
+        force = np.einsum("abep,nbep,ep->nea", stress, at, weights, optimize=True)
+        np.add.at(found, 3 * self.nodes[:, :, None] + np.arange(3), force)
+        return found
 
-        The strain is that of Green, E = sym G + G^T G / 2, with a linear elastic law (Saint Venant, Kirchhoff). Wu & Tiso,
-        Nonlinear model order reduction for flexible multibody dynamics, Multibody System Dynamics 36 (2016), section 3.
+    def initial_stress(self) -> InitialStress:
+        """Return the matrices of initial stress of this body."""
+        return InitialStress(self, *self.gradients())
+
+
+class InitialStress:
+    """Matrices of initial stress of a body, with gradients and weights from `Solid.gradients`."""
+
+    def __init__(self, solid: Solid, gradients: np.ndarray, weights: np.ndarray) -> None:
+        self._solid, self._gradients, self._weights = solid, gradients, weights
+
+    def matrix(self, displacement: np.ndarray) -> csr_array:
+        """Return the integral of grad N_a . sigma . grad N_b by nodes a, b, with the stress of a displacement.
+
+        The matrix applies to each component of displacements. Zienkiewicz & Taylor, The finite element method, volume 2,
+        section on geometric stiffness.
 
         Parameters
         ----------
-        shapes : ndarray, shape (3 n, p)
+        displacement : ndarray, shape (3 n,)
 
         Returns
         -------
-        ndarray, shape (p, p, 3 n)
+        csr_array, shape (n, n)
+            N/m.
         """
-        at, weights = self.gradients()
-        slopes = [self.displacement_gradient(at, shape) for shape in shapes.T]
-        stresses = [self.stress(slope) for slope in slopes]
-        found = np.zeros((len(slopes), len(slopes), len(shapes)))
-        entries = 3 * self.nodes[:, :, None] + np.arange(3)
-        for i, (G, of_G) in enumerate(zip(slopes, stresses, strict=True)):
-            for j in range(i + 1):
-                H, of_H = slopes[j], stresses[j]
-                nominal = (
-                    self.stress(_product(G, H, "cae,cbe->abe"))
-                    + _product(H, of_G, "ace,cbe->abe")
-                    + _product(G, of_H, "ace,cbe->abe")
-                )
-                force = np.einsum("abep,nbep,ep->nea", nominal, at, weights, optimize=True)
-                np.add.at(found[i, j], entries, force)
-                found[j, i] = found[i, j]
-        return found
-
-
-def _product(A: np.ndarray, B: np.ndarray, indices: str) -> np.ndarray:
-    flat = np.einsum(indices, A.reshape(3, 3, -1), B.reshape(3, 3, -1))
-    return flat.reshape(A.shape)
+        at, nodes = self._gradients, self._solid.nodes
+        stress = self._solid.stress(self._solid.displacement_gradient(at, displacement)) * self._weights
+        pulled = np.einsum("abep,nbep->naep", stress, at, optimize=True)
+        flat = (each.transpose(2, 0, 1, 3).reshape(nodes.shape[1], len(nodes), -1) for each in (at, pulled))
+        left, right = flat
+        of_elements = left @ right.swapaxes(1, 2)  # (elements, nodes, nodes)
+        count = len(displacement) // 3
+        rows, columns = (
+            np.broadcast_to(each, of_elements.shape).ravel() for each in (nodes.T[:, :, None], nodes.T[:, None, :])
+        )
+        return csr_array((of_elements.ravel(), (rows, columns)), shape=(count, count))

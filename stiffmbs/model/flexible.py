@@ -152,14 +152,7 @@ class _Parts:
                 i=Marker(body=f"{self._name}.{FRAME}", point=tuple(self._reduced.points[k])),
                 j=Marker(body=f"{self._name}.{name}"), modes=modes,
                 displacements=tuple(shapes[:, :3].ravel()), rotations=tuple(shapes[:, 3:].ravel()),
-                second=tuple(self._second(k).ravel()),
             )  # fmt: skip
-
-    def _second(self, k: int) -> np.ndarray:
-        """Return the second derivatives of an interface's displacement and rotation by pairs k <= l, shape (pairs, 6)."""
-        second = self._reduced.mass * self._reduced.second_markers[k]
-        rows, columns = np.tril_indices(second.shape[1])
-        return second[:, rows, columns].T
 
     def _by_coordinates(self, modes: np.ndarray) -> np.ndarray:
         """Return values by mode as values by modal coordinate in m, zero for the unused ones of the last body."""
@@ -174,21 +167,22 @@ class _Parts:
         offset = np.zeros(3)
         square = np.trace(reduced.inertia) / 2 * np.eye(3) - reduced.inertia
         first, second = self._by_coordinates(reduced.first), self._by_coordinates(reduced.second)
-        own, p = len(reduced.pairs), len(reduced.second_moments)
+        own, mass, terms = len(reduced.pairs), reduced.mass, reduced.second_order
         pairs, second_moments, second_first = np.zeros((n, n, 3, 3)), np.zeros((n, n, 3, 3)), np.zeros((n, n, 3))
-        pairs[:own, :own] = reduced.mass * reduced.pairs
-        second_moments[:p, :p] = reduced.mass * reduced.second_moments
-        lumps = zip(reduced.points - reduced.centre, reduced.markers, reduced.second_markers, strict=True)
-        for point, marker, second_marker in lumps:
+        pairs[:own, :own] = mass * reduced.pairs
+        stiffened = self._body.is_stiffened
+        if stiffened:
+            second_moments[:own, :own], second_first[:own, :own] = mass * terms.moments, mass * terms.first
+        stretch = np.zeros((len(terms.stretch), 1 + n, n))
+        stretch[:, 0, :own] = terms.static.T
+        stretch[:, 1 : 1 + own, :own] = np.sqrt(mass) * terms.stretch
+        for point, marker in zip(reduced.points - reduced.centre, reduced.markers, strict=True):
             shape = self._by_coordinates(marker.T)[:, :3]
             offset -= self._share * point
             square -= self._share * np.outer(point, point) + self._moment / 2 * np.eye(3)
             first -= self._share * shape
             second -= self._share * np.einsum("a,kb->kab", point, shape)
             pairs -= self._share * np.einsum("la,kb->lkab", shape, shape)
-            moved = self._share * reduced.mass * second_marker[:3].transpose(1, 2, 0)
-            second_first[:p, :p] -= moved
-            second_moments[:p, :p] -= np.einsum("a,klb->klab", point, moved)
         for k in range(own, n):  # unused coordinates: unit modal mass
             pairs[k, k] += np.eye(3) * reduced.mass / 3
         stiffness, damping = self._stiffness_and_damping(n)
@@ -204,8 +198,8 @@ class _Parts:
             second_first @ to_axes.T,
         ]  # fmt: skip
         return np.concatenate([
-            np.zeros(3), to_axes @ offset, (to_axes @ square @ to_axes.T).ravel(), frame.principal_moments(), [reduced.mass],
-            of_modes.ravel(), np.concatenate(of_pairs, axis=-1).ravel(),
+            np.zeros(3), to_axes @ offset, (to_axes @ square @ to_axes.T).ravel(), frame.principal_moments(),
+            [reduced.mass, len(stretch) if stiffened else 0, len(stretch)], of_modes.ravel(), np.concatenate(of_pairs, axis=-1).ravel(), stretch.ravel(),
         ])  # fmt: skip
 
     def _stiffness_and_damping(self, n: int) -> tuple[np.ndarray, np.ndarray]:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +14,8 @@ from ..compile.quaternions import rotated
 from ..elements.spatial.flexible.bodies import FloatingFrame
 from ..errors import InputError, needs
 from ..flexible_bodies.finite_elements import FiniteElements
-from ..flexible_bodies.reduction import ReducedBody
+from ..flexible_bodies.reduction import ReducedBody, static_solver
+from ..flexible_bodies.second_order import displacement_of_second_order
 from ..flexible_bodies.stress import nodal_stresses, principal_stresses, von_mises
 from ..reading.did_you_mean import did_you_mean
 
@@ -110,6 +111,16 @@ class FlexibleMotion:
         body, folder = self._source
         return body.model(folder)  # type: ignore[no-any-return]
 
+    @cached_property
+    def _second_order(self) -> Callable[[np.ndarray], np.ndarray] | None:
+        """Displacements of second order of all nodes by those of first order, with geometric stiffening."""
+        body, model = self._source[0], self.model
+        if not body.is_stiffened:
+            return None
+        interfaces = body.interfaces_on(model)
+        solver, _ = static_solver(model, interfaces, model.rigid_modes(self.reduced.centre))
+        return partial(displacement_of_second_order, model, interfaces, solver)
+
     def displacement(self, nodes: Sequence[int] | None = None, at: Any = slice(None)) -> np.ndarray:
         """Return the displacements of nodes in the floating frame, m, in the axes of the mesh.
 
@@ -128,10 +139,9 @@ class FlexibleMotion:
         entries = (3 * chosen[:, None] + np.arange(3)).ravel()
         modal = self.modal[at]
         found = modal @ self.reduced.modes[entries].T
-        second = self.reduced.second_nodes[entries]
-        p = second.shape[1]
-        if p:
-            found += np.einsum("ikl,tk,tl->ti", second, modal[:, :p], modal[:, :p], optimize=True) / 2
+        if self._second_order is not None:
+            for own, coordinates in zip(found, modal, strict=True):
+                own += self._second_order(self.reduced.modes @ coordinates)[entries]
         return found.reshape(len(modal), len(chosen), 3)
 
     def position(self, nodes: Sequence[int] | None = None, at: Any = slice(None)) -> np.ndarray:

@@ -16,9 +16,8 @@ class RunCheckParameters:
 
     coarse: float = 1e-6
     """Largest rounding of coordinates, relative to a mechanism's size."""
-    fast: float = 0.03
-    """Angular velocity, relative to the lowest natural frequency of the free body, from which a note appears. A slender
-    clamped body bends at a sixth of that frequency, and its stiffness changes by the square of the ratio: 3 %."""
+    stiffened: float = 0.03
+    """Geometric stiffness of a flexible body, relative to its elastic stiffness, from which a note appears."""
     open: float = 1e-6
     """Largest opening of a joint in sizes of the mechanism, with projection onto the constraints."""
     drifted: float = 1e-2

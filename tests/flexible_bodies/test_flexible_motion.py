@@ -12,6 +12,7 @@ from stiffmbs.analyses.run import run
 from stiffmbs.compile.compile_model import compile_model
 from stiffmbs.compile.quaternions import rotated
 from stiffmbs.compile.state import State
+from stiffmbs.elements.spatial.flexible.layout import parts
 from stiffmbs.errors import InputError
 from stiffmbs.flexible_bodies.matrices import from_archive
 from stiffmbs.flexible_bodies.read import read_flexible_body
@@ -186,20 +187,34 @@ def test_the_motion_is_the_same_in_another_frame(folder):
         np.testing.assert_allclose(found[f"bar.b.{there}"] - (5, 3, 4)[k], expected[f"bar.b.{own}"], atol=1e-8)
 
 
+STIFFENED = {
+    "matrices: bar.npz": "mesh: bar.vtu\n    material: {E: 210 GPa, nu: 0.3, density: 7850 kg/m^3}",
+    "length: 1 m": "length: 1 mm", "{group: start}": "{plane: {point: [0, 0, 0], normal: [1, 0, 0]}}",
+    "{group: end}": "{plane: {point: [400 mm, 0, 0], normal: [1, 0, 0]}}",
+}  # fmt: skip
+"""The same body as a mesh, with geometric stiffening."""
+
+
 def test_derivatives_of_the_kernels(folder):
-    system = compile_model(scene(folder, gravity="[1, 2, -9]"))
+    scene(folder, gravity="[1, 2, -9]")
+    text = (folder / "scene.yaml").read_text()
+    for old, new in STIFFENED.items():
+        text = text.replace(old, new)
+    (folder / "mesh.yaml").write_text(text)
+    system = compile_model(load_scene(folder / "mesh.yaml", []))
     state, random = State(system), np.random.default_rng(0)
     (group,) = (group for group in system.groups if group.entries["inertia"])
     first = group.index[0, 2 * group.kind.n_bodies]
     numbers = group.numbers[first + int(group.numbers[first]) :]
     n = 3 * (group.kind.n_bodies - 1)
-    numbers[19 : 19 + 14 * n].reshape(n, 14)[:, :2] = random.uniform(
-        1, 2, (n, 2)
-    )  # soft: differences keep their digits
-    pairs = numbers[19 + 14 * n :][: 16 * n * n].reshape(n, n, 16)
-    for part in (slice(0, 9), slice(13, 16)):  # of second order: symmetric by pairs
-        second = random.standard_normal(pairs[..., part].shape)
-        pairs[..., part] += second + second.swapaxes(0, 1)
+    named = parts(numbers, n)
+    for name in ("stiffness", "damping"):
+        named[name][:] = random.uniform(1, 2, (n, 1))  # soft: differences keep their digits
+    assert named["stretch"] == len(named["Gamma"]) == 6
+    for name, half in (("ZW", 1.0), ("T", 1.0), ("Gamma", 0.5), ("static", 0.5)):  # symmetric by pairs
+        second = random.standard_normal(named[name].shape)
+        pairs = (-2, -1) if name == "Gamma" else (0, 1)
+        named[name][:] += half * (second if name == "static" else second + second.swapaxes(*pairs))
     q, u, a = (random.standard_normal(len(each)) for each in (state.q, state.u, state.a))
     q[3:7] /= np.linalg.norm(q[3:7])
 
@@ -270,5 +285,5 @@ def test_sensitivities_refuse_flexible_bodies(folder):
 
 def test_a_fast_rotation_is_noted(folder):
     slow, fast = (run(scene(folder, motion=f"omega: [0, 0, {rate}]", run__duration="1 ms")) for rate in (20, 500))
-    assert not any("centrifugal" in note for note in slow.notes)
-    assert any("'bar.frame' turns at up to 500 rad/s" in note for note in fast.notes)
+    assert not any("stiffness" in note for note in slow.notes)
+    assert any("'bar': rotation at up to 500 rad/s" in note and "use a mesh" in note for note in fast.notes)

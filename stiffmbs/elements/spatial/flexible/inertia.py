@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 from ....reading.marker import MarkerReference
 from ...element import CompiledTerms, Force
 from .bodies import FloatingFrame
-from .layout import BODY
+from .layout import BODY, work_size
 
 NATIVE = "stiffmbs.compile.machine.native"
 
@@ -61,21 +61,22 @@ def _source(n: int, n_bodies: int, patterns: Mapping[str, Any], places: Mapping[
     to = {name: f"shifted(value, place[{1 + k}] + {len(patterns[name])}*e)" for name, k in places.items()}
     pose = f"{n}, own, row, q, turned"
     calls = {
-        "f": f"add_forces({pose}, u, {to.get('f')})",
+        "f": f"add_forces({pose}, u, work, {to.get('f')})",
         "inertia": f"add_inertia({pose}, u, {to.get('inertia')})",
-        "f_q": f"add_force_slopes({pose}, u, {to.get('f_q')}, {to.get('f_u')})",
+        "f_q": f"add_force_slopes({pose}, u, work, {to.get('f_q')}, {to.get('f_u')})",
         "inertia_q": f"add_inertia_slopes({pose}, a, {to.get('inertia_q')})",
         "kinetic": f"value[place[{1 + places.get('kinetic', 0)}] + e] = kinetic_energy({pose}, u)",
-        "potential": f"value[place[{1 + places.get('potential', 0)}] + e] = potential_energy({pose})",
-        "power": f"value[place[{1 + places.get('power', 0)}] + e] = dissipated_power({n}, own, row, u)",
+        "potential": f"value[place[{1 + places.get('potential', 0)}] + e] = potential_energy({pose}, work)",
+        "power": f"value[place[{1 + places.get('power', 0)}] + e] = dissipated_power({n}, own, row, q, u, work)",
     }
     return "\n".join(
         [
-            f"from {NATIVE}.access import shifted",
+            f"from {NATIVE}.access import room, shifted",
             *(f"from {NATIVE}.flexible.{module} import {', '.join(names)}" for module, names in KERNELS.items()),
             "",
             "",
             "def kernel(count, index, number, t, q, turn, u, a, lam, mu, place, value):",
+            f"    work = room({work_size(n)})",
             "    for e in range(count):",
             f"        row = shifted(index, {width}*e)",
             f"        numbers = shifted(number, row[{width - 1}])",

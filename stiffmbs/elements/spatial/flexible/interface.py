@@ -15,7 +15,7 @@ class FlexibleInterface(Joint):
     """Joint that moves a body with an interface of a flexible body; created with it.
 
     The point is that of the interface with its modal displacement, and the axes are those of the frame turned by its
-    modal rotation vector. Both are psi q + 1/2 sum theta_kl q_k q_l.
+    modal rotation vector.
     """
 
     kind: ClassVar[str] = "flexible_interface"
@@ -28,18 +28,13 @@ class FlexibleInterface(Joint):
     displacements: tuple[float, ...] = Field(description="displacement by mode along x, y and z")
     rotations: tuple[float, ...] = Field(description="rotation by mode about x, y and z")
 
-    second: tuple[float, ...] = Field((), description="second derivatives of both by pairs k, l <= k of modes")
-
     @staticmethod
     def position(e: Symbolic) -> Any:
         modal = [mode.body.origin[k] for mode in e.modes for k in range(3)]
-        factors = [y * modal[l] / (1 + (l == k)) for k, y in enumerate(modal) for l in range(k + 1)]
         along = []
         for row in range(6):
             shapes = e.displacements if row < 3 else e.rotations
-            first = sum(y * shapes[3 * k + row % 3] for k, y in enumerate(modal))
-            of_pairs = e.second[row::6]
-            along.append(e.named(first + sum(x * y for x, y in zip(of_pairs, factors[: len(of_pairs)], strict=True))))
+            along.append(e.named(sum(y * shapes[3 * k + row % 3] for k, y in enumerate(modal))))
         moved = sum((d * axis for d, axis in zip(along, e.i.axes, strict=False)), e.i.point)
         turned = e.relative_rotation(e.j, e.i).rotation
         return [*(e.j.point - moved), *(angle - shape for angle, shape in zip(turned, along[3:], strict=True))]

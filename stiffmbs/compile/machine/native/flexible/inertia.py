@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from stiffmbs.compile.machine.native.access import compiled, room, shifted
+from stiffmbs.compile.machine.native.flexible.elastic import elastic_forces, strain_rates, strains
 from stiffmbs.compile.machine.native.flexible.sums import (
     axial,
     body_view,
     centrifugal,
-    coordinate,
     coriolis,
     cross,
     dot,
@@ -31,7 +31,7 @@ from stiffmbs.compile.machine.native.flexible.sums import (
 
 
 @compiled
-def add_forces(n, number, index, q, A, u, f):
+def add_forces(n, number, index, q, A, u, work, f):
     """Compute the quadratic velocity terms, elastic and damping forces, and the weight of the first moment."""
     w = shifted(u, index[1] + 3)
     d, s, g, x, y, z, I, K = room(3), room(3), room(3), room(3), room(3), room(3), room(9), room(9)
@@ -50,14 +50,13 @@ def add_forces(n, number, index, q, A, u, f):
     for i in range(3):
         f[3 + i] = -z[i] - 2.0 * x[i] + s[i]
     N, D = room(9), room(3)
+    elastic = elastic_forces(n, number, index, q, u, work)
     for k in range(n):
-        of_mode = mode_view(mode(number, k))
         rate = u[velocity(index, k)]
         sum_of_mode(n, k, number, index, q, N)
         coriolis(n, k, number, index, u, x)
         first_moment_of_mode(n, k, number, index, q, D)
-        elastic = of_mode.stiffness[0] * q[coordinate(index, k)] + of_mode.damping[0] * rate
-        f[6 + k] = dot(D, g) + centrifugal(N, w) - elastic - 2.0 * dot(w, x)
+        f[6 + k] = dot(D, g) + centrifugal(N, w) - elastic[k] - 2.0 * dot(w, x)
         first_rate_of_mode(n, k, number, index, u, s)
         moment_rate_of_mode(n, k, number, index, u, x)
         for i in range(3):
@@ -125,23 +124,25 @@ def kinetic_energy(n, number, index, q, A, u):
 
 
 @compiled
-def potential_energy(n, number, index, q, A):
+def potential_energy(n, number, index, q, A, work):
     """Return the strain energy, and the potential energy of the first moment of mass."""
     d, x = room(3), room(3)
     first_moment(n, number, index, q, d)
     times(A, d, x)
     total = -dot(body_view(number).gravity, x)
+    strains(n, number, index, q, work)
+    p = shifted(work, 2 * n)
     for k in range(n):
-        y = q[coordinate(index, k)]
-        total += 0.5 * mode_view(mode(number, k)).stiffness[0] * y * y
+        total += 0.5 * mode_view(mode(number, k)).stiffness[0] * p[k] * p[k]
     return total
 
 
 @compiled
-def dissipated_power(n, number, index, u):
+def dissipated_power(n, number, index, q, u, work):
     """Return the power of modal damping."""
-    total = 0.0
+    strains(n, number, index, q, work)
+    strain_rates(n, number, index, u, work)
+    rates, total = shifted(work, 3 * n), 0.0
     for k in range(n):
-        rate = u[velocity(index, k)]
-        total -= mode_view(mode(number, k)).damping[0] * rate * rate
+        total -= mode_view(mode(number, k)).damping[0] * rates[k] * rates[k]
     return total

@@ -7,6 +7,7 @@ Matrices are by rows: three of the frame's position, three of its rotation, and 
 from __future__ import annotations
 
 from stiffmbs.compile.machine.native.access import compiled, room, shifted
+from stiffmbs.compile.machine.native.flexible.elastic import add_elastic_slopes
 from stiffmbs.compile.machine.native.flexible.sums import (
     axial,
     body_view,
@@ -19,8 +20,6 @@ from stiffmbs.compile.machine.native.flexible.sums import (
     first_rate,
     first_rate_of_mode,
     inertia_by_mode,
-    mode,
-    mode_view,
     mode_with_rates,
     moment_of_rotation,
     moment_rate_of_mode,
@@ -128,7 +127,7 @@ def _of_frame_by_mode(n, l, number, index, q, A, u, w, g, f_q, f_u):
 
 @compiled
 def _of_mode(n, l, number, index, q, u, w, g, f_q, f_u):
-    """Compute the derivatives of all modal forces by a modal coordinate and its velocity, and of one by w."""
+    """Compute the derivatives of all modal inertial forces by a modal coordinate and its velocity, and of one by w."""
     N, x = room(9), room(3)
     sum_of_mode(n, l, number, index, q, N)
     coriolis(n, l, number, index, u, x)
@@ -139,14 +138,12 @@ def _of_mode(n, l, number, index, q, u, w, g, f_q, f_u):
         f_u[(3 + n) * (6 + l) + i] = total
     for k in range(n):
         of_pair = pair_view(pair(n, number, l, k))
-        of_mode = mode_view(mode(number, k))
-        by_q = centrifugal(of_pair.ZW, w) + dot(of_pair.T, g)
-        f_q[(4 + n) * (6 + k) + 4 + l] = by_q - (of_mode.stiffness[0] if k == l else 0.0)
-        f_u[(3 + n) * (6 + k) + 3 + l] = -2.0 * dot(w, of_pair.axial) - (of_mode.damping[0] if k == l else 0.0)
+        f_q[(4 + n) * (6 + k) + 4 + l] = centrifugal(of_pair.ZW, w) + dot(of_pair.T, g)
+        f_u[(3 + n) * (6 + k) + 3 + l] = -2.0 * dot(w, of_pair.axial)
 
 
 @compiled
-def add_force_slopes(n, number, index, q, turn, u, f_q, f_u):
+def add_force_slopes(n, number, index, q, turn, u, work, f_q, f_u):
     """Compute the derivatives of the forces by the pose and by velocities."""
     w, gravity = shifted(u, index[1] + 3), body_view(number).gravity
     d, s, g, x, y, I, K = room(3), room(3), room(3), room(3), room(3), room(9), room(9)
@@ -167,6 +164,7 @@ def add_force_slopes(n, number, index, q, turn, u, f_q, f_u):
     for l in range(n):
         _of_frame_by_mode(n, l, number, index, q, turn, u, w, g, f_q, f_u)
         _of_mode(n, l, number, index, q, u, w, g, f_q, f_u)
+    add_elastic_slopes(n, number, index, q, u, work, f_q, f_u)
 
 
 @compiled

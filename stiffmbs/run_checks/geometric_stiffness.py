@@ -1,0 +1,93 @@
+"""Note on flexible bodies whose stiffness changes by loads and rotation: if their geometric stiffness is included."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ..compile.quaternions import rotated
+from ..compile.system import System
+from ..dynamics.dynamics import OutputRows
+from ..elements.spatial.flexible.layout import parts
+from .parameters import RUN_CHECKS
+
+CLAMPED = 36.0
+"""Stiffening of a slender beam clamped at one end, over the square of its angular velocity by its lowest free one."""
+EULER = 4 * 4.730041**4 / np.pi**2
+"""Force by the buckling load of that beam, over force by mass, length and the square of its lowest free one."""
+
+
+def geometric_stiffness_notes(system: System, rows: OutputRows) -> Iterator[str]:
+    """Yield a note on each flexible body whose geometric stiffness matters, relative to the elastic one."""
+    for group in system.groups:
+        for e in range(group.count if group.entries["inertia"] and len(rows.t) else 0):
+            name, n = group.names[e].removesuffix(".frame"), 3 * (group.kind.n_bodies - 1)
+            first = int(group.index[e, 2 * group.kind.n_bodies])
+            numbers = parts(group.numbers[first + int(group.numbers[first]) :], n)
+            places = group.index[e, : 2 * group.kind.n_bodies].reshape(-1, 2)
+            if numbers["known"][0]:
+                yield from _note(name, numbers, rows, places)
+            elif n:
+                yield from _note_without_mesh(name, numbers, system, rows, int(places[0, 1]))
+
+
+def _note(name: str, numbers: dict[str, np.ndarray], rows: OutputRows, places: np.ndarray) -> Iterator[str]:
+    """Yield a note by the extreme eigenvalues of geometric and elastic stiffness, of all deformations of the free body."""
+    chosen = np.unique(np.linspace(0, len(rows.t) - 1, RUN_CHECKS.most_instants).astype(int))
+    ratios = _ratios(numbers, rows, places, chosen)
+    at = int(np.abs(ratios).max(axis=1).argmax())
+    lowest, highest = ratios[at]
+    if max(-lowest, highest) > RUN_CHECKS.stiffened:
+        yield (
+            f"'{name}': loads and rotation change the stiffness by {100 * lowest:+.2g} % to {100 * highest:+.2g} % at t = {rows.t[chosen[at]]:.4g} s; "
+            f"this geometric stiffness is {'included' if numbers['stretch'][0] else 'not included (stiffening: false)'}"
+        )
+
+
+def _note_without_mesh(
+    name: str, numbers: dict[str, np.ndarray], system: System, rows: OutputRows, motion: int
+) -> Iterator[str]:
+    """Yield a note by a slender beam of the same mass, moment of inertia and lowest frequency."""
+    rate = float(np.linalg.norm(rows.u[:, motion + 3 : motion + 6], axis=1).max())
+    mass, length = (
+        float(numbers["modal_mass"][0]),
+        float(np.sqrt(12 * numbers["moments"].max() / numbers["modal_mass"][0])),
+    )
+    lowest = float(np.sqrt(numbers["stiffness"].min() / mass))
+    forces = [
+        np.linalg.norm(rows.values[:, [system.reported[f"{joint}.f{axis}"] for axis in "xyz"]], axis=1).max()
+        for joint in (key.removesuffix(".fx") for key in system.reported if key.endswith("_interface.fx"))
+        if joint.startswith(f"{name}.")
+    ]
+    force = float(max(forces, default=0.0))
+    ratio = (CLAMPED * rate**2 + EULER * force / (mass * length)) / lowest**2
+    if ratio > RUN_CHECKS.stiffened:
+        yield (
+            f"'{name}': rotation at up to {rate:.3g} rad/s and interface forces of up to {force:.3g} N can change its stiffness by {100 * ratio:.2g} %, "
+            f"estimated by a slender clamped beam with its lowest free frequency of {lowest / (2 * np.pi):.3g} Hz; geometric stiffness is not "
+            "included, as a body described by matrices has no stresses: use a mesh, or several bodies"
+        )
+
+
+def _ratios(numbers: dict[str, np.ndarray], rows: OutputRows, places: np.ndarray, chosen: np.ndarray) -> np.ndarray:
+    """Return the extreme ratios by interface forces, rotation, acceleration of the frame and weight, shape (times, 2)."""
+    (pose, motion), modal = places[0], (places[1:, :1] + np.arange(3)).ravel()
+    y, turn, spin = (
+        rows.q[np.ix_(chosen, modal)],
+        rows.q[chosen, pose + 3 : pose + 7],
+        rows.u[chosen, motion + 3 : motion + 6],
+    )
+    stiffness, static, Gamma, n = numbers["stiffness"][:, 0], numbers["static"], numbers["Gamma"], len(modal)
+    p = y
+    if numbers["stretch"][0]:
+        p = y + np.einsum("ikl,tk,tl->ti", Gamma, y, y, optimize=True) @ static / 2
+    square = np.einsum("ta,tb->tab", spin, spin) - np.einsum("ta,ta->t", spin, spin)[:, None, None] * np.eye(3)
+    field = rotated(turn * [1, -1, -1, -1], rows.acceleration[chosen, motion : motion + 3] - numbers["gravity"])
+    changed = (
+        np.einsum("ti,ikl->tkl", (p * stiffness) @ static.T, Gamma)
+        + np.einsum("tab,klab->tkl", square, numbers["ZW"].reshape(n, n, 3, 3), optimize=True)
+        + np.einsum("ta,kla->tkl", field, numbers["T"])
+    )
+    scale = 1 / np.sqrt(stiffness)
+    return np.linalg.eigvalsh(scale[:, None] * (changed + changed.swapaxes(1, 2)) / 2 * scale)[:, [0, -1]]  # type: ignore[no-any-return]
