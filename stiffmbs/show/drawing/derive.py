@@ -23,7 +23,7 @@ from .palette import body_colors
 from .poses import Poses, described_poses, placed
 from .scene_graph import Anchor, Drawing, Mark, Name, Part
 from .surroundings import with_surroundings
-from .symbols.wheel import radius_of
+from .symbols.spatial import radius_of
 
 UNIT, CROWDED = 0.024, 10
 """Unit of symbols relative to the mechanism's size, and number of elements above which symbols become smaller."""

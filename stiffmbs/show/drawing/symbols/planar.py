@@ -10,25 +10,7 @@ from .. import solids
 from ..draft import Draft, Site, Symbol, at_both, at_first
 from ..scene_graph import Line, Role
 from . import profiles
-from .shared import (  # fmt: skip
-    any_force,
-    any_joint,
-    arc_arrow,
-    arrow,
-    coupling,
-    curve,
-    drives_a_displacement,
-    force,
-    gear,
-    hatched,
-    is_damped,
-    line_force,
-    rack_and_pinion,
-    rubbing,
-    spiral,
-    torque,
-    upright,
-)
+from .shared import COMMON, arc_arrow, arrow, curve, drives_a_displacement, hatched, is_damped, upright
 
 
 def _front(site: Site, d: Draft, layer: float = 1.0) -> Site:
@@ -178,9 +160,7 @@ def contact(d: Draft, i: Site, j: Site) -> None:
 
 
 SYMBOLS: Mapping[str, Symbol] = {
+    **COMMON,
     "revolute": revolute, "prismatic": prismatic, "fixed": fixed, "distance": distance, "point_on_line": point_on_line,
-    "point_on_curve": point_on_curve, "gear": gear, "rack_and_pinion": rack_and_pinion, "coupler": coupling,
-    "drive": drive, "spring_damper": spring_damper, "torsion_spring": spiral, "bushing": bushing,
-    "contact": contact, "line_force": line_force, "force": force, "torque": torque, "joint_friction": rubbing,
-    "joint": any_joint, "any_force": any_force,
+    "point_on_curve": point_on_curve, "drive": drive, "spring_damper": spring_damper, "bushing": bushing, "contact": contact,
 }  # fmt: skip

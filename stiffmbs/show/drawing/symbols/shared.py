@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -12,7 +13,7 @@ from ....reading.formula.formula import Formula
 from ....reading.formula.text import FormulaError
 from ....reading.formula.value import formula_value
 from .. import solids
-from ..draft import Draft, Site, at_both, at_first
+from ..draft import Draft, Site, Symbol, at_both, at_first
 from ..frames import axes_along
 from ..scene_graph import Line
 from . import profiles
@@ -208,3 +209,10 @@ def rack_and_pinion(d: Draft) -> None:
         ends = np.zeros((2, 3))
         ends[:, 0 if d.front else 2] = -0.3 * d.size, 0.3 * d.size  # along the axis of the prismatic joint
         d.put(rack.at((0, 0, d.front)), "joint", Line(ends, 1.5, dashed=True))
+
+
+COMMON: Mapping[str, Symbol] = {
+    "gear": gear, "rack_and_pinion": rack_and_pinion, "coupler": coupling, "torsion_spring": spiral, "line_force": line_force,
+    "force": force, "torque": torque, "joint_friction": rubbing, "joint": any_joint, "any_force": any_force,
+}  # fmt: skip
+"""Symbols by kind, in the plane and in space."""
