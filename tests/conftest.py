@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from stiffmbs.commands.starting.shipped import scene_files
+from stiffmbs.commands.starting import scene_files
 from stiffmbs.interrupts import NEW_OBJECTS
 
 EXAMPLES = Path(__file__).parent.parent / "examples"

@@ -30,7 +30,7 @@ def bench(names: tuple[str, ...], as_json: bool) -> None:
     """
     from ..comparison.compare import compare
     from ..comparison.machine import machine, machine_sentence
-    from .starting.shipped import scene_file, scene_files
+    from .starting import scene_file, scene_files
 
     with refusing("bench"):
         files = {name: scene_file(name) for name in names or scene_files()}

@@ -1,4 +1,4 @@
-"""Command ``stiffmbs`` with its subcommands, one file each."""
+"""Command ``stiffmbs`` with its subcommands, which are loaded on first use."""
 
 from __future__ import annotations
 
@@ -7,23 +7,15 @@ import click
 from .subcommands import Subcommands
 
 SECTIONS = {
-    "Start": {
-        "init": "starting.init",
-        "examples": "starting.examples",
-        "parts": "starting.parts",
-        "schema": "starting.schema",
-    },
+    "Start": {"init": "starting", "examples": "starting", "parts": "starting", "schema": "starting"},
     "Analyses of a scene": {
         "check": "check",
         "run": "run",
         "equilibrium": "equilibrium",
-        "modes": "modes",
-        "response": "response",
+        "modes": "linearised",
+        "response": "linearised",
     },
-    "Flexible bodies": {
-        "flexible": "flexible_bodies.flexible",
-        "stresses": "flexible_bodies.stresses",
-    },
+    "Flexible bodies": {"flexible": "flexible_bodies", "stresses": "flexible_bodies"},
     "Many runs": {
         "study": "study",
         "sensitivities": "sensitivities",
@@ -32,30 +24,17 @@ SECTIONS = {
         "compare": "compare",
         "bench": "bench",
     },
-    "Suspensions and vehicles": {
-        "kc": "suspension.kc",
-        "loads": "suspension.loads",
-        "handling": "suspension.handling",
-    },
-    "Tyres": {
-        "tyre": "suspension.tyre",
-    },
+    "Suspensions and vehicles": {"kc": "suspension.kc", "loads": "suspension.loads", "handling": "suspension.handling"},
+    "Tyres": {"tyre": "suspension.tyre"},
     "Pictures and reports": {
         "draw": "draw",
         "animate": "animate",
         "plot": "plot",
         "report": "report",
-        "open": "starting.open:open_scene",
+        "open": "starting:open_scene",
     },
-    "Other programs": {
-        "convert": "convert",
-        "diff": "exchange.diff",
-        "fmu": "exchange.fmu",
-    },
-    "Installation": {
-        "cache": "cache",
-        "version": "starting.version:show_version",
-    },
+    "Other programs": {"convert": "exchange", "diff": "exchange", "fmu": "exchange"},
+    "Installation": {"cache": "cache", "version": "starting:show_version"},
 }
 """Subcommands and their modules, by section of the help."""
 

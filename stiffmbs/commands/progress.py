@@ -9,7 +9,7 @@ from collections.abc import Callable
 from typing import Any, Self
 
 from ..show.escaped import console
-from .logging_options import LOGGER, is_quiet
+from .subcommands import LOGGER, is_quiet
 
 SHOWN_AFTER, BETWEEN_UPDATES = 2.0, 0.1
 """Delay before progress is shown, and least time between updates, s."""

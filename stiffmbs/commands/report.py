@@ -49,9 +49,8 @@ def report(
     from ..comparison.compare import compare as compared
     from ..comparison.table import comparison_section
     from ..show.equilibrium import equilibrium_section
-    from ..show.kinematics_and_compliance import kc_section
     from ..show.report import check_report, write_report
-    from ..show.road_loads import road_loads_section
+    from ..show.suspension import kc_section, road_loads_section
     from ..studies.suspension.kinematics_and_compliance import kinematics_and_compliance
     from ..studies.suspension.road_loads import road_loads
 

@@ -31,7 +31,7 @@ OWN = {
     "completion.js": ("stiffmbs.live.static", "text/javascript"),
     "editor.min.js": ("stiffmbs.live.static", "text/javascript"),
     "three.min.js": ("stiffmbs.show.page", "text/javascript"),
-    "first_scene.yaml": ("stiffmbs.commands.starting", "text/plain"),
+    "first_scene.yaml": ("stiffmbs.commands", "text/plain"),
     "viewer.js": ("stiffmbs.show.page", "text/javascript"), "viewer.css": ("stiffmbs.show.page", "text/css"),
 }  # fmt: skip
 """Files of the page: their packages and types."""

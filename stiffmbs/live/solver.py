@@ -17,10 +17,10 @@ from ..model.read_scene import read_scene
 from ..model.scene import Scene
 from ..reading.python_function import PythonFunction
 from ..results.solution import Solution
-from ..show.counters import solver_lines
 from ..show.drawing.derive import drawing_of
 from ..show.drawing.poses import poses_of
 from ..show.page.data import page_data
+from ..show.summary import solver_lines
 from ..show.verdict import verdict
 from ..solve.trajectory import Outcome, ProgressCallback
 from ..studies.case_solver import CaseSolver, Task

@@ -1,19 +1,72 @@
-"""Force table of a summary: the range of each component of the force and torque of every element."""
+"""Tables of the ranges of forces and torques, with as many digits as their error bars allow."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from ..compile.bodies import PLANE, SPACE
 from ..reading.names import owner_of
-from ..results.error_bars import ErrorBar
+from ..results.error_bars import UNKNOWN, ErrorBar
 from ..results.solution import Solution, channel_ranges
-from .digits import with_bar
 
 if TYPE_CHECKING:
     from rich.table import Table
+
+
+PLENTY = 9
+"""Most significant digits of a number."""
+LEAST_WITHOUT_EXPONENT = 1e-3
+"""Least number that is written without an exponent."""
+
+
+def with_bar(value: float, half: float, noise: float = 0.0) -> str:
+    """Return a value and the half width of its error bar, as ``12.345 ± 0.002``.
+
+    The bar has one digit, rounded up, or two if the first would be 1; the last digit of the value is at the same place.
+
+    Parameters
+    ----------
+    value, half : float
+        The half width is nan if it is unknown.
+    noise : float
+        Size up to which values and bars are zero.
+
+    Examples
+    --------
+    >>> with_bar(12.34567, 0.0018)
+    '12.3457 ± 0.0018'
+    >>> with_bar(12.34567, 0.0071)
+    '12.346 ± 0.008'
+    >>> with_bar(123456.7, 430.0)
+    '123500 ± 500'
+    >>> with_bar(12.34567, float("nan"))
+    '12.346 (not known how well)'
+    """
+    if math.isnan(half):
+        return f"{value:.5g} (not known how well)"
+    if abs(value) <= noise and half <= noise:
+        return "0"
+    if not math.isfinite(half) or not math.isfinite(value):
+        return f"{value:.5g} ± {half:.1g}"
+    digit = math.floor(math.log10(half)) if half > 0 else -300
+    if half > 0 and half / 10.0**digit <= 1.95:
+        digit -= 1
+    digit = max(digit, math.floor(math.log10(max(abs(value), half))) + 1 - PLENTY)
+    step = 10.0**digit
+    known, bar = round(value / step) * step, math.ceil(half / step * (1 - 1e-9)) * step
+    if digit >= 0:
+        large = max(abs(known), bar) >= 10.0 ** (PLENTY + 1)
+        return f"{known:.3e} ± {bar:.0e}" if large else f"{known:.0f} ± {bar:.0f}"
+    if max(abs(known), bar) >= LEAST_WITHOUT_EXPONENT:
+        return f"{known:.{-digit}f} ± {bar:.{-digit}f}"
+    places = max(math.floor(math.log10(abs(known))) - digit, 0) if known else 0
+    return f"{known:.{places}e} ± {bar:.0e}"
+
 
 NOT_UNIQUE = "*"
 """Mark of the range of a reaction without a unique value."""
@@ -105,3 +158,48 @@ def _range(cell: Cell, bar: ErrorBar | None, noise: float) -> str:
     if bar is None:
         return " .. ".join("0" if abs(end) <= noise else f"{end:.5g}" for end in ends)
     return "\n".join(with_bar(end, half, noise) for end, half in zip(ends, (bar.least, bar.greatest), strict=True))
+
+
+def joint_forces(solution: Solution) -> list[dict[str, str]]:
+    """Return rows ``name what peak unit at unique``: one per force, and per torque that is nonzero or not unique.
+
+    The peak is the largest magnitude at the output instants.  Its bar is the magnitude of the components' bars, a bound
+    on the error of the vector.
+    """
+    components, elements = reactions_of(solution), elements_of(solution)
+    levels = tuple((unit, [c for c in components if c[0] == kind]) for unit, kind in (("N", "f"), ("N m", "t")))
+    noise = {
+        unit: LOADS.zero * max((_peak(solution, element, parts)[0] for element in elements), default=0.0)
+        for unit, parts in levels
+    }
+    rows: list[dict[str, str]] = []
+    for element in elements:
+        for unit, parts in levels:
+            peak, at = _peak(solution, element, parts)
+            names = [f"{element}.{part}" for part in parts]
+            if unit == "N" or peak > noise[unit] or any(name in solution.not_unique for name in names):
+                rows.append(_row(solution, element, names, unit, peak, at, noise[unit]))
+    return rows
+
+
+def _row(
+    solution: Solution, element: str, names: Sequence[str], unit: str, peak: float, at: float, noise: float
+) -> dict[str, str]:
+    bars = [solution.errors.get(name, UNKNOWN) for name in names]
+    half = math.hypot(*(float(np.max([bar.over_time, bar.least, bar.greatest])) for bar in bars))
+    value = 0.0 if peak <= noise else peak
+    shown = with_bar(value, half, noise) if any(name in solution.errors for name in names) else f"{value:.6g}"
+    unique = not any(name in solution.not_unique for name in names)
+    return {
+        "name": element, "what": "force" if unit == "N" else "torque", "peak": shown, "unit": unit, "at": f"{at:.6g}",
+        "unique": "yes" if unique else "no",
+    }  # fmt: skip
+
+
+def _peak(solution: Solution, element: str, parts: Sequence[str]) -> tuple[float, float]:
+    """Return the largest magnitude and its time; zero if all values are nan."""
+    sizes = np.sqrt(sum(np.square(solution.channels[f"{element}.{part}"]) for part in parts))
+    if np.isnan(sizes).all():
+        return 0.0, float(solution.time[0])
+    k = int(np.nanargmax(sizes))
+    return float(sizes[k]), float(solution.time[k])

@@ -12,7 +12,7 @@ from ..reading.units.units import DIMENSIONS
 from ..results.files import write_text
 from ..studies.handling.standards import TESTS
 from ..studies.handling.study import Handling, Tested
-from .page.moving import environment
+from .page.data import environment
 from .style import data_url, dress
 
 if TYPE_CHECKING:

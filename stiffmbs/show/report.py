@@ -21,21 +21,18 @@ from ..results.files import refuse_path, write_text
 from ..results.scales import scales
 from ..results.solution import Solution, channel_ranges
 from ..solve.trajectory import History
-from .counters import solver_lines
 from .differences import differences_section
-from .digits import with_bar
 from .drawing.derive import drawing_of
 from .drawing.draw import marks_of
 from .drawing.poses import Poses, poses_of
 from .figure import drawn
-from .force_table import LOADS, elements_of, reactions_of
+from .force_table import LOADS, elements_of, joint_forces, reactions_of, with_bar
 from .html import MOST_ROWS
-from .joint_forces import joint_forces
 from .modes import modes_text
-from .page.data import page_data
-from .page.moving import environment, page_parts
+from .page.data import environment, page_data, page_parts
 from .sections import Section
 from .style import COLORS, data_url, dress
+from .summary import solver_lines
 from .verdict import verdict
 
 if TYPE_CHECKING:

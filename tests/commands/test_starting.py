@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
+from stiffmbs.commands import starting as shipped
 from stiffmbs.commands.main import main
-from stiffmbs.commands.starting import shipped
-from stiffmbs.commands.starting.init import FIRST_SCENE
+from stiffmbs.commands.starting import FIRST_SCENE
 
 ROOT = Path(__file__).parents[2]
 
@@ -46,7 +46,7 @@ def test_installed_examples_are_found_by_the_record_of_the_installation(tmp_path
     (tmp_path / "share/stiffmbs/examples/parts").mkdir(parents=True)
     (tmp_path / "share/stiffmbs/examples/one.yaml").write_text("# One. Two.\n")
     recorded = ["stiffmbs/a.py", "share/stiffmbs/examples/parts/p.yaml", "share/stiffmbs/examples/one.yaml"]
-    monkeypatch.setattr(shipped, "__file__", str(tmp_path / "stiffmbs/commands/starting/shipped.py"))
+    monkeypatch.setattr(shipped, "__file__", str(tmp_path / "stiffmbs/commands/starting.py"))
     monkeypatch.setattr("importlib.metadata.files", lambda _: [File(name) for name in recorded])
     assert shipped.examples_folder() == tmp_path / "share/stiffmbs/examples"
     assert shipped.first_words(shipped.scene_file("one.yaml")) == "One"

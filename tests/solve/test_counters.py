@@ -1,7 +1,7 @@
 """The lines of a summary on the solver say what its counters mean."""
 
 import stiffmbs
-from stiffmbs.show.counters import solver_lines
+from stiffmbs.show.summary import solver_lines
 
 from ..conftest import EXAMPLES
 

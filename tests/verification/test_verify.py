@@ -14,7 +14,7 @@ from stiffmbs import Body, Marker, Model, Prismatic, SpringDamper
 from stiffmbs.analyses import taken_again
 from stiffmbs.commands.main import main
 from stiffmbs.results.error_bars import between, error_bar
-from stiffmbs.show.digits import with_bar
+from stiffmbs.show.force_table import with_bar
 from tests.bench.error_bars import PROBLEMS, measured
 
 from ..conftest import EXAMPLE_SCENES, EXAMPLES

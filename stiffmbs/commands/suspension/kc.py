@@ -58,7 +58,7 @@ def kc(
     """
     from ...results.files import write_text
     from ...show.figure import check_figure
-    from ...show.kinematics_and_compliance import draw_kc, kc_csv, kc_text
+    from ...show.suspension import draw_kc, kc_csv, kc_text
     from ...studies.suspension.kinematics_and_compliance import kinematics_and_compliance
     from ...studies.suspension.vehicle import VehicleOptions
 

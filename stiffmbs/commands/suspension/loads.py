@@ -26,7 +26,7 @@ def loads(scene: str, cases: tuple[str, ...], as_json: bool, changes: list[tuple
     Exit status: 0 done, 1 a run stopped early, 2 the input is wrong.
     """
     from ...analyses.run import run
-    from ...show.road_loads import road_loads_text
+    from ...show.suspension import road_loads_text
     from ...studies.suspension.road_loads import road_loads
 
     with refusing(scene, as_json):

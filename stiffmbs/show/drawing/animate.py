@@ -15,8 +15,7 @@ from ...model.model_data import ModelData
 from ...reading.marker import MarkerReference
 from ...results.files import refuse_path, written_whole
 from ...results.solution import Solution
-from ..page.data import page_data
-from ..page.moving import moving_page
+from ..page.data import moving_page, page_data
 from .derive import drawing_of
 from .film import Pace, need_encoder, pictures, write_gif, write_mp4
 from .picture import Shown

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 
 from . import solids
-from .frames import axes_along, rotation
 from .mesh_file import read_mesh
 from .scene_graph import Line, Part, Solid
+from .solids import axes_along, rotation
 
 Shapes = tuple[tuple[Solid, ...], tuple[Line, ...]]
 SAME_WHEEL = 0.2

@@ -9,11 +9,10 @@ import numpy as np
 
 from ...reading.marker import GROUND
 from ...results.scales import ROUNDING
-from .frames import across
 from .palette import LOAD, LOAD_NOT_UNIQUE, edge_color, face_color, shaded
 from .poses import FAR, Poses
 from .scene_graph import Drawing, Line, Link, Part, Solid
-from .solids import face_normal
+from .solids import across, face_normal
 from .surroundings import shadows
 from .view import View
 

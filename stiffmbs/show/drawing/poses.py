@@ -13,8 +13,8 @@ from ...errors import InputError
 from ...model.model_data import ModelData
 from ...reading.marker import GROUND, MarkerReference
 from ...results.marker_motion import place
-from .frames import rotation
 from .scene_graph import Anchor, Drawing, Solid
+from .solids import rotation
 
 Channels = Mapping[str, np.ndarray]
 FAR = 2.0

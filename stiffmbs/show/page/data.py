@@ -1,4 +1,4 @@
-"""Compact page data of runs: the drawing, poses, forces and channels."""
+"""Page of runs in motion, and its compact data: the drawing, poses, forces and channels."""
 
 from __future__ import annotations
 
@@ -7,7 +7,8 @@ import gzip
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from importlib.resources import files
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -16,6 +17,11 @@ from ..drawing.as_json import drawing_json
 from ..drawing.painted import LONGEST_ARROW, largest_force
 from ..drawing.poses import Poses, followed_body
 from ..drawing.scene_graph import Anchor, Drawing
+from ..escaped import page_text
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
+
 
 MOST_POSES = 1200
 POSES_A_SECOND = 60
@@ -131,3 +137,24 @@ def _channels(solution: Solution, packed: Packed, shown: Sequence[str], only: Se
             for name, values in solution.channels.items()
         ],
     }  # fmt: skip
+
+
+PARTS = {"three": "three.min.js", "viewer": "viewer.js", "style": "viewer.css"}
+
+
+def page_parts() -> dict[str, str]:
+    """Return the scripts and styles of a page with a moving mechanism."""
+    return {name: files(__package__).joinpath(file).read_text(encoding="utf-8") for name, file in PARTS.items()}
+
+
+def moving_page(title: str, data: dict[str, str]) -> str:
+    """Return the page as HTML; it needs no network. `data`: result of `stiffmbs.show.page.data.page_data`."""
+    template = environment().from_string(files(__package__).joinpath("moving.html").read_text(encoding="utf-8"))
+    return template.render(title=title or "Mechanism", **data, **page_parts())
+
+
+def environment() -> Environment:
+    """Return the environment of templates, which escapes text for HTML and as in `stiffmbs.show.escaped`."""
+    from jinja2 import Environment
+
+    return Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True, finalize=page_text)

@@ -11,7 +11,7 @@ import pytest
 import stiffmbs
 from stiffmbs.show.drawing.derive import drawing_of
 from stiffmbs.show.drawing.poses import poses_of
-from stiffmbs.show.joint_forces import joint_forces
+from stiffmbs.show.force_table import joint_forces
 from stiffmbs.show.page.data import LEVELS, Packed, page_data
 
 from ...conftest import EXAMPLES

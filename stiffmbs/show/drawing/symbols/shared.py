@@ -14,8 +14,8 @@ from ....reading.formula.text import FormulaError
 from ....reading.formula.value import formula_value
 from .. import solids
 from ..draft import Draft, Site, Symbol, at_both, at_first
-from ..frames import axes_along
 from ..scene_graph import Line
+from ..solids import axes_along
 from . import profiles
 
 TURN = 2 * math.pi

@@ -10,8 +10,8 @@ import numpy as np
 
 from .. import solids
 from ..draft import Draft, Site, Symbol, at_both, at_first
-from ..frames import axes_along
 from ..scene_graph import Line, Solid
+from ..solids import axes_along
 from . import profiles
 from .shared import COMMON, arc_arrow, arrow, curve, drives_a_displacement, ground, is_damped
 

@@ -1,4 +1,4 @@
-"""Kinematics and compliance of an axle as a table and as a figure."""
+"""Kinematics and compliance of an axle as a table and as a figure; loads of a road on bushings."""
 
 from __future__ import annotations
 
@@ -11,10 +11,12 @@ import numpy as np
 
 from ..results.files import written_whole
 from ..studies.suspension.kinematics_and_compliance import KinematicsAndCompliance
+from ..studies.suspension.road_loads import COMPONENTS, RoadLoads
 from .sections import Section, Table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Sheet
+
 
 SHOWN = {
     "bump": ("toe", "camber", "lateral", "longitudinal", "load", "wheel_rate"),
@@ -233,3 +235,21 @@ def _of(name: str) -> str:
 
 def _worded(name: str) -> str:
     return name.replace("axle.", "").replace("_", " ")
+
+
+def road_loads_text(scene: str, found: RoadLoads) -> str:
+    """Return a line for each component of each bushing: its peak with time and load case."""
+    lines = [f"{scene}: largest loads of bushings in their own axes (N, N m) over {', '.join(found.loads)}"]
+    for name, peaks in found.peaks.items():
+        lines.append(name)
+        lines += [f"  {peak.component} {peak.value:>12.5g} at {peak.time:>8.4g} s, {peak.case}" for peak in peaks]
+    return "\n".join(lines)
+
+
+def road_loads_section(found: RoadLoads) -> Section:
+    """Return a report section with a line for each bushing, and the time of each peak."""
+    rows = [
+        (name, *(f"{peak.value:.5g} at {peak.time:.4g} s" for peak in peaks)) for name, peaks in found.peaks.items()
+    ]
+    told = f"Largest forces and torques of bushings in their own axes (N, N m), over {', '.join(found.loads)}."
+    return Section("Road loads", (told,), (Table(("bushing", *COMPONENTS), tuple(rows)),))

@@ -1,0 +1,199 @@
+"""Commands for the exchange with other programs: datasets and robots, listings of results, FMUs."""
+
+from __future__ import annotations
+
+import sys
+from functools import partial
+from pathlib import Path
+
+import click
+
+from ..errors import InputError
+from ..reading.files.files_read import content_of
+from .process import Status
+from .scene import CHANGES, file_beside, is_written, output_option, refuse_own_input, refusing
+
+DATASET = ".adm"
+
+
+@click.command(short_help="Write a dataset, a robot, or a planar scene, as a scene; or a scene as a dataset.")
+@click.argument("scene")
+@output_option("The scene file, or a dataset where it ends in .adm; standard output without.")
+@click.option("--in-space", is_flag=True, help="Take a planar SCENE, and write it in the x-y plane of space.")
+@click.option(
+    "--at",
+    "coordinates",
+    multiple=True,
+    metavar="JOINT=VALUE",
+    help="Where a hinge or slide of a robot starts, rad or m; as drawn without it.",
+)
+@CHANGES
+def convert(
+    scene: str, output: Path | None, in_space: bool, coordinates: tuple[str, ...], changes: list[tuple[str, str]]
+) -> None:
+    """Convert an Adams/Solver dataset (.adm) or a robot (URDF, MJCF) to a scene, or a planar scene to space.
+
+    If OUTPUT ends in .adm, the scene is written as a dataset, with a command file (.acf) for its run next to it.
+
+    Exit status: 0 done, 1 the file could not be written, 2 the input is wrong.
+    """
+    from ..analyses.in_space import text_in_space
+    from ..results.files import write_text
+
+    with refusing(scene):
+        if output is not None:
+            refuse_own_input("-o", scene, output)
+        if output is not None and output.suffix.lower() == DATASET:
+            texts = _as_dataset(scene, output, coordinates, changes)
+        else:
+            text = text_in_space(scene, changes) if in_space else _of_other(scene, coordinates, changes)
+            texts = {output: text}
+    for path, text in texts.items():
+        if path is None:
+            click.echo(text, nl=False)
+        elif not is_written(path, partial(write_text, path, text)):
+            sys.exit(Status.FAILED)
+
+
+def _as_dataset(
+    path: str, output: Path, coordinates: tuple[str, ...], changes: list[tuple[str, str]]
+) -> dict[Path | None, str]:
+    """Return a dataset and its command file, by their paths."""
+    from ..adams.export.dataset_text import command_text, dataset_text
+    from ..adams.load import COMMANDS
+    from ..analyses.in_space import in_space
+    from ..analyses.load_scene import ROBOTS, load_scene
+    from ..model.spatial_scene import SpatialScene
+    from ..robots.load import load_robot
+
+    beside = output.with_suffix(COMMANDS)
+    refuse_own_input("-o", path, beside)
+    if coordinates and Path(path).suffix.lower() in ROBOTS:
+        scene = load_robot(path, changes, coordinates=dict(map(_coordinate, coordinates)))
+    else:
+        scene = load_scene(path, changes)
+    spatial = scene if isinstance(scene, SpatialScene) else in_space(scene)  # type: ignore[call-overload]
+    return {output: dataset_text(spatial, path), beside: command_text(spatial)}
+
+
+def _of_other(path: str, coordinates: tuple[str, ...], changes: list[tuple[str, str]]) -> str:
+    """Return the text of a scene from a file of another program."""
+    from ..adams.load import convert_file
+    from ..analyses.load_scene import ROBOTS
+    from ..robots.load import convert_robot
+
+    suffix = Path(path).suffix.lower()
+    if changes:
+        raise InputError(f"{path}: found --set, expected it with --in-space alone")
+    if suffix in ROBOTS:
+        return convert_robot(path, coordinates=dict(map(_coordinate, coordinates)))
+    if coordinates:
+        raise InputError(f"{path}: found --at, expected it with a robot alone")
+    if suffix in (".yaml", ".yml"):
+        raise InputError(
+            f"{path}: found a scene, expected an Adams/Solver dataset (.adm), a robot ({', '.join(ROBOTS)}), or --in-space"
+        )
+    return convert_file(path)
+
+
+def _coordinate(text: str) -> tuple[str, float]:
+    joint, _, value = text.partition("=")
+    try:
+        return joint.strip(), float(value)
+    except ValueError:
+        raise InputError(f"--at: found '{text}', expected JOINT=VALUE with a number") from None
+
+
+@click.command(short_help="Results beside another program's listing.")
+@click.argument("results")
+@click.argument("listing")
+@click.option(
+    "--map",
+    "mapped",
+    multiple=True,
+    metavar="CHANNEL=COLUMN[*FACTOR]",
+    help="A channel and the column that it is compared with, by name or number (1 is time), times a factor; or a file of such lines.",
+)
+@click.option(
+    "--tolerance",
+    type=float,
+    default=1e-3,
+    show_default=True,
+    help="Largest relative difference that is no difference.",
+)
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line.")
+def diff(results: str, listing: str, mapped: tuple[str, ...], tolerance: float, as_json: bool) -> None:
+    """Compare RESULTS (.npz, .nc, .csv) with LISTING: a table as text, Adams' .res in XML, or results of another run.
+
+    Differences are the largest over time, relative to the largest value of the column.
+
+    Exit status: 0 all within the tolerance, 1 some are not, 2 the input is wrong.
+    """
+    from ..results.listings.differences import differences
+
+    with refusing(results, as_json):
+        found = differences(results, listing, _pairs(mapped))
+    far = [one for one in found if not one.relative <= tolerance]
+    if as_json:
+        from ..show.summary import json_line
+
+        told = {"results": results, "listing": listing, "tolerance": tolerance, "within": not far}
+        click.echo(json_line({**told, "differences": [one.as_dict() for one in found]}))
+    else:
+        for one in found:
+            mark = "  more than the tolerance" if one in far else ""
+            click.echo(
+                f"{one.channel} - {one.column}: {one.largest:.3g} at t = {one.t:.6g} s, relative {one.relative:.2e}{mark}"
+            )
+        click.echo(f"{len(found) - len(far)} of {len(found)} channels are within {tolerance:g}")
+    sys.exit(Status.FAILED if far else Status.DONE)
+
+
+def _pairs(mapped: tuple[str, ...]) -> dict[str, str]:
+    lines = [line for text in mapped for line in _lines(text)]
+    pairs = {}
+    for line in lines:
+        channel, equals, column = (part.strip() for part in line.partition("="))
+        if not equals or not channel or not column:
+            raise InputError(f"--map: found '{line}', expected CHANNEL=COLUMN")
+        pairs[channel] = column
+    return pairs
+
+
+def _lines(text: str) -> list[str]:
+    """Return the lines of a file, or of a text with an assignment."""
+    if "=" in text:
+        return [text]
+    try:
+        content = content_of(text).decode()
+    except (OSError, ValueError):
+        raise InputError(f"--map {text}: found no such file, expected one, or CHANNEL=COLUMN") from None
+    return [line for line in content.splitlines() if line.strip() and not line.lstrip().startswith("#")]
+
+
+@click.command(short_help="An FMU for co-simulation.")
+@click.argument("scene")
+@output_option("The FMU, .fmu; SCENE.fmu in the working folder without it.")
+@click.option(
+    "--channel",
+    "outputs",
+    multiple=True,
+    help="An output of the FMU; the scene's requests, or all channels, without it.",
+)
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line.")
+def fmu(scene: str, output: Path | None, outputs: tuple[str, ...], as_json: bool) -> None:
+    """Write SCENE as an FMU (FMI 2.0, co-simulation) with its inputs, parameters and channels.
+
+    The FMU needs this package in the Python of the program that runs it (needs the extra fmu).
+
+    Exit status: 0 done, 1 the FMU could not be written, 2 the input is wrong.
+    """
+    from ..show.summary import json_line
+    from ..studies.fmu.build import build_fmu
+
+    target = output or file_beside(scene, ".fmu")
+    with refusing(scene, as_json):
+        refuse_own_input("-o", scene, target)
+        names = build_fmu(scene, target, outputs)
+    told = f"fmu: {target}, {len(names)} outputs"
+    click.echo(json_line({"scene": scene, "output": str(target), "outputs": list(names)}) if as_json else told)

@@ -1,0 +1,123 @@
+"""Commands on flexible bodies: ``stiffmbs flexible`` and ``stiffmbs stresses``."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+import click
+
+from ..analyses.load_scene import load_scene
+from ..errors import InputError
+from .process import Status
+from .scene import (
+    CHANGES,
+    changes_of,
+    is_written,
+    output_option,
+    refuse_own_input,
+    refusing,
+    solve_scene,
+    solving_options,
+)
+
+
+@click.command(short_help="Reduction of a flexible body.")
+@click.argument("body")
+@click.option("--hold", "held", multiple=True, metavar="NAME,...", help="Frequencies with these interfaces held too.")
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path),
+    help="Write the nodes and the mode shapes for ParaView: .vtu.",
+)
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line instead of text.")
+@CHANGES
+def flexible(
+    body: str, held: tuple[str, ...], output: Path | None, as_json: bool, changes: list[tuple[str, str]]
+) -> None:
+    """Reduce a flexible BODY, described in a YAML file, and report mass, frequencies and quality of the reduction.
+
+    BODY has mesh and material, or matrices, and units, interfaces and modes.
+
+    Exit status: 0 done, 1 a file could not be written, 2 the input is wrong.
+    """
+    from ..flexible_bodies.read import read_flexible_body
+    from ..flexible_bodies.reduced import reduced_body
+    from ..show.flexible_body import flexible_body_as_dict, flexible_body_text
+
+    with refusing(body, as_json):
+        described = read_flexible_body(body, changes)
+        names, folder = list(described.interfaces), Path(body).parent
+        sets = {text: [_number(name, names) for name in text.split(",")] for text in held}
+        try:
+            found = reduced_body(described, folder)
+        except InputError as error:
+            raise InputError(f"{body}: {error}") from None
+        frequencies = {f"{text} held": found.held_frequencies(numbers) for text, numbers in sets.items()}
+        if output is not None:
+            from ..flexible_bodies.shapes import check_shapes_file
+
+            check_shapes_file(output)
+    written = True
+    if output is not None:
+        from ..flexible_bodies.shapes import write_shapes
+
+        written = is_written(output, lambda: write_shapes(output, described.model(folder), found))
+    click.echo(
+        json.dumps(flexible_body_as_dict(body, found, names, frequencies))
+        if as_json
+        else flexible_body_text(body, found, names, frequencies)
+    )
+    sys.exit(Status.DONE if written else Status.FAILED)
+
+
+def _number(name: str, names: list[str]) -> int:
+    if name.strip() not in names:
+        raise InputError(
+            f"--hold {name.strip()}: found no such interface, expected one of {', '.join(names) or 'none'}"
+        )
+    return names.index(name.strip())
+
+
+@click.command(short_help="Deformation and stresses of a flexible body.")
+@click.argument("scene")
+@click.argument("body")
+@click.argument("results", required=False, type=click.Path(path_type=Path))
+@output_option("Write the deformed mesh with its stresses over time for ParaView: .xdmf.")
+@click.option("--node", "nodes", multiple=True, type=int, help="Report the displacement of a node too, from 0.")
+@click.option("--scale", type=float, default=1.0, show_default=True, help="Factor of the deformation in the file.")
+@click.option("--every", type=click.IntRange(1), default=1, show_default=True, help="Write every n-th output time.")
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line instead of text.")
+@solving_options
+def stresses(
+    scene: str, body: str, results: Path | None, output: Path | None, nodes: tuple[int, ...], scale: float, every: int,
+    as_json: bool, **options: Any,
+) -> None:  # fmt: skip
+    """Run SCENE, or read its RESULTS (.npz), and report stresses and strain energy of its flexible BODY.
+
+    Exit status: 0 done, 1 stopped early or not written, 2 the input is wrong.
+    """
+    from ..results.flexible_motion import FlexibleMotion
+    from ..results.solution import Solution
+    from ..show.flexible_body import flexible_motion_as_dict, flexible_motion_text
+
+    with refusing(scene, as_json, output):
+        if output is not None:
+            if output.suffix.lower() != ".xdmf":
+                raise InputError(f"-o {output}: found the type '{output.suffix}', expected .xdmf")
+            refuse_own_input("-o", scene, output)
+        loaded = load_scene(scene, changes_of(options))
+        FlexibleMotion.check(loaded, body)
+        solution = Solution.load(results) if results is not None else solve_scene(scene, loaded, as_json)
+        try:
+            motion = FlexibleMotion(loaded, solution, body)
+            motion.displacement(nodes, slice(0, 0))
+        except InputError as error:
+            raise InputError(f"{scene}: bodies.{body}: {error}") from None
+        report = flexible_motion_as_dict(scene, motion, nodes)
+    written = output is None or is_written(output, lambda: motion.write(output, slice(None, None, every), scale))
+    click.echo(json.dumps(report) if as_json else flexible_motion_text(report))
+    sys.exit(Status.DONE if written and solution.success else Status.FAILED)

@@ -1,1 +1,0 @@
-"""Commands for a first use: examples, a first scene, installed versions."""
