@@ -30,7 +30,7 @@ _LATER = {
     "scene_schema": ".model.schema",
     "Report": ".analyses.check", "Solution": ".results.solution", "check": ".analyses.check", "compare": ".comparison.compare",
     "compare_over": ".comparison.over",
-    "compile_model": ".compile.compile_model", "equilibrium": ".analyses.equilibrium", "quasi_static": ".analyses.quasi_static", "modes": ".analyses.linearised.modes", "run": ".analyses.run",
+    "compile_model": ".compile.compile_model", "equilibrium": ".analyses.equilibrium", "quasi_static": ".analyses.equilibrium", "modes": ".analyses.linearised.modes", "run": ".analyses.run",
     "SavedState": ".results.saved_state", "read_state": ".results.saved_state", "transfer": ".analyses.linearised.transfer",
     "verify": ".verification.verify", "sweep": ".studies.sweep", "Range": ".reading.variation", "Fit": ".studies.fit", "fit": ".studies.fit",
     "Optimum": ".studies.optimise", "optimise": ".studies.optimise",
@@ -40,7 +40,7 @@ _LATER = {
     "KinematicsAndCompliance": ".studies.suspension.kinematics_and_compliance",
     "kinematics_and_compliance": ".studies.suspension.kinematics_and_compliance", "VehicleOptions": ".studies.suspension.vehicle",
     "Simulation": ".studies.simulation", "simulation": ".studies.simulation", "follow": ".studies.follow",
-    "listed_statements": ".adams.listing", "build_fmu": ".studies.fmu.build", "differences": ".results.listings.differences",
+    "listed_statements": ".adams.listing", "build_fmu": ".studies.fmu.build", "differences": ".results.listings",
     "animate": ".show.drawing.animate", "draw": ".show.drawing.draw", "html": ".show.html", "plot": ".show.figure",
     "summary": ".show.summary", "open": ".live.page",
 }  # fmt: skip

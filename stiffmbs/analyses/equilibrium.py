@@ -1,22 +1,63 @@
-"""Static equilibrium of a model."""
+"""Static equilibrium of a model, and its equilibria over time."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any, Unpack
 
 import numpy as np
 
+from ..compile.system import System
+from ..dynamics.algebraic_states import failure
+from ..dynamics.dynamics import Dynamics, OutputRows
+from ..elements.requests.order import units
+from ..equilibria.equilibrium import Equilibrium, find_equilibrium
+from ..errors import AssemblyError, SolverError
+from ..model.model_data import ModelData
 from ..model.scene import Scene
 from ..model.settings import RunSettings, Settings, SteadyMotion, takes_settings
+from ..results.channels import channels_of, turns_of
+from ..results.energy_balance import energy_balance
 from ..results.solution import Solution
 from ..solve.sampling import held
+from ..solve.trajectory import History, Outcome
 from ..tuning import in_use
 from .job import Job, Runnable, data_of, prepare
 from .settled import Settled, settled
-from .solution_at_rest import solution_at_rest
 from .start_from import StartFrom
 from .steady import settled_in_motion
+
+
+def solution_at_rest(
+    job: Job, t: np.ndarray, q: np.ndarray, u: np.ndarray, message: str, notes: tuple[str, ...], solver: dict[str, Any]
+) -> Solution:
+    """Return the channels of equilibria with these instants, s, poses and velocities.
+
+    Raise a SolverError if one has no reactions.
+    """
+    rows = job.dynamics.report(t, q, u, project=False)
+    if len(rows.t) < len(t):
+        first = t[len(rows.t)]
+        raise SolverError(
+            f"no reactions were found in the equilibrium at t = {first:g} s: {failure(job.dynamics, rows.status, first)}"
+        )
+    return solution_of_rows(
+        job.data.name, job.data, job.dynamics.system, rows, job.redundancy.not_unique, message, notes, solver
+    )
+
+
+def solution_of_rows(
+    name: str, data: ModelData, system: System, rows: OutputRows, not_unique: tuple[str, ...], message: str,
+    notes: tuple[str, ...], solver: dict[str, Any],
+) -> Solution:  # fmt: skip
+    """Return the channels of rows that no integrator has computed."""
+    nothing = np.empty(0)
+    return Solution(
+        name=name, time=rows.t, channels=channels_of(data, system, rows), outcome=Outcome.DONE, message=message, notes=notes,
+        solver=solver, history=History(nothing, np.empty(0, dtype=int)), balance=energy_balance(system, rows, nothing),
+        not_unique=not_unique, requested=units(data.outputs()), turns=turns_of(system, rows.q),
+    )  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -140,3 +181,64 @@ def _settled(job: Job, motion: SteadyMotion | None) -> Settled:
 def _message(found: Settled) -> str:
     how = "in steady motion" if np.any(found.start.u) else "at rest in equilibrium"
     return f"{how} after {found.moves} moves"
+
+
+@takes_settings
+def quasi_static(model: Runnable, settings: RunSettings | None = None, **changes: Unpack[Settings]) -> Solution:
+    """Compute static equilibria at all output instants, each from the pose of the previous one.
+
+    Forces, drives and tables of time are assumed to change slowly: forces that depend on velocities have no effect.
+
+    Parameters
+    ----------
+    model : Model, Scene, str or Path
+    settings : RunSettings, optional
+        Settings with the output instants; by default those of the scene.
+    **changes
+        Fields of the settings to change.
+
+    Returns
+    -------
+    Solution
+        All channels over the output instants.
+
+    Raises
+    ------
+    InputError, AssemblyError
+        As for `stiffmbs.run`.
+    SolverError
+        If no equilibrium is found; the message names the instant.
+    """
+    data = data_of(model)
+    if isinstance(data, Scene):
+        data = data.model_copy(update={"start": "described"})
+    job = prepare(data, settings, **changes)
+    times = job.grid.times if job.grid.times is not None else np.linspace(job.grid.start, job.grid.end, 101)
+    found = [*equilibria_over_time(job, times)]
+    q, u = (np.array([getattr(each, name) for each in found]) for name in ("q", "u"))
+    moves = sum(each.moves for each in found)
+    solver = {"name": "quasi_static", "moves": moves, "imbalance": max(each.imbalance for each in found)}
+    return solution_at_rest(job, times, q, u, f"{len(times)} equilibria after {moves} moves", (), solver)
+
+
+def equilibria_over_time(job: Job, times: np.ndarray) -> Iterator[Equilibrium]:
+    """Yield the equilibria at given times, s, each from the pose of the previous one; the state is set to it.
+
+    Raises AssemblyError, SolverError as for `quasi_static`.
+    """
+    job.dynamics.state.q[:] = job.start.q
+    for t in times:
+        with in_use(job.settings.tuning):
+            found = _next(job.dynamics, float(t))
+        yield found
+
+
+def _next(dynamics: Dynamics, t: float) -> Equilibrium:
+    """Find the equilibrium at a given time from the current pose, and move the state to it."""
+    status = dynamics.assemble(t)
+    if status < 0:
+        raise AssemblyError(f"t = {t:g} s: the constraints do not meet: {failure(dynamics, status, t)}")
+    try:
+        return find_equilibrium(dynamics, t)
+    except SolverError as error:
+        raise SolverError(f"t = {t:g} s: {error}") from None

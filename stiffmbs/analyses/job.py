@@ -3,16 +3,22 @@
 from __future__ import annotations
 
 import logging
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any, NamedTuple, TypeAlias
 
+import numpy as np
+
+from ..compile.callbacks import fault_of
 from ..compile.compile_model import compile_model
+from ..compile.system import System
 from ..dynamics.dynamics import Dynamics
 from ..dynamics.initial import InitialValues, consistent_values, initial_values
 from ..dynamics.nearest_turns import take_nearest_turns
-from ..errors import InputError
+from ..errors import AssemblyError, InputError, StiffmbsError
 from ..model.model_builder import ModelBuilder
 from ..model.model_data import ModelData
 from ..model.scene import Scene
@@ -26,11 +32,60 @@ from ..solve.events.input_ends import solve_up_to_the_inputs_end
 from ..solve.sampling import held
 from ..solve.settings import changed, near_constraints, output_grid
 from ..solve.subsystems import Subsystem, presolved, solve_subsystems
-from ..solve.trajectory import Grid, ProgressCallback, Trajectory, unwatched
+from ..solve.trajectory import Grid, Outcome, ProgressCallback, Trajectory, unwatched
 from ..tuning import described, in_use
 from .load_scene import load_scene
-from .python_faults import told_faults
 from .start_from import StartFrom, started_from, starting_at, state_to_start_from
+
+
+def hold_at_start(dynamics: Dynamics, scene: Scene, t: float) -> None:
+    """Move the current state by the least amount to satisfy the joints that hold at the start alone, at t = `t` s.
+
+    Position equations constrain positions alone, velocity equations velocities: a position drive leaves the velocity
+    free.  Raise an AssemblyError if no such state is found.
+    """
+
+    held = scene.held_at_start
+    if held is None:
+        return
+    found = examined(held, RunSettings(start=t))
+    placed = initial_values(found.dynamics(), t)
+    system, names = found.redundancy.system, {*scene.at_start}
+    of_start = np.array([name in names for name, _ in system.equations], dtype=bool)
+    active = np.where(of_start, ~system.holonomic, found.redundancy.active)
+    moving = Dynamics(replace(system, active=active, q=placed.q))
+    velocities = consistent_values(moving, t).u
+    n_pose = dynamics.system.n_pose
+    dynamics.state.q[:n_pose], dynamics.state.u[:] = placed.q[:n_pose], velocities
+
+
+@contextmanager
+def told_faults(system: System) -> Iterator[None]:
+    """Replace an error that a faulty function caused by an AssemblyError with the message of that fault."""
+    try:
+        yield
+    except (StiffmbsError, ArithmeticError, ValueError) as error:
+        fault = fault_of(system)
+        if fault is None:
+            raise
+        raise AssemblyError(f"the start cannot be computed: {fault.clause}") from error
+    fault = fault_of(system) if system.has_functions else None
+    if fault and not isinstance(fault.raised, Exception):
+        raise fault.raised
+
+
+def up_to_a_fault(system: System, trajectory: Trajectory) -> Trajectory:
+    """Return a trajectory with the message of the fault that ended it, if any."""
+    fault = fault_of(system) if system.has_functions else None
+    if fault is None or trajectory.outcome is Outcome.DONE:
+        return trajectory
+    if isinstance(fault.raised, KeyboardInterrupt):
+        return replace(trajectory, outcome=Outcome.INTERRUPTED, message=Outcome.INTERRUPTED.value)
+    reached = trajectory.t[-1]
+    return replace(
+        trajectory, outcome=Outcome.STOPPED, message=f"stopped at t = {reached:.9g} s: {fault.clause}"
+    )  # fmt: skip
+
 
 LOGGER = logging.getLogger(__name__)
 
@@ -146,8 +201,6 @@ def _start(data: ModelData, dynamics: Dynamics, t: float, state: SavedState | No
             start, notes=(*start.notes, f"the run starts from the state at t = {state.t:g} s of {state.source}")
         )
     if isinstance(data, Scene) and data.at_start:
-        from .held_at_start import hold_at_start
-
         hold_at_start(dynamics, data, t)
         start = initial_values(dynamics, t).as_asked_by([*data.at_start])
     else:

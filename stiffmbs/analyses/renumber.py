@@ -1,10 +1,11 @@
-"""In-place parameter change of a prepared job, to another model of the same structure."""
+"""In-place parameter change of a prepared job, to another model of the same structure or to other numbers."""
 
 from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -13,14 +14,16 @@ from ..compile.kind import sorted_out
 from ..compile.system import System
 from ..elements.element import Element
 from ..elements.states.state import StateValue
+from ..errors import InputError
 from ..model.model_data import ModelData
 from ..model.scene import Scene
 from ..presolve.presolve import may_be_apart
+from ..reading.did_you_mean import did_you_mean
 from ..reading.formula.formula import Formula
 from ..reading.formula.nodes import TIME
 from ..reading.marker import GROUND
 from ..reading.table import Table
-from .job import Job, start_of_job
+from .job import Job, prepare, start_of_job
 
 HELD = ("dimensions", "gravity", "markers", "bodies", "joints")
 """Sections that must be equal: they determine coordinates, rank and the start."""
@@ -185,3 +188,43 @@ def _change(system: System, name: str, force: Element, data: ModelData) -> Chang
     if len(values) != end - first or bodies != found.bodies or joints != found.joints or states != found.states:
         return None
     return Change(group, element, force, first, values)
+
+
+def with_numbers(job: Job, name: str, **numbers: Any) -> Job:
+    """Return a job with changed parameters of a force, without a new compilation, examination or presolve.
+
+    The model is prepared again only if its equations change, or if the presolve solves mechanisms separately.  The
+    compiled system is changed in place, so `job` itself must not be integrated again.  Threads may run concurrently,
+    each with its own job from `prepare`.
+
+    Parameters
+    ----------
+    name : str
+        Name of the force.
+    **numbers
+        Fields to change, in SI units: ``stiffness=300.0``, ``stiffness=[1e6, 1e6, 500.0]``.
+
+    Raises
+    ------
+    InputError
+        If there is no such force, or a field is unknown or out of bounds.
+    AssemblyError
+        If there is no consistent start with these numbers.
+
+    Examples
+    --------
+    >>> job = prepare(scene, rtol=1e-8)
+    >>> for k in np.linspace(200, 400, 1000):
+    ...     job = with_numbers(job, "spring", stiffness=k)
+    ...     ends.append(job.integrate().q[-1])
+    """
+    force = job.data.forces.get(name)
+    if force is None:
+        near = did_you_mean(name, job.data.forces)
+        raise InputError(f"found no force '{name}'{near}, expected one of {', '.join(job.data.forces) or 'none'}")
+    try:
+        changed = type(force)(**{**{field: getattr(force, field) for field in force.model_fields_set}, **numbers})
+    except InputError as error:
+        raise InputError(f"{name}: {error}") from None
+    data = job.data.model_copy(update={"forces": {**job.data.forces, name: changed}})
+    return renumbered(job, data) or prepare(data, job.settings, job.start_from)

@@ -21,9 +21,8 @@ from ..model.settings import RunSettings, Settings, takes_settings
 from ..redundancy.messages.of_run import StructureNotes, structure_notes
 from ..results.channels import channels_of, named, series_of, turns_of
 from ..results.energy_balance import Balance, energy_balance
-from ..results.energy_balance_notes import balance_notes
+from ..results.energy_balance_notes import balance_notes, range_notes, undefined_values
 from ..results.solution import Solution
-from ..results.value_notes import range_notes, undefined_values
 from ..run_checks.growth import senseless
 from ..run_checks.motion import motion_notes
 from ..solve.error_control.accumulated_errors import ACCUMULATED
@@ -33,8 +32,7 @@ from ..solve.suspect import suspect
 from ..solve.trajectory import IN_DOUBT, Outcome, ProgressCallback, Trajectory
 from ..tuning import in_use
 from .given_inputs import Given, with_inputs
-from .job import Job, Runnable, data_of, prepare
-from .python_faults import up_to_a_fault
+from .job import Job, Runnable, data_of, prepare, up_to_a_fault
 from .start_from import StartFrom
 from .taken_again import Computed, on_exact_constraints, rerun_after_missed_events
 
@@ -81,7 +79,7 @@ def run(
     """
     data = data_of(model)
     if isinstance(data, Scene) and data.stages:
-        from .staged.stages import run_stages
+        from .staged import run_stages
 
         return run_stages(data, settings, watch, start_from, inputs, **changes)
     if inputs:

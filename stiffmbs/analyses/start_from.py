@@ -18,7 +18,7 @@ from ..presolve.subsystems import counters_of
 from ..reading.files.quoted import listed
 from ..reading.joint_name import FREE_COORDINATES
 from ..reading.names import owner_of
-from ..results.body_axes import from_own_axes, rates_from_own_axes
+from ..results.frames import from_own_axes, rates_from_own_axes
 from ..results.saved_state import SavedState, read_state
 from ..results.solution import Solution
 

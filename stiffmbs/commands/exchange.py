@@ -129,7 +129,7 @@ def diff(results: str, listing: str, mapped: tuple[str, ...], tolerance: float, 
 
     Exit status: 0 all within the tolerance, 1 some are not, 2 the input is wrong.
     """
-    from ..results.listings.differences import differences
+    from ..results.listings import differences
 
     with refusing(results, as_json):
         found = differences(results, listing, _pairs(mapped))

@@ -10,11 +10,9 @@ from ..analyses.job import Runnable, data_of
 from ..errors import InputError
 from ..model.settings import RunSettings, Settings, takes_settings
 from .at_error import AtError, Row, decades, times_at
-from .entries import USUAL, Entry
-from .plan import LONGER_REFERENCE, LONGEST_RUN, REPEATS, TOLERANCES, Plan, Values, base_settings, plan_of
+from .plan import LONGER_REFERENCE, LONGEST_RUN, REPEATS, TOLERANCES, USUAL, Entry, Plan, Values, base_settings, plan_of
 from .reference import Reference, Tell, reference
-from .sweep import Point, Sweep
-from .turns import take_turns
+from .sweep import Point, Sweep, take_turns
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Sheet

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .at_error import AtError, Row
-from .entries import Entry
+from .plan import Entry
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Sheet

@@ -18,9 +18,20 @@ from ..reading.variation import variation
 from .at_error import times_at
 from .compare import measured, refuse_unmeasured
 from .comparison_over import AtValue, ComparisonOver
-from .entries import USUAL, Entry
 from .measures import measure_of
-from .plan import LONGER_REFERENCE, LONGEST_RUN, REPEATS, TOLERANCES, Plan, Values, base_settings, numbers_of, plan_of
+from .plan import (
+    LONGER_REFERENCE,
+    LONGEST_RUN,
+    REPEATS,
+    TOLERANCES,
+    USUAL,
+    Entry,
+    Plan,
+    Values,
+    base_settings,
+    numbers_of,
+    plan_of,
+)
 from .reference import Tell, reference
 from .sweep import Sweep
 

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+import statistics
+import time
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any, TypeVar
 
 import numpy as np
 
-from ..analyses.job import Job, prepare
-from ..analyses.python_faults import up_to_a_fault
+from ..analyses.job import Job, prepare, up_to_a_fault
 from ..errors import InputError, StiffmbsError
 from ..model.model_data import ModelData
 from ..model.settings import RunSettings
@@ -19,9 +21,64 @@ from ..solve.trajectory import Grid, Outcome, Trajectory
 from ..tuning import in_use
 from ..verification.solve_again import Deadline
 from .at_error import LINE, Row
-from .entries import Entry
+from .plan import Entry
 from .reference import Reference, Tell
-from .turns import TIMING, Timed, seconds_of
+
+Found = TypeVar("Found")
+
+
+@dataclass(frozen=True)
+class Timing:
+    """Way in which solutions are timed.
+
+    Attributes
+    ----------
+    once : float
+        Time above which a solution is timed only once, s.
+    """
+
+    once: float = 0.2
+
+
+TIMING = Timing()
+
+
+@dataclass
+class Timed:
+    """Timed solution: a function that solves it again (None for slow ones), and its times so far, s."""
+
+    solve: Callable[[], Any] | None
+    seconds: list[float]
+
+    def measure(self) -> None:
+        """Time the solution once more, unless it is slow."""
+        if self.solve is not None:
+            self.seconds.append(seconds_of(self.solve)[0])
+
+    @property
+    def median(self) -> float:
+        """Return the median of the times, s."""
+        return statistics.median(self.seconds)
+
+
+def seconds_of(solve: Callable[[], Found]) -> tuple[float, Found]:
+    """Return the processor time of a solution, which excludes other programs, and the solution."""
+    begun = time.process_time()
+    found = solve()
+    return time.process_time() - begun, found
+
+
+def take_turns(timed: Sequence[Timed], rounds: Iterable[int]) -> None:
+    """Time all solutions in each round, forwards and backwards in turn, and drop the first times, with cold caches.
+
+    The neighbours of a solution differ between both orders, so that none always follows other code with cold caches.
+    """
+    for k in rounds:
+        for one in timed[:: -1 if k % 2 else 1]:
+            one.measure()
+    for one in timed:
+        del one.seconds[: len(one.seconds) > 1]
+
 
 ENOUGH_SETTINGS = 2
 """Number of successive settings far more accurate than required after which a sweep ends."""

@@ -7,8 +7,8 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from .at_error import AtError
-from .entries import Entry
 from .measures import MEASURES
+from .plan import Entry
 
 if TYPE_CHECKING:
     from .compare import Comparison

@@ -145,8 +145,7 @@ def _served(document: Any, data: ModelData | None, port: int, browser: bool) -> 
 
     import uvicorn
 
-    from .app import application
-    from .guard import Guard
+    from .app import Guard, application
     from .workers import Process, Thread, Workers
 
     listening = socket.socket()

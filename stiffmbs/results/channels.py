@@ -15,7 +15,7 @@ from ..presolve.subsystems import counters_of
 from ..reading.did_you_mean import did_you_mean
 from ..reading.joint_name import FREE_COORDINATES
 from ..reading.names import owner_of
-from .body_axes import in_own_axes
+from .frames import in_own_axes
 from .joint_angles import joint_angles
 
 

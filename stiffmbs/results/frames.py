@@ -1,4 +1,4 @@
-"""Frames of markers at one instant, in numbers: their positions, velocities and accelerations in ground axes.
+"""Frames of markers at one instant, and principal axes of bodies over time.
 
 The plane is the x-y plane of space.
 """
@@ -8,6 +8,59 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from functools import cached_property
+
+import numpy as np
+
+from ..compile.quaternions import CONJUGATE, rotated, times
+from ..compile.system import System
+
+OWN_ARE_PRINCIPAL = np.array([1.0, 0.0, 0.0, 0.0])
+
+
+def in_own_axes(
+    system: System, q: np.ndarray, u: np.ndarray, acceleration: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return coordinates, velocities and accelerations of the described bodies, one row per instant.
+
+    Revolution counters and states are left out.  The arrays are returned unchanged in the plane, or if all own axes are
+    principal ones.
+    """
+    axes = system.principal_axes
+    q = q[:, : system.n_pose]
+    if own_are_principal(system):
+        return q, u, acceleration
+    return _turned_back(q, CONJUGATE * axes), _seen_from(u, axes), _seen_from(acceleration, axes)
+
+
+def own_are_principal(system: System) -> bool:
+    """Return True in the plane, and if the own axes of all bodies are principal ones."""
+    axes = system.principal_axes
+    return not axes.size or np.array_equal(axes, np.broadcast_to(OWN_ARE_PRINCIPAL, axes.shape))
+
+
+def from_own_axes(system: System, q: np.ndarray) -> np.ndarray:
+    """Return the solver's coordinates from those of the described bodies."""
+    return _turned_back(q, system.principal_axes) if system.principal_axes.size else q
+
+
+def rates_from_own_axes(system: System, u: np.ndarray) -> np.ndarray:
+    """Return the solver's velocities from those of the described bodies."""
+    return _seen_from(u, CONJUGATE * system.principal_axes) if system.principal_axes.size else u
+
+
+def _turned_back(q: np.ndarray, axes: np.ndarray) -> np.ndarray:
+    """Replace every quaternion p by p a."""
+    bodies = q.reshape(len(q), -1, 7).copy()
+    bodies[..., 3:] = times(bodies[..., 3:], axes)
+    return bodies.reshape(q.shape)
+
+
+def _seen_from(u: np.ndarray, axes: np.ndarray) -> np.ndarray:
+    """Transform angular velocities w from axes rotated by a to the original ones: a w conj(a)."""
+    bodies = u.reshape(len(u), -1, 6).copy()
+    bodies[..., 3:] = rotated(axes, bodies[..., 3:])
+    return bodies.reshape(u.shape)
+
 
 Vector = tuple[float, float, float]
 Matrix = tuple[Vector, Vector, Vector]

@@ -23,9 +23,8 @@ from ..model.model_data import ModelData
 from ..reading.formula.functions import FUNCTIONS
 from ..reading.formula.nodes import TIME
 from ..reading.marker import GROUND, MarkerReference
-from .body_axes import in_own_axes, own_are_principal
 from .channels import channels_of, channels_of_model, counters, named, state_channels
-from .frames import BodyFrame, GroundFrame, MarkerFrame, Vector, cross, dot, minus
+from .frames import BodyFrame, GroundFrame, MarkerFrame, Vector, cross, dot, in_own_axes, minus, own_are_principal
 from .joint_angles import TURN, joint_angles
 from .marker_motion import place
 from .requests import value_over_time

@@ -16,10 +16,9 @@ import numpy as np
 from ..errors import InputError
 from ..model.scene import Figure
 from ..solve.trajectory import History, Outcome
-from .damaged import readable
 from .energy_balance import Balance
 from .error_bars import ErrorBar
-from .saved_state import TURNS
+from .saved_state import TURNS, readable
 
 if TYPE_CHECKING:
     from .solution import Solution

@@ -3,22 +3,50 @@
 from __future__ import annotations
 
 import io
+import struct
+import tokenize
 import warnings
-from collections.abc import Callable, Iterable, Mapping
+import zlib
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+from xml.etree.ElementTree import ParseError
+from zipfile import BadZipFile
 
 import numpy as np
 
 from ..errors import InputError
-from ..reading.files.files_read import content_of
+from ..reading.files.files_read import check_regular, content_of
 from ..reading.files.quoted import quoted
-from .damaged import readable
 from .scales import ROUNDING
 
 if TYPE_CHECKING:
     from .solution import Solution
+
+
+RAISED = (
+    BadZipFile, zlib.error, struct.error, tokenize.TokenError, ParseError, ArithmeticError, AssertionError, AttributeError,
+    EOFError, LookupError, NotImplementedError, RuntimeError, SyntaxError, TypeError,
+)  # fmt: skip
+"""Exceptions that readers of archives, arrays, tables and XML raise for damaged content."""
+
+
+@contextmanager
+def readable(path: Path) -> Iterator[None]:
+    """Read a regular file with arbitrary content.
+
+    Raises OSError if it is not a regular file, or cannot be read. Raises ValueError if its content cannot be read.
+    """
+    check_regular(path)
+    try:
+        yield
+    except ValueError:
+        raise
+    except RAISED as error:
+        raise ValueError(f"damaged content ({type(error).__name__})") from error
+
 
 TURNS = "run/turns/"
 """Prefix of the names of revolution counters in .npz files."""

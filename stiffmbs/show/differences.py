@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..model.scene import Figure
-from ..results.listings.differences import Difference, differences
+from ..results.listings import Difference, differences
 from ..results.solution import Solution
 from .figure import SIZE, draw_runs
 from .sections import Section, Table

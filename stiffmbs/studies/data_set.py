@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..errors import InputError, needs
-from ..results.value_notes import MOST_NAMED
+from ..results.energy_balance_notes import MOST_NAMED
 from .case_solver import Row
 from .cases import Cases
 from .outputs import Output

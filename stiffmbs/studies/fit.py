@@ -17,8 +17,7 @@ from ..solve.trajectory import Grid, Outcome
 from .case_solver import CaseSolver, Task, written_scene
 from .measured import Measured, measured
 from .outputs import Output, outputs_of
-from .parameters import Sought, central_differences, sought
-from .sensitivities.gradients import Gradients
+from .parameters import Gradients, Sought, central_differences, sought
 from .uncertainty import of_common_noise, of_separate_noise
 
 CONFIDENCE = 0.95

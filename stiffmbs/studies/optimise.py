@@ -14,9 +14,8 @@ from ..model.files.written_scene import WrittenScene
 from ..solve.settings import changed
 from .case_solver import CaseSolver, Task, written_scene
 from .outputs import Output, outputs_of
-from .parameters import Sought, central_differences, sought
+from .parameters import Gradients, Sought, central_differences, sought
 from .sensitivities.formulas import of_whole_time
-from .sensitivities.gradients import Gradients
 
 STEP = 1e-3
 """Step of central differences, as a part of each range."""

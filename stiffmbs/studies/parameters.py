@@ -1,18 +1,23 @@
-"""Ranges of parameters, scaled to numbers from 0 to 1."""
+"""Ranges of parameters, scaled to numbers from 0 to 1, and derivatives of outputs by them."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from ..analyses.job import Job, prepare
+from ..analyses.renumber import renumbered
 from ..errors import InputError
 from ..model.files.written_scene import WrittenScene
+from ..model.settings import RunSettings
 from ..reading.did_you_mean import did_you_mean
 from ..reading.variation import Range, Variation, variation
 from .case_solver import refuse_units
+from .sensitivities.parameters import Scenes
+from .sensitivities.sensitivities import DifferentiatedRun, differentiable
 
 
 @dataclass(frozen=True)
@@ -97,3 +102,38 @@ def _part(name: str, one: Range, value: float | None) -> float:
     if one.log:
         return float(np.log(value / one.low) / np.log(one.high / one.low))
     return (value - one.low) / (one.high - one.low)
+
+
+class Gradients:
+    """Derivatives of outputs; data common to all points is read and compiled once.
+
+    Parameters
+    ----------
+    texts : sequence of str
+        Outputs, formulas of channels.
+    times : ndarray, optional
+        Output instants that replace those of the settings.
+    """
+
+    def __init__(
+        self, written: WrittenScene, ranges: Sought, texts: Sequence[str], settings: RunSettings,
+        times: np.ndarray | None = None,
+    ) -> None:  # fmt: skip
+        self._scenes, self._ranges, self._texts = Scenes(written), ranges, texts
+        self._settings, self._times = differentiable(settings), times
+        self._job: Job | None = None
+
+    def at(self, point: np.ndarray) -> list[np.ndarray]:
+        """Return the derivatives of each output by the coordinates of a point, shape (..., parameters).
+
+        Raises StiffmbsError as for `stiffmbs.sensitivities`.
+        """
+        names, values = self._ranges.names, self._ranges.values(point)
+        scenes = self._scenes.at(list(zip(names, values, strict=True)))
+        known = self._job and renumbered(self._job, scenes.known)
+        self._job = known or prepare(scenes.known, self._settings)
+        run = DifferentiatedRun(scenes, names, self._job, self._times)
+        spans = self._ranges.slopes(point)
+        return [
+            np.stack([found.to[name] for name in names], axis=-1) * spans for found in run.sensitivities(self._texts)
+        ]

@@ -17,9 +17,9 @@ from ..dynamics.algebraic_states import failure
 from ..dynamics.dynamics import OutputRows
 from ..errors import AssemblyError, ChannelError, InputError, SolverError
 from ..model.settings import RunSettings, Settings, takes_settings
-from ..results.body_axes import own_are_principal
 from ..results.channels import channels_of, turns_of
 from ..results.files import written_whole
+from ..results.frames import own_are_principal
 from ..results.instant import Instant
 from ..results.joint_angles import joint_angles
 from ..results.saved_state import TURNS, SavedState
@@ -28,8 +28,7 @@ from ..solve.events.restart import restarted
 from ..solve.settings import changed
 from ..tuning import in_use
 from .case_solver import CaseSolver, Task, written_scene
-from .followed_turns import FollowedTurns
-from .input_numbers import InputNumbers
+from .input_numbers import FollowedTurns, InputNumbers
 from .stepping import Stepper, stepper_of
 
 OWN_INPUTS = "inputs"

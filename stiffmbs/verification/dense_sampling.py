@@ -9,8 +9,8 @@ import numpy as np
 
 from ..analyses.job import Job
 from ..compile.inputs.features import InputFeatures
-from ..results.body_axes import from_own_axes
 from ..results.error_bars import Fine
+from ..results.frames import from_own_axes
 from ..results.scales import ROUNDING, kind_of
 from ..results.solution import Solution
 from ..run_checks.singular_poses import PosesOnTheWay

@@ -8,7 +8,7 @@ import pytest
 import stiffmbs
 from stiffmbs import InputError
 from stiffmbs.analyses.job import prepare
-from stiffmbs.analyses.other_numbers import with_numbers
+from stiffmbs.analyses.renumber import with_numbers
 
 SETTINGS = {"duration": 0.5, "points": 11, "rtol": 1e-8}
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from stiffmbs.comparison.at_error import LINE, value_at_error
-from stiffmbs.comparison.turns import TIMING, Timed, seconds_of, take_turns
+from stiffmbs.comparison.sweep import TIMING, Timed, seconds_of, take_turns
 
 from .benchmark import Row
 from .contestant import Contestant, Failed

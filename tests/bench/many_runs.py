@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from stiffmbs.analyses.job import prepare
-from stiffmbs.analyses.other_numbers import with_numbers
+from stiffmbs.analyses.renumber import with_numbers
 from stiffmbs.model.model_data import ModelData
 
 from .benchmark import Row

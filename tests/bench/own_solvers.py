@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from stiffmbs.analyses.job import prepare
-from stiffmbs.comparison.turns import TIMING, seconds_of
+from stiffmbs.comparison.sweep import TIMING, seconds_of
 from stiffmbs.model.model_data import ModelData
 from stiffmbs.solve.explicit.projected import TRAITS
 from stiffmbs.solve.formulations import FORMULATIONS

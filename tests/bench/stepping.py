@@ -16,7 +16,7 @@ from stiffmbs.errors import SolverError
 from stiffmbs.model.read_scene import read_scene
 from stiffmbs.studies.case_solver import CaseSolver, Task, written_scene
 from stiffmbs.studies.simulation import Simulation, simulation
-from stiffmbs.studies.started_steps import StartedSteps
+from stiffmbs.studies.stepping import StartedSteps
 
 from .benchmark import Row
 

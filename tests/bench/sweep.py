@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from stiffmbs.comparison.at_error import LINE, on_line
-from stiffmbs.comparison.turns import seconds_of
+from stiffmbs.comparison.sweep import seconds_of
 
 from .benchmark import Row
 from .contestant import Contestant, Failed, Solve

@@ -5,7 +5,7 @@ import pytest
 
 import stiffmbs
 from stiffmbs.analyses.job import prepare
-from stiffmbs.comparison.entries import entries_of
+from stiffmbs.comparison.plan import entries_of
 from stiffmbs.comparison.reference import reference
 from stiffmbs.model.settings import RunSettings
 

@@ -8,7 +8,7 @@ from stiffmbs.comparison import sweep
 from stiffmbs.comparison.at_error import AtError, Row, decades, times_at, value_at_error
 from stiffmbs.comparison.compare import Comparison
 from stiffmbs.comparison.comparison_over import crossings
-from stiffmbs.comparison.entries import entries_of
+from stiffmbs.comparison.plan import entries_of
 from stiffmbs.model.settings import RunSettings
 
 RTOLS = 10.0 ** -np.arange(3, 8.1, 0.5)

@@ -9,7 +9,7 @@ import sys
 import pytest
 
 from stiffmbs.cache import entries as kept
-from stiffmbs.cache.own_files import NotOwnError, check_folder, read_own
+from stiffmbs.cache.entries import NotOwnError, check_folder, read_own
 from stiffmbs.compile.machine import cache
 from stiffmbs.compile.machine import compiler as machine
 

@@ -9,7 +9,7 @@ from click.testing import CliRunner
 
 import stiffmbs
 from stiffmbs.commands.main import main
-from stiffmbs.results.listings.columns import read_columns
+from stiffmbs.results.listings import read_columns
 
 ADAMS = Path(__file__).parents[1] / "data" / "adams" / "Revolute_Case01"
 T = np.linspace(0, 1, 11)

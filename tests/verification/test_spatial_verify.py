@@ -9,7 +9,7 @@ from click.testing import CliRunner
 import stiffmbs
 from stiffmbs.analyses import taken_again
 from stiffmbs.analyses.job import prepare
-from stiffmbs.analyses.other_numbers import with_numbers
+from stiffmbs.analyses.renumber import with_numbers
 from stiffmbs.commands.main import main
 from stiffmbs.compile.machine.native.statuses import NO_BALANCE
 from stiffmbs.dynamics.dynamics import Dynamics

@@ -18,11 +18,10 @@ from ...model.settings import RunSettings, Settings, takes_settings
 from ...results.energy_balance import energy_balance
 from ...results.solution import Solution
 from ...solve.sampling import held
+from ..equilibrium import solution_of_rows
 from ..job import Runnable
-from ..solution_at_rest import solution_of_rows
 from ..start_from import StartFrom
-from .at_state import AtState, at_state
-from .sides import Kink, kink_at
+from .sides import AtState, Kink, at_state, kink_at
 
 AT_REST = 1e-6
 """Acceleration below which a state counts as an equilibrium, relative to gravity (to 1 m/s^2 without gravity)."""

@@ -11,8 +11,8 @@ from ...compile.directional.direction import Numbers
 from ...compile.reactions import reactions
 from ...compile.system import System
 from ...dynamics.dynamics import OutputRows
-from ...results.body_axes import in_own_axes
 from ...results.channels import counters, state_channels
+from ...results.frames import in_own_axes
 from ...results.requests import requested
 from ...sensitivity_equations.block_system import Change
 from .set_up import SetUp

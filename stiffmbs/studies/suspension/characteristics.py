@@ -17,8 +17,7 @@ from ...elements.forces.spring_damper import LineSpring, Spring
 from ...elements.forces.torsion_spring import AngleSpring
 from ...model.model_data import ModelData
 from .axle import Axle, Wheel
-from .contact import contact_at, contact_from, contact_velocity
-from .rig import STEER, centre, pad
+from .rig import STEER, centre, contact_at, contact_from, contact_velocity, pad
 from .steering_axis import SteeringAxis, steering_axis
 from .tangent import Tangent, Twist, steering_motion
 from .vehicle import Vehicle

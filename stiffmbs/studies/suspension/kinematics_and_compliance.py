@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from ...analyses.equilibrium import equilibria_over_time
 from ...analyses.job import Runnable, data_of, prepare
-from ...analyses.quasi_static import equilibria_over_time
 from ...errors import InputError
 from ...reading.did_you_mean import did_you_mean
 from ...reading.table import Table

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from stiffmbs.analyses.job import prepare
-from stiffmbs.comparison.turns import Timed, take_turns
+from stiffmbs.comparison.sweep import Timed, take_turns
 from stiffmbs.model.model_data import ModelData
 from stiffmbs.model.read_scene import read_scene
 

@@ -8,7 +8,7 @@ from functools import partial
 from typing import Any
 
 from stiffmbs.analyses.job import prepare
-from stiffmbs.comparison.turns import seconds_of
+from stiffmbs.comparison.sweep import seconds_of
 from stiffmbs.model.model_data import ModelData
 from stiffmbs.model.read_scene import read_scene
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from stiffmbs.analyses.quasi_static import quasi_static
+from stiffmbs.analyses.equilibrium import quasi_static
 from stiffmbs.elements.spatial.spatial_kinds import FORCES
 from stiffmbs.errors import StiffmbsError
 from stiffmbs.model.spatial_model import Body, Model

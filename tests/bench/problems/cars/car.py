@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 from stiffmbs.analyses.job import prepare
-from stiffmbs.comparison.turns import seconds_of
+from stiffmbs.comparison.sweep import seconds_of
 from stiffmbs.model.model_data import ModelData
 from stiffmbs.solve.trajectory import Outcome, ProgressCallback
 

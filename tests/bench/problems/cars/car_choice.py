@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import product
 
 from stiffmbs.analyses.job import Job, prepare
-from stiffmbs.comparison.turns import seconds_of
+from stiffmbs.comparison.sweep import seconds_of
 from stiffmbs.solve.trajectory import Outcome
 from stiffmbs.verification.solve_again import Deadline
 

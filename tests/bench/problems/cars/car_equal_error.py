@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from stiffmbs.analyses.job import prepare
-from stiffmbs.comparison.turns import seconds_of
+from stiffmbs.comparison.sweep import seconds_of
 
 from ...benchmark import Row
 from ...decades import at_errors

@@ -1,1 +1,0 @@
-"""Consecutive runs, each from the final state of the previous one."""

@@ -1,1 +1,0 @@
-"""Listings of other programs, and differences of results from them."""
