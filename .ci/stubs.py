@@ -69,12 +69,12 @@ from .errors import StiffmbsError as StiffmbsError
 from .analyses.check import Report as Report
 from .analyses.check import check as check
 from .analyses.equilibrium import equilibrium as equilibrium
-from .analyses.quasi_static import quasi_static as quasi_static
+from .analyses.equilibrium import quasi_static as quasi_static
 from .analyses.load_scene import load_scene as load_scene
 from .analyses.linearised.modes import modes as modes
 from .analyses.run import run as run
 from .analyses.linearised.transfer import transfer as transfer
-from .results.listings.differences import differences as differences
+from .results.listings import differences as differences
 from .results.saved_state import SavedState as SavedState
 from .results.saved_state import read_state as read_state
 from .results.solution import Solution as Solution

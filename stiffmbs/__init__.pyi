@@ -30,10 +30,10 @@ from .adams.listing import listed_statements as listed_statements
 from .analyses.check import Report as Report
 from .analyses.check import check as check
 from .analyses.equilibrium import equilibrium as equilibrium
+from .analyses.equilibrium import quasi_static as quasi_static
 from .analyses.linearised.modes import modes as modes
 from .analyses.linearised.transfer import transfer as transfer
 from .analyses.load_scene import load_scene as load_scene
-from .analyses.quasi_static import quasi_static as quasi_static
 from .analyses.run import run as run
 from .comparison.compare import compare as compare
 from .comparison.over import compare_over as compare_over
@@ -66,7 +66,7 @@ from .reading.python_function import PythonFunction as PythonFunction
 from .reading.table import Table as Table
 from .reading.units import si as si
 from .reading.variation import Range as Range
-from .results.listings.differences import differences as differences
+from .results.listings import differences as differences
 from .results.saved_state import SavedState as SavedState
 from .results.saved_state import read_state as read_state
 from .results.solution import Solution as Solution
