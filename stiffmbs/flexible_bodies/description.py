@@ -174,6 +174,8 @@ class FlexibleBody(Described):
         Stated mass, kg, compared with that of the model.
     stiffening : bool or str
         Geometric stiffening, which needs a mesh; ``auto`` for that of every mesh.
+    residual_modes : bool
+        True for the static displacements under uniform accelerations, as a static correction of few normal modes.
     """
 
     mesh: str | None = Field(None, description="file of a mesh of tetrahedra or hexahedra")
@@ -185,6 +187,9 @@ class FlexibleBody(Described):
     mass: si.PositiveMass | None = Field(None, description="stated mass, kg, to check units and density")
     stiffening: bool | Literal["auto"] = Field(
         "auto", description="geometric stiffening; auto: of a body that is described by a mesh"
+    )
+    residual_modes: bool = Field(
+        False, description="static correction: add the displacements under uniform accelerations to the modes"
     )
 
     @field_validator("modes", mode="before")

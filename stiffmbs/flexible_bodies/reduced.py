@@ -45,7 +45,7 @@ def reduced_body(body: FlexibleBody, folder: Path) -> ReducedBody:
     model = body.model(folder)
     _check_mass(body, rigid_body(model)[0])
     count, highest = (None, body.modes.up_to) if isinstance(body.modes, UpTo) else (body.modes, None)
-    found = reduce(model, body.interfaces_on(model), count, highest)
+    found = reduce(model, body.interfaces_on(model), count, highest, body.residual_modes)
     out = io.BytesIO()
     np.savez(
         out,

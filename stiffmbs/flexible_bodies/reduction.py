@@ -110,8 +110,9 @@ class ReducedBody:
 
 
 def reduce(
-    model: FiniteElements, interfaces: Sequence[Interface], count: int | None, highest: float | None = None
-) -> ReducedBody:
+    model: FiniteElements, interfaces: Sequence[Interface], count: int | None, highest: float | None = None,
+    residual: bool = False,
+) -> ReducedBody:  # fmt: skip
     """Reduce a model to its interfaces and normal modes.
 
     Parameters
@@ -122,6 +123,8 @@ def reduce(
         Number of normal modes with all interfaces held.
     highest : float, optional
         Frequency up to which these are kept, Hz, without a count.
+    residual : bool
+        Add the static displacements, with all interfaces held, under the six uniform accelerations of the body.
 
     Raises
     ------
@@ -134,7 +137,8 @@ def reduce(
     solver, held = static_solver(model, interfaces, rigid)
     squares, normal = _normal_modes(solver, count, highest)
     static = solver.static_modes()
-    shapes = np.hstack([static, *([] if held else [rigid]), normal])
+    under_weight = [solver.held_response(force) for force in by_rigid.T] if residual else []
+    shapes = np.column_stack([static, *([] if held else [rigid]), normal, *under_weight])
     shapes /= np.sqrt(np.einsum("ij,ij->j", shapes, model.mass @ shapes))
     basis, condition = _independent(shapes, model)
     participation = (normal.T @ by_rigid)[:, :3]

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.sparse.linalg import splu
 
 from stiffmbs.errors import InputError
 from stiffmbs.flexible_bodies.finite_elements import FiniteElements
@@ -183,3 +184,18 @@ def test_unusable_interfaces_are_refused(model, nodes, kind, message):
 def test_nodes_of_two_interfaces_are_refused(model):
     with pytest.raises(InputError, match=r"interfaces.b: found node .* of interface 'a' too"):
         reduce(model, [face(model, 0.0, "a"), face(model, 0.0, "b")], 2)
+
+
+@pytest.mark.parametrize("residual", [False, True])
+def test_residual_modes_contain_the_static_displacement_under_weight_and_angular_acceleration(tmp_path, residual):
+    model = bar(tmp_path, "hexahedron", along=6, across=2)
+    ends = [face(model, 0.0, "a"), face(model, LENGTH, "b")]
+    body = reduce(model, ends, 1, residual=residual)
+    free = np.setdiff1d(np.arange(3 * len(model.nodes)), np.concatenate([end.entries for end in ends]))
+    rigid = model.rigid_modes(body.centre)
+    exact = np.zeros_like(rigid)
+    exact[free] = splu(model.stiffness[free][:, free].tocsc()).solve((model.mass @ rigid)[free])
+    basis = np.column_stack([rigid, body.modes])
+    for displacement in exact.T:
+        rest = displacement - basis @ np.linalg.lstsq(basis, displacement)[0]
+        assert (np.linalg.norm(rest) < 1e-7 * np.linalg.norm(displacement)) == residual
