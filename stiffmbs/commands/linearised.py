@@ -23,7 +23,10 @@ from .scene import changes_of, in_file, is_written, output_option, refusing, sol
     type=float,
     help="The instant whose state is taken, s: of that FILE (else its last row), or of the run (else its start).",
 )
-@output_option("Write one period of every mode: FILE.npz becomes FILE_1.npz, FILE_2.npz, ..., results as of run -o.")
+@output_option(
+    "Write a page with the modes in motion (.html), or one period of every mode: FILE.npz becomes FILE_1.npz, FILE_2.npz, "
+    "..., results as of run -o."
+)
 @click.option(
     "--amplitude",
     type=click.FloatRange(0, min_open=True),
@@ -43,16 +46,20 @@ def modes(
     from ..analyses.linearised.modes import modes as found_modes
     from ..results.files import check_output, write
     from ..show.modes import modes_text
+    from ..show.page.modes import check_page, write_modes
 
+    page = output is not None and output.suffix == ".html"
     with refusing(scene, as_json, output):
         if output is not None:
-            check_output(output)
+            check_page(output) if page else check_output(output)
         changes = changes_of(options)
         loaded = load_scene(scene, changes)
         start = {"at": at} if state is None else start_of(loaded, state, at, changes)
         with in_file(scene):
             found = found_modes(loaded, **start)
-        for number in range(1, len(found.modes) + 1) if output is not None else ():
+        if output is not None and page:
+            write_modes(output, found, amplitude)
+        for number in range(1, len(found.modes) + 1) if output is not None and not page else ():
             assert output is not None
             write(output.with_stem(f"{output.stem}_{number}"), found.shape(number, amplitude))
     click.echo(json.dumps(found.as_dict(scene)) if as_json else modes_text(found))

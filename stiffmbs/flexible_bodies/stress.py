@@ -45,9 +45,13 @@ def nodal_stresses(model: FiniteElements, displacements: np.ndarray) -> np.ndarr
 
 def von_mises(stress: np.ndarray) -> np.ndarray:
     """Return the von Mises stress; the last axis of the argument has the six components."""
+    return np.linalg.norm(deviatoric(stress), axis=-1)  # type: ignore[no-any-return]
+
+
+def deviatoric(stress: np.ndarray) -> np.ndarray:
+    """Return five components of the stress deviator, on the last axis, whose Euclidean norm is the von Mises stress."""
     xx, yy, zz, xy, yz, zx = np.moveaxis(stress, -1, 0)
-    squares = (xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2 + 6 * (xy**2 + yz**2 + zx**2)
-    return np.sqrt(squares / 2)  # type: ignore[no-any-return]
+    return np.stack([zz - (xx + yy) / 2, *(np.sqrt(3) * part for part in ((xx - yy) / 2, xy, yz, zx))], axis=-1)
 
 
 def principal_stresses(stress: np.ndarray) -> np.ndarray:

@@ -62,6 +62,9 @@ class SceneFlexibleBody(FlexibleBody):
     deformation_scale: si.NumberOrZero = Field(
         1.0, description="factor of the deformation in pictures and films", repr=False
     )
+    stress_colors: bool = Field(
+        False, description="color by von Mises stress in pictures, films and pages; of meshes only", repr=False
+    )
 
 
 def with_flexible_bodies(raw: dict[str, Any], context: Mapping[str, Any]) -> dict[str, Any]:

@@ -30,6 +30,7 @@ from .force_table import LOADS, elements_of, joint_forces, reactions_of, with_ba
 from .html import MOST_ROWS
 from .modes import modes_text
 from .page.data import environment, page_data, page_parts
+from .page.modes import modes_data
 from .sections import Section
 from .style import COLORS, data_url, dress
 from .summary import solver_lines
@@ -95,6 +96,7 @@ def report_page(
     first = [differences_section(solution, *other)] if other else []
     poses, shown = poses_of(scene, solution.time, solution.channels), scene.figure.y if scene.figure else ()
     moving = page_data(drawing_of(scene, marks_of(report), along=poses), _motions(scene, poses, other), solution, shown)
+    lines, shapes = _modes(scene)
     chosen = scene.run.model_fields_set  # shown first
     settings = dict(sorted(scene.run, key=lambda field: field[0] not in chosen))
     points = len(solution.time) + len(solution.step_times)
@@ -104,7 +106,7 @@ def report_page(
         figures=[_embedded(sheet, points) for sheet in figures], version=version("stiffmbs"),
         sections=_with_figures(sections), first=_with_figures(first), steps=[_embedded(sheet, points) for sheet in steps],
         counted=[f"{label}: {text}" for label, text in solver_lines(solution.solver)], violation=float(np.nanmax(solution.channels["constraint.position"])),
-        forces=joint_forces(solution), modes=_modes(scene), text=text, moving=moving, **page_parts(),
+        forces=joint_forces(solution), modes=lines, text=text, moving=moving, modes_moving=shapes, **page_parts(),
     )  # fmt: skip
 
 
@@ -145,14 +147,16 @@ def relevant_figures(solution: Solution, own: Figure | None) -> list[Figure]:
     return [*([own] if own else []), *force, ENERGIES]
 
 
-def _modes(scene: Scene) -> list[str]:
-    """Return natural modes about the start as lines of a table, the slowest first, or the reason why there are none."""
+def _modes(scene: Scene) -> tuple[list[str], dict[str, str] | None]:
+    """Return natural modes about the start as lines of a table, or the reason why there are none, and their motion."""
     try:
-        lines = modes_text(modes(scene)).splitlines()
+        found = modes(scene)
     except StiffmbsError as error:
-        return [f"no modes: {error}"]
+        return [f"no modes: {error}"], None
+    lines = modes_text(found).splitlines()
     left = len(lines) - MOST_ROWS
-    return lines if left <= 0 else [*lines[:MOST_ROWS], f"and {left} more lines: stiffmbs modes"]
+    shown = lines if left <= 0 else [*lines[:MOST_ROWS], f"and {left} more lines: stiffmbs modes"]
+    return shown, modes_data(found)
 
 
 def _peaks(solution: Solution) -> list[dict[str, str]]:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
-from .palette import LOAD, edge_color, face_color
+from .palette import LOAD, RAMP, edge_color, face_color
 from .poses import Poses
 from .scene_graph import Drawing, Link, Part
 from .solids import triangles
@@ -33,6 +34,7 @@ def drawing_json(drawing: Drawing) -> dict[str, Any]:
             for name, anchor in drawing.loads.items()
         ],
         "deformations": dict(drawing.deformations), "marks": dict(drawing.marks), "load_color": LOAD,
+        "stress": drawing.stress, "ramp": RAMP,
     }  # fmt: skip
 
 
@@ -54,13 +56,17 @@ def _numbers(values: np.ndarray, size: float) -> list[Any]:
     return [[float(f"{x:.7g}") for x in row] if isinstance(row, list) else float(f"{row:.7g}") for row in rounded]
 
 
+def _by_body(shapes: Mapping[str, np.ndarray]) -> dict[str, Any]:
+    return {body: [_numbers(shape, np.abs(own).max() or 1.0) for shape in own] for body, own in shapes.items()}
+
+
 def _part(part: Part, drawing: Drawing) -> dict[str, Any]:
     return {
         "owner": part.owner, "role": part.role, "body": part.body, "color": face_color(drawing, part),
         "edge": edge_color(drawing, part.owner, part.role),
         "solids": [
             {"vertices": _numbers(solid.vertices, drawing.size), "triangles": triangles(solid).tolist(), "edges": solid.edges[:, :2].tolist(),
-             "modes": {body: [_numbers(shape, np.abs(shapes).max() or 1.0) for shape in shapes] for body, shapes in solid.modes.items()}}
+             "modes": _by_body(solid.modes), "stresses": _by_body(solid.stresses)}
             for solid in part.solids
         ],
         "lines": [

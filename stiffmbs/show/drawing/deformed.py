@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
 
 import numpy as np
 
 from ...elements.spatial.flexible.bodies import FloatingFrame, ModalCoordinates
 from ...elements.spatial.flexible.interface import FlexibleInterface
+from ...errors import InputError
 from ...flexible_bodies.finite_elements import FiniteElements
 from ...flexible_bodies.reduced import reduced_body
+from ...flexible_bodies.stress import deviatoric, nodal_stresses
 from ...model.model_data import ModelData
 from . import solids
-from .scene_graph import Part, Solid
+from .poses import Poses
+from .scene_graph import Drawing, Part, Solid
 
 QUADRATIC = (
     (0, 8, 1, 9, 2, 10, 3, 11), (4, 12, 5, 13, 6, 14, 7, 15), (0, 8, 1, 17, 5, 12, 4, 16),
@@ -26,6 +30,8 @@ FACES: Mapping[str, tuple[tuple[int, ...], ...]] = {
     "hexahedron27": QUADRATIC,
 }
 """Nodes around each face of an element, in the order of meshio."""
+AT_ONCE = 1_000_000
+"""Number of stresses computed at once."""
 MOST_FACES = 5_000
 """Number of faces above which only the faces are drawn, without the edges of elements."""
 SHARP = 2.0
@@ -36,20 +42,32 @@ def deformed_body(name: str, frame: FloatingFrame) -> Part | None:
     """Return the surface of a flexible body with its mode shapes; None if its file has no elements.
 
     The displacement is linear in the modal coordinates and multiplied by the `deformation_scale` of the body. `name`:
-    name of the floating frame. Raises InputError if a file of the body cannot be read.
+    name of the floating frame. Raises InputError if a file of the body cannot be read, or has no mesh for stress
+    colors.
     """
     body, folder = frame.source
     model, reduced = body.model(folder), reduced_body(body, folder)
+    if body.stress_colors and model.solid is None:
+        raise InputError(
+            f"bodies.{name.rpartition('.')[0]}.stress_colors: found a body described by matrices, expected a mesh"
+        )
     faces = surface(model)
     if not faces:
         return None
     used, inverse = np.unique(np.concatenate(faces), return_inverse=True)
     ends = np.cumsum([len(face) for face in faces])[:-1]
-    shapes = np.zeros((3 * len(frame.modes), len(used), 3))
-    scale = body.deformation_scale * np.sqrt(reduced.mass)
-    shapes[: reduced.modes.shape[1]] = scale * reduced.modes.T.reshape(-1, len(model.nodes), 3)[:, used]
-    modes = {modal: shapes[3 * k : 3 * k + 3] for k, modal in enumerate(frame.modes)}
-    solid = Solid(model.nodes[used] - reduced.centre, tuple(np.split(inverse, ends)), modes=modes)
+
+    def by_coordinates(of_modes: np.ndarray) -> Mapping[str, np.ndarray]:
+        every = np.zeros((3 * len(frame.modes), *of_modes.shape[1:]))
+        every[: len(of_modes)] = np.sqrt(reduced.mass) * of_modes
+        return {modal: every[3 * k : 3 * k + 3] for k, modal in enumerate(frame.modes)}
+
+    shapes = body.deformation_scale * reduced.modes.T.reshape(-1, len(model.nodes), 3)[:, used]
+    stresses = deviatoric(nodal_stresses(model, reduced.modes)[:, used]) if body.stress_colors else None
+    solid = Solid(
+        model.nodes[used] - reduced.centre, tuple(np.split(inverse, ends)), modes=by_coordinates(shapes),
+        stresses={} if stresses is None else by_coordinates(stresses),
+    )  # fmt: skip
     return Part(name, "body", name, (solids.edged(solid, SHARP) if len(faces) < MOST_FACES else solid,))
 
 
@@ -66,6 +84,29 @@ def surface(model: FiniteElements) -> list[np.ndarray]:
             outward = solids.face_normal(points) @ (points.mean(axis=0) - middle[face]) >= 0
             found.append(every[face] if outward else every[face][::-1])
     return found
+
+
+def largest_stress(parts: Iterable[Part], poses: Poses) -> float:
+    """Return the largest von Mises stress of all bodies in stress colors over all instants, N/m^2; zero without."""
+    found = 0.0
+    for solid in (solid for part in parts for solid in part.solids if solid.stresses):
+        for rows in np.array_split(np.arange(len(poses.time)), 1 + len(poses.time) * len(solid.vertices) // AT_ONCE):
+            found = max(found, float(np.nanmax(poses.stresses(solid, rows), initial=0.0)))
+    return found
+
+
+def true_to_scale(drawing: Drawing) -> Drawing:
+    """Return a drawing whose flexible bodies have their own deformation, and no stress colors."""
+
+    def plain(solid: Solid, scale: float) -> Solid:
+        return replace(solid, modes={body: of / scale for body, of in solid.modes.items()}, stresses={})
+
+    parts = [
+        replace(part, solids=tuple(plain(solid, drawing.deformations[name]) for solid in part.solids))
+        if drawing.deformations.get(name := part.owner.rpartition(".")[0]) else part
+        for part in drawing.parts
+    ]  # fmt: skip
+    return replace(drawing, parts=tuple(parts), deformations={}, stress=0.0)
 
 
 def modal_bodies(data: ModelData) -> set[str]:

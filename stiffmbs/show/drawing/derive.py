@@ -17,7 +17,7 @@ from ...reading.formula.formula import Formula
 from ...reading.joint_name import JointName
 from ...reading.marker import GROUND, MarkerReference
 from .bodies import derived_shape, given_shapes
-from .deformed import deformation_scales, deformed_body, interface_bodies, modal_bodies
+from .deformed import deformation_scales, deformed_body, interface_bodies, largest_stress, modal_bodies
 from .draft import Draft, Site
 from .palette import body_colors
 from .poses import Poses, described_poses, placed
@@ -80,7 +80,8 @@ def drawing_of(
     }
     drawing = Drawing(
         data.name, data.dimensions, size, unit, colors, (*bodies, *parts), tuple(link for d in drafts for link in d.links),
-        tuple(_names(masses, drafts)), loads, heaviest, gravity, weight, marks or {}, deformation_scales(data),
+        tuple(_names(data, [name for name in masses if name not in of_interfaces], drafts)), loads, heaviest, gravity, weight, marks or {}, deformation_scales(data),
+        largest_stress(bodies, poses if along is None else along),
     )  # fmt: skip
     return drawing if along is None else with_surroundings(drawing, data, along)
 
@@ -209,9 +210,10 @@ def _of_formula(element: Element, data: ModelData, sites: _Sites) -> Site | None
     return None
 
 
-def _names(bodies: Iterable[str], drafts: Iterable[Draft]) -> Iterator[Name]:
+def _names(data: ModelData, bodies: Iterable[str], drafts: Iterable[Draft]) -> Iterator[Name]:
     for name in bodies:
-        yield Name(name, "body", Anchor(name, np.zeros(3)))
+        shown = name.rpartition(".")[0] if isinstance(data.bodies[name], FloatingFrame) else name
+        yield Name(shown, "body", Anchor(name, np.zeros(3)))
     for draft in drafts:
         if draft.i is not None:
             role = "joint" if isinstance(draft.element, Joint) else "force"

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...reading.marker import GROUND
 from ...results.scales import ROUNDING
-from .palette import LOAD, LOAD_NOT_UNIQUE, edge_color, face_color, shaded
+from .palette import LOAD, LOAD_NOT_UNIQUE, edge_color, face_color, on_ramp, shaded
 from .poses import FAR, Poses
 from .scene_graph import Drawing, Line, Link, Part, Solid
 from .solids import across, face_normal
@@ -88,14 +88,20 @@ def _part(drawing: Drawing, part: Part, poses: Poses, k: int, view: View) -> Ite
         nearer[2] = -FLOOR_BEHIND * drawing.size
     for solid in part.solids:
         seen = view.seen(origin + poses.vertices(solid, k) @ axes.T) + nearer
-        yield from _solid(seen, solid, face, (edge, wider), drawing.dimensions == 2)
+        colors: str | list[str] = face
+        if drawing.stress > 0 and solid.stresses:
+            stress = poses.stresses(solid, np.array([k]))[0] / drawing.stress
+            colors = [on_ramp(float(stress[corners].mean())) for corners in solid.faces]
+        yield from _solid(seen, solid, colors, (edge, wider), drawing.dimensions == 2)
     for line in part.lines:
         seen = view.seen(origin + line.points @ axes.T) + nearer
         yield from _line(seen, line, edge, wider, FOREMOST * drawing.size)
 
 
-def _solid(seen: np.ndarray, solid: Solid, color: str, edge: tuple[str, float], flat: bool) -> Iterator[Patch]:
-    """Yield the faces towards the viewer, and their edges."""
+def _solid(
+    seen: np.ndarray, solid: Solid, colors: str | list[str], edge: tuple[str, float], flat: bool
+) -> Iterator[Patch]:
+    """Yield the faces towards the viewer, in one color or in one for each face, and their edges."""
     light = LIGHT / np.linalg.norm(LIGHT)
     towards = np.zeros(len(solid.faces), dtype=bool)
     for number, corners in enumerate(solid.faces):
@@ -104,6 +110,7 @@ def _solid(seen: np.ndarray, solid: Solid, color: str, edge: tuple[str, float], 
         towards[number] = not solid.closed or normal[2] > 0
         if towards[number]:
             normal = normal if normal[2] >= 0 else -normal
+            color = colors if isinstance(colors, str) else colors[number]
             shade = color if flat else shaded(color, 0.62 + 0.42 * max(0.0, float(normal @ light)))
             yield Patch(points[:, :2], float(points[:, 2].mean()), face=shade, opacity=0.9 if flat else 1.0)
     for a, b, one, other in solid.edges:

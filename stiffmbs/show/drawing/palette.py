@@ -19,6 +19,8 @@ EDGES: Mapping[Role, str] = {
 MARKS: Mapping[Mark, str] = {"redundant": "#d55e00", "not unique": "#e69f00"}
 LOAD, LOAD_NOT_UNIQUE = "#b2182b", "#e69f00"
 PAPER = "#ffffff"
+RAMP = ("#440154", "#472d7b", "#3b528b", "#2c728e", "#21918c", "#28ae80", "#5ec962", "#addc30", "#fde725")
+"""Colors of a scale from its least to its largest value: viridis, from dark to bright."""
 
 
 def body_colors(bodies: Iterable[str]) -> dict[str, str]:
@@ -38,6 +40,11 @@ def face_color(drawing: Drawing, part: Part) -> str:
     if mark and part.role in ("joint", "drive"):
         return MARKS[mark]
     return part.color or (drawing.bodies.get(part.owner, "") if part.role == "body" else "") or ROLES[part.role]
+
+
+def on_ramp(part: float) -> str:
+    """Return the color at a part of the scale, 0 to 1."""
+    return RAMP[min(round(max(part, 0.0) * (len(RAMP) - 1)), len(RAMP) - 1)]
 
 
 def shaded(color: str, brightness: float) -> str:

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..style import new_sheet
 from .painted import Patch, extent, largest_force, painted
-from .palette import EDGES, LOAD, MARKS, PAPER
+from .palette import EDGES, LOAD, MARKS, PAPER, RAMP
 from .poses import Poses
 from .scene_graph import Drawing
 from .view import View
@@ -195,5 +195,19 @@ def explain(axes: Axes, drawing: Drawing, largest: float) -> None:
         entries.append(Line2D([], [], color=MARKS[mark], lw=4, label=MARK_WORDS[mark]))
     for body, scale in drawing.deformations.items():
         entries.append(Line2D([], [], linestyle="none", label=f"{body}: deformation x {scale:g}"))
+    if drawing.stress > 0:
+        _stress_scale(axes, drawing.stress)
     if entries:
         axes.legend(handles=entries, loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=2, frameon=False, fontsize=8)
+
+
+def _stress_scale(axes: Axes, largest: float) -> None:
+    """Add the scale of stress colors at the right."""
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import LinearSegmentedColormap, Normalize
+
+    factor, unit = (1e6, "MPa") if largest >= 1e5 else (1e3, "kPa") if largest >= 1e2 else (1.0, "Pa")
+    colors = ScalarMappable(Normalize(0.0, largest / factor), LinearSegmentedColormap.from_list("stress", RAMP))
+    bar = axes.figure.colorbar(colors, ax=axes, shrink=0.7, aspect=30, pad=0.01)
+    bar.set_label(f"von Mises stress ({unit})", fontsize=8)
+    bar.ax.tick_params(labelsize=7)

@@ -54,6 +54,11 @@ class Poses:
             sum((np.tensordot(self.points[body][k], shapes, 1) for body, shapes in solid.modes.items()), solid.vertices)
         )
 
+    def stresses(self, solid: Solid, rows: np.ndarray) -> np.ndarray:
+        """Return the von Mises stress at the vertices of a solid at some instants, shape (rows, n)."""
+        parts = (np.tensordot(self.points[body][rows], of, 1) for body, of in solid.stresses.items())
+        return np.linalg.norm(sum(parts), axis=-1)
+
     def at(self, rows: np.ndarray) -> Poses:
         """Return the poses at some of the instants."""
         pick = [

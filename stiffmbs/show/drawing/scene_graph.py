@@ -33,6 +33,8 @@ class Solid:
         Edges to draw: two vertices, and the two adjacent faces.
     modes : mapping of str to ndarray, shape (3, n, 3)
         Displacements of the vertices by unit coordinates x, y, z of bodies that hold modal coordinates.
+    stresses : mapping of str to ndarray, shape (3, n, 5)
+        Stress deviators at the vertices by the same coordinates: the norm of their sum is the von Mises stress, N/m^2.
     """
 
     vertices: np.ndarray
@@ -40,6 +42,7 @@ class Solid:
     closed: bool = True
     edges: np.ndarray = field(default_factory=lambda: np.zeros((0, 4), dtype=int))
     modes: Mapping[str, np.ndarray] = field(default_factory=dict)
+    stresses: Mapping[str, np.ndarray] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,6 +149,8 @@ class Drawing:
         Joints to mark.
     deformations : mapping of str to float
         Factors of the drawn deformation of flexible bodies.
+    stress : float
+        Largest von Mises stress of bodies in stress colors, the end of the scale, N/m^2; zero without them.
     """
 
     name: str
@@ -162,3 +167,4 @@ class Drawing:
     weight: float
     marks: Mapping[str, Mark] = field(default_factory=dict)
     deformations: Mapping[str, float] = field(default_factory=dict)
+    stress: float = 0.0

@@ -66,7 +66,7 @@ def packed_text(content: bytes, level: int = SMALLEST) -> str:
 
 def page_data(
     drawing: Drawing, runs: Mapping[str, Poses], solution: Solution | None = None, shown: Sequence[str] = (),
-    traces: Sequence[Anchor] = (), only: Sequence[str] | None = None, level: int = SMALLEST,
+    traces: Sequence[Anchor] = (), only: Sequence[str] | None = None, level: int = SMALLEST, choose: str = "",
 ) -> dict[str, str]:  # fmt: skip
     """Return the two texts of a page: ``head``, JSON, and ``numbers``, both compressed.
 
@@ -84,6 +84,8 @@ def page_data(
         Channels whose values are included; of the others only names and units.  By default all.
     level : int
         Level of compression, 1 (fast) to 9 (small).
+    choose : str
+        Label of a choice of one run that is shown and repeated; empty to show all runs over each other.
     """
     packed = Packed()
     width = sum(7 * len(poses.points) + 3 * len(poses.forces) for poses in runs.values()) or 1
@@ -93,6 +95,7 @@ def page_data(
         "drawing": drawing_json(drawing),
         "longest": {"force": largest_force(drawing, first), "length": LONGEST_ARROW * drawing.size},
         "runs": [{"name": name, **_motion(poses, packed, most)} for name, poses in runs.items()],
+        "choose": choose,
         "follow": followed_body(drawing, first),
         "traces": [{"body": anchor.body, "point": anchor.point.tolist()} for anchor in traces],
         "channels": _channels(solution, packed, shown, only) if solution is not None else None,

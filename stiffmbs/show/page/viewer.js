@@ -104,8 +104,10 @@ const MOVING = (() => {
         const shaded = geometry.toNonIndexed();
         shaded.computeVertexNormals();
         const floor = part.role === "floor";
-        const mesh = new THREE.Mesh(shaded, material(flat ? THREE.MeshBasicMaterial : THREE.MeshLambertMaterial, part.color, 0, {
-          side: THREE.DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1, ...(flat && ghost === undefined ? { opacity: 0.92 } : {}),
+        const colored = drawing.stress > 0 && ghost === undefined && Object.keys(solid.stresses ?? {}).length > 0;
+        if (colored) shaded.setAttribute("color", new THREE.Float32BufferAttribute(new Float32Array(3 * solid.triangles.length * 3), 3));
+        const mesh = new THREE.Mesh(shaded, material(flat || colored ? THREE.MeshBasicMaterial : THREE.MeshLambertMaterial, colored ? "#ffffff" : part.color, 0, {
+          vertexColors: colored, side: THREE.DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1, ...(flat && ghost === undefined ? { opacity: 0.92 } : {}),
         }));
         mesh.renderOrder = order(solid.vertices) + number * 1e-6;
         mesh.userData.floor = floor;
@@ -117,7 +119,7 @@ const MOVING = (() => {
         if (Object.keys(solid.modes).length) {
           mesh.frustumCulled = false;
           if (edges) edges.frustumCulled = false;
-          bent.push({ solid, index: solid.triangles.flat(), faces: shaded, edges: edges?.geometry });
+          bent.push({ solid, colored, index: solid.triangles.flat(), faces: shaded, edges: edges?.geometry });
         }
       }
       for (const stroke of part.lines) {
@@ -177,8 +179,25 @@ const MOVING = (() => {
       positions.needsUpdate = true;
       geometry.computeVertexNormals();
     };
+    /* Color the vertices of a flexible body by von Mises stress, the norm of five components. */
+    const ramp = Array.from({ length: 129 }, (_, k) => {
+      const place = (k / 128) * (drawing.ramp.length - 1), low = Math.min(Math.floor(place), drawing.ramp.length - 2);
+      return new THREE.Color(drawing.ramp[low]).lerp(new THREE.Color(drawing.ramp[low + 1]), place - low);
+    });
+    const paint = (solid, index, colors, t) => {
+      const sums = solid.vertices.map(() => [0, 0, 0, 0, 0]);
+      for (const [body, shapes] of Object.entries(solid.stresses)) {
+        posed(run, body, t, point, turn);
+        [point.x, point.y, point.z].forEach((y, k) => shapes[k].forEach((shape, n) => {
+          for (let part = 0; part < 5; part++) sums[n][part] += y * shape[part];
+        }));
+      }
+      const of = sums.map((sum) => ramp[Math.min(128, Math.round((128 * Math.hypot(...sum)) / drawing.stress))]);
+      index.forEach((n, k) => colors.setXYZ(k, of[n].r, of[n].g, of[n].b));
+      colors.needsUpdate = true;
+    };
     /* Move the vertices of a flexible body by its modal coordinates. */
-    const bend = ({ solid, index, faces, edges }, t) => {
+    const bend = ({ solid, colored, index, faces, edges }, t) => {
       const points = solid.vertices.map((p) => [...p]);
       for (const [body, shapes] of Object.entries(solid.modes)) {
         posed(run, body, t, point, turn);
@@ -189,6 +208,7 @@ const MOVING = (() => {
       index.forEach((n, k) => faces.attributes.position.setXYZ(k, ...points[n]));
       faces.attributes.position.needsUpdate = true;
       faces.computeVertexNormals();
+      if (colored) paint(solid, index, faces.attributes.color, t);
       if (!edges) return;
       points.forEach((p, n) => edges.attributes.position.setXYZ(n, ...p));
       edges.attributes.position.needsUpdate = true;
@@ -395,6 +415,14 @@ const MOVING = (() => {
       if (data.runs.length > 1) data.runs.forEach((run, k) => entry(k ? COLORS[k % COLORS.length] : "#56b4e9", run.name || "run"));
       for (const mark of new Set(Object.values(data.drawing.marks))) entry(mark === "redundant" ? "#d55e00" : "#e69f00", mark === "redundant" ? "redundant equations" : "force not unique");
       for (const [body, factor] of Object.entries(data.drawing.deformations)) entry("", `${body}: deformation x ${factor}`).key.remove();
+      if (data.drawing.stress > 0) {
+        const [factor, unit] = data.drawing.stress >= 1e5 ? [1e6, "MPa"] : data.drawing.stress >= 1e2 ? [1e3, "kPa"] : [1, "Pa"];
+        make("div", legend, { textContent: `von Mises stress (${unit})` });
+        const row = make("div", legend, { className: "ramp" });
+        make("span", row, { textContent: "0" });
+        make("span", row, { className: "bar" }).style.background = `linear-gradient(to right, ${data.drawing.ramp.join(", ")})`;
+        make("span", row, { textContent: String(Number((data.drawing.stress / factor).toPrecision(3))) });
+      }
       if (state.forces && data.longest.force > 0) scale = entry(data.drawing.load_color, "");
       legend.hidden = !legend.children.length;
     }
@@ -666,7 +694,7 @@ const MOVING = (() => {
       return select;
     };
     const speed = pick("Speed", (s) => { time.speed = Number(s); });
-    const speeds = [0.001, 0.01, 0.1, 0.25, 0.5, 1, 2, 5, 10];
+    const speeds = [1e-5, 1e-4, 0.001, 0.01, 0.1, 0.25, 0.5, 1, 2, 5, 10];
     speed.offer(speeds.map((s) => [s, `${s} x`]));
     let names = [], load = () => {};
     if (shown) {
@@ -713,7 +741,7 @@ const MOVING = (() => {
     document.addEventListener("keydown", (e) => {
       if (writing(e.target) || e.ctrlKey || e.altKey || e.metaKey) return;
       const own = place.contains(e.target) && e.target.tagName !== "INPUT", step = (time.end - time.start) / 200;
-      if (e.key === " ") time.toggle();
+      if (e.key === " " && place.offsetParent) time.toggle();
       else if (!own) return;
       else if (e.key === "ArrowRight") time.set(time.t + step);
       else if (e.key === "ArrowLeft") time.set(time.t - step);
@@ -755,6 +783,22 @@ const MOVING = (() => {
       plotted?.load(data.channels, keep);
       it.data = data;
     };
+    if (data.choose) {
+      const every = data.runs, row = make("div", null, { className: "controls" }), select = make("select", make("label", row, { textContent: `${data.choose} ` }));
+      place.prepend(row);
+      every.forEach((run, k) => make("option", select, { value: k, textContent: run.name }));
+      time.loops = true;
+      const pick = () => {
+        data.runs = [every[select.value]];
+        [time.start, time.end] = spanOf(data);
+        shown?.load(data, true);
+        bar.load(data, false);
+        time.set(time.start);
+      };
+      select.onchange = pick;
+      data.runs = [every[0]];
+      [time.start, time.end] = spanOf(data);
+    }
     const it = {
       time, data, shown, plotted, frames: 0,
       async replace(head, numbers) {
@@ -772,8 +816,8 @@ const MOVING = (() => {
     const tick = (now) => {
       if (time.playing && last !== null) {
         const t = time.t + Math.min((now - last) / 1000, 0.5) * time.speed;  // no jump after a pause of the browser
-        if (t >= time.end) time.playing = false;
-        time.set(t);
+        if (t >= time.end && !time.loops) time.playing = false;
+        time.set(t >= time.end && time.loops ? time.start + ((t - time.start) % (time.end - time.start)) : t);
       }
       last = now;
       for (const part of drawn) if (part.stale) { part.stale = false; part.draw(); if (part === shown) it.frames += 1; }

@@ -29,6 +29,7 @@ bodies:
     modes: 4
     stiffening: false
     deformation_scale: 3
+    stress_colors: true
     velocity: [50, 0, 0]
 joints:
   rail: {type: prismatic, i: {body: trolley, orientation: {z: [1, 0, 0]}}, j: {body: ground, orientation: {z: [1, 0, 0]}}}
@@ -84,7 +85,7 @@ def test_a_view_that_follows_a_body_keeps_the_deformation(moving):
 def test_only_bodies_with_a_place_are_drawn_and_named(moving):
     _, _, drawing, _ = moving
     names = {name.text for name in drawing.names}
-    assert names == {"trolley", "bar.frame", "bar.a", "rail", "clamp"}
+    assert names == {"trolley", "bar", "rail", "clamp"}
     assert {part.owner for part in drawing.parts if part.role == "body"} == {"trolley", "bar.frame", "rail"}
     assert drawing.size < 1.0
 
@@ -109,3 +110,27 @@ def test_the_picture_and_the_page_state_the_scale(moving):
     assert page["deformations"] == {"bar": 3.0}
     (solid,) = next(part["solids"] for part in page["parts"] if part["owner"] == "bar.frame")
     assert np.shape(solid["modes"]["bar.modes1"]) == (3, len(solid["vertices"]), 3)
+
+
+def test_stress_colors_are_the_von_mises_stresses_of_the_nodes(moving):
+    scene, solution, drawing, poses = moving
+    motion = FlexibleMotion(scene, solution, "bar")
+    (solid,) = (solid for part in drawing.parts for solid in part.solids if solid.stresses)
+    used = np.unique(np.concatenate(surface(motion.model)))
+    np.testing.assert_allclose(poses.stresses(solid, np.arange(6)), motion.von_mises()[:, used], rtol=1e-9)
+    assert drawing.stress == pytest.approx(motion.von_mises()[:, used].max())
+    assert drawing_json(drawing)["stress"] == drawing.stress
+    sheet = picture(drawing, poses.at(np.array([5])), view_named("", 3, drawing.gravity), Shown())
+    assert [axes.get_ylabel() for axes in sheet.axes] == ["", "von Mises stress (MPa)"]
+    colors = {tuple(np.round(color, 3)) for artist in sheet.axes[0].collections for color in artist.get_facecolor()}
+    assert len(colors) > 20
+
+
+def test_stress_colors_without_a_mesh_are_refused(tmp_path):
+    model = bar(tmp_path, "hexahedron", along=2, across=1)
+    cells = {name.replace("hexahedron", "hex8"): cells for name, cells in model.cells.items()}
+    np.savez(tmp_path / "bar.npz", nodes=model.nodes, K=model.stiffness.toarray(), M=model.mass.toarray(), **cells)
+    text = SCENE.replace("mesh: bar.vtu", "matrices: bar.npz").replace("1 mm}", "1 m}")
+    (tmp_path / "scene.yaml").write_text("\n".join(line for line in text.splitlines() if "material" not in line))
+    with pytest.raises(stiffmbs.InputError, match=r"bodies\.bar\.stress_colors: found a body described by matrices"):
+        drawing_of(stiffmbs.load_scene(tmp_path / "scene.yaml"))

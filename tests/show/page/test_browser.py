@@ -202,3 +202,19 @@ def test_every_control_has_a_name_for_screen_readers(tab, opened):
         if not node.get("ignored") and node.get("role", {}).get("value") in roles and not node.get("name", {}).get("value")
     ]  # fmt: skip
     assert not unnamed
+
+
+@pytest.mark.long
+def test_a_mode_is_chosen_and_its_motion_repeats(tab, opened):
+    opened("modes", EXAMPLES / "half_car.yaml")
+    assert tab.run("document.querySelector('select').options.length") == 8  # the rigid motion is left out
+    tab.run("(() => { const s = document.querySelector('select'); s.value = 3; s.onchange(); })()")
+    found = stiffmbs.modes(EXAMPLES / "half_car.yaml").modes
+    period = 2 * np.pi / abs(found[4].eigenvalues[0].imag)
+    assert tab.run("[shown.time.end - shown.time.start, shown.data.runs.length]") == pytest.approx(
+        [period, 1], rel=1e-3
+    )
+    assert tab.run("shown.data.runs[0].name").startswith(f"5: {found[4].natural_frequency:.4g} Hz")
+    tab.run("shown.time.set(shown.time.end - 1e-9); shown.time.toggle()")
+    tab.wait("shown.time.t < 0.9 * shown.time.end && shown.time.playing")
+    tab.run("shown.time.toggle()")

@@ -13,6 +13,7 @@ from stiffmbs.show.drawing.derive import drawing_of
 from stiffmbs.show.drawing.poses import poses_of
 from stiffmbs.show.force_table import joint_forces
 from stiffmbs.show.page.data import LEVELS, Packed, page_data
+from stiffmbs.show.page.modes import modes_data
 
 from ...conftest import EXAMPLES
 
@@ -108,3 +109,14 @@ def test_joint_forces_that_are_not_unique_say_so():
         ("upper_hinge", "force"): "no", ("upper_hinge", "torque"): "no", ("lower_hinge", "force"): "no",
         ("lower_hinge", "torque"): "no", ("closer", "force"): "yes", ("closer", "torque"): "yes",
     }  # fmt: skip
+
+
+def test_the_page_of_modes_shows_one_period_of_each_vibration():
+    found = stiffmbs.modes(EXAMPLES / "half_car.yaml")
+    head, _ = unpacked(modes_data(found, 0.02))
+    assert head["choose"] == "Mode"
+    vibrations = [mode for mode in found.modes if mode.motion.value == "oscillating"]
+    assert len(head["runs"]) == len(vibrations) == 8
+    for run, mode in zip(head["runs"], vibrations, strict=True):
+        assert run["end"] - run["start"] == pytest.approx(2 * np.pi / abs(mode.eigenvalues[0].imag), rel=1e-6)
+        assert f": {mode.natural_frequency:.4g} Hz" in run["name"]
