@@ -34,3 +34,9 @@ def test_peaks_that_are_as_wide_as_an_explicit_step(rtol):
 def test_random_laws_over_a_state(seed):
     verdict = laws.trial(seed)
     assert verdict.outcome in (Outcome.RIGHT, Outcome.TOLD), verdict
+
+
+@pytest.mark.parametrize("seed", [951679, 952811])
+def test_a_short_step_before_an_interval_does_not_hide_it(seed):
+    """A step of 1e-12 s just before a narrow interval, after hundreds of others: rates over less time are rounding."""
+    assert laws.trial(seed).outcome is Outcome.RIGHT

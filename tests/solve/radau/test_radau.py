@@ -1,5 +1,7 @@
 """Radau methods: their orders, motion against closed forms and other integrators, and work that stiffness does not change."""
 
+import json
+
 import numpy as np
 import pytest
 
@@ -56,6 +58,20 @@ def test_a_small_vibration_about_a_position_of_rest_is_not_damped(frequency, rto
     model.add("held", stiffmbs.Bushing(i="mass", j=rest, stiffness=(frequency**2,) * 3))
     found = stiffmbs.run(model, duration=4.0, points=401, solver="radau", rtol=rtol)
     np.testing.assert_allclose(found["mass.vx"], speed * np.cos(frequency * found.t), atol=0.1 * speed)
+
+
+@pytest.mark.parametrize("rtol", [1e-4, 1e-6])
+def test_a_body_is_free_after_a_steep_force_has_ended(rtol):
+    """Corrections by the matrix of the steep force are small: they do not show that the iteration has converged."""
+    roof = {"table": [[-1e6, 0], [0, 0], [0.25, 1], [1, 0], [1e6, 0]], "lines": True}
+    scene = {
+        "gravity": [0, 0], "bodies": {"b": {"mass": 1, "inertia": 1, "velocity": [1, 0]}}, "tables": {"roof": roof},
+        "forces": {"f": {"type": "force", "i": "b", "force": ["2800*roof(b.x/0.00025)", 0]}},
+    }  # fmt: skip
+    scene, speed = stiffmbs.read_scene(json.dumps(scene)), np.sqrt(1 + 2800 * 0.00025)
+    for duration in np.linspace(0.3, 1.2, 100):  # it determines the steps
+        end = stiffmbs.run(scene, duration=duration, points=2, solver="radau", rtol=rtol)
+        assert end["b.vx"][-1] == pytest.approx(speed, abs=5e-4 * speed if rtol < 1e-5 else 5e-3 * speed)
 
 
 @pytest.mark.parametrize("stiffness", [1e6, 1e9, 1e12])

@@ -78,6 +78,12 @@ def noted_rates(rate, value, nearby, ahead, count):
 
 
 @compiled
+def time_of_difference(w, h, t):
+    """Return the time over which rates at t, the end of a step of length h, are computed."""
+    return max(SEARCH.difference * h, SEARCH.least_difference * w.duration, SEARCH.rounding * abs(t))
+
+
+@compiled
 def left_out(w, k):
     """Return True if a function is ignored: it is masked, or not finite."""
     if not isfinite(w.value_before[k] - w.value_after[k]):

@@ -55,6 +55,9 @@ class EventSearchParameters:
     """Largest number of parts if arguments of sines cannot be followed."""
     difference: float = 1e-6
     """Fraction of a step, or of a part, over which rates are computed."""
+    least_difference: float = 1e-9
+    """Least time over which rates at the end of a step are computed, relative to the duration: shorter differences are
+    rounding."""
     refined: float = 0.02
     """Fraction of a part over which a parabola is fitted at an extremum."""
     refinements: int = 5

@@ -17,6 +17,7 @@ from stiffmbs.solve.events.native.bounds import (
     noted_rates,
     shift_ends,
     suspicious,
+    time_of_difference,
     turned_arguments,
     zone,
 )
@@ -58,7 +59,7 @@ def look_at_start(toward, stop, ida):
     if not w.ready:
         w.ready = 1
         w.begun = c.returned
-        ahead = max(NEXT_STEP.start_difference * (toward - c.returned), SEARCH.rounding * abs(c.returned))
+        ahead = max(NEXT_STEP.start_difference * (toward - c.returned), time_of_difference(w, 0.0, c.returned))
         s = state_view(c.state)
         load(s, equations_view(c.equations), array_of(c, c.y), array_of(c, c.yp))
         c.seen = UNSEEN
@@ -165,7 +166,7 @@ def _resolve_zones(c, w, s, most):
 @compiled
 def _aim(c, w, s, ahead):
     """Make the next step end just before an event of the motion extrapolated by accelerations."""
-    t, back = c.returned, -SEARCH.difference * ahead
+    t, back = c.returned, -time_of_difference(w, ahead, c.returned)
     go_ahead(c, s, ahead + back)
     noted_rates(w.rate_after, w.value_after, evaluate_some(s, SWITCH, t + ahead + back, w.near), back, w.n)
     note_mean_rates(w, ahead)
@@ -210,7 +211,7 @@ def look_within(ida):
         note_mean_rates(w, h)
         _go_on(c, w, s)
         return int32(0)
-    ahead = -SEARCH.difference * h
+    ahead = -time_of_difference(w, h, c.returned)
     go_straight(c, s, ahead)
     noted_rates(w.rate_after, w.value_after, _evaluate_near(w, s, c.returned + ahead), ahead, w.n)
     note_mean_rates(w, h)

@@ -308,7 +308,8 @@ def iterated(x, c, t, h):
         if count > 1 and x.contraction < DIVERGING:
             contraction = x.contraction / (1.0 - x.contraction)
         before = max(size, 1e-300)
-        if contraction * size <= x.newton:
+        known = count > 1 or x.current  # old matrices of a force that has ended make small corrections of large errors
+        if known and contraction * size <= x.newton:
             x.rate = contraction
             x.left = contraction * size
             return CONVERGED
