@@ -28,7 +28,8 @@ if TYPE_CHECKING:
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line instead of a table.")
 @solving_options
 def sensitivities(scene: str, to: tuple[str, ...], of: str, as_json: bool, **options: Any) -> None:
-    """Compute derivatives of an output of SCENE by parameters, by forward sensitivity analysis along the steps of bdf.
+    """Compute derivatives of an output of SCENE by parameters, by forward sensitivity analysis along the steps of bdf
+    or radau.
 
     Exit status: 0 done, 1 the run stopped early or is not differentiable there, 2 the input is wrong.
     """

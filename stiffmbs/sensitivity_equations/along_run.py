@@ -11,7 +11,8 @@ from ..compile.directional.direction import Numbers
 from ..compile.equations import ABSENT
 from ..dynamics.dynamics import Dynamics, OutputRows
 from .block_system import BlockSystem, Change
-from .equations import VariationalEquations
+from .collocation import CollocationVariations
+from .equations import VariationalEquations, singular
 from .jumps import BreakpointRates, Jump, Jumps, Shifted, State
 from .recorded import Recorder, Segment
 from .touches import Touches
@@ -58,7 +59,8 @@ class AlongRun:
         self._dynamics, self._recorder = dynamics, recorder
         self._equations = recorder.equations
         self.block = BlockSystem(dynamics, directions)
-        self._variations = VariationalEquations(recorder.equations, recorder.native.matrix, dynamics.state, directions)
+        kind = CollocationVariations if len(recorder.nodes) else VariationalEquations
+        self._variations = kind(recorder.equations, recorder.native.matrix, dynamics.state, directions)
         self._jumps = Jumps(
             dynamics, recorder.equations, directions, self.block, breakpoint_rates, recorder.settings.rtol
         )
@@ -86,13 +88,14 @@ class AlongRun:
                 k = asked.pop(0)
                 step = int(np.searchsorted(segment.rows[:, 0], rows.t[k], side="left"))
                 step = min(max(done, step), len(segment.rows) - 1)
-                self._variations.advance(segment.rows[done:step])
+                self._variations.advance(self._steps(segment, done, step))
                 done = step
-                at_instant = self._variations.within(self._row(rows, k, segment.rows[step, 1]))
+                following_step = self._steps(segment, step, step + 1)[0]
+                at_instant = self._variations.within(self._rows(rows.at(np.array([k])))[0], following_step)
                 yield self._instant(rows, k, self._parts(at_instant, s.shift))
             if not asked or following is None:
                 return
-            self._variations.advance(segment.rows[done:])
+            self._variations.advance(self._steps(segment, done, len(segment.rows)))
             jump = self._jumps.over(segment, following, self._parts(self._variations.last, s.shift))
             while asked and rows.t[asked[0]] <= following.first[0]:
                 yield self._between(rows, asked.pop(0), jump)
@@ -145,14 +148,29 @@ class AlongRun:
         rates[:, at["u"]] = -defects[:, at["u"]] / self._dynamics.system.mass
         self._variations.begin(first[0], segment.rows[0, 0] - first[0], s, rates)
 
-    def _row(self, rows: OutputRows, k: int, order: float) -> np.ndarray:
-        """Return a row of the recorded form for an output time."""
+    def _rows(self, rows: OutputRows) -> np.ndarray:
+        """Return rows of the recorded form for output times."""
         at, n = self._equations.at, self._equations.n
-        y, yp = np.zeros(n), np.zeros(n)
-        y[at["q"]], y[at["u"]], yp[at["u"]] = rows.q[k], rows.u[k], rows.acceleration[k]
+        y, yp = np.zeros((2, len(rows.t), n))
+        y[:, at["q"]], y[:, at["u"]], yp[:, at["u"]] = rows.q, rows.u, rows.acceleration
         solved = at["lam"] != ABSENT
-        y[at["lam"][solved]] = rows.lam[k][solved]
-        return np.concatenate([[rows.t[k], order], y, yp])
+        y[:, at["lam"][solved]] = rows.lam[:, solved]
+        return np.column_stack([rows.t, np.zeros(len(rows.t)), y, yp])
+
+    def _steps(self, segment: Segment, begin: int, end: int) -> np.ndarray:
+        """Return some steps of a segment, with accelerations and multipliers at the places within them."""
+        steps = segment.steps[begin:end]
+        if not segment.places or not len(steps):
+            return steps
+        within = steps[:, :-1].reshape(-1, steps.shape[2])
+        y = within[:, 2 : 2 + self._equations.n]
+        q, u = self._equations.states(np.ascontiguousarray(y[:, self._equations.independent]))
+        rows = self._dynamics.report(np.ascontiguousarray(within[:, 0]), q, u, False)
+        if len(rows.t) < len(within):
+            raise singular(within[len(rows.t), 0])
+        found = steps.copy()
+        found[:, :-1] = self._rows(rows).reshape(found[:, :-1].shape)
+        return found
 
     def close(self) -> None:
         """Free the objects of SUNDIALS."""

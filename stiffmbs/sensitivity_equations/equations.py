@@ -84,21 +84,25 @@ class VariationalEquations:
         self._history[1], self._times[1] = s, t
         self._cells["newest"] = 1
 
-    def advance(self, rows: np.ndarray) -> None:
-        """Integrate over recorded steps: rows of time, order, y and y', shape (steps, 2 + 2 n).
+    def advance(self, steps: np.ndarray) -> None:
+        """Integrate over recorded steps: rows of time, order, y and y', shape (steps, 1, 2 + 2 n).
 
         Raise a SolverError when the matrix of a step is singular.
         """
-        rows = np.ascontiguousarray(rows)
+        rows = np.ascontiguousarray(steps[:, -1])
         done = self._session.call(ADVANCE.call, len(rows), rows.ctypes.data, self._at)
         if done < len(rows):
-            raise _singular(rows[done, 0])
+            raise singular(rows[done, 0])
 
-    def within(self, row: np.ndarray) -> np.ndarray:
-        """Return s at a time after the last step, shape (directions, n); `row` is as for `advance`."""
-        out, row = np.empty((self._count, self.equations.n)), np.ascontiguousarray(row)
+    def within(self, row: np.ndarray, step: np.ndarray) -> np.ndarray:
+        """Return s at a time within the next step, shape (directions, n).
+
+        `row` has time, y and y' there; `step` is as for `advance`.
+        """
+        out, row = np.empty((self._count, self.equations.n)), np.array(row)
+        row[1] = step[-1, 1]
         if self._session.call(WITHIN.call, row.ctypes.data, out.ctypes.data, self._at):
-            raise _singular(row[0])
+            raise singular(row[0])
         return out
 
     def defects(self, row: np.ndarray, s: np.ndarray) -> np.ndarray:
@@ -113,7 +117,8 @@ class VariationalEquations:
         return self._history[int(self._cells["newest"])].copy()
 
 
-def _singular(t: float) -> SolverError:
+def singular(t: float) -> SolverError:
+    """Return the error of a singular matrix."""
     return SolverError(
         f"sensitivities: found a singular matrix at t = {t:.9g} s, expected a pose at which the motion is unique"
     )

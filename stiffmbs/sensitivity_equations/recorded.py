@@ -1,4 +1,4 @@
-"""Recorded run of `bdf`: all steps, in segments between restarts at breakpoints and events."""
+"""Recorded run of `bdf` or `radau`: all steps, in segments between restarts at breakpoints and events."""
 
 from __future__ import annotations
 
@@ -17,6 +17,8 @@ from ..solve.events.restart import INDISTINCT
 from ..solve.ida.engine import Reached
 from ..solve.ida.native_engine import NativeEngine
 from ..solve.integrator import Integrator
+from ..solve.radau.collocation import radau
+from ..solve.radau.radau import CONTROL, driven_by_radau
 from ..solve.trajectory import Grid
 
 ROUNDING = 1e-13
@@ -25,6 +27,8 @@ FURTHEST = 1e-6
 """Largest shift of a segment's end before an event, relative to the segment."""
 SUDDEN, JUMP, FELT = 1e-9, 1e-3, 1e-6
 """Relative step size that indicates a discontinuity, and smallest jump, relative to own and all accelerations."""
+STAGES = 5
+"""Stages of the method by which sensitivities are integrated along steps of `radau`."""
 MOST_NUMBERS = 2e8
 """Largest number of recorded numbers, 1.6 GB."""
 
@@ -39,6 +43,10 @@ class Segment:
         Time, order, y and y' at the start.
     rows : ndarray, shape (steps, 2 + 2 n)
         The same at the end of each step.
+    steps : ndarray, shape (steps, 1 + places, 2 + 2 n)
+        The same with rows at places within the step, without y', before its end.
+    places : int
+        Number of places within a step.
     fired : tuple of int
         Event functions that end it; empty at a breakpoint in time or the end of the run.
     """
@@ -47,23 +55,34 @@ class Segment:
     first: np.ndarray
     parts: list[np.ndarray] = field(default_factory=list)
     fired: tuple[int, ...] = ()
+    places: int = 0
+
+    @property
+    def steps(self) -> np.ndarray:
+        if len(self.parts) > 1:
+            self.parts = [np.concatenate(self.parts)]
+        rows = self.parts[0] if self.parts else np.empty((0, len(self.first)))
+        return rows.reshape(-1, 1 + self.places, len(self.first))
 
     @property
     def rows(self) -> np.ndarray:
-        """Time, order, y and y' at the end of each step, shape (steps, 2 + 2 n)."""
-        if len(self.parts) > 1:
-            self.parts = [np.concatenate(self.parts)]
-        return self.parts[0] if self.parts else np.empty((0, len(self.first)))
+        rows: np.ndarray = self.steps[:, -1]
+        return rows
 
 
 class Recorder(Integrator):
     """Integrator that records its steps, which end at kinks of tables, as force derivatives are discontinuous there.
 
-    After a run that stopped because a force chatters, `chatters` is True.
+    Steps of `radau` are recorded at the nodes of its method of `STAGES` stages too. After a run that stopped because a
+    force chatters, `chatters` is True.
     """
 
     def __init__(self, dynamics: Dynamics, settings: RunSettings) -> None:
-        super().__init__(dynamics, settings, memory="recorder")
+        self.nodes = radau(STAGES).nodes[:-1] if settings.solver == "radau" else np.empty(0)
+        if len(self.nodes):
+            super().__init__(dynamics, settings, CONTROL, memory="radau recorder", driver=driven_by_radau)
+        else:
+            super().__init__(dynamics, settings, memory="recorder")
         if not isinstance(self.engine, NativeEngine):
             raise SolverError(
                 "sensitivities: found SUNDIALS' libraries in another form, expected those of scikit-sundae's wheels"
@@ -120,7 +139,7 @@ class Recorder(Integrator):
         super()._begin(start, t)
         if self.segments:
             self._end_before_the_jump(self.segments[-1])
-        self.segments.append(Segment(start, self.native.present()))
+        self.segments.append(Segment(start, self.native.present(), places=len(self.nodes)))
 
     def _end_before_the_jump(self, segment: Segment) -> None:
         """Move the end of a segment back by some roundings of time, to where its force law holds."""
@@ -150,7 +169,7 @@ class Recorder(Integrator):
 
     def run(self, start: InitialValues, grid: Grid, passing: bool = False) -> Iterator[Reached]:
         """Yield the progress as any integrator, stopping at each breakpoint; the steps are in `segments` afterwards."""
-        self.native.keep_steps(True)
+        self.native.keep_steps(True, self.nodes)
         try:
             for reached in super().run(start, grid):
                 self._keep(reached)
@@ -167,7 +186,10 @@ class Recorder(Integrator):
             return
         segment = self.segments[-1]
         last = segment.parts[-1][-1, 0] if segment.parts else segment.first[0]
-        segment.parts.append(rows[np.diff(rows[:, 0], prepend=last) > INDISTINCT * np.abs(rows[:, 0])])
+        steps = rows.reshape(-1, 1 + len(self.nodes), rows.shape[1])
+        ends = steps[:, -1, 0]
+        kept = np.diff(ends, prepend=last) > INDISTINCT * np.abs(ends)
+        segment.parts.append(steps[kept].reshape(-1, rows.shape[1]))
         segment.fired = reached.fired
         self._numbers += rows.size
         if self._numbers > MOST_NUMBERS:

@@ -91,5 +91,5 @@ class GradientRuns:
 
     def _value(self, scene: Scene, name: str, value: float) -> float:
         (output,) = outputs_of(self.output)
-        solver = CaseSolver(Task(written_scene(scene), (name,), {"rtol": TINY, **HELD}, (output,)))
+        solver = CaseSolver(Task(written_scene(scene), (name,), {"rtol": TINY, "solver": "bdf", **HELD}, (output,)))
         return float(output.value(solver.solution((value,))))

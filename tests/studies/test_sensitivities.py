@@ -11,16 +11,19 @@ from stiffmbs import InputError, sensitivities
 from stiffmbs.studies.outputs import outputs_of
 from tests.studies.oscillator import SLED, oscillation, slope
 
+BY_BOTH = pytest.mark.parametrize("solver", ["bdf", "radau"])
 
+
+@BY_BOTH
 @pytest.mark.parametrize("of", ["sled.x", "rms(sled.x)", "final(3*sled.x^2 + sin(sled.x))", "integral(abs(sled.x))/2"])
-def test_those_of_a_damped_oscillation(of):
+def test_those_of_a_damped_oscillation(of, solver):
     t = np.linspace(0, 2, 41)
     outputs = {
         "sled.x": lambda x: x, "rms(sled.x)": lambda x: np.sqrt(np.trapezoid(x * x, t) / 2),
         "final(3*sled.x^2 + sin(sled.x))": lambda x: (3 * x * x + np.sin(x))[-1],
         "integral(abs(sled.x))/2": lambda x: np.trapezoid(np.abs(x), t) / 2,
     }  # fmt: skip
-    found = sensitivities(stiffmbs.read_scene(SLED), ["k", "c", "x0", "m"], of)
+    found = sensitivities(stiffmbs.read_scene(SLED), ["k", "c", "x0", "m"], of, solver=solver)
     for name, value in (("k", 100.0), ("c", 1.0), ("x0", 0.1), ("m", 2.0)):
         exact = slope(lambda **p: outputs[of](oscillation(t, **p)), name, value)
         np.testing.assert_allclose(found.to[name], exact, rtol=1e-5, atol=1e-6 * np.abs(exact).max())
@@ -36,9 +39,10 @@ run: {duration: 1, rtol: 1e-6}
 """
 
 
-def test_a_force_that_ends_at_an_instant_that_moves():
+@BY_BOTH
+def test_a_force_that_ends_at_an_instant_that_moves(solver):
     """x = v + F/m (T - T^2/2) at 1 s."""
-    found = sensitivities(stiffmbs.read_scene(PUSHED), ["F", "T", "m"], "final(sled.x)")
+    found = sensitivities(stiffmbs.read_scene(PUSHED), ["F", "T", "m"], "final(sled.x)", solver=solver)
     assert found.value == pytest.approx(0.5 + 1.5 * 0.32, rel=1e-8)
     expected = {"F": 0.32 / 2, "T": 1.5 * 0.6, "m": -3 * 0.32 / 4}
     assert found.to == pytest.approx(expected, rel=1e-7)
@@ -181,13 +185,15 @@ def differences(scene, path, value, of, **settings):
         LONG("spatial_slider_crank", "L", 0.3, "final(slider.x)", {"duration": 0.3}),
         LONG("cam_follower", "eccentricity", 0.01, "final(follower.y)", {"duration": 0.02}),
         LONG("elastic_bearing", "bearing", 1e9, "final(give)", {"duration": 0.01}),
+        LONG("half_car", "V", 15.0, "final(front_bushing.fy)", {"duration": 1.0}),
     ],
 )
-def test_differences_of_converged_runs(scene, name, value, of, settings):
+@BY_BOTH
+def test_differences_of_converged_runs(scene, name, value, of, settings, solver):
     file = f"examples/{scene}.yaml"
     if value is None:
         value = getattr(stiffmbs.load_scene(file).bodies["bar"], name.rpartition(".")[2])
-    found = sensitivities(file, [name], of, **settings)
+    found = sensitivities(file, [name], of, solver=solver, **settings)
     assert found.to[name] == pytest.approx(differences(file, name, value, of, solver="bdf", **settings), rel=1e-5)
 
 

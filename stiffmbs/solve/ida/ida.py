@@ -35,6 +35,9 @@ ADVANCE_PAST = Routine(
 )
 STEPS = Routine(MODULE, "steps", "int32(int64, float64, float64*, float64*, int64*)")
 
+AT_THE_END = np.empty(0)
+"""No place within a step."""
+
 
 class NativeIda(Connection):
     """IDA memory of one formulation of one system, for any number of starts.
@@ -138,15 +141,17 @@ class NativeIda(Connection):
         """Make `advance` and `steps` return after this number of steps at the latest."""
         self._pace = min(self._usual_pace, steps)
 
-    def keep_steps(self, kept: bool) -> None:
-        """Enable or disable storage of time, order, y and y' of each step for `kept_steps`."""
+    def keep_steps(self, kept: bool, places: np.ndarray = AT_THE_END) -> None:
+        """Enable or disable storage of time, order, y and y' of each step for `kept_steps`, and of y at places within it."""
         width = 2 + 2 * len(self.y)
-        self._trace = np.empty((LOOP.most_steps if kept else 0, width))
+        self._trace = np.empty((LOOP.most_steps * (1 + len(places)) if kept else 0, width))
+        self._places = np.array(places, dtype=float)
+        self.cells["n_places"], self.cells["places"] = len(places), self._places.ctypes.data
         self.cells["trace"] = self._trace.ctypes.data if kept else 0
         self.cells["traced"] = 0
 
     def kept_steps(self) -> np.ndarray:
-        """Return time, order, y and y' of the stored steps, one in each row, and clear them."""
+        """Return time, order, y and y' of the stored steps and their places, one in each row, and clear them."""
         rows: np.ndarray = self._trace[: int(self.cells["traced"])].copy()
         self.cells["traced"] = 0
         return rows

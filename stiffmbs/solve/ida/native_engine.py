@@ -21,7 +21,7 @@ from ..events.restart import just_after
 from ..trajectory import History
 from .connection import BDF, Formula
 from .engine import Engine, Reached
-from .ida import NativeIda
+from .ida import AT_THE_END, NativeIda
 from .matrices import Matrix
 from .native.parameters import LOOP
 from .status import Status
@@ -246,12 +246,12 @@ class NativeEngine(Engine):
     def pause_after(self, steps: int) -> None:
         self._ida.pause_after(steps)
 
-    def keep_steps(self, kept: bool) -> None:
-        """Enable or disable storage of the steps for `kept_steps`."""
-        self._ida.keep_steps(kept)
+    def keep_steps(self, kept: bool, places: np.ndarray = AT_THE_END) -> None:
+        """Enable or disable storage of the steps for `kept_steps`, also at some places within each step, from 0 to 1."""
+        self._ida.keep_steps(kept, places)
 
     def kept_steps(self) -> np.ndarray:
-        """Return time, order, y and y' of the steps since the last call, one in each row."""
+        """Return time, order, y and y' of the steps since the last call; rows at places within a step, without y', precede its end."""
         return self._ida.kept_steps()
 
     def present(self) -> np.ndarray:

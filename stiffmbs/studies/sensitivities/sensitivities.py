@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -16,7 +16,7 @@ from ...model.settings import RunSettings
 from ...results.channels import channels_of
 from ...sensitivity_equations.along_run import AlongRun, Instant, Side
 from ...sensitivity_equations.jumps import NO_JUMP
-from ...sensitivity_equations.recorded import Recorder
+from ...sensitivity_equations.recorded import STAGES, Recorder
 from ...solve.bdf import integrated
 from ...solve.missing_rows import reported
 from ...solve.settings import changed
@@ -33,16 +33,20 @@ TIGHTER, TIGHTEST = 1e-6, 1e-12
 
 Derivatives of forces in stiff bushings and of vibrations are less accurate than the motion.
 """
-NUMBERS_OF_STEPS = tuple(200 * 8**k for k in range(4))
-"""Least numbers of steps of a run.
+NUMBERS_OF_STEPS = {"bdf": tuple(200 * 8**k for k in range(4)), "radau": tuple(200 * 2**k for k in range(8))}
+FEWEST = 200
+"""Least numbers of steps of a run, and the first of them.
 
 The error control does not see variations: a motion at rest, or a steady one, takes steps of any length.
 """
-AGREED, NOISE = 5e-3, 1e-9
+ALIKE = {"bdf": 3, "radau": 2}
+"""Successive runs that have to agree. At rest bdf stays at order 1, which damps all vibrations: two of three runs may agree for that
+reason alone."""
+AGREED, NOISE = {"bdf": 5e-3, "radau": 1e-4}, 1e-9
 """Accepted difference between the derivatives of two runs, relative to their size, and relative to the output."""
 AT_THE_LIMIT = 0.9
 """Part of the longest allowed step above which a step is not limited by the error control."""
-HELD = {"solver": "bdf", "formulation": "SI2", "presolve": False}
+HELD = {"formulation": "SI2", "presolve": False}
 """Settings of the run along which sensitivities are integrated."""
 
 
@@ -77,7 +81,7 @@ def sensitivities(scene: Runnable, to: Sequence[str] | str, of: str, **settings:
     """Compute derivatives of an output of a run by parameters of its scene, by forward sensitivity analysis.
 
     The equations of motion are differentiated exactly, and integrated along the steps of `bdf` with their own iteration
-    matrices. Jumps at breakpoints in time and at events are included.
+    matrices, or along the steps of `radau` with ``solver="radau"``. Jumps at breakpoints in time and at events are included.
 
     Parameters
     ----------
@@ -131,31 +135,36 @@ def sensitivities(scene: Runnable, to: Sequence[str] | str, of: str, **settings:
     scenes = Scenes.of_model(scene)
     asked = changed(scenes.known.run, settings)
     found: list[Sensitivity] = []
-    for steps in NUMBERS_OF_STEPS:
+    solver = _solver(asked)
+    numbers, agreed = NUMBERS_OF_STEPS[solver], partial(_agree, AGREED[solver])
+    for steps in numbers:
         run = differentiated(scenes, names, asked, steps)
         found += run.sensitivities([output.text])
-        # at rest bdf stays at order 1, which damps all vibrations: two of three runs may agree for that reason alone
-        if not run.at_the_limit or (len(found) > 2 and _agree(*found[-3:-1]) and _agree(*found[-2:])):
+        last = found[-ALIKE[solver] :]
+        if not run.at_the_limit or (len(last) == ALIKE[solver] and all(map(agreed, last, last[1:]))):
             return found[-1]
     raise SolverError(
-        f"sensitivities: found that {NUMBERS_OF_STEPS[-1]} steps do not resolve how '{output.text}' changes with {', '.join(names)}, "
+        f"sensitivities: found that {numbers[-1]} steps do not resolve how '{output.text}' changes with {', '.join(names)}, "
         "expected a shorter run, or more damping of a motion that is not excited"
     )
 
 
-def _agree(coarse: Sensitivity, fine: Sensitivity) -> bool:
+def _solver(settings: RunSettings) -> str:
+    """Return the solver along whose steps sensitivities are integrated: `radau` if it is requested, or `bdf`."""
+    return "radau" if settings.solver == "radau" else "bdf"
+
+
+def _agree(agreed: float, coarse: Sensitivity, fine: Sensitivity) -> bool:
     """Return True if derivatives along longer and along shorter steps are equal within the accepted error."""
     noise = NOISE * float(np.max(np.abs(fine.value), initial=0.0))
     return all(
         float(np.max(np.abs(coarse.to[name] - slope), initial=0.0))
-        <= AGREED * float(np.max(np.abs(slope), initial=0.0)) + noise
+        <= agreed * float(np.max(np.abs(slope), initial=0.0)) + noise
         for name, slope in fine.to.items()
     )
 
 
-def differentiated(
-    scenes: Scenes, names: Sequence[str], asked: RunSettings, fewest: int = NUMBERS_OF_STEPS[0]
-) -> DifferentiatedRun:
+def differentiated(scenes: Scenes, names: Sequence[str], asked: RunSettings, fewest: int = FEWEST) -> DifferentiatedRun:
     """Run with a much tighter tolerance, or with the requested one if that fails; errors as for `sensitivities`.
 
     A run that stops because a force chatters is not repeated, as no tolerance resolves chattering.
@@ -169,10 +178,13 @@ def differentiated(
     return run
 
 
-def differentiable(settings: RunSettings, fewest: int = NUMBERS_OF_STEPS[0]) -> RunSettings:
+def differentiable(settings: RunSettings, fewest: int = FEWEST) -> RunSettings:
     """Settings of a run along which sensitivities can be integrated, in at least the `fewest` steps."""
     longest = settings.duration / fewest
-    return changed(settings, {**HELD, "max_step": min(settings.max_step or longest, longest)})
+    return changed(
+        settings,
+        {**HELD, "solver": _solver(settings), "stages": STAGES, "max_step": min(settings.max_step or longest, longest)},
+    )
 
 
 class DifferentiatedRun:

@@ -141,22 +141,31 @@ def stepped(c, ida, toward, stop):
     if flag >= 0:
         _keep_if_long(c, begun)
     if flag >= 0 and c.trace:
-        _keep_step(c)
+        _keep_step(c, begun)
     return flag
 
 
 @compiled
-def _keep_step(c):
-    """Store the result of a step for the integration of variational equations."""
+def _keep_row(c, t, y, yp):
     n = equations_view(c.equations).n
     row = floats(c.trace + 8 * (2 + 2 * n) * c.traced)
-    row[0] = c.returned
+    row[0] = t
     row[1] = float(c.order)
-    y, yp = array_of(c, c.y), array_of(c, c.yp)
     for k in range(n):
         row[2 + k] = y[k]
         row[2 + n + k] = yp[k]
     c.traced += 1
+
+
+@compiled
+def _keep_step(c, begun):
+    """Store the result of a step, and states within it, for the integration of variational equations."""
+    places = floats(c.places)
+    for k in range(c.n_places):
+        t = begun + places[k] * (c.returned - begun)
+        call_int(c.interpolate, (c.memory, t, int32(0), c.at_output))
+        _keep_row(c, t, c.output, c.output)
+    _keep_row(c, c.returned, array_of(c, c.y), array_of(c, c.yp))
 
 
 @compiled

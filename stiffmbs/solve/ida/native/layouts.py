@@ -22,15 +22,16 @@ NATIVE_IDA = Layout({
     "recorded": INT_CELL, "history": FLOATS, "since_sample": INT_CELL, "next_sample": INT_CELL, "samples": FLOATS,
     "output_correction": INTS, "iteration": INTS, "watch": INTS, "look_at_start": INT, "look_within": INT, "probe": FLOATS, "residual": FLOATS, "weights": INT,
     "long_steps": INTS, "accumulated": INTS, "errors_of": INT, "error_norm": INTS,
-    "trace": INT_CELL, "traced": INT_CELL, "seen": FLOAT_CELL,
+    "trace": INT_CELL, "traced": INT_CELL, "n_places": INT_CELL, "places": INT_CELL, "seen": FLOAT_CELL,
 })  # fmt: skip
 """Memory of the callbacks and the loop of the native IDA (`stiffmbs.solve.ida.native.ida_loop`): addresses of SUNDIALS
 functions and objects, values and pattern of the matrix, and reported unknowns; 1 for a one-step method.
 
 Cells: times of the returned state and of IDA's internal state; size (0 before the first) and order of its last step,
 size of the next attempt; last stop time; output times served, tiny steps in succession, 1 if the last event was found
-within the step; steps in the history, steps since the last sample, position of the next one; address of rows for time,
-order, y and y' of each step (0 for none), and rows written in this call; time of the event functions in the state."""
+within the step; steps in the history, steps since the last sample, position of the next one; time of the
+event functions in the state.  Address of rows for time, order, y and y' of each step (0 for none), rows written in
+this call, places within a step that have a row too."""
 
 STEP = "end", "order", "size"
 """Numbers in a row of the history: time of the end, s, order, and size of a step, s."""
