@@ -1,4 +1,4 @@
-"""Note on flexible bodies whose stiffness changes by loads and rotation: if their geometric stiffness is included."""
+"""Notes on flexible bodies whose stiffness changes by loads and rotation, and on those that deform too much."""
 
 from __future__ import annotations
 
@@ -26,10 +26,27 @@ def geometric_stiffness_notes(system: System, rows: OutputRows) -> Iterator[str]
             first = int(group.index[e, 2 * group.kind.n_bodies])
             numbers = parts(group.numbers[first + int(group.numbers[first]) :], n)
             places = group.index[e, : 2 * group.kind.n_bodies].reshape(-1, 2)
+            yield from _note_on_large_deformation(name, numbers, rows.q[:, (places[1:, :1] + np.arange(3)).ravel()])
             if numbers["known"][0]:
                 yield from _note(name, numbers, rows, places)
             elif n:
                 yield from _note_without_mesh(name, numbers, system, rows, int(places[0, 1]))
+
+
+def _note_on_large_deformation(name: str, numbers: dict[str, np.ndarray], y: np.ndarray) -> Iterator[str]:
+    """Yield a note by the root mean square of the displacement over the mass, which is that of the modal coordinates."""
+    ratio = float(np.sqrt((y**2).sum(axis=1).max(initial=0.0))) / _length(numbers)
+    error = RUN_CHECKS.of_second_order * ratio**2
+    if error > RUN_CHECKS.too_much:
+        yield (
+            f"'{name}' deforms by up to {100 * ratio:.2g} % of its length (root mean square), beyond the theory of second order: "
+            f"deflections of a beam would be wrong by about {100 * error:.1g} %; use a body of type: beam, or divide the body into several"
+        )
+
+
+def _length(numbers: dict[str, np.ndarray]) -> float:
+    """Return the length of a slender beam with the mass and the moment of inertia of the body, m."""
+    return float(np.sqrt(12 * numbers["moments"].max() / numbers["modal_mass"][0]))
 
 
 def _note(name: str, numbers: dict[str, np.ndarray], rows: OutputRows, places: np.ndarray) -> Iterator[str]:
@@ -61,7 +78,7 @@ def _note_without_mesh(
         if joint.startswith(f"{name}.")
     ]
     force = float(max(forces, default=0.0))
-    ratio = (CLAMPED * rate**2 + EULER * force / (mass * length)) / lowest**2
+    ratio = (CLAMPED * rate**2 + EULER * force / (mass * _length(numbers))) / lowest**2
     if ratio > RUN_CHECKS.stiffened:
         yield (
             f"'{name}': rotation at up to {rate:.3g} rad/s and interface forces of up to {force:.3g} N can change its stiffness by {100 * ratio:.2g} %, "

@@ -18,6 +18,11 @@ class RunCheckParameters:
     """Largest rounding of coordinates, relative to a mechanism's size."""
     stiffened: float = 0.03
     """Geometric stiffness of a flexible body, relative to its elastic stiffness, from which a note appears."""
+    of_second_order: float = 110.0
+    """Relative error of the deflection of a flexible body that is a clamped beam with a force at its end, over the square of
+    its root mean square deformation by its length. Source: meshes against exact beams."""
+    too_much: float = 0.01
+    """This error from which a note appears."""
     open: float = 1e-6
     """Largest opening of a joint in sizes of the mechanism, with projection onto the constraints."""
     drifted: float = 1e-2
