@@ -3,12 +3,17 @@
 All states that are sampled at one time take values that follow from the state just before it. Output at the time of a
 sample is the state before it; a run that starts there begins with the sample. Runs in succession, as in a simulation
 step by step or from a saved state, thus take every sample once.
+
+Many samples change nothing that acts: a controller at rest, or a filter that only other samples read. The solver
+integrates over as many of them at once as have gone before, and from the first one that changes a value that acts it
+starts again.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -29,11 +34,20 @@ class SamplingParameters:
 
     same_time: float = 1e-9
     """Difference of two times, in periods, up to which they are the same sample."""
+    most_at_once: int = 64
+    """Largest number of intervals that are integrated at once while no value changes that acts."""
     most_notes: int = 3
     """Notes of the intervals that the run reports."""
 
 
 SAMPLING = tuned("sampling", SamplingParameters())
+
+
+class Sample(NamedTuple):
+    """Time of a sample, s, and the numbers of the states that are due; none at the end of a run."""
+
+    t: float
+    due: np.ndarray
 
 
 def solved_between_samples(
@@ -44,23 +58,45 @@ def solved_between_samples(
     Parameters
     ----------
     solve : Solver
-        For each interval, or for the whole run without sampled states.
+        For the intervals between samples, or for the whole run without sampled states.
     """
-    if not dynamics.system.sampled.any():
+    system = dynamics.system
+    if not system.sampled.any():
         return solve(dynamics, start, grid, settings, watch)
     dynamics.input_features(grid.start, grid.end)  # once for all intervals
+    left = list(samples(system, grid))
+    acts, own = _acting(system), slice(system.first_state, None)
     parts: list[Trajectory] = []
-    now, t = start, grid.start
+    now, t, idle = start, grid.start, 0
     with Ending() as ending:
-        for time, due in samples(dynamics.system, grid):
-            if time > t:
-                parts.append(solve(dynamics, now, _up_to(grid, t, time), settings, watch))
-                if parts[-1].outcome is not Outcome.DONE:
+        if left[0].t == grid.start:
+            values = next_values(dynamics, left[0], start.q, start.u)
+            now, t = _restarted(dynamics, left.pop(0).t, start.q, start.u, values, settings)
+        while left:
+            ahead = left[: min(max(idle, 1), SAMPLING.most_at_once) if grid.times is not None else 1]
+            found = solve(dynamics, now, _up_to(grid, t, [sample.t for sample in ahead]), settings, watch)
+            row, values = 0, now.q[own]
+            for number, sample in enumerate(ahead, 1):
+                row = int(np.searchsorted(found.t, sample.t))
+                if row == len(found.t) or found.t[row] != sample.t:
                     break
-            if len(due):
-                q, u = (parts[-1].q[-1], parts[-1].u[-1]) if parts else (start.q, start.u)
-                now = sampled(dynamics, time, q, u, due, settings)
-                t = min(just_after(time), grid.end)
+                try:
+                    values = next_values(dynamics, sample, found.q[row], found.u[row])
+                except SolverError:
+                    parts.append(_up_to_row(found, row))
+                    raise
+                changed = (values != found.q[row, own])[acts].any()
+                idle = 0 if changed else idle + 1
+                if changed or (number == len(ahead) and found.outcome is Outcome.DONE):
+                    found = _up_to_row(found, row)
+                    break
+                found.q[row + 1 :, own][:, ~acts] = values[~acts]
+            parts.append(found)
+            if found.outcome is not Outcome.DONE:
+                break
+            del left[:number]
+            if left:
+                now, t = _restarted(dynamics, sample.t, found.q[row], found.u[row], values, settings)
     return _joined(parts, start, grid, ending)
 
 
@@ -71,8 +107,8 @@ def held(system: System) -> Iterator[str]:
         yield f"sampled states keep their values: {', '.join(names[:4])}{', ...' if len(names) > 4 else ''}"
 
 
-def samples(system: System, grid: Grid) -> Iterator[tuple[float, np.ndarray]]:
-    """Yield the times of samples from the start of a run to before its end, s, with the states that are due; then the end.
+def samples(system: System, grid: Grid) -> Iterator[Sample]:
+    """Yield the samples from the start of a run to before its end, and its end.
 
     A time that differs from an output time by rounding alone is that output time.
     """
@@ -89,52 +125,73 @@ def samples(system: System, grid: Grid) -> Iterator[tuple[float, np.ndarray]]:
             time = float(outputs[near])
         if time >= grid.end:
             break
-        yield time, states[due]
+        yield Sample(time, states[due])
         number[due] += 1
-    yield grid.end, np.empty(0, dtype=int)
+    yield Sample(grid.end, np.empty(0, dtype=int))
 
 
-def sampled(
-    dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, due: np.ndarray, settings: RunSettings
-) -> InitialValues:
-    """Return consistent values just after a sample.
-
-    Parameters
-    ----------
-    t : float
-        s.
-    q, u : ndarrays, shapes (n_q,), (n_u,)
-        State just before it.
-    due : ndarray of int
-        Numbers of the states that are sampled.
+def next_values(dynamics: Dynamics, sample: Sample, q: np.ndarray, u: np.ndarray) -> np.ndarray:
+    """Return all states just after a sample, from coordinates and velocities just before it, shape (states,).
 
     Raises
     ------
     SolverError
         If there are no accelerations, or a formula has no finite value.
     """
-    system = dynamics.system
+    system, t = dynamics.system, sample.t
+    found: np.ndarray = q[system.first_state :].copy()
+    if not len(sample.due):
+        return found
     with dynamics.state.unchanged():
         rows = dynamics.report(np.array([t]), q[None], u[None], project=False)
     if not len(rows.t):
         raise SolverError(f"stopped at t = {t:.9g} s: {FAILURES[rows.status]}")
-    names = [system.states[k] for k in due]
-    values = rows.values[0, [system.signals[name] for name in names]]
-    if not np.isfinite(values).all():
-        name = names[np.argmin(np.isfinite(values))]
+    names = [system.states[k] for k in sample.due]
+    found[sample.due] = rows.values[0, [system.signals[name] for name in names]]
+    if not np.isfinite(found).all():
+        name = names[np.argmin(np.isfinite(found[sample.due]))]
         raise SolverError(f"stopped at t = {t:.9g} s: the formula of the sampled state '{name}' has no finite value")
-    after = q.copy()
-    after[system.first_state + due] = values
-    return restarted(dynamics, just_after(t), after, u, settings.projection)
+    return found
 
 
-def _up_to(grid: Grid, start: float, end: float) -> Grid:
-    """Return the part of a grid between two times."""
+def _acting(system: System) -> np.ndarray:
+    """Return a mask of the states that are not sampled, or that an equation reads; samples and outputs read the others."""
+    acts = ~system.sampled
+    for group in system.groups:
+        if any(count for term, count in group.entries.items() if term != "signal"):
+            acts[group.states.ravel() - system.first_state] = True
+    return acts
+
+
+def _restarted(
+    dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, values: np.ndarray, settings: RunSettings
+) -> tuple[InitialValues, float]:
+    """Return consistent values with given states just after a time, and that time."""
+    after = np.append(q[: dynamics.system.first_state], values)
+    return restarted(dynamics, just_after(t), after, u, settings.projection), just_after(t)
+
+
+def _up_to(grid: Grid, start: float, ends: Sequence[float]) -> Grid:
+    """Return the part of a grid from a time to the last of some samples, with all of them among its times."""
+    end = ends[-1]
     inside = grid.stops[(grid.stops > start) & (grid.stops < end)]
     if grid.times is None:
         return Grid(start, end, None, inside)
     between = grid.times[(grid.times > start) & (grid.times < end)]
-    return Grid(start, end, np.concatenate([[start], between, [end]]), inside)
+    return Grid(start, end, np.union1d([start, *ends], between), inside)
+
+
+def _up_to_row(part: Trajectory, row: int) -> Trajectory:
+    """Return a trajectory that ends at a row."""
+    if row == len(part.t) - 1 and part.outcome is Outcome.DONE:
+        return part
+    taken = part.history.t <= part.t[row]
+    order = part.history.order[taken] if len(part.history.order) == len(taken) else part.history.order
+    rows = slice(row + 1)
+    return replace(
+        part, t=part.t[rows], q=part.q[rows], u=part.u[rows], outcome=Outcome.DONE, message=Outcome.DONE.value,
+        history=History(part.history.t[taken], order), long_steps=(),
+    )  # fmt: skip
 
 
 def _joined(parts: list[Trajectory], start: InitialValues, grid: Grid, ending: Ending) -> Trajectory:
@@ -142,7 +199,7 @@ def _joined(parts: list[Trajectory], start: InitialValues, grid: Grid, ending: E
     kept = [_output_rows(part, grid) for part in parts]
     first = np.array([grid.start]), start.q[None], start.u[None]
     t, q, u = (np.concatenate(columns) for columns in zip(first, *kept, strict=True))
-    if ending.outcome is Outcome.DONE:
+    if parts and parts[-1].outcome is not Outcome.DONE:
         ending.outcome, ending.message = parts[-1].outcome, parts[-1].message
     times, orders = zip(*((part.history.t, part.history.order) for part in parts), strict=True) if parts else ((), ())
     known = [np.abs(part.displaced) for part in parts if part.displaced is not None]

@@ -216,6 +216,7 @@ def _derived_state(kind: Kind, symbols: Symbols) -> Derived:
     """Return the rate of a state, in the row of that state, and its reported value."""
     e, element = symbols.element, kind.element
     if issubclass(element, SampledUpdate):
+        symbols.laws.clear()  # no step looks at them
         return Derived(0, 0, symbols, {"signal": [Entry(sp.sympify(e.formula), 0)]}, [])
     formula = sp.sympify(element.rate(e) if issubclass(element, StateEquation) else e.formula)
     value = sp.Matrix([formula])

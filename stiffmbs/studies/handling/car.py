@@ -217,6 +217,21 @@ def _set_roads(content: Any) -> None:
             _set_roads(value)
 
 
+OF_A_PRESSED_PEDAL = ("presses", "pressing", "force")
+
+
+def _brake_by(driver: dict[str, Any], use: Mapping[str, Any], content: dict[str, Any]) -> None:
+    """Let the driver press the pedal of a part `brakes`, if the car has one."""
+    for entry in use.values():
+        if isinstance(entry, dict) and entry.get("part") == "brakes":
+            kept = {
+                key: value for key, value in (entry.get("parameters") or {}).items() if key not in OF_A_PRESSED_PEDAL
+            }
+            entry.update(pedal="formula", parameters=kept)
+            driver["braking"] = "system"
+            content["variables"] = {**(content.get("variables") or {}), "braking": f"{DRIVER}.braking_force"}
+
+
 def _attach(content: dict[str, Any], car: Car, manoeuvre: Manoeuvre) -> None:
     own = content.pop("_driver", None) or {}
     mounts = {**car.wheels, **{f"{corner}_upright": upright for corner, upright in car.uprights.items()}}
@@ -229,6 +244,7 @@ def _attach(content: dict[str, Any], car: Car, manoeuvre: Manoeuvre) -> None:
         "parameters": parameters, "path": "course" if manoeuvre.path else "none", "pace": "given",
     }  # fmt: skip
     use = content.get("use") or {}
+    _brake_by(driver, use, content)
     content["use"] = {**use, DRIVER: driver}
     content["roads"] = {**(content.get("roads") or {}), ROAD: dict(manoeuvre.road or {"type": "flat"})}
     vehicle = {key: value for key, value in (content.get("vehicle") or {}).items() if key != "steering"}

@@ -106,7 +106,7 @@ bodies: {load: {mass: 3, inertia: 0.1}}
 joints: {held: {type: fixed, i: load, j: ground}, }
 states:
   weighed: {update: fy(held), period: 0.1 s, start: 0 N}
-  side: {update: "sign(t - 0.25 s)", period: 0.1 s}
+  side: {update: "sign(t - 0.25 s) + 0*tanh(load.y)", period: 0.1 s}
 """
     found = stiffmbs.run(stiffmbs.read_scene(scene), duration=0.5, output=0.05)
     assert found["weighed"][1:] == pytest.approx(np.full(10, 3 * 9.81))
@@ -159,3 +159,17 @@ def test_a_sample_without_a_value_stops_the_run_and_names_the_state():
     found = stiffmbs.run(scene, duration=3, output=0.01, rtol=1e-8)
     assert not found.success and found["block.x"][-1] < 0
     assert "the formula of the sampled state 'integral' has no finite value" in found.message
+
+
+def test_intervals_are_integrated_at_once_while_no_value_changes_that_acts():
+    """The controller acts after 1 s only; the count of samples, which nothing reads, is right at each output."""
+    text = SCENE.replace("kp*(goal - block.x) - 2*block.vx + integral", "'branch(t - 1, 0, 0, 40*(goal - block.x))'")
+    text = text.replace("integral + ki*Ts*(goal - block.x)", "integral + 1")
+    scene = stiffmbs.read_scene(text, [("Ts", "0.001"), ("Tf", "0.005")])
+    settings = {"output": 0.0025, "rtol": 1e-9, "solver": "projected", "scheme": "dop853"}
+    rest, whole = stiffmbs.run(scene, duration=1, **settings), stiffmbs.run(scene, duration=1.5, **settings)
+    assert rest.solver["steps"] < 150 < 200 < whole.solver["steps"], "steps of samples that act are 5 ms at most"
+    for found in (rest, whole):
+        assert found["integral"] == pytest.approx(np.ceil(found.time / 0.001 - 1e-6))
+    free = np.array([[0, 1], [-K / M, -C / M]])
+    assert rest["block.x"][-1] == pytest.approx((expm(free) @ [0.2, 0.3])[0], abs=1e-8)

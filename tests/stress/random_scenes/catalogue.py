@@ -104,6 +104,10 @@ WITHOUT: Mapping[str, str] = MappingProxyType(
             "it connects bodies that rotate or slide, and tests/model/parts/test_driveline_parts.py compares it with hand calculations",
         ),
         **dict.fromkeys(
+            ("brakes",),
+            "it brakes the wheels of a car, and tests/model/parts/test_brakes.py compares it with its formulas",
+        ),
+        **dict.fromkeys(
             ("air_spring", "hydromount", "viscoelastic_bushing"),
             "it carries a stated load, and tests/mechanisms/test_springs_of_vehicles.py compares it with its formula",
         ),
