@@ -67,10 +67,7 @@ def _note_without_mesh(
 ) -> Iterator[str]:
     """Yield a note by a slender beam of the same mass, moment of inertia and lowest frequency."""
     rate = float(np.linalg.norm(rows.u[:, motion + 3 : motion + 6], axis=1).max())
-    mass, length = (
-        float(numbers["modal_mass"][0]),
-        float(np.sqrt(12 * numbers["moments"].max() / numbers["modal_mass"][0])),
-    )
+    mass = float(numbers["modal_mass"][0])
     lowest = float(np.sqrt(numbers["stiffness"].min() / mass))
     forces = [
         np.linalg.norm(rows.values[:, [system.reported[f"{joint}.f{axis}"] for axis in "xyz"]], axis=1).max()

@@ -19,8 +19,8 @@ class RunCheckParameters:
     stiffened: float = 0.03
     """Geometric stiffness of a flexible body, relative to its elastic stiffness, from which a note appears."""
     of_second_order: float = 110.0
-    """Relative error of the deflection of a flexible body that is a clamped beam with a force at its end, over the square of
-    its root mean square deformation by its length. Source: meshes against exact beams."""
+    """Relative error of the deflection of a flexible body, over the square of its root mean square deformation by its
+    length. Source: meshes against exact beams, clamped and with a force at the end."""
     too_much: float = 0.01
     """This error from which a note appears."""
     open: float = 1e-6
