@@ -8,11 +8,12 @@ contains the values as constants; `values_in` is part of its cache key.
 from __future__ import annotations
 
 import importlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import fields, replace
 from functools import cache
+from operator import attrgetter
 from types import FunctionType, MappingProxyType
 from typing import Any, TypeVar, cast
 
@@ -70,16 +71,15 @@ _CHANGED: ContextVar[Mapping[str, Any]] = ContextVar("changed", default=MappingP
 
 
 class Tuned:
-    """Parameters of a subsystem, with the attributes of its dataclass."""
+    """Parameters of a subsystem, with the attributes of its dataclass; its fields are properties, which are read fast."""
 
     __slots__ = ("_defaults", "_name")
 
     def __init__(self, name: str, defaults: Any) -> None:
         self._name, self._defaults = name, defaults
 
-    def __getattr__(self, field: str) -> Any:
-        changed = _CHANGED.get()
-        return getattr(changed.get(self._name, self._defaults) if changed else self._defaults, field)
+    def __getattr__(self, name: str) -> Any:
+        return getattr(parameters_of(self), name)
 
     def __reduce__(self) -> tuple[Any, tuple[str]]:
         return _registered, (self._name,)
@@ -87,7 +87,17 @@ class Tuned:
 
 def tuned(name: str, defaults: Parameters) -> Parameters:
     """Register the default parameters of a subsystem; the result has their attributes, with the values in use."""
-    return cast("Parameters", Tuned(name, defaults))
+    readers = {field: property(_reader(attrgetter(field))) for field in defaults.__dataclass_fields__}  # type: ignore[attr-defined]
+    kind = type("Tuned", (Tuned,), {"__slots__": (), **readers})
+    return cast("Parameters", kind(name, defaults))
+
+
+def _reader(value: Callable[[Any], Any]) -> Callable[[Tuned], Any]:
+    def read(found: Tuned) -> Any:
+        changed = _CHANGED.get()
+        return value(changed.get(found._name, found._defaults) if changed else found._defaults)
+
+    return read
 
 
 def parameters_of(found: Any) -> Any:

@@ -30,8 +30,8 @@ functions and objects, values and pattern of the matrix, and reported unknowns; 
 Cells: times of the returned state and of IDA's internal state; size (0 before the first) and order of its last step,
 size of the next attempt; last stop time; output times served, tiny steps in succession, 1 if the last event was found
 within the step; steps in the history, steps since the last sample, position of the next one; time of the
-event functions in the state.  Address of rows for time, order, y and y' of each step (0 for none), rows written in
-this call, places within a step that have a row too."""
+event functions in the state.  Address of rows for time, order, y and y' of each step (0 for none), and rows written in
+this call.  Places within a step that have a row too."""
 
 STEP = "end", "order", "size"
 """Numbers in a row of the history: time of the end, s, order, and size of a step, s."""
