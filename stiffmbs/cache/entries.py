@@ -127,12 +127,7 @@ def _tell(note: str) -> None:
 class Folder:
     """Entries with the same dependencies.
 
-    Attributes
-    ----------
-    kind : str
-        First word of the folder's name.
-    tag : str
-        Digest of the dependencies of its entries apart from their names.
+    `kind`: first word of the folder's name. `tag`: digest of the dependencies of its entries apart from their names.
     """
 
     kind: str

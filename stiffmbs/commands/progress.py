@@ -68,12 +68,7 @@ class ProgressBar(Display):
     """Progress bar of a long run: stage, time reached, and time left.
 
     It is called with the time reached, and listens to the log records of the package for derivation, compilation,
-    assembly, and the size and order of steps.
-
-    Parameters
-    ----------
-    start, end : float
-        Start and end of the run, s.
+    assembly, and the size and order of steps. `start`, `end`: start and end of the run, s.
     """
 
     def __init__(self, start: float, end: float) -> None:
@@ -130,10 +125,7 @@ class ProgressBar(Display):
 class _Listener(logging.Handler):
     """Handler of log records that calls a function with each stage, and True if it is slow.
 
-    Attributes
-    ----------
-    step : str
-        Size and order of the last step, as text after the time; empty if unknown.
+    `step`: size and order of the last step, as text after the time; empty if unknown.
     """
 
     def __init__(self, tell: Callable[[str, bool], None]) -> None:

@@ -18,12 +18,8 @@ CLOCK = time.get_clock_info("process_time").resolution
 class LineAtError:
     """Choice of the measured points through which a line is laid about a target error.
 
-    Attributes
-    ----------
-    window : float
-        Largest ratio of a point's error to the target, either way.
-    fewest : int
-        Least number of points; with fewer in the window, the line runs between the two neighbours of the target.
+    `window`: largest ratio of a point's error to the target, either way. `fewest`: least number of points; with fewer
+    in the window, the line runs between the two neighbours of the target.
     """
 
     window: float = 10**1.5
@@ -98,12 +94,8 @@ def _finite(value: float) -> float | None:
 class AtError:
     """Run times at one error.
 
-    Attributes
-    ----------
-    seconds, steps : mappings of str to float
-        Values of each solver that reaches the error.
-    better : tuple of str
-        Solvers whose every setting is more accurate; their time is that of the fastest setting.
+    `seconds`, `steps`: values of each solver that reaches the error. `better`: solvers whose every setting is more
+    accurate; their time is that of the fastest setting.
     """
 
     error: float

@@ -50,12 +50,8 @@ class Crossing:
 class AtValue:
     """Measurements at one value of the parameter.
 
-    Attributes
-    ----------
-    at : AtError or None
-        Times at the error.
-    message : str
-        Reason why there are none, or the solvers that have none, with reasons; empty if all have one.
+    `at`: times at the error. `message`: reason why there are none, or the solvers that have none, with reasons; empty
+    if all have one.
     """
 
     value: float

@@ -32,14 +32,8 @@ ALL = "all"
 class Entry:
     """Solver configuration.
 
-    Attributes
-    ----------
-    settings : mapping of str to object
-        Settings that select it.
-    varied : str
-        Setting that controls its accuracy: ``rtol``, ``step``, or empty.
-    implicit, explicit : bool
-        Kind of its steps; both are False if it chooses between the kinds, or takes no steps.
+    `settings`: settings that select it. `varied`: setting that controls its accuracy: ``rtol``, ``step``, or empty.
+    `implicit`, `explicit`: kind of its steps; both are False if it chooses between the kinds, or takes no steps.
     """
 
     name: str
@@ -127,14 +121,8 @@ OF_SOLVERS = ("solver", "scheme", "formulation", "rtol", "step")
 class Plan:
     """Plan of a comparison.
 
-    Attributes
-    ----------
-    tolerances : tuple of float
-        Relative tolerances, the loosest first.
-    steps : tuple of float
-        Fixed steps, s, the longest first; empty for parts of the duration.
-    longest : float
-        Time limit of a run, s.
+    `tolerances`: relative tolerances, the loosest first. `steps`: fixed steps, s, the longest first; empty for parts of
+    the duration. `longest`: time limit of a run, s.
     """
 
     solvers: tuple[str, ...]

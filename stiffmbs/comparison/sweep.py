@@ -29,13 +29,7 @@ Found = TypeVar("Found")
 
 @dataclass(frozen=True)
 class Timing:
-    """Way in which solutions are timed.
-
-    Attributes
-    ----------
-    once : float
-        Time above which a solution is timed only once, s.
-    """
+    """Way in which solutions are timed. `once`: time above which a solution is timed only once, s."""
 
     once: float = 0.2
 

@@ -47,10 +47,7 @@ HEADERS = {
 class Guard:
     """ASGI application that refuses requests that do not come from the server's own page.
 
-    Parameters
-    ----------
-    app : ASGI application
-        Guarded application; its paths begin with the token.
+    `app`: guarded application; its paths begin with the token.
     """
 
     def __init__(self, app: ASGIApp, token: str, port: int) -> None:
@@ -118,14 +115,8 @@ OWN = {
 class Document:
     """Text of a scene and its file.
 
-    Attributes
-    ----------
-    file : Path or None
-        File that is read and saved.
-    text : str
-        Text of a scene without a file.
-    editable : bool
-        False for a model that no text describes.
+    `file`: file that is read and saved. `text`: text of a scene without a file. `editable`: false for a model that no
+    text describes.
     """
 
     file: Path | None

@@ -50,12 +50,8 @@ class NeedsConsent(InputError):
 class LiveSolver:
     """Solver of the text of one page.
 
-    Parameters
-    ----------
-    file : Path, optional
-        File of the scene; files that it names are relative to its folder.
-    model : ModelData, optional
-        A model in place of a text, which cannot be written as text.
+    `file`: file of the scene; files that it names are relative to its folder. `model`: a model in place of a text,
+    which cannot be written as text.
     """
 
     def __init__(self, file: Path | None = None, model: ModelData | None = None) -> None:

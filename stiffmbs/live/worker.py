@@ -39,13 +39,7 @@ class Newest:
 
 
 class Worker:
-    """Loop that answers the requests of a page, the newest first.
-
-    Parameters
-    ----------
-    send : callable
-        Function that sends an answer.
-    """
+    """Loop that answers the requests of a page, the newest first. `send`: function that sends an answer."""
 
     def __init__(self, solver: LiveSolver, send: Send) -> None:
         self._solver, self._send = solver, send

@@ -60,13 +60,7 @@ class Channel:
 
 
 class Process:
-    """Worker in a process of its own.
-
-    Parameters
-    ----------
-    file : Path, optional
-        File of the scene.
-    """
+    """Worker in a process of its own. `file`: file of the scene."""
 
     def __init__(self, file: Path | None, loop: asyncio.AbstractEventLoop) -> None:
         self.channel = Channel(loop)
@@ -125,13 +119,7 @@ class Thread:
 
 
 class Workers:
-    """Workers of all pages of a server.
-
-    Parameters
-    ----------
-    make : callable
-        Function that starts a worker.
-    """
+    """Workers of all pages of a server. `make`: function that starts a worker."""
 
     def __init__(self, make: Callable[[], Process | Thread]) -> None:
         self._make = make

@@ -105,11 +105,7 @@ def rotation(w: float, x: float, y: float, z: float) -> Matrix:
 class BodyFrame:
     """Centre of mass of a body with the body's own axes; each part is read when it is needed.
 
-    Parameters
-    ----------
-    read : callable
-        Returns channels of the body as a vector, given their names; ``0`` stands for zero.
-    planar : bool
+    `read`: returns channels of the body as a vector, given their names; ``0`` stands for zero.
     """
 
     def __init__(self, read: Callable[[str], tuple[float, ...]], planar: bool) -> None:
@@ -164,13 +160,8 @@ class GroundFrame(BodyFrame):
 class MarkerFrame:
     """Marker of a body.
 
-    Parameters
-    ----------
-    body : BodyFrame
-    point : tuple of float
-        From the centre of mass in the body's own axes, m.
-    orientation : tuple of float
-        Quaternion of the marker's axes in those of the body.
+    `point`: from the centre of mass in the body's own axes, m. `orientation`: quaternion of the marker's axes in those
+    of the body.
     """
 
     def __init__(self, body: BodyFrame, point: Vector, orientation: tuple[float, float, float, float]) -> None:

@@ -29,14 +29,9 @@ of turns is uncertain."""
 class JointAngles:
     """Angles of the joints of a spatial model within a turn, and the counters of their turns.
 
-    Attributes
-    ----------
-    places : mapping of str to (int, int, int)
-        Places of each angle, its rate and its acceleration in the values of the output terms, by channel.
-    counters : mapping of str to int
-        Coordinate that counts the turns of some angles, by channel.
-    start : mapping of str to float
-        Known angles at the first instant, by channel; others begin in the turn around zero.
+    `places`: places of each angle, its rate and its acceleration in the values of the output terms, by channel.
+    `counters`: coordinate that counts the turns of some angles, by channel. `start`: known angles at the first instant,
+    by channel; others begin in the turn around zero.
     """
 
     places: Mapping[str, tuple[int, ...]]

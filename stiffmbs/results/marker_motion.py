@@ -21,13 +21,8 @@ Channels = Mapping[str, np.ndarray]
 class MarkerMotion:
     """Motion of a marker over time in ground axes, one row per instant.
 
-    Attributes
-    ----------
-    point, velocity, acceleration : ndarray, shape (n, 3)
-    orientation : ndarray, shape (n, 4)
-        Quaternion of its axes.
-    omega, alpha : ndarray, shape (n, 3)
-        Angular velocity and acceleration.
+    `point`, `velocity`, `acceleration` of shape (n, 3). `orientation` of shape (n, 4): quaternion of its axes. `omega`,
+    `alpha` of shape (n, 3): angular velocity and acceleration.
     """
 
     point: np.ndarray

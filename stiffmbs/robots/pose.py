@@ -15,14 +15,8 @@ from .robot import Link, LinkJoint, Robot
 class Placed:
     """Frame in the world with its velocity.
 
-    Attributes
-    ----------
-    position : ndarray, shape (3,)
-        m.
-    orientation : tuple of float
-        Quaternion, scalar first.
-    velocity, omega : ndarray, shape (3,)
-        Velocity of its origin, m/s, and angular velocity, rad/s; both in ground axes.
+    `position` of shape (3,): m. `orientation`: quaternion, scalar first. `velocity`, `omega` of shape (3,): velocity of
+    its origin, m/s, and angular velocity, rad/s; both in ground axes.
     """
 
     position: np.ndarray

@@ -142,12 +142,8 @@ class Relation:
 class Connection:
     """Loop closure between two links (None: the world): by a ball joint, or rigidly.
 
-    Attributes
-    ----------
-    point, other_point : tuple of float
-        Each in its link's frame, m.
-    orientation : tuple of float or None
-        Orientation of the other link's frame in the first one's if rigid; None for a ball joint.
+    `point`, `other_point`: each in its link's frame, m. `orientation`: orientation of the other link's frame in the
+    first one's if rigid; None for a ball joint.
     """
 
     name: str
@@ -160,15 +156,7 @@ class Connection:
 
 @dataclass(frozen=True)
 class Robot:
-    """Links, each after its parent, with actuators and constraints.
-
-    Attributes
-    ----------
-    gravity : tuple of float
-        m/s^2.
-    notes : tuple of str
-        Omitted content.
-    """
+    """Links, each after its parent, with actuators and constraints. `gravity`: m/s^2. `notes`: omitted content."""
 
     name: str
     links: tuple[Link, ...]

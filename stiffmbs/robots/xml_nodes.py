@@ -14,14 +14,8 @@ from .robot import RobotFault
 class Node:
     """Element of an XML file.
 
-    Parameters
-    ----------
-    kind : str
-        Tags from the root to the element, separated by ``/``.
-    owner : str
-        Name of the nearest named element.
-    defaults : mapping of str to (mapping of str to Any)
-        Values without effect, by kind.
+    `kind`: tags from the root to the element, separated by ``/``. `owner`: name of the nearest named element.
+    `defaults`: values without effect, by kind.
     """
 
     def __init__(

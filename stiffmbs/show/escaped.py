@@ -40,13 +40,7 @@ def _escape(found: re.Match[str]) -> str:
 
 
 class EscapingStream:
-    """Text stream that escapes its text and gives no access to its bytes.
-
-    Parameters
-    ----------
-    stream : file object
-        Text stream.
-    """
+    """Text stream that escapes its text and gives no access to its bytes. `stream`: text stream."""
 
     def __init__(self, stream: Any) -> None:
         self.rich_proxied_file = stream

@@ -39,12 +39,8 @@ MOST_WORDS = 1000
 class Task:
     """Data that all cases of a study share; it can be pickled.
 
-    Attributes
-    ----------
-    names : tuple of str
-        Varied parameters or paths, as `stiffmbs.load_scene` changes them.
-    settings : mapping
-        Settings of the run that all cases share.
+    `names`: varied parameters or paths, as `stiffmbs.load_scene` changes them. `settings`: settings of the run that all
+    cases share.
     """
 
     scene: WrittenScene

@@ -22,15 +22,8 @@ MOST_KEPT = 1000
 class FollowedTurns:
     """Continuous angles of the spatial joints whose turns the integration does not count.
 
-    They follow from the rates at the ends of all steps, as in a run with these output times.
-
-    Parameters
-    ----------
-    t : float
-        Start, s.
-    q, u : ndarrays, shapes (n_q,), (n_u,)
-    known : mapping of str to float
-        Channels at the start, with angles in their turns.
+    They follow from the rates at the ends of all steps, as in a run with these output times. `t`: start, s. `known`:
+    channels at the start, with angles in their turns.
     """
 
     def __init__(self, job: Job, t: float, q: np.ndarray, u: np.ndarray, known: Mapping[str, float]) -> None:
@@ -74,19 +67,9 @@ Linear = list[tuple[np.ndarray, int, float, float]]
 class InputNumbers:
     """Numbers of a compiled model that depend on inputs.
 
-    Parameters
-    ----------
-    job : Job
-        Job whose forces have the inputs.
-    solver : CaseSolver
-        Solver of the scene with these inputs.
-    values : mapping of str to float
-        Inputs, parameters or paths of the scene, with their initial values.
-
-    Raises
-    ------
-    InputError
-        If an input changes more than numbers of forces.
+    `job`: job whose forces have the inputs. `solver`: solver of the scene with these inputs. `values`: inputs,
+    parameters or paths of the scene, with their initial values. Raises InputError if an input changes more than numbers
+    of forces.
     """
 
     def __init__(self, job: Job, solver: CaseSolver, values: Mapping[str, float]) -> None:

@@ -107,12 +107,7 @@ def _part(name: str, one: Range, value: float | None) -> float:
 class Gradients:
     """Derivatives of outputs; data common to all points is read and compiled once.
 
-    Parameters
-    ----------
-    texts : sequence of str
-        Outputs, formulas of channels.
-    times : ndarray, optional
-        Output instants that replace those of the settings.
+    `texts`: outputs, formulas of channels. `times`: output instants that replace those of the settings.
     """
 
     def __init__(

@@ -29,15 +29,7 @@ PART, FINEST = 0.01, 1e-12
 class StartedSteps:
     """Restarts of IDA, each with the steps to the next instant, in one compiled call if possible.
 
-    Parameters
-    ----------
-    q, u : ndarrays
-        Memory of the current state.
-
-    Attributes
-    ----------
-    compiled : Restarts or None
-        Compiled restarts.
+    `q`, `u`: memory of the current state. `compiled`: compiled restarts.
     """
 
     def __init__(self, job: Job, q: np.ndarray, u: np.ndarray) -> None:
@@ -90,13 +82,7 @@ def _finer(settings: RunSettings) -> RunSettings:
 
 
 class Stepper(Protocol):
-    """Stepper from consistent values.
-
-    Attributes
-    ----------
-    q, u : ndarrays
-        Current state, overwritten by each step.
-    """
+    """Stepper from consistent values. `q`, `u`: current state, overwritten by each step."""
 
     q: np.ndarray
     u: np.ndarray
@@ -125,13 +111,7 @@ class ImplicitSteps:
     """IDA's own steps, as long as in one run, with interpolation in the last step.
 
     After a jump of inputs, IDA ends a step at the end of the first simulation step, as inputs mostly jump again there.
-
-    Parameters
-    ----------
-    integrator : Integrator
-        Integrator with the native engine.
-    t : float
-        Time, s.
+    `integrator`: integrator with the native engine. `t`: time, s.
     """
 
     def __init__(self, job: Job, integrator: Integrator, start: InitialValues, t: float) -> None:
@@ -191,13 +171,7 @@ class ImplicitSteps:
 
 
 class ShortRuns:
-    """Runs from each instant to the next, by a solver without history.
-
-    Parameters
-    ----------
-    t : float
-        Time, s.
-    """
+    """Runs from each instant to the next, by a solver without history. `t`: time, s."""
 
     def __init__(self, job: Job, start: InitialValues, t: float) -> None:
         self._job, self._start, self._t = job, start, t

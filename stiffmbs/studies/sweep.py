@@ -39,13 +39,7 @@ StudyProgress = Callable[[int, int, float], None]
 
 @dataclass(frozen=True)
 class Study:
-    """Study that is ready to be solved.
-
-    Attributes
-    ----------
-    time : ndarray
-        Output instants of series, s.
-    """
+    """Study that is ready to be solved. `time`: output instants of series, s."""
 
     task: Task
     cases: Cases

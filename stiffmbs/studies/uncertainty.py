@@ -15,11 +15,8 @@ ROUNDS = 4
 class Uncertainty:
     """Uncertainty of p parameters.
 
-    Attributes
-    ----------
-    covariance : ndarray, shape (p, p)
-    freedom : ndarray, shape (p,)
-        Degrees of freedom of each parameter's variance, for Student's distribution.
+    `covariance` of shape (p, p). `freedom` of shape (p,): degrees of freedom of each parameter's variance, for
+    Student's distribution.
     """
 
     covariance: np.ndarray

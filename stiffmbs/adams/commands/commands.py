@@ -53,12 +53,7 @@ CHANGED = {
 class Segment:
     """Simulation, with the dataset changes made by the commands before it.
 
-    Attributes
-    ----------
-    changes : Changes
-        All changes so far.
-    settings : mapping of str to float
-        Run settings: ``rtol``, and ``max_step`` in the dataset's units.
+    `changes`: all changes so far. `settings`: run settings: ``rtol``, and ``max_step`` in the dataset's units.
     """
 
     simulation: Simulation
@@ -70,14 +65,8 @@ class Segment:
 class Commands:
     """Content of a command file.
 
-    Attributes
-    ----------
-    segments : tuple of Segment
-        One for each simulation except those of initial conditions, from which every run starts.
-    changes : Changes
-        All changes of the dataset.
-    notes : tuple of str
-        One sentence for each ignored command.
+    `segments`: one for each simulation except those of initial conditions, from which every run starts. `changes`: all
+    changes of the dataset. `notes`: one sentence for each ignored command.
     """
 
     segments: tuple[Segment, ...] = ()

@@ -20,15 +20,7 @@ CURVES = {"akima": "AKISPL", "lines": "INTERP", "not-a-knot": "CUBSPL"}
 
 
 class Numbering:
-    """Numbering of parts, markers and splines.
-
-    Parameters
-    ----------
-    model : SpatialData
-        The scene.
-    left_out : collection of str
-        Bodies that are not exported.
-    """
+    """Numbering of parts, markers and splines. `model`: the scene. `left_out`: bodies that are not exported."""
 
     def __init__(self, model: SpatialData, left_out: Collection[str] = ()) -> None:
         self._model, self._left_out = model, left_out

@@ -122,14 +122,8 @@ SAMPLES = 400
 class Touching:
     """Closest contact candidate of two curves, in ground axes.
 
-    Attributes
-    ----------
-    point, tangent : ndarray, shape (3,)
-        Midpoint between the curves, m, and unit tangent of the second curve.
-    apart : float
-        Distance between the curves, m.
-    size : float
-        Size of the smaller curve, m.
+    `point`, `tangent` of shape (3,): midpoint between the curves, m, and unit tangent of the second curve. `apart`:
+    distance between the curves, m. `size`: size of the smaller curve, m.
     """
 
     point: np.ndarray

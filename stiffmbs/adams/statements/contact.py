@@ -71,12 +71,8 @@ class Contact(Numbered):
 class Shape:
     """Solid at a marker, or the xy plane of a marker, in the dataset's units.
 
-    Attributes
-    ----------
-    marker : int
-        Centre of a sphere or an ellipsoid, centre of one end of a cylinder about z, or a corner of a box.
-    sizes : tuple of float
-        Sphere: radius; ellipsoid: semi-axes; cylinder: radius and length along z; box: edge lengths.
+    `marker`: centre of a sphere or an ellipsoid, centre of one end of a cylinder about z, or a corner of a box.
+    `sizes`: sphere: radius; ellipsoid: semi-axes; cylinder: radius and length along z; box: edge lengths.
     """
 
     sort: str

@@ -15,12 +15,8 @@ from .units import Units
 class SingleForce(Numbered):
     """Force along the line between two markers, or torque about the z axis of the second.
 
-    Attributes
-    ----------
-    sort : str
-        Rotational or translational.
-    action_only : bool
-        True if there is no reaction on the second marker's part; a force then acts along that marker's z axis.
+    `sort`: rotational or translational. `action_only`: true if there is no reaction on the second marker's part; a
+    force then acts along that marker's z axis.
     """
 
     i: int

@@ -14,12 +14,8 @@ from .units import Units
 class Differential(Numbered):
     """State with an explicit or implicit differential equation.
 
-    Attributes
-    ----------
-    function : Function
-        Rate per unit of time of the dataset; for an implicit equation a residual with the rate as DIF1.
-    start_of_rate : float
-        Initial guess of the rate of an implicit equation.
+    `function`: rate per unit of time of the dataset; for an implicit equation a residual with the rate as DIF1.
+    `start_of_rate`: initial guess of the rate of an implicit equation.
     """
 
     function: Function

@@ -29,14 +29,8 @@ _LINE_COMMA = "\x00"
 class Subsystem:
     """Part of a statement between two top-level commas.
 
-    Attributes
-    ----------
-    line : int
-        First line in the file.
-    on_new_line : bool
-        True if its comma starts a continuation line.
-    ended : bool
-        True if it ends with a backslash.
+    `line`: first line in the file. `on_new_line`: true if its comma starts a continuation line. `ended`: true if it
+    ends with a backslash.
     """
 
     text: str

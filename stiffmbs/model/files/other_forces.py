@@ -29,12 +29,8 @@ NOT_AS_WRITTEN = ("use", "stages", OPTIONS, CHOOSE)
 class OtherForces:
     """Scenes with other values of some parameters and of some fields of forces.
 
-    Parameters
-    ----------
-    names : sequence of str
-        Paths of the varied values, as for `stiffmbs.load_scene`.
-    unchanged : Unchanged
-        Record of a scene of the same content that was already validated.
+    `names`: paths of the varied values, as for `stiffmbs.load_scene`. `unchanged`: record of a scene of the same
+    content that was already validated.
     """
 
     def __init__(self, written: WrittenScene, names: Sequence[str], unchanged: Unchanged) -> None:

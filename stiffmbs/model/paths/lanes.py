@@ -22,15 +22,7 @@ USED = 0.3
 
 @dataclass(frozen=True)
 class Lane:
-    """Straight lane between two rows of cones.
-
-    Attributes
-    ----------
-    start, end : float
-        Along x, m.
-    right, left : float
-        Boundaries along y, m.
-    """
+    """Straight lane between two rows of cones. `start`, `end`: along x, m. `right`, `left`: boundaries along y, m."""
 
     start: float
     end: float

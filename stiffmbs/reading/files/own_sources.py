@@ -48,10 +48,7 @@ def digests_of_code(found: Iterable[Any]) -> dict[str, str]:
 class _Walk:
     """Classes and functions that are reachable from given ones, each visited once.
 
-    Attributes
-    ----------
-    parts : dict of str to list of str
-        Texts from which the digest of each source file, or of a module without one, is computed.
+    `parts`: texts from which the digest of each source file, or of a module without one, is computed.
     """
 
     def __init__(self, found: Iterable[Any]) -> None:

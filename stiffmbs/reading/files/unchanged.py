@@ -21,12 +21,7 @@ _NAME = re.compile(r"[A-Za-z_]\w*")
 class Unchanged:
     """Validated entries of the first reading of a scene.
 
-    Attributes
-    ----------
-    scene : Scene or None
-        None before the first reading.
-    context : mapping
-        Validation context of its entries.
+    `scene`: none before the first reading. `context`: validation context of its entries.
     """
 
     def __init__(self) -> None:

@@ -22,14 +22,8 @@ SAME_EXPONENT = 1e-9
 class Known:
     """Known dimension of a part of a formula.
 
-    Attributes
-    ----------
-    exponents : tuple of float, or None
-        Exponents of kg, m and s, with plain numbers as dimensionless; None if unknown.
-    stated : bool
-        True if the part contains a unit.
-    plain : bool
-        True if it contains a plain number.
+    `exponents`: exponents of kg, m and s, with plain numbers as dimensionless; None if unknown. `stated`: true if the
+    part contains a unit. `plain`: true if it contains a plain number.
     """
 
     exponents: Dimension | None

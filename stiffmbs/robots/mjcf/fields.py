@@ -80,10 +80,7 @@ REASONS: Mapping[str, Mapping[str, str]] = {
 class RequestedModel:
     """Compiled model with a record of the requested entries of its arrays.
 
-    Attributes
-    ----------
-    requested : set of (str, int or None)
-        Names of arrays with the index of an entry, None for all; options as ``opt.`` and their name.
+    `requested`: names of arrays with the index of an entry, None for all; options as ``opt.`` and their name.
     """
 
     def __init__(self, model: Any) -> None:

@@ -55,12 +55,8 @@ class Seat:
 class Hold:
     """Joint of the robot in the scene.
 
-    Attributes
-    ----------
-    name : str
-        Name of the scene's joint.
-    i, j : str
-        Markers on the child and the parent side; their z axes are the joint's, and they coincide at the joint's zero.
+    `name`: name of the scene's joint. `i`, `j`: markers on the child and the parent side; their z axes are the joint's,
+    and they coincide at the joint's zero.
     """
 
     joint: LinkJoint

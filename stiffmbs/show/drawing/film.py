@@ -29,12 +29,7 @@ FAINT = 0.4
 class Pace:
     """Time scale and picture rate of a film.
 
-    Attributes
-    ----------
-    speed : float
-        Seconds of the model per second of the film.
-    rate : float
-        Pictures per second of the film.
+    `speed`: seconds of the model per second of the film. `rate`: pictures per second of the film.
     """
 
     speed: float = 1.0

@@ -32,10 +32,7 @@ MARK_WORDS = {"redundant": "redundant equations", "not unique": "force not uniqu
 class Shown:
     """Options of a picture in addition to bodies and symbols.
 
-    Attributes
-    ----------
-    forces : bool, optional
-        True for arrows of the forces of joints and force elements, to scale; by default in the plane alone.
+    `forces`: true for arrows of the forces of joints and force elements, to scale; by default in the plane alone.
     """
 
     names: bool = True

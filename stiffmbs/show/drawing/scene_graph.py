@@ -47,14 +47,7 @@ class Solid:
 
 @dataclass(frozen=True, eq=False)
 class Line:
-    """A line through points.
-
-    Attributes
-    ----------
-    points : ndarray, shape (n, 3)
-    width : float
-        Width relative to an ordinary line.
-    """
+    """A line through points. `points` of shape (n, 3). `width`: width relative to an ordinary line."""
 
     points: np.ndarray
     width: float = 1.0
@@ -97,12 +90,8 @@ class Anchor:
 class Link:
     """Symbol stretched between two points, such as a spring.
 
-    Attributes
-    ----------
-    profiles : tuple of ndarray, shape (n, 3)
-        Lines: the fraction of the distance from i to j, and two distances across it, m.
-    width : float
-        Width of the lines, relative to an ordinary one.
+    `profiles` of shape (n, 3): lines: the fraction of the distance from i to j, and two distances across it, m.
+    `width`: width of the lines, relative to an ordinary one.
     """
 
     owner: str

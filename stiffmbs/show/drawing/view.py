@@ -14,13 +14,7 @@ ISOMETRIC = math.degrees(math.asin(math.tan(math.radians(30))))
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """Parallel projection.
-
-    Attributes
-    ----------
-    axes : ndarray, shape (3, 3)
-        Rows: to the right, up, and towards the viewer.
-    """
+    """Parallel projection. `axes` of shape (3, 3): rows: to the right, up, and towards the viewer."""
 
     axes: np.ndarray
 

@@ -47,10 +47,7 @@ def of_whole_time(text: str) -> bool:
 class Dual:
     """Value with its derivatives; a series has them only at the required instants.
 
-    Attributes
-    ----------
-    value : float or ndarray, shape (n,)
-    slope : ndarray, shape (directions,) or (n, directions)
+    `value` of shape (n,). `slope` of shape (directions,) or (n, directions).
     """
 
     value: Any

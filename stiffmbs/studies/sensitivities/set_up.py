@@ -34,15 +34,8 @@ HELD = ("dimensions", "gravity", "markers", "states", "inputs", "roads")
 class SetUp:
     """Derivatives of the set-up of a job by one parameter.
 
-    Parameters
-    ----------
-    job : Job
-        Job of the unchanged scene.
-
-    Raises
-    ------
-    InputError
-        If the parameter changes the structure of the model, or neither a larger nor a smaller value is valid.
+    `job`: job of the unchanged scene. Raises InputError if the parameter changes the structure of the model, or neither
+    a larger nor a smaller value is valid.
     """
 
     def __init__(self, job: Job, parameter: Parameter) -> None:

@@ -18,12 +18,8 @@ LEVEL = 1e-6
 class SteeringAxis:
     """Axis of a motion.
 
-    Attributes
-    ----------
-    direction : ndarray, shape (3,)
-        Unit vector, upwards.
-    arm : ndarray, shape (3,)
-        Vector from the centre of the wheel to the nearest point of the axis, m.
+    `direction` of shape (3,): unit vector, upwards. `arm` of shape (3,): vector from the centre of the wheel to the
+    nearest point of the axis, m.
     """
 
     direction: np.ndarray

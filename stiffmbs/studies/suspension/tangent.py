@@ -50,16 +50,7 @@ class Twist:
 
 
 class Tangent:
-    """Linearised equilibrium at the current pose of a system.
-
-    Parameters
-    ----------
-    model : ModelData
-    dynamics : Dynamics
-        At an equilibrium.
-    t : float
-        s.
-    """
+    """Linearised equilibrium at the current pose of a system. `dynamics`: at an equilibrium. `t`: s."""
 
     def __init__(self, model: ModelData, dynamics: Dynamics, t: float) -> None:
         known = balance_at(dynamics, t, at_rest(3))
