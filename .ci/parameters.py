@@ -3,6 +3,11 @@
     python .ci/parameters.py [CHECKOUT] [--list PACKAGE]
 
 CHECKOUT is the folder of another version; this one by default.  ``--list`` prints the names of one package.
+
+A parameter is a number, or a tuple of numbers, that a person chose.  Two kinds of numbers are counted in columns of their own,
+and are not among the parameters: tables, which are mappings, and collections of collections (coefficients and units of a
+standard, vertices of elements, layouts of memory, values of examples), and neutral defaults of fields, 0 or 1, of data that
+have no such part (a mass of zero, a factor of one).
 """
 
 from __future__ import annotations
@@ -22,8 +27,11 @@ class Parameter(NamedTuple):
 
     file: Path
     name: str
-    in_class: bool
+    column: str
     numbers: int
+
+
+COLUMNS = ("of modules", "of classes", "of tables", "neutral")
 
 
 def numbers_in(value: ast.expr | None) -> int:
@@ -57,9 +65,23 @@ def parameters(file: Path) -> Iterator[Parameter]:
 
 def _of_assignment(file: Path, owner: str, target: ast.expr, value: ast.expr | None) -> Iterator[Parameter]:
     numbers = numbers_in(value)
-    if numbers:
+    if value is not None and numbers:
         name = ast.unparse(target)
-        yield Parameter(file, f"{owner}.{name}" if owner else name, bool(owner), numbers)
+        column = "of tables" if is_table(value) else "neutral" if owner and is_neutral(value) else COLUMNS[bool(owner)]
+        yield Parameter(file, f"{owner}.{name}" if owner else name, column, numbers)
+
+
+def is_table(value: ast.expr) -> bool:
+    """Return True for a mapping, and for a collection of collections."""
+    nested = ast.Tuple | ast.List | ast.Set | ast.Dict
+    return isinstance(value, ast.Dict) or (isinstance(value, nested) and any(isinstance(x, nested) for x in value.elts))
+
+
+def is_neutral(value: ast.expr) -> bool:
+    """Return True for 0 and 1, and for tuples of them."""
+    if isinstance(value, ast.Tuple):
+        return all(map(is_neutral, value.elts))
+    return isinstance(value, ast.Constant) and value.value in (0, 1)
 
 
 def main() -> None:
@@ -69,18 +91,19 @@ def main() -> None:
     parser.add_argument("--list", metavar="PACKAGE", help="print the names of a package")
     asked = parser.parse_args()
     root = asked.checkout.resolve() / NAME
-    of_modules: Counter[str] = Counter()
-    of_classes: Counter[str] = Counter()
+    counts = {column: Counter[str]() for column in COLUMNS}
     for file in sorted(root.glob("**/*.py")):
         place = file.relative_to(root)
         package = place.parts[0] if len(place.parts) > 1 else "(top level)"
         for parameter in parameters(file):
-            (of_classes if parameter.in_class else of_modules)[package] += parameter.numbers
+            counts[parameter.column][package] += parameter.numbers
             if asked.list == package:
-                print(f"{place}: {parameter.name}" + (f" ({parameter.numbers})" if parameter.numbers > 1 else ""))
-    for package in sorted({*of_modules, *of_classes}):
-        print(f"{package:16} {of_modules[package]:5} of modules {of_classes[package]:5} of classes")
-    print(f"{'total':16} {of_modules.total():5} of modules {of_classes.total():5} of classes")
+                numbers = f" ({parameter.numbers})" if parameter.numbers > 1 else ""
+                print(f"{place}: {parameter.name}{numbers} {parameter.column}")
+    for package in sorted(set().union(*counts.values())):
+        print(f"{package:22}", "".join(f"{own[package]:6} {column}" for column, own in counts.items()))
+    print(f"{'total':22}", "".join(f"{own.total():6} {column}" for column, own in counts.items()))
+    print(f"parameters: {sum(counts[column].total() for column in COLUMNS[:2])}, of modules and of classes")
 
 
 if __name__ == "__main__":

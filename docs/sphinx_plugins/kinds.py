@@ -208,7 +208,7 @@ def short_signature(
 
 
 def write_schema(app: Sphinx, error: Exception | None) -> None:
-    """Put the JSON schema of scenes beside the pages, for editors."""
+    """Put the JSON schema of scenes next to the pages, for editors."""
     if error is None and app.builder.format == "html":
         Path(app.outdir, "scene.schema.json").write_text(
             json.dumps(stiffmbs.scene_schema(), indent=2), encoding="utf-8"

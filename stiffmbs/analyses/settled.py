@@ -18,11 +18,10 @@ from ..linear_analysis.eigenvalues import eigen
 from ..linear_analysis.stability import lowest
 from ..linear_analysis.state_space import state_matrix
 from ..linear_analysis.tangent_space import linearised
+from ..results.scales import ROUNDING
 
 MOST_FOR_EIGENVALUES = 1500
 """Largest number of velocities for eigenvalues (dense matrices)."""
-SYMMETRIC = 1e-9
-"""Asymmetry of a stiffness matrix, relative to its largest entry, that counts as rounding."""
 BRANCH = 1e-3
 """Move along an unstable direction, relative to the mechanism's size, or rad, from which a stable pose is sought."""
 MOST_BRANCHES = 3
@@ -83,7 +82,7 @@ def settled(dynamics: Dynamics, start: InitialValues, t: float) -> Settled:
             return _settled(found, start, notes)
         found = next(pose for pose in poses if pose is not None)
         state.q[:] = found.q
-    return _settled(found, start, [*notes, "the pose found is unstable too: no stable equilibrium was found beside it"])
+    return _settled(found, start, [*notes, "the pose found is unstable too: no stable equilibrium was found near it"])
 
 
 def moving_in_equilibrium(dynamics: Dynamics, start: InitialValues, t: float) -> InitialValues:
@@ -159,7 +158,7 @@ def _is_conservative(dynamics: Dynamics, t: float) -> bool:
     stiffness = balance_at(dynamics, t, at_rest(dynamics.system.of_body.dimensions)).stiffness
     if np.any(forces_by_velocity(dynamics).data):
         return False
-    return bool(abs(stiffness - stiffness.T).max() <= SYMMETRIC * abs(stiffness).max())
+    return bool(abs(stiffness - stiffness.T).max() <= ROUNDING * abs(stiffness).max())
 
 
 def _directions(dynamics: Dynamics, t: float) -> tuple[np.ndarray | None, list[str]]:
@@ -206,7 +205,7 @@ def _branch_sentence(dynamics: Dynamics, direction: np.ndarray, poses: list[Equi
     label = _name(dynamics, direction / scale)
     count = sum(pose is not None for pose in poses)
     if not count:
-        return f"the equilibrium is unstable in {label}, and no stable one was found beside it"
+        return f"the equilibrium is unstable in {label}, and no stable one was found near it"
     return (
         f"an equilibrium on the way is unstable in {label}: {count} lead{'s' if count == 1 else ''} away from it, "
         f"this is the one towards {'positive' if poses[0] is not None else 'negative'} {label}"

@@ -118,8 +118,8 @@ def _stability(values: np.ndarray | None, n_u: int) -> str:
         return f"whether the steady motion is stable was not looked at: {reason}"
     fastest = float(np.max(values.real, initial=0.0))
     if fastest > GROWING * np.max(np.abs(values), initial=0.0):
-        return f"the steady motion is unstable: motions beside it grow at {fastest:.3g} 1/s"
-    return "no small motion beside the steady one grows"
+        return f"the steady motion is unstable: motions near it grow at {fastest:.3g} 1/s"
+    return "no small motion near the steady one grows"
 
 
 def _motion(model: ModelData, dynamics: Dynamics, start: InitialValues, described: Described) -> SteadyMotion:

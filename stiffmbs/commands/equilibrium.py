@@ -37,9 +37,9 @@ if TYPE_CHECKING:
     help="Seek it on circles: an angular velocity, rad/s, or found; in space about the vertical, or WX,WY,WZ.",
 )
 @click.option("--about", help="A point of the axis of the rotation: X,Y or X,Y,Z, m; the origin without it.")
-@click.option("--rolling", multiple=True, metavar="BODY", help="A body that rolls, or spins as described, besides.")
+@click.option("--rolling", multiple=True, metavar="BODY", help="A further body that rolls, or spins as described.")
 @click.option(
-    "--speed", type=click.Choice(["given", "found"]), help="Whether forces tell how fast it goes along --velocity."
+    "--speed", type=click.Choice(["given", "found"]), help="Whether the forces determine the speed along --velocity."
 )
 @state_options
 @solving_options

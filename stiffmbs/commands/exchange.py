@@ -104,7 +104,7 @@ def _coordinate(text: str) -> tuple[str, float]:
         raise InputError(f"--at: found '{text}', expected JOINT=VALUE with a number") from None
 
 
-@click.command(short_help="Results beside another program's listing.")
+@click.command(short_help="Results compared with another program's listing.")
 @click.argument("results")
 @click.argument("listing")
 @click.option(

@@ -35,7 +35,7 @@ def runs_of(source: str, others: Sequence[Path], options: dict[str, Any]) -> dic
     if source.endswith(RESULTS):
         changed = changes_of(options)
         if changed:
-            raise InputError(f"{source}: found results beside --{changed[0][0]}, expected a scene to solve")
+            raise InputError(f"{source}: found results with --{changed[0][0]}, expected a scene to solve")
         paths = [Path(source), *others]
         runs = loaded_runs(paths)
         return runs if others else {"": next(iter(runs.values()))}

@@ -108,7 +108,7 @@ def examples_folder() -> Path:
     for file in recorded:
         if file.parts[-len(INSTALLED_IN) - 1 : -1] == INSTALLED_IN:
             return Path(str(file.locate())).resolve().parent
-    raise InputError("found no examples beside the package, expected them where 'pip install' puts them")
+    raise InputError("found no examples next to the package, expected them where 'pip install' puts them")
 
 
 def scene_files() -> dict[str, Path]:

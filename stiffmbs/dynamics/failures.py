@@ -16,7 +16,7 @@ FAILURES = {
     SINGULAR: "the constraint equations depend on each other",
     NO_CONVERGENCE: "the positions could not be brought back to the constraints",
     NOT_FINITE: "an equation or an acceleration has no finite value",
-    NOT_FINITE_WITHIN: "an equation or an acceleration has no finite value beside the motion, within the last step",
+    NOT_FINITE_WITHIN: "an equation or an acceleration has no finite value near the motion, within the last step",
     NO_BALANCE: "friction and the reactions that press it find no unique balance (a joint jams, or there is too much friction)",
     NO_STATE: "the equations of algebraic states have no solution near their last values",
     NO_MEMORY: "there is too little memory for the factors of the block system; give fewer bodies, or close other programs",

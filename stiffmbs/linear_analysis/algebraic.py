@@ -58,7 +58,7 @@ def algebraic_of(is_algebraic: np.ndarray, by_states: np.ndarray, rate_by_states
     sizes = np.linalg.norm(own, axis=1)[:, None]
     if own.size and not (np.all(sizes > 0) and np.linalg.cond(own / sizes) < SINGULAR):
         raise SolverError(
-            "the algebraic states have no unique values beside this state, expected formulas that change with them"
+            "the algebraic states have no unique values near this state, expected formulas that change with them"
         )
     return Algebraic(
         is_algebraic,

@@ -29,7 +29,7 @@ MOST_INSTANTS = 400
 """Largest number of instants of a band."""
 PAGES = (".html", ".report.html")
 Tell = Callable[[dict[str, Any]], None]
-"""Function that tells the page about progress."""
+"""Function that reports progress to the page."""
 
 
 class Request:

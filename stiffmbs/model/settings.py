@@ -167,7 +167,7 @@ class RunSettings(Described):
         if spacing < least:
             raise ValueError(
                 f"found output points {spacing:.3g} s apart at t = {self.start:.6g} s, expected {least:.3g} s or more: numbers of 16 "
-                "digits tell shorter times no longer apart there"
+                "digits do not distinguish shorter times there"
             )
         return self
 
@@ -203,9 +203,9 @@ class SteadyMotion(Described):
     about: tuple[si.Length, ...] = Field(
         (), description="a point of the axis of the rotation, m; the origin without it"
     )
-    rolling: tuple[str, ...] = Field((), description="bodies that spin about their axis of symmetry besides")
+    rolling: tuple[str, ...] = Field((), description="bodies that spin about their axis of symmetry too")
     speed: Literal["given", "found"] = Field(
-        "given", description="whether forces tell how fast it goes along `velocity`"
+        "given", description="whether the forces determine the speed along `velocity`"
     )
 
 

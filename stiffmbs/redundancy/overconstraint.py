@@ -195,7 +195,7 @@ def _remedy(
     told = [f"{', or '.join(ways)}, {what} are statically determinate"] if ways else []
     if elastic:
         told.append(
-            f"with {_elastic_words(elastic)}, stiffness decides how {what} are shared; one elastic joint beside rigid ones "
+            f"with {_elastic_words(elastic)}, stiffness decides how {what} are shared; one elastic joint next to rigid ones "
             "that hold the same would carry nothing"
         )
     return "; ".join(told)

@@ -207,7 +207,7 @@ def differences(found: Listed, other: Listed, columns: Mapping[str, str] | None 
     common = (t >= begin - slack) & (t <= end + slack)
     if not common.any():
         raise InputError(
-            f"found times from {t[0]:g} to {t[-1]:g} s beside {begin:g} to {end:g} s, expected some in common"
+            f"found times from {t[0]:g} to {t[-1]:g} s next to {begin:g} to {end:g} s, expected some in common"
         )
     values = {
         channel: (_at(own, channel, t[common]), _column(listed, column)[common]) for channel, column in pairs.items()

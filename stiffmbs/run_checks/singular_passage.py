@@ -107,6 +107,6 @@ def _sentence(pose: SingularPose, d: float, rtol: float) -> Iterator[str]:
     elif magnified * rtol >= RUN_CHECKS.worth_telling:
         decided = "more than one motion may follow, and " if magnified * rtol >= RUN_CHECKS.decided else ""
         yield (
-            f"passes beside a singular pose {at}: {decided}errors come back about {magnified:.1g} times as large; set a smaller rtol "
+            f"passes near a singular pose {at}: {decided}errors come back about {magnified:.1g} times as large; set a smaller rtol "
             f"({where})"
         )

@@ -6,6 +6,7 @@ import numpy as np
 
 from ..model.scene import Figure
 from ..results.listings import Difference, differences
+from ..results.scales import ROUNDING
 from ..results.solution import Solution
 from .figure import SIZE, draw_runs
 from .sections import Section, Table
@@ -13,8 +14,6 @@ from .style import new_sheet
 
 MOST_ROWS, MOST_FIGURES = 15, 3
 """Numbers of channels that are listed and drawn, those with the largest relative differences first."""
-NONE = 1e-9
-"""Relative difference below which two channels count as equal."""
 
 
 def differences_section(solution: Solution, name: str, other: Solution) -> Section:
@@ -23,7 +22,7 @@ def differences_section(solution: Solution, name: str, other: Solution) -> Secti
     `name`: name of the other run. Raises InputError if the runs have no channels or times in common.
     """
     found = sorted(differences(solution, other), key=lambda one: -np.nan_to_num(one.relative))
-    unequal = [one for one in found if one.relative > NONE]
+    unequal = [one for one in found if one.relative > ROUNDING]
     only = [
         f"{len(names)} channels are in {where} alone, such as {names[0]}."
         for where, names in (
@@ -32,7 +31,7 @@ def differences_section(solution: Solution, name: str, other: Solution) -> Secti
         )
         if names
     ]
-    head = f"{len(unequal)} of {len(found)} common channels differ from {name} by more than {NONE:g} of their largest value."
+    head = f"{len(unequal)} of {len(found)} common channels differ from {name} by more than {ROUNDING:g} of their largest value."
     rows = tuple(_row(one, solution, other) for one in unequal[:MOST_ROWS])
     heads = ("channel", "unit", "largest difference", "relative", "at (s)", "this run", name)
     sheets = []

@@ -42,7 +42,7 @@ def measured(data: Any) -> Measured:
     if time.ndim != 1 or len(time) < 2 or not np.all(np.diff(time) > 0):
         raise InputError("data: found times that do not increase, expected two or more that do")
     if not channels:
-        raise InputError("data: found no channel besides the time, expected one or more")
+        raise InputError("data: found no channel except the time, expected one or more")
     arrays = {}
     for name, values in channels.items():
         array = np.asarray(values, dtype=float)

@@ -80,7 +80,7 @@ def test_times_between_those_of_a_run_are_interpolated():
         ("a.tab", "time x\n", "found no table of numbers over time"),
         ("a.tab", "1 2\n0.5 3\n", "found no times that increase"),
         ("a.res", "<Results><a></Results>", "found no table of numbers over time"),
-        ("a.tab", "5 1\n6 1\n", "found times from 5 to 6 s beside 0 to 1 s"),
+        ("a.tab", "5 1\n6 1\n", "found times from 5 to 6 s next to 0 to 1 s"),
         ("a.tab", "0 1\n1 1\n", "found no column '7', expected one of 1, 2"),
     ],
 )

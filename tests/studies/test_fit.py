@@ -100,7 +100,7 @@ def test_channels_of_other_noise_are_weighted_by_it():
     [
         ({"sled.x": [1, 2]}, PARAMETERS, InputError, "found no times"),
         ({"time": [0, 0], "sled.x": [1, 2]}, PARAMETERS, InputError, "times that do not increase"),
-        ({"time": [0, 1]}, PARAMETERS, InputError, "found no channel besides the time"),
+        ({"time": [0, 1]}, PARAMETERS, InputError, "found no channel except the time"),
         ({"time": [0, 1, 2], "sled.z": [1, 2, 3]}, PARAMETERS, InputError, "found no channel 'sled.z'"),
         ({"time": [0, 1], "sled.x": [1, 2]}, PARAMETERS, InputError, "expected more than the 2 parameters"),
         ({"time": [0, 1, 2], "sled.y": [0, 0, 1]}, PARAMETERS, InputError, "do not determine"),

@@ -106,7 +106,7 @@ def _outward(joint: Joint, i: Place, j: Place) -> np.ndarray:
     if axis is None or abs(along) < 0.5:
         raise joint.fault(
             "found the rack's line (z of J) across the pinion's axis (z of I) and not along x of I, "
-            "expected it half the pitch diameter beside the axis, or along x of I"
+            "expected it half the pitch diameter from the axis, or along x of I"
         )
     return -np.sign(along) * np.cross(axis, j.initial.axes[:, 2])
 

@@ -63,7 +63,7 @@ def read_frame(found: Arguments, origin: str, x_point: str, z_point: str, length
     x, z = ways.get(x_point), ways.get(z_point)
     axes = _from_x(x, z) if "USEXP" in found and x is not None else _from_z(z, x)
     if axes is None:
-        raise found.fault(f"found {' and '.join(given)} on one line with {origin}, expected a point beside that line")
+        raise found.fault(f"found {' and '.join(given)} on one line with {origin}, expected a point off that line")
     return Frame(point, axes)
 
 

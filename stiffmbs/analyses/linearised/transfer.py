@@ -181,7 +181,7 @@ def _channels(
     with dynamics.state.unchanged():
         rows = dynamics.report(np.full(len(x), about.found.t), q, u, project=True)
     if len(rows.t) < len(x):
-        raise SolverError("no accelerations were found beside the state, expected one about which motions exist")
+        raise SolverError("no accelerations were found near the state, expected one about which motions exist")
     channels = channels_of(about.found.data, dynamics.system, rows)
     for name in outputs:
         if name not in channels:

@@ -89,7 +89,7 @@ class Drive(Joint):
     def _one_of_each(self) -> Drive:
         exactly_one(("joint", self.joint), ("coordinate", self.driven))
         if self.joint is not None and (self.i is not None or self.j is not None):
-            raise ValueError("found the markers i or j beside a joint, expected those of the joint alone")
+            raise ValueError("found the markers i or j with a joint, expected those of the joint alone")
         exactly_one(("position", self.prescribed_position), ("velocity", self.prescribed_velocity))
         return self
 

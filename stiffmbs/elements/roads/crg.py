@@ -28,7 +28,7 @@ LEVEL = 3
 """Number of points before and after the road that keep it level there."""
 
 
-AnyCrg = Annotated[CrgGrid, in_file(CrgGrid, read_crg, "the name of an OpenCRG file, beside the scene")]
+AnyCrg = Annotated[CrgGrid, in_file(CrgGrid, read_crg, "the name of an OpenCRG file, in the folder of the scene")]
 
 
 class CrgRoad(Road):
@@ -43,7 +43,7 @@ class CrgRoad(Road):
 
     kind = "crg"
 
-    file: AnyCrg = Field(description="the name of an OpenCRG file, beside the scene")
+    file: AnyCrg = Field(description="the name of an OpenCRG file, in the folder of the scene")
     placed: Literal["origin", "file"] = Field(
         "origin", description="whether the road begins at the origin along x, as OpenCRG has it, or where the file says"
     )

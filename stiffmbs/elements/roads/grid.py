@@ -85,7 +85,7 @@ def _refuse_disorder(found: list[tuple[int, float]], name: str, path: Path) -> N
             )
 
 
-AnyGrid = Annotated[Grid, in_file(Grid, read_grid, "the name of a file of heights, beside the scene")]
+AnyGrid = Annotated[Grid, in_file(Grid, read_grid, "the name of a file of heights, in the folder of the scene")]
 
 
 class GridRoad(Road):
@@ -97,7 +97,7 @@ class GridRoad(Road):
 
     kind = "grid"
 
-    file: AnyGrid = Field(description="the name of a file of heights, beside the scene")
+    file: AnyGrid = Field(description="the name of a file of heights, in the folder of the scene")
 
     def extent(self) -> tuple[float, float]:
         points = self.file.tables[0].table

@@ -232,7 +232,7 @@ class PID(Entry):
     @model_validator(mode="after")
     def _filtered(self) -> PID:
         if self.kd and self.filter is None:
-            raise ValueError("filter: found none beside kd, expected the time constant of the derivative's filter")
+            raise ValueError("filter: found none with kd, expected the time constant of the derivative's filter")
         return self
 
     def _sum(self, gain: float, *others: Weighted) -> Formula:

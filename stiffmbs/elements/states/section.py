@@ -37,7 +37,7 @@ def _read(found: Any, context: Context) -> StateEntry:
     if kind is PID:
         others = [key for key in found if key != "pid"]
         if others:
-            raise ValueError(f"found the key '{quoted(others[0])}' beside pid, expected it within: pid: {{...}}")
+            raise ValueError(f"found the key '{quoted(others[0])}' next to pid, expected it within: pid: {{...}}")
         found = found["pid"]
     return kind.model_validate(found, context=context)
 

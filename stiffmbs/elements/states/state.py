@@ -78,7 +78,7 @@ class State(Entry):
     """
 
     rate: OfMotion = Field(description="its rate of change: a formula of time, coordinates, velocities and states")
-    start: AnyAmount = Field(Amount(0.0), description="initial value; a unit tells its dimension")
+    start: AnyAmount = Field(Amount(0.0), description="initial value; a unit states its dimension")
     scale: Scale = Field(
         Amount(1.0), description="a size of it that matters, for its absolute tolerance; 1 in SI units by default"
     )
@@ -116,7 +116,7 @@ class AlgebraicState(Entry):
         description="what is zero: a formula of the state itself, time, coordinates, velocities and other states"
     )
     start: AnyAmount = Field(
-        Amount(0.0), description="where its value is sought from at the start; a unit tells its dimension"
+        Amount(0.0), description="where its value is sought from at the start; a unit states its dimension"
     )
     scale: Scale = Field(
         Amount(1.0), description="a size of it that matters, for its absolute tolerance; 1 in SI units by default"
@@ -154,7 +154,7 @@ class SampledState(Entry):
     )
     period: si.PositiveTime = Field(description="time between two samples, s")
     offset: si.Time = Field(0.0, description="time of a sample, s: the others are whole periods before and after it")
-    start: AnyAmount = Field(Amount(0.0), description="value before the first sample; a unit tells its dimension")
+    start: AnyAmount = Field(Amount(0.0), description="value before the first sample; a unit states its dimension")
 
     if TYPE_CHECKING:
 

@@ -496,7 +496,7 @@ def _read(found: object, context: Context) -> TyreProperties:
 
 
 def _schema(_: object) -> JsonSchema:
-    name = {"type": "string", "description": "the name of a property file (.tir), beside the scene"}
+    name = {"type": "string", "description": "the name of a property file (.tir), in the folder of the scene"}
     numbers = {"type": "object", "additionalProperties": {"type": "number"}}
     return {"anyOf": [name, {"type": "object", "properties": {"coefficients": numbers}}]}
 

@@ -74,7 +74,7 @@ OF_FORMAT = {
     **dict.fromkeys(("PAC2002", "MF05", "MFTYRE", "MF52", "52"), "5.2"),
     **dict.fromkeys(("MF61", "61"), "6.1"), **dict.fromkeys(("MF62", "62"), "6.2"), "USER": "",
 }  # fmt: skip
-"""Version by PROPERTY_FILE_FORMAT; empty if FITTYP must tell it."""
+"""Version by PROPERTY_FILE_FORMAT; empty if FITTYP states it."""
 
 
 def plain(word: Any) -> str:

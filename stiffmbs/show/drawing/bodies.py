@@ -63,7 +63,7 @@ def _shape(shape: Any, dimensions: int, where: str, size: float) -> Shapes:
             flipped = np.prod(scale) < 0
             faces = tuple(face[::-1] if flipped else face for face in mesh.faces)
             solid = Solid(mesh.vertices * scale, faces)
-            return (solids.edged(solid) if len(faces) < MOST_FACES else solid,), ()
+            return (solids.edged(solid) if len(faces) < solids.MOST_FACES else solid,), ()
         case "box" if dimensions == 3:
             return _with_edges(solids.box(shape.size))
         case "box":
@@ -75,10 +75,6 @@ def _shape(shape: Any, dimensions: int, where: str, size: float) -> Shapes:
         return (solids.sphere(shape.radius, 24),), ()
     ring = solids.circle(shape.radius, corners=40)
     return (solids.flat(ring[:-1]),), (Line(ring), Line(np.array([[0.6 * shape.radius, 0, 0], [shape.radius, 0, 0]])))
-
-
-MOST_FACES = 5_000
-"""Number of faces of a mesh from which on its edges are not drawn."""
 
 
 def _with_edges(solid: Solid) -> Shapes:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
@@ -32,10 +33,6 @@ FACES: Mapping[str, tuple[tuple[int, ...], ...]] = {
 """Nodes around each face of an element, in the order of meshio."""
 AT_ONCE = 1_000_000
 """Number of stresses computed at once."""
-MOST_FACES = 5_000
-"""Number of faces above which only the faces are drawn, without the edges of elements."""
-SHARP = 2.0
-"""Largest cosine between the normals of two faces with a drawn edge: all edges."""
 
 
 def deformed_body(name: str, frame: FloatingFrame) -> Part | None:
@@ -68,7 +65,7 @@ def deformed_body(name: str, frame: FloatingFrame) -> Part | None:
         model.nodes[used] - reduced.centre, tuple(np.split(inverse, ends)), modes=by_coordinates(shapes),
         stresses={} if stresses is None else by_coordinates(stresses),
     )  # fmt: skip
-    return Part(name, "body", name, (solids.edged(solid, SHARP) if len(faces) < MOST_FACES else solid,))
+    return Part(name, "body", name, (solids.edged(solid, math.inf) if len(faces) < solids.MOST_FACES else solid,))
 
 
 def surface(model: FiniteElements) -> list[np.ndarray]:

@@ -40,6 +40,8 @@ def axes_along(direction: np.ndarray) -> np.ndarray:
     return np.column_stack([first, second, direction / (np.linalg.norm(direction) or 1.0)])
 
 
+MOST_FACES = 5_000
+"""Number of faces of a mesh from which on its edges are not drawn."""
 ROUND = 24
 """Number of corners of a circle."""
 

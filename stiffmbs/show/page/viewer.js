@@ -519,7 +519,7 @@ const MOVING = (() => {
     for (let k = Math.ceil(low / step); k * step <= high + step * 1e-9; k++) found.push(k * step);
     return found;
   }
-  /* Labels of ticks with as many digits as tell them apart. */
+  /* Labels of ticks with as many digits as distinguish them. */
   function labels(values) {
     const step = values.length > 1 ? Math.abs(values[1] - values[0]) : Math.abs(values[0]) || 1, largest = Math.max(...values.map(Math.abs), step);
     if (largest >= 1e5 || largest < 1e-2) {

@@ -122,7 +122,7 @@ def _about(scene: Scene, copied: Path, outputs: Sequence[str]) -> dict[str, Any]
             raise InputError("found a scene with stages, expected a scene of one run")
     except InputError as error:
         raise InputError(
-            f"alone in an FMU, without files beside it: {str(error).replace(f'{copied.parent}/', '')}"
+            f"alone in an FMU, without files next to it: {str(error).replace(f'{copied.parent}/', '')}"
         ) from None
     inputs = {name: value for name, value in scene.inputs.items() if isinstance(value, float | int)}
     tables = [name for name in scene.inputs if name not in inputs]

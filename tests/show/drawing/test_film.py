@@ -185,7 +185,7 @@ def test_results_cannot_be_solved_again(tmp_path):
     stiffmbs.run(EXAMPLES / "bar_pendulum.yaml", duration=0.1).save(tmp_path / "r.npz")
     result = run("plot", tmp_path / "r.npz", "bar.x", "--rtol", "1e-8", "-o", tmp_path / "x.png")
     assert result.exit_code == 2
-    assert "found results beside --run.rtol, expected a scene to solve" in result.stderr
+    assert "found results with --run.rtol, expected a scene to solve" in result.stderr
 
 
 def test_a_film_of_nothing_that_moves_is_refused():

@@ -89,7 +89,7 @@ class Elastic(Force):
 
     beyond = (
         "found its bodies turned by three quarters of a turn against each other (an axis about which they are free: "
-        "tilted by 135 degrees), expected less; a vibration that grows, as shimmy, is told by 'stiffmbs modes' with an earlier --at"
+        "tilted by 135 degrees), expected less; a vibration that grows, as shimmy, is shown by 'stiffmbs modes' with an earlier --at"
     )
     doubtful = math.sqrt(0.5)  # half a turn, or a tilt of 90 degrees
     doubt = (

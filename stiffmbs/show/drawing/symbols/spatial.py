@@ -101,7 +101,7 @@ PROFILE = np.array([[0.66, -0.5], [0.95, -0.5], [1.0, -0.3], [1.0, 0.3], [0.95, 
 
 
 def radius_of(tyre: Any) -> float:
-    """Return the unloaded radius of a tyre, m; zero if its data do not tell."""
+    """Return the unloaded radius of a tyre, m; zero if its data have none."""
     properties = getattr(tyre, "properties", None)
     found = getattr(tyre, "radius", None) or _coefficient(properties, "UNLOADED_RADIUS")
     return float(found or 0.0)
