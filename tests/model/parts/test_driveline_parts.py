@@ -159,6 +159,25 @@ def test_a_clutch_slips_at_its_capacity_and_the_gear_follows_a_formula():
     assert found["engine.engine_speed"][-1] == pytest.approx(2.1 * found["diff.input.wy"][-1], rel=1e-2)
 
 
+@pytest.mark.long
+def test_an_automatic_gearbox_shifts_by_the_speed_in_the_chosen_gear():
+    """Sample by sample; output every 50 ms is the state just before a sample. A shift takes 0.3 s."""
+    given = {"drag_torque": "150 N m", "upshift": "3500 rpm", "downshift": "1500 rpm", "gears": 3}
+    scene = powered(
+        "closed", {"throttle": "step(t, 8, 1, 8.2, 0)"}, parameters=given, gear="automatic", throttle="formula"
+    )
+    found = stiffmbs.run(scene, duration=22, output=0.05, rtol=1e-7)
+    chosen, speed = found["engine.chosen_gear"], found["engine.chosen_speed"] * 60 / (2 * np.pi)
+    ratios = np.array([3.6, 2.1, 1.4])[chosen.astype(int) - 1]
+    assert speed == pytest.approx(ratios * found["diff.input.wy"] * 60 / (2 * np.pi), abs=1e-6)
+    change = ((speed > 3500) & (chosen < 3)).astype(int) - ((speed < 1500) & (chosen > 1))
+    assert chosen[1:] == pytest.approx((chosen + change)[:-1])
+    assert chosen.max() == 3 and chosen[-1] == 1 and np.abs(np.diff(chosen)).max() == 1
+    up = int(np.argmax(chosen == 2))
+    assert found["engine.gear_now"][up + 3] == pytest.approx(1 + 4 * 0.05 / 0.3, abs=1e-3)
+    assert found["engine.gear_now"][up + 7] == pytest.approx(2, abs=1e-2)
+
+
 def steered(assist, tables=None, hand="5 N m", parameters=None):
     """Return the rest of a column and rack against a spring of 100 N/mm, with a torque at the steering wheel."""
     parts = {
