@@ -138,7 +138,7 @@ def _finished(job: Job, watch: ProgressCallback | None) -> Finished:
     broken = tuple(balance_notes(system, balance, rows, job.settings, steps)) if balance.may_be_broken else ()
     channels = channels_of(job.data, system, rows) if job.data.requests or not rows.finite else None
     impossible = tuple(senseless(job.dynamics, rows, job.on_constraints)) or broken
-    uncertain = tuple(motion_notes(job.dynamics, rows, job.settings.rtol, partial(_reported_at, job), job.data.joints))
+    uncertain = tuple(motion_notes(job.dynamics, rows, job.settings.rtol, partial(_reported_at, job)))
     structure = structure_notes(job.redundancy, job.subsystems, job.dynamics)
     notes = (
         *_notes(job, trajectory, structure),

@@ -18,7 +18,7 @@ from .bodies import BODY_KINDS, BodyKind
 from .group import Group
 from .kind import Compilable, ElementData, Kind, sorted_out
 from .record import KindRecord, record_of
-from .system import System
+from .system import INITIAL_COUNT, System
 
 
 def compile_model(model: Compilable | ModelBuilder) -> System:
@@ -62,7 +62,7 @@ def compile_model(model: Compilable | ModelBuilder) -> System:
         algebraic=np.array([value.algebraic for value in states.values()], dtype=bool),
         sampling=np.array([(value.period, value.offset) for value in states.values()]).reshape(-1, 2),
         of_body=of_body,
-        q=np.array([*numbers.coordinates, *[0.0] * n_counters, *(value.start for value in states.values())]),
+        q=np.array([*numbers.coordinates, *[INITIAL_COUNT] * n_counters, *(value.start for value in states.values())]),
         u=np.array(numbers.rates),
         open_rates=np.array(numbers.open_rates),
         mass=np.array(numbers.masses),

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 import numpy as np
 
 from ..compile.group import Group
+from ..compile.system import INITIAL_COUNT, System
+from ..elements.element import Joint
+from ..elements.states.equation import AngleCounter
+from ..reading.joint_name import JointName
 from .dynamics import Dynamics
 
 TURN = 2 * math.pi
@@ -28,13 +32,34 @@ def take_nearest_turns(dynamics: Dynamics, t: float, wanted: Callable[[str], boo
     if not new.any():
         return
     kept = state.q[first]
-    state.q[first] = 0.0
+    state.q[first] = INITIAL_COUNT
+    state.count_anew(t)
+    angle = state.q[first]
     left = _violations(dynamics, groups, t)
-    state.q[first] = TURN
+    state.q[first] = angle + TURN
     of_a_turn = _violations(dynamics, groups, t) - left
     squares = np.sum(of_a_turn**2, axis=1)
     turns = -np.sum(of_a_turn * left, axis=1) / np.where(squares > 0, squares, np.inf)
-    state.q[first] = np.where(new, TURN * np.round(turns), kept)
+    state.q[first] = np.where(new, angle + TURN * np.round(turns), kept)
+    of_drives = {channel: place for channel, place, counter in counted_coordinates(dynamics.system) if not counter}
+    for channel, place, counter in counted_coordinates(dynamics.system):
+        if counter and channel in of_drives:
+            state.q[place] = state.q[of_drives[channel]]
+
+
+def counted_coordinates(system: System) -> Iterator[tuple[str, int, bool]]:
+    """Yield the joint angles that a request or a drive counts, their counters' places in q, and True for a request."""
+    of_joints = [group for group in system.groups if issubclass(group.kind.element, Joint)]
+    joints = {name: joint for group in of_joints for name, joint in zip(group.names, group.elements, strict=True)}
+    for group in system.groups:
+        if group.record.n_counters == 1:
+            for name, element, (place,) in zip(group.names, group.elements, group.counters, strict=True):
+                if isinstance(element, AngleCounter):
+                    yield name, int(place), True
+                elif len(named := [joint for _, joint in element.parts(JointName)]) == 1:
+                    coordinate = named[0].coordinate_of(joints[named[0].joint])
+                    if coordinate is not None:
+                        yield f"{named[0].joint}.{coordinate}", int(place), False
 
 
 def _violations(dynamics: Dynamics, groups: list[Group], t: float) -> np.ndarray:

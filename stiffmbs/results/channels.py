@@ -34,7 +34,7 @@ def channels_of(model: ModelData, system: System, rows: OutputRows) -> dict[str,
     if system.states or any(group.entries["signal"] for group in system.groups):
         channels |= state_channels(system, rows.q, rows.values)
     channels |= reactions(system, rows.values)
-    if (angles := joint_angles(system, model.joints)) is not None:
+    if (angles := joint_angles(system)) is not None:
         channels |= angles.continuous(rows)
     channels |= channels_of_model(rows)
     if not model.requests:

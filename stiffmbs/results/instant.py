@@ -63,7 +63,7 @@ class Instant(Mapping[str, np.ndarray]):
         self._bodies = {body: k for k, body in enumerate(system.bodies)}
         levels = system.of_body.positions, system.of_body.velocities, system.of_body.accelerations
         self._places = {name: (k, n, len(names)) for k, names in enumerate(levels) for n, name in enumerate(names)}
-        angles = joint_angles(system, model.joints)
+        angles = joint_angles(system)
         self._angles = frozenset(angles.places if angles else ())
         self._principal = own_are_principal(system)
         self._placed: dict[int, tuple[Any, Any]] = {}

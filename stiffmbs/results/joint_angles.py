@@ -9,15 +9,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
-from ..compile.system import System
+from ..compile.system import INITIAL_COUNT, System
 from ..dynamics.dynamics import OutputRows
+from ..dynamics.nearest_turns import counted_coordinates
 from ..elements.element import Joint
-from ..elements.states.equation import AngleCounter
-from ..reading.joint_name import ORDERS, JointName
+from ..reading.joint_name import ORDERS
 
 TURN = 2 * np.pi
 UNCERTAIN_TURN = 1.0
@@ -48,9 +47,7 @@ class JointAngles:
         if self.followed:
             change, predicted = self._changes(rows)
             angles = rows.values[:, [self.places[name][0] for name in self.followed]]
-            known = np.array(
-                [self.start.get(name, angle) for name, angle in zip(self.followed, angles[0], strict=True)]
-            )
+            known = np.array([self.start.get(name, INITIAL_COUNT) for name in self.followed])
             angles += TURN * np.round((known - angles[0]) / TURN)
             angles[1:] += TURN * np.cumsum(np.round((predicted - change) / TURN), axis=0)
             found |= dict(zip(self.followed, angles.T, strict=True))
@@ -90,7 +87,7 @@ class JointAngles:
         return np.diff(angle, axis=0), predicted
 
 
-def joint_angles(system: System, joints: Mapping[str, Any]) -> JointAngles | None:
+def joint_angles(system: System) -> JointAngles | None:
     """Return the angles of a system's joints; None in the plane, where bodies' angles count their turns, or without any."""
     if system.of_body.dimensions == 2:
         return None
@@ -103,17 +100,8 @@ def joint_angles(system: System, joints: Mapping[str, Any]) -> JointAngles | Non
         for name in group.names
     }
     places = {name: found for name, found in angles.items() if min(found) >= 0}
-    return JointAngles(places, dict(_counters(system, joints)), system.start_angles) if places else None
-
-
-def _counters(system: System, joints: Mapping[str, Any]) -> Iterator[tuple[str, int]]:
-    """Yield the angles that an element or a request counts, with the coordinates of their counters."""
-    for group in system.groups:
-        if group.record.n_counters == 1:
-            for name, element, (place,) in zip(group.names, group.elements, group.counters, strict=True):
-                if isinstance(element, AngleCounter):
-                    yield name, int(place)
-                elif len(named := [joint for _, joint in element.parts(JointName)]) == 1:
-                    coordinate = named[0].coordinate_of(joints[named[0].joint])
-                    if coordinate is not None:
-                        yield f"{named[0].joint}.{coordinate}", int(place)
+    return (
+        JointAngles(places, {name: place for name, place, _ in counted_coordinates(system)}, system.start_angles)
+        if places
+        else None
+    )

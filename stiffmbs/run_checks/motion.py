@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 
 import numpy as np
 
@@ -12,7 +12,6 @@ from ..compile.state import State
 from ..compile.system import System
 from ..compile.written_values import writer
 from ..dynamics.dynamics import Dynamics, OutputRows
-from ..elements.element import Joint
 from ..results.joint_angles import joint_angles
 from .instants import some_instants
 from .parameters import RUN_CHECKS
@@ -24,7 +23,6 @@ def motion_notes(
     rows: OutputRows,
     rtol: float,
     again: Callable[[np.ndarray], OutputRows],
-    joints: Mapping[str, Joint],
 ) -> Iterator[str]:
     """Yield sentences on results that depend on rounding or tolerances: singular poses, missed turns, forces out of range.
 
@@ -35,7 +33,7 @@ def motion_notes(
         yield from singular_passage_sentence(dynamics, rows, rtol, again)
     if dynamics.system.n_counters:
         yield from lost_turns_sentence(dynamics, rows)
-    if dynamics.system.of_body.dimensions == 3 and (angles := joint_angles(dynamics.system, joints)) is not None:
+    if dynamics.system.of_body.dimensions == 3 and (angles := joint_angles(dynamics.system)) is not None:
         yield from angles.uncertain(rows)
     if dynamics.system.has_limits:
         yield from near_limits_sentence(dynamics, rows)

@@ -28,7 +28,7 @@ class FollowedTurns:
 
     def __init__(self, job: Job, t: float, q: np.ndarray, u: np.ndarray, known: Mapping[str, float]) -> None:
         self._dynamics = job.dynamics
-        self._angles = joint_angles(job.dynamics.system, job.data.joints)
+        self._angles = joint_angles(job.dynamics.system)
         self._known = dict(known)
         self.any = self._angles is not None and bool(self._angles.followed)
         self._states = [(t, q.copy(), u.copy())]

@@ -274,7 +274,7 @@ class Simulation:
         followed = self._turns.angles() if self._turns.any else {}
         if channel in followed:
             return followed[channel]
-        angles = joint_angles(self._job.dynamics.system, self._job.data.joints)
+        angles = joint_angles(self._job.dynamics.system)
         assert angles is not None
         return angles.continuous(rows)[channel].item(0)
 

@@ -297,3 +297,33 @@ def test_sensitivities_of_coordinates_and_efforts(channel):
 def test_names_that_are_no_coordinates_are_refused(formula, sentence):
     with pytest.raises(stiffmbs.InputError, match=sentence):
         stiffmbs.read_scene(SLIDER + f"forces: {{f: {{type: torque, i: bar, torque: {formula}}}}}")
+
+
+@pytest.mark.parametrize(("driven", "expected"), [(None, np.pi), ("-pi", -np.pi), ("3*pi", 3 * np.pi)])
+def test_half_a_turn_at_the_start_does_not_depend_on_rounding(driven, expected):
+    """The sign of an initial angle of half a turn is positive, and a drive finds its turn, in any axes."""
+    for axes in Rotation.random(6, random_state=np.random.default_rng(7)):
+        hinge = spatial.Marker(body="ground", orientation=axes.as_matrix())
+        model = spatial.Model(gravity=(0, 0, 0))
+        turned = (axes * Rotation.from_euler("z", np.pi)).as_matrix()
+        model.add("bar", spatial.Body(mass=1, inertia=(1, 1, 1), orientation=turned))
+        model.add("hinge", spatial.Revolute(i="bar", j=hinge))
+        if driven:
+            model.add("motor", spatial.Drive(joint="hinge", position=driven))
+        for requests in ({}, {"angle": "hinge.angle"}):
+            model.requests.update(requests)
+            solution = model.run(duration=0.01, points=2)
+            assert solution["hinge.angle"][0] == pytest.approx(expected, abs=1e-9)
+
+
+@pytest.mark.parametrize("driven", ["370 deg", "-200 deg + 2*t"])
+def test_a_request_of_a_driven_angle_has_the_turns_of_its_drive(driven):
+    model = spatial.Model(gravity=(0, 0, 0))
+    model.add("bar", spatial.Body(mass=1, inertia=(1, 1, 1)))
+    model.add("hinge", spatial.Revolute(i="bar", j="ground"))
+    model.add("motor", spatial.Drive(joint="hinge", position=driven))
+    alone = model.run(duration=0.1, points=2)["hinge.angle"]
+    model.requests.update(angle="hinge.angle")
+    requested = model.run(duration=0.1, points=2)
+    assert alone[0] == pytest.approx(np.radians(370 if driven == "370 deg" else -200))
+    np.testing.assert_allclose([requested["angle"], requested["hinge.angle"]], [alone, alone], rtol=1e-9)
