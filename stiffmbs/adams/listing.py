@@ -15,21 +15,17 @@ from ..reading.files.text_file import file_text, source_name
 from .commands.command_files import Read, command_file_of
 from .commands.commands import ENDING, FOLLOWED, HARMLESS, SETTINGS, full_name, read_commands
 from .functions.adams_functions import ADAMS_FUNCTIONS
-from .functions.angles import ANGLES_OF_AXES
 from .functions.expression import ExpressionError, parse
 from .functions.inputs import PLANTS
-from .functions.reactions import REACTIONS
-from .functions.splines import CURVES
+from .functions.measures import ANGLES_OF_AXES, CURVES, REACTIONS
 from .functions.translate import ANGLES, ANGULAR_VELOCITIES, COUPLED, PLAIN, POSITIONS, VELOCITIES
 from .functions.translate_output import ACCELERATIONS, ANGULAR_ACCELERATIONS, ROUNDING_FUNCTIONS
 from .load import ENCODING, command_file, other_commands
 from .statements.arguments import Argument
 from .statements.changes import Key, alters, key_of
 from .statements.dataset import all_statements, faults_of, read_statement
-from .statements.fault import DatasetFault
-from .statements.keywords import LEFT_OUT, REFUSED, keyword
-from .statements.left_out import LEFT_OUT_ARGUMENTS, UNREAD_SYSTEM, is_unread_system
-from .statements.text import ZERO_BYTE, Statement, commands
+from .statements.keywords import LEFT_OUT, LEFT_OUT_ARGUMENTS, REFUSED, UNREAD_SYSTEM, is_unread_system, keyword
+from .statements.text import ZERO_BYTE, DatasetFault, Statement, commands
 from .statements.units import Units
 
 READ, OMITTED, NOT_READ = "read", "left out", "refused"

@@ -16,15 +16,14 @@ from ..elements.spatial.massless import BEYOND
 from ..errors import InputError
 from ..model.read_scene import made_scene
 from ..model.scene import Scene
-from ..reading.files.scene_text import scene_text
 from ..reading.files.text_file import STANDARD_INPUT, checked, file_text, source_name
+from ..reading.files.yaml_text import scene_text
 from .commands.commands import Segment, read_commands
 from .scene.scene import scene
 from .stages import followed
 from .statements.changes import Changes, key_of
 from .statements.dataset import NO_CHANGES, Dataset, all_statements, read_dataset
-from .statements.fault import CommandFault, DatasetFault
-from .statements.text import ZERO_BYTE
+from .statements.text import ZERO_BYTE, CommandFault, DatasetFault
 
 COMMANDS = ".acf"
 """Extension of a command file."""

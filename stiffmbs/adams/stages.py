@@ -8,7 +8,7 @@ from typing import Any, TypeAlias
 from ..model.files.stages import merge_patch
 from .commands.commands import Segment
 from .commands.simulations import STATICS, one_run, refuse_velocities
-from .scene.sensors import conditions
+from .scene.requests import conditions
 from .statements.constraints import Motion
 from .statements.dataset import Dataset
 from .statements.units import Units

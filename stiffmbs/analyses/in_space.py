@@ -8,15 +8,15 @@ from pathlib import Path
 from typing import overload
 
 from ..errors import InputError
-from ..model.embedding.angles import Written
+from ..model.embedding.formulas import Written
 from ..model.embedding.scene import scene_in_space
 from ..model.model import Model as PlanarModel
 from ..model.model import PlanarData
 from ..model.read_scene import made_scene
 from ..model.spatial_model import Model
 from ..model.spatial_scene import SpatialScene
-from ..reading.files.scene_text import scene_text
 from ..reading.files.text_file import source_name
+from ..reading.files.yaml_text import scene_text
 from .load_scene import load_scene
 
 

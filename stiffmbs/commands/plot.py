@@ -41,8 +41,7 @@ def plot(
 
     Exit status: 0 done, 1 the file could not be written, 2 the input is wrong.
     """
-    from ..show.figure import figure_of
-    from ..show.plot import check_plot, plotted_runs, write_plot
+    from ..show.figure import check_plot, figure_of, plotted_runs, write_plot
 
     with refusing(source, as_json, output):
         check_plot(output)
@@ -68,7 +67,7 @@ def _live(
     options: dict[str, Any],
 ) -> Figure:  # fmt: skip
     """Solve a scene and plot the solution so far in a window."""
-    from ..show.plot import show_live
+    from ..show.figure import show_live
     from ..studies.follow import follow
 
     if source.endswith(RESULTS) or others or output is not None:

@@ -73,7 +73,7 @@ def parts(name: str | None, as_json: bool) -> None:
     Exit status: 0 done, 2 there is no such part.
     """
     from ..model.parts.definitions import about, shipped_part, shipped_parts
-    from ..reading.files.scene_text import scene_text
+    from ..reading.files.yaml_text import scene_text
 
     if name is None:
         known = {part: about(part) for part in shipped_parts()}

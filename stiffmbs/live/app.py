@@ -1,6 +1,10 @@
 """Application of a live page: its own files, the scene's text, and requests that a worker answers.
 
 No file is served by its path: a page gets the text of its scene, and files of the package by fixed names.
+
+A page of another site may send requests to the loopback interface, and a name of its own may resolve to it (DNS
+rebinding).  So a request counts only with the token of this server in its path, a Host that is this server, and no other
+Origin.  W3C, Content Security Policy Level 3; RFC 6454, section 7.
 """
 
 from __future__ import annotations

@@ -15,7 +15,7 @@ from ..errors import InputError, refuse_missing
 from ..model.model_data import ModelData
 from ..model.model_text import model_text
 from ..model.scene import Scene
-from ..reading.files.scene_text import scene_text
+from ..reading.files.yaml_text import scene_text
 
 PACKAGES = ("starlette", "uvicorn")
 LOOPBACK = "127.0.0.1"

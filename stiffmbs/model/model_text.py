@@ -9,7 +9,7 @@ from ..elements.states.amount import Amount
 from ..elements.states.linear_system import PID
 from ..errors import InputError
 from ..reading.fields import Described
-from ..reading.files.scene_text import scene_text
+from ..reading.files.yaml_text import scene_text
 from ..reading.formula.dimension import Known
 from ..reading.joint_name import JointName
 from ..reading.marker import MarkerReference

@@ -33,8 +33,7 @@ from .files.expand import (
     set_value,
     unshared,
 )
-from .files.stages import with_held, written_stages
-from .files.written_scene import WrittenScene
+from .files.stages import WrittenScene, with_held, written_stages
 from .parts.definitions import NAMED
 from .parts.options import CHOOSE, OPTIONS, choices_of, with_chosen, words_chosen
 from .parts.placed import with_parts

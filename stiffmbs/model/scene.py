@@ -19,8 +19,7 @@ from ..reading.files.unchanged import Unchanged
 from ..reading.formula.text import FormulaError
 from ..reading.table import Table
 from ..reading.units.units import Quantity, in_text
-from .files.stages import Stage
-from .files.written_scene import WrittenScene
+from .files.stages import Stage, WrittenScene
 from .model import PlanarData
 from .model_data import ModelData
 from .settings import RunSettings, SteadyMotion

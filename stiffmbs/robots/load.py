@@ -13,8 +13,8 @@ from ..elements.spatial.massless import BEYOND
 from ..errors import InputError
 from ..model.read_scene import made_scene
 from ..model.scene import Scene
-from ..reading.files.scene_text import scene_text
 from ..reading.files.text_file import file_text, source_name
+from ..reading.files.yaml_text import scene_text
 from .robot import Robot, RobotFault
 from .scene.scene import scene
 

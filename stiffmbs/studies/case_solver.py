@@ -14,7 +14,7 @@ from ..analyses.renumber import renumbered
 from ..analyses.run import Finished, finished, solved
 from ..errors import InputError, StiffmbsError
 from ..model.files.other_forces import OtherForces
-from ..model.files.written_scene import WrittenScene
+from ..model.files.stages import WrittenScene
 from ..model.read_scene import made_scene
 from ..model.scene import Scene
 from ..model.settings import RunSettings

@@ -15,10 +15,9 @@ from ..results.solution import Solution
 from ..solve.settings import changed
 from ..solve.trajectory import Grid, Outcome
 from .case_solver import CaseSolver, Task, written_scene
-from .measured import Measured, measured
+from .measured import Measured, measured, of_common_noise, of_separate_noise
 from .outputs import Output, outputs_of
 from .parameters import Gradients, Sought, central_differences, sought
-from .uncertainty import of_common_noise, of_separate_noise
 
 CONFIDENCE = 0.95
 ROUNDS = 3

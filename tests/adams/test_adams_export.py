@@ -7,9 +7,9 @@ import pytest
 from click.testing import CliRunner
 
 import stiffmbs
-from stiffmbs.adams.export.alignment import kept_parallel
 from stiffmbs.adams.export.dataset_text import dataset_text
-from stiffmbs.adams.export.statements import statement
+from stiffmbs.adams.export.forces import kept_parallel
+from stiffmbs.adams.export.numbering import statement
 from stiffmbs.adams.load import read_adams
 from stiffmbs.commands.main import main
 from stiffmbs.errors import InputError

@@ -8,8 +8,7 @@ from click.testing import CliRunner
 import stiffmbs
 from stiffmbs.adams.functions.adams_functions import ADAMS_FUNCTIONS
 from stiffmbs.adams.functions.translate import PLAIN
-from stiffmbs.adams.statements.keywords import LEFT_OUT, READERS, REFUSED
-from stiffmbs.adams.statements.left_out import LEFT_OUT_ARGUMENTS
+from stiffmbs.adams.statements.keywords import LEFT_OUT, LEFT_OUT_ARGUMENTS, READERS, REFUSED
 from stiffmbs.commands.main import main
 
 MODEL = """listing

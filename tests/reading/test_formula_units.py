@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 import stiffmbs
 from stiffmbs import AppliedTorque, Drive, InputError, LineForce
-from stiffmbs.reading.formula.check_dimensions import dimension_of
+from stiffmbs.reading.formula.measured import dimension_of
 from stiffmbs.reading.formula.text import OF_NUMBERS, FormulaError, evaluate, parse
 from stiffmbs.reading.units.quantity import VALUES, in_si
 from stiffmbs.reading.units.units import UNITS, Quantity

@@ -20,7 +20,7 @@ def window(monkeypatch):
 
 
 def test_curves_grow(examples, window):
-    from stiffmbs.show.plot import show_live
+    from stiffmbs.show.figure import show_live
 
     seen = []
 
@@ -36,7 +36,7 @@ def test_curves_grow(examples, window):
 
 
 def test_a_window_that_is_closed_ends_the_run(examples, window):
-    from stiffmbs.show.plot import show_live
+    from stiffmbs.show.figure import show_live
 
     asked = []
 

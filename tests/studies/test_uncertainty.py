@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.stats import t as student
 
-from stiffmbs.studies.uncertainty import of_common_noise, of_separate_noise
+from stiffmbs.studies.measured import of_common_noise, of_separate_noise
 
 RANDOM = np.random.default_rng(5)
 

@@ -7,8 +7,7 @@ from dataclasses import replace
 
 from ...errors import InputError
 from ..statements.arguments import Arguments
-from ..statements.fault import DatasetFault
-from ..statements.text import Statement, Subsystem, commands
+from ..statements.text import DatasetFault, Statement, Subsystem, commands
 
 ARGUMENTS = ("MODEL", "COMMAND", "OUTPUT_PREFIX", "GRAPHICS", "REQUEST", "RESULTS", "OUTPUT", "FEMDATA")
 """Arguments of FILE."""

@@ -10,9 +10,8 @@ from dataclasses import dataclass, field
 
 from ..statements.arguments import Arguments
 from ..statements.changes import Changes, Key, alters, key_of
-from ..statements.fault import DatasetFault
 from ..statements.keywords import keyword
-from ..statements.text import Statement, Subsystem
+from ..statements.text import DatasetFault, Statement, Subsystem
 from .command_files import Read, all_commands, with_first_argument
 from .simulations import Simulation, read_simulation
 

@@ -8,8 +8,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from ..statements.arguments import Arguments
-from ..statements.fault import DatasetFault
-from ..statements.text import Statement
+from ..statements.text import DatasetFault, Statement
 from ..statements.units import Units
 from .command_files import with_first_argument
 

@@ -19,8 +19,7 @@ from ...elements.spatial.orientation import matrix
 from ...model.spatial_model import SpatialData
 from ...reading.marker import GROUND, MarkerReference
 from ...reading.table import Table
-from .numbering import Numbering
-from .statements import Refusal, numbers, statement
+from .numbering import Numbering, Refusal, numbers, statement
 
 
 def touching(model: SpatialData) -> dict[str, tuple[str, str, str]]:

@@ -15,8 +15,7 @@ from .curves import touching
 from .forces import Forces
 from .formulas import Functions
 from .joints import Joints, reactions
-from .numbering import Numbering
-from .statements import Refusal, number, statement
+from .numbering import Numbering, Refusal, number, statement
 
 UNITS = ("FORCE = NEWTON", "MASS = KILOGRAM", "LENGTH = METER", "TIME = SECOND")
 

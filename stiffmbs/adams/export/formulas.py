@@ -12,10 +12,9 @@ from ...reading.formula.nodes import is_measure, is_reaction, joint_of, measured
 from ...reading.formula.text import UNIT
 from ...reading.marker import GROUND, MarkerReference
 from ...reading.table import Table
-from ..functions.reactions import COMPONENTS
+from ..functions.measures import COMPONENTS
 from ..functions.translate import PLAIN
-from .numbering import Numbering
-from .statements import Refusal, number
+from .numbering import Numbering, Refusal, number
 
 SAME = {name for name, of_scene in PLAIN.items() if name == of_scene.upper()} - {"MIN", "MAX"}
 """Functions with the same name in Adams."""

@@ -21,8 +21,7 @@ from ...reading.joint_name import JointName
 from ..scene.joints import KINDS
 from .curves import Curves
 from .formulas import Functions
-from .numbering import Numbering
-from .statements import Refusal, number, statement
+from .numbering import Numbering, Refusal, number, statement
 
 PRIMITIVES = ("INLINE", "INPLANE", "ORIENTATION", "PARALLEL_AXES", "PERPENDICULAR")
 TYPES = {kind: name for name, kind in KINDS.items() if name != "ATPOINT"}

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 from ...reading.files.quoted import quoted
 from ..statements.arguments import Arguments
-from ..statements.fault import DatasetFault
+from ..statements.text import DatasetFault
 from .expression import OMITTED, ExpressionError, parse
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from ..statements.plant import Plant
+from ..statements.systems import Plant
 from .expression import constant
 
 if TYPE_CHECKING:

@@ -16,12 +16,21 @@ from ...reading.units.quantity import CONSTANTS
 from ..scene.mechanism import Mechanism
 from ..statements.arguments import Numbered
 from .adams_functions import ADAMS_FUNCTIONS
-from .angles import ANGLES_OF_AXES, angle, included_angle, on_ground
 from .expression import IF, OMITTED, parse
 from .function import Function
 from .inputs import PLANTS, evaluated_name, variable_of_plant
-from .reactions import BY_ITS_PLACE, REACTIONS, component_of, reaction
-from .splines import CURVES, spline_value
+from .measures import (
+    ANGLES_OF_AXES,
+    BY_ITS_PLACE,
+    CURVES,
+    REACTIONS,
+    angle,
+    component_of,
+    included_angle,
+    on_ground,
+    reaction,
+    spline_value,
+)
 from .states import depending_on_themselves, differential, value_of_system
 from .trees import measured, name_of, number, over, power, product, times, total
 

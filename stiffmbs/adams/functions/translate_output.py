@@ -15,7 +15,7 @@ from ..statements.curves import CurveOnCurve, PointOnCurve
 from ..statements.elastic import Elastic
 from ..statements.forces import SingleForce, VectorForce
 from .function import Function
-from .reactions import COMPONENTS, component_of
+from .measures import COMPONENTS, component_of
 from .translate import Translation
 from .trees import call, measured, name_of, number, over, power, times, total
 

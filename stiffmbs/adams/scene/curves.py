@@ -15,8 +15,8 @@ from ...elements.spatial.massless import MASSLESS, massless_moment
 from ...elements.spatial.number_format import plain, quaternion, vector
 from ..statements.arguments import Numbered
 from ..statements.curves import CurveOnCurve, FirstContact, PointOnCurve
-from ..statements.fault import of_each
 from ..statements.geometry import Frame
+from ..statements.text import of_each
 from .laid_curves import LaidCurve, laid_curve
 from .mechanism import Mechanism
 

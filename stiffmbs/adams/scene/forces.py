@@ -12,8 +12,8 @@ from ..functions.function import Function
 from ..functions.translate import Translation
 from ..statements.constraints import TRANSLATIONAL
 from ..statements.elastic import Beam, Elastic, SpringDamper
-from ..statements.fault import of_each
 from ..statements.forces import SingleForce, VectorForce
+from ..statements.text import of_each
 from .mechanism import Mechanism
 
 TORQUE = "_torque"

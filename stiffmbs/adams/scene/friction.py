@@ -13,11 +13,11 @@ from typing import Any
 from ...elements.forces.friction import TINY
 from ..functions.translate import Translation
 from ..statements.constraints import TRANSLATIONAL, Joint
-from ..statements.fault import of_each
 from ..statements.friction import JointFriction
-from .coordinates import initial_displacement
+from ..statements.text import of_each
 from .forces import TORQUE
 from .mechanism import Mechanism, Place
+from .relations import initial_displacement
 
 AXES = "XYZ"
 SLOW = 1e-6

@@ -16,9 +16,8 @@ from ..functions.trees import difference, measured, number, product, times, tota
 from ..statements.arguments import Numbered
 from ..statements.constraints import ROTATIONAL, Joint
 from ..statements.geometry import ROUNDING
-from .coordinates import SORTS, initial_displacement
 from .mechanism import Mechanism, Place
-from .relations import coupled_joint
+from .relations import SORTS, coupled_joint, initial_displacement
 
 
 def gears(mechanism: Mechanism) -> dict[str, Any]:

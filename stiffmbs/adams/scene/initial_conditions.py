@@ -19,8 +19,8 @@ from ..statements.changes import Key
 from ..statements.constraints import ROTATIONAL, Joint
 from ..statements.dataset import Dataset
 from ..statements.geometry import IDENTITY, PRECISION
-from .coordinates import coordinate, initial_displacement
 from .mechanism import Mechanism, Place
+from .relations import coordinate, initial_displacement
 
 Twist = tuple[np.ndarray, np.ndarray]
 """Velocity of the centre of mass and angular velocity of a part, in ground axes."""

@@ -12,8 +12,8 @@ from ...elements.spatial.number_format import plain, quaternion, vector
 from ..functions.translate import ANGULAR_VELOCITIES as TURNING
 from ..functions.translate import VELOCITIES, Translation
 from ..statements.constraints import GeneralConstraint, Joint
-from ..statements.fault import of_each
 from ..statements.geometry import Frame
+from ..statements.text import of_each
 from .mechanism import Mechanism, Place
 from .racks import rolling
 

@@ -1,19 +1,56 @@
-"""Conversion of requests and variables to requests of a scene."""
+"""Conversion of requests, variables and sensors to requests of a scene."""
 
 from __future__ import annotations
 
 import ast
 import re
+from collections.abc import Iterator, Mapping
 from typing import Any
 
+from ...elements.spatial.number_format import plain
 from ..functions.function import Function
-from ..functions.reactions import COMPONENTS
+from ..functions.measures import COMPONENTS
 from ..functions.translate_output import ANGLES, OutputTranslation
 from ..functions.trees import measured
-from ..statements.fault import DatasetFault
+from ..statements.dataset import Dataset
 from ..statements.outputs import Request
+from ..statements.sensor import Sensor
+from ..statements.text import DatasetFault
+from ..statements.units import Units
 from .mechanism import Mechanism
-from .sensors import EVALUATED
+
+EVALUATED = "_evaluate"
+"""Name suffix for the request of a sensor's EVALUATE expression."""
+
+
+def conditions(dataset: Dataset, inputs: Mapping[str, float]) -> dict[str, Any]:
+    """Return the end conditions by name; each watches the request of its name and may set inputs of the scene."""
+    return {sensor.name: _condition(sensor, inputs, dataset.units) for sensor in dataset.active_sensors}
+
+
+def _condition(sensor: Sensor, inputs: Mapping[str, float], units: Units) -> dict[str, Any]:
+    made: dict[str, Any] = {"request": sensor.name, sensor.relation: plain(sensor.value)}
+    if sensor.error and (sensor.relation == "equals" or sensor.then == "on"):
+        made["within"] = plain(sensor.error)
+    if sensor.then != "next":
+        made["then"] = sensor.then
+    if sensor.interval and sensor.then == "on":
+        made["output"] = plain(sensor.interval * units.time)
+    name = f"SENVAL_{sensor.ident}"
+    return made | ({"sets": {name: sensor.name + EVALUATED}} if sensor.evaluated and name in inputs else {})
+
+
+def notes(dataset: Dataset) -> Iterator[str]:
+    """Yield one sentence for each sensor or argument without effect."""
+    for sensor in dataset.sensors.values():
+        listed = ", ".join(sensor.left_out)
+        if sensor.then and listed:
+            yield f"{sensor.label}: {listed} left out: no effect on results"
+        elif not sensor.then:
+            yield f"{sensor.label} is left out: it does not end the run" + (
+                listed and f", and {listed} change no results"
+            )
+
 
 MARKED = {
     "DISPLACEMENT": ("DX", "DY", "DZ", "PSI", "THETA", "PHI"),

@@ -16,11 +16,10 @@ from ..functions.states import states
 from ..functions.translate import Translation
 from ..statements.constraints import COMPONENTS, ROTATIONAL, TRANSLATIONAL, Joint, Motion
 from ..statements.dataset import Dataset
-from ..statements.fault import of_each
+from ..statements.text import of_each
 from .bodies import bodies, ground_markers
 from .bodies import notes as body_notes
 from .contacts import contacts
-from .coordinates import SORTS, coordinate, initial_displacement
 from .curves import curves, touching_bodies
 from .curves import notes as curve_notes
 from .forces import Forces
@@ -32,10 +31,9 @@ from .initial_conditions import notes as start_notes
 from .joints import held, joints
 from .mechanism import Mechanism
 from .racks import notes as rack_notes
-from .relations import relations
-from .requests import Requests
-from .sensors import conditions
-from .sensors import notes as sensor_notes
+from .relations import SORTS, coordinate, initial_displacement, relations
+from .requests import Requests, conditions
+from .requests import notes as sensor_notes
 
 RUN = {"duration": 5, "output": 0.01}
 """Default run settings, which a dataset lacks."""

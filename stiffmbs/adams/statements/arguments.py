@@ -9,8 +9,7 @@ from dataclasses import dataclass
 
 from ...reading.files.quoted import quoted
 from ...reading.files.requested import Fields
-from .fault import DatasetFault
-from .text import Statement, Subsystem
+from .text import DatasetFault, Statement, Subsystem
 
 _ASSIGNED = re.compile(r"([A-Za-z_]\w*)\s*=\s*(.*)", re.DOTALL)
 _WORD = re.compile(r"[A-Za-z_]\w*")

@@ -6,9 +6,8 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from .arguments import Arguments
-from .fault import CommandFault
 from .keywords import READERS, keyword
-from .text import Statement
+from .text import CommandFault, Statement
 
 SWITCHED = (
     "JOINT", "JPRIM", "GCON", "MOTION", "COUPLER", "GEAR", "SFORCE", "VFORCE", "VTORQUE", "GFORCE", "SPRINGDAMPER",

@@ -6,9 +6,8 @@ import itertools
 from dataclasses import dataclass, replace
 
 from .arguments import Arguments, Numbered
-from .fault import DatasetFault
 from .geometry import ROUNDING
-from .text import Statement
+from .text import DatasetFault, Statement
 from .units import Units
 
 SPHERE, PLANE, ELLIPSOID, CYLINDER, BOX = "SPHERE", "PLANE", "ELLIPSOID", "CYLINDER", "BOX"

@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from .arguments import Arguments, Numbered
-from .fault import DatasetFault
-from .text import Statement
+from .text import DatasetFault, Statement
 from .units import Units
 
 CUBIC = 4

@@ -16,15 +16,23 @@ from .constraints import Coupler, Gear, GeneralConstraint, Joint, Motion
 from .contact import Contact
 from .curves import CurveOnCurve, PointOnCurve, SpaceCurve
 from .elastic import Beam, Elastic, SpringDamper
-from .fault import MOST_TOLD, DatasetFault, raise_all
 from .forces import SingleForce, VectorForce, read_gravity
 from .friction import JointFriction
-from .keywords import LEFT_OUT, READERS, REFUSED, SINGLE, keyword
-from .left_out import LEFT_OUT_ARGUMENTS, TEXT, UNREAD_SYSTEM, is_unread_system
+from .keywords import (
+    LEFT_OUT,
+    LEFT_OUT_ARGUMENTS,
+    READERS,
+    REFUSED,
+    SINGLE,
+    TEXT,
+    UNREAD_SYSTEM,
+    is_unread_system,
+    keyword,
+)
 from .outputs import Array, Request, Spline, Variable
 from .sensor import Sensor
 from .systems import Differential, Matrix
-from .text import ZERO_BYTE, Statement, statements, untitled
+from .text import MOST_TOLD, ZERO_BYTE, DatasetFault, Statement, raise_all, statements, untitled
 from .units import Units, read_units
 
 NO_CHANGES = Changes()

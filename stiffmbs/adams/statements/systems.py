@@ -1,4 +1,4 @@
-"""Systems with states: DIFF, LSE, TFSISO, and their MATRIX statements.  MSC Adams/Solver."""
+"""Systems with states: DIFF, LSE, TFSISO, their MATRIX statements, PINPUT and POUTPUT.  MSC Adams/Solver."""
 
 from __future__ import annotations
 
@@ -120,3 +120,19 @@ def read_transfer_function(statement: Statement, units: Units) -> TransferFuncti
         *found.head(), found.required("X"), found.required("U"),
         found.required("Y"), numerator, denominator,
     )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Plant(Numbered):
+    """VARIABLEs that are inputs (PINPUT) or outputs (POUTPUT), in order."""
+
+    variables: tuple[int, ...]
+
+
+def read_plant(statement: Statement, units: Units, keyword: str) -> Plant:
+    """Read the inputs or outputs of a model."""
+    found = Arguments(statement, keyword, ("VARIABLES",))
+    variables = found.idents("VARIABLES")
+    if not variables:
+        raise found.fault("found no VARIABLES, expected the numbers of VARIABLE statements")
+    return Plant(*found.head(), variables)

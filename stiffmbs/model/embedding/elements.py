@@ -22,8 +22,8 @@ from ...elements.spatial.spatial_kinds import FORCES, JOINTS
 from ...errors import InputError
 from ...reading.joint_name import JointName
 from ...reading.python_function import PythonFunction
-from .angles import QUARTER, TURN, Angles, Written, across, along, turned
 from .fields import oriented, plain, same
+from .formulas import QUARTER, TURN, Angles, Written, across, along, turned
 
 
 @singledispatch

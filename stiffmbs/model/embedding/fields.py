@@ -14,8 +14,7 @@ from ...reading.formula.formula import Formula
 from ...reading.joint_name import JointName
 from ...reading.marker import Marker
 from ...reading.units.units import in_text
-from .angles import Angles, Written, point, turned
-from .formulas import formula
+from .formulas import Angles, Written, formula, point, turned
 
 
 def same(element: Element, angles: Angles, **others: Any) -> Written:

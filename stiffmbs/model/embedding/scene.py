@@ -15,10 +15,9 @@ from ..model import PlanarData
 from ..model_data import ModelData
 from ..scene import Scene
 from ..settings import SteadyMotion
-from .angles import Angles, Written, placement, point, turned
 from .elements import element_in_space
 from .fields import fields, plain
-from .formulas import request
+from .formulas import Angles, Written, placement, point, request, turned
 
 ORDER = (
     "name", "dimensions", "parameters", "tables", "variables", "gravity", "markers", "bodies", "states", "inputs", "joints", "forces", "requests", "figure", "start", "run", "notes",

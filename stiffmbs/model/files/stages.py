@@ -1,10 +1,11 @@
-"""Scenes run in consecutive stages, each with other joints, forces or numbers."""
+"""Source of a scene, and scenes run in consecutive stages, each with other joints, forces or numbers."""
 
 from __future__ import annotations
 
 import copy
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, model_validator
@@ -14,7 +15,32 @@ from ...reading.fields import Described, Measured
 from ...reading.files.quoted import quoted
 from ...reading.files.yaml_text import read_yaml
 from ...reading.units import si
-from .written_scene import WrittenScene
+
+
+@dataclass(frozen=True)
+class WrittenScene:
+    """Content of a scene file, and its changes; comparisons of scenes ignore it.
+
+    Attributes
+    ----------
+    content : mapping
+        Content of the file, with included files; read-only.
+    changes : tuple of (path, value)
+        Values that replace those of the file.
+    source : str
+        Name of the scene in messages.
+    folder : Path or None
+        Folder of meshes.
+    files : dict of str to str
+        Digests of all other files that were read for it, and of the code of user-defined elements.
+    """
+
+    content: Mapping[str, Any] = field(compare=False)
+    changes: tuple[tuple[str, Any], ...] = field(compare=False)
+    source: str = field(compare=False)
+    folder: Path | None = field(compare=False)
+    files: dict[str, str] = field(default_factory=dict, compare=False)
+
 
 Number = Annotated[float, Measured("number")]
 BOUNDS = ("at_least", "at_most", "equals")

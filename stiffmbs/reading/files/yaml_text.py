@@ -1,4 +1,4 @@
-"""Reading of YAML texts, and line numbers of their parts."""
+"""YAML texts: reading with line numbers of their parts, and writing of scenes."""
 
 from __future__ import annotations
 
@@ -183,3 +183,16 @@ def _check_scalar(found: Any) -> None:
     if isinstance(found, str) and (sign := _NO_TEXT.search(found)):
         shown = quoted(_NO_TEXT.sub("?", found))
         raise _Refused(f"found the character U+{ord(sign[0]):04X} in '{shown}', expected text that can be printed")
+
+
+WIDTH = 140
+
+
+def scene_text(found: dict[str, Any]) -> str:
+    """Return a mapping as the text of a scene file; innermost lists and mappings are in flow style."""
+    from ruamel.yaml import YAML
+
+    yaml, out = YAML(), StringIO()
+    yaml.default_flow_style, yaml.width = None, WIDTH
+    yaml.dump(found, out)
+    return out.getvalue()

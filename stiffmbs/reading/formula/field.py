@@ -18,12 +18,11 @@ from ..names import Names, names_of
 from ..table import Table
 from ..units.quantity import as_float, is_unit, of_name
 from ..units.units import ANY, CONSTANTS, UNITS, Quantity
-from .check_dimensions import check_dimension
 from .dimension import UNKNOWN, Known, measured_in
 from .formula import Formula, called_tables
 from .full_names import text_in_full, with_full_names
 from .functions import IN_FORMULAS, check_functions
-from .measured import dimension_within
+from .measured import check_dimension, dimension_within
 from .names import COORDINATES, MEASURES, REACTIONS
 from .nodes import TAKERS, TIME, reading_order
 from .text import UNIT, FormulaError, parse

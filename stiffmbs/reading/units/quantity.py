@@ -10,8 +10,8 @@ from typing import Any
 
 from ..did_you_mean import did_you_mean
 from ..files.quoted import quoted, written
-from ..formula.check_dimensions import dimension_of
 from ..formula.functions import FUNCTIONS, IN_NUMBERS, check_functions
+from ..formula.measured import dimension_of
 from ..formula.text import OF_NUMBERS, UNIT, FormulaError, evaluate, parse
 from .units import ANY, CONSTANTS, DIMENSIONS, UNITS, Quantity, in_units, one
 

@@ -11,9 +11,8 @@ from ...elements.spatial.number_format import plain, vector
 from ...reading.marker import GROUND
 from ..robot import LinkJoint, Robot, RobotFault
 from .actuators import actuators
-from .bodies import Masses, bodies
-from .bodies import notes as body_notes
-from .joints import joints, passive
+from .joints import Masses, bodies, joints, passive
+from .joints import notes as body_notes
 from .mechanism import Mechanism, along_z
 
 RUN = {"duration": 1, "output": 0.01}

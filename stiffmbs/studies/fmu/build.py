@@ -17,7 +17,7 @@ from ...analyses.load_scene import load_scene
 from ...errors import InputError, needs
 from ...model.scene import Scene
 from ...reading.did_you_mean import did_you_mean
-from ...reading.files.scene_text import scene_text
+from ...reading.files.yaml_text import scene_text
 from ...results.files import refuse_path, written_whole
 from ..simulation import simulation
 

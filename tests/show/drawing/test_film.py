@@ -16,8 +16,7 @@ from stiffmbs.show.drawing.film import Pace, _ffmpeg, pictures
 from stiffmbs.show.drawing.picture import Shown
 from stiffmbs.show.drawing.poses import Poses, followed_body, poses_of
 from stiffmbs.show.drawing.view import view_named
-from stiffmbs.show.figure import drawn, figure_of
-from stiffmbs.show.plot import plotted_runs
+from stiffmbs.show.figure import drawn, figure_of, plotted_runs
 
 from ...conftest import EXAMPLES
 

@@ -5,8 +5,7 @@ import pytest
 
 import stiffmbs
 from stiffmbs.analyses.run import prepare
-from stiffmbs.reading.files.scene_text import scene_text
-from stiffmbs.reading.files.yaml_text import read_yaml
+from stiffmbs.reading.files.yaml_text import read_yaml, scene_text
 from stiffmbs.solve.events.restart import restarted
 from stiffmbs.solve.ida.ida import NativeIda
 from stiffmbs.solve.ida.native_engine import NativeEngine

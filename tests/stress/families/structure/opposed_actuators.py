@@ -8,8 +8,7 @@ from typing import Any
 from stiffmbs.analyses.check import check
 from stiffmbs.analyses.run import run
 from stiffmbs.model.read_scene import read_scene
-from stiffmbs.reading.files.scene_text import scene_text
-from stiffmbs.reading.files.yaml_text import read_yaml
+from stiffmbs.reading.files.yaml_text import read_yaml, scene_text
 
 from ...variants.answers import said
 

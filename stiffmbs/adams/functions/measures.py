@@ -1,0 +1,138 @@
+"""Angles between markers, joint reactions and splines as formulas.  MSC Adams/Solver, function expressions.
+
+YAW, PITCH, ROLL, PSI, THETA, PHI and INCANG: the tip of an axis is a marker 1 m along it. A component of one axis along
+another is then a distance between markers.
+
+JOINT(id, jflag, comp, rm), and JPRIM alike: scene formulas know the reaction on marker I in ground axes. Its component
+along an axis of another marker is the dot product with that axis.
+
+AKISPL and CUBSPL(x, z, id, order), INTERP(x, z, method, id, order) are tables of the scene.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable
+from typing import Any
+
+from ...elements.spatial.number_format import plain
+from ...reading.files.quoted import quoted
+from ..scene.mechanism import ORIGIN, Mechanism, Place
+from ..statements.constraints import Joint
+from .function import Function
+from .trees import call, difference, measured, number, power, product, quotient, total
+
+ANGLES_OF_AXES = ("YAW", "PITCH", "ROLL", "PSI", "THETA", "PHI")
+
+
+def angle(name: str, mechanism: Mechanism, i: Place, j: Place) -> ast.expr:
+    """Return an angle of marker i relative to marker j: z-y-x (PITCH with opposite sign) or z-x-z angles."""
+
+    def along(axis_of_i: str, axis_of_j: str) -> ast.expr:
+        return measured(f"d{axis_of_j}", mechanism.tip(i, axis_of_i), i.reference, j.reference)
+
+    makers: dict[str, Callable[[], ast.expr]] = {
+        "YAW": lambda: call("atan2", along("x", "y"), along("x", "x")),
+        "PITCH": lambda: call("asin", bounded(along("x", "z"))),
+        "ROLL": lambda: call("atan2", along("y", "z"), along("z", "z")),
+        "PSI": lambda: call("atan2", along("z", "x"), ast.UnaryOp(ast.USub(), along("z", "y"))),
+        "THETA": lambda: call("acos", bounded(along("z", "z"))),
+        "PHI": lambda: call("atan2", along("x", "z"), along("y", "z")),
+    }
+    return makers[name]()
+
+
+def included_angle(first: str, vertex: str, second: str) -> ast.expr:
+    """Return the angle at a marker between the directions to two others, 0 to pi."""
+    ways = [[measured(f"d{axis}", end, vertex, "") for axis in "xyz"] for end in (first, second)]
+    lengths = product(measured("dm", first, vertex, ""), measured("dm", second, vertex, ""))
+    return call("acos", bounded(quotient(total([product(a, b) for a, b in zip(*ways, strict=True)]), lengths)))
+
+
+def bounded(cosine: ast.expr) -> ast.expr:
+    """Clip a cosine to [-1, 1] against rounding."""
+    return call("min", call("max", cosine, number(-1.0)), number(1.0))
+
+
+def on_ground() -> Place:
+    """Return the origin of ground, the default second marker of an angle."""
+    return Place("ground", "", ORIGIN, ORIGIN)
+
+
+REACTIONS = ("JOINT", "JPRIM")
+COMPONENTS = ("FM", "FX", "FY", "FZ", "TM", "TX", "TY", "TZ")
+"""Components in the order of their numbers, from 1."""
+BY_ITS_PLACE = ("RACKPIN",)
+"""Joints that become equations in the scene; formulas cannot use their reactions."""
+
+
+def reaction(joint: Joint, component: str, on_j: bool, axes: Place | None, mechanism: Mechanism) -> ast.expr:
+    """Return a component of the reaction on marker I or J of a joint, N or N m, in ground axes or those of a marker."""
+    vector = _vector(joint, component[0].lower(), on_j, mechanism)
+    if component[1] == "M":
+        return call("sqrt", total([power(part, 2) for part in vector]))
+    along = component[1].lower()
+    if axes is None or (axes.body == "ground" and not axes.name):
+        return vector["xyz".index(along)]
+    tip = mechanism.tip(axes, along)
+    ways = (measured(f"d{axis}", tip, axes.reference, "") for axis in "xyz")
+    return total([product(part, way) for part, way in zip(vector, ways, strict=True)])
+
+
+def _vector(joint: Joint, letter: str, on_j: bool, mechanism: Mechanism) -> list[ast.expr]:
+    """Return force ('f') on marker I or J, or torque ('t') about it, in ground axes."""
+    on_i = [call(f"{letter}{axis}", ast.Name(joint.name)) for axis in "xyz"]
+    if not on_j:
+        return on_i
+    if letter == "f":
+        return [ast.UnaryOp(ast.USub(), part) for part in on_i]
+    i, j = (mechanism.place(ident, joint).reference for ident in (joint.i, joint.j))
+    force = [call(f"f{axis}", ast.Name(joint.name)) for axis in "xyz"]
+    arm = [measured(f"d{axis}", i, j, "") for axis in "xyz"]
+    moments = [
+        difference(product(arm[(k + 1) % 3], force[(k + 2) % 3]), product(arm[(k + 2) % 3], force[(k + 1) % 3]))
+        for k in range(3)
+    ]
+    return [difference(number(0.0), total([part, moment])) for part, moment in zip(on_i, moments, strict=True)]
+
+
+def component_of(name: str, number_of_it: int, function: Function) -> str:
+    """Return the component with a given number. Raises DatasetFault if there is no such component."""
+    if not 1 <= number_of_it <= len(COMPONENTS):
+        raise function.fault(f"found the component {number_of_it} of {name}, expected 1 to {len(COMPONENTS)}")
+    return COMPONENTS[number_of_it - 1]
+
+
+CURVES: dict[str, dict[str, Any]] = {
+    "AKISPL": {"akima": True},
+    "CUBSPL": {"ends": "not-a-knot"},
+    "LINE": {"lines": True},
+}
+"""Table options of each spline function."""
+
+
+def spline_value(
+    name: str,
+    arguments: list[ast.expr],
+    function: Function,
+    translate: Callable[[ast.expr], ast.expr],
+    mechanism: Mechanism,
+) -> ast.expr:
+    """Return the value of a spline and add its table to the mechanism.
+
+    Raises DatasetFault if the spline does not exist, or a derivative is requested.
+    """
+    x, _, *rest = [*arguments, *[ast.Constant(0)] * 5][: max(4, len(arguments))]
+    if name == "INTERP":
+        name = {1: "LINE", 3: "CUBSPL"}.get(function.identifier(rest, 0), "")
+        rest = rest[1:]
+    ident, order = function.identifier(rest, 0), function.identifier(rest, 1) if len(rest) > 1 else 0
+    spline = mechanism.dataset.splines.get(ident)
+    if spline is None:
+        raise function.fault(f"found the spline {ident} in '{quoted(function.text)}', expected the number of a SPLINE")
+    if order or not name:
+        raise function.fault(f"found '{quoted(function.text)}', expected a spline's value, cubic or by straight lines")
+    table = f"{name}_{ident}"
+    points = [[plain(a), plain(b)] for a, b in zip(spline.x, spline.y, strict=True)]
+    mechanism.tables[table] = {"table": points, **CURVES[name]}
+    return ast.Call(ast.Name(table), [translate(x)], [])
