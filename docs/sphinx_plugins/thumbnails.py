@@ -17,6 +17,7 @@ from gallery import examples
 from PIL import Image, ImageOps
 
 import stiffmbs
+from stiffmbs.show.drawing.deformed import largest_stress
 from stiffmbs.show.drawing.derive import drawing_of
 from stiffmbs.show.drawing.film import Pace, pictures
 from stiffmbs.show.drawing.picture import Shown
@@ -32,25 +33,30 @@ HERO = "hero"
 """Film of the landing page: a car over a bump."""
 
 
-def film(path: Path, changes: Sequence[tuple[str, str]] = (), view: str = "") -> Iterator[np.ndarray]:
-    """Yield the pictures of the run of a scene with some values changed."""
+def film(
+    path: Path, changes: Sequence[tuple[str, str]] = (), view: str = "", floor: bool = False
+) -> Iterator[np.ndarray]:
+    """Yield the pictures of the run of a scene with some values changed, with or without the floor."""
     data = stiffmbs.load_scene(path, changes)
     solution = stiffmbs.run(data)
-    drawing = replace(drawing_of(data), name=" ")  # no title
+    poses = {"": poses_of(data, solution.time, solution.channels)}
+    drawing = drawing_of(data, along=poses[""] if floor else None)
+    stress = largest_stress(drawing.parts, poses[""])
+    drawing = replace(drawing, name=" ", deformations={}, stress=stress)  # no title
     duration = float(solution.time[-1] - solution.time[0])
     seen = view_named(view, drawing.dimensions, drawing.gravity)
-    poses = {"": poses_of(data, solution.time, solution.channels)}
-    return pictures(drawing, poses, seen, Pace(duration / LENGTH, RATE), Shown(names=False, forces=False), ())
+    return pictures(
+        drawing, poses, seen, Pace(duration / LENGTH, RATE), Shown(names=False, forces=False, clock=False), ()
+    )
 
 
 def cropped(frames: Iterator[np.ndarray]) -> list[Image.Image]:
-    """Return pictures without their common margin and without the clock in the lower left corner."""
-    found = [frame.copy() for frame in frames]
-    for frame in found:
-        frame[-40:, :150] = 255
+    """Return pictures without their common margin."""
+    found = list(frames)
     ink = np.min([frame.min(axis=2) for frame in found], axis=0) < 250
     rows, columns = np.flatnonzero(ink.any(axis=1)), np.flatnonzero(ink.any(axis=0))
-    box = (max(columns[0] - 8, 0), max(rows[0] - 8, 0), columns[-1] + 9, rows[-1] + 9)
+    high, wide = ink.shape
+    box = (max(columns[0] - 8, 0), max(rows[0] - 8, 0), min(columns[-1] + 9, wide), min(rows[-1] + 9, high))
     return [Image.fromarray(frame).crop(box) for frame in found]
 
 
@@ -67,7 +73,7 @@ if __name__ == "__main__":
         if name == HERO:
             write_webp(
                 FOLDER / f"{HERO}.webp",
-                film(examples()["car"], [("choose.manoeuvre", "bump"), ("run.duration", "3 s")]),
+                film(examples()["car"], [("choose.manoeuvre", "bump"), ("run.duration", "3 s")], floor=True),
                 720,
             )
             continue

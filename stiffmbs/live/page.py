@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import secrets
 import socket
 import threading
@@ -11,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from ..analyses.job import data_of
+from ..cache.entries import code_of
 from ..errors import InputError, refuse_missing
 from ..model.model_data import ModelData
 from ..model.model_text import model_text
@@ -19,6 +21,8 @@ from ..reading.files.yaml_text import scene_text
 
 PACKAGES = ("starlette", "uvicorn")
 LOOPBACK = "127.0.0.1"
+FIRST_PORT, PORTS = 49152, 16384
+"""Dynamic ports (RFC 6335), of which each file has a preferred one, so that a page finds a restarted server."""
 SCENES = (".yaml", ".yml")
 """File suffixes of scenes that can be edited."""
 FRAME_HEIGHT = 760
@@ -148,16 +152,18 @@ def _served(document: Any, data: ModelData | None, port: int, browser: bool) -> 
     from .app import Guard, application
     from .workers import Process, Thread, Workers
 
-    listening = socket.socket()
-    listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    code = code_of(f"live page of {document.file}") if document.file is not None else None
+    token = secrets.token_urlsafe(24) if code is None else base64.urlsafe_b64encode(code[:24]).decode()
+    preferred = FIRST_PORT + int.from_bytes(code[24:]) % PORTS if code is not None and not port else port
     try:
-        listening.bind((LOOPBACK, port))
-        listening.listen()  # a browser may ask before the server runs
+        listening = _listening(preferred)
     except (OSError, OverflowError) as error:
-        listening.close()
-        raise InputError(f"--port {port}: found a port that cannot be used ({error}), expected a free one") from None
+        if preferred == port:
+            raise InputError(
+                f"--port {port}: found a port that cannot be used ({error}), expected a free one"
+            ) from None
+        listening = _listening(0)
     number = listening.getsockname()[1]
-    token = secrets.token_urlsafe(24)
     loop = asyncio.new_event_loop()
     workers = Workers(lambda: Thread(data, loop) if data is not None else Process(document.file, loop))
     app = Guard(application(token, document, workers), token, number)
@@ -180,6 +186,19 @@ def _served(document: Any, data: ModelData | None, port: int, browser: bool) -> 
     if browser and not _in_notebook():
         webbrowser.open(url)
     return LivePage(url, server, thread)
+
+
+def _listening(port: int) -> socket.socket:
+    """Return a socket that listens on a port, so that a browser may ask before the server runs."""
+    found = socket.socket()
+    try:
+        found.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        found.bind((LOOPBACK, port))
+        found.listen()
+    except (OSError, OverflowError):
+        found.close()
+        raise
+    return found
 
 
 def _in_notebook() -> bool:

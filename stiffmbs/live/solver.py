@@ -9,6 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from ..analyses.run import run, solved
 from ..elements.element import Element
 from ..errors import InputError, StiffmbsError
@@ -18,7 +20,7 @@ from ..model.scene import Scene
 from ..reading.python_function import PythonFunction
 from ..results.solution import Solution
 from ..show.drawing.derive import drawing_of
-from ..show.drawing.poses import poses_of
+from ..show.drawing.poses import described_poses, poses_of
 from ..show.page.data import page_data
 from ..show.summary import solver_lines
 from ..show.verdict import verdict
@@ -152,6 +154,13 @@ def shown(found: Solved, channels: Sequence[str]) -> dict[str, Any]:
         "lines": [f"{label}: {line}" for label, line in solver_lines(solution.solver)], "page": page,
         "parameters": parameters_of(scene), "name": solution.name, "end": float(solution.time[-1]),
     }  # fmt: skip
+
+
+def preview(scene: ModelData) -> dict[str, str]:
+    """Return the bodies of a scene as described, for a page that waits for the first solution."""
+    poses = described_poses(scene)
+    poses = poses.at(np.zeros(2, dtype=int))
+    return page_data(drawing_of(scene, along=poses), {"": poses}, level=FAST)
 
 
 def parameters_of(scene: ModelData) -> list[dict[str, Any]]:

@@ -22,7 +22,7 @@ from ..model.model_data import ModelData
 from ..reading.files.text_file import file_text
 from ..show.summary import json_line
 from .requests import ANSWERS, Request
-from .solver import LiveSolver, NeedsConsent, error_of, timed
+from .solver import LiveSolver, NeedsConsent, error_of, preview, timed
 
 BETWEEN = 0.2
 """Least time between two messages on progress, s."""
@@ -45,6 +45,9 @@ class Worker:
         self._solver, self._send = solver, send
         self._newest = Newest()
         self._requests: queue.Queue[dict[str, Any] | None] = queue.Queue()
+        self._previewed: dict[str, dict[str, str]] = {}
+        self._waiting: dict[str, Any] | None = None
+        self._lock = threading.Lock()
 
     def take(self, message: dict[str, Any] | None) -> None:
         """Accept a request from another thread; None ends the loop."""
@@ -55,17 +58,32 @@ class Worker:
             return
         else:
             self._newest.number = int(message["number"])
+            if message.get("preview"):
+                with self._lock:
+                    self._waiting = message
+                    self._send_preview()
         self._requests.put(message)
 
+    def _send_preview(self) -> None:
+        """Send the bodies of a scene to the page that waits for its first solution, as soon as both are there."""
+        if self._waiting is not None and (page := self._previewed.get(str(self._waiting.get("text")))) is not None:
+            self._send({"number": int(self._waiting["number"]), "status": "progress", "page": page})
+            self._waiting = None
+
     def solve_ahead(self, file: Path) -> None:
-        """Solve a file before a page asks for it, and end with the first request; errors are left to that request."""
+        """Draw and solve a file before a page asks for it, and end with the first request; errors are left to that request."""
 
         def watch(t: float) -> None:
             if self._newest.number:
                 raise KeyboardInterrupt
 
         with contextlib.suppress(StiffmbsError):
-            self._solver.solve(file_text(file), {}, watch)
+            text = file_text(file)
+            page = preview(self._solver.scene(text, {}))
+            with self._lock:
+                self._previewed[text] = page
+                self._send_preview()
+            self._solver.solve(text, {}, watch)
 
     def loop(self) -> None:
         """Answer requests until the end."""
@@ -126,9 +144,12 @@ def main() -> None:
     os.dup2(2, 1)
     file = Path(sys.argv[1]) if len(sys.argv) > 1 and sys.argv[1] else None
 
+    writing = threading.Lock()
+
     def send(message: dict[str, Any]) -> None:
-        answers.write(json_line(message) + "\n")
-        answers.flush()
+        with writing:
+            answers.write(json_line(message) + "\n")
+            answers.flush()
 
     worker = Worker(LiveSolver(file), send)
     threading.Thread(target=_read, args=(sys.stdin, worker), daemon=True).start()

@@ -1,6 +1,9 @@
 """The page in a real browser: text, errors, sliders, and plots, without a message on its console."""
 
 import json
+import re
+import subprocess
+import sys
 
 import pytest
 
@@ -23,6 +26,12 @@ def tab(tmp_path_factory):
         yield found
 
 
+def leave(tab):
+    tab.run("LIVE.saved = LIVE.editor?.state.doc.toString()")  # so that leaving the page asks nothing
+    tab.do("Page.navigate", url="about:blank")
+    tab.wait("location.href === 'about:blank' && document.readyState === 'complete'")
+
+
 @pytest.fixture
 def opened(tab, tmp_path):
     """Opens a text in a page; nothing may have gone wrong when all is done."""
@@ -39,9 +48,7 @@ def opened(tab, tmp_path):
         return path
 
     yield make
-    tab.run("LIVE.saved = LIVE.editor?.state.doc.toString()")  # so that leaving the page asks nothing
-    tab.do("Page.navigate", url="about:blank")
-    tab.wait("location.href === 'about:blank' && document.readyState === 'complete'")
+    leave(tab)
     for page in pages:
         page.close()
     assert [error for error in tab.errors if OF_SOFTWARE not in error] == []
@@ -149,3 +156,85 @@ def test_an_empty_page_offers_a_first_scene(tab, opened):
     tab.wait("window.shown && shown.frames > 0")
     assert tab.run("document.getElementById('empty').hidden")
     tab.run("LIVE.saved = LIVE.editor.state.doc.toString()")
+
+
+def started(path):
+    """A server in a process of its own, and its address."""
+    command = [sys.executable, "-m", "stiffmbs", "open", str(path), "--no-browser"]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    for line in process.stdout:
+        if found := re.search(r"http://\S+", line):
+            return process, found[0]
+    raise AssertionError("no address")
+
+
+def ready(tab, url):
+    tab.do("Page.navigate", url=url)
+    tab.wait("typeof LIVE === 'object' && LIVE.answers > 0")
+
+
+def test_a_killed_server_leaves_the_text_and_the_page_finds_the_next_one(tab, tmp_path):
+    path = tmp_path / "scene.yaml"
+    path.write_text(TEXT, encoding="utf-8")
+    process, url = started(path)
+    try:
+        ready(tab, url)
+        replace(tab, "270 N/m", "300 N/m")
+        process.kill()
+        process.wait()
+        tab.run(
+            "(() => { const text = LIVE.editor.state.doc.toString(), from = text.indexOf('300 N/m');"
+            "LIVE.editor.dispatch({changes: {from, to: from + 3, insert: '310'}}); })()"
+        )
+        tab.wait("!document.getElementById('banner').hidden")
+        assert "The text stays here" in tab.run("document.getElementById('banner').textContent")
+        answers = tab.run("LIVE.answers")
+        process, again = started(path)
+        assert again == url
+        tab.wait(f"LIVE.answers > {answers} && document.getElementById('banner').hidden")
+        tab.wait("document.getElementById('headline').textContent.startsWith('Completed')")
+        assert "310 N/m" in tab.run("LIVE.editor.state.doc.toString()")
+        assert path.read_text(encoding="utf-8") == TEXT
+    finally:
+        leave(tab)
+        process.kill()
+        tab.errors.clear()  # refused connections
+
+
+def test_two_tabs_have_their_own_text_and_solver(tab, tmp_path, tmp_path_factory):
+    path = tmp_path / "scene.yaml"
+    path.write_text(TEXT, encoding="utf-8")
+    page = stiffmbs.open(path, browser=False)
+    try:
+        with browser.tab(tmp_path_factory.mktemp("second")) as second:
+            ready(tab, page.url)
+            ready(second, page.url)
+            replace(tab, "270 N/m", "300 N/m")
+            assert "270 N/m" in second.run("LIVE.editor.state.doc.toString()")
+            first, other = curve(tab), curve(second)
+            assert first != other
+            replace(second, "270 N/m", "300 N/m")
+            assert curve(second) == first
+            for one in (tab, second):
+                leave(one)
+                assert [error for error in one.errors if OF_SOFTWARE not in error] == []
+    finally:
+        page.close()
+
+
+def test_the_bodies_are_shown_before_the_first_solution(tab, tmp_path):
+    path = tmp_path / "scene.yaml"
+    path.write_text(TEXT.replace("rtol: 1e-6", "rtol: 1e-6, max_step: 4e-6"), encoding="utf-8")
+    page = stiffmbs.open(path, browser=False)
+    try:
+        tab.do("Page.navigate", url=page.url)
+        tab.wait("typeof LIVE === 'object' && LIVE.preview && LIVE.preview.frames > 0")
+        assert tab.run("LIVE.shown") is None
+        assert tab.run("document.querySelectorAll('#mechanism canvas').length") == 1
+        replace(tab, ", max_step: 4e-6", "")
+        tab.wait("LIVE.shown && LIVE.preview.ended")
+        assert tab.run("document.querySelectorAll('#mechanism .viewer').length") == 1
+        leave(tab)
+        assert [error for error in tab.errors if OF_SOFTWARE not in error] == []
+    finally:
+        page.close()

@@ -223,3 +223,19 @@ def test_a_new_file_is_created_by_saving(tmp_path):
         assert path.read_text() == "name: x\n"
     finally:
         page.close()
+
+
+def test_a_page_opened_again_has_the_same_address_unless_its_port_is_taken(scene, tmp_path):
+    first = stiffmbs.open(scene, browser=False)
+    second = stiffmbs.open(scene, browser=False)
+    second.close()
+    first.close()
+    again = stiffmbs.open(scene, browser=False)
+    again.close()
+    other = tmp_path / "other.yaml"
+    other.write_text(scene.read_text(encoding="utf-8"), encoding="utf-8")
+    elsewhere = stiffmbs.open(other, browser=False)
+    elsewhere.close()
+    assert again.url == first.url
+    assert second.url != first.url and second.url.split("/")[3] == first.url.split("/")[3]
+    assert elsewhere.url.split("/")[3] != first.url.split("/")[3]

@@ -74,7 +74,11 @@ const LIVE = (() => {
     const number = (it.asked = (it.asked ?? 0) + 1);
     running = true; begun = performance.now(); again = null;
     const busy = setTimeout(() => { $("verdict").classList.add("busy"); $("stop").hidden = false; }, 400);
-    const answer = await ask({ what: "solve", channels: wanted() }, ({ time, stage }) => { if (number === it.asked) $("headline").textContent = stage ?? `solving: t = ${Number(time.toPrecision(4))} s`; });
+    const answer = await ask({ what: "solve", channels: wanted(), preview: !it.shown }, ({ time, stage, page }) => {
+      if (number !== it.asked) return;
+      if (page) preview(page);
+      else $("headline").textContent = stage ?? `solving: t = ${Number(time.toPrecision(4))} s`;
+    });
     clearTimeout(busy);
     if (number !== it.asked) return false;
     running = false;
@@ -85,6 +89,13 @@ const LIVE = (() => {
     it.answers += 1;
     it.delay = performance.now() - begun;
     return answer.status !== "error";
+  }
+  /* The bodies as described, until the first solution comes. */
+  async function preview(page) {
+    $("headline").textContent = "solving";
+    const first = make("div", null);
+    const found = await MOVING.show(first, page.head, page.numbers);
+    if (!it.shown) { $("mechanism").replaceChildren(first); it.preview = found; }
   }
   const wanted = () => it.shown?.plotted?.chosen.map((c) => c.name) ?? [];
   async function more(channels) {  // values of channels that this page does not hold
@@ -104,7 +115,7 @@ const LIVE = (() => {
     notes(answer.notes, answer.digits, answer.lines);
     document.title = `${answer.name || $("name").textContent} - stiffmbs`;
     if (it.shown) await it.shown.replace(answer.page.head, answer.page.numbers);
-    else { it.shown = await MOVING.show($("mechanism"), answer.page.head, answer.page.numbers, more); window.shown = it.shown; if (!matchMedia("(prefers-reduced-motion: reduce)").matches) it.shown.time.toggle(); }
+    else { $("mechanism").replaceChildren(); it.preview?.end(); it.shown = await MOVING.show($("mechanism"), answer.page.head, answer.page.numbers, more); window.shown = it.shown; if (!matchMedia("(prefers-reduced-motion: reduce)").matches) it.shown.time.toggle(); }
     it.channels = it.shown.data.channels.columns.map((c) => c.name);
     sliders(answer.parameters);
   }

@@ -51,9 +51,7 @@ def poses_json(poses: Poses) -> dict[str, Any]:
 
 def _numbers(values: np.ndarray, size: float) -> list[Any]:
     """Round numbers to six digits of the mechanism's size."""
-    step = 10.0 ** (np.floor(np.log10(size)) - DIGITS)
-    rounded: list[Any] = (np.round(np.asarray(values) / step) * step).tolist()
-    return [[float(f"{x:.7g}") for x in row] if isinstance(row, list) else float(f"{row:.7g}") for row in rounded]
+    return np.round(values, DIGITS - int(np.floor(np.log10(size)))).tolist()  # type: ignore[no-any-return]
 
 
 def _by_body(shapes: Mapping[str, np.ndarray]) -> dict[str, Any]:

@@ -100,7 +100,7 @@ def pictures(
         artists = _frame(axes, drawing, samples, k, view, largest)
         if shown.names:
             artists += write_names(axes, drawing, samples[0], k, view)
-        clock.set_text(f"t = {instants[k]:.3f} s")
+        clock.set_text(f"t = {instants[k]:.3f} s" if shown.clock else "")
         if body:
             along = view.seen(way_of(body, samples[0])[k][None])[0]
             prepare(axes, low + along[:2], high + along[:2])

@@ -32,11 +32,13 @@ MARK_WORDS = {"redundant": "redundant equations", "not unique": "force not uniqu
 class Shown:
     """Options of a picture in addition to bodies and symbols.
 
-    `forces`: true for arrows of the forces of joints and force elements, to scale; by default in the plane alone.
+    `forces`: true for arrows of the forces of joints and force elements, to scale; by default in the plane alone. `clock`: true
+    for the time in a film.
     """
 
     names: bool = True
     forces: bool | None = None
+    clock: bool = True
 
     def longest(self, drawing: Drawing, poses: Poses) -> float:
         """Return the force of the longest arrow, N; zero without arrows."""

@@ -165,11 +165,19 @@ def moved_line(line: Line, point: np.ndarray, axes: np.ndarray) -> Line:
 
 def triangles(solid: Solid) -> np.ndarray:
     """Return the triangles of all faces, shape (m, 3), indices into the vertices."""
-    found: list[tuple[int, int, int]] = []
-    for face in solid.faces:
-        points = solid.vertices[face]
-        found += [(int(face[a]), int(face[b]), int(face[c])) for a, b, c in _of_face(points)]
-    return np.array(found, dtype=int).reshape(-1, 3)
+    found = [np.zeros((0, 3), dtype=int)]
+    for length in {len(face) for face in solid.faces}:
+        faces = np.array([face for face in solid.faces if len(face) == length])
+        points = solid.vertices[faces]
+        edges = np.roll(points, -1, axis=1) - points
+        turns = np.cross(edges, np.roll(edges, -1, axis=1))
+        normals = np.cross(points, np.roll(points, -1, axis=1)).sum(axis=1, keepdims=True)
+        convex = ((turns * normals).sum(axis=2) > 0).all(axis=1)
+        fan = [(0, k, k + 1) for k in range(1, length - 1)]
+        found.append(faces[convex][:, fan].reshape(-1, 3))
+        for face, corners in zip(faces[~convex], points[~convex], strict=True):
+            found.append(face[_of_face(corners)])
+    return np.concatenate(found)
 
 
 def _of_face(points: np.ndarray) -> list[tuple[int, int, int]]:

@@ -800,7 +800,8 @@ const MOVING = (() => {
       [time.start, time.end] = spanOf(data);
     }
     const it = {
-      time, data, shown, plotted, frames: 0,
+      time, data, shown, plotted, frames: 0, ended: false,
+      end() { it.ended = true; },
       async replace(head, numbers) {
         const found = await read(head, numbers), kept = found.drawing.dimensions === data.drawing.dimensions;
         data = found;
@@ -821,7 +822,7 @@ const MOVING = (() => {
       }
       last = now;
       for (const part of drawn) if (part.stale) { part.stale = false; part.draw(); if (part === shown) it.frames += 1; }
-      requestAnimationFrame(tick);
+      if (!it.ended) requestAnimationFrame(tick);
     };
     requestAnimationFrame(tick);
     return it;
