@@ -48,13 +48,8 @@ class Straight:
 class Arc:
     """Circular arc.
 
-    Attributes
-    ----------
-    centre : ndarray
-    first, second : ndarray
-        Vectors of the radius's length: from the centre to the start, and a quarter turn further along the arc.
-    angle : float
-        rad.
+    `first`, `second`: vectors of the radius's length: from the centre to the start, and a quarter turn further along
+    the arc. `angle`: rad.
     """
 
     centre: np.ndarray
@@ -77,10 +72,7 @@ class Arc:
 def pieces_through(points: Sequence[np.ndarray]) -> list[Piece]:
     """Return straight pieces through points.
 
-    Raises
-    ------
-    ValueError
-        If two consecutive points coincide, or a piece leads straight back.
+    Raises ValueError if two consecutive points coincide, or a piece leads straight back.
     """
     size = max(float(np.max(np.abs(np.array(points)))), 1e-300)
     found: list[Piece] = []
@@ -98,10 +90,7 @@ def pieces_through(points: Sequence[np.ndarray]) -> list[Piece]:
 def arc_through(start: np.ndarray, middle: np.ndarray, end: np.ndarray) -> Piece:
     """Return the arc through three points; a straight piece if they are on one line.
 
-    Raises
-    ------
-    ValueError
-        If two of the points coincide, or the middle one is on the line but not between the others.
+    Raises ValueError if two of the points coincide, or the middle one is on the line but not between the others.
     """
     pieces_through([start, middle, end])
     a, b = middle - start, end - start
@@ -124,10 +113,7 @@ def arc_through(start: np.ndarray, middle: np.ndarray, end: np.ndarray) -> Piece
 def frame(tangent: np.ndarray, up: np.ndarray) -> np.ndarray:
     """Return the rotation matrix whose x axis is the tangent and whose z axis is nearest to `up`.
 
-    Raises
-    ------
-    ValueError
-        If the two are parallel.
+    Raises ValueError if the two are parallel.
     """
     across = np.cross(up, tangent)
     size = float(np.linalg.norm(across))

@@ -91,13 +91,7 @@ def _loads(name: str, entry: Any, lines: Mapping[str, Line], where: str) -> dict
 
 
 def read_beam(entry: Mapping[str, Any], parameters: Mapping[str, Any], dimensions: Any, where: str) -> Beam:
-    """Return the beam of an entry.
-
-    Raises
-    ------
-    InputError
-        If it has another type, or cannot be read.
-    """
+    """Return the beam of an entry. Raises InputError if it has another type, or cannot be read."""
     kind = entry["type"]
     if kind != BEAM:
         near = did_you_mean(kind, [BEAM, FLEXIBLE]) if isinstance(kind, str) else ""

@@ -40,12 +40,7 @@ class DistributedLoad(Described):
 def node_forces(name: str, load: DistributedLoad, lines: Mapping[str, Line], where: str) -> dict[str, Any]:
     """Return the forces that stand for a distributed load, as entries of a scene.
 
-    The weights of the nodes are those of their masses.
-
-    Raises
-    ------
-    InputError
-        If the load names an unknown beam.
+    The weights of the nodes are those of their masses. Raises InputError if the load names an unknown beam.
     """
     if load.beam not in lines:
         near = did_you_mean(load.beam, lines)

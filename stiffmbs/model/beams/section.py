@@ -47,13 +47,7 @@ class Properties:
 
 
 class Section(Described):
-    """Base of cross sections.
-
-    Attributes
-    ----------
-    type : str
-        Name of the kind in scenes.
-    """
+    """Base of cross sections. `type`: name of the kind in scenes."""
 
     type: str
 

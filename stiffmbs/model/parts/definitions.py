@@ -75,12 +75,7 @@ KEYS = ("parameters", "markers", *NAMED, "use", "mounts", OPTIONS)
 class Definitions:
     """Reader of definitions, and of the entries that use them.
 
-    Attributes
-    ----------
-    parts : mapping
-        Definitions of the scene.
-    kind : type of Use
-        For the plane or space.
+    `parts`: definitions of the scene. `kind`: for the plane or space.
     """
 
     parts: Any
@@ -133,13 +128,7 @@ class Definitions:
         return use, words
 
     def of(self, part: str) -> dict[str, Any]:
-        """Return a copy of the definition of a part.
-
-        Raises
-        ------
-        InputError
-            If it is not a mapping, or has unknown keys.
-        """
+        """Return a copy of the definition of a part. Raises InputError if it is not a mapping, or has unknown keys."""
         found = self.written(part)
         if not isinstance(found, dict):
             raise InputError(f"parts.{part}: found {written(found)}, expected a mapping with 'bodies'")

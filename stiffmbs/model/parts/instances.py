@@ -80,14 +80,8 @@ class Instance:
 class Instances:
     """Reader of the instances of a scene, in order from outer to inner.
 
-    Attributes
-    ----------
-    changes : list of (path, value)
-        Values set in instances from outside; applied changes are removed from the list.
-    words : mapping of str to str
-        Choices of the scene.
-    dimensions : int
-        2 or 3.
+    `changes`: values set in instances from outside; applied changes are removed from the list. `words`: choices of the
+    scene. `dimensions`: 2 or 3.
     """
 
     definitions: Definitions
@@ -102,10 +96,7 @@ class Instances:
     ) -> None:
         """Add the instances of ``use`` and all nested ones.
 
-        Raises
-        ------
-        InputError
-            For a part that does not exist, uses itself, or cannot be read.
+        Raises InputError for a part that does not exist, uses itself, or cannot be read.
         """
         where = f"{outer.where}.use" if outer else "use"
         if not isinstance(used, dict):

@@ -22,14 +22,9 @@ Signs = tuple[float, ...]
 class MirroredNames(ast.NodeTransformer):
     """Replace each coordinate and measure by its mirror image: the same, or its negative.
 
-    Parameters
-    ----------
-    frame
-        Frame of the part in ground axes.
-    inside : callable
-        Returns True if a marker belongs to the part or its mounts.
-    along_joint : callable
-        Returns the sign of a joint's coordinate, given the names of both; None if the part has no such joint.
+    `frame`: frame of the part in ground axes. `inside`: returns True if a marker belongs to the part or its mounts.
+    `along_joint`: returns the sign of a joint's coordinate, given the names of both; None if the part has no such
+    joint.
     """
 
     def __init__(
@@ -105,10 +100,7 @@ def _signed(node: ast.expr, sign: float) -> ast.expr:
 def mirrored_law(found: Formula | Table, names: MirroredNames, value: float, argument: float) -> Formula | Table:
     """Return value * f(argument * x) for a formula or table f, with mirrored coordinates; states keep their values.
 
-    Parameters
-    ----------
-    value, argument : float
-        1 or -1; `argument` applies to the variables that the field defines.
+    `value`, `argument`: 1 or -1; `argument` applies to the variables that the field defines.
     """
     if isinstance(found, Table):
         points = tuple((argument * x, value * y) for x, y in found.table)

@@ -19,10 +19,7 @@ OPTIONS, CHOOSE = "options", "choose"
 def choices_of(found: Mapping[str, Any], where: str) -> dict[str, dict[str, Any]]:
     """Return the options of a part or scene: for each choice its words with their sections.
 
-    Raises
-    ------
-    InputError
-        If they are not a mapping of choices to words to sections.
+    Raises InputError if they are not a mapping of choices to words to sections.
     """
     options = found.get(OPTIONS) or {}
     if not isinstance(options, dict):
@@ -41,17 +38,8 @@ def choices_of(found: Mapping[str, Any], where: str) -> dict[str, dict[str, Any]
 def with_chosen(found: dict[str, Any], words: Any, where: str) -> dict[str, Any]:
     """Return a part or scene with the chosen sections merged, without its options.
 
-    Parameters
-    ----------
-    words : mapping of str to str
-        Word by choice; unknown choices are ignored.
-    where : str
-        Path of its options.
-
-    Raises
-    ------
-    InputError
-        If a word is unknown, or a chosen section defines a name that also exists elsewhere.
+    `words`: word by choice; unknown choices are ignored. `where`: path of its options. Raises InputError if a word is
+    unknown, or a chosen section defines a name that also exists elsewhere.
     """
     choices = choices_of(found, where)
     merged = {key: value for key, value in found.items() if key != OPTIONS}
@@ -66,13 +54,7 @@ def with_chosen(found: dict[str, Any], words: Any, where: str) -> dict[str, Any]
 
 
 def words_chosen(found: Any, where: str = CHOOSE) -> dict[str, Any]:
-    """Return the choices of a scene.
-
-    Raises
-    ------
-    InputError
-        If they are not a mapping of choices to words.
-    """
+    """Return the choices of a scene. Raises InputError if they are not a mapping of choices to words."""
     if found is None:
         return {}
     if not isinstance(found, dict) or not all(isinstance(word, str) for word in found.values()):
@@ -83,10 +65,7 @@ def words_chosen(found: Any, where: str = CHOOSE) -> dict[str, Any]:
 def refuse_unknown_choices(words: Mapping[str, Any], known: Collection[str]) -> None:
     """Refuse choices that neither the scene nor any of its parts has; a misspelt choice would have no effect.
 
-    Raises
-    ------
-    InputError
-        The message lists the known choices.
+    Raises InputError: The message lists the known choices.
     """
     for choice in words:
         if choice not in known:

@@ -19,19 +19,8 @@ from .frame import Use
 def parameters_of(use: Use, where: str, found: Any, outside: Mapping[str, Quantity]) -> dict[str, Quantity]:
     """Return the parameters of an instance: outer ones, its own, and the values set by its use.
 
-    A plain number takes the SI unit of the value that it replaces.
-
-    Parameters
-    ----------
-    where : str
-        Path of the use in the scene.
-    found : mapping of str to number or text
-        Parameters of the definition.
-
-    Raises
-    ------
-    InputError
-        If one is unknown, has a reserved name, or is not a number.
+    A plain number takes the SI unit of the value that it replaces. `where`: path of the use in the scene. `found`:
+    parameters of the definition. Raises InputError if one is unknown, has a reserved name, or is not a number.
     """
     own = {} if found is None else found
     if not isinstance(own, dict):
@@ -78,19 +67,8 @@ def mounts_of(found: Any, use: Use, where: str) -> dict[str, str]:
     """Return the bodies of the further mounts of a part: the rack of a tie rod, the arm of a strut.
 
     ``mounts: {rack: mount}`` in a part defines the local name ``rack``, and the part's mount as the default body. A use
-    can name another one: ``mounts: {rack: steering.rack}``. Points on it are in the part's frame.
-
-    Parameters
-    ----------
-    found : mapping of str to str
-        Mounts of the definition.
-    where : str
-        Path of the use.
-
-    Raises
-    ------
-    InputError
-        If the use names a mount that the part does not have.
+    can name another one: ``mounts: {rack: steering.rack}``. Points on it are in the part's frame. `found`: mounts of
+    the definition. `where`: path of the use. Raises InputError if the use names a mount that the part does not have.
     """
     mounts = {} if found is None else found
     if not isinstance(mounts, dict) or not all(isinstance(body, str) for body in mounts.values()):

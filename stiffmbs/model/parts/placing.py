@@ -15,12 +15,8 @@ def placed_in_use(
 ) -> tuple[dict[str, Any], Sequence[tuple[str, Any]]]:
     """Return a scene and its changes, with the entries of ``parts`` that place a part moved to ``use``.
 
-    ``parts: {front: {use: axle}}`` is equivalent to ``use: {front: {part: axle}}``.
-
-    Raises
-    ------
-    InputError
-        If a name occurs in both sections.
+    ``parts: {front: {use: axle}}`` is equivalent to ``use: {front: {part: axle}}``. Raises InputError if a name occurs
+    in both sections.
     """
     parts = found.get("parts")
     entries = parts if isinstance(parts, dict) else {}

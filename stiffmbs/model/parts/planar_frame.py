@@ -17,12 +17,8 @@ from .frame import Frame, Use
 class PlanarUse(Use):
     """Part placed in the plane.
 
-    Parameters
-    ----------
-    position, angle
-        Position (m) and angle (rad) of the part's frame in the axes of its mount, from that body's centre of mass.
-    mirror : str, optional
-        Coordinate of the part's frame, x or y, that changes its sign.
+    `position`, `angle`: position (m) and angle (rad) of the part's frame in the axes of its mount, from that body's
+    centre of mass. `mirror`: coordinate of the part's frame, x or y, that changes its sign.
     """
 
     position: tuple[si.Length, si.Length] = Field((0.0, 0.0), description="of the part's frame on its mount, m")

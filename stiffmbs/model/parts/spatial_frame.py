@@ -28,12 +28,8 @@ from .frame import Frame, Use
 class SpatialUse(Use):
     """Part placed in space.
 
-    Parameters
-    ----------
-    position, orientation
-        Position (m) and orientation of the part's frame in the axes of its mount, from that body's origin.
-    mirror : str, optional
-        Coordinate of the part's frame, x, y or z, that changes its sign.
+    `position`, `orientation`: position (m) and orientation of the part's frame in the axes of its mount, from that
+    body's origin. `mirror`: coordinate of the part's frame, x, y or z, that changes its sign.
     """
 
     position: Point = Field(ORIGIN, description="of the part's frame on its mount, m")

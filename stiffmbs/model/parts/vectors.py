@@ -23,10 +23,7 @@ Vectors = Mapping[str, int]
 def vectors_of(parameters: Any, where: str) -> dict[str, int]:
     """Return the vectors among parameters: lists of two or three numbers, and formulas of preceding vectors.
 
-    Raises
-    ------
-    InputError
-        If a formula multiplies vectors, or adds a number to one.
+    Raises InputError if a formula multiplies vectors, or adds a number to one.
     """
     vectors: dict[str, int] = {}
     for name, value in parameters.items() if isinstance(parameters, dict) else ():
@@ -42,10 +39,7 @@ def vectors_of(parameters: Any, where: str) -> dict[str, int]:
 def parameters_in_components(parameters: Any, vectors: Vectors, where: str) -> Any:
     """Return parameters with vectors replaced by their components.
 
-    Raises
-    ------
-    InputError
-        If a vector has another value, or a component is also defined directly.
+    Raises InputError if a vector has another value, or a component is also defined directly.
     """
     if not isinstance(parameters, dict):
         return parameters
@@ -68,10 +62,7 @@ def parameters_in_components(parameters: Any, vectors: Vectors, where: str) -> A
 def in_components(found: Any, vectors: Vectors) -> Any:
     """Return content of a part with each formula of vectors replaced by the list of its components.
 
-    Raises
-    ------
-    FormulaError
-        If a formula multiplies vectors, or adds a number to one.
+    Raises FormulaError if a formula multiplies vectors, or adds a number to one.
     """
     if not vectors:
         return found

@@ -62,19 +62,9 @@ class Car:
 def car_of(scene: Scene, body: str | None = None, steering: str | None = None) -> Car:
     """Return the car of a scene.
 
-    Parameters
-    ----------
-    scene : Scene
-        With four tyres, each on a wheel that a revolute joint holds.
-    body : str, optional
-        Sprung body; by default that of the section ``vehicle``, or ``chassis``.
-    steering : str, optional
-        Joint that steers; by default the revolute joint ``steering_wheel``, or the prismatic joint ``guide``.
-
-    Raises
-    ------
-    InputError
-        If a part is missing.
+    `scene`: with four tyres, each on a wheel that a revolute joint holds. `body`: sprung body; by default that of the
+    section ``vehicle``, or ``chassis``. `steering`: joint that steers; by default the revolute joint
+    ``steering_wheel``, or the prismatic joint ``guide``. Raises InputError if a part is missing.
     """
     if scene.dimensions != 3:
         raise InputError("found a scene in the plane, expected a car in space")
@@ -168,10 +158,7 @@ class Manoeuvre:
 def with_manoeuvre(scene: Scene, car: Car, manoeuvre: Manoeuvre) -> Scene:
     """Return the scene of a car with a manoeuvre in place of its own driver, steering, roads, start and stages.
 
-    Raises
-    ------
-    InputError
-        If the scene was built in Python, or the manoeuvre does not fit it.
+    Raises InputError if the scene was built in Python, or the manoeuvre does not fit it.
     """
     kept = scene.written
     if kept is None:

@@ -124,17 +124,9 @@ PAIRS = (("first", "last"), ("slowest", "fastest"))
 def with_changes(given: Mapping[str, object], defaults: Mapping[str, Any]) -> dict[str, Any]:
     """Return the parameters of tests with changes of a user.
 
-    Parameters
-    ----------
-    given : mapping of str to number or str
-        Values by ``test.parameter``, or by ``parameter`` for each of the tests that has it; text may have a unit.
-    defaults : mapping of str to dataclass
-        Parameters of the tests that run, by the name of the test.
-
-    Raises
-    ------
-    InputError
-        If there is no such test or parameter, or a value does not fit it.
+    `given`: values by ``test.parameter``, or by ``parameter`` for each of the tests that has it; text may have a unit.
+    `defaults`: parameters of the tests that run, by the name of the test. Raises InputError if there is no such test or
+    parameter, or a value does not fit it.
     """
     found = dict(defaults)
     for path, value in sorted(given.items(), key=lambda item: "." in item[0]):

@@ -78,10 +78,7 @@ class Known:
     def steer_for(self, acceleration: float) -> float:
         """Return the steering for a steady lateral acceleration, from the ramp.
 
-        Raises
-        ------
-        InputError
-            If the ramp did not reach it.
+        Raises InputError if the ramp did not reach it.
         """
         ay = np.maximum.accumulate(self.ramp["vehicle.ay"])
         if ay[-1] < acceleration:

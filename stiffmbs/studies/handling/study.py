@@ -200,13 +200,7 @@ def _ramps(scene: Scene, car: Car, known: Known) -> Callable[[float], Known]:
 
 
 def solved(scene: Scene) -> Run:
-    """Return the channels of a run, with its times.
-
-    Raises
-    ------
-    SolverError
-        If it stops early.
-    """
+    """Return the channels of a run, with its times. Raises SolverError if it stops early."""
     solution = run(scene)
     if not solution.success:
         raise SolverError(solution.message)
