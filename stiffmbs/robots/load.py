@@ -32,10 +32,19 @@ def load_robot(
 ) -> Scene:
     """Read a scene from a robot file.
 
-    `path`: URDF if its name ends in ``.urdf``; otherwise MJCF (``.xml``, ``.mjcf``), which needs the package mujoco.
-    `changes`: values that replace those of the file, such as ``("bodies.hand.mass", "2 kg")``. `coordinates`, `rates`:
-    initial coordinates of hinges and slides, rad or m, and their rates, by joint; others are as drawn, and at rest.
-    Raises InputError if the file cannot be read, or its robot is not a valid scene.
+    Parameters
+    ----------
+    path : str or Path
+        URDF if its name ends in ``.urdf``; otherwise MJCF (``.xml``, ``.mjcf``), which needs the package mujoco.
+    changes : sequence of (path, text)
+        Values that replace those of the file, such as ``("bodies.hand.mass", "2 kg")``.
+    coordinates, rates : mappings of str to float
+        Initial coordinates of hinges and slides, rad or m, and their rates, by joint; others are as drawn, and at rest.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, or its robot is not a valid scene.
     """
     return made_scene(_found(path, coordinates, rates), changes, source_name(path), lambda _: None)
 
