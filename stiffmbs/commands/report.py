@@ -13,8 +13,8 @@ import click
 from ..analyses.load_scene import load_scene
 from ..errors import StiffmbsError
 from ..reading.files.text_file import STANDARD_INPUT, file_text
+from .pictures import runs_of
 from .process import Status
-from .runs import runs_of
 from .scene import changes_of, file_beside, output_option, refuse_own_input, refusing, solve_scene, solving_options
 
 if TYPE_CHECKING:

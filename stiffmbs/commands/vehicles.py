@@ -1,0 +1,267 @@
+"""The commands ``stiffmbs kc``, ``loads``, ``handling`` and ``tyre``."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+import click
+
+from ..analyses.load_scene import load_scene
+from ..errors import InputError
+from .process import Status
+from .scene import CHANGES, in_file, is_written, output_option, pairs, refuse_own_input, refusing
+
+
+@click.command(short_help="Kinematics and compliance of an axle.")
+@click.argument("scene")
+@click.option("--axle", default="front", show_default=True, help="What stands before .left and .right; '' for nothing.")
+@click.option("--points", type=int, default=11, show_default=True, help="Of each curve: odd, 5 or more.")
+@click.option("--body", help="The body to clamp; chassis, or the one that carries the axle, by default.")
+@click.option("--steering", help="The prismatic or revolute joint that steers; the axle's guide by default.")
+@click.option(
+    "--wheel", "wheels", multiple=True, metavar="BODY", help="The body of a wheel, once or twice, in any scene."
+)
+@click.option("--radius", type=float, help="From the wheels' centres to the road, m; the tyres' radius by default.")
+@click.option("--wheelbase", type=float, help="m; from the scene by default.")
+@click.option("--cg-height", type=float, help="Height of the centre of mass, m; from the scene by default.")
+@click.option("--brake-share", type=float, help="Of this axle, 0 to 1; 0.6 in front and 0.4 behind by default.")
+@click.option("--drive-share", type=float, help="Of this axle, 0 to 1; 1 by default.")
+@click.option("--inboard-brakes", is_flag=True, help="Brakes are on the body.")
+@click.option(
+    "--outboard-drive/--inboard-drive",
+    default=None,
+    help="Whether the carriers react the driving torque; a solid axle does.",
+)
+@click.option("--case", "cases", multiple=True, metavar="NAME=SIZE", help="How far a load case goes; 0 leaves it out.")
+@click.option("--figure", type=click.Path(path_type=Path), help="Draw the curves: .png, .svg or .pdf.")
+@output_option("Write the curves: .csv.")
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line instead of a table.")
+@CHANGES
+def kc(
+    scene: str, axle: str, points: int, body: str | None, steering: str | None, wheels: tuple[str, ...],
+    radius: float | None, cases: tuple[str, ...], figure: Path | None, output: Path | None, as_json: bool,
+    changes: list[tuple[str, str]], **vehicle: Any,
+) -> None:  # fmt: skip
+    """Sweep an axle of SCENE on a test rig by equilibria, and print its kinematics and compliance.
+
+    Toe, camber, caster, kingpin, scrub radius, trail, roll centre, wheel and roll rates, anti-dive, Ackermann, swing arms
+    and compliance matrices follow from the motion of any suspension; cases that do not apply are left out.
+
+    Load cases with their default sizes: bump=50 and roll=30 (mm), steer=30 (mm of the rack), lateral=2,
+    lateral_parallel=2, brake=2 and traction=2 (kN), aligning=100 and aligning_parallel=100 (N m).  The suspensions have
+    a body upright with the markers spindle and patch, as shipped parts have, or tyres on wheels with a revolute joint.
+
+    Exit status: 0 done, 1 no equilibrium was found or a file could not be written, 2 the input is wrong.
+    """
+    from ..results.files import write_text
+    from ..show.figure import check_figure
+    from ..show.suspension import draw_kc, kc_csv, kc_text
+    from ..studies.suspension.kinematics_and_compliance import kinematics_and_compliance
+    from ..studies.suspension.vehicle import VehicleOptions
+
+    with refusing(scene, as_json):
+        if figure is not None:
+            check_figure("--figure", figure)
+        loaded = load_scene(scene, changes)
+        with in_file(scene):
+            given = VehicleOptions(**vehicle)
+            found = kinematics_and_compliance(
+                loaded, axle, points, body, steering, wheels, radius, given, **_sizes(cases)
+            )
+    written = output is None or is_written(output, lambda: write_text(output, kc_csv(found)))
+    if figure is not None:
+        written = is_written(figure, lambda: draw_kc(figure, found)) and written
+    click.echo(json.dumps(found.as_dict(scene)) if as_json else kc_text(scene, found))
+    sys.exit(0 if written else Status.FAILED)
+
+
+def _sizes(cases: tuple[str, ...]) -> dict[str, float]:
+    sizes = {}
+    for text in cases:
+        name, _, size = text.partition("=")
+        try:
+            sizes[name.strip()] = float(size)
+        except ValueError:
+            raise InputError(f"--case {text}: found no number, expected NAME=SIZE such as bump=40") from None
+    return sizes
+
+
+@click.command(short_help="Peaks of all bushings' loads over load cases.")
+@click.argument("scene")
+@click.option(
+    "--case", "cases", multiple=True, metavar="NAME=PATH=VALUE[,...]", help="A load case with what it changes in SCENE."
+)
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line instead of a table.")
+@CHANGES
+def loads(scene: str, cases: tuple[str, ...], as_json: bool, changes: list[tuple[str, str]]) -> None:
+    """Run SCENE in each load case, and print the largest force and torque of every bushing in its own axes.
+
+    --case kerb=choose.manoeuvre=bump --case fast=V=30,run.duration=5 runs two cases; by default SCENE runs as it is.
+
+    Exit status: 0 done, 1 a run stopped early, 2 the input is wrong.
+    """
+    from ..analyses.run import run
+    from ..show.suspension import road_loads_text
+    from ..studies.suspension.road_loads import road_loads
+
+    with refusing(scene, as_json):
+        runs = {}
+        for name, own in [_case(text) for text in cases] or [("run", [])]:
+            loaded = load_scene(scene, [*changes, *own])
+            with in_file(scene):
+                runs[name] = run(loaded)
+        with in_file(scene):
+            found = road_loads(loaded, runs)
+    stopped = {name: each.message for name, each in runs.items() if not each.success}
+    told = {"scene": scene, "status": "stopped" if stopped else "done", "message": "; ".join(stopped.values())}
+    click.echo(json.dumps({**told, "loads": found.as_dict()}) if as_json else road_loads_text(scene, found))
+    for name, message in stopped.items():
+        click.echo(f"stiffmbs: {name}: {message}", err=True)
+    if stopped:
+        raise SystemExit(1)
+
+
+def _case(text: str) -> tuple[str, list[tuple[str, str]]]:
+    name, _, rest = text.partition("=")
+    changes = [tuple(change.split("=", 1)) for change in rest.split(",") if change]
+    if not name or not changes or any(len(change) != 2 for change in changes):
+        raise InputError(f"--case {text}: found no changes, expected NAME=PATH=VALUE")
+    return name, [(path, value) for path, value in changes]  # type: ignore[misc]
+
+
+@click.command(short_help="Handling and ride tests of the standards on a car.")
+@click.argument("scene")
+@click.option(
+    "--test", "tests", multiple=True, metavar="NAME", help="One of the tests; any number of times, all by default."
+)
+@click.option("--body", help="The sprung body; that of the section vehicle, or chassis, by default.")
+@click.option("--steering", help="The joint that steers; steering_wheel or the only one named guide by default.")
+@click.option("--width", type=float, help="Width of the vehicle, m; the track and 0.2 m by default.")
+@click.option("--workers", type=click.IntRange(1), help="Number of processes; one for each core by default.")
+@click.option(
+    "--set-test",
+    "parameters",
+    multiple=True,
+    callback=pairs,
+    metavar="NAME=VALUE",
+    help="Change a parameter of a test, such as step_steer.speed='100 km/h', or of each test that has it, speed=30; any number of times.",
+)
+@output_option("Write a page: .html.")
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line instead of a table.")
+@CHANGES
+def handling(
+    scene: str, tests: tuple[str, ...], body: str | None, steering: str | None, width: float | None,
+    workers: int | None, parameters: list[tuple[str, str]], output: Path | None, as_json: bool, changes: list[tuple[str, str]],
+) -> None:  # fmt: skip
+    """Drive the car of SCENE through tests of the standards, and print their metrics.
+
+    Tests: constant_speed and constant_radius (ISO 4138), step_steer and frequency_response (ISO 7401), sine_with_dwell
+    (ISO 19365), lane_change (ISO 3888-1), obstacle_avoidance (ISO 3888-2), braking_in_a_turn (ISO 7975), straight_braking
+    (ISO 21994), ride (ISO 2631-1). The scene's own driver, roads and start are left out.
+
+    Exit status: 0 done, 1 a test was not done or the page could not be written, 2 the input is wrong.
+    """
+    from ..show.handling import handling_text, write_handling
+    from ..show.report import check_report
+    from ..studies.handling.study import handling as handled
+
+    with refusing(scene, as_json):
+        if output is not None:
+            check_report(output)
+            refuse_own_input("-o", scene, output)
+        loaded = load_scene(scene, changes)
+        with in_file(scene):
+            found = handled(
+                loaded,
+                tests or None,
+                body=body,
+                steering=steering,
+                width=width,
+                workers=workers,
+                parameters=dict(parameters),
+            )
+    written = output is None or is_written(output, lambda: write_handling(output, found))
+    told = found.as_dict(scene)
+    click.echo(json.dumps(told) if as_json else handling_text(scene, found))
+    sys.exit(0 if written and told["status"] == "done" else Status.FAILED)
+
+
+@click.command(short_help="Curves of a tyre; conversion of property files.")
+@click.argument("file")
+@click.option("--load", "loads", multiple=True, help="N, or with a unit; any number of times.")
+@click.option("--pressure", "pressures", multiple=True, help="Pa, or with a unit, of 6.1 and 6.2; any number of times.")
+@click.option("--camber", default="0", help="rad, or with a unit.")
+@click.option("--speed", help="m/s, or with a unit; LONGVL by default.")
+@click.option("--points", type=int, default=61, show_default=True, help="Of each curve.")
+@click.option(
+    "--at", "states", multiple=True, metavar="Fz,kappa,...",
+    help="Evaluate one state of Fz, kappa, alpha, gamma, p, Vx, phit in SI units; any number of times.",
+)  # fmt: skip
+@output_option("Draw Fx, Fy, Mz and the friction ellipse: .png, .svg or .pdf.")
+@click.option("--write", "copy", type=click.Path(path_type=Path), help="Write the properties that are used: .tir.")
+@click.option("--unit", "units", multiple=True, metavar="LENGTH=mm", help="Unit of --write; any number of times.")
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object on one line.")
+def tyre(
+    file: str, loads: tuple[str, ...], pressures: tuple[str, ...], camber: str, speed: str | None, points: int,
+    states: tuple[str, ...], output: Path | None, copy: Path | None, units: tuple[str, ...], as_json: bool,
+) -> None:  # fmt: skip
+    """Evaluate the tyre of FILE (.tir): forces over slip and slip angle, and the friction ellipse, in ISO axes.
+
+    --load 2000 --load "4 kN" --pressure "220 kPa" draws the curves at two loads.  --write OTHER.tir --unit LENGTH=mm
+    writes a file of the same evaluation in other units.
+
+    Exit status: 0 done, 1 a file could not be written, 2 the input is wrong.
+    """
+    from ..elements.tyres.coefficients import TyreProperties
+    from ..elements.tyres.written_file import property_text
+    from ..results.files import refuse_path, write_text
+    from ..show.figure import check_figure
+    from ..show.tyre import draw_tyre, tyre_text
+    from ..studies.tyre_curves import TyreSweep, tyre_curves, tyre_states
+
+    with refusing(file, as_json):
+        if output is not None:
+            check_figure("-o", output)
+        if copy is not None:
+            refuse_path("--write", copy, (".tir",))
+            refuse_own_input("--write", file, copy)
+        properties = TyreProperties.from_file(file)
+        sweep = TyreSweep(**{
+            "load": loads, "pressure": pressures, "camber": camber, "points": points, **({} if speed is None else {"speed": speed}),
+        })  # fmt: skip
+        curves = tyre_curves(properties, sweep)
+        found = tyre_states(properties, [_state(text) for text in states])
+        text = property_text(properties, dict(map(_unit, units))) if copy is not None else ""
+    title = f"{file}: Magic Formula {properties.version}, camber {sweep.camber:.4g} rad"
+    written = copy is None or is_written(copy, lambda: write_text(copy, text))
+    if output is not None:
+        written = is_written(output, lambda: draw_tyre(output, title, curves)) and written
+    notes = list(properties.notes())
+    told = {
+        "file": file, "version": properties.version, "camber": sweep.camber,
+        "curves": [curve.as_dict() for curve in curves], "states": found, "notes": notes,
+    }  # fmt: skip
+    click.echo(json.dumps(told) if as_json else tyre_text(title, curves, found, notes))
+    sys.exit(0 if written else Status.FAILED)
+
+
+def _state(text: str) -> tuple[float, ...]:
+    from ..studies.tyre_curves import STATE
+
+    try:
+        row = tuple(float(part) for part in text.split(","))
+    except ValueError:
+        raise InputError(f"--at {text}: found no numbers, expected up to {len(STATE)}: {','.join(STATE)}") from None
+    if len(row) > len(STATE):
+        raise InputError(f"--at {text}: found {len(row)} numbers, expected up to {len(STATE)}: {','.join(STATE)}")
+    return row
+
+
+def _unit(text: str) -> tuple[str, str]:
+    kind, equals, unit = text.partition("=")
+    if not equals:
+        raise InputError(f"--unit {text}: found no unit, expected DIMENSION=UNIT such as LENGTH=mm")
+    return kind.strip().upper(), unit.strip()
