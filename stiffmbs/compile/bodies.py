@@ -14,16 +14,9 @@ from .quaternions import CONJUGATE, rotation_vector, times, times_vector
 class BodyKind:
     """Names of the coordinates q, velocities u and accelerations u' of one body.
 
-    The first `linear` of each belong to the centre of mass, in ground axes; q' = Z(q) u.
-
-    Attributes
-    ----------
-    dimensions : int
-        2 or 3.
-    reactions : tuple of str
-        Components of force and torque.
-    ground, ground_turn : tuples of float
-        Coordinates of the ground, and its orientation values in the array `turn`.
+    The first `linear` of each belong to the centre of mass, in ground axes; q' = Z(q) u. `dimensions`: 2 or 3.
+    `reactions`: components of force and torque. `ground`, `ground_turn`: coordinates of the ground, and its orientation
+    values in the array `turn`.
     """
 
     dimensions: int

@@ -24,13 +24,9 @@ COMPLEX_STEP = np.sqrt(np.finfo(float).tiny)
 class Callback:
     """Python function called from kernels.
 
-    Attributes
-    ----------
-    address : int
-        Address of two words: that of a C function, and a flag for a call without an answer. The function takes the
-        number of values, the value's index, the argument to differentiate by (-1 for none), the number of arguments,
-        and their address; it stores its answer after them, in place of a NaN.
-    calls : int
+    `address`: address of two words: that of a C function, and a flag for a call without an answer. The function takes
+    the number of values, the value's index, the argument to differentiate by (-1 for none), the number of arguments,
+    and their address; it stores its answer after them, in place of a NaN.
     """
 
     def __init__(self, function: PythonFunction) -> None:

@@ -21,15 +21,10 @@ ABSENT = FIXED
 class AlongMotion(NamedTuple):
     """Data for kinetic energy and damping along the motion.
 
-    Attributes
-    ----------
-    arrays : dict of str to ndarray
-        Arrays for compiled code (`stiffmbs.solve.error_control.native.layouts.ACCUMULATED_ERRORS`), each padded by one number:
-        places of the independent velocities, masses that move with them, and entries of f_u in the matrix values.
-    n, n_damped : int
-        Number of independent velocities and of entries of f_u.
-    follows, ratio : ndarrays, shapes (n_u,)
-        Index of the independent velocity that each velocity follows, and the ratio.
+    `arrays`: arrays for compiled code (`stiffmbs.solve.error_control.native.layouts.ACCUMULATED_ERRORS`), each padded
+    by one number: places of the independent velocities, masses that move with them, and entries of f_u in the matrix
+    values. `n`, `n_damped`: number of independent velocities and of entries of f_u. `follows`, `ratio`: index of the
+    independent velocity that each velocity follows, and the ratio.
     """
 
     arrays: dict[str, np.ndarray]

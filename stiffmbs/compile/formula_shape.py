@@ -39,12 +39,8 @@ OWN = "own_"
 class Part:
     """Part of a formula.
 
-    Attributes
-    ----------
-    number : int
-        Equal for parts with the same text.
-    constant : bool
-        True without time, coordinates, measures, states and the field's variables.
+    `number`: equal for parts with the same text. `constant`: true without time, coordinates, measures, states and the
+    field's variables.
     """
 
     number: int

@@ -27,16 +27,8 @@ def position_gap(state: State, t: float, row: int) -> Gap:
     """Return the translation or rotation of one body that satisfies one position equation.
 
     An equation may have any unit, as (d . d - L^2)/(2 L) of a rod. Newton's method moves the body with the largest
-    derivative, along that derivative.
-
-    Parameters
-    ----------
-    state : State
-        Its coordinates violate the equation; they are restored.
-    t : float
-        s.
-    row : int
-        The equation.
+    derivative, along that derivative. `state`: its coordinates violate the equation; they are restored. `t`: s. `row`:
+    the equation.
     """
     system = state.system
     kept = state.q.copy()

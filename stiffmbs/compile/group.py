@@ -94,17 +94,9 @@ class Group:
     def placed(self, term: str, first: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return source, row and column of a term's entries by element.
 
-        Parameters
-        ----------
-        term : str
-            One of `stiffmbs.compile.terms.TERM_AXES`.
-        first : int
-            Position of its first value among those of its set.
-
-        Returns
-        -------
-        ndarrays of int, shape (count * entries,)
-            Positions among the values, and system rows and columns; those of the ground are past the end.
+        `term`: one of `stiffmbs.compile.terms.TERM_AXES`. `first`: position of its first value among those of its set.
+        The result of shape (count * entries,): positions among the values, and system rows and columns; those of the
+        ground are past the end.
         """
         axes = TERM_AXES[term]
         pattern = np.array(self.record.patterns.get(term, ()), dtype=np.int64).reshape(-1, 2)

@@ -17,14 +17,7 @@ MATRIX = slice(3, 12)
 def marker_axes(system: System, name: str, field: str, q: np.ndarray) -> np.ndarray | None:
     """Return the axes of a marker as columns in ground axes; None if the element has no such marker.
 
-    Parameters
-    ----------
-    name : str
-        Element name.
-    field : str
-        Field with the marker, such as ``j``.
-    q : ndarray, shape (n_q,)
-        The pose.
+    `name`: element name. `field`: field with the marker, such as ``j``. `q` of shape (n_q,): the pose.
     """
     group = next(group for group in system.groups if name in group.names)
     e = group.names.index(name)

@@ -18,16 +18,8 @@ def reactions(system: System, values: np.ndarray) -> dict[str, np.ndarray]:
     """Return the reaction of each joint and force element on its first body, and the other channels of its kind.
 
     Force in ground axes, N, and torque about the element's point, N m; for a joint the generalised force -J^T lam.
-
-    Parameters
-    ----------
-    values : ndarray, shape (n, values)
-        Values of the output terms, one row per time.
-
-    Returns
-    -------
-    dict of str to ndarray
-        Channels such as ``"rail.fy"``, shape (n,), for elements with a kind (weights have none).
+    `values` of shape (n, values): values of the output terms, one row per time. The result: channels such as
+    ``"rail.fy"``, shape (n,), for elements with a kind (weights have none).
     """
     return {name: values[:, at] if at >= 0 else np.zeros(len(values)) for name, at in system.reported.items()}
 

@@ -58,10 +58,7 @@ class Move(NamedTuple):
 def moves(system: System, q: np.ndarray, u: np.ndarray) -> tuple[Move, ...]:
     """Return the reportable changes of each body.
 
-    Parameters
-    ----------
-    q, u : ndarrays, shape (n_u,)
-        Displacements and velocity changes of all bodies.
+    `q`, `u` of shape (n_u,): displacements and velocity changes of all bodies.
     """
     if max(np.abs(q).max(initial=0.0), np.abs(u).max(initial=0.0)) <= WORTH_TELLING:
         return ()

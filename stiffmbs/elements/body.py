@@ -126,14 +126,8 @@ class BodyHandle(Handle):
 class BodyNumbers:
     """Initial values and masses of all bodies, concatenated.
 
-    Attributes
-    ----------
-    coordinates, rates : tuples of float
-        Described values at the start.
-    open_rates : tuple of bool
-        True for each rate that is not given.
-    masses : tuple of float
-        Diagonal of the mass matrix.
+    `coordinates`, `rates`: described values at the start. `open_rates`: true for each rate that is not given. `masses`:
+    diagonal of the mass matrix.
     """
 
     coordinates: tuple[float, ...]

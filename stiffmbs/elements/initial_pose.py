@@ -44,12 +44,7 @@ class InitialPose:
 class InitialMarker:
     """Marker with numbers in ground axes: numerical form of `stiffmbs.compile.symbolic.planar_frames.Frame`.
 
-    Attributes
-    ----------
-    point : ndarray, shape (2,)
-        m.
-    angle : float
-        rad.
+    `point` of shape (2,): m. `angle`: rad.
     """
 
     point: np.ndarray
@@ -89,12 +84,7 @@ def _drawn(value: Any, model: ModelData) -> Any:
 class InitialSpatialMarker:
     """Marker with numbers, in ground axes.
 
-    Attributes
-    ----------
-    point : ndarray, shape (3,)
-        m.
-    axes : ndarray, shape (3, 3)
-        Its unit axes as columns.
+    `point` of shape (3,): m. `axes` of shape (3, 3): its unit axes as columns.
     """
 
     point: np.ndarray

@@ -24,14 +24,7 @@ from .read_by import Context, JsonSchema, ReadBy
 class Kinds(Mapping[str, type[Any]]):
     """Planar or spatial joints or forces by kind; files of the package are imported on demand.
 
-    Parameters
-    ----------
-    package : module
-        Package that contains the shipped kinds.
-    base : type
-        `Joint` or `Force`.
-    dimensions : int
-        2 or 3.
+    `package`: package that contains the shipped kinds. `base`: `Joint` or `Force`. `dimensions`: 2 or 3.
     """
 
     def __init__(self, package: ModuleType, base: type[Element], dimensions: int) -> None:
@@ -42,13 +35,7 @@ class Kinds(Mapping[str, type[Any]]):
 
     @cached_property
     def shipped(self) -> dict[str, type[Any]]:
-        """Kinds of this package.
-
-        Raises
-        ------
-        InputError
-            If two classes have the same kind.
-        """
+        """Kinds of this package. Raises InputError if two classes have the same kind."""
         found: dict[str, type[Any]] = {}
         for file in self._files:
             for kind, element in self._in_file(file).items():

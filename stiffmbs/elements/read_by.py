@@ -22,12 +22,8 @@ JsonSchema = dict[str, Any]
 class ReadBy:
     """Marker of a field with a reader of its own: ``Annotated[Road, ReadBy(read_road, schema_of_roads)]``.
 
-    Attributes
-    ----------
-    read : callable
-        Returns the value of an entry, given the entry and the validation context.
-    schema : callable
-        Returns the JSON schema of the entries, given a function that returns the schema of a class.
+    `read`: returns the value of an entry, given the entry and the validation context. `schema`: returns the JSON schema
+    of the entries, given a function that returns the schema of a class.
     """
 
     read: Callable[[Any, Context], Any]

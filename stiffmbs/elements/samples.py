@@ -19,17 +19,8 @@ from .element import Element, Joint
 class Samples:
     """Generator of sample elements for a model.
 
-    Parameters
-    ----------
-    marker : callable
-        Returns the marker, or the name of its body, for the k-th marker field.
-    joints : mapping of str to Joint
-        Joints of the model, for fields that name one.
-
-    Attributes
-    ----------
-    optional : bool
-        Whether fields with a default are filled, too.
+    `marker`: returns the marker, or the name of its body, for the k-th marker field. `joints`: joints of the model, for
+    fields that name one. `optional`: whether fields with a default are filled, too.
     """
 
     optional = False
@@ -48,17 +39,8 @@ class Samples:
     def made(self, kind: type[Element], form: Mapping[str, Any], left_out: frozenset[str] = frozenset()) -> Element:
         """Return an element of a class.
 
-        Parameters
-        ----------
-        form : mapping of str to Any
-            Given fields.
-        left_out : set of str
-            Fields that are not filled.
-
-        Raises
-        ------
-        InputError
-            If no choice of joints fits the class.
+        `form`: given fields. `left_out`: fields that are not filled. Raises InputError if no choice of joints fits the
+        class.
         """
         fields = {name: value for name, value in form.items() if value is not ...}
         names, bodies = [], itertools.count()

@@ -22,13 +22,7 @@ ENDINGS = (".stl", ".obj")
 
 
 class Shape(Described):
-    """Shape of a body, in the body's axes.
-
-    Attributes
-    ----------
-    type : str
-        Name of the kind in scenes.
-    """
+    """Shape of a body, in the body's axes. `type`: name of the kind in scenes."""
 
     type: str
 
@@ -107,11 +101,7 @@ class MeshShape(Shape):
 def one_of(expected: str, *kinds: type[Described]) -> ReadBy:
     """Return the marker of a field that takes one of some entries, selected by its ``type``.
 
-    Parameters
-    ----------
-    expected : str
-        Example for messages.
-    *kinds : types of Described
+    `expected`: example for messages.
     """
     by_name = {kind.model_fields["type"].default: kind for kind in kinds}
 

@@ -71,10 +71,7 @@ class Balance:
 def balance_at(dynamics: Dynamics, t: float, motion: SteadyMotion) -> Balance:
     """Return the balance of the current pose, with multipliers that minimize the residual in the mass metric.
 
-    Raises
-    ------
-    SolverError
-        When the pose has no accelerations.
+    Raises SolverError when the pose has no accelerations.
     """
     state, system = dynamics.state, dynamics.system
     motion.put(dynamics, t)

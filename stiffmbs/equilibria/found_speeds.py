@@ -41,10 +41,7 @@ class FoundSpeeds:
 def with_found_spins(dynamics: Dynamics, motion: SteadyMotion, by_velocity: csc_array) -> SteadyMotion:
     """Return a motion whose spins are unknown if forces or states, but no rolling constraints, depend on them.
 
-    Parameters
-    ----------
-    by_velocity : sparse array, shape (n_u + states, n_u)
-        Derivatives of the forces and of the rates of states.
+    `by_velocity` of shape (n_u + states, n_u): derivatives of the forces and of the rates of states.
     """
     if motion.is_rest or not len(motion.spinning):
         return motion

@@ -173,10 +173,7 @@ class SteadyMotion:
     def derivatives(self, dynamics: Dynamics, t: float, rates: csc_array) -> tuple[csc_array, csc_array]:
         """Return derivatives of velocities and accelerations by displacements, shapes (n_u, n_u).
 
-        Parameters
-        ----------
-        rates : sparse array, shape (n_q, n_u)
-            Z of q' = Z u.
+        `rates` of shape (n_q, n_u): Z of q' = Z u.
         """
         system, u = dynamics.system, dynamics.state.u
         turning, by_move = _matrix(self.rotation), self.by_move(dynamics)

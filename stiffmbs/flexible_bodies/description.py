@@ -104,12 +104,7 @@ class InterfaceOfNodes(Described):
         return self
 
     def on(self, name: str, model: FiniteElements) -> Interface:
-        """Return the interface on a model.
-
-        Raises
-        ------
-        InputError
-        """
+        """Return the interface on a model. Raises InputError."""
         nodes = np.unique(np.asarray(self._selected(name, model), dtype=np.int64))
         if self.point is not None and self.type == POINT:
             raise InputError(f"interfaces.{name}.point: found a reference point, expected none for type: point")
@@ -234,28 +229,13 @@ class FlexibleBody(Described):
         return (self.mesh or self.matrices or "",)
 
     def model(self, folder: Path) -> FiniteElements:
-        """Return the checked finite element model.
-
-        Parameters
-        ----------
-        folder : Path
-            Folder of relative file names.
-
-        Raises
-        ------
-        InputError
-        """
+        """Return the checked finite element model. `folder`: folder of relative file names. Raises InputError."""
         found = self._read(folder)
         found.check()
         return found
 
     def interfaces_on(self, model: FiniteElements) -> list[Interface]:
-        """Return the interfaces on a model.
-
-        Raises
-        ------
-        InputError
-        """
+        """Return the interfaces on a model. Raises InputError."""
         return [interface.on(name, model) for name, interface in self.interfaces.items()]
 
     def _read(self, folder: Path) -> FiniteElements:
@@ -282,12 +262,7 @@ class FlexibleBody(Described):
 
 
 def content_of_file(path: Path) -> bytes:
-    """Return the content of a file.
-
-    Raises
-    ------
-    InputError
-    """
+    """Return the content of a file. Raises InputError."""
     from ..reading.files.files_read import content_of
 
     try:

@@ -53,12 +53,7 @@ class FiniteElements:
         return rigid_displacements(self.nodes - about)
 
     def check(self) -> None:
-        """Refuse matrices that do not describe one free elastic body.
-
-        Raises
-        ------
-        InputError
-        """
+        """Refuse matrices that do not describe one free elastic body. Raises InputError."""
         size = 3 * len(self.nodes)
         for name, matrix in (("stiffness", self.stiffness), ("mass", self.mass)):
             if matrix.shape != (size, size):

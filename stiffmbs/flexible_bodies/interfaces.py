@@ -56,9 +56,7 @@ class Interface:
 def check_interfaces(interfaces: list[Interface], model: FiniteElements) -> None:
     """Refuse interfaces without nodes, of nodes on one line, and rigid interfaces that share nodes.
 
-    Raises
-    ------
-    InputError
+    Raises InputError.
     """
     owner: dict[int, str] = {}
     for interface in interfaces:

@@ -23,17 +23,9 @@ PARTS = {"data": ("_data", "data"), "indices": ("_indices", "ind"), "indptr": ("
 def from_archive(content: bytes, length: float, mass: float, time: float) -> FiniteElements:
     """Return the model of a NumPy archive (.npz).
 
-    Parameters
-    ----------
-    content : bytes
-        Archive with ``nodes`` (n, 3), and ``K`` and ``M``: dense, or sparse by rows as ``K_data``, ``K_indices`` and
-        ``K_indptr``. One-dimensional arrays of integers are groups of nodes, two-dimensional ones elements.
-    length, mass, time : float
-        Units of the file in m, kg and s.
-
-    Raises
-    ------
-    InputError
+    `content`: archive with ``nodes`` (n, 3), and ``K`` and ``M``: dense, or sparse by rows as ``K_data``, ``K_indices``
+    and ``K_indptr``. One-dimensional arrays of integers are groups of nodes, two-dimensional ones elements. `length`,
+    `mass`, `time`: units of the file in m, kg and s. Raises InputError.
     """
     try:
         with np.load(io.BytesIO(content), allow_pickle=False) as archive:

@@ -35,18 +35,8 @@ HARMLESS = {"vertex", "line", "line3", "triangle", "triangle6", "quad", "quad8",
 def from_mesh(path: Path, length: float, modulus: float, poisson: float, density: float) -> FiniteElements:
     """Return the model of a mesh of tetrahedra or hexahedra of first or second order.
 
-    Parameters
-    ----------
-    path : Path
-        File of a format of meshio: Gmsh, Abaqus, Nastran, VTK.
-    length : float
-        Unit of the mesh, m.
-    modulus, poisson, density : float
-        Young's modulus, N/m^2, Poisson's ratio, and density, kg/m^3.
-
-    Raises
-    ------
-    InputError
+    `path`: file of a format of meshio: Gmsh, Abaqus, Nastran, VTK. `length`: unit of the mesh, m. `modulus`, `poisson`,
+    `density`: young's modulus, N/m^2, Poisson's ratio, and density, kg/m^3. Raises InputError.
     """
     mesh = _read(path)
     kinds = {block.type for block in mesh.cells}

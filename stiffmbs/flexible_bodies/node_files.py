@@ -16,14 +16,8 @@ from ..errors import InputError, needs
 class Nodes:
     """Nodes in the order of their numbers.
 
-    Attributes
-    ----------
-    numbers : ndarray of int, shape (n,)
-        Increasing; from 0 if the file has none.
-    points : ndarray, shape (n, 3)
-        In the unit of the file.
-    groups : dict of str to ndarray of int
-        Named sets as places in ``numbers``.
+    `numbers` of shape (n,): increasing; from 0 if the file has none. `points` of shape (n, 3): in the unit of the file.
+    `groups`: named sets as places in ``numbers``.
     """
 
     numbers: np.ndarray
@@ -46,12 +40,7 @@ def reading(key: str) -> Iterator[None]:
 
 
 def read_nodes(path: Path) -> Nodes:
-    """Return the nodes of a file: Nastran, Abaqus or CalculiX, Ansys, or a table.
-
-    Raises
-    ------
-    InputError
-    """
+    """Return the nodes of a file: Nastran, Abaqus or CalculiX, Ansys, or a table. Raises InputError."""
     read = READERS.get(path.suffix.lower(), _table)
     with reading("nodes"):
         try:

@@ -16,16 +16,8 @@ from .description import FlexibleBody
 def read_flexible_body(path: str, changes: Sequence[tuple[str, str]] = ()) -> FlexibleBody:
     """Return the description in a file.
 
-    Parameters
-    ----------
-    path : str
-    changes : sequence of (str, str)
-        Paths and values that replace those of the file, such as ``("modes", "10")``.
-
-    Raises
-    ------
-    InputError
-        The message names the file and the line.
+    `changes`: paths and values that replace those of the file, such as ``("modes", "10")``. Raises InputError: The
+    message names the file and the line.
     """
     text, source = file_text(path, expected="the description of a flexible body"), source_name(path)
     found = read_yaml(text, source)

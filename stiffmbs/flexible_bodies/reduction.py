@@ -90,13 +90,7 @@ class ReducedBody:
     second_order: SecondOrder
 
     def held_frequencies(self, held: Sequence[int]) -> np.ndarray:
-        """Return the natural frequencies with some interfaces held, Hz.
-
-        Parameters
-        ----------
-        held : sequence of int
-            Numbers of the interfaces.
-        """
+        """Return the natural frequencies with some interfaces held, Hz. `held`: numbers of the interfaces."""
         rows = []
         for k in held:
             size = self.sizes[k]
@@ -162,10 +156,7 @@ def reduce(
 def rigid_body(model: FiniteElements) -> tuple[float, np.ndarray, np.ndarray]:
     """Return mass, centre of mass and inertia about it of a model, from its mass matrix.
 
-    Raises
-    ------
-    InputError
-        If the mass is not the same along x, y and z.
+    Raises InputError if the mass is not the same along x, y and z.
     """
     about = model.nodes.mean(axis=0)
     rigid = model.rigid_modes(about)
@@ -200,16 +191,7 @@ def static_solver(
 ) -> tuple[StaticSolver, bool]:
     """Return the static solver of a body, and whether its interfaces hold it; otherwise its mean motion is held, too.
 
-    Parameters
-    ----------
-    model : FiniteElements
-    interfaces : sequence of Interface
-    rigid : ndarray, shape (3 n, 6)
-        Rigid motions about the centre of mass.
-
-    Raises
-    ------
-    InputError
+    `rigid` of shape (3 n, 6): rigid motions about the centre of mass. Raises InputError.
     """
     held, supports = _holds(model, interfaces, rigid), np.empty((len(rigid), 0))
     if not held:

@@ -12,12 +12,7 @@ SUFFIXES = (".vtu", ".vtk")
 
 
 def check_shapes_file(path: Path) -> None:
-    """Refuse a file of another type, and a missing package.
-
-    Raises
-    ------
-    InputError
-    """
+    """Refuse a file of another type, and a missing package. Raises InputError."""
     if path.suffix.lower() not in SUFFIXES:
         raise InputError(f"-o {path}: found the type '{path.suffix}', expected {' or '.join(SUFFIXES)}")
     with needs("meshio", "flexible"):
@@ -25,12 +20,7 @@ def check_shapes_file(path: Path) -> None:
 
 
 def write_shapes(path: Path, model: FiniteElements, body: ReducedBody) -> None:
-    """Write nodes, elements and the displacement of each mode as vectors at the nodes.
-
-    Raises
-    ------
-    OSError
-    """
+    """Write nodes, elements and the displacement of each mode as vectors at the nodes. Raises OSError."""
     import meshio
     import numpy as np
 

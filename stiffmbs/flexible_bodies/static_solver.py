@@ -20,19 +20,9 @@ class StaticSolver:
     """Factors of the stiffness matrix with interfaces held.
 
     Displacements are u = T z. The coordinates of rigid and point interfaces replace the displacements of their nodes.
-    Those of average interfaces are prescribed by constraints W z = q with multipliers.
-
-    Parameters
-    ----------
-    model : FiniteElements
-    interfaces : sequence of Interface
-    supports : ndarray, shape (3 n, k)
-        Further functionals of the displacement that are held: those of a body that its interfaces do not hold.
-
-    Raises
-    ------
-    InputError
-        If the stiffness matrix is singular with the interfaces held.
+    Those of average interfaces are prescribed by constraints W z = q with multipliers. `supports` of shape (3 n, k):
+    further functionals of the displacement that are held: those of a body that its interfaces do not hold. Raises
+    InputError if the stiffness matrix is singular with the interfaces held.
     """
 
     def __init__(self, model: FiniteElements, interfaces: Sequence[Interface], supports: np.ndarray) -> None:

@@ -14,20 +14,8 @@ PLACES = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0))
 def nodal_stresses(model: FiniteElements, displacements: np.ndarray) -> np.ndarray:
     """Return the stresses of displacements at the nodes, the mean of the elements there.
 
-    Parameters
-    ----------
-    model : FiniteElements
-    displacements : ndarray, shape (3 n, k)
-
-    Returns
-    -------
-    ndarray, shape (k, n, 6)
-        xx, yy, zz, xy, yz, zx, N/m^2.
-
-    Raises
-    ------
-    InputError
-        If the model has no shape functions.
+    `displacements` of shape (3 n, k). The result of shape (k, n, 6): xx, yy, zz, xy, yz, zx, N/m^2. Raises InputError
+    if the model has no shape functions.
     """
     solid = model.solid
     if solid is None:

@@ -36,13 +36,8 @@ class Zeros:
 def eigen(matrix: np.ndarray, n_poses: int, n_states: int = 0) -> tuple[np.ndarray, np.ndarray, Zeros]:
     """Return the nonzero eigenvalues, their eigenvectors as columns, and the zeros.
 
-    Parameters
-    ----------
-    matrix : ndarray, shape (n, n)
-    n_poses : int
-        Rows of poses, followed by those of velocities, which are divided by the fastest rate.
-    n_states : int
-        Rows of states, which come last and are not scaled.
+    `matrix` of shape (n, n). `n_poses`: rows of poses, followed by those of velocities, which are divided by the
+    fastest rate. `n_states`: rows of states, which come last and are not scaled.
     """
     end = len(matrix) - n_states
     rate = np.sqrt(np.linalg.norm(matrix[n_poses:end, :n_poses], 2)) if n_poses < end else 0.0

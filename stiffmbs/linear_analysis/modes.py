@@ -87,12 +87,8 @@ class Mode:
 def natural_modes(state: StateMatrix, mass: csr_array, bodies: tuple[str, ...], scale: np.ndarray) -> list[Mode]:
     """Return the modes of a state matrix, one per degree of freedom and more of states, by undamped natural frequency.
 
-    Parameters
-    ----------
-    mass : sparse array, shape (n_u, n_u)
-        In ground axes.
-    scale : ndarray, shape (n_u,)
-        The mechanism's size for displacements, 1 for rotations.
+    `mass` of shape (n_u, n_u): in ground axes. `scale` of shape (n_u,): the mechanism's size for displacements, 1 for
+    rotations.
     """
     if not len(state.matrix):
         return []

@@ -13,13 +13,7 @@ IDENTITY = np.array([1.0, 0.0, 0.0, 0.0])
 
 
 class PlanarPoses(NamedTuple):
-    """Poses in the plane.
-
-    Attributes
-    ----------
-    point, angle : ndarrays, shapes (k, 2), (k,)
-        Centres of mass and axes in those of the parent bodies, m, rad.
-    """
+    """Poses in the plane. `point`, `angle`: centres of mass and axes in those of the parent bodies, m, rad."""
 
     point: np.ndarray
     angle: np.ndarray
@@ -58,10 +52,7 @@ class PlanarPoses(NamedTuple):
 class SpatialPoses(NamedTuple):
     """Poses in space.
 
-    Attributes
-    ----------
-    point, turn : ndarrays, shapes (k, 3), (k, 4)
-        Centres of mass and principal axes in those of the parent bodies, m, quaternions.
+    `point`, `turn`: centres of mass and principal axes in those of the parent bodies, m, quaternions.
     """
 
     point: np.ndarray
@@ -92,12 +83,7 @@ class SpatialPoses(NamedTuple):
     def like(self, q: np.ndarray, parent: np.ndarray) -> SpatialPoses:
         """Choose the sign of each quaternion that is continuous with that of the parent's first body.
 
-        Parameters
-        ----------
-        q : ndarray, shape (k, n_q)
-            Coordinates of the bodies.
-        parent : ndarray of int, shape (k,)
-            Number of each body's parent body.
+        `q` of shape (k, n_q): coordinates of the bodies. `parent` of shape (k,): number of each body's parent body.
         """
         _, first, number = np.unique(parent, return_index=True, return_inverse=True)
         of_parent = times(q[first, 3:], CONJUGATE * self.turn[first])[number]

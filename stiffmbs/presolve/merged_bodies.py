@@ -88,17 +88,8 @@ def merge(model: ModelData, held: Container[str]) -> MergedBodies | None:
     """Merge the bodies connected by fixed joints.
 
     Bodies with coordinates named in a formula are kept separate. So are bodies between which a force or another joint
-    acts, and those of a joint to which another element refers.
-
-    Parameters
-    ----------
-    held : container of str
-        Joints without redundant equations, as a merged joint must not constrain more than the original.
-
-    Returns
-    -------
-    MergedBodies or None
-        None if there is nothing to merge.
+    acts, and those of a joint to which another element refers. `held`: joints without redundant equations, as a merged
+    joint must not constrain more than the original. The result: none if there is nothing to merge.
     """
     if not any(joint.kind == Fixed.kind for joint in model.joints.values()):
         return None

@@ -24,12 +24,8 @@ def inverse(placed: Placement) -> Placement:
 def composite(members: Sequence[tuple[Body, Placement]]) -> tuple[Body, list[Placement]]:
     """Return the composite of several bodies, and the placement of each member on it.
 
-    Masses and first moments are added; inertias with the parallel axis theorem, m d^2.
-
-    Parameters
-    ----------
-    members : sequence of (Body, Placement)
-        With the placement of each centre of mass and axes in those of the first.
+    Masses and first moments are added; inertias with the parallel axis theorem, m d^2. `members`: with the placement of
+    each centre of mass and axes in those of the first.
     """
     first, _ = members[0]
     mass = sum(body.mass for body, _ in members)

@@ -110,15 +110,9 @@ def may_be_apart(system: System) -> bool:
 def parts_of(model: ModelData, whole: System, way: np.ndarray | None, alike: Alike | None = None) -> tuple[Part, ...]:
     """Return the mechanisms to solve in place of a compiled model; empty if none replaces it.
 
-    Parameters
-    ----------
-    whole : System
-        With its redundant equations marked.
-    way : ndarray, shape (n_u,), or None
-        Initial velocities times the duration of the run; None to keep all spins in the quaternions.
-    alike : callable, optional
-        Return the sets of mechanisms to solve together, given their body numbers in the whole model. By default all are
-        solved together.
+    `whole`: with its redundant equations marked. `way` of shape (n_u,): initial velocities times the duration of the
+    run; None to keep all spins in the quaternions. `alike`: return the sets of mechanisms to solve together, given
+    their body numbers in the whole model. By default all are solved together.
     """
     held = {joint for joint, _ in whole.equations} - {joint for (joint, _), on in zip(whole.equations, whole.active, strict=True) if not on}  # fmt: skip
     merged = merge(model, held)
@@ -189,14 +183,8 @@ def _part(
 class Spin(NamedTuple):
     """Body of a part whose quaternion excludes its spin.
 
-    Attributes
-    ----------
-    body : int
-        Its number in the part.
-    axis : int
-        Principal axis of the spin.
-    angle : int
-        Coordinate of the part that holds the angle.
+    `body`: its number in the part. `axis`: principal axis of the spin. `angle`: coordinate of the part that holds the
+    angle.
     """
 
     body: int

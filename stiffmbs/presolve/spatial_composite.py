@@ -26,12 +26,8 @@ def inverse(placed: Placement) -> Placement:
 def composite(members: Sequence[tuple[Body, Placement]]) -> tuple[Body, list[Placement]]:
     """Return the composite of several bodies, and the placement of each member on it, by centres and principal axes.
 
-    Masses and first moments are added; rotated inertia tensors with m (d^2 - d d^T) (parallel axis theorem).
-
-    Parameters
-    ----------
-    members : sequence of (Body, Placement)
-        With the placement of each centre of mass and principal axes in those of the first.
+    Masses and first moments are added; rotated inertia tensors with m (d^2 - d d^T) (parallel axis theorem). `members`:
+    with the placement of each centre of mass and principal axes in those of the first.
     """
     first, _ = members[0]
     mass = sum(body.mass for body, _ in members)

@@ -31,12 +31,8 @@ ANGLE = "spin_angle"
 class SpinningBodies(NamedTuple):
     """Model with quaternions that exclude the spin of some bodies.
 
-    Attributes
-    ----------
-    model : Compilable
-        As described, or with merged bodies.
-    axes : mapping of str to str
-        Principal axis of the spin of each of these bodies, ``x``, ``y`` or ``z``.
+    `model`: as described, or with merged bodies. `axes`: principal axis of the spin of each of these bodies, ``x``,
+    ``y`` or ``z``.
     """
 
     model: Compilable
@@ -101,12 +97,8 @@ def spinning(model: Compilable, turns: Mapping[str, np.ndarray]) -> SpinningBodi
 
     A body qualifies if its moments across the axis are equal and nothing that acts on it depends on its spin angle.
     Only elements that `stiffmbs.elements.element.Element.spins_with` allows may act on it: no angles, no joint that
-    another element refers to. It must also rotate in a bearing, roll on a tyre, or spin at the start.
-
-    Parameters
-    ----------
-    turns : mapping of str to ndarray, shape (3,)
-        Rotation of each body about its principal axes during the run at the initial angular velocity, rad.
+    another element refers to. It must also rotate in a bearing, roll on a tyre, or spin at the start. `turns` of shape
+    (3,): rotation of each body about its principal axes during the run at the initial angular velocity, rad.
     """
     if model.dimensions == 2:
         return None

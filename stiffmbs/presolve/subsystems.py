@@ -70,10 +70,7 @@ def _pairs(system: System, group: Group) -> np.ndarray:
 def part_of(system: System, bodies: np.ndarray) -> System:
     """Return the system of one mechanism; its elements keep the numbers of the whole system.
 
-    Parameters
-    ----------
-    bodies : ndarray of int
-        Its bodies, which are connected with no others.
+    `bodies`: its bodies, which are connected with no others.
     """
     own_states = np.flatnonzero(np.isin(_first_bodies(system)[len(system.bodies) + 1 :], bodies))
     place = np.full(len(system.bodies) + 1, -1)

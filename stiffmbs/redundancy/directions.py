@@ -42,16 +42,8 @@ def directions(
 ) -> Iterator[Direction]:
     """Yield the constant directions of an element's indeterminate force, and in space of its torque.
 
-    In space, a direction that the kind of joint implies is omitted.
-
-    Parameters
-    ----------
-    changes : sequence of mapping of str to ndarray
-        At each pose, the change of each channel along each null vector, shape (vectors,).
-    owner : str
-        Name of the element.
-    negligible : float
-        Change that counts as zero.
+    In space, a direction that the kind of joint implies is omitted. `changes`: at each pose, the change of each channel
+    along each null vector, shape (vectors,). `owner`: name of the element. `negligible`: change that counts as zero.
     """
     of_body = equations.state.system.of_body
     quantities = {"force": of_body.reactions[: of_body.linear]}

@@ -31,14 +31,8 @@ def redundant_rows(found: LoopRank, order: Sequence[str], holonomic: np.ndarray)
 
     Leaving out rows loses no constraint if the null space of J^T, restricted to them, is regular. Rows are taken from
     the last joint in `order` backwards, nonholonomic equations first; within a joint, those with the largest share
-    first.
-
-    Parameters
-    ----------
-    order : sequence of str
-        Names of all joints; the last is dropped first.
-    holonomic : ndarray of bool
-        Mask of the loop's rows that have a position form.
+    first. `order`: names of all joints; the last is dropped first. `holonomic`: mask of the loop's rows that have a
+    position form.
     """
     if not found.redundancy:
         return []

@@ -44,21 +44,9 @@ class Pose(NamedTuple):
 class LoopEquations:
     """C, J and C_t of a loop at any pose: lengths in units of its joints' arms, rows of J normalised.
 
-    Parameters
-    ----------
-    state : State
-        Working memory; rows are scaled at its pose.
-    t : float
-        s.
-
-    Attributes
-    ----------
-    length : float
-        Root mean square arm of the joints, m, as the unit of length.
-    row_scale : ndarray, shape (n,)
-        Factor of each equation; lam = row_scale * w for a null vector w of the scaled J^T.
-    timed : ndarray of bool, shape (n,)
-        Mask of the equations that contain time.
+    `state`: working memory; rows are scaled at its pose. `t`: s. `length`: root mean square arm of the joints, m, as
+    the unit of length. `row_scale` of shape (n,): factor of each equation; lam = row_scale * w for a null vector w of
+    the scaled J^T. `timed` of shape (n,): mask of the equations that contain time.
     """
 
     def __init__(self, loop: Loop, state: State, t: float) -> None:
@@ -111,12 +99,8 @@ class LoopEquations:
         """Return the nearest pose at which the equations hold, or come closest to holding.
 
         Levenberg-Marquardt steps with the damping |C|^2 (Yamashita and Fukushima, Computing Suppl. 15, 2001) converge
-        quadratically to non-isolated solutions for any rank of C_q.
-
-        Parameters
-        ----------
-        kept : ndarray of bool, optional
-            Mask of the rows to satisfy; all by default.
+        quadratically to non-isolated solutions for any rank of C_q. `kept`: mask of the rows to satisfy; all by
+        default.
         """
         rows = np.ones(len(self.loop.rows), dtype=bool) if kept is None else kept
         pose = self.pose(q, t)

@@ -46,14 +46,8 @@ def loop_rank(equations: LoopEquations, q: np.ndarray, t: float) -> LoopRank:
     """Return the rank of a loop's equations near a pose.
 
     A singular pose has a smaller rank than its neighbours; redundant equations are dependent at every pose. Singular
-    values, there and at perturbed poses, are computed only if the rank is not full at the start.
-
-    Parameters
-    ----------
-    q : ndarray
-        Coordinates of the loop's bodies, m and rad.
-    t : float
-        s.
+    values, there and at perturbed poses, are computed only if the rank is not full at the start. `q`: coordinates of
+    the loop's bodies, m and rad. `t`: s.
     """
     start = equations.assembled(q, t)
     count = len(start.C)
@@ -108,12 +102,7 @@ def _perturbed(equations: LoopEquations, start: Pose) -> Iterator[Pose]:
 def small_singular(J: SparseMatrix) -> tuple[np.ndarray, np.ndarray]:
     """Return the singular values, shape (n,), in descending order, and left singular vectors of the last of them.
 
-    For a large matrix, one of those above `REDUNDANCY.clearly_regular` replaces all larger ones.
-
-    Parameters
-    ----------
-    J : SparseMatrix
-        With n rows.
+    For a large matrix, one of those above `REDUNDANCY.clearly_regular` replaces all larger ones. `J`: with n rows.
     """
     n = J.shape[0]
     count = None if J.is_small else J.singular_values_below(REDUNDANCY.clearly_regular)

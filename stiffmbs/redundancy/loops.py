@@ -18,12 +18,7 @@ from .parameters import REDUNDANCY
 class LoopJoint(NamedTuple):
     """Joint with its rows and bodies.
 
-    Attributes
-    ----------
-    rows : ndarray of int
-        Its equations in the whole system.
-    bodies : tuple of int
-        Numbers of its bodies, without the ground.
+    `rows`: its equations in the whole system. `bodies`: numbers of its bodies, without the ground.
     """
 
     name: str
@@ -35,12 +30,8 @@ class LoopJoint(NamedTuple):
 class Loop(NamedTuple):
     """Bodies and joints of loops that are connected by more than the ground.
 
-    Attributes
-    ----------
-    bodies : tuple of int
-        Their numbers in the system.
-    rows, columns, coordinates : ndarrays of int
-        The joints' equations, and the bodies' velocities and coordinates, in the whole system.
+    `bodies`: their numbers in the system. `rows`, `columns`, `coordinates`: the joints' equations, and the bodies'
+    velocities and coordinates, in the whole system.
     """
 
     joints: tuple[LoopJoint, ...]
@@ -59,12 +50,8 @@ def loops(system: System, state: State) -> list[Loop]:
     """Return the parts of a system in which equations may be dependent, separated if they share no body.
 
     A body with a single joint is removed with the joint if the joint's rows are independent on that body's velocities,
-    as such rows depend on no others. The loops remain; of a tree, nothing remains.
-
-    Parameters
-    ----------
-    state : State
-        With the set ``motion`` evaluated at the pose.
+    as such rows depend on no others. The loops remain; of a tree, nothing remains. `state`: with the set ``motion``
+    evaluated at the pose.
     """
     joints = [joint for g, group in enumerate(system.groups) for joint in _joints(system, state, g, group)]
     joints_of: list[set[int]] = [set() for _ in system.bodies]

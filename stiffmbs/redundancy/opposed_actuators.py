@@ -28,16 +28,8 @@ def opposed_sentences(system: System, data: ModelData, q: np.ndarray, grid: Grid
 
     A controller is a force that depends on time or states, and that measures motion directly or through states. The
     reaction of a drive to springs, dampers and forces of time alone is a common result. A force on a body is assumed to
-    act on bodies connected to it by bushings as well, such as the housing of a rack.
-
-    Parameters
-    ----------
-    data : ModelData
-        Model from which the system was compiled.
-    q : ndarray
-        An assembled pose.
-    grid : Grid
-        Output times of the run.
+    act on bodies connected to it by bushings as well, such as the housing of a rack. `data`: model from which the
+    system was compiled. `q`: an assembled pose. `grid`: output times of the run.
     """
     drives = [name for name, joint in data.joints.items() if joint.kind == "drive"]
     controllers = [name for name, force in data.forces.items() if drives and _measures(force, data)]

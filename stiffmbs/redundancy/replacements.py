@@ -28,12 +28,8 @@ Choice = tuple[tuple[str, str], ...]
 class _Option:
     """Replacement of a joint by a weaker kind.
 
-    Attributes
-    ----------
-    let_go : list of ndarray, shape (components, null vectors)
-        Released components along each null vector, at each pose.
-    count : int
-        Number of released equations.
+    `let_go` of shape (components, null vectors): released components along each null vector, at each pose. `count`:
+    number of released equations.
     """
 
     joint: str
@@ -47,12 +43,8 @@ def replacements(
 ) -> list[Choice]:
     """Return the joints and replacement kinds: each joint that suffices alone, else a few together, else none.
 
-    Parameters
-    ----------
-    spaces : sequence of (Pose, ndarray)
-        Poses, and null vectors of the scaled J^T there for the redundant equations.
-    joints : sequence of LoopJoint
-        Joints to choose from; the last is changed first.
+    `spaces`: poses, and null vectors of the scaled J^T there for the redundant equations. `joints`: joints to choose
+    from; the last is changed first.
     """
     count, last = spaces[0][1].shape[1], joints[-REDUNDANCY.most_joints :]
     seen = [_in_marker_axes(equations, pose, space, last) for pose, space in spaces]

@@ -69,14 +69,8 @@ AUTO = tuned("auto", AutoParameters())
 class ExplicitSteps(NamedTuple):
     """Numbers of explicit steps.
 
-    Attributes
-    ----------
-    time : float
-        Time of the motion, s: at the count, or covered by the steps after an earlier count.
-    accepted, attempted : int
-        Attempts include rejected steps.
-    limited : int
-        Accepted steps limited by stability.
+    `time`: time of the motion, s: at the count, or covered by the steps after an earlier count. `accepted`,
+    `attempted`: attempts include rejected steps. `limited`: accepted steps limited by stability.
     """
 
     time: float
@@ -88,13 +82,8 @@ class ExplicitSteps(NamedTuple):
 class ImplicitSteps(NamedTuple):
     """Cost of implicit steps.
 
-    Attributes
-    ----------
-    time : float
-        Time of the motion, s: at the count, or covered by the steps after an earlier count.
-    restarts : int
-        Restarts at breakpoints and events.
-    cost : float
+    `time`: time of the motion, s: at the count, or covered by the steps after an earlier count. `restarts`: restarts at
+    breakpoints and events.
     """
 
     time: float
@@ -147,12 +136,7 @@ class Thresholds:
 def implicit_solver(parameters: AutoParameters, rtol: float, damping_ratio: float) -> str:
     """Return the name of the implicit integrator, ``bdf`` or ``radau``.
 
-    Parameters
-    ----------
-    parameters : AutoParameters
-    rtol : float
-    damping_ratio : float
-        Damping ratio of the stiffest vibration; BDF is taken for overdamped motions.
+    `damping_ratio`: damping ratio of the stiffest vibration; BDF is taken for overdamped motions.
     """
     light = damping_ratio < parameters.light_damping
     loosest = parameters.radau_rtol_lightly_damped if light else parameters.radau_rtol
@@ -162,11 +146,7 @@ def implicit_solver(parameters: AutoParameters, rtol: float, damping_ratio: floa
 def starts_for_first_trial(parameters: AutoParameters, excitation: float) -> float:
     """Return the explicit cost of a run that justifies beginning with implicit steps, in their starts.
 
-    Parameters
-    ----------
-    parameters : AutoParameters
-    excitation : float
-        Largest change of a velocity in an explicit step, in tolerances.
+    `excitation`: largest change of a velocity in an explicit step, in tolerances.
     """
     return parameters.trial_starts_at_rest if excitation < parameters.at_rest else parameters.trial_starts
 
@@ -179,13 +159,8 @@ def stability_limits(parameters: AutoParameters, steps: ExplicitSteps) -> bool:
 def saving_by_return(explicit_rate: float, implicit_rate: float, ratio: float, remaining: float) -> float:
     """Return the cost that implicit steps save up to the end if they are `ratio` times as expensive as before.
 
-    Parameters
-    ----------
-    explicit_rate, implicit_rate : float
-        Measured cost of both per second of the motion.
-    ratio : float
-    remaining : float
-        Time up to the end of the run, s.
+    `explicit_rate`, `implicit_rate`: measured cost of both per second of the motion. `remaining`: time up to the end of
+    the run, s.
     """
     return remaining * (explicit_rate - ratio * implicit_rate)
 

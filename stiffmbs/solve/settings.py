@@ -36,10 +36,7 @@ def near_constraints(settings: RunSettings) -> bool:
 def changed(settings: RunSettings, changes: dict[str, Any]) -> RunSettings:
     """Return the settings with some fields changed, validated as a whole.
 
-    Raises
-    ------
-    InputError
-        When a field is unknown or its value out of bounds.
+    Raises InputError when a field is unknown or its value out of bounds.
     """
     if not changes:
         return settings

@@ -59,14 +59,7 @@ class Traits:
 
 
 class Registered(NamedTuple):
-    """Registered solver.
-
-    Attributes
-    ----------
-    solve : Solver
-    traits : callable
-        Return the traits for the scheme or formulation in the settings.
-    """
+    """Registered solver. `traits`: return the traits for the scheme or formulation in the settings."""
 
     solve: Solver
     traits: Callable[[RunSettings], Traits]

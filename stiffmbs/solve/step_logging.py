@@ -13,16 +13,6 @@ def is_logged() -> bool:
 
 
 def log_step(t: float, size: float, order: int = 0) -> None:
-    """Log the last step.
-
-    Parameters
-    ----------
-    t : float
-        Its end, s.
-    size : float
-        s.
-    order : int, optional
-        Order of the formula, if variable.
-    """
+    """Log the last step. `t`: its end, s. `size`: s. `order`: order of the formula, if variable."""
     of_order = f", order {order}" if order else ""
     LOGGER.debug("t = %.6g s, step %.3g s%s", t, size, of_order, extra={"step": size, "order": order})

@@ -32,14 +32,7 @@ def suspect(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> str:
     """Return a clause on the element that probably caused a run to stop, or an empty string.
 
     It is an element with an undefined value at or just after a state, else an open joint, else the element with the
-    largest acceleration of a body.
-
-    Parameters
-    ----------
-    t : float
-        s.
-    q, u : ndarrays, shapes (n_q,), (n_u,)
-        Last state that was reached.
+    largest acceleration of a body. `t`: s. `q`, `u`: last state that was reached.
     """
     for ahead in SUSPECT.beyond:
         later = ahead * max(1.0, abs(t))

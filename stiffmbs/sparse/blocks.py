@@ -35,12 +35,8 @@ def padded(size: int) -> int:
 class Blocks:
     """Blocks of the factors of a matrix without pivoting.
 
-    Attributes
-    ----------
-    nodes : sequence of ndarray of int
-        Unknowns of each supernode, in the order of elimination.
-    below, right : lists of list of int
-        Later supernodes with blocks in the columns and in the rows of each supernode.
+    `nodes`: unknowns of each supernode, in the order of elimination. `below`, `right`: later supernodes with blocks in
+    the columns and in the rows of each supernode.
     """
 
     nodes: Sequence[np.ndarray]

@@ -14,13 +14,8 @@ from ..compile.equations import ABSENT, Equations
 class EliminationOrder(NamedTuple):
     """Elimination order with little fill-in.
 
-    Attributes
-    ----------
-    unknowns : ndarray of int, shape (n,)
-    fill : int
-        Entries of each triangle with pivots on the diagonal and full blocks of bodies and joints.
-    updates : int
-        Multiplications of the elimination under the same conditions.
+    `unknowns` of shape (n,). `fill`: entries of each triangle with pivots on the diagonal and full blocks of bodies and
+    joints. `updates`: multiplications of the elimination under the same conditions.
     """
 
     unknowns: np.ndarray
@@ -66,14 +61,8 @@ def elimination_order(equations: Equations) -> EliminationOrder:
 def factors_of(n: int, rows: np.ndarray, columns: np.ndarray, order: EliminationOrder) -> dict[str, Any]:
     """Return the contents of the layout `stiffmbs.compile.machine.native.tables.FACTORS`.
 
-    Parameters
-    ----------
-    n : int
-        Number of unknowns.
-    rows, columns : ndarrays of int
-        Entries, by columns.
-    order : EliminationOrder
-        Elimination order of the columns, with its fill-in.
+    `n`: number of unknowns. `rows`, `columns`: entries, by columns. `order`: elimination order of the columns, with its
+    fill-in.
     """
     return {
         "n": n, "expected_entries": order.fill + n,
@@ -165,16 +154,8 @@ class EliminatedBodies:
     outside of B acts as a joint to ground, so it may close a loop that has redundant rows or a dead centre.  A group
     may therefore have either joints to ground or one such open joint: the rows of a single open joint on a free group
     are independent of those inside.  If bodies have few coordinates, such as a body that slides along an axis, the
-    group must have as many degrees of freedom as its joints have rows.
-
-    Parameters
-    ----------
-    bodies_of : sequence of sequences of int
-        Bodies of each joint, without ground.
-    freedoms : sequence of int
-        Number of velocities of each body.
-    rows : sequence of int
-        Number of equations of each joint.
+    group must have as many degrees of freedom as its joints have rows. `bodies_of`: bodies of each joint, without
+    ground. `freedoms`: number of velocities of each body. `rows`: number of equations of each joint.
     """
 
     def __init__(self, bodies_of: Sequence[Sequence[int]], freedoms: Sequence[int], rows: Sequence[int]) -> None:

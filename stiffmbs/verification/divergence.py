@@ -19,12 +19,8 @@ TURNING = (*SPACE.positions[SPACE.linear :], *SPACE.velocities[SPACE.linear :])
 class Divergence:
     """Divergence of two motions.
 
-    Attributes
-    ----------
-    body : str
-        First body that diverges.
-    begun, t : float
-        Times at which the difference begins to grow, and at which it counts as divergence, s.
+    `body`: first body that diverges. `begun`, `t`: times at which the difference begins to grow, and at which it counts
+    as divergence, s.
     """
 
     body: str
@@ -67,12 +63,8 @@ def distance(
 def _turned_apart(first: np.ndarray, other: np.ndarray) -> np.ndarray:
     """Return the difference of two motions in orientation over time, in rad.
 
-    About the rotation axis it is relative to the total rotation of the first motion if that exceeds 1 rad.
-
-    Parameters
-    ----------
-    first, other : ndarrays, shape (7, n)
-        Quaternion with arbitrary sign, and angular velocity in the body's own axes.
+    About the rotation axis it is relative to the total rotation of the first motion if that exceeds 1 rad. `first`,
+    `other` of shape (7, n): quaternion with arbitrary sign, and angular velocity in the body's own axes.
     """
     p, w = first[:4], first[4:]
     turn = rotation_vector(times(CONJUGATE * p.T, other[:4].T))
@@ -84,14 +76,7 @@ def _turned_apart(first: np.ndarray, other: np.ndarray) -> np.ndarray:
 
 
 def divergence(times: np.ndarray, distances: Mapping[str, np.ndarray]) -> Divergence | None:
-    """Return the divergence of two motions, or None.
-
-    Parameters
-    ----------
-    times : ndarray, shape (n,)
-    distances : mapping of str to ndarray
-        Of each body (`distance`).
-    """
+    """Return the divergence of two motions, or None. `times` of shape (n,). `distances`: of each body (`distance`)."""
     if not distances:
         return None
     bodies, rows = list(distances), np.array(list(distances.values()))

@@ -31,16 +31,8 @@ class OutOfTime(KeyboardInterrupt):
 class Deadline:
     """Watch that stops a run if it exceeds its effort, or is going to after a third of it.
 
-    The effort may be any measure that grows during the run.
-
-    Parameters
-    ----------
-    start, end : float
-        Of the run, s.
-    allowed : float
-        Allowed effort, in units of `clock` (s by default).
-    clock : callable
-        Return the effort so far.
+    The effort may be any measure that grows during the run. `start`, `end`: of the run, s. `allowed`: allowed effort,
+    in units of `clock` (s by default). `clock`: return the effort so far.
     """
 
     def __init__(

@@ -69,13 +69,7 @@ class InputEnd(NamedTuple):
 
 
 def first_input_end(system: System, start: float, end: float) -> InputEnd | None:
-    """Return the first time of a run at which a formula of time ends; None if all have values.
-
-    Parameters
-    ----------
-    start, end : float
-        s.
-    """
+    """Return the first time of a run at which a formula of time ends; None if all have values. `start`, `end`: s."""
     found = [
         each for group in system.groups if group.has_inputs for name, element in zip(group.names, group.elements, strict=True)
         for each in _of_element(name, element, start, end)

@@ -32,14 +32,8 @@ ALIKE = 2.0
 class InputFeatures:
     """Features of all inputs between two times.
 
-    Attributes
-    ----------
-    breakpoints : ndarray
-        Times to stop and restart at, s.
-    starts, longest : ndarrays
-        Start of each interval and longest step that may touch it, s; empty if nothing limits steps.
-    note : str
-        Note for the user, or ''.
+    `breakpoints`: times to stop and restart at, s. `starts`, `longest`: start of each interval and longest step that
+    may touch it, s; empty if nothing limits steps. `note`: note for the user, or ''.
     """
 
     breakpoints: np.ndarray = field(default_factory=lambda: np.empty(0))
@@ -105,10 +99,7 @@ NO_FEATURES = InputFeatures()
 def input_features(system: System, start: float, end: float) -> InputFeatures:
     """Return the features of a system's inputs between two times.
 
-    Raises
-    ------
-    InputError
-        If an input has too many breakpoints.
+    Raises InputError if an input has too many breakpoints.
     """
     return _features(tuple(inputs_of(system)), start, end)
 
@@ -160,10 +151,7 @@ def _merged(starts: np.ndarray, longest: np.ndarray) -> tuple[np.ndarray, np.nda
 def breakpoint_times(inputs: Sequence[Input], start: float, end: float) -> np.ndarray:
     """Return the breakpoints in time of some inputs, strictly between start and end, in ascending order.
 
-    Parameters
-    ----------
-    start, end : float
-        s.
+    `start`, `end`: s.
     """
     found = np.concatenate([np.empty(0), *(times for each in inputs for times in _of_input(each, start, end))])
     found = np.sort(found[(found > start) & (found < end)])

@@ -35,12 +35,7 @@ TABLE = "table"
 class Input:
     """Expression of time only, compared by content.
 
-    Attributes
-    ----------
-    text : str
-        For messages.
-    values : mapping of str to float
-        Parameters, units and constants by name.
+    `text`: for messages. `values`: parameters, units and constants by name.
     """
 
     tree: ast.expr

@@ -63,12 +63,8 @@ class _Pieces(NamedTuple):
 class InputPieces:
     """Subdivision of one input into pieces that a cubic represents.
 
-    Attributes
-    ----------
-    change, size : float
-        Range and largest absolute value of the input in the run, as sampled.
-    estimated : bool
-        True if there were too many pieces, and bounds of some were used for others.
+    `change`, `size`: range and largest absolute value of the input in the run, as sampled. `estimated`: true if there
+    were too many pieces, and bounds of some were used for others.
     """
 
     def __init__(self, given: Input, edges: np.ndarray) -> None:

@@ -42,10 +42,7 @@ def stored() -> dict[str, Stored]:
 def clear() -> Stored:
     """Remove all entries and their authentication secret; return the removed entries.
 
-    Raises
-    ------
-    OSError
-        If an entry cannot be removed.
+    Raises OSError if an entry cannot be removed.
     """
     sizes = []
     for path in list(_files()):

@@ -23,10 +23,8 @@ _HELD: WeakValueDictionary[tuple[str, tuple[int, ...], bytes], np.ndarray] = Wea
 class Layout(dict[str, str]):
     """Columns of a table, each with its kind.
 
-    Attributes
-    ----------
-    cells : dtype
-        View of a table with its cells by name: ``table.view(layout.cells)[0]["steps"]`` is read and written in place.
+    `cells`: view of a table with its cells by name: ``table.view(layout.cells)[0]["steps"]`` is read and written in
+    place.
     """
 
     @cached_property
@@ -130,10 +128,7 @@ def addresses(*arrays: np.ndarray) -> list[int]:
 def held_once(array: np.ndarray) -> np.ndarray:
     """Return a read-only array of the same content, shared by all users of equal content.
 
-    Parameters
-    ----------
-    array : ndarray
-        Constant numbers; compiled code may read them.
+    `array`: constant numbers; compiled code may read them.
     """
     content = np.array(array, order="C")
     content.flags.writeable = False

@@ -17,12 +17,8 @@ Signatures = tuple[tuple[str, str], ...]
 class Routine:
     """Function of a ``native`` module, compiled or loaded from the cache on first use.
 
-    Attributes
-    ----------
-    others : tuple of (name, signature)
-        Functions of the module compiled with it, because they share most of their code.
-    unrolled : bool
-        True if its loops are unrolled, which pays for solutions with dense blocks.
+    `others`: functions of the module compiled with it, because they share most of their code. `unrolled`: true if its
+    loops are unrolled, which pays for solutions with dense blocks.
     """
 
     module: str

@@ -20,16 +20,9 @@ from .relative_rotation import COSINE, RelativeRotation, RotationVector
 class SpatialLogarithm:
     """Logarithm in space; c = RotationVector(h) of the relative quaternion (h, v).
 
-    u = d - c/2 v x d - c'/2 v x (v x d), as (1 - (theta/2) cot(theta/2))/theta^2 c^2 = -c'/2.
-
-    Attributes
-    ----------
-    d : Matrix
-        Position of marker i from marker j.
-    velocity, omega : Matrix
-        Velocity of i's point relative to j's body, and relative angular velocity.
-    e : SymbolicElement
-        For names.
+    u = d - c/2 v x d - c'/2 v x (v x d), as (1 - (theta/2) cot(theta/2))/theta^2 c^2 = -c'/2. `d`: position of marker i
+    from marker j. `velocity`, `omega`: velocity of i's point relative to j's body, and relative angular velocity. `e`:
+    for names.
     """
 
     d: sp.Matrix
@@ -96,14 +89,7 @@ class SpatialLogarithm:
 class PlanarLogarithm:
     """Logarithm in the plane: u = (k x + theta/2 y, k y - theta/2 x), k = (theta/2) cot(theta/2), for d = (x, y).
 
-    Attributes
-    ----------
-    d : list
-        Position of marker i from marker j.
-    angle : Expr
-        theta.
-    e : SymbolicElement
-        For names and rates.
+    `d`: position of marker i from marker j. `angle`: theta. `e`: for names and rates.
     """
 
     d: list[sp.Expr]

@@ -19,10 +19,7 @@ Partial = Callable[[sp.Expr], sp.Expr]
 class NonsmoothBase(sp.Function):  # type: ignore[misc]
     """Base of nonsmooth functions. SymPy's printers find its method by this name.
 
-    Attributes
-    ----------
-    native : str
-        Function in `stiffmbs.compile.machine.native.nonsmooth`.
+    `native`: function in `stiffmbs.compile.machine.native.nonsmooth`.
     """
 
     native: ClassVar[str] = ""

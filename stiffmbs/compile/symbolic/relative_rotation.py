@@ -28,14 +28,8 @@ class RelativeRotation:
     """Rotation from the axes of one marker to those of another, as a unit quaternion.
 
     The quaternion follows the bodies' motion without sign changes, so the angle is smooth past half a turn, up to a
-    full turn.
-
-    Attributes
-    ----------
-    scalar : Expr
-        h, the cosine of half the angle.
-    vector : Matrix
-        v, the sine of half the angle along the rotation axis, in the first marker's axes (and the second's).
+    full turn. `scalar`: h, the cosine of half the angle. `vector`: v, the sine of half the angle along the rotation
+    axis, in the first marker's axes (and the second's).
     """
 
     scalar: sp.Expr
@@ -70,12 +64,7 @@ class RelativeRotation:
 class ShortestRotation:
     """Shortest rotation from an axis of one marker to that of another, independent of the rotation about the axis.
 
-    Attributes
-    ----------
-    axis : int
-        0, 1 or 2 for x, y, z.
-    direction : Matrix
-        The second marker's axis in the first marker's axes.
+    `axis`: 0, 1 or 2 for x, y, z. `direction`: the second marker's axis in the first marker's axes.
     """
 
     axis: int

@@ -47,13 +47,7 @@ class Stated:
 
 
 def stated_by_joint(kind: Kind, symbols: Symbols) -> Stated:
-    """Return the equations of a joint.
-
-    Raises
-    ------
-    InputError
-        If they are invalid; names the class.
-    """
+    """Return the equations of a joint. Raises InputError if they are invalid; names the class."""
     asked = _Asked(kind.element, symbols)
     position, velocity = asked.column("position"), asked.column("velocity")
     names = kind.element.equations  # type: ignore[attr-defined]
@@ -68,10 +62,7 @@ def stated_by_joint(kind: Kind, symbols: Symbols) -> Stated:
 def measured_by_joint(kind: Kind, symbols: Symbols, lam: Iterable[sp.Expr]) -> tuple[sp.Expr, ...]:
     """Return the reported values of a joint, given its multipliers: coordinates with their rates, or an effort.
 
-    Raises
-    ------
-    InputError
-        If they are invalid; names the class.
+    Raises InputError if they are invalid; names the class.
     """
     asked, e = _Asked(kind.element, symbols), symbols.element
     e.counts, e.__dict__["lam"] = False, list(lam)
@@ -80,13 +71,7 @@ def measured_by_joint(kind: Kind, symbols: Symbols, lam: Iterable[sp.Expr]) -> t
 
 
 def stated_by_force(kind: Kind, symbols: Symbols) -> Stated:
-    """Return the law of a force.
-
-    Raises
-    ------
-    InputError
-        If it is invalid; names the class.
-    """
+    """Return the law of a force. Raises InputError if it is invalid; names the class."""
     asked = _Asked(kind.element, symbols)
     powers, condensed = asked.pairs(), asked.condensed()
     (potential,) = asked.column("potential")

@@ -26,14 +26,9 @@ Factors = tuple[tuple[int, ...], ...]
 class Summand:
     """Part of a derivative.
 
-    Attributes
-    ----------
-    factors : tuple of tuple of int
-        Factors that are numbers of the element: each a number, or the numbers of a vector in any combination.
-    columns : tuple of int
-        Coordinates of the element on which the rest depends.
-    bounded : bool
-        True if the rest is of order one at every pose, as sines and cosines are.
+    `factors`: factors that are numbers of the element: each a number, or the numbers of a vector in any combination.
+    `columns`: coordinates of the element on which the rest depends. `bounded`: true if the rest is of order one at
+    every pose, as sines and cosines are.
     """
 
     factors: Factors
@@ -46,13 +41,7 @@ _Sum = dict[Factors, tuple[frozenset[int], bool]]
 
 
 class Variation:
-    """Splitting of derivatives of one kind.
-
-    Parameters
-    ----------
-    symbols : Symbols
-        Symbols of the derivatives.
-    """
+    """Splitting of derivatives of one kind. `symbols`: symbols of the derivatives."""
 
     def __init__(self, symbols: Symbols) -> None:
         self._e = symbols.element

@@ -73,12 +73,7 @@ class Joints(Blocks):
 def block_lists(joints: Joints, system: System, kept: np.ndarray) -> dict[str, Any]:
     """Return the lists of joints in `stiffmbs.dynamics.elimination.native.layouts.BLOCK_ELIMINATION`.
 
-    Parameters
-    ----------
-    joints : Joints
-    system : System
-    kept : ndarray of int
-        Entries of J in solved equations.
+    `kept`: entries of J in solved equations.
     """
     place = np.full(system.n_c, ABSENT)
     for start, rows in zip(joints.node_starts, joints.nodes, strict=False):

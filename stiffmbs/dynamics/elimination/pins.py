@@ -27,12 +27,7 @@ class Side(NamedTuple):
 def pin_lists(joints: Joints, system: System, kept: np.ndarray) -> dict[str, Any] | None:
     """Return the lists of `stiffmbs.dynamics.elimination.native.layouts.PIN_ELIMINATION`; None if a joint is not revolute.
 
-    Parameters
-    ----------
-    joints : Joints
-    system : System
-    kept : ndarray of int
-        Entries of J in solved equations.
+    `kept`: entries of J in solved equations.
     """
     gamma, pins = system.term("acceleration", "gamma"), _pins(joints, system, kept)
     if not pins or sum(joints.sizes) < system.n_c or not np.array_equal(np.sort(gamma.row), np.arange(system.n_c)):

@@ -21,13 +21,7 @@ def from_diagonal(found: Any) -> Any:
 
 
 def check_symmetric(matrix: Any) -> Any:
-    """Return the matrix if it is symmetric.
-
-    Raises
-    ------
-    ValueError
-        If two entries across the diagonal differ.
-    """
+    """Return the matrix if it is symmetric. Raises ValueError if two entries across the diagonal differ."""
     for row, column in itertools.combinations(range(len(matrix)), 2):
         one, other = matrix[row][column] or 0.0, matrix[column][row] or 0.0
         if abs(one - other) > 1e-12 * max(abs(one), abs(other)):

@@ -73,14 +73,8 @@ def unfit_joints(
 ) -> Iterator[tuple[str, str]]:
     """Yield the fields whose joint lacks a coordinate, or has another one than `wanted`, with the reason.
 
-    Parameters
-    ----------
-    element : Element
-        With fields that name joints.
-    joints : mapping of str to Joint
-        Joints of the model.
-    wanted : mapping of str to str, optional
-        ``angle`` or ``displacement`` by field.
+    `element`: with fields that name joints. `joints`: joints of the model. `wanted`: ``angle`` or ``displacement`` by
+    field.
     """
     for field, name in element.parts(JointName):
         joint, sort = joints[name.joint], (wanted or {}).get(field)

@@ -26,15 +26,7 @@ _ENERGIES = {f"energy.{name}": measured_in("torque") for name in OF_RUN["energy"
 def in_order(outputs: Mapping[str, Output]) -> tuple[str, ...]:
     """Return the channels of requests in order of dependence.
 
-    Parameters
-    ----------
-    outputs : mapping of str to Output
-        By channel.
-
-    Raises
-    ------
-    ValueError
-        For a request that depends on itself.
+    `outputs`: by channel. Raises ValueError for a request that depends on itself.
     """
     named = {name: [of for of in channels_in(output) if of in outputs] for name, output in outputs.items()}
     try:
@@ -81,12 +73,7 @@ def dimensions(outputs: Mapping[str, Output]) -> dict[str, Known]:
 
 
 def dimension(output: Output, requests: Mapping[str, Known]) -> Known:
-    """Return the dimension of a formula, given those of the requests that it names.
-
-    Raises
-    ------
-    FormulaError
-    """
+    """Return the dimension of a formula, given those of the requests that it names. Raises FormulaError."""
     terms = {placeholder(k): measured.MEASURES[term.function] for k, term in enumerate(output.terms)}
     return _ANYTHING.dimension_of(output.tree, output.quantities, output.tables, {**_ENERGIES, **requests, **terms})
 

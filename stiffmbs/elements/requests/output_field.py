@@ -80,12 +80,7 @@ _NAMES = FormulaOf(coordinates=True, velocities=True)
 
 
 def read_output(family: OutputNames, found: Any, context: Context) -> Any:
-    """Return the checked formula of an entry, with its parameters and tables.
-
-    Raises
-    ------
-    FormulaError
-    """
+    """Return the checked formula of an entry, with its parameters and tables. Raises FormulaError."""
     if isinstance(found, Output):
         return found
     given = formula_text(found)

@@ -68,13 +68,7 @@ class CrgHeader:
 
 
 def read_header(content: bytes, path: Path) -> CrgHeader:
-    """Read the header of a file.
-
-    Raises
-    ------
-    InputError
-        If it is not a valid header; the message contains the line.
-    """
+    """Read the header of a file. Raises InputError if it is not a valid header; the message contains the line."""
     source = str(path)
     found, line, end = _blocks(content, source)
     blocks = Fields("block", "", {name: entries for name, entries in found.items() if entries})
@@ -160,10 +154,8 @@ BINARY = {"KRBI": ">f4", "KDBI": ">f8"}
 def read_records(content: bytes, header: CrgHeader, path: Path) -> np.ndarray:
     """Read the values of the channels, shape (cross-sections, channels).
 
-    Raises
-    ------
-    InputError
-        If they contradict the header, or one is not finite; the message contains the line or the cross-section.
+    Raises InputError if they contradict the header, or one is not finite; the message contains the line or the
+    cross-section.
     """
     import numpy as np
 

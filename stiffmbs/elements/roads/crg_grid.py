@@ -66,12 +66,7 @@ def read_crg(path: Path) -> CrgGrid:
     """Read an OpenCRG file.
 
     A record's heading and slope apply to the interval before it, as in OpenCRG's library; its banking applies at the
-    record.
-
-    Raises
-    ------
-    InputError
-        If it cannot be read; the message contains the line.
+    record. Raises InputError if it cannot be read; the message contains the line.
     """
     import numpy as np
 

@@ -48,12 +48,7 @@ class Envelope(Component):
 def enveloped(e: Symbolic, x: Any, y: Any, axis: Any) -> tuple[Any, Any, Any]:
     """Return the effective height of the road, m, and its slopes along x and y, by the cams of a tyre.
 
-    Parameters
-    ----------
-    x, y : Expr
-        Place of the wheel's centre in the axes of the road.
-    axis : sequence of Expr
-        Components of the spin axis along them.
+    `x`, `y`: place of the wheel's centre in the axes of the road. `axis`: components of the spin axis along them.
     """
     from sympy import Add, Rational, sqrt
 

@@ -72,10 +72,7 @@ AnyRoad = Annotated[Road, ReadBy(read_road, _schema)]
 def read_roads(found: Any, context: Mapping[str, Any]) -> dict[str, Road]:
     """Read the roads of a scene, which its tyres use by name.
 
-    Raises
-    ------
-    InputError
-        If a name is not an identifier, or a road cannot be read.
+    Raises InputError if a name is not an identifier, or a road cannot be read.
     """
     roads: dict[str, Road] = {}
     for name, road in named_entries("roads", found, "roads"):

@@ -38,13 +38,8 @@ def read_grid(path: Path) -> Grid:
     """Read a file of heights.
 
     The first row of numbers has the positions y across the road, each further row a position x along it and the heights
-    there.
-    All are in m, separated by blanks, commas or semicolons; text after # is a comment.
-
-    Raises
-    ------
-    InputError
-        If it cannot be read; the message contains the line.
+    there. All are in m, separated by blanks, commas or semicolons; text after # is a comment. Raises InputError if it
+    cannot be read; the message contains the line.
     """
     rows = list(_rows(file_text(path, expected="a grid of heights"), str(path)))
     if len(rows) < 3:

@@ -34,14 +34,8 @@ BESIDE = 11
 class ReferenceLine:
     """Curved reference line.
 
-    Attributes
-    ----------
-    x, y : Table
-        Over u, m.
-    direction : tuple of float
-        Unit vector of the mean direction.
-    guess : Table
-        u over the position along the mean direction.
+    `x`, `y`: over u, m. `direction`: unit vector of the mean direction. `guess`: u over the position along the mean
+    direction.
     """
 
     x: Table
@@ -57,19 +51,9 @@ class ReferenceLine:
 def reference_line(u: np.ndarray, x: np.ndarray, y: np.ndarray, v: np.ndarray, source: str) -> ReferenceLine:
     """Return the line through points.
 
-    Parameters
-    ----------
-    u, x, y : ndarrays
-        m.
-    v : ndarray
-        Positions across the road, m, at which the nearest point must be found.
-    source : str
-        For messages.
-
-    Raises
-    ------
-    InputError
-        If the line turns too far from its mean direction, or the road is wider than a radius of curvature.
+    `u`, `x`, `y`: m. `v`: positions across the road, m, at which the nearest point must be found. `source`: for
+    messages. Raises InputError if the line turns too far from its mean direction, or the road is wider than a radius of
+    curvature.
     """
     import numpy as np
 

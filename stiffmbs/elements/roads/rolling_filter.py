@@ -59,13 +59,7 @@ def _height(shape: Shape) -> float:
 
 @lru_cache(maxsize=64)
 def rolled(table: Table, shape: Shape) -> Table:
-    """Return the filtered heights over x.
-
-    Raises
-    ------
-    InputError
-        If the profile is longer than 2000 radii.
-    """
+    """Return the filtered heights over x. Raises InputError if the profile is longer than 2000 radii."""
     import numpy as np
 
     points = np.array(table.table)

@@ -20,14 +20,8 @@ from .wrench import Pairs, velocity
 class Touch:
     """Possible contact of two solids, in ground axes.
 
-    Attributes
-    ----------
-    gap : Expr
-        Distance of the surfaces, m; negative for a penetration.
-    point : Matrix
-        Contact point, m.
-    normal : Matrix
-        Unit vector towards the solid of marker i.
+    `gap`: distance of the surfaces, m; negative for a penetration. `point`: contact point, m. `normal`: unit vector
+    towards the solid of marker i.
     """
 
     gap: Any

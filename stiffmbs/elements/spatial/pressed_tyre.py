@@ -125,12 +125,7 @@ class _Pressed:
 def pressed(e: Symbolic, hand: Any, turns: bool) -> Touch:
     """Return the contact with its load and slips.
 
-    Parameters
-    ----------
-    hand : Expr
-        -1 for a tyre that is mirrored.
-    turns : bool
-        Whether the yaw rate acts on the forces.
+    `hand`: -1 for a tyre that is mirrored. `turns`: whether the yaw rate acts on the forces.
     """
     from sympy import Max, Piecewise
 

@@ -30,12 +30,7 @@ def lagged(
 ) -> tuple[Any, Any, tuple[Any, Any]]:
     """Return slip, tangent of the slip angle, and state rates of a tyre whose own states are the deflections.
 
-    Parameters
-    ----------
-    sliding : Expr
-        Vsx, m/s.
-    lengths : tuple of Expr
-        Longitudinal and lateral relaxation length, m.
+    `sliding`: vsx, m/s. `lengths`: longitudinal and lateral relaxation length, m.
     """
     from sympy import Float
 

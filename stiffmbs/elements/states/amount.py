@@ -18,13 +18,7 @@ from ..read_by import Context, ReadBy
 
 
 class Amount(float):
-    """Finite number in SI units, with its known dimension.
-
-    Attributes
-    ----------
-    known : Known
-        A number without a unit can have any dimension.
-    """
+    """Finite number in SI units, with its known dimension. `known`: a number without a unit can have any dimension."""
 
     known: Known = PLAIN
 
@@ -56,12 +50,7 @@ AnyAmount = Annotated[Amount, ReadBy(read_amount, lambda _: AMOUNT)]
 
 
 def positive(amount: Amount) -> Amount:
-    """Return a positive number, refuse others.
-
-    Raises
-    ------
-    FormulaError
-    """
+    """Return a positive number, refuse others. Raises FormulaError."""
     if not amount > 0:
         raise FormulaError(f"found {quoted(float(amount))}, expected a number greater than zero")
     return amount

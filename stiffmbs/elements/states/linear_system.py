@@ -27,11 +27,7 @@ Weighted = tuple[float, Formula | str]
 def combined(parts: Sequence[Weighted], *formulas: Formula) -> Formula:
     """Return a weighted sum of formulas and states.
 
-    Parameters
-    ----------
-    parts : sequence of (float, Formula or str)
-    *formulas : Formula
-        Formulas among the parts, and others whose parameters the sum keeps.
+    `*formulas`: formulas among the parts, and others whose parameters the sum keeps.
     """
     kept = [(weight, part) for weight, part in parts if weight]
     if len(kept) == 1 and kept[0][0] == 1.0 and isinstance(kept[0][1], Formula):

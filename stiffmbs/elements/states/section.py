@@ -66,12 +66,7 @@ def names_in_formulas(states: Mapping[str, StateEntry]) -> set[str]:
 
 
 def refuse_algebraic_loops(outputs: Mapping[str, Formula]) -> None:
-    """Refuse outputs in algebraic loops.
-
-    Raises
-    ------
-    ValueError
-    """
+    """Refuse outputs in algebraic loops. Raises ValueError."""
     needs = {name: [other for other in formula.states if other in outputs] for name, formula in outputs.items()}
     try:
         TopologicalSorter(needs).prepare()
@@ -85,16 +80,7 @@ def refuse_algebraic_loops(outputs: Mapping[str, Formula]) -> None:
 def refuse_other_meanings(where: str, states: Iterable[str], known: Mapping[str, Collection[str]]) -> None:
     """Refuse states whose names have another meaning in a scene's formulas.
 
-    Parameters
-    ----------
-    where : str
-        Path in the scene, for messages.
-    known : mapping of str to collection of str
-        Other names in formulas, by section.
-
-    Raises
-    ------
-    InputError
+    `where`: path in the scene, for messages. `known`: other names in formulas, by section. Raises InputError.
     """
     for name in states:
         for section, names in known.items():
@@ -112,14 +98,7 @@ def check_states(
 ) -> None:
     """Refuse states whose names already have a meaning, and formulas with unknown references.
 
-    Parameters
-    ----------
-    known : collection of str or None
-        All states of the model; None while others can still be added.
-
-    Raises
-    ------
-    ValueError
+    `known`: all states of the model; None while others can still be added. Raises ValueError.
     """
     for name, state in states.items():
         if name in UNITS or name in CONSTANTS:

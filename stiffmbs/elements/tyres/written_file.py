@@ -28,16 +28,8 @@ OF_RANGES = {
 def property_text(properties: TyreProperties, units: Mapping[str, str] | None = None) -> str:
     """Return a property file that gives the same evaluation.
 
-    Parameters
-    ----------
-    properties : TyreProperties
-    units : mapping of str to str, optional
-        Units of LENGTH, FORCE, ANGLE, MASS and TIME by their names in Adams/Tire; SI units by default.
-
-    Raises
-    ------
-    InputError
-        For an unknown dimension or unit.
+    `units`: units of LENGTH, FORCE, ANGLE, MASS and TIME by their names in Adams/Tire; SI units by default. Raises
+    InputError for an unknown dimension or unit.
     """
     named = SI_UNITS | _checked(units or {})
     sections: dict[str, list[str]] = {"UNITS": [_line(kind, f"'{unit}'") for kind, unit in named.items()]}

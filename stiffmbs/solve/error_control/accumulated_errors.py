@@ -16,12 +16,8 @@ from .tolerances import absolute_tolerances
 class AccumulatedErrors:
     """Threshold above which accumulated errors of positions are reported.
 
-    Attributes
-    ----------
-    tolerances : float
-        Estimated error of a position, in units of its tolerance, above which it is reported.
-    usual_rtol : float
-        Smallest relative tolerance that errors are compared with: that of a run without settings.
+    `tolerances`: estimated error of a position, in units of its tolerance, above which it is reported. `usual_rtol`:
+    smallest relative tolerance that errors are compared with: that of a run without settings.
     """
 
     tolerances: float = 100.0
@@ -36,12 +32,8 @@ class AccumulatedErrors:
     def in_tolerances(self, system: System, settings: RunSettings, displaced: np.ndarray, q: np.ndarray) -> np.ndarray:
         """Return the estimated errors of positions in units of their tolerances, shape (n_u,).
 
-        Parameters
-        ----------
-        displaced : ndarray, shape (n_u,)
-            Estimated errors, m and rad.
-        q : ndarray, shape (n, n_q)
-            Positions during the run; they scale the tolerances of displacements, not those of angles.
+        `displaced` of shape (n_u,): estimated errors, m and rad. `q` of shape (n, n_q): positions during the run; they
+        scale the tolerances of displacements, not those of angles.
         """
         absolute, relative = self.counted(system, settings)
         bodies, of_body = len(system.bodies), system.of_body

@@ -79,16 +79,8 @@ class RowSums(NamedTuple):
     """Absolute row sums of M^-1/2 A M^-1/2 for a term A.
 
     The largest bounds the eigenvalues of M^-1 A and does not depend on the units of lengths and angles.  A column of a
-    coordinate without mass is scaled by the masses of the rows, as in M^-1 A.
-
-    Attributes
-    ----------
-    source, row : ndarrays of int
-        Positions of the entries among the values of their term set, and their rows.
-    scales : ndarray
-        Divisor of each entry.
-    n : int
-        Number of rows.
+    coordinate without mass is scaled by the masses of the rows, as in M^-1 A. `source`, `row`: positions of the entries
+    among the values of their term set, and their rows. `scales`: divisor of each entry. `n`: number of rows.
     """
 
     source: np.ndarray

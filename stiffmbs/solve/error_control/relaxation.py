@@ -178,10 +178,7 @@ def creep_at(dynamics: Dynamics, t: float, u: np.ndarray, settings: RunSettings)
 def refuse_drift(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, settings: RunSettings) -> None:
     """Stop a run whose relaxed constraints have drifted apart; driven velocities are checked at the end of the run.
 
-    Raises
-    ------
-    SolverError
-        If velocities violate the constraints by more than `RelaxationParameters.refused` tolerances.
+    Raises SolverError if velocities violate the constraints by more than `RelaxationParameters.refused` tolerances.
     """
     system = dynamics.system
     if settings.formulation == "SI2" and system.n_c and np.all(system.holonomic[system.active]):

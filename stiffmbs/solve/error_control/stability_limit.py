@@ -74,14 +74,9 @@ STABILITY_LIMIT = tuned("stability_limit", StabilityLimitParameters())
 class CubicFit:
     """Comparison of the last states with the best-fitting cubics, in units of the tolerance.
 
-    Attributes
-    ----------
-    least : float
-        Distance shown by the samples compared first.
-    distance : float
-        Largest RMS distance of one state; not computed if `least` is not negligible.
-    third : float
-        RMS of the cubic coefficients, with times scaled to -1 to 1; not computed either in that case.
+    `least`: distance shown by the samples compared first. `distance`: largest RMS distance of one state; not computed
+    if `least` is not negligible. `third`: RMS of the cubic coefficients, with times scaled to -1 to 1; not computed
+    either in that case.
     """
 
     least: float
@@ -207,12 +202,8 @@ class StabilityLimitDetection:
     def changed(self, samples: np.ndarray, steps: int) -> bool:
         """Check the last steps; return True if the highest order changes.
 
-        Parameters
-        ----------
-        samples : ndarray, shape (n, 1 + 2 * independent)
-            Time, independent coordinates and velocities after some of the last steps.
-        steps : int
-            Number of steps of the run.
+        `samples` of shape (n, 1 + 2 * independent): time, independent coordinates and velocities after some of the last
+        steps. `steps`: number of steps of the run.
         """
         if len(samples) < LOOP.samples:
             return False

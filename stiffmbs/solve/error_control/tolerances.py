@@ -16,12 +16,8 @@ def absolute_tolerances(system: System, settings: RunSettings) -> np.ndarray:
     """Return the absolute tolerance of each coordinate, then of each velocity.
 
     It is `atol` if given; otherwise rtol, times the size of the mechanism for lengths if that is below 1 m.  A state
-    has the tolerance of an angle times the state's scale.
-
-    Returns
-    -------
-    ndarray, shape (n_q + n_u,)
-        m and rad (parts of a quaternion), m/s and rad/s.
+    has the tolerance of an angle times the state's scale. The result of shape (n_q + n_u,): m and rad (parts of a
+    quaternion), m/s and rad/s.
     """
     sizes = min(1.0, system.size), 1.0
     tolerances = settings.rtol * np.concatenate([system.per_coordinate(*sizes), system.per_velocity(*sizes)])

@@ -48,16 +48,7 @@ CHATTERING = tuned("chattering", ChatteringParameters())
 
 
 class Chattering:
-    """Monitor of one run of an integrator.
-
-    Parameters
-    ----------
-    dynamics : Dynamics
-    end : float
-        End of the run, s.
-    rtol : float
-        Relative tolerance of the integrator.
-    """
+    """Monitor of one run of an integrator. `end`: end of the run, s. `rtol`: relative tolerance of the integrator."""
 
     def __init__(self, dynamics: Dynamics, end: float, rtol: float) -> None:
         self._dynamics, self._end = dynamics, end
@@ -70,10 +61,8 @@ class Chattering:
     def begin(self, t: float, q: np.ndarray, u: np.ndarray) -> None:
         """Check the state from which the integrator starts.
 
-        Raises
-        ------
-        ChatteringError
-            If a force drives the motion back from both sides of its discontinuity; names the element.
+        Raises ChatteringError if a force drives the motion back from both sides of its discontinuity; names the
+        element.
         """
         if self._any:
             self.refuse(t, sliding(self._dynamics, t, q, u))
@@ -81,12 +70,8 @@ class Chattering:
     def look(self, t: float, q: np.ndarray, u: np.ndarray, steps: int) -> None:
         """Check a state after `steps` steps of the run.
 
-        Raises
-        ------
-        ChatteringError
-            If a force drives the motion back from both sides of its discontinuity.
-        SolverError
-            If the steps are too short to reach the end.
+        Raises ChatteringError if a force drives the motion back from both sides of its discontinuity. Raises
+        SolverError if the steps are too short to reach the end.
         """
         if self._any:
             self.refuse(t, sliding(self._dynamics, t, q, u, self._reach))
@@ -106,10 +91,7 @@ class Chattering:
     def note_event(self, t: float, q: np.ndarray, u: np.ndarray, event_function: int) -> None:
         """Record an event at a state; the number of the event function is negative if it is unknown.
 
-        Raises
-        ------
-        ChatteringError
-            When events accumulate so that the run would not end; names the element.
+        Raises ChatteringError when events accumulate so that the run would not end; names the element.
         """
         self._count += 1
         self._events.append(t)

@@ -59,14 +59,8 @@ class Motion(NamedTuple):
 class LongSteps(NamedTuple):
     """Long steps of one run.
 
-    Attributes
-    ----------
-    dynamics : Dynamics
-        Dynamics of the integrated system.
-    begin, end : ndarrays, shape (n,)
-        s.
-    q, u : ndarrays, shapes (n, places, n_q), (n, places, n_u)
-        States at two places next to the middle of each step, or at `WHOLE`.
+    `dynamics`: dynamics of the integrated system. `begin`, `end` of shape (n,): s. `q`, `u`: states at two places next
+    to the middle of each step, or at `WHOLE`.
     """
 
     dynamics: Dynamics
@@ -110,16 +104,8 @@ class LongSteps(NamedTuple):
 class LongStepLog:
     """Memory for the long steps of one integration, filled by compiled code.
 
-    Parameters
-    ----------
-    system : System
-    width : int
-        Number of values stored of a state.
-
-    Attributes
-    ----------
-    table : ndarray of int
-        Addresses for compiled code (`stiffmbs.solve.events.native.layouts.LONG_STEPS`).
+    `width`: number of values stored of a state. `table`: addresses for compiled code
+    (`stiffmbs.solve.events.native.layouts.LONG_STEPS`).
     """
 
     def __init__(self, system: System, width: int) -> None:

@@ -42,16 +42,7 @@ MASKING = tuned("masking", MaskingParameters())
 class MaskedEvents:
     """Event functions of one run, and the steps for which each is masked.
 
-    Parameters
-    ----------
-    dynamics : Dynamics
-    chattering : Chattering
-        Monitor of the same run.
-
-    Attributes
-    ----------
-    steps : ndarray of int
-        Steps from the next start for which each event function is masked.
+    `chattering`: monitor of the same run. `steps`: steps from the next start for which each event function is masked.
     """
 
     def __init__(self, dynamics: Dynamics, chattering: Chattering) -> None:
@@ -68,10 +59,7 @@ class MaskedEvents:
     def note(self, t: float, q: np.ndarray, u: np.ndarray, steps: int, fired: Sequence[int]) -> None:
         """Record the events that ended a segment, after `steps` steps of the run.
 
-        Raises
-        ------
-        SolverError
-            If a force keeps chattering; names the element.
+        Raises SolverError if a force keeps chattering; names the element.
         """
         since, self._steps = steps - self._steps, steps
         if self._quiet and since > MASKING.few_steps:  # none is masked, and the event is not soon after the last

@@ -99,12 +99,7 @@ def fastest(system: System, u: np.ndarray) -> tuple[float, str]:
 def exponential(t: np.ndarray, reached: np.ndarray) -> bool:
     """Return True if a displacement grew faster than any power of time that forces produce.
 
-    Parameters
-    ----------
-    t : ndarray, shape (n,)
-        Times, s.
-    reached : ndarray, shape (n,)
-        Largest displacement up to each time.
+    `t` of shape (n,): times, s. `reached` of shape (n,): largest displacement up to each time.
     """
     first, second, last = (int(np.argmax(reached >= part * reached[-1])) for part in DIVERGENCE.decades)
     if not first < second - 1 < last:
@@ -115,10 +110,7 @@ def exponential(t: np.ndarray, reached: np.ndarray) -> bool:
 def refuse_beyond_limits(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> None:
     """Stop a run whose state has passed the limits of a force, such as the resolvable revolutions of a torsion spring.
 
-    Raises
-    ------
-    SolverError
-        If a limit is passed; names the element.
+    Raises SolverError if a limit is passed; names the element.
     """
     system, state = dynamics.system, dynamics.state
     first, end = system.first_limit, system.n_event_functions

@@ -9,12 +9,7 @@ def index1(stabilisation: float) -> Formulation:
     """Return the formulation q' - Z u = 0; M u' - f + J^T lam = 0; J u' - gamma + 2 b V + b^2 C = 0.
 
     Baumgarte, Stabilization of constraints and integrals of motion in dynamical systems, Comput. Methods Appl. Mech.
-    Eng. 1 (1972) 1-16.
-
-    Parameters
-    ----------
-    stabilisation : float
-        b, the decay rate of violations, 1/s; with 0 they are not stabilised.
+    Eng. 1 (1972) 1-16. `stabilisation`: b, the decay rate of violations, 1/s; with 0 they are not stabilised.
     """
     b = stabilisation
     return Formulation(

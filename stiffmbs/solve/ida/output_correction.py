@@ -17,14 +17,7 @@ VECTORS = "y", "yp", "defect", "correction", "weight", "size"
 class OutputCorrection:
     """Matrix, factors and vectors for the correction of interpolated states; created for the first stiff scene.
 
-    Parameters
-    ----------
-    equations : Equations
-
-    Attributes
-    ----------
-    table : ndarray of int
-        Table for compiled code (`stiffmbs.solve.ida.native.layouts.OUTPUT_CORRECTION`), filled by `make_ready`.
+    `table`: table for compiled code (`stiffmbs.solve.ida.native.layouts.OUTPUT_CORRECTION`), filled by `make_ready`.
     """
 
     def __init__(self, equations: Equations) -> None:

@@ -11,13 +11,7 @@ ROW = np.dtype([(name, float) for name in STEP])
 
 
 class StepLog:
-    """Log of steps, filled by compiled code in each call and read as arrays.
-
-    Attributes
-    ----------
-    count : int
-        Number of steps.
-    """
+    """Log of steps, filled by compiled code in each call and read as arrays. `count`: number of steps."""
 
     def __init__(self) -> None:
         self._rows = np.empty(0, dtype=ROW)

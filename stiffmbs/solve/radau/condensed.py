@@ -13,15 +13,8 @@ from ...compile.terms import TERM_SETS
 def condensed_efforts(equations: Equations) -> dict[str, Any]:
     """Return the lists of efforts and of their derivatives for `stiffmbs.solve.radau.native.layouts.RADAU`.
 
-    Parameters
-    ----------
-    equations : Equations
-
-    Returns
-    -------
-    dict
-        Number of efforts and the sources of their values; for levers and for derivatives of efforts: sources, efforts,
-        unknowns, and factors of dependent coordinates.
+    The result: number of efforts and the sources of their values; for levers and for derivatives of efforts: sources,
+    efforts, unknowns, and factors of dependent coordinates.
     """
     levers = _entries(equations, "effort", "lever", "u")
     parts = [_entries(equations, "effort_tangent", name, axis) for name, axis in (("effort_q", "q"), ("effort_u", "u"))]

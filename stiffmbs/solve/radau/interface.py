@@ -49,12 +49,7 @@ _ROUTINES = dict(
 
 
 class RadauFunctions(Libraries):
-    """SUNDIALS functions, with those of IDA replaced by Radau methods.
-
-    Parameters
-    ----------
-    libraries : Libraries
-    """
+    """SUNDIALS functions, with those of IDA replaced by Radau methods."""
 
     def __init__(self, libraries: Libraries) -> None:
         super().__init__(libraries.loaded, libraries.index)

@@ -36,14 +36,8 @@ VECTORS = {"b": 1, "x": 1, "pair_b": 2, "pair_x": 2}
 class Pairs(NamedTuple):
     """Complex matrix as a real one: unknown k is the pair 2 k, 2 k + 1 of its real and imaginary part.
 
-    Attributes
-    ----------
-    matrix : Matrix
-        Real matrix of twice the size.
-    re_re, im_im : ndarrays of int
-        Entry of each slot of the complex matrix in the pattern of the real one.
-    im_re, re_im : ndarrays of int
-        Entry of each imaginary part.
+    `matrix`: real matrix of twice the size. `re_re`, `im_im`: entry of each slot of the complex matrix in the pattern
+    of the real one. `im_re`, `re_im`: entry of each imaginary part.
     """
 
     matrix: Matrix

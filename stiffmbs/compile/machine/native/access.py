@@ -89,10 +89,7 @@ def parts_of(name: str, lengths: Mapping[str, int]) -> Builtin:
 def row_of(kind: type[tuple[int, ...]]) -> Builtin:
     """Return a function of compiled code, ``row(rows, number)``, that views a row of integers as a record.
 
-    Parameters
-    ----------
-    kind : type
-        `typing.NamedTuple` of integers: the columns of a list whose rows are stored one after the other.
+    `kind`: `typing.NamedTuple` of integers: the columns of a list whose rows are stored one after the other.
     """
     columns: tuple[str, ...] = kind._fields  # type: ignore[attr-defined]
 

@@ -16,15 +16,8 @@ Lines = list[Any]
 class Code:
     """Instructions, variables and labels of a function.
 
-    Parameters
-    ----------
-    unit : Unit
-        Module of the function: provides called functions and takes declarations.
-
-    Attributes
-    ----------
-    reached : bool
-        True if the next instruction is reachable; otherwise nothing may be written.
+    `unit`: module of the function: provides called functions and takes declarations. `reached`: true if the next
+    instruction is reachable; otherwise nothing may be written.
     """
 
     def __init__(self, unit: Any) -> None:

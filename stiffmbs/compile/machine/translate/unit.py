@@ -51,15 +51,8 @@ class Entry:
 def assembly(entries: Sequence[Entry], text: str = "") -> str:
     """Translate functions and those they call into a module of LLVM assembly.
 
-    Parameters
-    ----------
-    text : str, optional
-        Source of the functions; the files of their code by default.
-
-    Raises
-    ------
-    Untranslatable
-        If a construct is not in the language; names function and line.
+    `text`: source of the functions; the files of their code by default. Raises Untranslatable if a construct is not in
+    the language; names function and line.
     """
     unit = Unit()
     for entry in entries:

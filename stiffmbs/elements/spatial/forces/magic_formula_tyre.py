@@ -213,14 +213,8 @@ def bottomed(e: Symbolic, rim: Any, depth: Any, camber: Any) -> tuple[Any, Any]:
 
     The rim is a cylinder of the tyre's width W. With the penetration d at mid-width and the camber gamma, the
     penetration across the width is d + y tan(gamma). The force is that of a curve at the mean penetration. It acts at
-    the centre of the penetrated area. MSC Adams/Tire, PAC2002, wheel bottoming.
-
-    Parameters
-    ----------
-    depth : Expr
-        Penetration of the rim at mid-width, m; negative without contact.
-    camber : Expr
-        Camber, rad; positive if the top leans to the right.
+    the centre of the penetrated area. MSC Adams/Tire, PAC2002, wheel bottoming. `depth`: penetration of the rim at
+    mid-width, m; negative without contact. `camber`: camber, rad; positive if the top leans to the right.
     """
     from sympy import Float, Piecewise, tan
 

@@ -24,16 +24,9 @@ class RoundSolid:
     """Solid about its centre, in its axes, as a Minkowski sum of ellipsoids: smooth and strictly convex.
 
     The support function of the sum of concentric ellipsoids with matrices M is h(n) = sum sqrt(n^T M n). Its gradient
-    h'(n) is the surface point with the normal n. A box is the sum of three thin ellipsoids along its axes. A cylinder is
-    that of a thin one along its axis and a flat one normal to it. Schneider, Convex Bodies: The Brunn-Minkowski Theory
-    (2014), sec. 1.7 and 3.5.
-
-    Attributes
-    ----------
-    ellipsoids : list of lists of three expressions
-        Squares of their semi-axes, m^2.
-    least : expression
-        Half the smallest size, m.
+    h'(n) is the surface point with the normal n. A box is the sum of three thin ellipsoids along its axes. A cylinder
+    is that of a thin one along its axis and a flat one normal to it. Schneider, Convex Bodies: The Brunn-Minkowski
+    Theory (2014), sec. 1.7 and 3.5. `ellipsoids`: squares of their semi-axes, m^2. `least`: half the smallest size, m.
     """
 
     ellipsoids: list[list[Any]]
