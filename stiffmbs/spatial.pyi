@@ -22,6 +22,7 @@ from stiffmbs.elements.spatial.forces.field import FieldForce as _FieldForce
 from stiffmbs.elements.spatial.forces.joint_friction import JointFriction as _JointFriction
 from stiffmbs.elements.spatial.forces.magic_formula_tyre import MagicFormulaTyre as _MagicFormulaTyre
 from stiffmbs.elements.spatial.forces.python_force import PythonForce as _PythonForce
+from stiffmbs.elements.spatial.forces.road_contact import RoadContact as _RoadContact
 from stiffmbs.elements.spatial.forces.shared import LineForce as _LineForce
 from stiffmbs.elements.spatial.forces.shared import SpringDamper as _SpringDamper
 from stiffmbs.elements.spatial.forces.solid_impact import SolidImpact as _SolidImpact
@@ -445,6 +446,25 @@ class RevoluteSpherical(_RevoluteSpherical):
     """Massless rod with a hinge at marker j and a ball at marker i."""
     def __init__(
         self, *, i: given.Marker, j: given.Marker, length: given.Number, type: Literal["revolute_spherical"] = ...
+    ) -> None: ...
+
+class RoadContact(_RoadContact):
+    """Contact of a sphere or point about marker i with a road, such as of a corner of a car that rolls over."""
+    def __init__(
+        self,
+        *,
+        friction: given.Number | None = ...,
+        static_friction: given.Number | None = ...,
+        friction_velocity: given.Number = ...,
+        stiction_velocity: given.Number = ...,
+        stiffness: given.Number,
+        exponent: given.Number = ...,
+        dissipation: given.Number = ...,
+        i: given.Marker,
+        j: given.Marker | None = ...,
+        road: given.Road = ...,
+        radius: given.Number = ...,
+        type: Literal["road_contact"] = ...,
     ) -> None: ...
 
 class Screw(_Screw):

@@ -13,11 +13,53 @@ from ..element import Symbolic
 from .friction import Friction
 
 
-class ContactLaw(Friction):
-    """Base of contacts; scenes use its subclasses.
+class PressedSurfaces(Friction):
+    """Base of contacts by the law of Hunt and Crossley; scenes use its subclasses.
 
-    With the penetration delta = -gap > 0 the normal force is N = k delta^n (1 + chi delta'), not negative. Without
-    friction and dissipation it has the potential k delta^(n+1)/(n+1).
+    With the penetration delta = -gap > 0 the normal force is N = k delta^n (1 + chi delta'), not negative.
+    """
+
+    stiffness: Annotated[float, Measured("value", above=0)] = Field(description="k, N/m^n")
+    exponent: Annotated[float, Measured("number", at_least=1)] = Field(1.5, description="n; 1.5 for Hertz's contact")
+    dissipation: Annotated[float, Measured("value", at_least=0)] = Field(0.0, description="chi, s/m")
+
+    @model_validator(mode="after")
+    def _rubs(self) -> Self:
+        if self.static_friction is not None and self.friction is None:
+            raise ValueError("found static_friction alone, expected friction too")
+        return self
+
+    @classmethod
+    def gap(cls, e: Symbolic) -> Any:
+        """Return the distance of the surfaces, m; negative for a penetration."""
+        raise NotImplementedError
+
+    @classmethod
+    def opening(cls, e: Symbolic) -> Any:
+        """Return the rate of the gap, m/s."""
+        return e.rate(e.named(cls.gap(e)))
+
+    @classmethod
+    def pressure(cls, e: Symbolic) -> Any:
+        """Return the normal force N, zero without contact."""
+        from sympy import And, Piecewise
+
+        gap = e.named(cls.gap(e))
+        damped = e.named(1 - e.dissipation * cls.opening(e))
+        return Piecewise((e.stiffness * (-gap) ** e.exponent * damped, And(gap < 0, damped > 0)), (0, True))
+
+    @classmethod
+    def event_functions(cls, e: Symbolic) -> Any:
+        """Return an expression that is positive while N > 0; dissipation can end N before the surfaces separate."""
+        from sympy import Min
+
+        return (Min(-e.named(cls.gap(e)), 1 - e.dissipation * cls.opening(e)),)
+
+
+class ContactLaw(PressedSurfaces):
+    """Base of contacts with a flat or round surface; scenes use its subclasses.
+
+    Without friction and dissipation it has the potential k delta^(n+1)/(n+1).
 
     The surface of j is flat, round and solid inside `surface_radius`, or round and solid outside of it. `surfaces`
     contains the names of these three, and `about` the name of the round surface of i.
@@ -26,20 +68,10 @@ class ContactLaw(Friction):
     surfaces: ClassVar[tuple[str, str, str]]
     about: ClassVar[str]
 
-    stiffness: Annotated[float, Measured("value", above=0)] = Field(description="k, N/m^n")
-    exponent: Annotated[float, Measured("number", at_least=1)] = Field(1.5, description="n; 1.5 for Hertz's contact")
-    dissipation: Annotated[float, Measured("value", at_least=0)] = Field(0.0, description="chi, s/m")
-
     if TYPE_CHECKING:  # fields of the subclasses
         radius: float
         surface: str
         surface_radius: float
-
-    @model_validator(mode="after")
-    def _rubs(self) -> ContactLaw:
-        if self.static_friction is not None and self.friction is None:
-            raise ValueError("found static_friction alone, expected friction too")
-        return self
 
     @model_validator(mode="after")
     def _fits(self) -> Self:
@@ -71,28 +103,11 @@ class ContactLaw(Friction):
         return outward * (e.distance(e.i.point, e.j.point) - e.surface_radius) - e.radius
 
     @classmethod
-    def pressure(cls, e: Symbolic) -> Any:
-        """Return the normal force N, zero without contact."""
-        from sympy import And, Piecewise
-
-        gap = e.named(cls.gap(e))
-        damped = e.named(1 - e.dissipation * e.rate(gap))
-        return Piecewise((e.stiffness * (-gap) ** e.exponent * damped, And(gap < 0, damped > 0)), (0, True))
-
-    @classmethod
     def potential(cls, e: Symbolic) -> Any:
         from sympy import Piecewise
 
         gap, power = cls.gap(e), e.exponent + 1
         return Piecewise((e.stiffness * (-gap) ** power / power, gap < 0), (0, True))
-
-    @classmethod
-    def event_functions(cls, e: Symbolic) -> Any:
-        """Return an expression that is positive while N > 0; dissipation can end N before the surfaces separate."""
-        from sympy import Min
-
-        gap = e.named(cls.gap(e))
-        return (Min(-gap, 1 - e.dissipation * e.rate(gap)),)
 
 
 class Contact(ContactLaw):

@@ -57,12 +57,12 @@ def contact_point(e: Symbolic) -> ContactPoint:
 
     centre, axis = e.named(e.i.point), e.named(e.i.y)
     enveloping = e.envelope is not None and not e.road.level
-    x, y, below, n = _effective_surface(e, centre, axis) if enveloping else _surface(e, centre)
+    x, y, below, n = _effective_surface(e, centre, axis) if enveloping else surface(e, centre)
     forward, up = _heading(e, axis, n)
     radius = e.named(below / up.dot(n))
     if not e.road.level and not enveloping:
         point = e.named(centre - radius * up)
-        x, y, below, n = _surface(e, point)
+        x, y, below, n = surface(e, point)
         forward, up = _heading(e, axis, n)
         radius = e.named(radius + below / up.dot(n))
     left = e.named(n.cross(forward))
@@ -73,7 +73,7 @@ def contact_point(e: Symbolic) -> ContactPoint:
     return ContactPoint(e.named(centre + arm), forward, left, n, radius, camber, vx, vy, vz, spin, friction)
 
 
-def _surface(e: Symbolic, point: Any) -> tuple[Any, Any, Any, Any]:
+def surface(e: Symbolic, point: Any) -> tuple[Any, Any, Any, Any]:
     """Return a point's coordinates along and across the road, its distance from the tangent plane, and the normal."""
     local = point if e.j is None else seen_from(point, e.j)
     x, y = e.variable(local[0]), e.variable(local[1])

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ...analyses.job import Runnable, data_of
-from ...elements.spatial.forces.elastic import Elastic
+from ...elements.spatial.elastic import Elastic
 from ...errors import InputError
 from ...model.model_data import ModelData
 from ...reading.marker import GROUND

@@ -10,7 +10,7 @@ from ....reading.fields import Measured
 from ....reading.units import si
 from ...element import Symbolic
 from ...forces.bushing import check_symmetric
-from .elastic import NO_MATRIX, NO_ROW, Damping, Elastic, pull_back, six_rows, stored, without_zeros
+from ..elastic import NO_MATRIX, NO_ROW, Damping, Elastic, pull_back, six_rows, stored, without_zeros
 
 Modulus = Annotated[float, Measured("pressure", above=0)]
 Area = Annotated[float, Measured("area", above=0)]

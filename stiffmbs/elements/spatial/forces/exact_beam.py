@@ -12,9 +12,9 @@ from ....reading.units import si
 from ...element import Symbolic
 from ...forces.beam_strain import BeamStrain
 from ...forces.bushing import check_symmetric
+from ..elastic import AS_WRITTEN, nearest, six_rows, without_zeros
 from ..marker import Marker
 from ..wrench import Pairs, along_axes, force_at, torque_on
-from .elastic import AS_WRITTEN, nearest, six_rows, without_zeros
 
 if TYPE_CHECKING:
     from ....model.model_data import ModelData

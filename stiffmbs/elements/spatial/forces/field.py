@@ -8,7 +8,7 @@ from pydantic import Field
 
 from ....reading.units import si
 from ...element import Symbolic
-from .elastic import NO_ROW, Connection, Preload, pull_back, stored
+from ..elastic import NO_ROW, Connection, Preload, pull_back, stored
 
 
 class FieldForce(Connection):

@@ -84,7 +84,7 @@ def contact(d: Draft, i: Site, j: Site) -> None:
         d.put(i, "body", solids.sphere(e.radius, 20), color=d.colors.get(i.body, ""))
     else:
         ball(d, i, 0.3)
-    if e.surface == "plane":
+    if getattr(e, "surface", "plane") == "plane":
         plate(d, j, 0.25 * d.size / d.u)
     elif e.surface_radius:
         rings = (axes_along(np.eye(3)[k]) for k in range(3))
@@ -283,5 +283,5 @@ SYMBOLS: Mapping[str, Symbol] = {
     "point_on_plane": point_on_plane, "point_on_line": point_on_line, "point_on_curve": point_on_curve, "tangent_to_curve": point_on_curve,
     "fixed": fixed, "parallel": directions, "perpendicular": directions, "orientation": directions, "distance": distance,
     "revolute_spherical": revolute_spherical, "drive": drive, "spring_damper": spring_damper, "bushing": bushing, "beam": beam,
-    "field": elastic, "contact": contact, "sphere_contact": contact, "tyre": wheel,
+    "field": elastic, "contact": contact, "sphere_contact": contact, "road_contact": contact, "tyre": wheel,
 }  # fmt: skip

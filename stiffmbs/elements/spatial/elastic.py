@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING, Annotated, Any, Self
 
 from pydantic import Field, WithJsonSchema, field_validator
 
-from ....reading.files.quoted import written
-from ....reading.marker import GROUND
-from ....reading.units import si
-from ...element import Force, Symbolic
-from ...forces.bushing import C, Cc, Ct, K, Kc, Kt, check_symmetric, from_diagonal, times
-from ..marker import Marker
-from ..orientation import Quaternion, product
-from ..wrench import Pairs, along_axes, velocity
+from ...reading.files.quoted import written
+from ...reading.marker import GROUND
+from ...reading.units import si
+from ..element import Force, Symbolic
+from ..forces.bushing import C, Cc, Ct, K, Kc, Kt, check_symmetric, from_diagonal, times
+from .marker import Marker
+from .orientation import Quaternion, product
+from .wrench import Pairs, along_axes, velocity
 
 if TYPE_CHECKING:
-    from ....model.model_data import ModelData
+    from ...model.model_data import ModelData
 
 
 _Forces = tuple[K, K, K, Kc, Kc, Kc]
