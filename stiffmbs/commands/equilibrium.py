@@ -55,7 +55,7 @@ def equilibrium(
     """
     from ..analyses.equilibrium import equilibrium as found_equilibrium
     from ..results.files import check_output, write
-    from ..show.equilibrium import equilibrium_text
+    from ..show.modes import equilibrium_text
 
     with refusing(scene, as_json):
         if output is not None:

@@ -48,7 +48,7 @@ def report(
     from ..analyses.equilibrium import equilibrium as found_equilibrium
     from ..comparison.compare import compare as compared
     from ..comparison.table import comparison_section
-    from ..show.equilibrium import equilibrium_section
+    from ..show.modes import equilibrium_section
     from ..show.report import check_report, write_report
     from ..show.suspension import kc_section, road_loads_section
     from ..studies.suspension.kinematics_and_compliance import kinematics_and_compliance

@@ -21,7 +21,6 @@ from ..results.files import refuse_path, write_text
 from ..results.scales import scales
 from ..results.solution import Solution, channel_ranges
 from ..solve.trajectory import History
-from .differences import differences_section
 from .drawing.derive import drawing_of
 from .drawing.draw import marks_of
 from .drawing.poses import Poses, poses_of
@@ -31,7 +30,7 @@ from .html import MOST_ROWS
 from .modes import modes_text
 from .page.data import environment, page_data, page_parts
 from .page.modes import modes_data
-from .sections import Section
+from .sections import Section, differences_section
 from .style import COLORS, data_url, dress
 from .summary import solver_lines
 from .verdict import verdict

@@ -7,9 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from .palette import LOAD, RAMP, edge_color, face_color
 from .poses import Poses
-from .scene_graph import Drawing, Link, Part
+from .scene_graph import LOAD, RAMP, Drawing, Link, Part, edge_color, face_color
 from .solids import triangles
 
 DIGITS = 6

@@ -19,9 +19,8 @@ from ...reading.marker import GROUND, MarkerReference
 from .bodies import derived_shape, given_shapes
 from .deformed import deformation_scales, deformed_body, interface_bodies, largest_stress, modal_bodies
 from .draft import Draft, Site
-from .palette import body_colors
 from .poses import Poses, described_poses, placed
-from .scene_graph import Anchor, Drawing, Mark, Name, Part
+from .scene_graph import Anchor, Drawing, Mark, Name, Part, body_colors
 from .surroundings import with_surroundings
 from .symbols.spatial import radius_of
 

@@ -9,9 +9,20 @@ import numpy as np
 
 from ...reading.marker import GROUND
 from ...results.scales import ROUNDING
-from .palette import LOAD, LOAD_NOT_UNIQUE, edge_color, face_color, on_ramp, shaded
 from .poses import FAR, Poses
-from .scene_graph import Drawing, Line, Link, Part, Solid
+from .scene_graph import (
+    LOAD,
+    LOAD_NOT_UNIQUE,
+    Drawing,
+    Line,
+    Link,
+    Part,
+    Solid,
+    edge_color,
+    face_color,
+    on_ramp,
+    shaded,
+)
 from .solids import across, face_normal
 from .surroundings import shadows
 from .view import View

@@ -10,9 +10,8 @@ import numpy as np
 
 from ..style import new_sheet
 from .painted import Patch, extent, largest_force, painted
-from .palette import EDGES, LOAD, MARKS, PAPER, RAMP
 from .poses import Poses
-from .scene_graph import Drawing
+from .scene_graph import EDGES, LOAD, MARKS, PAPER, RAMP, Drawing
 from .view import View
 
 if TYPE_CHECKING:

@@ -16,8 +16,8 @@ from stiffmbs.show.drawing.deformed import interface_bodies, modal_bodies
 from stiffmbs.show.drawing.derive import drawing_of
 from stiffmbs.show.drawing.draw import state_drawn
 from stiffmbs.show.drawing.painted import LONGEST_ARROW, extent, largest_force, painted, stretched
-from stiffmbs.show.drawing.palette import LOAD, MARKS
 from stiffmbs.show.drawing.poses import Poses, described_poses, poses_of
+from stiffmbs.show.drawing.scene_graph import LOAD, MARKS
 from stiffmbs.show.drawing.view import from_angles, view_named
 
 from ...conftest import EXAMPLE_SCENES, EXAMPLES

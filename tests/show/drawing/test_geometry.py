@@ -9,8 +9,7 @@ import pytest
 from stiffmbs import Body, InputError, Model, read_scene, spatial
 from stiffmbs.elements.spatial.body import Body as SpatialBody
 from stiffmbs.show.drawing import solids
-from stiffmbs.show.drawing.bodies import given_shapes
-from stiffmbs.show.drawing.mesh_file import read_mesh
+from stiffmbs.show.drawing.bodies import given_shapes, read_mesh
 from stiffmbs.show.drawing.scene_graph import Solid
 from stiffmbs.show.drawing.solids import triangles
 
