@@ -38,7 +38,7 @@ SUBSYSTEMS = {
     "explicit_steps": "solve.explicit.native.parameters:CONTROL",
     "fixed_steps": "solve.explicit.fixed:FIXED_STEP",
     "jumps": "solve.events.discontinuity:JUMP",
-    "kinematic": "solve.kinematic_parameters:KINEMATIC",
+    "kinematic": "solve.driven_states:KINEMATIC",
     "linear_solver": "solve.ida.choice:COSTS",
     "long_steps": "solve.events.long_steps:LONG_STEP",
     "loop": "solve.ida.native.parameters:LOOP",
@@ -59,7 +59,7 @@ SUBSYSTEMS = {
     "stability_limit": "solve.error_control.stability_limit:STABILITY_LIMIT",
     "sundae": "solve.ida.sundae:FALLBACK",
     "suspect": "solve.suspect:SUSPECT",
-    "velocity_jumps": "solve.events.velocity_jumps:VELOCITY_JUMP",
+    "velocity_jumps": "solve.events.discontinuity:VELOCITY_JUMP",
     "verification": "verification.parameters:VERIFICATION",
 }
 """Names of the subsystems in ``run.tuning``, and the places of their defaults."""

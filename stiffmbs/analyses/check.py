@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any, Unpack
 
 from ..compile.system import System
-from ..compile.table_notes import table_notes
+from ..compile.written_values import table_notes
 from ..dynamics.initial import InitialValues, initial_values
 from ..dynamics.moves import Move
 from ..errors import AssemblyError, SolverError
@@ -15,8 +15,7 @@ from ..methods import NotebookMethods
 from ..model.scene import Scene, notes_of
 from ..model.settings import RunSettings, Settings, takes_settings
 from ..redundancy.idle_freedoms import IdleFreedom, idle_freedoms
-from ..redundancy.messages.of_run import unconnected_sentence
-from ..redundancy.messages.presolve_report import presolve_sentences, unknowns
+from ..redundancy.messages.presolve_report import presolve_sentences, unconnected_sentence, unknowns
 from ..redundancy.messages.redundancy import (
     inconsistency_sentences,
     known_near_start,

@@ -16,8 +16,7 @@ from ..compile.callbacks import fault_of
 from ..compile.compile_model import compile_model
 from ..compile.system import System
 from ..dynamics.dynamics import Dynamics
-from ..dynamics.initial import InitialValues, consistent_values, initial_values
-from ..dynamics.nearest_turns import take_nearest_turns
+from ..dynamics.initial import InitialValues, consistent_values, initial_values, take_nearest_turns
 from ..errors import AssemblyError, InputError, StiffmbsError
 from ..model.model_builder import ModelBuilder
 from ..model.model_data import ModelData
@@ -26,9 +25,9 @@ from ..model.settings import RunSettings, SteadyMotion
 from ..reading.did_you_mean import did_you_mean
 from ..redundancy.redundancy import Redundancy, examine
 from ..results.saved_state import SavedState
-from ..run_checks.far_away import refuse_far_away
+from ..run_checks.motion import refuse_far_away
 from ..solve import SOLVERS
-from ..solve.events.input_ends import solve_up_to_the_inputs_end
+from ..solve.events.narrow_inputs import solve_up_to_the_inputs_end
 from ..solve.sampling import held
 from ..solve.settings import changed, near_constraints, output_grid
 from ..solve.subsystems import Subsystem, presolved, solve_subsystems

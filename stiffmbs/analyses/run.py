@@ -10,7 +10,7 @@ from typing import Unpack
 import numpy as np
 
 from ..compile.callbacks import fault_of, notes_on_functions
-from ..compile.table_notes import table_notes
+from ..compile.written_values import table_notes
 from ..dynamics.algebraic_states import failure
 from ..dynamics.dynamics import OutputRows
 from ..elements.element import Force
@@ -18,7 +18,7 @@ from ..elements.requests.order import units
 from ..errors import AssemblyError
 from ..model.scene import Scene, notes_of
 from ..model.settings import RunSettings, Settings, takes_settings
-from ..redundancy.messages.of_run import StructureNotes, structure_notes
+from ..redundancy.messages.presolve_report import StructureNotes, structure_notes
 from ..results.channels import channels_of, named, series_of, turns_of
 from ..results.energy_balance import Balance, energy_balance
 from ..results.energy_balance_notes import balance_notes, range_notes, undefined_values
@@ -273,7 +273,7 @@ def _notes(job: Job, trajectory: Trajectory, structure: StructureNotes) -> Itera
     # relative to the mechanism's size, with any tolerances
     least = ACCUMULATED.tolerances * ACCUMULATED.usual_rtol * min(1.0, system.size)
     if trajectory.displaced is not None and (trajectory.displaced > least).any():
-        from ..run_checks.accumulated_errors import accumulated_errors_sentence  # few runs have such errors
+        from ..run_checks.growth import accumulated_errors_sentence
 
         yield from accumulated_errors_sentence(system, job.settings, trajectory)
     yield from settings_notes(job.settings, system)

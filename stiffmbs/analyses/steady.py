@@ -12,14 +12,13 @@ import numpy as np
 from ..compile.system import System
 from ..dynamics.dynamics import Dynamics
 from ..dynamics.initial import InitialValues
-from ..equilibria.equilibrium import Equilibrium, find_equilibrium
+from ..equilibria.equilibrium import Equilibrium, find_equilibrium, nearest_equilibrium
 from ..equilibria.force_balance import balance_at, forces_by_velocity
 from ..equilibria.found_speeds import with_found_spins
-from ..equilibria.nearest_equilibrium import nearest_equilibrium
 from ..equilibria.parameters import EQUILIBRIA
 from ..equilibria.steady_motion import SteadyMotion
 from ..errors import InputError, SolverError
-from ..linear_analysis.steady_motion import eigenvalues_beside
+from ..linear_analysis.stability import eigenvalues_beside
 from ..model.model_data import ModelData
 from ..model.settings import SteadyMotion as Described
 from ..reading.did_you_mean import did_you_mean

@@ -17,8 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..dynamics.dynamics import OutputRows
-from ..run_checks.overlooked import Overlooked, overlooked, together
-from ..run_checks.within_long_steps import overlooked_in_long_steps
+from ..run_checks.overlooked import Overlooked, overlooked, overlooked_in_long_steps, together
 from ..solve.error_control.relaxation import Creep, creep_of, creeps
 from ..solve.settings import changed, traits_of
 from ..solve.trajectory import Outcome, Trajectory

@@ -31,7 +31,7 @@ TERM_SETS: dict[str, tuple[str, ...]] = {
   rates by velocities, with f = lever^T effort; effort_q, effort_u: derivatives of the efforts.
 - continuous_angle: angles with turn counters; angle_rate: their rates.
 - reaction: force and torque on the first body; measured: other channels of a kind; signal: reported value of a state.
-- potential: energy; kinetic: energy of the entries `inertia`; power: power into kinetic + potential energy (`stiffmbs.compile.symbolic.losses`).
+- potential: energy; kinetic: energy of the entries `inertia`; power: power into kinetic + potential energy (`stiffmbs.compile.symbolic.derive`).
 - event_function: zero at breakpoints of a force; limit: positive while a force law is valid.
 - argument: arguments of tables and functions with narrow features (exp, tanh).
 """

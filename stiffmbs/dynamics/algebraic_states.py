@@ -6,7 +6,7 @@ import numpy as np
 
 from ..compile.machine.native.statuses import NO_STATE
 from .dynamics import Dynamics
-from .failures import FAILURES
+from .storage import FAILURES
 
 RATE_INTERVAL = 1e-6
 """Interval of the difference quotient for rates of algebraic states, s. They only enter the first prediction."""

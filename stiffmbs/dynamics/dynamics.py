@@ -54,7 +54,7 @@ class OutputRows:
     log_determinant : ndarray, shape (n,)
         log |det| of [M J^T; J 0], without the logarithms of units: small near singular poses.
     status : int
-        Failure after the last row (`stiffmbs.dynamics.failures`), or 0.
+        Failure after the last row (`stiffmbs.dynamics.storage`), or 0.
     """
 
     t: np.ndarray

@@ -11,8 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import SolverError
-from .algebraic import SINGULAR
-from .tangent_space import Linearised
+from .tangent_space import SINGULAR, Linearised
 
 DEPENDENT = 1e-9
 """Pivot, relative to the largest, below which an equation is dependent at a pose."""

@@ -16,7 +16,7 @@ from ..compile.system import System
 from .loops import loops
 
 if TYPE_CHECKING:
-    from .rank_result import LoopRankResult
+    from .inconsistent_constraints import LoopRankResult
     from .uniqueness import Indeterminate
 
 
@@ -83,7 +83,7 @@ def examine(system: System, start: float, duration: float, order: Sequence[str])
     active = np.ones(system.n_c, dtype=bool)
     rank_results = []
     for loop in loops(system, state):
-        from .rank_result import rank_result_of  # not imported for trees
+        from .inconsistent_constraints import rank_result_of
 
         rank_result = rank_result_of(loop, state, start, duration, order)
         if rank_result is None:

@@ -6,12 +6,19 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..compile.group import Group
 from ..compile.reactions import reactions
+from ..compile.system import System
+from ..elements.element import Element
+from ..presolve.relations import curved
+from ..reading.formula.formula import Formula
 from ..reading.names import owner_of
+from ..reading.table import Table
 from .directions import Direction, directions
 from .loop_equations import LoopEquations, Pose
 from .loop_rank import LoopRank
 from .parameters import REDUNDANCY
+from .redundancy import Redundancy
 
 TORQUES = ("torque", "tx", "ty", "tz")
 
@@ -117,3 +124,39 @@ def _force(equations: LoopEquations, lam: np.ndarray, t: float) -> np.ndarray:
     state.evaluate("acceleration", t)
     state.lam[:] = 0.0
     return np.concatenate([state.vector("acceleration", name) for name in ("f", "rate")])
+
+
+def unproven(redundancy: Redundancy) -> dict[int, tuple[int, ...]]:
+    """Return the redundant equations that depend on others through formulas or tables: the other rows by row."""
+    if not redundancy.redundant:
+        return {}
+    of_functions = by_functions(redundancy.system)
+    found = {}
+    for rank_result in redundancy.rank_results:
+        rows = rank_result.rank.equations.loop.rows
+        for part in rank_result.redundant:
+            row, others = int(rows[part.row]), rows[list(part.others)]
+            if of_functions[row] or of_functions[others].any():
+                found[row] = tuple(others.tolist())
+    return found
+
+
+def by_functions(system: System) -> np.ndarray:
+    """Return a mask of the rows with formulas or tables of pose or time, except linear ones of the pose."""
+    rows = np.zeros(system.n_c, dtype=bool)
+    for group in system.groups:
+        if group.record.n_equations and _has_functions(group.elements[0]):  # elements of a group have the same formulas
+            last = group.first_row + group.count * group.record.n_equations
+            rows[group.first_row : last] = (curved(system, group) | _timed_or_nonsmooth(group)).ravel()
+    return rows
+
+
+def _has_functions(element: Element) -> bool:
+    return any(True for sort in (Formula, Table) for _ in element.parts(sort))
+
+
+def _timed_or_nonsmooth(group: Group) -> np.ndarray:
+    """Return a mask of the equations of an element that depend on time, have breakpoints or are nonholonomic."""
+    found = np.ones(group.record.n_equations, dtype=bool)
+    found[: group.record.n_holonomic] = ~np.array(group.record.removable, dtype=bool)
+    return found

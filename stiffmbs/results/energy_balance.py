@@ -1,7 +1,7 @@
 """Energy balance of a run: kinetic + potential energy against the work of non-conservative forces.
 
 Along a motion T + V changes by the work of dampers, drives, friction, applied forces and laws without a potential
-(`stiffmbs.compile.symbolic.losses` has their power).  Both are computed from the reported states.  Their difference
+(`stiffmbs.compile.symbolic.derive` has their power).  Both are computed from the reported states.  Their difference
 shows how well these satisfy the equations of motion, independent of the integrator's own error estimate.
 
 The work is integrated by the trapezoidal rule with end corrections, of order 4.  The same rule on every other instant

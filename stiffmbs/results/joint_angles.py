@@ -14,7 +14,7 @@ import numpy as np
 
 from ..compile.system import INITIAL_COUNT, System
 from ..dynamics.dynamics import OutputRows
-from ..dynamics.nearest_turns import counted_coordinates
+from ..dynamics.initial import counted_coordinates
 from ..elements.element import Joint
 from ..reading.joint_name import ORDERS
 

@@ -11,7 +11,10 @@ from ..compile.reactions import reactions
 from ..compile.system import System
 from ..dynamics.dynamics import Dynamics, OutputRows
 from ..dynamics.storage import blocks, release
+from ..model.settings import RunSettings
+from ..solve.error_control.accumulated_errors import ACCUMULATED
 from ..solve.events.refusals import DIVERGENCE, SPEED_OF_LIGHT, exponential, reaches
+from ..solve.trajectory import Trajectory
 from .parameters import RUN_CHECKS
 
 
@@ -118,3 +121,34 @@ def _open_joint(dynamics: Dynamics, rows: OutputRows, on_constraints: bool) -> s
         f"constraints are violated: joint '{joint}' (equation {equation}) is open by {violation[worst]:.3g} at "
         f"t = {rows.t[worst]:.6g} s, first by more than {allowed:.1g} at t = {rows.t[first]:.6g} s; expected at most {allowed:.1g}"
     )
+
+
+AXES = ("x", "y", "z")
+
+
+def accumulated_errors_sentence(system: System, settings: RunSettings, trajectory: Trajectory) -> Iterator[str]:
+    """Yield a sentence on the position with the largest estimated error, if it exceeds a number of tolerances."""
+    displaced = trajectory.displaced
+    if displaced is None:
+        return
+    errors = ACCUMULATED.in_tolerances(system, settings, displaced, trajectory.q)
+    worst = int(np.nanargmax(errors))
+    if not errors[worst] > ACCUMULATED.tolerances:
+        return
+    what, unit = _position(system, worst)
+    yield (
+        f"the errors of the steps may add up: {what} may be off by {displaced[worst]:.2g} {unit} by t = {trajectory.t[-1]:.6g} s, "
+        f"{errors[worst]:.2g} times the tolerance; choose a smaller rtol, or run with --verify for error bars"
+    )
+
+
+def _position(system: System, velocity: int) -> tuple[str, str]:
+    """Return the name of the position that a velocity changes, and its unit."""
+    of_body = system.of_body
+    body, k = divmod(velocity, of_body.n_u)
+    name = system.bodies[body]
+    if k < of_body.linear:
+        return f"{name}.{AXES[k]}", "m"
+    if of_body.dimensions == 2:
+        return f"{name}.angle", "rad"
+    return f"the rotation of '{name}' about its {AXES[k - of_body.linear]} axis", "rad"

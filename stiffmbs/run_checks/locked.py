@@ -10,9 +10,9 @@ from ..compile.state import LEFT_OPEN
 from ..dynamics.dynamics import Dynamics
 from ..redundancy.overconstraint import listed
 from ..redundancy.redundancy import Redundancy
-from ..redundancy.unproven import unproven
+from ..redundancy.uniqueness import unproven
 from ..solve.trajectory import Trajectory
-from .instants import some_instants
+from .motion import some_instants
 from .parameters import RUN_CHECKS
 
 

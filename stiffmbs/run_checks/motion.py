@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Iterator
 
 import numpy as np
@@ -12,10 +13,10 @@ from ..compile.state import State
 from ..compile.system import System
 from ..compile.written_values import writer
 from ..dynamics.dynamics import Dynamics, OutputRows
+from ..errors import InputError
 from ..results.joint_angles import joint_angles
-from .instants import some_instants
 from .parameters import RUN_CHECKS
-from .singular_passage import singular_passage_sentence
+from .singular_poses import singular_passage_sentence
 
 
 def motion_notes(
@@ -72,7 +73,7 @@ def _doubts(system: System) -> tuple[np.ndarray, tuple[str, ...]]:
 
 
 APART_FROM_COUNTERS = Routine(
-    "stiffmbs.run_checks.native.turns",
+    "stiffmbs.run_checks.native.contradictions",
     "apart_from_counters",
     "void(int64, int64, float64*, float64*, int64, int64*, int64*, float64*, int64*)",
 )
@@ -106,3 +107,26 @@ def _apart(state: State, t: np.ndarray, q: np.ndarray, source: np.ndarray, row: 
     at_t, at_q, at_source, at_row, at_apart = addresses(t, q, source, row, apart)
     APART_FROM_COUNTERS.call(*q.shape, at_t, at_q, len(row), at_source, at_row, at_apart, address(state.table))
     return apart
+
+
+def refuse_far_away(system: System) -> None:
+    """Refuse joints whose equations are dominated by rounding at the start, which no step size can satisfy.
+
+    Raise an InputError that names the body.
+    """
+    if not system.n_c:
+        return
+    of_body = system.of_body
+    farthest = np.abs(system.q[: system.n_pose].reshape(-1, of_body.n_q)[:, : of_body.linear]).max(axis=1)
+    body = int(np.argmax(farthest))
+    rounding, size = farthest[body] * sys.float_info.epsilon, system.size
+    if rounding > RUN_CHECKS.coarse * size:
+        raise InputError(
+            f"bodies.{system.bodies[body]}.position: found {farthest[body]:.3g} m in a mechanism of {size:.3g} m, where neighbouring "
+            f"numbers are {rounding:.1g} m apart, expected it nearer to the origin"
+        )
+
+
+def some_instants(count: int) -> np.ndarray:
+    """Return the numbers of evenly spaced ones of `count` output times, with the first and the last."""
+    return np.linspace(0, count - 1, min(count, RUN_CHECKS.most_instants)).astype(int)

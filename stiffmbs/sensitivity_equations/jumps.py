@@ -20,11 +20,10 @@ from ..compile.directional.source import STATE
 from ..compile.equations import Equations
 from ..compile.written_values import writer
 from ..dynamics.dynamics import Dynamics
-from ..dynamics.failures import FAILURES
+from ..dynamics.storage import FAILURES
 from ..errors import SolverError
-from .block_system import BlockSystem
+from .block_system import BlockSystem, saddle_solution
 from .recorded import Segment
-from .saddle import saddle_solution
 
 BreakpointRates = Callable[[float, bool], np.ndarray | None]
 """Function of a time, s, and a flag that requires a result.

@@ -38,9 +38,9 @@ from .error_control.tolerances import absolute_tolerances
 from .events.restart import just_after, just_before, restarted
 from .explicit import DOP853
 from .explicit.adaptive import AdaptiveRun, Leaving
-from .explicit.fastest_rate import fastest_rate
 from .explicit.integration import Integration
 from .explicit.projected import TRAITS
+from .explicit.stable_step import fastest_rate
 from .ida.engine import Reached
 from .integrator import Integrator
 from .radau import radau

@@ -15,11 +15,9 @@ from ..dynamics.initial import InitialValues
 from ..errors import InputError, SolverError
 from ..model.settings import RunSettings
 from ..tuning import parameters_of
-from .driven_states import Instant, states_after
-from .driven_velocities import IntegratedMotion
+from .driven_states import KINEMATIC, Instant, IntegratedMotion, states_after
 from .events.narrow_inputs import hidden_peak, narrower_than_output
 from .events.refusals import refuse_beyond_limits
-from .kinematic_parameters import KINEMATIC
 from .solver import Traits
 from .trajectory import Ending, Grid, ProgressCallback, Rows, Trajectory
 

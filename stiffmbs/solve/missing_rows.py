@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..dynamics.dynamics import Dynamics, OutputRows
-from ..dynamics.failures import FAILURES
+from ..dynamics.storage import FAILURES
 from .trajectory import Trajectory
 
 MOST_MISSING = 100

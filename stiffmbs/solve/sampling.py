@@ -19,8 +19,8 @@ import numpy as np
 
 from ..compile.system import System
 from ..dynamics.dynamics import Dynamics
-from ..dynamics.failures import FAILURES
 from ..dynamics.initial import InitialValues
+from ..dynamics.storage import FAILURES
 from ..errors import SolverError
 from ..model.settings import RunSettings
 from ..tuning import tuned

@@ -33,13 +33,11 @@ from ..results.solution import Solution
 from ..solve.settings import changed, traits_of
 from ..solve.trajectory import Outcome, ProgressCallback
 from ..tuning import in_use
-from .dense_sampling import DenseSamples, dense_samples, more_instants
-from .diagnostics import Comparison, diagnostics
+from .diagnostics import Comparison, by_luck, diagnostics, step_diagnostics
 from .divergence import distance, divergence
 from .parameters import VERIFICATION
 from .solve_again import Again, levels_of, other_integrators, shorter_step, solve_again, tolerances
-from .step_diagnostics import by_luck, step_diagnostics
-from .stepped_over import Along, SteppedOver, looked_along
+from .stepped_over import Along, DenseSamples, SteppedOver, dense_samples, looked_along, more_instants
 
 
 @takes_settings

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import Akima1DInterpolator, PchipInterpolator
 
-from stiffmbs.compile.local_cubics import akima_pieces, monotone_pieces
+from stiffmbs.compile.table_values import akima_pieces, monotone_pieces
 
 
 @pytest.mark.parametrize("count", [2, 3, 4, 5, 11, 200])

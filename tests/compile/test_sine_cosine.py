@@ -5,7 +5,7 @@ import pytest
 
 from stiffmbs.compile.machine.routines import Routine
 
-FOUR = Routine("stiffmbs.compile.machine.native.sine_cosine", "share_four", "int64(float64*, int64*, float64*)")
+FOUR = Routine("stiffmbs.compile.machine.native.evaluate", "share_four", "int64(float64*, int64*, float64*)")
 BODIES = np.array([0, 3, 6, 9])
 
 

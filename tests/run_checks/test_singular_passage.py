@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import stiffmbs
-from stiffmbs.run_checks.singular_passage import deepest_dips
+from stiffmbs.run_checks.singular_poses import deepest_dips
 from tests.stress.families.structure.singular_passages import four_bar
 
 NOTE = "passes a singular pose near t = 0."

@@ -7,8 +7,8 @@ import pytest
 
 import stiffmbs
 from stiffmbs.analyses.job import prepare
-from stiffmbs.run_checks import within_long_steps
-from stiffmbs.run_checks.within_long_steps import overlooked_in_long_steps
+from stiffmbs.run_checks import overlooked as within_long_steps
+from stiffmbs.run_checks.overlooked import overlooked_in_long_steps
 from stiffmbs.solve.events.long_steps import LONG_STEP, WHOLE, LongSteps
 from stiffmbs.tuning import parameters_of
 

@@ -8,7 +8,7 @@ import pytest
 
 import stiffmbs
 from stiffmbs.analyses.job import prepare
-from stiffmbs.run_checks.accumulated_errors import accumulated_errors_sentence
+from stiffmbs.run_checks.growth import accumulated_errors_sentence
 from stiffmbs.show.summary import as_json
 from stiffmbs.solve.segments import Segment, joined
 from stiffmbs.solve.solver import Traits

@@ -8,7 +8,7 @@ from stiffmbs import AppliedForce, Body, Bushing, Distance, Model, Prismatic
 from stiffmbs.analyses.job import prepare
 from stiffmbs.solve import auto
 from stiffmbs.solve.auto_decisions import AUTO, implicit_solver
-from stiffmbs.solve.explicit.fastest_rate import fastest_rate
+from stiffmbs.solve.explicit.stable_step import fastest_rate
 from tests.stress.mechanisms.parallelogram import parallelogram, swing_error
 
 

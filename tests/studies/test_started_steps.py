@@ -5,7 +5,7 @@ import pytest
 
 import stiffmbs
 from stiffmbs import simulation
-from stiffmbs.solve.ida.starting.restarts import Restarts
+from stiffmbs.solve.ida.starting.after_event import Restarts
 
 TOP = """
 parameters: {M: 0 N m}

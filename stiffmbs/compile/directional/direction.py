@@ -32,7 +32,7 @@ class Numbers:
     ----------
     of_groups : tuple of ndarray
         For each group of elements the derivatives of its numbers; table arguments keep their values
-        (`stiffmbs.compile.directional.rules`).
+        (`stiffmbs.compile.directional.source`).
     moved : frozenset of int
         Groups with numbers that change.
     mass : ndarray, shape (n_u,)

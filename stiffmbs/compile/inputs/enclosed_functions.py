@@ -11,18 +11,25 @@ import numpy as np
 from ...reading.formula.functions import IN_FORMULAS, FormulaFunction, step5_value, step_value
 from ...reading.formula.text import evaluate, parse
 from .enclosure import (  # noqa: F401 (the table of functions names them)
+    EVERYWHERE,
     Enclosure,
+    Range,
     absolute,
     atan2,
+    between_turns,
     branch,
     exp,
+    hull,
     log,
     maximum,
     minimum,
+    power_range,
+    product,
+    real_power_range,
     scaled,
     sign,
+    wave,
 )
-from .ranges import EVERYWHERE, Range, between_turns, hull, power_range, product, real_power_range, wave
 
 
 def _turned(phase: float) -> Callable[[Enclosure], Enclosure]:

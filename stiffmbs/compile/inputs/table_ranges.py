@@ -8,8 +8,7 @@ import numpy as np
 
 from ...reading.table import Table
 from ..table_values import curve, parts_of
-from .enclosure import Enclosure
-from .ranges import EVERYWHERE, Range, between_turns, hull
+from .enclosure import EVERYWHERE, Enclosure, Range, between_turns, hull
 from .zeros import MOST_STRETCHES, TooMany
 
 

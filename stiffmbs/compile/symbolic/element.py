@@ -11,13 +11,12 @@ import sympy as sp
 
 from ...elements.element import IN_EQUATIONS
 from ...errors import InputError
-from .common_normal import common_normal
 from .continuous_angle import ContinuousAngle, counter
 from .differentiate import Derivatives, Way
 from .logarithm import PlanarLogarithm, SpatialLogarithm, logarithm
 from .read import read
 from .relative_rotation import RelativeRotation, ShortestRotation, product
-from .spline import integral
+from .spline import common_normal, integral
 
 if TYPE_CHECKING:
     from .referred import ReferredJoint

@@ -13,14 +13,12 @@ from sympy.printing.pycode import PythonCodePrinter
 from ...reading.formula.functions import FUNCTIONS
 from ..machine import compiler
 from ..terms import KERNEL_ARGUMENTS, TERM_SETS
-from .common_normal import CommonNormal, CommonNormalSlope
 from .continuous_angle import ContinuousAngle, counter
 from .derive import Derived
 from .differentiate import Derivatives
 from .nonsmooth import NonsmoothBase, Step
-from .python_call import PythonCall
 from .relative_rotation import RotationVector
-from .spline import Spline
+from .spline import CommonNormal, CommonNormalSlope, PythonCall, Spline
 
 
 def _natives(base: type[NonsmoothBase]) -> set[str]:

@@ -22,10 +22,8 @@ from . import nonsmooth, planar_frames, spatial_frames
 from .continuous_angle import counter
 from .differentiate import Derivatives
 from .element import COINCIDENT, SymbolicElement
-from .measures import measure, own_coordinate
-from .python_call import python_law
-from .referred import ReferredJoint, SymbolicComponent
-from .spline import Spline
+from .referred import ReferredJoint, SymbolicComponent, measure, own_coordinate
+from .spline import Spline, python_law
 
 NARROW: dict[type[sp.Basic], str] = {
     getattr(sp, name): function.zones for name, function in FUNCTIONS.items() if function.zones

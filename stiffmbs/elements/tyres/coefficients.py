@@ -19,9 +19,17 @@ from ...reading.table import Table
 from ..element import Component
 from ..read_by import Context, JsonSchema, ReadBy
 from ..roads.envelope import MOST_TRACKS, Envelope
-from .formulas import NOMINAL_PRESSURE, OF_FITTYP, OF_FORMAT, VERSIONS, Version, plain
 from .names import AS_BEFORE, COMBINED, LATER, OF_THE_FILE, RANGES, REASONS, REQUIRED, TURN_SLIP, home
-from .property_file import PropertyFile, read_property_file
+from .property_file import (
+    NOMINAL_PRESSURE,
+    OF_FITTYP,
+    OF_FORMAT,
+    VERSIONS,
+    PropertyFile,
+    Version,
+    plain,
+    read_property_file,
+)
 
 if TYPE_CHECKING:
     import numpy as np

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from stiffmbs.compile.machine.native.access import compiled, shifted
+from stiffmbs.compile.machine.native.access import compiled, shifted, state_view
+from stiffmbs.compile.machine.native.evaluate import POSITION, evaluate
 
 
 @compiled
@@ -62,3 +63,15 @@ def contradicting_rows(count, n_u, t, u, acceleration, mass, part, least, n_step
             contradicting += 1
         before = after
     return contradicting
+
+
+def apart_from_counters(count, n_q, t, q, n_counters, source, row, apart, state):
+    """Write the distances of angles (position terms) from their counters to `apart`, for `count` coordinate rows."""
+    s = state_view(state)
+    for k in range(count):
+        pose = shifted(q, k * n_q)
+        for i in range(n_q):
+            s.q[i] = pose[i]
+        values = evaluate(s, POSITION, t[k])
+        for i in range(n_counters):
+            apart[k * n_counters + i] = abs(values[source[i]] - pose[row[i]])

@@ -32,7 +32,7 @@ class RestartParameters:
 RESTARTS = tuned("restarts", RestartParameters())
 
 GONE_PAST = Routine(
-    "stiffmbs.solve.events.native.past",
+    "stiffmbs.solve.events.native.sides",
     "gone_past",
     "float64(float64, float64, int64, float64*, float64*, int64*)",
 )

@@ -16,18 +16,17 @@ from ...errors import SolverError
 from ...model.settings import RunSettings
 from ...tuning import tuned
 from ..events.chattering import Chattering
+from ..events.discontinuity import VelocityJumps
 from ..events.refusals import DIVERGENCE, refuse_beyond_limits, refuse_beyond_sense
 from ..events.restart import just_after, just_before, restarted
-from ..events.velocity_jumps import VelocityJumps
 from ..step_logging import is_logged, log_step
 from ..suspect import suspect
 from ..trajectory import Ending, Grid, History, Outcome, ProgressCallback, Rows, Trajectory
-from .integration import Integration
+from .integration import REASONS, Integration, stiff_sentence
 from .memory import ADVANCE
 from .native.parameters import CONTROL
 from .rounding import Rounding
 from .scheme import Scheme
-from .sentences import REASONS, stiff_sentence
 from .stable_step import StableStep
 
 

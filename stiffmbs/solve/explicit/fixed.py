@@ -21,9 +21,8 @@ from ..events.discontinuity import JUMP, sliding
 from ..events.narrow_inputs import narrower_than_steps
 from ..events.refusals import refuse_beyond_limits
 from ..trajectory import Ending, Grid, ProgressCallback, Rows, Trajectory
-from .integration import Integration
+from .integration import REASONS, Integration
 from .scheme import Scheme
-from .sentences import REASONS
 
 
 @dataclass(frozen=True)

@@ -5,13 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from ...compile.machine.layout import address, addresses
+from ...compile.machine.native.statuses import NOT_FINITE, STEP_TOO_SMALL, STIFF
 from ...dynamics.dynamics import Dynamics
 from ...dynamics.initial import InitialValues
+from ...dynamics.storage import FAILURES
 from ...model.settings import RunSettings
 from ..error_control.tolerances import absolute_tolerances
-from ..events.event_functions import EventSearch
+from ..events.event_functions import EventSearch, StepBound
 from ..events.long_steps import LongStepLog, LongSteps
-from ..events.step_bound import StepBound
 from ..trajectory import Grid, Rows
 from .memory import StepMemory
 from .native.parameters import CONTROL
@@ -139,3 +140,20 @@ class Integration:
         self._cells["rows"] = 0
         self._collected = self.count("steps")
         self.step_times.append(memory.ends[np.arange(before, self._collected) % self.capacity])
+
+
+_USE_BDF = "the scene is stiff, and solver bdf would be the choice"
+REASONS = {
+    **FAILURES,
+    NOT_FINITE: "the motion has grown beyond all numbers; the step is too long for the stiffness of the scene",
+    STEP_TOO_SMALL: "the step that the tolerance asks for has become too small: the motion has a singularity there, or "
+    + _USE_BDF,
+    STIFF: f"steps as short as stability asks for would take more than ten minutes to the end; {_USE_BDF}",
+}
+"""Reasons by status."""
+
+
+def stiff_sentence(work: Integration) -> str:
+    """Return a sentence on steps limited by stability."""
+    held = work.count("stiff_steps")
+    return f"stability, not accuracy, held back {held} of {work.count('steps')} steps: {_USE_BDF}"

@@ -12,19 +12,17 @@ from ...compile.machine.routines import Routine, together
 from ...compile.state import State
 from ...dynamics.dynamics import Dynamics
 from ..error_control.native.layouts import ACCUMULATED_ERRORS
-from ..events.event_functions import EventSearch
+from ..events.event_functions import EventSearch, StepBound
 from ..events.long_steps import LongStepLog
 from ..events.native.layouts import LONG_STEPS
-from ..events.step_bound import StepBound
-from .error_norm import ErrorNorm
-from .iteration import Iteration
+from .error_norm import ErrorNorm, Iteration
 from .libraries import Libraries
 from .matrices import Assembled, Matrix
 from .native.layouts import NATIVE_IDA
 from .native.parameters import LOOP
 from .output_correction import OutputCorrection
 from .session import Session
-from .status import failure_sentence
+from .statistics import failure_sentence
 from .step_log import StepLog
 
 MODULE = "stiffmbs.solve.ida.native.ida_loop"
@@ -145,7 +143,7 @@ class Connection:
     step_bound : StepBound
     n_event_functions : int
     signs, masked : ndarrays, shape (n_event_functions,)
-        See `stiffmbs.solve.events.native.event_signs`.
+        See `stiffmbs.solve.ida.native.ida_memory`.
     watch : EventSearch
     history : StepLog
     long_steps : LongStepLog or None

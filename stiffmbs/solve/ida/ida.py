@@ -20,8 +20,7 @@ from .connection import BDF, MODULE, Connection, Formula
 from .matrices import Matrix
 from .native.parameters import LOOP
 from .session import Session
-from .statistics import Statistics
-from .status import Status, failure_sentence
+from .statistics import Statistics, Status, failure_sentence
 
 if TYPE_CHECKING:
     from .starting.after_event import StartsAnew

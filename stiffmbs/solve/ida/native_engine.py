@@ -24,12 +24,11 @@ from .engine import Engine, Reached
 from .ida import AT_THE_END, NativeIda
 from .matrices import Matrix
 from .native.parameters import LOOP
-from .status import Status
+from .statistics import Status
 
 if TYPE_CHECKING:
     from ...dynamics.initial import InitialValues
-    from .starting.after_event import Begun, StartsAnew
-    from .starting.restarts import Restarts
+    from .starting.after_event import Begun, Restarts, StartsAnew
     from .starting.starts import Starts
 
 
@@ -222,7 +221,7 @@ class NativeEngine(Engine):
 
     def restarts(self, dynamics: Dynamics, q: np.ndarray, u: np.ndarray) -> Restarts | None:
         """Return compiled restarts of this integrator from the state q and u; None if they do not apply."""
-        from .starting.restarts import Restarts
+        from .starting.after_event import Restarts
 
         if self._starts is None or not Restarts.serve(dynamics.system, self._ida):
             return None

@@ -63,7 +63,7 @@ class Callbacks:
     Attributes
     ----------
     masked : ndarray of int
-        Remaining steps for which each event function is masked (`stiffmbs.solve.events.native.event_signs`).
+        Remaining steps for which each event function is masked (`stiffmbs.solve.ida.native.ida_memory`).
     """
 
     def __init__(self, equations: Equations, state: State, dense: bool = True) -> None:

@@ -14,9 +14,9 @@ from ...compile.machine.routines import Routine
 from ...sparse.block_updates import updates
 from ...sparse.blocks import QUAD, Blocks, at_a_line, filled
 from ...sparse.elimination_order import EliminationOrder, nodes_in_order
+from ..ida.session import WhenNeeded
 from .fixed_order import FixedOrder, Memory, PairedColumns
 from .native.layouts import BLOCK_LU, COORDINATE, MULTIPLIER, VELOCITY
-from .when_needed import WhenNeeded
 
 _MODULE = "stiffmbs.solve.linear_solvers.native.block_lu"
 SETUP = Routine(_MODULE, "setup", "int32(int64*, int64)")

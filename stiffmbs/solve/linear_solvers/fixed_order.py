@@ -14,9 +14,8 @@ from ...sparse.elimination_order import EliminationOrder, factors_of
 from ..ida.libraries import Libraries, ida_libraries
 from ..ida.matrices import Assembled
 from ..ida.operations import take_place
-from ..ida.session import Session
+from ..ida.session import Session, WhenNeeded
 from .native.layouts import FIXED_ORDER, PAIRED_COLUMNS
-from .when_needed import WhenNeeded
 
 _MODULE = "stiffmbs.solve.linear_solvers.native.fixed_order"
 SETUP = Routine(_MODULE, "setup", "int32(int64*, int64)")

@@ -132,7 +132,7 @@ class SetUp:
         )
 
     def _keep_points_of_tables(self, g: int, numbers: np.ndarray) -> None:
-        """Copy the points of tables, which must not move, to the derivatives (`stiffmbs.compile.directional.rules`)."""
+        """Copy the points of tables, which must not move, to the derivatives (`stiffmbs.compile.directional.source`)."""
         group = self._job.dynamics.system.groups[g]
         if not any(_has_table(shape) for _, shape in group.kind.fields):
             return

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from stiffmbs.solve.ida.starting.native.restart import restart
+from stiffmbs.solve.ida.starting.native.start import restart
 
 
 def restarts_in_a_row(count, dt, values, number, table):

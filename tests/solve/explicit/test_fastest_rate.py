@@ -6,7 +6,7 @@ import pytest
 import stiffmbs
 from stiffmbs import Body, Bushing, Marker, Model, Revolute
 from stiffmbs.analyses.job import prepare
-from stiffmbs.solve.explicit.fastest_rate import fastest_rate
+from stiffmbs.solve.explicit.stable_step import fastest_rate
 
 
 def rate_of(model, **settings):

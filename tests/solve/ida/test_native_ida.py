@@ -20,7 +20,7 @@ from stiffmbs.solve.ida import choice, libraries, operations
 from stiffmbs.solve.ida.choice import chosen
 from stiffmbs.solve.ida.ida import NativeIda
 from stiffmbs.solve.ida.matrices import Dense, Sparse
-from stiffmbs.solve.ida.status import Status
+from stiffmbs.solve.ida.statistics import Status
 from stiffmbs.solve.ida.sundae import FALLBACK, SundaeEngine
 from stiffmbs.solve.linear_solvers.block_lu import BlockLU
 from stiffmbs.solve.linear_solvers.fixed_order import FixedOrder, PairedColumns

@@ -7,7 +7,7 @@ import zipfile
 import pytest
 
 from stiffmbs.solve.ida import libraries
-from stiffmbs.solve.ida.declarations import DECLARATIONS, declared
+from stiffmbs.solve.ida.libraries import DECLARATIONS, declared
 
 WHEELS = ("win_amd64", "macosx_11_0_arm64", "manylinux_2_28_x86_64")
 EXTENSIONS = {"win_amd64": ".dll", "macosx_11_0_arm64": ".dylib", "manylinux_2_28_x86_64": ".so."}

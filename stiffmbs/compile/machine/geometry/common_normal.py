@@ -1,4 +1,4 @@
-"""Common normal of two convex solids, in kernels (`stiffmbs.compile.symbolic.common_normal`).
+"""Common normal of two convex solids, in kernels (`stiffmbs.compile.symbolic.spline`).
 
 The unit normal n maximises n.d - h_i(n) - h_j(n), with d from the centre of j to that of i. The maximum is the distance
 of the solids, or minus the penetration depth. Separate solids have one such normal. For a small penetration it
@@ -14,8 +14,23 @@ from math import sqrt
 from ..native.access import compiled, room, shifted
 from ..translate.code import Code, constant
 from ..translate.values import Operand, Value, builtin
-from .ellipsoids import POSE, SQUARES, TURN, ellipsoids, reach, support, thinnest, times
-from .on_sphere import across, along, curvature, made_definite, moved, solved, take_unit_length
+from .ellipsoids import (
+    POSE,
+    SQUARES,
+    TURN,
+    across,
+    along,
+    curvature,
+    ellipsoids,
+    made_definite,
+    moved,
+    reach,
+    solved,
+    support,
+    take_unit_length,
+    thinnest,
+    times,
+)
 
 THINNER = 0.2
 """Ratio of ellipsoid thickness between stages: each stage starts near its solution."""

@@ -1,6 +1,6 @@
 """Return values of compiled routines, zero, a count or one of these failures, and constants of SUNDIALS' headers.
 
-Python reads them too, so this module imports nothing of the compiler; `stiffmbs.dynamics.failures` has the messages.
+Python reads them too, so this module imports nothing of the compiler; `stiffmbs.dynamics.storage` has the messages.
 """
 
 SINGULAR, NO_CONVERGENCE, NOT_FINITE, STEP_TOO_SMALL, STIFF, NO_BALANCE, NO_MEMORY, NO_STATE, NOT_FINITE_WITHIN = range(
@@ -17,7 +17,7 @@ PAUSED, AT_END, AT_EVENT, UNSTABLE = range(4)
 FAILED, OK, RECOVERABLE = range(-1, 2)
 """Results of SUNDIALS callbacks: after a recoverable failure, IDA tries a smaller step."""
 NOT_COMPILED = 3
-"""Last flag of a linear solver whose request for routines has failed (`stiffmbs.solve.linear_solvers.when_needed`)."""
+"""Last flag of a linear solver whose request for routines has failed (`stiffmbs.solve.ida.session`)."""
 ONE_STEP, STOP_RETURN, ROOT_RETURN = 2, 1, 2
 """IDA_ONE_STEP, IDA_TSTOP_RETURN and IDA_ROOT_RETURN of ida.h."""
 CONTENT, OPERATIONS = range(2)

@@ -13,7 +13,7 @@ from stiffmbs.compile.machine.native.evaluate import ACCELERATION, evaluate
 from stiffmbs.dynamics.elimination.native.by_blocks import accelerate_by_blocks, blocks_view, move_by_blocks
 from stiffmbs.dynamics.elimination.native.by_entries import accelerate_by_entries, entries_view, move_by_entries
 from stiffmbs.dynamics.elimination.native.by_pins import accelerate_by_pins, move_by_pins, pins_view
-from stiffmbs.dynamics.native.views import eliminated_view
+from stiffmbs.dynamics.native.layouts import eliminated_view
 
 
 @compiled

@@ -13,7 +13,7 @@ ENTRY_ELIMINATION = Layout({
     "column_start": INDICES, "row": INDICES, "update_slot": INDICES,
     "j_scale": FLOATS, "j": FLOATS, "s": FLOATS, "l": FLOATS, "diagonal": FLOATS, "b": FLOATS,
 })  # fmt: skip
-"""Matrix and factors by flat lists (`stiffmbs.dynamics.elimination.matrix_entries`)."""
+"""Matrix and factors by flat lists (`stiffmbs.dynamics.elimination.eliminated`)."""
 
 PIN_ELIMINATION = Layout({
     "n": INT, "n_beside": INT, "pin": INDICES, "inverse": FLOATS, "w": FLOATS, "product": INDICES, "mass": FLOATS,

@@ -5,12 +5,12 @@ from __future__ import annotations
 from stiffmbs.compile.machine.layout import FLOAT_CELL, FLOATS, INT, INT_CELL, INTS, Layout
 
 STEP_BOUND = Layout({"n": INT, "place": INT_CELL, "starts": FLOATS, "longest": FLOATS})
-"""Longest steps that resolve inputs (`stiffmbs.solve.events.step_bound`); n is 0 if nothing limits a step."""
+"""Longest steps that resolve inputs (`stiffmbs.solve.events.event_functions`); n is 0 if nothing limits a step."""
 
 LONG_STEPS = Layout({
     "n_nodes": INT, "node": FLOATS, "width": INT, "ratio": FLOAT_CELL, "remembered": FLOAT_CELL, "room": INT_CELL, "count": INT_CELL, "usual": FLOAT_CELL, "row": FLOATS,
 })  # fmt: skip
-"""Storage of long steps (`stiffmbs.solve.events.native.long_steps`): one row for both ends of a step and its states, of
+"""Storage of long steps (`stiffmbs.solve.events.native.step_bound`): one row for both ends of a step and its states, of
 `width` numbers, at the nodes.  Cells: ratio of a long step to the usual one, number of steps in the mean that is usual,
 space for rows (0 for none), stored rows, usual step."""
 

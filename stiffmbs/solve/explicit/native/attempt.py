@@ -7,7 +7,10 @@ from math import isfinite
 from stiffmbs.compile.machine.native.access import compiled, shifted
 from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.statuses import NOT_FINITE
+from stiffmbs.dynamics.native.layouts import eliminated_view
 from stiffmbs.dynamics.native.projection import back_to_constraints
+from stiffmbs.solve.events.native.parameters import EPSILON
+from stiffmbs.solve.explicit.native.parameters import ENDS
 from stiffmbs.solve.explicit.native.stages import keep_algebraic, load_state, rates, take_stage, weighted
 
 
@@ -49,3 +52,23 @@ def attempt(x, c, s, m, h):
         keep_algebraic(s, m, x.y)
         return status
     return 0
+
+
+@compiled
+def uncertain_end(x, c, h):
+    """Return True if rounding of positions changes velocities in the next step by more than `harmful` tolerances."""
+    if not x.pivots_tell:
+        return False
+    r = eliminated_view(x.eliminated)
+    kept = r.kept
+    if kept > ENDS.close * r.most_kept:
+        return False
+    if not kept > 0.0:
+        return True
+    distance = (kept / r.most_kept) ** 0.5
+    rates = shifted(x.k, c.stages * x.n)
+    total = 0.0
+    for i in range(x.n_q, x.n):
+        change = h * rates[i] * EPSILON / distance**3 * x.weight[i]
+        total += change * change
+    return total > ENDS.harmful * ENDS.harmful * x.n

@@ -16,20 +16,24 @@ from stiffmbs.compile.machine.native.statuses import (
     STIFF,
     UNSTABLE,
 )
-from stiffmbs.dynamics.native.views import dynamics_view
+from stiffmbs.dynamics.native.layouts import dynamics_view
 from stiffmbs.solve.error_control.native.accumulated_errors import accumulated_errors_view, displace
-from stiffmbs.solve.events.native.long_steps import is_to_be_kept, long_steps_view, next_row
-from stiffmbs.solve.events.native.step_bound import STRETCHED, longest_step, step_bound_view
-from stiffmbs.solve.explicit.native.attempt import arrive, attempt
-from stiffmbs.solve.explicit.native.error_estimate import trusted_error
+from stiffmbs.solve.events.native.step_bound import (
+    STRETCHED,
+    is_to_be_kept,
+    long_steps_view,
+    longest_step,
+    next_row,
+    step_bound_view,
+)
+from stiffmbs.solve.explicit.native.attempt import arrive, attempt, uncertain_end
+from stiffmbs.solve.explicit.native.error_estimate import fastest_rate, trusted_error
 from stiffmbs.solve.explicit.native.explicit_events import AT_ANOTHER_LAW, RETRIED, end_at_event, retaken
-from stiffmbs.solve.explicit.native.fastest_rate import fastest_rate
 from stiffmbs.solve.explicit.native.halved_step import is_halved, note_difference, two_halves
 from stiffmbs.solve.explicit.native.interpolant import interpolated, prepare, store_rows, store_step
 from stiffmbs.solve.explicit.native.parameters import CONTROL, ENDS
 from stiffmbs.solve.explicit.native.stages import explicit_view, scheme_view
 from stiffmbs.solve.explicit.native.start import first_step, start_steps
-from stiffmbs.solve.explicit.native.uncertain_end import uncertain_end
 
 __all__ = ["advance", "end_at_event", "fastest_rate", "fixed_steps"]
 

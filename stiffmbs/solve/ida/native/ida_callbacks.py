@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from stiffmbs.compile.machine.native.access import compiled, equations_view, floats, ints, state_view, view_of
 from stiffmbs.compile.machine.native.evaluate import SWITCH, add_entries, add_products, evaluate, load
-from stiffmbs.solve.events.native.event_signs import watched
+from stiffmbs.solve.ida.native.ida_memory import watched
 from stiffmbs.solve.ida.native.layouts import IDA
 
 ida_view = view_of("Ida", IDA)

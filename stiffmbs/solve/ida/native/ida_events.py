@@ -7,7 +7,6 @@ from stiffmbs.compile.machine.native.calls import call_int, int32
 from stiffmbs.compile.machine.native.evaluate import SWITCH, evaluate, evaluate_some, load
 from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.statuses import OK
-from stiffmbs.solve.events.native.ahead import go_ahead, go_straight
 from stiffmbs.solve.events.native.bounds import (
     LOOKED_AT,
     edge,
@@ -26,7 +25,7 @@ from stiffmbs.solve.events.native.nearby import near_an_event, note_mean_rates, 
 from stiffmbs.solve.events.native.parameters import EPSILON, NEXT_STEP, SEARCH
 from stiffmbs.solve.events.native.within_step import first_event, first_event_or_change, keep_row
 from stiffmbs.solve.ida.native.ida_memory import array_of, native_ida_view
-from stiffmbs.solve.ida.native.passage import bound_passage
+from stiffmbs.solve.ida.native.passage import bound_passage, go_ahead, go_straight
 
 UNSEEN = float("inf")
 """Placeholder for no time at which event functions are known."""

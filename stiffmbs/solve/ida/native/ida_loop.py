@@ -8,11 +8,16 @@ from stiffmbs.compile.machine.native.evaluate import SWITCH, add_entries, add_pr
 from stiffmbs.compile.machine.native.statuses import OK, ONE_STEP, RECOVERABLE, ROOT_RETURN, STOP_RETURN
 from stiffmbs.solve.error_control.native.accumulated_errors import accumulated_errors_view, displace_by, is_due
 from stiffmbs.solve.events.native.bounds import bounded_by_feature, event_search_view, repeats
-from stiffmbs.solve.events.native.event_signs import watched
-from stiffmbs.solve.events.native.long_steps import is_to_be_kept, long_steps_view, next_row
-from stiffmbs.solve.events.native.step_bound import STRETCHED, longest_step, step_bound_view
+from stiffmbs.solve.events.native.step_bound import (
+    STRETCHED,
+    is_to_be_kept,
+    long_steps_view,
+    longest_step,
+    next_row,
+    step_bound_view,
+)
 from stiffmbs.solve.ida.native.error_norm import error_norm_view
-from stiffmbs.solve.ida.native.ida_memory import array_of, native_ida_view
+from stiffmbs.solve.ida.native.ida_memory import array_of, native_ida_view, watched
 from stiffmbs.solve.ida.native.iteration import MADE, iteration_view
 from stiffmbs.solve.ida.native.layouts import STEP_WIDTH
 from stiffmbs.solve.ida.native.output_correction import corrected, output_correction_view

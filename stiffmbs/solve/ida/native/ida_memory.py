@@ -1,4 +1,4 @@
-"""Memory of IDA's callbacks and of the loop over its steps."""
+"""Memory of the loop over IDA's steps, and event functions for its root search, each positive at first."""
 
 from __future__ import annotations
 
@@ -13,3 +13,17 @@ native_ida_view = view_of("NativeIda", NATIVE_IDA)
 def array_of(c, vector):
     """Return the data of a SUNDIALS vector."""
     return floats(call_address(c.array_of, vector))
+
+
+@compiled
+def watched(values, signs, masked, g, count):
+    """Fill g; an event function is ignored in the calls (steps of IDA) while it is masked, and then while it is zero.
+
+    `signs` holds the first nonzero sign of each event function, 0 before.
+    """
+    for k in range(count):
+        if masked[k] > 0:
+            masked[k] -= 1
+        elif signs[k] == 0.0 and values[k] != 0.0:
+            signs[k] = 1.0 if values[k] > 0.0 else -1.0
+        g[k] = signs[k] * values[k] if signs[k] != 0.0 else 1.0

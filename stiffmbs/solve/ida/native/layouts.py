@@ -58,7 +58,7 @@ both bounds of the stiffness, and the part of the tolerance that Newton's iterat
 RESTART = Layout({
     "start": INTS, "q": FLOATS, "u": FLOATS, "n_counted": INT, "counted_source": INTS, "counted_row": INTS,
 })  # fmt: skip
-"""Restart of IDA after a jump of inputs (`stiffmbs.solve.ida.starting.native.restart`), with the state between calls, and revolution
+"""Restart of IDA after a jump of inputs (`stiffmbs.solve.ida.starting.native.start`), with the state between calls, and revolution
 counters with their angles."""
 
 ANEW = Layout({
@@ -67,7 +67,7 @@ ANEW = Layout({
     "t": FLOAT_CELL, "jump": FLOAT_CELL, "meets": INT_CELL,
     "amplified": FLOAT_CELL, "least": FLOAT_CELL, "largest_jump": FLOAT_CELL, "indistinct": FLOAT_CELL, "passed": INT_CELL, "steps_before": INT_CELL,
 })  # fmt: skip
-"""Data of restarts of IDA after an event or a breakpoint (`stiffmbs.solve.ida.starting.native.after_event`): event functions, the first
+"""Data of restarts of IDA after an event or a breakpoint (`stiffmbs.solve.ida.starting.native.breakpoints`): event functions, the first
 of those that are limits of forces; revolution counters and their angles; a move to both sides of a state; memory for a
 state and event functions.  Cells: size of the move; time of the restart, largest velocity change, 1 if event functions
 of velocities change sign between both sides.  For breakpoints passed in one call (`stiffmbs.solve.ida.starting.native.breakpoints`):

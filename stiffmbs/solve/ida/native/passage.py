@@ -9,8 +9,8 @@ from __future__ import annotations
 
 from stiffmbs.compile.machine.native.access import address_of, compiled, equations_view, shifted
 from stiffmbs.compile.machine.native.calls import call_int
-from stiffmbs.compile.machine.native.evaluate import SWITCH, add_products, evaluate
-from stiffmbs.solve.events.native.ahead import go_ahead
+from stiffmbs.compile.machine.native.evaluate import SWITCH, add_products, evaluate, load
+from stiffmbs.compile.machine.native.orientation import add_rates
 from stiffmbs.solve.events.native.bounds import zone
 from stiffmbs.solve.events.native.parameters import NEXT_STEP
 from stiffmbs.solve.ida.native.ida_memory import array_of
@@ -96,3 +96,22 @@ def _matters(c, w, s, ahead):
         if change > largest * abs(own[i]) and own[i] != 0.0:
             largest = change / abs(own[i])
     return largest > 1.0
+
+
+@compiled
+def go_straight(c, s, ahead):
+    """Load the state in c.y, extrapolated linearly by a time that may be negative."""
+    y, yp = array_of(c, c.y), array_of(c, c.yp)
+    e = equations_view(c.equations)
+    for k in range(e.n):
+        c.probe[k] = y[k] + ahead * yp[k]
+    load(s, e, c.probe, yp)
+
+
+@compiled
+def go_ahead(c, s, ahead):
+    """Load the state in c.y, extrapolated with its accelerations."""
+    for k in range(s.n_u):
+        s.a[k] = 0.0  # constant coordinates are not loaded
+    go_straight(c, s, ahead)
+    add_rates(s, s.a, 0.5 * ahead * ahead, s.q)

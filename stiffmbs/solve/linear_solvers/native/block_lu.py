@@ -19,8 +19,7 @@ from stiffmbs.compile.machine.native.calls import call_address, call_int, int32
 from stiffmbs.compile.machine.native.factors import FULL
 from stiffmbs.compile.machine.native.memory import FLOAT, holds
 from stiffmbs.compile.machine.native.statuses import CONTENT, FAILED, NOT_COMPILED, OK
-from stiffmbs.solve.linear_solvers.native.block_solution import panel, solved
-from stiffmbs.solve.linear_solvers.native.block_trial import refine, trusted
+from stiffmbs.solve.linear_solvers.native.block_trial import panel, refine, solved, trusted
 from stiffmbs.solve.linear_solvers.native.layouts import BLOCK_LU
 from stiffmbs.solve.linear_solvers.native.node_factors import add_one_quad, add_two_quads, factor_node
 from stiffmbs.solve.linear_solvers.native.paired_columns import paired_view

@@ -10,7 +10,7 @@ from functools import partial
 import numpy as np
 
 from stiffmbs.solve.ida.libraries import ida_libraries, sparse_libraries
-from stiffmbs.solve.ida.status import FAILURES, failure_sentence
+from stiffmbs.solve.ida.statistics import FAILURES, failure_sentence
 
 from ...case import Case, Outcome, Verdict
 from ...made_up import ONE_STEP, MadeUp
