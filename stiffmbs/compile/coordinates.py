@@ -19,15 +19,11 @@ class Coordinates:
     q_k = offset_k + ratio_k q_l with l = leader_k; the offsets are those of any pose that satisfies the constraints.
     Velocities likewise.
 
-    Attributes
-    ----------
-    independent_of : ndarray of int, shape (n_q,)
-        Leader of each coordinate, itself if independent; `FIXED` for fixed coordinates.
-    ratio : ndarray, shape (n_q,)
-    u_independent_of, u_ratio : ndarrays, shape (n_u,)
-        Leaders and ratios of velocities.
-    satisfied : ndarray of bool, shape (n_c,)
-        Equations satisfied for any values of the independent coordinates.
+    - `independent_of` of shape (n_q,): leader of each coordinate, itself if independent; `FIXED` for fixed
+      coordinates.
+    - `ratio` of shape (n_q,).
+    - `u_independent_of`, `u_ratio` of shape (n_u,): leaders and ratios of velocities.
+    - `satisfied` of shape (n_c,): equations satisfied for any values of the independent coordinates.
     """
 
     independent_of: np.ndarray

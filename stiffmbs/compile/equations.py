@@ -37,21 +37,11 @@ class AlongMotion(NamedTuple):
 class Equations:
     """Compiled formulation of one system: positions of the unknowns, and lists for residual and matrix.
 
-    Parameters
-    ----------
-    coordinates : Coordinates, optional
-        Independent coordinates; all by default. The equations of dependent coordinates are added to those of their
-        leaders (virtual work: N^T r(N z) with q = offset + N z).
-
-    Attributes
-    ----------
-    n : int
-        Number of unknowns.
-    at : dict of str to ndarray
-        Position of each kind of unknown in the vector of unknowns. `ABSENT` are dependent coordinates, multipliers of
-        redundant and satisfied equations, and mu of nonholonomic equations.
-    pattern : tuple of ndarrays
-        Row and column of each slot of the matrix, by columns.
+    `coordinates`: independent coordinates; all by default. The equations of dependent coordinates are added to those
+    of their leaders (virtual work: N^T r(N z) with q = offset + N z). `n`: number of unknowns. `at`: position of each
+    kind of unknown in the vector of unknowns. `ABSENT` are dependent coordinates, multipliers of redundant and
+    satisfied equations, and mu of nonholonomic equations. `pattern`: row and column of each slot of the matrix, by
+    columns.
     """
 
     def __init__(self, formulation: Formulation, system: System, coordinates: Coordinates | None = None) -> None:
@@ -243,10 +233,7 @@ class Equations:
     def table(self, slots: np.ndarray | None = None) -> tuple[np.ndarray, list[np.ndarray]]:
         """Return the table for compiled code, and the arrays that must live as long as it.
 
-        Parameters
-        ----------
-        slots : ndarray of int, optional
-            Position of each slot of the pattern in the solver's matrix; its own order by default.
+        `slots`: position of each slot of the pattern in the solver's matrix; its own order by default.
         """
         slot = self._slot if slots is None else np.ascontiguousarray(slots[self._slot], dtype=np.int32)
         n_slots = len(self.pattern[0]) if slots is None else int(slots.max()) + 1

@@ -39,18 +39,11 @@ class Block(NamedTuple):
 class Formulation(NamedTuple):
     """Equations of motion in the form that a solver integrates or solves.
 
-    Attributes
-    ----------
-    name : str
-        As in the settings of a run.
-    unknowns : tuple of str
-        Some of ``q u mu lam x``.
-    residual_set, matrix_set : str
-        Term sets of residual and matrix.
-    tested : tuple of str
-        Unknowns under error control.
-    integrated : bool
-        True if the unknowns mu and lam are integrals of the multipliers.
+    - `name`: as in the settings of a run.
+    - `unknowns`: some of ``q u mu lam x``.
+    - `residual_set`, `matrix_set`: term sets of residual and matrix.
+    - `tested`: unknowns under error control.
+    - `integrated`: true if the unknowns mu and lam are integrals of the multipliers.
     """
 
     name: str

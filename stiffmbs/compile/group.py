@@ -18,33 +18,23 @@ from .terms import TERM_AXES
 class Group:
     """Elements of one kind.
 
-    Attributes
-    ----------
-    names : tuple of str
-        Names of the elements.
-    elements : list of Element
-        Elements in that order; may be replaced together with their numbers, as inputs are found through their formulas.
-    of_body : BodyKind
-        Coordinates and velocities of the bodies.
-    index : ndarray of int, shape (count, 2 * bodies + 1 + joints + states + counters)
-        Offsets of each body in q and u (past the end for the ground) and of the element's first number. First row of
-        each joint that it refers to. Offsets of its states and turn counters in q.
-    numbers : ndarray
-        Kernel parameters and tables by element; may be changed in place.
-    first_row : int
-        First row of the first element's equations.
-    count : int
-        Number of elements.
-    entries : mapping of str to int
-        Number of entries of one element in each term.
-    bodies : ndarray of int, shape (count, bodies)
-        Indices of the bodies that each element acts on; the ground's follows the last body's.
-    states, counters : ndarrays of int, shapes (count, states), (count, counters)
-        Indices in q of each element's states and turn counters.
-    has_inputs, has_functions : bool
-        True if the elements have formulas or tables, or Python functions.
-    has_law : bool
-        True if they have breakpoints, formulas, tables or Python functions.
+    - `names`: names of the elements.
+    - `elements`: elements in that order; may be replaced together with their numbers, as inputs are found through
+      their formulas.
+    - `of_body`: coordinates and velocities of the bodies.
+    - `index` of shape (count, 2 * bodies + 1 + joints + states + counters): offsets of each body in q and u (past the
+      end for the ground) and of the element's first number. First row of each joint that it refers to. Offsets of its
+      states and turn counters in q.
+    - `numbers`: kernel parameters and tables by element; may be changed in place.
+    - `first_row`: first row of the first element's equations.
+    - `count`: number of elements.
+    - `entries`: number of entries of one element in each term.
+    - `bodies` of shape (count, bodies): indices of the bodies that each element acts on; the ground's follows the last
+      body's.
+    - `states`, `counters` of shapes (count, states), (count, counters): indices in q of each element's states and turn
+      counters.
+    - `has_inputs`, `has_functions`: true if the elements have formulas or tables, or Python functions.
+    - `has_law`: true if they have breakpoints, formulas, tables or Python functions.
     """
 
     kind: Kind

@@ -121,20 +121,12 @@ def with_place(kind: Kind, place: str) -> str:
 class ElementData:
     """Data that distinguish an element from others of its kind.
 
-    Attributes
-    ----------
-    places : PlacedMarkers
-        Placement of markers.
-    bodies : list of str
-        Bodies by slot; the reaction is reported on the first.
-    numbers : list of float
-        Kernel parameters in the order of use in the kind's equations.
-    tables : list of (int, ndarray)
-        Index in `numbers` of each table's offset, and the table's spline data.
-    joints : list of str
-        Joints whose multipliers the equations use.
-    states : list of str
-        States by slot.
+    - `places`: placement of markers.
+    - `bodies`: bodies by slot; the reaction is reported on the first.
+    - `numbers`: kernel parameters in the order of use in the kind's equations.
+    - `tables`: index in `numbers` of each table's offset, and the table's spline data.
+    - `joints`: joints whose multipliers the equations use.
+    - `states`: states by slot.
     """
 
     places: PlacedMarkers

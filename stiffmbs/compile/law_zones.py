@@ -53,24 +53,15 @@ BARELY = NEARER[-1]
 class Zones(NamedTuple):
     """Intervals of all event functions, in the order of the values of the set ``event_function``.
 
-    Attributes
-    ----------
-    first : ndarray of int, shape (n + 1,)
-        Index of the first breakpoint of each function.
-    edges : ndarray
-        Breakpoints in increasing order for each function; zero for an event function.
-    overlap : ndarray
-        Distance on both sides of each breakpoint over which the law continues unchanged; zero for an event function.
-    period : ndarray, shape (n,)
-        Period of a law; 0 if it is not periodic.
-    turns : ndarray of int
-        Indices of the functions that are arguments of sines or of periodic tables with few intervals.
-    radians : ndarray
-        Radians per unit of such an argument: 1 for a sine, 2 pi divided by the period for a table.
-    kinks : ndarray of int, shape (n,)
-        1 for arguments of tables with a kink, 0 for others.
-    zoned : int
-        Number of functions with breakpoints.
+    - `first` of shape (n + 1,): index of the first breakpoint of each function.
+    - `edges`: breakpoints in increasing order for each function; zero for an event function.
+    - `overlap`: distance on both sides of each breakpoint over which the law continues unchanged; zero for an event
+      function.
+    - `period` of shape (n,): period of a law; 0 if it is not periodic.
+    - `turns`: indices of the functions that are arguments of sines or of periodic tables with few intervals.
+    - `radians`: radians per unit of such an argument: 1 for a sine, 2 pi divided by the period for a table.
+    - `kinks` of shape (n,): 1 for arguments of tables with a kink, 0 for others.
+    - `zoned`: number of functions with breakpoints.
     """
 
     first: np.ndarray

@@ -41,28 +41,18 @@ LOGGER = logging.getLogger(__name__)
 class KindRecord:
     """Compiled form of a kind without its machine code.
 
-    Attributes
-    ----------
-    n_equations, n_holonomic : int
-        Number of constraint equations of one element, and of those with a position form, which come first.
-    joint_equations : list of int
-        Number of equations of each joint that it refers to.
-    n_counters : int
-        Number of turn counters of one element.
-    laws : list of (str, int)
-        Law of each argument: a function of `stiffmbs.compile.law_zones`, or ``table`` and the index of its offset.
-    patterns : dict
-        (row, column) of the entries of each term in the element's own block.
-    sources : dict
-        Kernel source of each common term set; absent if the kind contributes nothing.
-    losses : list of int or None
-        Numbers of an element that must be zero for it to conserve energy; None if unknown.
-    variation : list
-        Fields of the `stiffmbs.compile.symbolic.variation.Summand` objects of each entry of C_q.
-    removable : list of bool
-        True for position equations that may be eliminated where their derivatives are constant.
-    timed : list of bool
-        True for equations that depend on time or states.
+    - `n_equations`, `n_holonomic`: number of constraint equations of one element, and of those with a position form,
+      which come first.
+    - `joint_equations`: number of equations of each joint that it refers to.
+    - `n_counters`: number of turn counters of one element.
+    - `laws`: law of each argument: a function of `stiffmbs.compile.law_zones`, or ``table`` and the index of its
+      offset.
+    - `patterns`: (row, column) of the entries of each term in the element's own block.
+    - `sources`: kernel source of each common term set; absent if the kind contributes nothing.
+    - `losses`: numbers of an element that must be zero for it to conserve energy; None if unknown.
+    - `variation`: fields of the `stiffmbs.compile.symbolic.variation.Summand` objects of each entry of C_q.
+    - `removable`: true for position equations that may be eliminated where their derivatives are constant.
+    - `timed`: true for equations that depend on time or states.
     """
 
     n_equations: int
@@ -91,10 +81,7 @@ class KindRecord:
 def record_of(kind: Kind, place: str = "") -> KindRecord:
     """Return a kind's record from the cache, or derive and cache it.
 
-    Parameters
-    ----------
-    place : str, optional
-        Position in a list, such as ``2 of 7 kinds``; logged while it is derived.
+    `place`: position in a list, such as ``2 of 7 kinds``; logged while it is derived.
     """
     return _record_of(kind, Description(place))
 

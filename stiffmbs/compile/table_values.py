@@ -15,13 +15,8 @@ Curve = Callable[[np.ndarray], np.ndarray]
 def spline_data(table: Table) -> np.ndarray:
     """Return the kernel data of a table: count, 1 if it is periodic, knots, and the coefficients of each piece (highest first).
 
-    Splines are those of SciPy, monotone and Akima's cubics those of `stiffmbs.compile.table_values`; straight lines are
-    pieces without curvature.
-
-    Raises
-    ------
-    InputError
-        If points are so close that a coefficient is not finite.
+    Splines are those of SciPy, monotone and Akima's cubics those of `stiffmbs.compile.table_values`; straight lines
+    are pieces without curvature. Raises InputError if points are so close that a coefficient is not finite.
     """
     x, y = np.array(table.table, dtype=float).T
     try:
@@ -104,16 +99,8 @@ def akima_pieces(x: np.ndarray, y: np.ndarray) -> np.ndarray:
     """Return Akima's piecewise cubic interpolant.
 
     Akima, A New Method of Interpolation and Smooth Curve Fitting Based on Local Procedures, J. ACM 17 (1970) 589-602.
-
-    Parameters
-    ----------
-    x, y : ndarray, shape (n,)
-        Points, x strictly increasing, two or more.
-
-    Returns
-    -------
-    ndarray, shape (4, n - 1)
-        The coefficients of each piece, highest first, those of `scipy.interpolate.Akima1DInterpolator`.
+    `x`, `y` of shape (n,): points, x strictly increasing, two or more. Returns an array of shape (4, n - 1): the
+    coefficients of each piece, highest first, those of `scipy.interpolate.Akima1DInterpolator`.
     """
     chords = np.diff(y) / np.diff(x)
     return _hermite(x, y, chords, np.full(len(x), chords[0]) if len(x) == 2 else _akima_slopes(chords))
@@ -123,17 +110,8 @@ def monotone_pieces(x: np.ndarray, y: np.ndarray) -> np.ndarray:
     """Return the monotone piecewise cubic interpolant (PCHIP), which does not overshoot.
 
     Fritsch, Butland, A Method for Constructing Local Monotone Piecewise Cubic Interpolants, SIAM J. Sci. Stat. Comput.
-    5 (1984) 300-304.
-
-    Parameters
-    ----------
-    x, y : ndarray, shape (n,)
-        Points, x strictly increasing, two or more.
-
-    Returns
-    -------
-    ndarray, shape (4, n - 1)
-        The coefficients of each piece, highest first, those of `scipy.interpolate.PchipInterpolator`.
+    5 (1984) 300-304. `x`, `y` of shape (n,): points, x strictly increasing, two or more. Returns an array of shape (4,
+    n - 1): the coefficients of each piece, highest first, those of `scipy.interpolate.PchipInterpolator`.
     """
     apart = np.diff(x)
     chords = np.diff(y) / apart

@@ -98,14 +98,10 @@ def rates_of(dynamics: Dynamics, t: float, start: InitialValues) -> np.ndarray:
 def initial_values(dynamics: Dynamics, t: float) -> InitialValues:
     """Make the described start consistent.
 
-    Positions are corrected by minimum-norm Newton moves. Velocities get the smallest correction in the mass norm, those
-    that are not given first. Accelerations and multipliers follow from [M J^T; J 0][u'; lam] = [f; gamma].
-
-    Raises
-    ------
-    AssemblyError
-        When no assembled position is found (names the joint with the largest gap), the equations are dependent, or
-        friction and reactions have no balance.
+    Positions are corrected by minimum-norm Newton moves. Velocities get the smallest correction in the mass norm,
+    those that are not given first. Accelerations and multipliers follow from [M J^T; J 0][u'; lam] = [f; gamma].
+    Raises AssemblyError when no assembled position is found (names the joint with the largest gap), the equations are
+    dependent, or friction and reactions have no balance.
     """
     if dynamics.system.n_counters:
         take_nearest_turns(dynamics, t)

@@ -26,17 +26,10 @@ LARGE_SHIFT, LARGE_TURN = 0.25, math.radians(45.0)
 class Move(NamedTuple):
     """Change of one body by the assembly.
 
-    Attributes
-    ----------
-    body : str
-    shift : tuple of float
-        Of the centre of mass, m.
-    turn : float
-        Rotation, rad; in space its angle.
-    velocity : tuple of float
-        Change of the centre's velocity, m/s.
-    omega : float
-        Change of the angular velocity, rad/s; in space its norm.
+    - `shift`: of the centre of mass, m.
+    - `turn`: rotation, rad; in space its angle.
+    - `velocity`: change of the centre's velocity, m/s.
+    - `omega`: change of the angular velocity, rad/s; in space its norm.
     """
 
     body: str

@@ -109,17 +109,10 @@ def _same_matrix(one: Equations, other: Equations) -> bool:
 class SaddlePoint:
     """Block system with its factors, for compiled code.
 
-    Attributes
-    ----------
-    equations : Equations
-    order : EliminationOrder
-        Elimination order of the LU.
-    factors : dict
-        Memory of the factors.
-    factors_table, equations_table : ndarrays of int
-        Addresses (`stiffmbs.compile.machine.layout`).
-    slots : list of ndarray
-        Memory of the matrix entries.
+    - `order`: elimination order of the LU.
+    - `factors`: memory of the factors.
+    - `factors_table`, `equations_table`: addresses (`stiffmbs.compile.machine.layout`).
+    - `slots`: memory of the matrix entries.
     """
 
     equations: Equations

@@ -36,12 +36,8 @@ CACHED = 256
 def allocated(*shape: int) -> np.ndarray:
     """Return an uninitialized array of floats.
 
-    A large array is mapped to a temporary file, which is deleted with it.
-
-    Raises
-    ------
-    InputError
-        When there is no space for the file.
+    A large array is mapped to a temporary file, which is deleted with it. Raises InputError when there is no space for
+    the file.
     """
     size = 8 * math.prod(shape)
     if size <= LARGEST_IN_MEMORY:

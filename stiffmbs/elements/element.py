@@ -46,12 +46,7 @@ IN_EQUATIONS = frozenset([
 def _reserved(element: type[Described], base: type[Described]) -> str:
     """Return the reason why a field of an element class is not allowed, or an empty string.
 
-    Parameters
-    ----------
-    element : type
-        A subclass of joints or forces.
-    base : type
-        The base whose attributes its fields must not hide.
+    `element`: a subclass of joints or forces. `base`: the base whose attributes its fields must not hide.
     """
     names = IN_EQUATIONS | {name for name in dir(base) if not hasattr(Described, name)}
     added = {*element.model_fields, *element.__private_attributes__} - {*base.model_fields}

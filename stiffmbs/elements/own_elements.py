@@ -107,10 +107,7 @@ def register(element: type[Any]) -> type[Any]:
 def check_class(element: object) -> None:
     """Refuse a class that is not a joint or force, or is incomplete.
 
-    Raises
-    ------
-    InputError
-        The message names the class.
+    Raises InputError: the message names the class.
     """
     for reason in _lacks(element):
         raise InputError(f"{getattr(element, '__name__', repr(element))}: {reason}")

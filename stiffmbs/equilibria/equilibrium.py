@@ -58,21 +58,9 @@ def find_equilibrium(
 ) -> Equilibrium:
     """Find the stable equilibrium that a system reaches from its pose in overdamped motion; the state is set to it.
 
-    Parameters
-    ----------
-    dynamics : Dynamics
-        At an assembled pose.
-    t : float
-        Time at which forces and drives are evaluated, s.
-    motion : SteadyMotion, optional
-        Steady motion of the equilibrium; at rest by default.
-    most : int, optional
-        Largest number of moves.
-
-    Raises
-    ------
-    SolverError
-        When none is found; names the body with the largest imbalance.
+    `dynamics`: at an assembled pose. `t`: time at which forces and drives are evaluated, s. `motion`: steady motion of
+    the equilibrium; at rest by default. `most`: largest number of moves. Raises SolverError when none is found; names
+    the body with the largest imbalance.
     """
     state = dynamics.state
     shift, moves = 1.0, 0

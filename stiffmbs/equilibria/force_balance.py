@@ -22,26 +22,17 @@ from .steady_motion import SteadyMotion
 class Balance:
     """Balance of forces at a pose.
 
-    Attributes
-    ----------
-    left : ndarray, shape (n_u + states,)
-        Residual of forces, inertia forces and reactions, and the rates of the user's own states.
-    largest : float
-        Largest force.
-    allowed : ndarray, shape (n_u + states,)
-        Allowed residual.
-    stiffness : sparse array
-        Negative derivative of the residual with respect to pose and states.
-    jacobian, reactions : sparse arrays
-        J of the independent equations, and the negative derivative of the residual with respect to multipliers.
-    dragged : sparse array
-        Derivative of the rates of states with respect to velocities.
-    motion : SteadyMotion
-        Steady motion of the balance.
-    negligible : ndarray, shape (n_u,)
-        Forces that count as zero if all forces vanish in equilibrium.
-    speeds : FoundSpeeds, optional
-        Speeds of the motion that the forces determine.
+    - `left` of shape (n_u + states,): residual of forces, inertia forces and reactions, and the rates of the user's
+      own states.
+    - `largest`: largest force.
+    - `allowed` of shape (n_u + states,): allowed residual.
+    - `stiffness`: negative derivative of the residual with respect to pose and states.
+    - `jacobian`, `reactions`: J of the independent equations, and the negative derivative of the residual with respect
+      to multipliers.
+    - `dragged`: derivative of the rates of states with respect to velocities.
+    - `motion`: steady motion of the balance.
+    - `negligible` of shape (n_u,): forces that count as zero if all forces vanish in equilibrium.
+    - `speeds`: speeds of the motion that the forces determine.
     """
 
     left: np.ndarray

@@ -20,16 +20,10 @@ from .steady_motion import SteadyMotion
 class FoundSpeeds:
     """Derivatives of the balance of forces and rates of states by the unknown speeds.
 
-    Attributes
-    ----------
-    effect : ndarray, shape (n_u + states, speeds)
-        Negative derivative of the residual by each speed.
-    momentum : ndarray, shape (n_u + states, speeds)
-        Momenta by each speed.
-    held : ndarray, shape (speeds, n_u + states)
-        Displacements fixed in place of the speeds.
-    sizes : ndarray, shape (speeds,)
-        Magnitudes of the speeds, m/s and rad/s.
+    - `effect` of shape (n_u + states, speeds): negative derivative of the residual by each speed.
+    - `momentum` of shape (n_u + states, speeds): momenta by each speed.
+    - `held` of shape (speeds, n_u + states): displacements fixed in place of the speeds.
+    - `sizes` of shape (speeds,): magnitudes of the speeds, m/s and rad/s.
     """
 
     effect: np.ndarray

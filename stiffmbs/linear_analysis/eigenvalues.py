@@ -21,12 +21,7 @@ ZERO_SINGULAR = 10 * np.finfo(float).eps
 class Zeros:
     """Zero eigenvalues of a matrix.
 
-    Attributes
-    ----------
-    eigenvectors : ndarray, shape (n, k)
-        Basis of its null space.
-    generalised : ndarray, shape (n, l)
-        Generalised eigenvectors.
+    `eigenvectors` of shape (n, k): basis of its null space. `generalised` of shape (n, l): generalised eigenvectors.
     """
 
     eigenvectors: np.ndarray

@@ -32,14 +32,8 @@ OWN = 0.05
 class Lowest:
     """Lowest w^2 of an equilibrium, and their motions.
 
-    Attributes
-    ----------
-    squares : ndarray, shape (k,)
-        Real parts of w^2, 1/s^2; negative ones are unstable.
-    shapes : ndarray, shape (n_u, k)
-        Motions, as velocities of all bodies.
-    none : ndarray, shape (k,)
-        Bound up to which each w^2 counts as zero.
+    `squares` of shape (k,): real parts of w^2, 1/s^2; negative ones are unstable. `shapes` of shape (n_u, k): motions,
+    as velocities of all bodies. `none` of shape (k,): bound up to which each w^2 counts as zero.
     """
 
     squares: np.ndarray
@@ -61,18 +55,9 @@ class Lowest:
 def lowest(stiffness: csc_array, jacobian: csc_array, mass: np.ndarray, scale: np.ndarray, left: np.ndarray) -> Lowest:
     """Return the lowest w^2 of an equilibrium.
 
-    Parameters
-    ----------
-    stiffness : sparse array, shape (n_u, n_u)
-        K: negative derivative of forces, with the reactions, by displacements.
-    jacobian : sparse array, shape (n_c, n_u)
-        J of independent equations.
-    mass : ndarray, shape (n_u,)
-        The diagonal of M.
-    scale : ndarray, shape (n_u,)
-        Units of displacements.
-    left : ndarray, shape (n_u,)
-        Residual of the forces.
+    `stiffness` of shape (n_u, n_u): K: negative derivative of forces, with the reactions, by displacements. `jacobian`
+    of shape (n_c, n_u): J of independent equations. `mass` of shape (n_u,): the diagonal of M. `scale` of shape
+    (n_u,): units of displacements. `left` of shape (n_u,): residual of the forces.
     """
     if len(mass) <= MOST_DENSE:
         squares, shapes = _all(stiffness, jacobian, mass, scale)
@@ -152,21 +137,8 @@ def eigenvalues_beside(
     """Return the eigenvalues about a steady motion, 1/s; None if coefficients are not constant in the comoving frame.
 
     With W x the rotation of the frame, variations in it change by x' = v - W x and v' = a - W v. Neutral motions, such
-    as one along the motion itself, are included as zeros.
-
-    Parameters
-    ----------
-    dynamics : Dynamics
-        At a state of the motion, with its multipliers.
-    t : float
-        s.
-    acceleration : ndarray, shape (n_u,)
-        u' of the motion.
-
-    Raises
-    ------
-    SolverError
-        When a free motion has no mass.
+    as one along the motion itself, are included as zeros. `dynamics`: at a state of the motion, with its multipliers.
+    `t`: s. `acceleration` of shape (n_u,): u' of the motion. Raises SolverError when a free motion has no mass.
     """
     system = dynamics.system
     scale = system.per_velocity(system.size, 1.0)

@@ -21,22 +21,14 @@ DEPENDENT = 1e-9
 class StateMatrix:
     """State matrix of z' = A z with z = (a, b, s); s are the user-defined states.
 
-    Attributes
-    ----------
-    matrix : ndarray, shape (n, n)
-        A; n is twice the degrees of freedom, plus one for each rolling constraint and each state.
-    poses : ndarray, shape (n_u, n)
-        x from z: displacements and rotations of all bodies, ground axes.
-    velocities : ndarray, shape (n_u, n)
-        v from z.
-    accelerations : ndarray, shape (n_u, n)
-        v' from z.
-    forced : ndarray, shape (n, n_u)
-        z' from generalised forces on the bodies, ground axes.
-    n_poses : int
-        Length of a.
-    n_states : int
-        Length of s.
+    - `matrix` of shape (n, n): A; n is twice the degrees of freedom, plus one for each rolling constraint and each
+      state.
+    - `poses` of shape (n_u, n): x from z: displacements and rotations of all bodies, ground axes.
+    - `velocities` of shape (n_u, n): v from z.
+    - `accelerations` of shape (n_u, n): v' from z.
+    - `forced` of shape (n, n_u): z' from generalised forces on the bodies, ground axes.
+    - `n_poses`: length of a.
+    - `n_states`: length of s.
     """
 
     matrix: np.ndarray
@@ -56,15 +48,8 @@ class StateMatrix:
 def state_matrix(linear: Linearised, scale: np.ndarray) -> StateMatrix:
     """Eliminate the constraints from linearised equations.
 
-    Parameters
-    ----------
-    scale : ndarray, shape (n_u,)
-        Units of the variations of velocities: lengths for displacements, 1 for rotations.
-
-    Raises
-    ------
-    SolverError
-        When a free motion has no mass.
+    `scale` of shape (n_u,): units of the variations of velocities: lengths for displacements, 1 for rotations. Raises
+    SolverError when a free motion has no mass.
     """
     constraints = Constraints(linear.velocity * scale)
     free = constraints.null_space * scale[:, None]
@@ -129,25 +114,13 @@ def _solved(inertia: np.ndarray, forces: np.ndarray) -> np.ndarray:
 def null_space(matrix: np.ndarray) -> np.ndarray:
     """Return an orthonormal basis of the null space of a matrix, by QR of its transpose with column pivoting.
 
-    Parameters
-    ----------
-    matrix : ndarray, shape (m, n)
-
-    Returns
-    -------
-    ndarray, shape (n, n - rank)
+    `matrix` of shape (m, n). Returns an array of shape (n, n - rank).
     """
     return Constraints(matrix).null_space
 
 
 class Constraints:
-    """Factorized equations A x = b: A^T with normalised rows of A, pivoted, is Q R.
-
-    Parameters
-    ----------
-    matrix : ndarray, shape (m, n)
-        A.
-    """
+    """Factorized equations A x = b: A^T with normalised rows of A, pivoted, is Q R. `matrix` of shape (m, n): A."""
 
     def __init__(self, matrix: np.ndarray) -> None:
         self._norms = np.linalg.norm(matrix, axis=1)

@@ -25,13 +25,8 @@ SINGULAR = 1e15
 class Algebraic:
     """Variations of algebraic states and their effects.
 
-    Attributes
-    ----------
-    is_algebraic : ndarray of bool, shape (states,)
-    inverse : ndarray, shape (algebraic, algebraic)
-        Z^-1.
-    on_forces, on_rates : ndarrays, shapes (n_u, algebraic), (others, algebraic)
-        Derivatives of the forces, and of the rates of the other states.
+    `is_algebraic` of shape (states,). `inverse` of shape (algebraic, algebraic): Z^-1. `on_forces`, `on_rates` of
+    shapes (n_u, algebraic), (others, algebraic): derivatives of the forces, and of the rates of the other states.
     """
 
     is_algebraic: np.ndarray
@@ -54,10 +49,7 @@ class Algebraic:
 def algebraic_of(is_algebraic: np.ndarray, by_states: np.ndarray, rate_by_states: np.ndarray) -> Algebraic:
     """Return the elimination of algebraic states, from the derivatives of forces and rates by all states.
 
-    Raises
-    ------
-    SolverError
-        When they have no unique values.
+    Raises SolverError when they have no unique values.
     """
     own = rate_by_states[np.ix_(is_algebraic, is_algebraic)]
     sizes = np.linalg.norm(own, axis=1)[:, None]
@@ -111,31 +103,22 @@ class Linearised:
     M v' = K x + D v + F s - B dlam; s' = R_x x + R_v v + R_s s + R_lam dlam; G x + G_s s = 0; H x + J v + H_s s = 0;
     J v' + H_x x + H_v v + A_s s = 0. Algebraic states are eliminated.
 
-    Attributes
-    ----------
-    mass : sparse array, shape (n_u, n_u)
-        M.
-    stiffness, damping : ndarrays, shape (n_u, n_u)
-        K and D, derivatives of forces, so that a spring has a negative K.
-    reactions : ndarray, shape (n_u, n_c)
-        B: J^T minus the derivative of forces by multipliers.
-    position : ndarray, shape (holonomic, n_u)
-        G, the derivative of the position constraints.
-    velocity, velocity_at_position : ndarrays, shape (n_c, n_u)
-        J and H, the derivatives of the velocity constraints by v and x.
-    acceleration_at_position, acceleration_at_velocity : ndarrays, shape (n_c, n_u)
-        H_x and H_v, of the acceleration constraints.
-    by_states : ndarray, shape (n_u, states)
-        F.
-    position_by_states, velocity_by_states, acceleration_by_states : ndarrays, shapes (holonomic or n_c, states)
-        G_s, H_s and A_s.
-    rate_by_pose, rate_by_velocity, rate_by_states, rate_by_reactions : ndarrays, shapes (states, n_u, states or n_c)
-        R_x, R_v, R_s and R_lam.
-    own_axes, spin : sparse arrays, shape (n_u, n_u)
-        Transformation from ground axes to those of u, and w x of every body in ground axes: the variation of u' is
-        own_axes (v' - w x v).
-    algebraic : Algebraic
-        Elimination of algebraic states, and of sampled ones, which are constant.
+    - `mass` of shape (n_u, n_u): M.
+    - `stiffness`, `damping` of shape (n_u, n_u): k and D, derivatives of forces, so that a spring has a negative K.
+    - `reactions` of shape (n_u, n_c): B: J^T minus the derivative of forces by multipliers.
+    - `position` of shape (holonomic, n_u): G, the derivative of the position constraints.
+    - `velocity`, `velocity_at_position` of shape (n_c, n_u): J and H, the derivatives of the velocity constraints by v
+      and x.
+    - `acceleration_at_position`, `acceleration_at_velocity` of shape (n_c, n_u): H_x and H_v, of the acceleration
+      constraints.
+    - `by_states` of shape (n_u, states): F.
+    - `position_by_states`, `velocity_by_states`, `acceleration_by_states` of shapes (holonomic or n_c, states): G_s,
+      H_s and A_s.
+    - `rate_by_pose`, `rate_by_velocity`, `rate_by_states`, `rate_by_reactions` of shapes (states, n_u, states or n_c):
+      R_x, R_v, R_s and R_lam.
+    - `own_axes`, `spin` of shape (n_u, n_u): transformation from ground axes to those of u, and w x of every body in
+      ground axes: the variation of u' is own_axes (v' - w x v).
+    - `algebraic`: elimination of algebraic states, and of sampled ones, which are constant.
     """
 
     mass: csr_array
@@ -163,19 +146,8 @@ class Linearised:
 def linearised(dynamics: Dynamics, t: float, acceleration: np.ndarray) -> Linearised:
     """Return the linearised equations at the state of a system.
 
-    Parameters
-    ----------
-    dynamics : Dynamics
-        At a state that satisfies the constraints, with its multipliers.
-    t : float
-        s.
-    acceleration : ndarray, shape (n_u,)
-        u' of that state.
-
-    Returns
-    -------
-    Linearised
-        Of the equations that are not redundant.
+    `dynamics`: at a state that satisfies the constraints, with its multipliers. `t`: s. `acceleration` of shape
+    (n_u,): u' of that state. Returns of the equations that are not redundant.
     """
     system, state = dynamics.system, dynamics.state
     state.a[:] = acceleration

@@ -24,14 +24,8 @@ if TYPE_CHECKING:
 class Input:
     """Input of the linearised equations, per unit.
 
-    Attributes
-    ----------
-    force : ndarray, shape (n_u,)
-        Generalised forces, ground axes.
-    position : ndarray, shape (holonomic,)
-        C_p, the change of the position constraints.
-    rates : ndarray, shape (states,)
-        Rates of the user-defined states.
+    `force` of shape (n_u,): generalised forces, ground axes. `position` of shape (holonomic,): C_p, the change of the
+    position constraints. `rates` of shape (states,): rates of the user-defined states.
     """
 
     name: str
@@ -44,14 +38,8 @@ class Input:
 class Effect:
     """Effect of an input on the free variations.
 
-    Attributes
-    ----------
-    rates : ndarray, shape (n,)
-        B: z' per unit of the input.
-    pose, velocity : ndarrays, shape (n_u,)
-        x and v per unit of the input, at z = 0.
-    velocity_of_rate : ndarray, shape (n_u,)
-        v per unit of the input's rate.
+    `rates` of shape (n,): B: z' per unit of the input. `pose`, `velocity` of shape (n_u,): x and v per unit of the
+    input, at z = 0. `velocity_of_rate` of shape (n_u,): v per unit of the input's rate.
     """
 
     rates: np.ndarray
@@ -63,11 +51,8 @@ class Effect:
 def effect(linear: Linearised, state: StateMatrix, given: Input, scale: np.ndarray) -> Effect:
     """Return the effect of an input on the free variations, poses and velocities.
 
-    Raises
-    ------
-    InputError
-        When a state depends on the rate or reaction of an input that moves a constraint, or when constraints depend on
-        states and the input is not a force.
+    Raises InputError when a state depends on the rate or reaction of an input that moves a constraint.
+    It is raised, too, when constraints depend on states and the input is not a force.
     """
     if np.any(linear.position_by_states) and (np.any(given.rates) or np.any(given.position)):
         raise InputError(

@@ -19,16 +19,10 @@ from ..reading.marker import GROUND, MarkerReference
 class MergedBodies(NamedTuple):
     """Model with merged bodies in place of those connected by fixed joints.
 
-    Attributes
-    ----------
-    model : ModelData
-        As described.
-    bodies : dict of str to Body
-        Merged bodies, with the total mass, centre of mass and inertia of the members, named after the first.
-    members : dict of str to (str, Placement)
-        Merged body of each body of the model, and the placement of its centre of mass and axes on that.
-    joints_left_out : tuple of str
-        Fixed joints within merged bodies.
+    - `model`: as described.
+    - `bodies`: merged bodies, with the total mass, centre of mass and inertia of the members, named after the first.
+    - `members`: merged body of each body of the model, and the placement of its centre of mass and axes on that.
+    - `joints_left_out`: fixed joints within merged bodies.
     """
 
     model: ModelData

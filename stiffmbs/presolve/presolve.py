@@ -33,18 +33,11 @@ Alike = Callable[[Sequence[np.ndarray]], Sequence[Sequence[int]]]
 class Part:
     """Mechanism to solve, and the bodies of the whole model that its bodies carry.
 
-    Attributes
-    ----------
-    bodies : ndarray of int
-        Numbers of the bodies in the whole model.
-    parent : ndarray of int
-        Number in `system` of the body that carries each of them.
-    poses : BodyFixedPoses
-        Poses of the bodies on their parents.
-    behind : ndarray of int
-        Coordinates of the whole model that the part's rotation counters and states represent.
-    kept : ndarray of int
-        The corresponding coordinates of the part.
+    - `bodies`: numbers of the bodies in the whole model.
+    - `parent`: number in `system` of the body that carries each of them.
+    - `poses`: poses of the bodies on their parents.
+    - `behind`: coordinates of the whole model that the part's rotation counters and states represent.
+    - `kept`: the corresponding coordinates of the part.
     """
 
     system: System

@@ -123,13 +123,8 @@ class Relations:
 class Dependence(NamedTuple):
     """Entries of C_q that are not identically zero, without those of the ground.
 
-    Attributes
-    ----------
-    row, column : ndarrays of int, shape (n,)
-    value : ndarray, shape (n,)
-        At the current pose.
-    entry, on : ndarrays of int, shape (k,)
-        Pairs of an entry and a coordinate on which it depends, with repetitions.
+    `row`, `column` of shape (n,). `value` of shape (n,): at the current pose. `entry`, `on` of shape (k,): pairs of an
+    entry and a coordinate on which it depends, with repetitions.
     """
 
     row: np.ndarray
@@ -149,14 +144,8 @@ def dependence(system: System, term: Term, values: np.ndarray) -> Dependence:
     """Return the symbolic dependence of the entries of C_q on coordinates.
 
     Summands with zero numbers are omitted. So are bounded ones that are rounding relative to the largest entry of the
-    row, such as the arm of a pin at the centre of mass.
-
-    Parameters
-    ----------
-    term : Term
-        C_q in the set ``position``.
-    values : ndarray
-        Of that set at a pose.
+    row, such as the arm of a pin at the centre of mass. `term`: C_q in the set ``position``. `values`: of that set at
+    a pose.
     """
     rounding = np.zeros(system.n_c)
     np.fmax.at(rounding, term.row, NEGLIGIBLE * np.abs(values[term.source]))
@@ -187,17 +176,11 @@ def curved(system: System, group: Group) -> np.ndarray:
 class _Summands(NamedTuple):
     """Summands of all entries of a kind, concatenated.
 
-    Attributes
-    ----------
-    numbers : ndarray of int
-        Of all distinct products, concatenated; -1 for a product without factors.
-    factors, products : ndarrays of int
-        Start of each factor, a sum of numbers, in `numbers`, and of each product in `factors`.
-    product, entry : ndarrays of int, shape (n,)
-        Of each summand.
-    bounded : ndarray of bool, shape (n,)
-    of, on : ndarrays of int
-        Pairs of a summand and a coordinate of the element on which it depends.
+    - `numbers`: of all distinct products, concatenated; -1 for a product without factors.
+    - `factors`, `products`: start of each factor, a sum of numbers, in `numbers`, and of each product in `factors`.
+    - `product`, `entry` of shape (n,): of each summand.
+    - `bounded` of shape (n,).
+    - `of`, `on`: pairs of a summand and a coordinate of the element on which it depends.
     """
 
     numbers: np.ndarray
@@ -262,12 +245,7 @@ def _sizes(group: Group, of_kind: _Summands) -> np.ndarray:
 def independent_coordinates(system: System, state: State, t: float) -> Coordinates:
     """Return the coordinates that remain after elimination by equations with constant coefficients.
 
-    Parameters
-    ----------
-    state : State
-        At a pose that satisfies the constraints; it is not changed.
-    t : float
-        s.
+    `state`: at a pose that satisfies the constraints; it is not changed. `t`: s.
     """
     found = Relations.none(system)
     candidates = _candidates(system)

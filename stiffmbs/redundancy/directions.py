@@ -15,16 +15,10 @@ from .parameters import REDUNDANCY
 class Direction(NamedTuple):
     """Direction of the indeterminate part of a reaction at all poses.
 
-    Attributes
-    ----------
-    quantity : str
-        ``force`` or ``torque``.
-    axes : str
-        Axes in which it is constant: a body, or ``ground``.
-    vector : tuple of float
-        Unit vector in these axes, with arbitrary sign.
-    across : bool
-        Whether it is perpendicular to that vector (in space), not parallel.
+    - `quantity`: ``force`` or ``torque``.
+    - `axes`: axes in which it is constant: a body, or ``ground``.
+    - `vector`: unit vector in these axes, with arbitrary sign.
+    - `across`: true if it is perpendicular to that vector (in space), not parallel.
     """
 
     quantity: str

@@ -12,15 +12,7 @@ from .parameters import REDUNDANCY
 
 
 class Redundant(NamedTuple):
-    """A redundant equation.
-
-    Attributes
-    ----------
-    row : int
-        Number of the dropped equation in its loop.
-    others : tuple of int
-        Rows on which it depends.
-    """
+    """A redundant equation. `row`: number of the dropped equation in its loop. `others`: rows on which it depends."""
 
     row: int
     others: tuple[int, ...]

@@ -21,14 +21,8 @@ from .uniqueness import by_functions
 class IdleFreedom:
     """Motion of one body that moves no other.
 
-    Attributes
-    ----------
-    between : tuple of str
-        Joints and forces that connect it to others.
-    motion : str
-        ``turn``, ``slide``, or ``move`` for several motions.
-    held_by : tuple of str
-        Forces that are stiff against it; empty if only joints and inertia act.
+    `between`: joints and forces that connect it to others. `motion`: ``turn``, ``slide``, or ``move`` for several
+    motions. `held_by`: forces that are stiff against it; empty if only joints and inertia act.
     """
 
     body: str
@@ -41,13 +35,7 @@ def idle_freedoms(dynamics: Dynamics, t: float) -> list[IdleFreedom]:
     """Return the bodies with idle freedoms between others to which joints and elastic forces connect them.
 
     The motions are the null space of a single body's J. A force holds a motion by a nonzero tangent stiffness.
-
-    Parameters
-    ----------
-    dynamics : Dynamics
-        At an assembled pose; it is restored.
-    t : float
-        s.
+    `dynamics`: at an assembled pose; it is restored. `t`: s.
     """
     system, state = dynamics.system, dynamics.state
     around = _joints_around(system)
@@ -164,19 +152,8 @@ def _motion(ways: np.ndarray, linear: int) -> str:
 def stiffnesses(state: State, t: float) -> dict[int, dict[str, np.ndarray]]:
     """Return the tangent stiffness -df/dq Z of each force against displacements of each body, by body and force.
 
-    Weights, dampers, friction and open contacts have none.
-
-    Parameters
-    ----------
-    state : State
-        At the pose.
-    t : float
-        s.
-
-    Returns
-    -------
-    dict of int to dict of str to ndarray, shape (n_u, n_u) of one body
-        Angles and moments in the solver's axes; SI units.
+    Weights, dampers, friction and open contacts have none. `state`: at the pose. `t`: s. Returns an array of shape
+    (n_u, n_u): angles and moments in the solver's axes; SI units.
     """
     system = state.system
     groups = [(g, group) for g, group in enumerate(system.groups) if group.entries["f_q"] and group.kind.element.kind]
@@ -228,14 +205,8 @@ def _moves(state: State, body: int) -> np.ndarray:
 def held(stiffness: dict[str, np.ndarray], ways: np.ndarray, scale: np.ndarray) -> tuple[list[str], np.ndarray]:
     """Return the forces that are stiff against motions of a body, and the motions without stiffness.
 
-    Parameters
-    ----------
-    stiffness : dict of str to ndarray
-        Of each force, as from `stiffnesses`.
-    ways : ndarray, shape (ways, n_u)
-        Independent motions, in units of `scale`.
-    scale : ndarray, shape (n_u,)
-        Units of displacements, m and rad.
+    `stiffness`: of each force, as from `stiffnesses`. `ways` of shape (ways, n_u): independent motions, in units of
+    `scale`. `scale` of shape (n_u,): units of displacements, m and rad.
     """
     scaled = {name: scale[:, None] * K * scale for name, K in stiffness.items()}
     largest = max((np.abs(K).max() for K in scaled.values()), default=0.0)
@@ -251,12 +222,8 @@ def screwed(system: System, q: np.ndarray, body: int, twist: np.ndarray) -> np.n
     """Return coordinates after a motion of one body along a constant twist: a screw motion, in the plane a rotation.
 
     The centre moves by (I + (1 - cos theta)/theta^2 [w] + (theta - sin theta)/theta^3 [w]^2) v with theta = |w|: Lynch
-    and Park, Modern Robotics, 2017, eq. 3.88.
-
-    Parameters
-    ----------
-    twist : ndarray, shape (n_u,) of one body
-        Velocity v of the centre of mass, m, and angular velocity w (in space in the body's axes), rad.
+    and Park, Modern Robotics, 2017, eq. 3.88. `twist`: velocity v of the centre of mass, m, and angular velocity w (in
+    space in the body's axes), rad.
     """
     of_body = system.of_body
     v, w = np.zeros(3), np.zeros(3)

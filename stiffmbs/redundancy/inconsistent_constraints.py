@@ -20,18 +20,11 @@ from .uniqueness import Indeterminate, forces_change, indeterminate
 class Inconsistency(NamedTuple):
     """Redundant equation that contradicts the equations on which it depends.
 
-    Attributes
-    ----------
-    row : int
-        Number of the redundant equation in its loop.
-    joints : tuple of str
-        Its joint and the joints that it contradicts; only those that depend on time, if there are any.
-    t : float
-        Time, s.
-    level : str
-        ``position`` or ``velocity``.
-    gap : Gap
-        Violation of the equation if the others hold.
+    - `row`: number of the redundant equation in its loop.
+    - `joints`: its joint and the joints that it contradicts; only those that depend on time, if there are any.
+    - `t`: time, s.
+    - `level`: ``position`` or ``velocity``.
+    - `gap`: violation of the equation if the others hold.
     """
 
     row: int
@@ -183,14 +176,8 @@ def _joints(equations: LoopEquations, redundant: Redundant, driven: np.ndarray) 
 class LoopRankResult(NamedTuple):
     """Results on a loop with dependent equations at the start.
 
-    Attributes
-    ----------
-    redundant : list of Redundant
-        Dropped equations.
-    driven : ndarray of bool
-        Mask of the loop's rows that depend on time.
-    motion_unique : bool
-        False if friction depends on reactions that are not unique.
+    `redundant`: dropped equations. `driven`: mask of the loop's rows that depend on time. `motion_unique`: false if
+    friction depends on reactions that are not unique.
     """
 
     rank: LoopRank
@@ -216,19 +203,8 @@ def rank_result_of(
 ) -> LoopRankResult | None:
     """Examine one loop near the described pose.
 
-    Parameters
-    ----------
-    state : State
-        Working memory.
-    start, duration : float
-        Of the run, s.
-    order : sequence of str
-        Names of all joints; the last is dropped first.
-
-    Returns
-    -------
-    LoopRankResult or None
-        None if all equations are independent, or undefined (initial value assembly then names the element).
+    `state`: working memory. `start`, `duration`: of the run, s. `order`: names of all joints; the last is dropped
+    first. Returns None if all equations are independent, or undefined (initial value assembly then names the element).
     """
     equations = LoopEquations(loop, state, start)
     pose = equations.pose(state.system.q[loop.coordinates], start)

@@ -16,20 +16,12 @@ from .sparse_matrix import SparseMatrix
 class Pose(NamedTuple):
     """Dimensionless equations of a loop at a time and pose, in the loop's rows and columns.
 
-    Attributes
-    ----------
-    q : ndarray
-        Coordinates of the loop's bodies, m and rad (quaternions).
-    t : float
-        s.
-    gap : float
-        Largest position violation.
-    C : ndarray, shape (n,)
-        Violations.
-    C_q, J : SparseMatrix, shape (n, velocities)
-        Derivatives of the positions by displacements, and of the velocity level.
-    rates : ndarray, shape (n,)
-        J u + C_t at u = 0, 1/s.
+    - `q`: coordinates of the loop's bodies, m and rad (quaternions).
+    - `t`: s.
+    - `gap`: largest position violation.
+    - `C` of shape (n,): violations.
+    - `C_q`, `J` of shape (n, velocities): derivatives of the positions by displacements, and of the velocity level.
+    - `rates` of shape (n,): J u + C_t at u = 0, 1/s.
     """
 
     q: np.ndarray

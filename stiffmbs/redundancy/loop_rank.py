@@ -15,18 +15,12 @@ from .sparse_matrix import SparseMatrix
 class LoopRank(NamedTuple):
     """Rank of one loop's scaled J.
 
-    Attributes
-    ----------
-    start : Pose
-        Assembled.
-    rank : int
-        In general: the largest rank at any pose.
-    start_rank : int
-        At the start; less than `rank` at a singular pose.
-    least : float
-        Smallest singular value that counts in the rank.
-    null_spaces : list of (Pose, ndarray, shape (n, n - rank))
-        Left null vectors of the scaled J at general poses, including the start if it is one.
+    - `start`: assembled.
+    - `rank`: in general: the largest rank at any pose.
+    - `start_rank`: at the start; less than `rank` at a singular pose.
+    - `least`: smallest singular value that counts in the rank.
+    - `null_spaces` of shape (n, n - rank)): left null vectors of the scaled J at general poses, including the start if
+      it is one.
     """
 
     equations: LoopEquations

@@ -22,24 +22,15 @@ if TYPE_CHECKING:
 class Overconstraint(NamedTuple):
     """Joints that together constrain a motion more than once.
 
-    Attributes
-    ----------
-    joints : tuple of str
-        All joints involved.
-    redundant : tuple of (str, str)
-        Joint and name of the dropped equations.
-    indeterminate : tuple of Indeterminate
-        Reactions that are not unique because of it.
-    shared : bool
-        Whether all joints connect the same bodies, so that their total reaction is unique.
-    remedies : tuple of tuple of str
-        Joints to remove, all of one tuple together, for every reaction to be unique.
-    elastic : tuple of str
-        Joints to make elastic, all together, for their stiffness to determine every reaction.
-    replacements : tuple of tuple of (str, str)
-        Joints and kinds that release just the redundant constraints: each joint alone, or a few together.
-    reason, remedy : str
-        Each a sentence without a full stop.
+    - `joints`: all joints involved.
+    - `redundant`: joint and name of the dropped equations.
+    - `indeterminate`: reactions that are not unique because of it.
+    - `shared`: true if all joints connect the same bodies, so that their total reaction is unique.
+    - `remedies`: joints to remove, all of one tuple together, for every reaction to be unique.
+    - `elastic`: joints to make elastic, all together, for their stiffness to determine every reaction.
+    - `replacements`: joints and kinds that release just the redundant constraints: each joint alone, or a few
+      together.
+    - `reason`, `remedy`: each a sentence without a full stop.
     """
 
     joints: tuple[str, ...]
@@ -234,17 +225,8 @@ def _one_of(names: Sequence[str]) -> str:
 def elastic_joints(joints: Sequence[LoopJoint], shares: Sequence[np.ndarray]) -> tuple[LoopJoint, ...]:
     """Return the joints to make elastic together; of those on one load path, if there are others, the last.
 
-    Parameters
-    ----------
-    joints : sequence of LoopJoint
-        All joints involved.
-    shares : sequence of ndarray, shape (rows, redundant equations)
-        The rows of each joint in the null space N of J^T.
-
-    Returns
-    -------
-    tuple of LoopJoint
-        Empty if too few joints can be replaced by elastic elements.
+    `joints`: all joints involved. `shares` of shape (rows, redundant equations): the rows of each joint in the null
+    space N of J^T. Returns empty if too few joints can be replaced by elastic elements.
     """
     usable = [
         k for k, share in enumerate(shares) if joints[k].element.elastic and np.abs(share).max() > REDUNDANCY.takes_part

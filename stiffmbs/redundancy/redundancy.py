@@ -23,14 +23,8 @@ if TYPE_CHECKING:
 class Redundancy(NamedTuple):
     """Result of the examination of a system.
 
-    Attributes
-    ----------
-    system : System
-        As examined.
-    rank_results : tuple of LoopRankResult
-        Of the loops with dependent equations at the start.
-    active : ndarray of bool, shape (n_c,)
-        Mask of the equations that are kept.
+    `system`: as examined. `rank_results`: of the loops with dependent equations at the start. `active` of shape
+    (n_c,): mask of the equations that are kept.
     """
 
     system: System
@@ -71,12 +65,7 @@ class Redundancy(NamedTuple):
 def examine(system: System, start: float, duration: float, order: Sequence[str]) -> Redundancy:
     """Examine the loops of a system.
 
-    Parameters
-    ----------
-    start, duration : float
-        Of the run, s.
-    order : sequence of str
-        Names of all joints; the last is dropped first.
+    `start`, `duration`: of the run, s. `order`: names of all joints; the last is dropped first.
     """
     state = State(system)
     state.evaluate("motion", start)

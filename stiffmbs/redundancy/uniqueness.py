@@ -26,12 +26,8 @@ TORQUES = ("torque", "tx", "ty", "tz")
 class Indeterminate(NamedTuple):
     """Indeterminate part of the reaction of a joint or force.
 
-    Attributes
-    ----------
-    channels : tuple of str
-        Components in ground axes, such as ``hinge.fx``.
-    directions : tuple of Direction
-        Constant directions of the indeterminate force, and in space of the torque; perpendicular components are unique.
+    `channels`: components in ground axes, such as ``hinge.fx``. `directions`: constant directions of the indeterminate
+    force, and in space of the torque; perpendicular components are unique.
     """
 
     element: str

@@ -36,17 +36,11 @@ CONTRADICTING_ROWS = Routine(
 class Overlooked:
     """Events that the steps of a run missed.
 
-    Attributes
-    ----------
-    times : ndarray
-        Output times that show them, s: in each step that of the largest acceleration of the first contradicting pair,
-        and in long steps those of the largest accelerations.
-    step : float
-        Length of the first of these steps, s.
-    velocity : str
-        Velocity that would have changed most there.
-    element : str
-        Force law with the largest force there, or an empty string.
+    - `times`: output times that show them, s: in each step that of the largest acceleration of the first contradicting
+      pair, and in long steps those of the largest accelerations.
+    - `step`: length of the first of these steps, s.
+    - `velocity`: velocity that would have changed most there.
+    - `element`: force law with the largest force there, or an empty string.
     """
 
     times: np.ndarray
@@ -102,15 +96,8 @@ def overlooked(system: System, rows: OutputRows, trajectory: Trajectory, setting
 def contradicting_rows(rows: OutputRows, mass: np.ndarray, steps: np.ndarray, least: np.ndarray) -> np.ndarray:
     """Return the numbers of the rows that contradict the next one in the same step.
 
-    Parameters
-    ----------
-    rows : OutputRows
-    mass : ndarray, shape (n_u,)
-        Weights of accelerations.
-    steps : ndarray
-        Ends of steps, s.
-    least : ndarray, shape (n_u,)
-        Differences of accelerations up to which there is no contradiction.
+    `mass` of shape (n_u,): weights of accelerations. `steps`: ends of steps, s. `least` of shape (n_u,): differences
+    of accelerations up to which there is no contradiction.
     """
     found = np.empty(len(rows.t), dtype=np.int64)
     arrays = rows.t, rows.u, rows.acceleration, mass, least, steps

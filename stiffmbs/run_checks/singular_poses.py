@@ -30,14 +30,8 @@ class PosesOnTheWay:
     """Poses of a motion and their distances from singular ones.
 
     The distance is the smallest singular value of J of the joints in loops, relative to the largest such value in the
-    motion. Rows of J are normalised, with arms in units of the system's size.
-
-    Parameters
-    ----------
-    system : System
-        Without redundant equations.
-    t : ndarray, shape (n,)
-    q : ndarray, shape (n, n_q)
+    motion. Rows of J are normalised, with arms in units of the system's size. `system`: without redundant equations.
+    `t` of shape (n,). `q` of shape (n, n_q).
     """
 
     def __init__(self, system: System, t: np.ndarray, q: np.ndarray) -> None:

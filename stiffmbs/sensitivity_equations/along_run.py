@@ -34,16 +34,10 @@ class Side:
 class Instant:
     """Sensitivities at an output time.
 
-    Attributes
-    ----------
-    number : int
-        Number of the output time.
-    change, values
-        As in `Side`.
-    sides : tuple of Side
-        Both sides of a parameter-dependent breakpoint or event at this time, else empty.
-    moved : ndarray of bool, shape (directions,)
-        True for the directions in which it moves.
+    - `number`: number of the output time.
+    - `change`, `values`: as in `Side`.
+    - `sides`: both sides of a parameter-dependent breakpoint or event at this time, else empty.
+    - `moved` of shape (directions,): true for the directions in which it moves.
     """
 
     number: int
@@ -71,12 +65,8 @@ class AlongRun:
     def at(self, rows: OutputRows, wanted: np.ndarray, start_q: np.ndarray, start_u: np.ndarray) -> Iterator[Instant]:
         """Yield the sensitivities at selected output times.
 
-        Parameters
-        ----------
-        wanted : ndarray of int
-            Numbers of the output times, increasing.
-        start_q, start_u : ndarrays, shapes (directions, n_q), (directions, n_u)
-            Sensitivities of the initial state.
+        `wanted`: numbers of the output times, increasing. `start_q`, `start_u` of shapes (directions, n_q),
+        (directions, n_u): sensitivities of the initial state.
         """
         s, asked = Shifted(start_q, start_u, np.zeros(len(start_q))), list(wanted)
         segments = self._recorder.passed(rows.t[-1] - rows.t[0])

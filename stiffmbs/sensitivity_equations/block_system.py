@@ -22,11 +22,8 @@ from ..errors import SolverError
 class Change:
     """Variation of a state, one row for each direction.
 
-    Attributes
-    ----------
-    q, u : ndarrays, shapes (directions, n_q), (directions, n_u)
-        Variations of coordinates and velocities, with algebraic states that satisfy their equations.
-    acceleration, lam : ndarrays, shapes (directions, n_u), (directions, n_c)
+    `q`, `u` of shapes (directions, n_q), (directions, n_u): variations of coordinates and velocities, with algebraic
+    states that satisfy their equations. `acceleration`, `lam` of shapes (directions, n_u), (directions, n_c).
     """
 
     q: np.ndarray
@@ -49,17 +46,9 @@ class BlockSystem:
     ) -> Change:
         """Return the variations of accelerations, multipliers and algebraic states at a state.
 
-        Parameters
-        ----------
-        moved_q, moved_u : ndarrays, shapes (directions, n_q), (directions, n_u)
-            Variations of the state; columns of algebraic states are ignored.
-        moved_t : ndarray, shape (directions,)
-            Variation of time.
-
-        Raises
-        ------
-        SolverError
-            When the accelerations are not determined.
+        `moved_q`, `moved_u` of shapes (directions, n_q), (directions, n_u): variations of the state; columns of
+        algebraic states are ignored. `moved_t` of shape (directions,): variation of time. Raises SolverError when the
+        accelerations are not determined.
         """
         return self._change(t, (q, u), self._accelerations, moved_q, moved_u, moved_t)
 

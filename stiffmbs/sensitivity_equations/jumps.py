@@ -75,14 +75,8 @@ class Shifted:
 class Jump:
     """Event between two segments.
 
-    Attributes
-    ----------
-    q_u_left, q_u_right : tuples of ndarrays, shapes (directions, n_q), (directions, n_u)
-        Derivatives of both states at a fixed time.
-    moved : ndarray, shape (directions,)
-        dt_e/dp.
-    s : Shifted
-        Derivatives of the state after it.
+    `q_u_left`, `q_u_right` of shapes (directions, n_q), (directions, n_u): derivatives of both states at a fixed time.
+    `moved` of shape (directions,): dt_e/dp. `s`: derivatives of the state after it.
     """
 
     left: State

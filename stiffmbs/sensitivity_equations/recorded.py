@@ -37,18 +37,12 @@ MOST_NUMBERS = 2e8
 class Segment:
     """Steps between two restarts.
 
-    Attributes
-    ----------
-    first : ndarray, shape (2 + 2 n,)
-        Time, order, y and y' at the start.
-    rows : ndarray, shape (steps, 2 + 2 n)
-        The same at the end of each step.
-    steps : ndarray, shape (steps, 1 + places, 2 + 2 n)
-        The same with rows at places within the step, without y', before its end.
-    places : int
-        Number of places within a step.
-    fired : tuple of int
-        Event functions that end it; empty at a breakpoint in time or the end of the run.
+    - `first` of shape (2 + 2 n,): time, order, y and y' at the start.
+    - `rows` of shape (steps, 2 + 2 n): the same at the end of each step.
+    - `steps` of shape (steps, 1 + places, 2 + 2 n): the same with rows at places within the step, without y', before
+      its end.
+    - `places`: number of places within a step.
+    - `fired`: event functions that end it; empty at a breakpoint in time or the end of the run.
     """
 
     start: InitialValues

@@ -38,12 +38,8 @@ def solve(
 ) -> Trajectory:  # fmt: skip
     """Integrate with IDA; the contract is in `stiffmbs.solve.trajectory`.
 
-    The integrator restarts at breakpoints in time and at events of force laws (a contact closes).
-
-    Raises
-    ------
-    InputError
-        When the formulation does not test velocities and forces depend on reactions.
+    The integrator restarts at breakpoints in time and at events of force laws (a contact closes). Raises InputError
+    when the formulation does not test velocities and forces depend on reactions.
     """
     refuse_untested_reactions(dynamics.system, settings)
     dynamics.forget_pivots()
@@ -74,10 +70,7 @@ def integrated(
 ) -> Trajectory:
     """Integrate with an integrator that may be reused.
 
-    Parameters
-    ----------
-    pays : callable, optional
-        Called after each return of the engine. The run ends at `integrator.reached` when it returns False.
+    `pays`: called after each return of the engine. The run ends at `integrator.reached` when it returns False.
     """
     system = integrator.dynamics.system
     rows = Rows(system.n_q, system.n_u, len(grid.times) if grid.times is not None else 1024)

@@ -18,34 +18,22 @@ class CostParameters:
 
     Source: least-squares fit of processor times of 20 scenes by ``python -m tests.bench.costs``.
 
-    Attributes
-    ----------
-    explicit_step : float
-        DOP853 step, without what follows.
-    explicit_operation : float
-        Operation of the acceleration kernels in such a step.
-    explicit_equation : float
-        Constraint equation in such a step.
-    multiplication : float
-        Multiplication of the elimination in such a step, or of the LU of the full block system.
-    large_blocks, large_block_multiplication : float
-        Elimination by large blocks, which many multiplications have: fixed, and per multiplication.
-    residual, residual_unknown : float
-        BDF residual with its share of the step: fixed, and per unknown.
-    matrix_operation : float
-        Operation of the kernels of the iteration matrix.
-    matrix_solver : float
-        Factor on the estimated time of the linear solver.
-    least_solver : float
-        Linear solver per unknown, before it is chosen: that of a chain, a lower bound.
-    step_residuals, step_matrices : float
-        Average numbers of residuals and of iteration matrices in a BDF step.
-    start, start_unknown : float
-        Consistent initial values and integrator memory at a switch of integrator: fixed, and per unknown.
-    start_steps : int
-        Small BDF steps from order 1 up to the regular step size.
-    restart_steps : int
-        Explicit steps, including rejected ones, that a breakpoint or an event adds to those that stability requires.
+    - `explicit_step`: DOP853 step, without what follows.
+    - `explicit_operation`: operation of the acceleration kernels in such a step.
+    - `explicit_equation`: constraint equation in such a step.
+    - `multiplication`: multiplication of the elimination in such a step, or of the LU of the full block system.
+    - `large_blocks`, `large_block_multiplication`: elimination by large blocks, which many multiplications have:
+      fixed, and per multiplication.
+    - `residual`, `residual_unknown`: BDF residual with its share of the step: fixed, and per unknown.
+    - `matrix_operation`: operation of the kernels of the iteration matrix.
+    - `matrix_solver`: factor on the estimated time of the linear solver.
+    - `least_solver`: linear solver per unknown, before it is chosen: that of a chain, a lower bound.
+    - `step_residuals`, `step_matrices`: average numbers of residuals and of iteration matrices in a BDF step.
+    - `start`, `start_unknown`: consistent initial values and integrator memory at a switch of integrator: fixed, and
+      per unknown.
+    - `start_steps`: small BDF steps from order 1 up to the regular step size.
+    - `restart_steps`: explicit steps, including rejected ones, that a breakpoint or an event adds to those that
+      stability requires.
     """
 
     explicit_step: float = 1.96
@@ -75,16 +63,11 @@ COSTS = tuned("cost", CostParameters())
 class ImplicitCost:
     """Cost of implicit steps.
 
-    Attributes
-    ----------
-    residual, matrix : float
-        Cost of each, with the solutions of the linear system.
-    memory : float
-        Cost of a start, excluding its small steps.
-    step_residuals, step_matrices : float
-        Average numbers of residuals and of real iteration matrices in a step; those of BDF by default.
-    start_steps : int
-        Small steps up to the regular step size.
+    - `residual`, `matrix`: cost of each, with the solutions of the linear system.
+    - `memory`: cost of a start, excluding its small steps.
+    - `step_residuals`, `step_matrices`: average numbers of residuals and of real iteration matrices in a step; those
+      of BDF by default.
+    - `start_steps`: small steps up to the regular step size.
     """
 
     residual: float

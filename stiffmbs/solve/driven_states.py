@@ -29,20 +29,9 @@ class Instant:
 def states_after(dynamics: Dynamics, before: Instant, t: float) -> np.ndarray:
     """Integrate the states to a later time; return them, shape (states,), with algebraic ones unchanged.
 
-    SciPy's Radau is used (Hairer and Wanner II, sec. IV.8). The current state is restored.
-
-    Parameters
-    ----------
-    dynamics : Dynamics
-    before : Instant
-        State from which the poses up to t are predicted.
-    t : float
-        s.
-
-    Raises
-    ------
-    SolverError
-        When the states cannot be integrated, or would require too many evaluations.
+    SciPy's Radau is used (Hairer and Wanner II, sec. IV.8). The current state is restored. `before`: state from which
+    the poses up to t are predicted. `t`: s. Raises SolverError when the states cannot be integrated, or would require
+    too many evaluations.
     """
     system = dynamics.system
     states, changing = before.q[system.first_state :].copy(), ~system.without_rate
@@ -73,10 +62,7 @@ class _Along:
     def rates(self, t: float, values: np.ndarray) -> np.ndarray:
         """Return x' at a time, NaN where the motion has no solution.
 
-        Raises
-        ------
-        SolverError
-            When too many evaluations would remain.
+        Raises SolverError when too many evaluations would remain.
         """
         self._evaluations += 1
         if self._evaluations % KINEMATIC.evaluations == 0:
@@ -117,16 +103,8 @@ class IntegratedMotion:
     """Motion determined by position and velocity equations together; it has the methods of `kinematic._Motion`.
 
     All velocities follow from J u + C_t = 0. SciPy's DOP853 (Hairer, Noersett, Wanner, sec. II.10) integrates q' = Z u
-    between output times, where positions are projected onto C = 0.
-
-    Parameters
-    ----------
-    dynamics : Dynamics
-    start : InitialValues
-    t, shortest : float
-        s; no state is computed within `shortest` of a breakpoint.
-    longest : float
-        Longest step, s, which resolves the drives.
+    between output times, where positions are projected onto C = 0. `t`, `shortest`: s; no state is computed within
+    `shortest` of a breakpoint. `longest`: longest step, s, which resolves the drives.
     """
 
     def __init__(self, dynamics: Dynamics, start: InitialValues, t: float, shortest: float, longest: float) -> None:
@@ -139,10 +117,7 @@ class IntegratedMotion:
     def go_to(self, end: float) -> None:
         """Integrate the motion to a later time.
 
-        Raises
-        ------
-        SolverError
-            When the drives demand velocities that the mechanism cannot have.
+        Raises SolverError when the drives demand velocities that the mechanism cannot have.
         """
         if end <= self.t:
             return

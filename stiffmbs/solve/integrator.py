@@ -32,22 +32,9 @@ Driver = Callable[[Dynamics, RunSettings, ErrorControl], tuple[Equations, Engine
 class Integrator:
     """IDA over the pieces of a run, from breakpoint to breakpoint and from event to event.
 
-    Parameters
-    ----------
-    dynamics : Dynamics
-    settings : RunSettings
-    control : ErrorControl, optional
-    memory : str
-        Name under which the dynamics keep the engine for the next integrator of that name.
-    driver : callable
-        Returns the equations, their engine and the cost of its linear solver.
-
-    Attributes
-    ----------
-    reached : Reached or None
-        Last return of the engine.
-    factors : float
-        Estimated time to factorize an iteration matrix and solve with it, us.
+    `memory`: name under which the dynamics keep the engine for the next integrator of that name. `driver`: returns the
+    equations, their engine and the cost of its linear solver. `reached`: last return of the engine. `factors`:
+    estimated time to factorize an iteration matrix and solve with it, us.
     """
 
     def __init__(

@@ -41,12 +41,8 @@ def solve(
     velocities are near their prediction, so that the solution cannot jump to another branch. Velocities that drives
     prescribe are integrated to 1e-11 (`IntegratedMotion`). If the mechanism locks (dead centre under its drive), the
     run stops with a message that names time and pose. Velocities and accelerations are recomputed after breakpoints of
-    the drives. The features of the drives between breakpoints bound the step.
-
-    Raises
-    ------
-    InputError
-        When the drives leave a freedom, prescribe one twice, or depend on a state.
+    the drives. The features of the drives between breakpoints bound the step. Raises InputError when the drives leave
+    a freedom, prescribe one twice, or depend on a state.
     """
     _refuse_freedoms(dynamics)
     _refuse_followed_states(dynamics)

@@ -55,10 +55,7 @@ def solved_between_samples(
 ) -> Trajectory:
     """Solve from sample to sample; the contract is in `stiffmbs.solve.trajectory`.
 
-    Parameters
-    ----------
-    solve : Solver
-        For the intervals between samples, or for the whole run without sampled states.
+    `solve`: for the intervals between samples, or for the whole run without sampled states.
     """
     system = dynamics.system
     if not system.sampled.any():
@@ -133,10 +130,7 @@ def samples(system: System, grid: Grid) -> Iterator[Sample]:
 def next_values(dynamics: Dynamics, sample: Sample, q: np.ndarray, u: np.ndarray) -> np.ndarray:
     """Return all states just after a sample, from coordinates and velocities just before it, shape (states,).
 
-    Raises
-    ------
-    SolverError
-        If there are no accelerations, or a formula has no finite value.
+    Raises SolverError if there are no accelerations, or a formula has no finite value.
     """
     system, t = dynamics.system, sample.t
     found: np.ndarray = q[system.first_state :].copy()

@@ -20,22 +20,13 @@ FOR_ALL_SOLVERS = frozenset({"duration", "start", "output", "points", "solver", 
 class Traits:
     """Traits of a solver with its scheme or formulation.
 
-    Attributes
-    ----------
-    name : str
-        Name in messages.
-    reads : tuple of str
-        Settings that it reads, in addition to those for all solvers.
-    implicit : bool
-        Whether it takes implicit steps; dependent coordinates are then eliminated from the dynamics.
-    fixed_steps : bool
-        Whether all steps have the length `step`, without error control.
-    exact : bool
-        Whether states follow from drives alone, exact apart from rounding.
-    locates_events : bool
-        Whether it stops at events of force laws, or does not need to.
-    switches : bool
-        Whether it switches between integrators during a run.
+    - `name`: name in messages.
+    - `reads`: settings that it reads, in addition to those for all solvers.
+    - `implicit`: true if it takes implicit steps; dependent coordinates are then eliminated from the dynamics.
+    - `fixed_steps`: true if all steps have the length `step`, without error control.
+    - `exact`: true if states follow from drives alone, exact apart from rounding.
+    - `locates_events`: true if it stops at events of force laws, or does not need to.
+    - `switches`: true if it switches between integrators during a run.
     """
 
     name: str

@@ -25,15 +25,7 @@ from .trajectory import Grid, History, Outcome, ProgressCallback, Solver, Trajec
 
 
 class Subsystem(NamedTuple):
-    """A mechanism ready to be solved.
-
-    Attributes
-    ----------
-    part : Part
-        Bodies of the whole system that it moves.
-    dynamics : Dynamics
-    start : InitialValues
-    """
+    """A mechanism ready to be solved. `part`: bodies of the whole system that it moves."""
 
     part: Part
     dynamics: Dynamics
@@ -43,10 +35,7 @@ class Subsystem(NamedTuple):
 def subsystem_of(part: Part, start: InitialValues, t: float) -> Subsystem:
     """Return the dynamics and start of a subsystem, from the start of the whole system.
 
-    Raises
-    ------
-    SolverError
-        When its accelerations are not determined.
+    Raises SolverError when its accelerations are not determined.
     """
     dynamics = Dynamics(part.system)
     return Subsystem(part, dynamics, restarted(dynamics, t, *part.reduced(start.q, start.u), project=False))
@@ -67,18 +56,9 @@ def presolved(
 ) -> tuple[Subsystem, ...]:
     """Return the mechanisms to solve in place of the whole system; empty if there is one only or presolve is off.
 
-    For implicit solvers, dependent coordinates are eliminated from their dynamics or from those of the whole system. If
-    steps are implicit from the start, the spin of axisymmetric bodies is removed from their quaternions. Explicit steps
-    would only come closer to their stability limit.
-
-    Parameters
-    ----------
-    model : ModelData
-    dynamics : Dynamics
-        Of the whole system, at its start.
-    start : InitialValues
-    grid : Grid
-    settings : RunSettings
+    For implicit solvers, dependent coordinates are eliminated from their dynamics or from those of the whole system.
+    If steps are implicit from the start, the spin of axisymmetric bodies is removed from their quaternions. Explicit
+    steps would only come closer to their stability limit. `dynamics`: of the whole system, at its start.
     """
     if not may_presolve(settings):
         return ()
@@ -116,13 +96,7 @@ def solve_subsystems(
     """Solve the mechanisms one after the other; the contract is in `stiffmbs.solve.trajectory`.
 
     If one stops early or is interrupted, the whole run ends there. The following ones are solved up to that time.
-
-    Parameters
-    ----------
-    solve : Solver
-        For each of them.
-    start : InitialValues
-        Of the whole system.
+    `solve`: for each of them. `start`: of the whole system.
     """
     found: list[Trajectory] = []
     rows = None if grid.times is None else len(grid.times)
@@ -194,19 +168,9 @@ def alike(
     """Return the sets of mechanisms to solve together that minimize the estimated cost.
 
     The fastest mechanism of a set determines its number of steps. Each step has a fixed cost and a cost per unknown.
-    Mechanisms with formulas, tables, events or states are solved separately, as each of their breakpoints is a restart.
-
-    Parameters
-    ----------
-    dynamics : Dynamics
-        Of the whole system.
-    start : InitialValues
-    during : tuple of float
-        Start and end of the run, s.
-    implicit : bool
-        Whether BDF solves it.
-    mechanisms : sequence of ndarray of int
-        Body numbers of each mechanism.
+    Mechanisms with formulas, tables, events or states are solved separately, as each of their breakpoints is a
+    restart. `dynamics`: of the whole system. `during`: start and end of the run, s. `implicit`: true if BDF solves it.
+    `mechanisms`: body numbers of each mechanism.
     """
     system = dynamics.system
     width = system.of_body.n_u

@@ -52,12 +52,7 @@ IN_DOUBT = "the end was reached, but the results are in doubt"
 class History:
     """Steps of a solver.
 
-    Attributes
-    ----------
-    t : ndarray
-        Ends of the steps, s.
-    order : ndarray of int
-        Order of the formula in each step; empty if fixed or unknown.
+    `t`: ends of the steps, s. `order`: order of the formula in each step; empty if fixed or unknown.
     """
 
     t: np.ndarray
@@ -136,13 +131,7 @@ class Trajectory:
 class Ending:
     """Context manager that records how a run ends: by a `SolverError`, an interruption, or normally.
 
-    Attributes
-    ----------
-    outcome : Outcome
-    message : str
-        One sentence.
-    seconds : float
-        Time spent in the block.
+    `message`: one sentence. `seconds`: time spent in the block.
     """
 
     def __init__(self) -> None:

@@ -26,16 +26,10 @@ from .stepped_over import Along, DenseSamples, SteppedOver, beyond, poses_of
 class Comparison:
     """A run and those with which it is compared.
 
-    Attributes
-    ----------
-    tighter : tuple of Again
-        By the same solver, the tightest last.
-    other : Again or None
-        By the other solver.
-    between : DenseSamples or None
-        Samples between output times.
-    sizes : mapping of str to float
-        Scales of the channels.
+    - `tighter`: by the same solver, the tightest last.
+    - `other`: by the other solver.
+    - `between`: samples between output times.
+    - `sizes`: scales of the channels.
     """
 
     job: Job
@@ -202,14 +196,8 @@ def _missed_sentence(comparison: Comparison, missed: list[str]) -> str:
 def step_diagnostics(comparison: Comparison, along: Along, shorter: Again | None) -> Iterator[str]:
     """Yield a sentence on missed events, else on different runs with shorter steps, else on an open energy balance.
 
-    Parameters
-    ----------
-    comparison : Comparison
-        Of the run with others.
-    along : Along
-        Result of sampling along the run.
-    shorter : Again or None
-        Rerun with a shorter longest step.
+    `comparison`: of the run with others. `along`: result of sampling along the run. `shorter`: rerun with a shorter
+    longest step.
     """
     if along.stretches:
         yield _stepped_over(comparison, along.stretches[0], shorter)

@@ -33,14 +33,7 @@ def distance(
 ) -> dict[str, np.ndarray]:
     """Return the distance of each body from that in another run over time, relative to the motion's size or in rad.
 
-    Parameters
-    ----------
-    first, other : mappings of str to ndarray
-        Channels at the same times.
-    count : int
-        Number of times to compare.
-    sizes : mapping of str to float
-        Scales of the channels.
+    `first`, `other`: channels at the same times. `count`: number of times to compare. `sizes`: scales of the channels.
     """
     found: dict[str, np.ndarray] = {}
     for name, values in first.items():

@@ -55,20 +55,12 @@ class Deadline:
 class Again:
     """A run for comparison.
 
-    Attributes
-    ----------
-    name : str
-        Description: ``bdf at rtol 1e-07``.
-    solution : Solution or None
-        None if there is no result.
-    obstacle : str
-        Why it stopped early, or an empty string.
-    remark : str
-        Remark of the solver on its steps, or an empty string.
-    blind : str
-        Event that its steps missed but the first run found, or an empty string.
-    at : ndarray of int
-        Positions of the first run's times among its own.
+    - `name`: description: ``bdf at rtol 1e-07``.
+    - `solution`: None if there is no result.
+    - `obstacle`: why it stopped early, or an empty string.
+    - `remark`: remark of the solver on its steps, or an empty string.
+    - `blind`: event that its steps missed but the first run found, or an empty string.
+    - `at`: positions of the first run's times among its own.
     """
 
     name: str
@@ -89,18 +81,9 @@ def solve_again(
 ) -> Again:
     """Solve with changed settings.
 
-    Parameters
-    ----------
-    name : str
-        For messages.
-    changes : dict
-        Fields of the settings.
-    times : ndarray
-        Output times, s, the start first.
-    at : ndarray of int
-        Positions of the first run's times among them.
-    allowed : float
-        Allowed evaluations of the job's equations, which do not depend on the load of the machine.
+    `name`: for messages. `changes`: fields of the settings. `times`: output times, s, the start first. `at`: positions
+    of the first run's times among them. `allowed`: allowed evaluations of the job's equations, which do not depend on
+    the load of the machine.
     """
     if allowed <= 0:
         return Again(name, None, "not begun: no effort was left", at[:0])

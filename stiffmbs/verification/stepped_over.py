@@ -39,14 +39,8 @@ from .solve_again import EXPLICIT, Again, Deadline
 class SteppedOver:
     """Interval of a run with a missed event.
 
-    Attributes
-    ----------
-    at : float
-        Time of the largest imbalance of momentum, s.
-    width : float
-        Length of the unbalanced interval, s.
-    element : str
-        Name of the force or joint, or an empty string.
+    `at`: time of the largest imbalance of momentum, s. `width`: length of the unbalanced interval, s. `element`: name
+    of the force or joint, or an empty string.
     """
 
     at: float
@@ -63,18 +57,11 @@ class SteppedOver:
 class Along:
     """Result of the search along a run.
 
-    Attributes
-    ----------
-    balance : Balance or None
-        Energy balance at all samples; None if the repeated run stopped early or differs.
-    missing : float
-        Largest imbalance that is not reported, J.
-    stretches : tuple of SteppedOver
-        Missed events of the run.
-    elsewhere : tuple of SteppedOver
-        Missed events of the repeated run if it differs.
-    obstacle : str
-        Why no search was made, or an empty string.
+    - `balance`: energy balance at all samples; None if the repeated run stopped early or differs.
+    - `missing`: largest imbalance that is not reported, J.
+    - `stretches`: missed events of the run.
+    - `elsewhere`: missed events of the repeated run if it differs.
+    - `obstacle`: why no search was made, or an empty string.
     """
 
     balance: Balance | None
@@ -87,12 +74,7 @@ class Along:
 def looked_along(job: Job, first: Solution, allowed: float) -> Along:
     """Search along a run at many times, with limited effort.
 
-    Parameters
-    ----------
-    first : Solution
-        Of the job.
-    allowed : float
-        Evaluations of the job's equations.
+    `first`: of the job. `allowed`: evaluations of the job's equations.
     """
     begun = job.evaluations()
     times = _instants(job, first, VERIFICATION.of_effort_left * allowed)
@@ -239,16 +221,10 @@ def _acting(system: System, rows: OutputRows, k: int) -> str:
 class DenseSamples:
     """Samples between output times.
 
-    Attributes
-    ----------
-    solution : Solution
-        At many times.
-    sound : ndarray of bool
-        Mask of the times with determined accelerations and reactions, and of the output times.
-    at : ndarray of int
-        Positions of the output times among the sound ones.
-    singular : tuple of float
-        Other times, s.
+    - `solution`: at many times.
+    - `sound`: mask of the times with determined accelerations and reactions, and of the output times.
+    - `at`: positions of the output times among the sound ones.
+    - `singular`: other times, s.
     """
 
     solution: Solution
@@ -294,12 +270,7 @@ def dense_samples(job: Job, run: Again, sizes: Mapping[str, float]) -> DenseSamp
     """Return the samples of a run; None if it stopped early or too many poses need a check.
 
     If accelerations and reactions are far larger than at output times, the pose may be singular. They are then
-    dominated by rounding, and such times are omitted.
-
-    Parameters
-    ----------
-    sizes : mapping of str to float
-        Scales of the channels.
+    dominated by rounding, and such times are omitted. `sizes`: scales of the channels.
     """
     solution = run.solution
     if solution is None or run.obstacle:

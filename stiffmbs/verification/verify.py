@@ -75,12 +75,7 @@ def verify(
 def verified(job: Job, first: Solution, allowed: float) -> Solution:
     """Return the result of `verify` for a job that was solved already.
 
-    Parameters
-    ----------
-    first : Solution
-        Of the job, with at least two output times.
-    allowed : float
-        Evaluations of the job's equations for all reruns.
+    `first`: of the job, with at least two output times. `allowed`: evaluations of the job's equations for all reruns.
     """
     with in_use(job.settings.tuning):
         return _Verification(job, first, allowed).result()

@@ -28,14 +28,8 @@ EVERYTHING = (NUMBER, *STATE)
 class Numbers:
     """Derivatives of a system's numbers with respect to a parameter.
 
-    Attributes
-    ----------
-    of_groups : tuple of ndarray
-        For each group of elements the derivatives of its numbers; table arguments keep their values
-        (`stiffmbs.compile.directional.source`).
-    moved : frozenset of int
-        Groups with numbers that change.
-    mass : ndarray, shape (n_u,)
+    `of_groups`: for each group of elements the derivatives of its numbers; table arguments keep their values
+    (`stiffmbs.compile.directional.source`). `moved`: groups with numbers that change. `mass` of shape (n_u,).
     """
 
     of_groups: tuple[np.ndarray, ...]
@@ -52,10 +46,7 @@ def unchanged(system: System) -> Numbers:
 def directional_kernel(kind: Kind, term_set: str, along: tuple[str, ...]) -> Compiled | None:
     """Return the kernel of a kind's directional derivatives in a set of terms; None if it has none.
 
-    Raises
-    ------
-    InputError
-        If an equation cannot be differentiated; names the kind.
+    Raises InputError if an equation cannot be differentiated; names the kind.
     """
     source = source_of(kind, term_set)
     if source is None:
@@ -74,25 +65,13 @@ def directional_kernel(kind: Kind, term_set: str, along: tuple[str, ...]) -> Com
 class Direction:
     """Direction for one set of terms.
 
-    Parameters
-    ----------
-    state : State
-        State at which the derivatives are taken.
-    numbers : Numbers
-        Changes of the system's numbers.
-    along : collection of str
-        Quantities that change: numbers alone, or the state and time too.
+    `state`: state at which the derivatives are taken. `numbers`: changes of the system's numbers. `along`: quantities
+    that change: numbers alone, or the state and time too.
 
-    Attributes
-    ----------
-    q, u, a, lam, mu : ndarrays
-        Changes of the state.
-    values : ndarray
-        Derivatives of the terms' values, followed by those of the system's constants.
-    table : ndarray of int
-        Pointer table for compiled code (`stiffmbs.compile.machine.native.tables.DIRECTION`).
-    writes : set of int
-        Groups whose values change.
+    - `q`, `u`, `a`, `lam`, `mu`: changes of the state.
+    - `values`: derivatives of the terms' values, followed by those of the system's constants.
+    - `table`: pointer table for compiled code (`stiffmbs.compile.machine.native.tables.DIRECTION`).
+    - `writes`: groups whose values change.
     """
 
     state: State

@@ -19,19 +19,9 @@ SIGNATURE = KERNEL_SIGNATURE.removesuffix(")") + ", float64*, float64, " + ", ".
 def directional_source(source: str, name: str, along: Collection[str]) -> str:
     """Return the source of the directional derivative of a kernel.
 
-    Parameters
-    ----------
-    source : str
-        Source of the kernel, as written by `stiffmbs.compile.symbolic.generate`.
-    name : str
-        Name of the new function.
-    along : collection of str
-        Quantities that change: ``number``, and names of `STATE`.
-
-    Raises
-    ------
-    InputError
-        If a function in it has no differentiation rule.
+    `source`: source of the kernel, as written by `stiffmbs.compile.symbolic.generate`. `name`: name of the new
+    function. `along`: quantities that change: ``number``, and names of `STATE`. Raises InputError if a function in it
+    has no differentiation rule.
     """
     module = ast.parse(source)
     imports = [part for part in module.body if isinstance(part, ast.ImportFrom)]

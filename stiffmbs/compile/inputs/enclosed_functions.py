@@ -151,10 +151,7 @@ def _quintic_ramp(z: Enclosure) -> Enclosure:
 def step(x: Any, x0: Any, h0: Any, x1: Any, h1: Any) -> Any:
     """Return Adams' STEP: a cubic from h0 at x0 to h1 at x1 with zero end slopes.
 
-    Returns
-    -------
-    Enclosure or float
-        A number if all arguments are numbers.
+    Returns a number if all arguments are numbers.
     """
     return _step(x, x0, h0, x1, h1, step_value, _cubic_ramp)
 

@@ -97,12 +97,8 @@ Outer = Callable[[int], Range]
 class Enclosure:
     """Ranges of a formula and its time derivatives, interval by interval; infinite if unbounded.
 
-    Attributes
-    ----------
-    coefficients : tuple of ndarray, shape (2, n)
-        Ranges of f, f', f''/2, f'''/6, ... ; omitted ones are zero.
-    order : int
-        Highest computed order.
+    `coefficients` of shape (2, n): ranges of f, f', f''/2, f'''/6, ... ; omitted ones are zero. `order`: highest
+    computed order.
     """
 
     coefficients: tuple[Range, ...]

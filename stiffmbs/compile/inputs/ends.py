@@ -41,16 +41,10 @@ Values = Callable[[float], float | None]
 class InputEnd(NamedTuple):
     """End of a formula of time.
 
-    Attributes
-    ----------
-    t : float
-        s.
-    near : float
-        Distance before the end, s, within which its values are inaccurate.
-    element, text : str
-        Element, and part of its formula.
-    pole : bool
-        True if it grows without bound; False if it has no value beyond.
+    - `t`: s.
+    - `near`: distance before the end, s, within which its values are inaccurate.
+    - `element`, `text`: element, and part of its formula.
+    - `pole`: true if it grows without bound; False if it has no value beyond.
     """
 
     t: float

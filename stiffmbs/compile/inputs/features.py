@@ -47,7 +47,7 @@ class InputFeatures:
         return np.append(self.starts[1:], np.inf)
 
     def longest_step(self, t: float) -> float:
-        """Return the longest step from a given time, s (as `stiffmbs.solve.native.longest_step`)."""
+        """Return the longest step from a given time, s (as `stiffmbs.solve.events.native.step_bound.longest_step`)."""
         if not len(self.starts):
             return np.inf
         k = max(int(np.searchsorted(self.starts, t, side="right")) - 1, 0)

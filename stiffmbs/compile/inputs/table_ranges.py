@@ -15,12 +15,8 @@ from .zeros import MOST_STRETCHES, TooMany
 class TableRanges:
     """Table as a function of arrays and of enclosures.
 
-    Attributes
-    ----------
-    breakpoints : ndarray
-        Arguments of its breakpoints, within one period for a periodic table.
-    period : float
-        Zero if it is not periodic.
+    `breakpoints`: arguments of its breakpoints, within one period for a periodic table. `period`: zero if it is not
+    periodic.
     """
 
     def __init__(self, table: Table) -> None:

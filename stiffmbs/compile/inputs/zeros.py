@@ -32,22 +32,8 @@ def zeros(values: Values, ranges: Ranges, start: float, end: float, levels: np.n
     """Return the times between two limits at which a formula crosses zero or other levels, unsorted.
 
     An interval is halved until the formula's range excludes all levels, or its slope has one sign so that end values
-    suffice. Straight lines need no search. A formula that stays at a level does not cross it.
-
-    Parameters
-    ----------
-    values : callable
-        Function of times.
-    ranges : callable
-        Function of starts and ends of intervals.
-    start, end : float
-        s.
-    levels : ndarray
-        Increasing.
-
-    Raises
-    ------
-    TooMany
+    suffice. Straight lines need no search. A formula that stays at a level does not cross it. `values`: function of
+    times. `ranges`: function of starts and ends of intervals. `start`, `end`: s. `levels`: increasing. Raises TooMany.
     """
     with np.errstate(all="ignore"):
         first, last = values(np.array([start, end]))

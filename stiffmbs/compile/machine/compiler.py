@@ -68,16 +68,8 @@ class _Source:
 def compiled_source(source: str, name: str, signature: str, of: str = "") -> Compiled:
     """Compile a function from generated source, or load it from the cache.
 
-    Parameters
-    ----------
-    source : str
-        Python text in the language of `stiffmbs.compile.machine.translate`; defines `name`.
-    name : str
-        The function's name.
-    signature : str
-        Such as ``void(int64, float64*)``.
-    of : str, optional
-        Description, logged while it is compiled.
+    `source`: Python text in the language of `stiffmbs.compile.machine.translate`; defines `name`. `name`: the
+    function's name. `signature`: such as ``void(int64, float64*)``. `of`: description, logged while it is compiled.
     """
     return _compiled_source(source, name, signature, Description(of))
 

@@ -54,12 +54,8 @@ class LateEntry:
 class Derived:
     """Terms of a kind; for all other fields see `stiffmbs.compile.record.KindRecord`.
 
-    Attributes
-    ----------
-    symbols : Symbols
-        Symbols of the expressions.
-    terms : dict
-        Non-zero entries of each term in row order, by the names of `stiffmbs.compile.terms.TERM_AXES`.
+    `symbols`: symbols of the expressions. `terms`: non-zero entries of each term in row order, by the names of
+    `stiffmbs.compile.terms.TERM_AXES`.
     """
 
     n_equations: int
@@ -75,10 +71,8 @@ class Derived:
 def derive(kind: Kind) -> Derived:
     """Derive all terms of a kind from its equations.
 
-    Raises
-    ------
-    InputError
-        If an equation depends on no coordinate of a body, is nonlinear in velocities, or contains a reaction.
+    Raises InputError if an equation depends on no coordinate of a body, is nonlinear in velocities, or contains a
+    reaction.
     """
     symbols = symbols_of(kind)
     if issubclass(kind.element, Joint):
@@ -296,17 +290,8 @@ def power_of_joint(e: SymbolicElement, V: sp.Matrix, lam: sp.Matrix) -> sp.Expr:
 def power_of_force(stated: Stated, symbols: Symbols, may_keep: bool = True) -> tuple[sp.Expr, list[int] | None]:
     """Return a force's power beyond the rate of its potential, and the numbers that must be zero for it to vanish.
 
-    Parameters
-    ----------
-    may_keep : bool
-        `Force.may_keep_energy`.
-
-    Returns
-    -------
-    power : Expr
-        W.
-    losses : list of int or None
-        Numbers of the element, in the order of `ElementData.numbers`; None if unknown.
+    `may_keep`: `Force.may_keep_energy`. Returns `power`: W; `losses`: numbers of the element, in the order of
+    `ElementData.numbers`; None if unknown.
     """
     e, powers, potential = symbols.element, stated.powers, stated.potential
     work = sp.Add(*(Q * v for Q, v in powers))

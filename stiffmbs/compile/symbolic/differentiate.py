@@ -19,10 +19,7 @@ Way = tuple[sp.Symbol, sp.Expr]
 class Derivatives:
     """Cached derivatives of the expressions of one element.
 
-    Attributes
-    ----------
-    meanings : dict
-        Expression of each named symbol, in order of definition.
+    `meanings`: expression of each named symbol, in order of definition.
     """
 
     def __init__(self) -> None:

@@ -66,26 +66,15 @@ class Variables:
 class SymbolicElement:
     """Element with frames for its markers and symbols for its numbers.
 
-    Attributes
-    ----------
-    t : sympy.Symbol
-        Time.
-    frames : list of BodyFrame or of SpatialBodyFrame
-        The bodies, in the order of `Element.bodies`.
-    states : list of Symbol
-        States that it reads or determines, by slot.
-    own : list of Symbol
-        The element's own states, which come first.
-    state_rates : tuple of Expr
-        Rates of the states, in the equations of joints.
-    angles : list of expressions
-        Continuous angles, in the order of their counters.
-    counts : bool
-        False for values that are only reported: angles without a counter are then within one turn.
-    breakpoints : list of expressions
-        Event functions of the equations (``Abs``, ``Max``, ``Piecewise``), as they are read.
-    derivatives : Derivatives
-        Derivatives of expressions in its symbols.
+    - `t`: time.
+    - `frames`: the bodies, in the order of `Element.bodies`.
+    - `states`: states that it reads or determines, by slot.
+    - `own`: the element's own states, which come first.
+    - `state_rates`: rates of the states, in the equations of joints.
+    - `angles`: continuous angles, in the order of their counters.
+    - `counts`: false for values that are only reported: angles without a counter are then within one turn.
+    - `breakpoints`: event functions of the equations (``Abs``, ``Max``, ``Piecewise``), as they are read.
+    - `derivatives`: derivatives of expressions in its symbols.
     """
 
     t = sp.Symbol("t", real=True)

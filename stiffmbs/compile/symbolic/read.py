@@ -49,15 +49,8 @@ UNDONE = (sp.Derivative, sp.Integral, sp.Sum, sp.Product, sp.Subs)
 def read(x: Any, note: Callable[[sp.Expr], None]) -> sp.Expr:
     """Return an expression in the form for kernels.
 
-    Parameters
-    ----------
-    note : callable
-        Called with the expression that is zero at each breakpoint.
-
-    Raises
-    ------
-    InputError
-        If it is not a real expression, or contains an unsupported function.
+    `note`: called with the expression that is zero at each breakpoint. Raises InputError if it is not a real
+    expression, or contains an unsupported function.
     """
     expression = sp.sympify(x)
     if not isinstance(expression, sp.Expr):

@@ -25,11 +25,7 @@ class SymbolicComponent:
 class ReferredJoint(SymbolicElement):
     """Joint to which an element refers: its fields, its multipliers, and the referenced coordinate.
 
-    Attributes
-    ----------
-    kind : str
-    lam : list of Symbol
-        Multipliers of its equations.
+    `lam`: multipliers of its equations.
     """
 
     def __init__(

@@ -62,14 +62,9 @@ def common_normal(
 ) -> sp.Matrix:
     """Return the unit normal from the second solid to the first, in the second one's axes.
 
-    Parameters
-    ----------
-    way : 3 expressions
-        Vector from the centre of the second solid to that of the first, m.
-    axes : 9 expressions
-        Rotation matrix from the axes of the first solid to those of the second, by rows.
-    first, second : up to 3 sequences of 3 expressions each
-        Squared semi-axes of the ellipsoids whose Minkowski sum is the solid, m^2.
+    `way`: vector from the centre of the second solid to that of the first, m. `axes`: rotation matrix from the axes of
+    the first solid to those of the second, by rows. `first`, `second`: squared semi-axes of the ellipsoids whose
+    Minkowski sum is the solid, m^2.
     """
     pose = [*way, *axes, *_all_three(first), *_all_three(second)]
     return sp.Matrix([CommonNormal(sp.Integer(k), *pose) for k in range(3)])

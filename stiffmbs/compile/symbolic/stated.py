@@ -18,20 +18,12 @@ from .symbols import Symbols, symbols_of
 class Stated:
     """Expressions from which everything else is derived.
 
-    Attributes
-    ----------
-    point : tuple of Expr
-        Reference point of the reaction's torque.
-    event_functions : tuple of Expr
-        Event functions of breakpoints in the state.
-    position, velocity : tuples of Expr
-        Equations of a joint.
-    powers : tuple of (Expr, Expr)
-        Efforts and rates of a force.
-    rates : tuple of Expr
-        Rates of a force's own states.
-    condensed : tuple of (Expr, Expr)
-        Efforts and rates of a force that may be very stiff, along its own directions.
+    - `point`: reference point of the reaction's torque.
+    - `event_functions`: event functions of breakpoints in the state.
+    - `position`, `velocity`: equations of a joint.
+    - `powers`: efforts and rates of a force.
+    - `rates`: rates of a force's own states.
+    - `condensed`: efforts and rates of a force that may be very stiff, along its own directions.
     """
 
     point: tuple[sp.Expr, ...]

@@ -46,11 +46,8 @@ INTERNAL = re.compile(
 class Law:
     """Table or function with breakpoints (`stiffmbs.compile.law_zones`) whose argument depends on the state.
 
-    Attributes
-    ----------
-    of : (str, int)
-        Name of its intervals (``turn`` for the argument of a sine) and, for ``table``, the index of its offset in the
-        element's numbers, else 0.
+    `of`: name of its intervals (``turn`` for the argument of a sine) and, for ``table``, the index of its offset in
+    the element's numbers, else 0.
     """
 
     argument: sp.Expr
@@ -61,16 +58,10 @@ class Law:
 class Symbols:
     """Symbols of one kind.
 
-    Attributes
-    ----------
-    element : SymbolicElement
-        For the equations.
-    numbers : list of Symbol
-        In the order of `ElementData.numbers`; integer ones are offsets of tables.
-    joint_lam : list of list of Symbol
-        Multipliers of each joint referred to.
-    event_functions : list of expressions
-        Event functions of formulas (``abs``, ``step``, ...) that depend on the state.
+    - `element`: for the equations.
+    - `numbers`: in the order of `ElementData.numbers`; integer ones are offsets of tables.
+    - `joint_lam`: multipliers of each joint referred to.
+    - `event_functions`: event functions of formulas (``abs``, ``step``, ...) that depend on the state.
     """
 
     element: SymbolicElement

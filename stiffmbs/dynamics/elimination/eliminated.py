@@ -40,24 +40,15 @@ class Eliminated:
     """Schur complement J M^-1 J^T lam = J M^-1 f - gamma, then u' = M^-1 (f - J^T lam), for compiled code.
 
     The matrix is symmetric and positive definite, so its factors need no pivoting and keep their pattern.  It is
-    factored by dense blocks for spatial models, and by pin blocks or entries for planar models.
+    factored by dense blocks for spatial models, and by pin blocks or entries for planar models. `updates`:
+    multiplications of the LU of the whole system.
 
-    Parameters
-    ----------
-    state : State
-    updates : int
-        Multiplications of the LU of the whole system.
-
-    Attributes
-    ----------
-    serves : bool
-        True if the mass matrix is diagonal, no force depends on multipliers or algebraic states, and the elimination is less expensive.
-    pivots_tell : bool
-        True if it serves, and no inertia is so small that pivots do not show the distance from a singular pose.
-    multiplications : int
-        Multiplications of the elimination.
-    table : ndarray of int
-        Addresses (`stiffmbs.dynamics.native.layouts.ELIMINATED`); zeros if it does not serve.
+    - `serves`: true if the mass matrix is diagonal, no force depends on multipliers or algebraic states, and the
+      elimination is less expensive.
+    - `pivots_tell`: true if it serves, and no inertia is so small that pivots do not show the distance from a singular
+      pose.
+    - `multiplications`: multiplications of the elimination.
+    - `table`: addresses (`stiffmbs.dynamics.native.layouts.ELIMINATED`); zeros if it does not serve.
     """
 
     def __init__(self, state: State, updates: int) -> None:
@@ -187,13 +178,7 @@ Entries = tuple[np.ndarray, np.ndarray, np.ndarray]
 def entry_lists(rows: Sequence[np.ndarray], system: System, kept: np.ndarray) -> dict[str, Any]:
     """Return the lists of the matrix and its factors (`stiffmbs.dynamics.elimination.native.layouts.ENTRY_ELIMINATION`).
 
-    Parameters
-    ----------
-    rows : list of ndarray of int
-        Solved equations of each joint, in the order of elimination.
-    system : System
-    kept : ndarray of int
-        Entries of J in these equations.
+    `rows`: solved equations of each joint, in the order of elimination. `kept`: entries of J in these equations.
     """
     n, at_lam = sum(map(len, rows)), np.full(system.n_c, ABSENT)
     at_lam[np.concatenate([np.empty(0, dtype=np.int64), *rows])] = np.arange(n)

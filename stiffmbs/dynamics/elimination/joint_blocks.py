@@ -34,12 +34,7 @@ Piece = tuple[int, int, int]
 class Joints(Blocks):
     """Joints in the order of elimination, each with a panel: its block, then those of later joints that it updates.
 
-    Parameters
-    ----------
-    rows : list of ndarray of int
-        Equations of each joint that are solved.
-    bodies : list of list of int
-        Bodies of each joint, without ground.
+    `rows`: equations of each joint that are solved. `bodies`: bodies of each joint, without ground.
     """
 
     bodies: list[list[int]]

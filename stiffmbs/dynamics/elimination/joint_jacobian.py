@@ -23,22 +23,15 @@ Entries = dict[tuple[int, int], list[int]]
 class Jacobian(NamedTuple):
     """Blocks of J for pairs of a joint and a body, by columns, each padded to whole quads.
 
-    Attributes
-    ----------
-    source, at, column : ndarrays of int
-        Value, position and velocity of each entry outside regular blocks.  Entries added to others come last.
-    begin : dict
-        Start of the block of a joint and a body.
-    end : int
-        End of the last block.
-    thirds : dict
-        Rows of the joint with entries for each of three velocities.
-    full, full_source : lists
-        Blocks with three velocities in all rows of a joint, and the start of each row's entries among the values.
-    diagonal : list of DiagonalBlock
-        Blocks with three velocities diagonally in three rows.
-    regular : set
-        Thirds of these blocks.
+    - `source`, `at`, `column`: value, position and velocity of each entry outside regular blocks.  Entries added to
+      others come last.
+    - `begin`: start of the block of a joint and a body.
+    - `end`: end of the last block.
+    - `thirds`: rows of the joint with entries for each of three velocities.
+    - `full`, `full_source`: blocks with three velocities in all rows of a joint, and the start of each row's entries
+      among the values.
+    - `diagonal`: blocks with three velocities diagonally in three rows.
+    - `regular`: thirds of these blocks.
     """
 
     source: np.ndarray

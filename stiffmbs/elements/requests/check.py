@@ -58,16 +58,7 @@ def ends(element: str, model: Any) -> tuple[Any, Any]:
 def check_output(where: str, output: Output, model: Any, names: OutputNames, others: Mapping[str, Output]) -> None:
     """Refuse a formula that names an unknown body, marker, joint, force, channel or request.
 
-    Parameters
-    ----------
-    where : str
-        Path in the scene, for messages.
-    output : Output
-    model : ModelData or ModelBuilder
-    names : OutputNames
-        Names of the model's family.
-    others : mapping of str to Output
-        All requests, by channel.
+    `where`: path in the scene, for messages. `names`: names of the model's family. `others`: all requests, by channel.
     """
     acting = ChainMap(model.joints, model.forces)
     for term in output.terms:

@@ -58,10 +58,7 @@ def with_named(channels: Iterable[str], requests: Mapping[str, Output]) -> dict[
 def dimensions(outputs: Mapping[str, Output]) -> dict[str, Known]:
     """Return the known dimension of each request, by channel.
 
-    Raises
-    ------
-    ValueError
-        For circular requests, and for a request that contains a unit and inconsistent dimensions.
+    Raises ValueError: for circular requests, and for a request that contains a unit and inconsistent dimensions.
     """
     found: dict[str, Known] = {}
     for name in in_order(outputs):

@@ -362,10 +362,7 @@ def _of_file(file: PropertyFile) -> TyreProperties:
 def _version(file: PropertyFile) -> tuple[str, list[str]]:
     """Return the version of a file's formula by FITTYP, or by its format, and notes on it.
 
-    Raises
-    ------
-    InputError
-        If it is unknown, or 5.2 without FITTYP and with coefficients that MF-Tyre 5.2 does not have.
+    Raises InputError if it is unknown, or 5.2 without FITTYP and with coefficients that MF-Tyre 5.2 does not have.
     """
     form, kind = file.text("PROPERTY_FILE_FORMAT"), file.text("FITTYP", "MODEL")
     if form and plain(form) not in OF_FORMAT:

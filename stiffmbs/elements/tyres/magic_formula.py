@@ -189,10 +189,7 @@ def equivalent(alpha: Any, driving: Any) -> Any:
 def wrench(p: Any, s: Slip, f: Name, ellipse: str = "") -> Forces:
     """Return forces and torques at the contact point.
 
-    Parameters
-    ----------
-    ellipse : str
-        Name in `ELLIPSES` if there are no weights of combined slip; empty with weights.
+    `ellipse`: name in `ELLIPSES` if there are no weights of combined slip; empty with weights.
     """
     dfz = increment(p, s.load, f)
     x, y = longitudinal(p, s, dfz, f), lateral(p, s, dfz, f)

@@ -149,10 +149,8 @@ class PropertyFile:
 def read_property_file(path: Path) -> PropertyFile:
     """Read a file of tyre properties.
 
-    Raises
-    ------
-    InputError
-        If it cannot be read, or a line is neither a section, a key with a value, a row of numbers nor a comment.
+    Raises InputError if it cannot be read, or a line is neither a section, a key with a value, a row of numbers nor a
+    comment.
     """
     return parse_properties(file_text(path, otherwise="latin-1", expected="a tyre property file"), str(path))
 

@@ -93,14 +93,8 @@ def _equation(system: System, row: int) -> str:
 class StructureNotes(NamedTuple):
     """Messages on a structure.
 
-    Attributes
-    ----------
-    of_joints : tuple of str
-        On redundant equations and unconnected bodies.
-    of_presolve : tuple of str
-        On bodies, coordinates and equations that the presolve removes.
-    not_unique : tuple of str
-        Channels of the reactions without a unique value.
+    `of_joints`: on redundant equations and unconnected bodies. `of_presolve`: on bodies, coordinates and equations
+    that the presolve removes. `not_unique`: channels of the reactions without a unique value.
     """
 
     of_joints: tuple[str, ...]

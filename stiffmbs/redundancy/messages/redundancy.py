@@ -26,10 +26,7 @@ def known_near_start(case: Overconstraint, redundancy: Redundancy) -> bool:
 def refuse_inconsistencies(redundancy: Redundancy) -> None:
     """Refuse a run without a solution.
 
-    Raises
-    ------
-    AssemblyError
-        When equations contradict each other, or the start is a singular pose.
+    Raises AssemblyError when equations contradict each other, or the start is a singular pose.
     """
     for sentence in (*inconsistency_sentences(redundancy), *singular_sentence(redundancy)):
         raise AssemblyError(sentence)
@@ -38,10 +35,7 @@ def refuse_inconsistencies(redundancy: Redundancy) -> None:
 def overconstraint_sentences(case: Overconstraint, near_start: bool = False) -> Iterator[str]:
     """Yield sentences on an overconstraint: reason, dropped equations, indeterminate reactions, remedy.
 
-    Parameters
-    ----------
-    near_start : bool
-        Whether it is known near the start only, as formulas or tables are involved.
+    `near_start`: true if it is known near the start only, as formulas or tables are involved.
     """
     what_then = f"and {STOPS_WHERE}" if near_start else "which does not change the motion"
     yield f"{case.reason}; a run leaves out {_given_way(case)}, {what_then}"

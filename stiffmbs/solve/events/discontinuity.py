@@ -51,13 +51,7 @@ class _Side(NamedTuple):
 class _Beside:
     """States near a given state.
 
-    Parameters
-    ----------
-    dynamics : Dynamics
-        Its state becomes that of the last evaluation.
-    t : float
-        s.
-    q, u : ndarrays, shapes (n_q,), (n_u,)
+    `dynamics`: its state becomes that of the last evaluation. `t`: s. `q`, `u` of shapes (n_q,), (n_u,).
     """
 
     def __init__(self, dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> None:
@@ -124,15 +118,7 @@ class _Beside:
 def jumping(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> np.ndarray:
     """Return the event functions near zero across which accelerations jump.
 
-    Parameters
-    ----------
-    t : float
-        s.
-    q, u : ndarrays, shapes (n_q,), (n_u,)
-
-    Returns
-    -------
-    ndarray of int
+    `t`: s. `q`, `u` of shapes (n_q,), (n_u,).
     """
     with dynamics.state.unchanged():
         beside = _Beside(dynamics, t, q, u)
@@ -150,12 +136,8 @@ def sliding(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, reach: f
     """Return the event functions whose zero the motion is driven to from both sides by a discontinuous force.
 
     There is no classical solution then, but a sliding mode, as with sign(v) at rest (Filippov, Differential Equations
-    with Discontinuous Righthand Sides, 1988, ch. 2).
-
-    Parameters
-    ----------
-    reach : float, optional
-        Size of the move within which a jump is searched for; by default `JumpParameters.larger_move`.
+    with Discontinuous Righthand Sides, 1988, ch. 2). `reach`: size of the move within which a jump is searched for; by
+    default `JumpParameters.larger_move`.
     """
     reach = JUMP.larger_move if reach is None else reach
     with dynamics.state.unchanged():
@@ -230,12 +212,7 @@ VELOCITY_JUMP = tuned("velocity_jumps", VelocityJumpParameters())
 
 
 class VelocityJumps:
-    """Velocity jumps of one run.
-
-    Parameters
-    ----------
-    dynamics : Dynamics
-    """
+    """Velocity jumps of one run."""
 
     def __init__(self, dynamics: Dynamics) -> None:
         self._dynamics = dynamics

@@ -22,22 +22,11 @@ NODES = 8
 class EventSearch:
     """Event functions of a system, and the memory of the search for their events within a step.
 
-    Parameters
-    ----------
-    state : State
-
-    Attributes
-    ----------
-    table : ndarray of int
-        Addresses for compiled code (`stiffmbs.solve.events.native.layouts.EVENT_SEARCH`).
-    n : int
-        Number of event functions, including those of laws.
-    n_event_functions : int
-        Number of event functions without those of laws.
-    masked : ndarray of int, shape (n_event_functions,)
-        Event functions with a value above zero are ignored.
-    found : ndarray of int, shape (n,)
-        1 for the functions of the last event, 0 for others.
+    - `table`: addresses for compiled code (`stiffmbs.solve.events.native.layouts.EVENT_SEARCH`).
+    - `n`: number of event functions, including those of laws.
+    - `n_event_functions`: number of event functions without those of laws.
+    - `masked` of shape (n_event_functions,): event functions with a value above zero are ignored.
+    - `found` of shape (n,): 1 for the functions of the last event, 0 for others.
     """
 
     def __init__(self, state: State) -> None:
@@ -124,10 +113,7 @@ def _calls(system: System) -> dict[str, np.ndarray | int]:
 class StepBound:
     """Table of step bounds for compiled code (`stiffmbs.solve.events.native.step_bound`), which may be updated.
 
-    Attributes
-    ----------
-    table : ndarray of int
-        Its address does not change.
+    `table`: its address does not change.
     """
 
     def __init__(self) -> None:

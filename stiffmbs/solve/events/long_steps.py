@@ -44,10 +44,8 @@ WHOLE = 0.5 - 0.5 * np.cos(np.arange(8) * np.pi / 7)
 class Motion(NamedTuple):
     """States within steps, one row each.
 
-    Attributes
-    ----------
-    t, q, u, rate : ndarrays, shapes (m,), (m, n_q), (m, n_u), (m, n_u)
-        Times, states, and rates of u by the integrator's polynomial.
+    `t`, `q`, `u`, `rate` of shapes (m,), (m, n_q), (m, n_u), (m, n_u): times, states, and rates of u by the
+    integrator's polynomial.
     """
 
     t: np.ndarray

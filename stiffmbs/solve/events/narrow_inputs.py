@@ -85,14 +85,8 @@ NEAR_INPUT_END = 1e-3
 def solve_up_to_the_inputs_end(dynamics: Dynamics, grid: Grid, solve: Callable[[Grid], Trajectory]) -> Trajectory:
     """Solve over a grid, or up to the first end of an input.
 
-    Parameters
-    ----------
-    dynamics : Dynamics
-        Dynamics of the whole system.
-    grid : Grid
-        Grid of the whole run.
-    solve : callable
-        Returns the trajectory over a grid.
+    `dynamics`: dynamics of the whole system. `grid`: grid of the whole run. `solve`: returns the trajectory over a
+    grid.
     """
     end = dynamics.input_end(grid.start, grid.end)
     if end is None:

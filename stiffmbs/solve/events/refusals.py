@@ -41,21 +41,9 @@ SPEED_OF_LIGHT = 299_792_458.0
 def refuse_beyond_sense(dynamics: Dynamics, rows: Rows, t: float, q: np.ndarray, u: np.ndarray) -> None:
     """Stop a run that has diverged; to be called only after `DivergenceParameters.followed_steps`.
 
-    Parameters
-    ----------
-    dynamics : Dynamics
-    rows : Rows
-        Stored states of the run.
-    t : float
-        Current time, s.
-    q, u : ndarrays, shapes (n_q,), (n_u,)
-        Current state.
-
-    Raises
-    ------
-    SolverError
-        If a body is faster than light, or the motion grows exponentially beyond all bounds; names the body
-        and the element with the largest force.
+    `rows`: stored states of the run. `t`: current time, s. `q`, `u` of shapes (n_q,), (n_u,): current state. Raises
+    SolverError if a body is faster than light, or the motion grows exponentially beyond all bounds; names the body and
+    the element with the largest force.
     """
     system = dynamics.system
     speed, body = fastest(system, u)

@@ -58,18 +58,8 @@ def straight_on(t: float, step: float, rtol: float) -> float:
 def restarted(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, project: bool = True) -> InitialValues:
     """Return consistent values near given ones, with new accelerations and multipliers.
 
-    Parameters
-    ----------
-    t : float
-        s.
-    q, u : ndarrays, shapes (n_q,), (n_u,)
-    project : bool
-        If True, q and u are first projected onto the constraints.
-
-    Raises
-    ------
-    SolverError
-        If the constraints cannot be satisfied or are dependent, or if accelerations are not determined.
+    `t`: s. `q`, `u` of shapes (n_q,), (n_u,). `project`: if True, q and u are first projected onto the constraints.
+    Raises SolverError if the constraints cannot be satisfied or are dependent, or if accelerations are not determined.
     """
     _take(dynamics, t, q, u, project)
     return _at_hand(dynamics, t)
@@ -81,15 +71,8 @@ def restarted_past(
     """Return consistent values after an event, at its time or slightly later, and their time.
 
     The projection may move the state back before the event, and another event function may change at the same time.
-    Where one changes within the extrapolated motion, the motion restarts after that change.
-
-    Parameters
-    ----------
-    t : float
-        s.
-    q, u : ndarrays, shapes (n_q,), (n_u,)
-    ahead : float
-        Time of extrapolation, s (`straight_on`); 0 for none.
+    Where one changes within the extrapolated motion, the motion restarts after that change. `t`: s. `q`, `u` of shapes
+    (n_q,), (n_u,). `ahead`: time of extrapolation, s (`straight_on`); 0 for none.
     """
     _take(dynamics, t, q, u)
     if ahead:

@@ -57,13 +57,7 @@ class AdaptiveRun:
 
     Output times do not bound the steps; the states there come from the scheme's interpolant. Steps end at breakpoints
     in time and at events of force laws (a contact closes). Other features of the inputs, which long steps of a motion
-    at rest would miss, bound them too.
-
-    Attributes
-    ----------
-    work : Integration
-    left : bool
-        Whether the run was left to another solver or failed.
+    at rest would miss, bound them too. `left`: true if the run was left to another solver or failed.
     """
 
     def __init__(

@@ -54,15 +54,8 @@ FIXED_STEPS = Routine(
 class Stepper(NamedTuple):
     """Integrator that takes steps of fixed length from its state.
 
-    Attributes
-    ----------
-    scheme : str
-    q, u : ndarrays
-        Current state.
-    take : callable
-        ``take(t, h, steps)`` takes steps from time t and returns 0 or a negative status.
-    accelerations : int
-        Accelerations computed in a step.
+    `q`, `u`: current state. `take`: ``take(t, h, steps)`` takes steps from time t and returns 0 or a negative status.
+    `accelerations`: accelerations computed in a step.
     """
 
     scheme: str

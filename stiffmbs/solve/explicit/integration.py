@@ -22,21 +22,12 @@ from .scheme import Scheme
 class Integration:
     """State, stages and counters of one integration, and memory for the rows that one call stores.
 
-    Attributes
-    ----------
-    capacity : int
-        Largest number of steps, and of rows, of one call.
-    step_times : list of ndarray
-        Ends of the steps of each call.
-    step_bound : StepBound
-    q, u : ndarrays
-        Current positions and velocities.
-    at : int
-        Address of the table for compiled code.
-    atol : ndarray, shape (n_q + n_u,)
-        Absolute tolerances.
-    displaced : ndarray, shape (n_u,)
-        Estimated position errors, as displacements along velocities.
+    - `capacity`: largest number of steps, and of rows, of one call.
+    - `step_times`: ends of the steps of each call.
+    - `q`, `u`: current positions and velocities.
+    - `at`: address of the table for compiled code.
+    - `atol` of shape (n_q + n_u,): absolute tolerances.
+    - `displaced` of shape (n_u,): estimated position errors, as displacements along velocities.
     """
 
     def __init__(

@@ -26,27 +26,17 @@ WATCH, STEP_BOUND, LONG_STEPS = (list(EXPLICIT).index(name) for name in ("watch"
 class StepMemory:
     """Arrays of explicit steps for a scheme and a number of output times, and their table.
 
-    Parameters
-    ----------
-    scheme : Scheme
-    dynamics : Dynamics
-    n_times : int
-        Output times; 0 for rows after each step.
+    `n_times`: output times; 0 for rows after each step.
 
-    Attributes
-    ----------
-    capacity : int
-        Largest number of steps, and of rows, of one call.
-    y, end_rates, lam : ndarrays, shapes (n_q + n_u,), (n_q + n_u,), (n_c,)
-        Current state, its rates, and multipliers at a start.
-    atol, times : ndarrays, shapes (n_q + n_u,), (n_times,)
-    displaced : ndarray, shape (n_u,)
-        Estimated position errors (`stiffmbs.solve.error_control.native.accumulated_errors`).
-    row_t, row_y, ends : ndarrays, shapes (capacity,), (capacity, n_q + n_u), (capacity,)
-    table : ndarray of int
-        Addresses and cells (`stiffmbs.solve.explicit.native.layouts.EXPLICIT`).
-    cells : record
-        Cells of the table by name.
+    - `capacity`: largest number of steps, and of rows, of one call.
+    - `y`, `end_rates`, `lam` of shapes (n_q + n_u,), (n_q + n_u,), (n_c,): current state, its rates, and multipliers
+      at a start.
+    - `atol`, `times` of shapes (n_q + n_u,), (n_times,).
+    - `displaced` of shape (n_u,): estimated position errors
+      (`stiffmbs.solve.error_control.native.accumulated_errors`).
+    - `row_t`, `row_y`, `ends` of shapes (capacity,), (capacity, n_q + n_u), (capacity,).
+    - `table`: addresses and cells (`stiffmbs.solve.explicit.native.layouts.EXPLICIT`).
+    - `cells`: cells of the table by name.
     """
 
     def __init__(self, scheme: Scheme, dynamics: Dynamics, n_times: int) -> None:

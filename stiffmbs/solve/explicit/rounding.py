@@ -55,13 +55,7 @@ ROUNDING = tuned("explicit_rounding", RoundingParameters())
 class Rounding:
     """Checks of the effect of rounding on the steps of a run.
 
-    Parameters
-    ----------
-    dynamics : Dynamics
-    rtol : float
-        Relative tolerance of the integrator.
-    start, end : floats
-        Of the run, s.
+    `rtol`: relative tolerance of the integrator. `start`, `end`: of the run, s.
     """
 
     def __init__(self, dynamics: Dynamics, rtol: float, start: float, end: float) -> None:

@@ -23,29 +23,17 @@ class Scheme:
     Stage i is k_i = f(t + c_i h, y + h sum_j a_ij k_j). Stage `stages` is evaluated at the end of the step: its row
     holds the weights, and it is the first stage of the next step. Later stages serve the interpolant only.
 
-    Attributes
-    ----------
-    name : str
-    order : int
-    stages : int
-        Evaluations per step, without the one at its end.
-    c : tuple of float
-        Nodes of all stages.
-    a : tuple of Row
-        Coefficients of all stages.
-    errors : tuple of Row
-        Differences to embedded schemes; empty for a fixed-step scheme. With two, the estimate is
-        h |e_1|^2 / sqrt(|e_1|^2 + 0.01 |e_2|^2) (Hairer's for orders 5 and 3).
-    dense : tuple of Row
-        Coefficients of the interpolant after the third (`stiffmbs.solve.explicit.native.interpolant`).
-    free : tuple of Row
-        The same of an interpolant without additional stages; empty if `dense` needs none.
-    free_error : Row
-        Error bound of that interpolant: a sum of stages that vanishes to its order, times the step.
-    exponent, memory : float
-        Of the step control: the next step is 0.9 h error^(-exponent + 0.75 memory) last_error^memory.
-    stability : float
-        |h lambda| above which stability, not accuracy, limits the step.
+    - `stages`: evaluations per step, without the one at its end.
+    - `c`: nodes of all stages.
+    - `a`: coefficients of all stages.
+    - `errors`: differences to embedded schemes; empty for a fixed-step scheme. With two, the estimate is h |e_1|^2 /
+      sqrt(|e_1|^2 + 0.01 |e_2|^2) (Hairer's for orders 5 and 3).
+    - `dense`: coefficients of the interpolant after the third (`stiffmbs.solve.explicit.native.interpolant`).
+    - `free`: the same of an interpolant without additional stages; empty if `dense` needs none.
+    - `free_error`: error bound of that interpolant: a sum of stages that vanishes to its order, times the step.
+    - `exponent`, `memory`: of the step control: the next step is 0.9 h error^(-exponent + 0.75 memory)
+      last_error^memory.
+    - `stability`: |h lambda| above which stability, not accuracy, limits the step.
     """
 
     name: str

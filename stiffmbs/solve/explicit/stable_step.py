@@ -48,13 +48,7 @@ NOT_ASKED, UNBOUNDED = 0.0, float("inf")
 
 
 class StableStep:
-    """Stability bound on the steps of a run up to its first event.
-
-    Parameters
-    ----------
-    scheme : Scheme
-    dynamics : Dynamics
-    """
+    """Stability bound on the steps of a run up to its first event."""
 
     def __init__(self, scheme: Scheme, dynamics: Dynamics) -> None:
         self._stability, self._dynamics = scheme.stability, dynamics

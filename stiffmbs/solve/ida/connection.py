@@ -48,10 +48,8 @@ FUNCTIONS = {
 class Formula(Protocol):
     """Integration formula with the interface of IDA: BDF by IDA itself, or Radau methods.
 
-    Attributes
-    ----------
-    one_step : bool
-        True if a start needs no small steps, and the dense output satisfies the equations of stiff forces by itself.
+    `one_step`: true if a start needs no small steps, and the dense output satisfies the equations of stiff forces by
+    itself.
     """
 
     one_step: bool
@@ -76,11 +74,7 @@ class Formula(Protocol):
 class BDF:
     """BDF of variable order by IDA.
 
-    Parameters
-    ----------
-    matrix : Matrix
-    predicted_residual : bool
-        See `stiffmbs.solve.error_control.error_test.ErrorControl`.
+    `predicted_residual`: see `stiffmbs.solve.error_control.error_test.ErrorControl`.
     """
 
     one_step = False
@@ -121,39 +115,16 @@ class BDF:
 class Connection:
     """Memory of an integrator, with its data in the package.
 
-    Parameters
-    ----------
-    equations : Equations
-    state : State
-    matrix : Matrix
-    reported : ndarray of int
-    session : Session
-        Owner of the SUNDIALS objects.
-    formula : Formula
+    `session`: owner of the SUNDIALS objects.
 
-    Attributes
-    ----------
-    y, yp, output : ndarrays, shape (n,)
-        Memory of the vectors of the solution, of its derivative, and of interpolated or queried values.
-    cells : numpy.void
-        Results of the loop (`stiffmbs.solve.ida.native.layouts.NATIVE_IDA`).
-    output_correction : OutputCorrection
-    iteration : Iteration
-    error_norm : ErrorNorm
-    step_bound : StepBound
-    n_event_functions : int
-    signs, masked : ndarrays, shape (n_event_functions,)
-        See `stiffmbs.solve.ida.native.ida_memory`.
-    watch : EventSearch
-    history : StepLog
-    long_steps : LongStepLog or None
-        None for scenes without laws.
-    furthest : ndarray
-        Accumulated displacement error along each independent velocity.
-    words, table : ndarray of int, int
-        Table for compiled code, and its address.
-    state_table, equations_table : ndarrays of int
-        Tables of the state and of the equations.
+    - `y`, `yp`, `output` of shape (n,): memory of the vectors of the solution, of its derivative, and of interpolated
+      or queried values.
+    - `cells`: results of the loop (`stiffmbs.solve.ida.native.layouts.NATIVE_IDA`).
+    - `signs`, `masked` of shape (n_event_functions,): see `stiffmbs.solve.ida.native.ida_memory`.
+    - `long_steps`: None for scenes without laws.
+    - `furthest`: accumulated displacement error along each independent velocity.
+    - `words`, `table`: table for compiled code, and its address.
+    - `state_table`, `equations_table`: tables of the state and of the equations.
     """
 
     def __init__(
@@ -237,13 +208,7 @@ class Connection:
         return not self._session.libraries.may_start_threads
 
     def ask(self, function: str, *arguments: Any) -> None:
-        """Call a function of IDA.
-
-        Raises
-        ------
-        ValueError
-            If IDA reports an error.
-        """
+        """Call a function of IDA. Raises ValueError if IDA reports an error."""
         flag = getattr(self._session.libraries, function)(self.memory, *arguments)
         if flag < 0:
             raise ValueError(failure_sentence(flag))

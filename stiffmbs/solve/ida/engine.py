@@ -20,20 +20,12 @@ if TYPE_CHECKING:
 class Reached(NamedTuple):
     """Progress of an integrator since its last report.
 
-    Attributes
-    ----------
-    times, rows : ndarrays, shapes (k,), (k, 2 * independent)
-        Output times (or ends of steps), and the independent coordinates and velocities there
-        (`stiffmbs.compile.equations.Equations.states` computes all of them).
-    t : float
-    y : ndarray, shape (n,)
-        Current time and unknowns.
-    fired : tuple of int
-        Event functions whose sign changes stopped the integrator; empty if none did.
-    failure : str
-        Reason of a failure; empty if there is none.
-    passed : int
-        Number of breakpoints at which the integrator restarted.
+    - `times`, `rows` of shapes (k,), (k, 2 * independent): output times (or ends of steps), and the independent
+      coordinates and velocities there (`stiffmbs.compile.equations.Equations.states` computes all of them).
+    - `y` of shape (n,): current time and unknowns.
+    - `fired`: event functions whose sign changes stopped the integrator; empty if none did.
+    - `failure`: reason of a failure; empty if there is none.
+    - `passed`: number of breakpoints at which the integrator restarted.
     """
 
     times: np.ndarray

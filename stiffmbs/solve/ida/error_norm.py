@@ -18,15 +18,7 @@ NORM = Routine("stiffmbs.solve.ida.native.error_norm", "error_norm", "float64(in
 class ErrorNorm:
     """Norm of error estimates without the components that strong damping removes within the step.
 
-    Parameters
-    ----------
-    n : int
-        Number of unknowns.
-
-    Attributes
-    ----------
-    table : ndarray of int
-        Table for compiled code (`stiffmbs.solve.ida.native.layouts.ERROR_NORM`).
+    `n`: number of unknowns. `table`: table for compiled code (`stiffmbs.solve.ida.native.layouts.ERROR_NORM`).
     """
 
     def __init__(self, n: int) -> None:
@@ -40,20 +32,9 @@ class ErrorNorm:
     ) -> None:  # fmt: skip
         """Replace the norm of IDA's vectors, which are cloned from this one.
 
-        If the SUNDIALS libraries lay out vectors differently, the norm stays, and IDA takes more steps.
-
-        Parameters
-        ----------
-        session : Session
-        memory : int
-            IDA memory.
-        y_vector : int
-        tables : tuple of ndarray
-            Tables of the state and of the equations, for compiled code.
-        assembled : Assembled
-            Iteration matrix of IDA and its solver.
-        iteration : ndarray
-            Table of Newton's iteration (`stiffmbs.solve.ida.native.iteration`).
+        If the SUNDIALS libraries lay out vectors differently, the norm stays, and IDA takes more steps. `memory`: IDA
+        memory. `tables`: tables of the state and of the equations, for compiled code. `assembled`: iteration matrix of
+        IDA and its solver. `iteration`: table of Newton's iteration (`stiffmbs.solve.ida.native.iteration`).
         """
         libraries, (state, equations) = session.libraries, tables
         functions = {
@@ -100,17 +81,8 @@ CONVERGED = Routine(
 class Iteration:
     """Newton solver of IDA with a convergence test that considers the age of the iteration matrix.
 
-    Parameters
-    ----------
-    n : int
-        Number of unknowns.
-    by_reactions : bool
-        If True, forces depend on reactions, by laws that may have a kink where a reaction vanishes.
-
-    Attributes
-    ----------
-    table : ndarray of int
-        Table for compiled code (`stiffmbs.solve.ida.native.layouts.ITERATION`).
+    `n`: number of unknowns. `by_reactions`: if True, forces depend on reactions, by laws that may have a kink where a
+    reaction vanishes. `table`: table for compiled code (`stiffmbs.solve.ida.native.layouts.ITERATION`).
     """
 
     def __init__(self, n: int, by_reactions: bool) -> None:

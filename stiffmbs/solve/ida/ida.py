@@ -193,14 +193,8 @@ class NativeIda(Connection):
     ) -> None:
         """Start or restart at consistent values.
 
-        Parameters
-        ----------
-        t : float
-        y, yp : ndarrays, shape (n,)
-        first_step : float
-            Size of the first step, s; 0 lets IDA choose it.
-        highest_order : int, optional
-            Highest order from here on; IDA cannot lower it within a run.
+        `y`, `yp` of shape (n,). `first_step`: size of the first step, s; 0 lets IDA choose it. `highest_order`:
+        highest order from here on; IDA cannot lower it within a run.
         """
         if self.begun:
             self._statistics.keep()
@@ -234,22 +228,10 @@ class NativeIda(Connection):
     ) -> tuple[int, Status]:
         """Integrate towards `stop`, and report at output times.
 
-        Returns early with `Status.GOING` after about 0.1 s of work: call it again with the remaining times.
-
-        Parameters
-        ----------
-        times : ndarray
-            Increasing output times, s, from `t` to `stop`.
-        stop : float
-            Time beyond which no residual is evaluated, s.
-        y_out, yp_out : ndarrays, shape (len(times), number of reported unknowns)
-            Output of the solution, and of its derivative.
-
-        Returns
-        -------
-        served : int
-            Number of output times reported.
-        status : Status
+        Returns early with `Status.GOING` after about 0.1 s of work: call it again with the remaining times. `times`:
+        increasing output times, s, from `t` to `stop`. `stop`: time beyond which no residual is evaluated, s. `y_out`,
+        `yp_out` of shape (len(times), number of reported unknowns): output of the solution, and of its derivative.
+        Returns `served`: number of output times reported; `status`.
         """
         times = np.ascontiguousarray(times, dtype=float)
         for rows in (y_out,) if yp_out is None else (y_out, yp_out):
@@ -277,11 +259,7 @@ class NativeIda(Connection):
     def steps(self, stop: float, t_out: np.ndarray, y_out: np.ndarray) -> tuple[int, Status]:
         """Integrate towards `stop` and report each step of IDA; return as `advance` does, or if `t_out` is full.
 
-        Parameters
-        ----------
-        stop : float
-        t_out : ndarray, shape (rows,)
-        y_out : ndarray, shape (rows, number of reported unknowns)
+        `t_out` of shape (rows,). `y_out` of shape (rows, number of reported unknowns).
         """
         self._check_rows(y_out, len(t_out))
         self.ask("IDASetStopTime", stop)
@@ -318,10 +296,7 @@ class NativeIda(Connection):
     def interpolate(self, t: float, derivative: int = 0) -> np.ndarray:
         """Return the solution, or a derivative of it up to the last order, at a time within the last step.
 
-        Raises
-        ------
-        ValueError
-            If the time is outside the last step, or the derivative above its order.
+        Raises ValueError if the time is outside the last step, or the derivative above its order.
         """
         return self.answer("IDAGetDky", t, derivative)
 

@@ -30,13 +30,7 @@ class Unavailable(Exception):
 
 @dataclass(frozen=True)
 class Libraries:
-    """SUNDIALS functions, as attributes by their C names.
-
-    Attributes
-    ----------
-    index : ctypes type
-        Type of `sunindextype`.
-    """
+    """SUNDIALS functions, as attributes by their C names. `index`: type of `sunindextype`."""
 
     loaded: tuple[ctypes.PyDLL, ...]
     index: type[Any]
@@ -114,10 +108,7 @@ def available() -> tuple[bool, str]:
 def ida_libraries() -> Libraries:
     """Load IDA with vectors, and dense matrices.
 
-    Raises
-    ------
-    Unavailable
-        If they are not found, cannot be loaded, or have another version or other number types.
+    Raises Unavailable if they are not found, cannot be loaded, or have another version or other number types.
     """
     return _tried(_loaded(IDA_LIBRARIES))
 
@@ -126,10 +117,7 @@ def ida_libraries() -> Libraries:
 def sparse_libraries() -> Libraries:
     """Load IDA, sparse matrices and SuperLU_MT with the libraries that it depends on.
 
-    Raises
-    ------
-    Unavailable
-        If scikit-sundae was built without SuperLU_MT.
+    Raises Unavailable if scikit-sundae was built without SuperLU_MT.
     """
     return _tried((*_loaded(IDA_LIBRARIES), *_loaded(SPARSE_LIBRARIES)))
 
@@ -305,10 +293,7 @@ _NUMBERS: dict[str, Any] = {"int": ctypes.c_int, "long": ctypes.c_long, "double"
 def declared(index: type[Any]) -> dict[str, tuple[Any, list[Any]]]:
     """Return the result and argument types of each function; pointers are passed as addresses.
 
-    Parameters
-    ----------
-    index : ctypes type
-        Type of `sunindextype`: ``c_int32`` or ``c_int64``.
+    `index`: type of `sunindextype`: ``c_int32`` or ``c_int64``.
     """
     numbers = _NUMBERS | {"sunindextype": index}
     return {

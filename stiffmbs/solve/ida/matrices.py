@@ -13,21 +13,14 @@ from .session import Session
 class Assembled(NamedTuple):
     """SUNDIALS matrix and the data to fill it.
 
-    Attributes
-    ----------
-    matrix, solver : int
-        The SUNMatrix and its SUNLinearSolver.
-    values : int
-        Address of the values of the matrix.
-    slots : ndarray of int or None
-        Position of each entry of the pattern among the values; None for the order of the pattern.
-    pattern : ndarray of int
-        Address in the matrix, address of the data to be written there, and bytes, for both index arrays: IDA clears
-        them with the values before each new matrix.
-    kept : tuple
-        Objects that must stay alive.
-    pivots : numpy.void or None
-        Cells of a linear solver that stores its pivots, with "ready" zero to search them again; None for others.
+    - `matrix`, `solver`: the SUNMatrix and its SUNLinearSolver.
+    - `values`: address of the values of the matrix.
+    - `slots`: position of each entry of the pattern among the values; None for the order of the pattern.
+    - `pattern`: address in the matrix, address of the data to be written there, and bytes, for both index arrays: IDA
+      clears them with the values before each new matrix.
+    - `kept`: objects that must stay alive.
+    - `pivots`: cells of a linear solver that stores its pivots, with "ready" zero to search them again; None for
+      others.
     """
 
     matrix: int

@@ -49,23 +49,8 @@ class OrderLimit(Protocol):
 class NativeEngine(Engine):
     """IDA through its C interface (`NativeIda`); implements `stiffmbs.solve.ida.engine.Engine`.
 
-    Parameters
-    ----------
-    equations : Equations
-        Equations in the order of the matrix.
-    dynamics : Dynamics
-        Its state is the working memory of residual and Jacobian.
-    matrix : Matrix
-    settings : RunSettings
-    control : ErrorControl
-    formula : Formula, optional
-        BDF by default.
-    order : OrderLimit, optional
-        Limit of the order of BDF; detected by default.
-
-    Attributes
-    ----------
-    matrix : Matrix
+    `equations`: equations in the order of the matrix. `dynamics`: its state is the working memory of residual and
+    Jacobian. `formula`: BDF by default. `order`: limit of the order of BDF; detected by default.
     """
 
     def __init__(

@@ -21,24 +21,10 @@ def take_place(session: Session, solver: int, size: int, functions: Mapping[str,
     """Replace functions and content of a linear solver; the content is restored before the solver is freed.
 
     A solver holds its content, its operations and, last, its context.  The table of operations is found by its
-    addresses, because the layout of SUNDIALS structures depends on the version.
-
-    Parameters
-    ----------
-    session : Session
-    solver : int
-        SUNLinearSolver.
-    size : int
-        Number of unknowns, which identifies the content.
-    functions : dict of str to int
-        Names of the functions to replace, and addresses of their replacements.
-    content : ndarray of int
-        Replacement of the content; its first three words are as in the original.
-
-    Raises
-    ------
-    Unavailable
-        If the layout of the solver is unknown.
+    addresses, because the layout of SUNDIALS structures depends on the version. `solver`: SUNLinearSolver. `size`:
+    number of unknowns, which identifies the content. `functions`: names of the functions to replace, and addresses of
+    their replacements. `content`: replacement of the content; its first three words are as in the original. Raises
+    Unavailable if the layout of the solver is unknown.
     """
     replaced = {session.libraries.address(name): address for name, address in functions.items()}
     own = list(takewhile(lambda word: word != session.context.value, _words(solver, MOST_WORDS)))
@@ -56,21 +42,8 @@ def take_norm(session: Session, vector: int, norm: int, table: np.ndarray) -> No
     """Replace N_VWrmsNorm in the operations of a vector, and thereby in those of its later clones.
 
     The operation has no argument for a table: the table's address replaces N_VBufPack, which IDA does not use.
-
-    Parameters
-    ----------
-    session : Session
-    vector : int
-        N_Vector.
-    norm : int
-        Address of the function.
-    table : ndarray of int
-        Table of the function's data.
-
-    Raises
-    ------
-    Unavailable
-        If the layout of the vector is unknown.
+    `vector`: N_Vector. `norm`: address of the function. `table`: table of the function's data. Raises Unavailable if
+    the layout of the vector is unknown.
     """
     operations = list(_words(vector, OPERATIONS + 1))[OPERATIONS]
     words = list(_words(operations, NORM_TABLE + 1))

@@ -36,17 +36,8 @@ class OutputCorrection:
     def make_ready(self, session: Session, matrix: Matrix, memory: int, y_vector: int, dynamics: Dynamics) -> None:
         """Create the matrix, its solver and the vectors.
 
-        Parameters
-        ----------
-        session : Session
-            Owner of these objects.
-        matrix : Matrix
-        memory : int
-            IDA memory.
-        y_vector : int
-            Vector like those of the iteration.
-        dynamics : Dynamics
-            Dynamics of the same state.
+        `session`: owner of these objects. `memory`: IDA memory. `y_vector`: vector like those of the iteration.
+        `dynamics`: dynamics of the same state.
         """
         libraries, assembled = session.libraries, matrix.assembled(session, y_vector)
         libraries.SUNLinSolInitialize(assembled.solver)

@@ -15,12 +15,7 @@ from .libraries import Libraries
 
 
 class Session:
-    """SUNContext with all objects created in it.
-
-    Parameters
-    ----------
-    libraries : Libraries
-    """
+    """SUNContext with all objects created in it."""
 
     def __init__(self, libraries: Libraries) -> None:
         self.libraries = libraries
@@ -32,13 +27,7 @@ class Session:
         libraries.SUNContext_ClearErrHandlers(self.context)  # they print; flags report failures
 
     def keep(self, handle: int | None, free: Callable[[Any], Any], what: str) -> int:
-        """Take ownership of a new object.
-
-        Raises
-        ------
-        MemoryError
-            If SUNDIALS could not create it.
-        """
+        """Take ownership of a new object. Raises MemoryError if SUNDIALS could not create it."""
         if not handle:
             raise MemoryError(f"SUNDIALS could not make {what}")
         self._frees.callback(free, handle)
@@ -88,17 +77,8 @@ _PROTOTYPE = ctypes.CFUNCTYPE(ctypes.c_int32)
 class WhenNeeded:
     """C function that stores the addresses of routines in a table.
 
-    Parameters
-    ----------
-    cells : numpy.void
-        Cells of the table; "last_flag" is NOT_COMPILED after a failed request.
-    routines : dict of str to Routine
-        Routines by the cells for their addresses, which are zero before.
-
-    Attributes
-    ----------
-    address : int
-        Address of the C function, which has no arguments.
+    `cells`: cells of the table; "last_flag" is NOT_COMPILED after a failed request. `routines`: routines by the cells
+    for their addresses, which are zero before. `address`: address of the C function, which has no arguments.
     """
 
     def __init__(self, cells: np.void, routines: Mapping[str, Routine]) -> None:

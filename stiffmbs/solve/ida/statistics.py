@@ -29,17 +29,8 @@ COUNTERS = {
 class Statistics:
     """Counters of one integrator.
 
-    Parameters
-    ----------
-    libraries : Libraries
-    memory : int
-        IDA memory.
-
-    Attributes
-    ----------
-    arrays : dict
-        Arrays for compiled code (`stiffmbs.solve.ida.native.layouts.START`): counter functions, space for one
-        number, and the counts before the last start.
+    `memory`: IDA memory. `arrays`: arrays for compiled code (`stiffmbs.solve.ida.native.layouts.START`): counter
+    functions, space for one number, and the counts before the last start.
     """
 
     def __init__(self, libraries: Libraries, memory: int) -> None:

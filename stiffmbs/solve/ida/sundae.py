@@ -53,17 +53,8 @@ TOO_MUCH_WORK = -1
 class Callbacks:
     """Residual and Jacobian callbacks of one formulation, and the history of IDA's steps.
 
-    Parameters
-    ----------
-    equations : Equations
-    state : State
-    dense : bool
-        If True, the Jacobian is a full matrix, otherwise the entries of the pattern by columns.
-
-    Attributes
-    ----------
-    masked : ndarray of int
-        Remaining steps for which each event function is masked (`stiffmbs.solve.ida.native.ida_memory`).
+    `dense`: if True, the Jacobian is a full matrix, otherwise the entries of the pattern by columns. `masked`:
+    remaining steps for which each event function is masked (`stiffmbs.solve.ida.native.ida_memory`).
     """
 
     def __init__(self, equations: Equations, state: State, dense: bool = True) -> None:
@@ -113,18 +104,8 @@ class Callbacks:
 class SundaeEngine(Engine):
     """IDA through scikit-sundae; implements `stiffmbs.solve.ida.engine.Engine`.
 
-    Parameters
-    ----------
-    equations : Equations
-    state : State
-        Working memory of residual and Jacobian.
-    rtol : float
-    atol : ndarray, shape (n,)
-        Tolerance of each unknown; huge for those excluded from the error test.
-    max_step : float
-        Largest step, s; 0 for none.
-    max_order : int
-        Highest order of BDF, 1 to 5.
+    `state`: working memory of residual and Jacobian. `atol` of shape (n,): tolerance of each unknown; huge for those
+    excluded from the error test. `max_step`: largest step, s; 0 for none. `max_order`: highest order of BDF, 1 to 5.
     """
 
     def __init__(

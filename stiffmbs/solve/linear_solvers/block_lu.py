@@ -29,12 +29,7 @@ SEED = 14
 class BlockLU(FixedOrder):
     """Block LU in a fixed order, checked by its residual; `PairedColumns` with pivoting if the residual is too large.
 
-    Attributes
-    ----------
-    nodes : list of ndarray of int
-        Unknowns of each supernode, in the order of elimination.
-    kinds : ndarray of int, shape (n,)
-        Kind of each unknown.
+    `nodes`: unknowns of each supernode, in the order of elimination. `kinds` of shape (n,): kind of each unknown.
     """
 
     setup: ClassVar[Routine] = SETUP

@@ -28,14 +28,8 @@ SOLVE_PAIRED = Routine(_PAIRED, "solve", "int32(int64*, int64, int64, int64, flo
 class Memory(NamedTuple):
     """Memory of a linear solver.
 
-    Attributes
-    ----------
-    content : ndarray of int
-        Table that replaces the content of a SUNDIALS linear solver.
-    arrays, factors : dict
-        Arrays of the tables of the solver and of its factors.
-    needed : WhenNeeded or None
-        Routines compiled at their first use.
+    `content`: table that replaces the content of a SUNDIALS linear solver. `arrays`, `factors`: arrays of the tables
+    of the solver and of its factors. `needed`: routines compiled at their first use.
     """
 
     content: np.ndarray
@@ -48,10 +42,7 @@ class Memory(NamedTuple):
 class FixedOrder:
     """Sparse LU by columns, with pivots searched only once (`stiffmbs.solve.linear_solvers.native.fixed_order`).
 
-    Attributes
-    ----------
-    order : EliminationOrder
-        Elimination order of the columns, and their fill-in.
+    `order`: elimination order of the columns, and their fill-in.
     """
 
     setup: ClassVar[Routine] = SETUP

@@ -21,27 +21,13 @@ from .values import POINTERS_TO, Builtin, Cell, Operand, Record, Untranslatable,
 class Expressions:
     """Translator of the expressions of one function.
 
-    Parameters
-    ----------
-    code : Code
-        Receives the instructions.
-    outside : mapping
-        Names of the function's module.
-    wider : mapping
-        Kinds of variables that need memory: wider than their first value, or read outside its block.
-    given_once : set of str
-        Names assigned in one place.
+    `code`: receives the instructions. `outside`: names of the function's module. `wider`: kinds of variables that need
+    memory: wider than their first value, or read outside its block. `given_once`: names assigned in one place.
 
-    Attributes
-    ----------
-    variables : dict
-        Addresses of the function's variables.
-    values : dict
-        Values of names without memory, in the assigning block and blocks within it.
-    left : dict
-        Such names of ended blocks.
-    records : dict
-        Views by their names.
+    - `variables`: addresses of the function's variables.
+    - `values`: values of names without memory, in the assigning block and blocks within it.
+    - `left`: such names of ended blocks.
+    - `records`: views by their names.
     """
 
     def __init__(

@@ -13,13 +13,7 @@ from .values import Operand, Record, Untranslatable, Value, refuse
 
 
 class Statements:
-    """Translator of the body of one function.
-
-    Attributes
-    ----------
-    returned : list of (gap, value)
-        Place of the instructions and value of each return.
-    """
+    """Translator of the body of one function. `returned`: place of the instructions and value of each return."""
 
     def __init__(self, code: Code, expressions: Expressions) -> None:
         self.code, self.expressions = code, expressions

@@ -30,16 +30,10 @@ KINDS = {
 class Entry:
     """Function callable from outside.
 
-    Attributes
-    ----------
-    function : callable
-        Written in the language (`stiffmbs.compile.machine.translate`).
-    symbol : str
-        Name of the C function.
-    arguments : list of str
-        C types of its arguments, of `KINDS`.
-    result : str
-        C type of its result, or ``void``.
+    - `function`: written in the language (`stiffmbs.compile.machine.translate`).
+    - `symbol`: name of the C function.
+    - `arguments`: C types of its arguments, of `KINDS`.
+    - `result`: C type of its result, or ``void``.
     """
 
     function: Callable[..., Any]

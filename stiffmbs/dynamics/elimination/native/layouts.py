@@ -29,16 +29,10 @@ that form them, `mass` the masses between these; `update` lists the block that t
 class Pin(NamedTuple):
     """Planar revolute joint.
 
-    Attributes
-    ----------
-    x_i, y_i, x_j, y_j : int
-        Starts of two entries of J for both equations of body i and of body j.
-    gamma_x, gamma_y : int
-        Sources of gamma.
-    velocity_i, velocity_j : int
-        First velocities of the bodies.
-    row : int
-        First equation.
+    - `x_i`, `y_i`, `x_j`, `y_j`: starts of two entries of J for both equations of body i and of body j.
+    - `gamma_x`, `gamma_y`: sources of gamma.
+    - `velocity_i`, `velocity_j`: first velocities of the bodies.
+    - `row`: first equation.
     """
 
     x_i: int
@@ -86,18 +80,11 @@ MOST_ROWS = 6
 class FullBlock(NamedTuple):
     """Block of J with three velocities in all rows of a joint; `full_source` holds the start of each row's entries.
 
-    Attributes
-    ----------
-    size : int
-        Number of rows.
-    block, stride : int
-        Joint's diagonal block.
-    x : int
-        Joint's position in x.
-    j : int
-        Block of J.
-    velocity : int
-        First velocity.
+    - `size`: number of rows.
+    - `block`, `stride`: joint's diagonal block.
+    - `x`: joint's position in x.
+    - `j`: block of J.
+    - `velocity`: first velocity.
     """
 
     size: int
@@ -111,18 +98,11 @@ class FullBlock(NamedTuple):
 class DiagonalBlock(NamedTuple):
     """Block of J with three velocities in one row each, one after the other.
 
-    Attributes
-    ----------
-    block, step : int
-        First entry in the joint's diagonal block, and distance to the next.
-    x : int
-        Position of the first row in x.
-    j, j_step : int
-        First entry in the block of J, and distance to the next.
-    velocity : int
-        First velocity.
-    source_0, source_1, source_2 : int
-        Entries among the values.
+    - `block`, `step`: first entry in the joint's diagonal block, and distance to the next.
+    - `x`: position of the first row in x.
+    - `j`, `j_step`: first entry in the block of J, and distance to the next.
+    - `velocity`: first velocity.
+    - `source_0`, `source_1`, `source_2`: entries among the values.
     """
 
     block: int
@@ -139,14 +119,7 @@ class DiagonalBlock(NamedTuple):
 class CopiedBlock(NamedTuple):
     """Block of J for three velocities that is copied entry by entry.
 
-    Attributes
-    ----------
-    x : int
-        Joint's position in x.
-    j, width : int
-        Block of J, and length of its columns.
-    velocity : int
-        First velocity.
+    `x`: joint's position in x. `j`, `width`: block of J, and length of its columns. `velocity`: first velocity.
     """
 
     x: int
@@ -166,14 +139,8 @@ class SingleEntry(NamedTuple):
 class BlockProduct(NamedTuple):
     """Part of the product of two blocks of J over three velocities.
 
-    Attributes
-    ----------
-    shape : int
-        As in `stiffmbs.dynamics.elimination.native.by_blocks`.
-    target, stride : int
-        Part of the matrix.
-    first, first_stride, second, second_stride : int
-        Both factors.
+    `shape`: as in `stiffmbs.dynamics.elimination.native.by_blocks`. `target`, `stride`: part of the matrix. `first`,
+    `first_stride`, `second`, `second_stride`: both factors.
     """
 
     shape: int
@@ -196,20 +163,13 @@ class EntryProduct(NamedTuple):
 class JointPanel(NamedTuple):
     """Panel of a joint in the matrix: its diagonal block, then the blocks right of it.
 
-    Attributes
-    ----------
-    size, width : int
-        Number of equations, and the same rounded up to whole SIMD vectors, at which the right blocks start.
-    start, stride : int
-        Panel among the blocks.
-    scaled, scaled_width : int
-        Right blocks divided by the pivots: start, and length of a row.
-    x : int
-        Position in x.
-    pivot : int
-        First pivot.
-    updates_end, right_end : int
-        Ends of the joint's rows in `update` and in `right`.
+    - `size`, `width`: number of equations, and the same rounded up to whole SIMD vectors, at which the right blocks
+      start.
+    - `start`, `stride`: panel among the blocks.
+    - `scaled`, `scaled_width`: right blocks divided by the pivots: start, and length of a row.
+    - `x`: position in x.
+    - `pivot`: first pivot.
+    - `updates_end`, `right_end`: ends of the joint's rows in `update` and in `right`.
     """
 
     size: int
@@ -227,14 +187,8 @@ class JointPanel(NamedTuple):
 class PanelUpdate(NamedTuple):
     """Update of a part of a later panel by an eliminated joint.
 
-    Attributes
-    ----------
-    shape : int
-        As in `stiffmbs.dynamics.elimination.native.by_blocks`.
-    target, stride : int
-        Part of the panel.
-    factors, rows : int
-        Right blocks of the joint, divided by the pivots and not.
+    `shape`: as in `stiffmbs.dynamics.elimination.native.by_blocks`. `target`, `stride`: part of the panel. `factors`,
+    `rows`: right blocks of the joint, divided by the pivots and not.
     """
 
     shape: int

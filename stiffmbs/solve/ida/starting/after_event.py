@@ -25,14 +25,9 @@ _ANEW = Routine(
 class Begun(NamedTuple):
     """Result of a restart; the current state is that of the restart.
 
-    Attributes
-    ----------
-    t : float
-        Time of the restart, s: that of the given state, or slightly later.
-    jump : float
-        Largest change of a velocity from the given state, m/s or rad/s.
-    meets : bool
-        True if event functions that depend on velocities change sign nearby: forces may drive the motion back.
+    `t`: time of the restart, s: that of the given state, or slightly later. `jump`: largest change of a velocity from
+    the given state, m/s or rad/s. `meets`: true if event functions that depend on velocities change sign nearby:
+    forces may drive the motion back.
     """
 
     t: float
@@ -43,21 +38,9 @@ class Begun(NamedTuple):
 class StartsAnew:
     """Compiled restarts within a run.
 
-    Parameters
-    ----------
-    starts : Starts
-        Compiled starts of IDA.
-    dynamics : Dynamics
-    least : float
-        Least part of the error tolerance that may remain in states within long steps.
-
-    Attributes
-    ----------
-    starts : Starts
-    may_pass : bool
-        True if one call may pass several breakpoints: no event functions, and no forces that depend on multipliers.
-    table : int
-        Address of the memory of compiled code (`stiffmbs.solve.ida.native.layouts.ANEW`).
+    `starts`: compiled starts of IDA. `least`: least part of the error tolerance that may remain in states within long
+    steps. `may_pass`: true if one call may pass several breakpoints: no event functions, and no forces that depend on
+    multipliers. `table`: address of the memory of compiled code (`stiffmbs.solve.ida.native.layouts.ANEW`).
     """
 
     def __init__(self, starts: Starts, dynamics: Dynamics, least: float) -> None:
@@ -83,21 +66,9 @@ class StartsAnew:
     ) -> Begun | None:
         """Restart at consistent values after a state.
 
-        Parameters
-        ----------
-        state : tuple of ndarrays, shapes (n_q,), (n_u,)
-        t : float
-            s.
-        ahead : float
-            Time of extrapolation past events simultaneous with the one at t, s; 0 for none.
-        counted : bool
-            True if IDA's counters belong to this run.
-        highest_order : int
-
-        Returns
-        -------
-        Begun or None
-            None, without a start, if there are no consistent values or a force is beyond its limits.
+        `state` of shapes (n_q,), (n_u,). `t`: s. `ahead`: time of extrapolation past events simultaneous with the one
+        at t, s; 0 for none. `counted`: true if IDA's counters belong to this run. Returns None, without a start, if
+        there are no consistent values or a force is beyond its limits.
         """
         self._state.q[:], self._state.u[:] = state
         if _ANEW.short_call(t, ahead, counted, highest_order, self.table) < 0:
@@ -122,18 +93,8 @@ _RESTART = Routine("stiffmbs.solve.ida.starting.native.start", "restart", "int32
 class Restarts:
     """Current state, with integration to later times without history.
 
-    Parameters
-    ----------
-    dynamics : Dynamics
-    starts : Starts
-        Compiled starts of IDA.
-    present : tuple of ndarrays, shapes (n_q,), (n_u,)
-        Memory of the current q and u, read and written by `advance`.
-
-    Attributes
-    ----------
-    table : ndarray of int
-        Table for compiled code (`stiffmbs.solve.ida.native.layouts.RESTART`).
+    `starts`: compiled starts of IDA. `present` of shapes (n_q,), (n_u,): memory of the current q and u, read and
+    written by `advance`. `table`: table for compiled code (`stiffmbs.solve.ida.native.layouts.RESTART`).
     """
 
     def __init__(self, dynamics: Dynamics, starts: Starts, present: tuple[np.ndarray, np.ndarray]) -> None:

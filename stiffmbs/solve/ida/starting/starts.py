@@ -35,21 +35,8 @@ OF_STIFFNESS = "of_positions", "of_velocities"
 class Starts:
     """Compiled starts of one integrator.
 
-    Parameters
-    ----------
-    dynamics : Dynamics
-    equations : Equations
-    connection : Connection
-        Connection to IDA.
-    statistics : Statistics
-        Counters of IDA.
-    settings : RunSettings
-    control : ErrorControl
-
-    Attributes
-    ----------
-    table : ndarray of int
-        Table for compiled code (`stiffmbs.solve.ida.native.layouts.START`).
+    `connection`: connection to IDA. `statistics`: counters of IDA. `table`: table for compiled code
+    (`stiffmbs.solve.ida.native.layouts.START`).
     """
 
     def __init__(
@@ -79,14 +66,7 @@ class Starts:
     def begin(self, start: InitialValues, t: float, counted: bool, highest_order: int) -> bool:
         """Start at consistent values; False, without a start, if the stiffness is not finite or IDA reports an error.
 
-        Parameters
-        ----------
-        start : InitialValues
-        t : float
-            s.
-        counted : bool
-            True if IDA's counters belong to this run.
-        highest_order : int
+        `t`: s. `counted`: true if IDA's counters belong to this run.
         """
         state = self._state
         state.q[:], state.u[:], state.a[:], state.lam[:] = start.q, start.u, start.acceleration, start.lam
