@@ -8,7 +8,7 @@ from typing import Any, Unpack
 
 from ..compile.system import System
 from ..compile.written_values import table_notes
-from ..dynamics.initial import InitialValues, initial_values
+from ..dynamics.initial import InitialValues
 from ..dynamics.moves import Move
 from ..errors import AssemblyError, SolverError
 from ..methods import NotebookMethods
@@ -27,7 +27,7 @@ from ..redundancy.opposed_actuators import opposed_sentences
 from ..redundancy.overconstraint import Overconstraint, listed, overconstraints
 from ..solve.subsystems import Subsystem, presolved
 from ..tuning import in_use
-from .job import Examined, Runnable, data_of, examined
+from .job import Examined, Runnable, assembled, data_of, examined
 
 MOST_MOVES = 50
 """Number of moved bodies that a message names at most; `Report.moved` lists all."""
@@ -158,7 +158,7 @@ def _of_run(found: Examined) -> Report:
     start: InitialValues | None = None
     if not against:
         try:
-            start = initial_values(dynamics, found.grid.start)
+            start = assembled(found.data, dynamics, found.grid.start)
             free = idle_freedoms(dynamics, found.grid.start)
             subsystems = presolved(found.data, dynamics, start, found.grid, found.settings)
             problems += [start.position_sentence(MOST_MOVES)] if start.moved_far else []

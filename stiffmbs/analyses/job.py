@@ -15,7 +15,7 @@ import numpy as np
 from ..compile.callbacks import fault_of
 from ..compile.compile_model import compile_model
 from ..compile.system import System
-from ..dynamics.dynamics import Dynamics
+from ..dynamics.dynamics import POSITION_TOLERANCE, Dynamics
 from ..dynamics.initial import InitialValues, consistent_values, initial_values, take_nearest_turns
 from ..errors import AssemblyError, InputError, StiffmbsError
 from ..model.model_builder import ModelBuilder
@@ -35,6 +35,11 @@ from ..solve.trajectory import Grid, Outcome, ProgressCallback, Trajectory, unwa
 from ..tuning import described, in_use
 from .load_scene import load_scene
 from .start_from import StartFrom, started_from, starting_at, state_to_start_from
+
+MOST_MOVES = 20
+"""Largest number of moves of flexible bodies before they are deformed."""
+DEPENDENT = 1e-9
+"""Singular value of equations that depend on others, relative to the largest."""
 
 
 def hold_at_start(dynamics: Dynamics, scene: Scene, t: float) -> None:
@@ -184,6 +189,33 @@ def prepare(
     return Job(found.data, found.settings, found.grid, found.redundancy, dynamics, start, subsystems, found.start_from)
 
 
+def assembled(data: ModelData, dynamics: Dynamics, t: float) -> InitialValues:
+    """Make the described start consistent; flexible bodies are moved, and deformed only if no move satisfies the joints.
+
+    The smallest move of all coordinates would deform stiff bodies. All others are therefore fitted first, by Gauss and
+    Newton's method. Errors as for `stiffmbs.dynamics.initial.initial_values`.
+    """
+    modal = {name for name, body in data.bodies.items() if not getattr(body, "weighs", True)}
+    if modal:
+        system, state = dynamics.system, dynamics.state
+        others = np.flatnonzero(np.repeat([name not in modal for name in system.bodies], system.of_body.n_u))
+        rows = np.flatnonzero(system.active & system.holonomic)
+        start, move = state.q.copy(), np.zeros(system.n_u)
+        for _ in range(MOST_MOVES):
+            state.evaluate("position", t)
+            gaps = state.vector("position", "C")[rows].copy()
+            state.evaluate("motion", t)
+            slopes = state.matrix("motion", "J")[np.ix_(rows, others)]
+            move[others] = np.linalg.lstsq(slopes, -gaps, rcond=DEPENDENT)[0]
+            state.q[:] = system.of_body.moved(state.q, move)
+            if not np.isfinite(state.q).all():
+                state.q[:] = start
+                break
+            if np.abs(move).max() <= POSITION_TOLERANCE * system.size:
+                break
+    return initial_values(dynamics, t)
+
+
 def start_of_job(job: Job) -> InitialValues:
     """Return the start of a job after a parameter change; errors as for `run`."""
     with told_faults(job.dynamics.system):
@@ -201,9 +233,9 @@ def _start(data: ModelData, dynamics: Dynamics, t: float, state: SavedState | No
         )
     if isinstance(data, Scene) and data.at_start:
         hold_at_start(dynamics, data, t)
-        start = initial_values(dynamics, t).as_asked_by([*data.at_start])
+        start = assembled(data, dynamics, t).as_asked_by([*data.at_start])
     else:
-        start = initial_values(dynamics, t)
+        start = assembled(data, dynamics, t)
     asked = data.start if isinstance(data, Scene) else "described"
     if isinstance(asked, SteadyMotion):
         from .steady import start_in_motion
