@@ -20,6 +20,7 @@ from ..model.settings import RunSettings, Settings, SteadyMotion, takes_settings
 from ..results.channels import channels_of, turns_of
 from ..results.energy_balance import energy_balance
 from ..results.solution import Solution
+from ..run_checks.geometric_stiffness import geometric_stiffness_notes
 from ..solve.sampling import held
 from ..solve.trajectory import History, Outcome
 from ..tuning import in_use
@@ -42,9 +43,9 @@ def solution_at_rest(
         raise SolverError(
             f"no reactions were found in the equilibrium at t = {first:g} s: {failure(job.dynamics, rows.status, first)}"
         )
-    return solution_of_rows(
-        job.data.name, job.data, job.dynamics.system, rows, job.redundancy.not_unique, message, notes, solver
-    )
+    system = job.dynamics.system
+    notes = (*notes, *geometric_stiffness_notes(system, rows))
+    return solution_of_rows(job.data.name, job.data, system, rows, job.redundancy.not_unique, message, notes, solver)
 
 
 def solution_of_rows(
@@ -163,7 +164,7 @@ def equilibrium(
         found.imbalance,
         moved,
         found.free,
-        found.notes,
+        solution.notes,
         found.eigenvalues,
         solution,
     )

@@ -207,6 +207,13 @@ def test_notes_without_stiffening_have_the_number(folder):
     assert with_it == pytest.approx(-50, abs=6) and without == pytest.approx(with_it, abs=6)
 
 
+def test_an_equilibrium_has_the_note(folder):
+    """The static force of half of Euler's load, an eighth of that of the free bar."""
+    force = f"forces: {{P: {{type: force, i: bar.b, force: [{-EULER / 2}, 0, 0]}}}}\n"
+    (note,) = equilibrium(scene(folder, CLAMP + force + RUN)).notes
+    assert float(note.split(" by ")[1].split(" %")[0]) == pytest.approx(-12.5, abs=0.5)
+
+
 def test_a_large_deflection_is_noted(folder):
     force = "forces: {P: {type: force, i: bar.b, force: [0, 0, F]}}\nrun: {duration: 0.1, points: 11, solver: radau}\n"
     damped = BODY + "    damping: 1\n"
