@@ -133,8 +133,7 @@ class _WorkOfStress:
         """
         n = self._modes.shape[1]
         by_nodes = self._initial_stress.matrix(displacement)
-        shapes = self._modes.reshape(-1, 3 * n)
-        found = np.einsum("ick,icl->kl", shapes.reshape(-1, 3, n), (by_nodes @ shapes).reshape(-1, 3, n), optimize=True)
+        found = self._modes.T @ (by_nodes @ self._modes.reshape(-1, 3 * n)).reshape(-1, n)
         force = self._model.stiffness @ displacement + load
         for entries, arm, turn in self._turning:
             moment = arm.T @ force[entries].reshape(-1, 3)

@@ -109,9 +109,8 @@ class InitialStress:
         """
         at, nodes = self._gradients, self._solid.nodes
         stress = self._solid.stress(self._solid.displacement_gradient(at, displacement)) * self._weights
-        pulled = np.einsum("abep,nbep->naep", stress, at, optimize=True)
-        flat = (each.transpose(2, 0, 1, 3).reshape(nodes.shape[1], len(nodes), -1) for each in (at, pulled))
-        left, right = flat
+        pulled = sum(stress[:, b] * at[:, None, b] for b in range(3))
+        left, right = (each.transpose(2, 0, 1, 3).reshape(nodes.shape[1], len(nodes), -1) for each in (at, pulled))
         of_elements = left @ right.swapaxes(1, 2)  # (elements, nodes, nodes)
         count = len(displacement) // 3
         rows, columns = (
