@@ -77,7 +77,8 @@ def folder_of_bodies() -> Folder:
 
 def _key(body: FlexibleBody, folder: Path) -> str:
     contents = (hashlib.sha256(content_of_file(folder / name)).hexdigest() for name in body.files)
-    return digest(repr(body), *contents)
+    described = body.model_dump_json(include=FlexibleBody.model_fields.keys() - {"stiffening"})
+    return digest(described, *contents)
 
 
 def _loaded(content: bytes) -> ReducedBody:

@@ -155,6 +155,14 @@ def test_natural_modes_of_the_clamped_bar_are_those_of_the_reduction(folder):
     np.testing.assert_allclose([mode.natural_frequency for mode in found.modes], body.held_frequencies([0]), rtol=1e-6)
 
 
+def test_reductions_with_other_types_of_interfaces_differ(folder):
+    rigid, average = (
+        reduced_body(read_flexible_body(str(folder / "bar.yaml"), [("interfaces.a.type", kind)]), folder)
+        for kind in ("rigid", "average")
+    )
+    assert average.frequencies[0] < (1 - 1e-5) * rigid.frequencies[0]
+
+
 @pytest.mark.parametrize(
     ("damping", "expected"),
     [

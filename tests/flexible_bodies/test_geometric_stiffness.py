@@ -72,7 +72,7 @@ def lowest(model):
 @pytest.mark.parametrize("part", [0.2, 0.5, 0.8, -5.0])
 def test_a_column_under_a_force_at_its_end(folder, part, kind):
     """The frequency falls to zero at Euler's load; the force keeps its direction."""
-    body = BODY.replace("normal: [1, 0, 0]}}", f"normal: [1, 0, 0]}}, type: {kind}}}")
+    body = BODY.replace("[400 mm, 0, 0], normal: [1, 0, 0]}", f"[400 mm, 0, 0], normal: [1, 0, 0]}}, type: {kind}")
     force = f"forces: {{P: {{type: force, i: bar.b, force: [{-part * EULER}, 0, 0]}}}}\n"
     expected = frequency(lambda x: -part * EULER + 0 * x)
     assert lowest(scene(folder, CLAMP + force + RUN, body)) == pytest.approx(expected, rel=3e-3)
