@@ -20,11 +20,11 @@ from ..model.settings import RunSettings, Settings, SteadyMotion, takes_settings
 from ..results.channels import channels_of, turns_of
 from ..results.energy_balance import energy_balance
 from ..results.solution import Solution
-from ..run_checks.geometric_stiffness import geometric_stiffness_notes
 from ..solve.sampling import held
 from ..solve.trajectory import History, Outcome
 from ..tuning import in_use
 from .job import Job, Runnable, data_of, prepare
+from .run import flexible_body_notes
 from .settled import Settled, settled
 from .start_from import StartFrom
 from .steady import settled_in_motion
@@ -44,7 +44,7 @@ def solution_at_rest(
             f"no reactions were found in the equilibrium at t = {first:g} s: {failure(job.dynamics, rows.status, first)}"
         )
     system = job.dynamics.system
-    notes = (*notes, *geometric_stiffness_notes(system, rows))
+    notes = (*notes, *flexible_body_notes(system, rows))
     return solution_of_rows(job.data.name, job.data, system, rows, job.redundancy.not_unique, message, notes, solver)
 
 

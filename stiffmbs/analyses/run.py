@@ -10,6 +10,7 @@ from typing import Unpack
 import numpy as np
 
 from ..compile.callbacks import fault_of, notes_on_functions
+from ..compile.system import System
 from ..compile.written_values import table_notes
 from ..dynamics.algebraic_states import failure
 from ..dynamics.dynamics import OutputRows
@@ -23,7 +24,6 @@ from ..results.channels import channels_of, named, series_of, turns_of
 from ..results.energy_balance import Balance, energy_balance
 from ..results.energy_balance_notes import balance_notes, range_notes, undefined_values
 from ..results.solution import Solution
-from ..run_checks.geometric_stiffness import geometric_stiffness_notes
 from ..run_checks.growth import senseless
 from ..run_checks.motion import motion_notes
 from ..solve.error_control.accumulated_errors import ACCUMULATED
@@ -146,13 +146,21 @@ def _finished(job: Job, watch: ProgressCallback | None) -> Finished:
         *missed_events,
         *computed.left_out,
         *_range_notes(job, rows),
-        *geometric_stiffness_notes(system, rows),
+        *flexible_body_notes(system, rows),
         *impossible,
         *uncertain,
         *(undefined_values(rows, channels) if channels else ()),
     )
     headline = _headline(outcome, message, (*computed.doubts, *impossible))
     return Finished(job, trajectory, rows, outcome, headline, notes, structure, balance, channels)
+
+
+def flexible_body_notes(system: System, rows: OutputRows) -> Iterator[str]:
+    """Yield the notes on the stiffness and the deformation of flexible bodies."""
+    if system.has_coupled_inertia:
+        from ..run_checks.geometric_stiffness import geometric_stiffness_notes
+
+        yield from geometric_stiffness_notes(system, rows)
 
 
 def _range_notes(job: Job, rows: OutputRows) -> Iterator[str]:
