@@ -80,7 +80,7 @@ def with_other_formulas(content: Content, replace: Replace) -> Content:
     return found
 
 
-FORMULAS = ("rate", "zero", "input", "setpoint")
+FORMULAS = ("rate", "zero", "update", "input", "setpoint")
 """Keys of states that hold formulas."""
 
 

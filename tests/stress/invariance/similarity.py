@@ -157,6 +157,8 @@ def _state(state: Content, units: Units) -> Content:
     match state:
         case {"rate": rate}:
             return {**state, "rate": f"{1 / T!r}*({rate})"}
+        case {"period": period, "offset": offset}:
+            return {**state, "period": period * T, "offset": offset * T}
         case {"a": a, "b": b}:
             return {
                 **state,

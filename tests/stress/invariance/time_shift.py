@@ -14,7 +14,7 @@ from .typed import Mapper, mapped_scene
 
 
 def shifted(content: Content, start: float) -> Change:
-    """Return a scene that starts at `start`, with t - start in its formulas."""
+    """Return a scene that starts at `start`, with t - start in its formulas and shifted samples."""
 
     def replace(node: Any) -> str | None:
         return f"(t - ({start!r}))" if is_time(node) else None
@@ -27,4 +27,7 @@ def shifted(content: Content, start: float) -> Change:
 
     found = mapped_scene(with_other_formulas(copy.deepcopy(content), replace), Later())
     found["run"] = {**found["run"], "start": start}
+    for state in found.get("states", {}).values():
+        if "offset" in state:
+            state["offset"] += start
     return Change(f"starting at {start:g} s", found, start=start)

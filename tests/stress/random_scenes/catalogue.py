@@ -78,6 +78,7 @@ FORCES: tuple[Maker, ...] = (
 STATES: tuple[Maker, ...] = (
     Maker("states", "rate", states.add_state, ("states",)),
     Maker("states", "zero", states.add_algebraic_state, ("states",)),
+    Maker("states", "update", states.add_sampled_state, ("states",)),
     Maker("states", "denominator", states.add_filter, ("states",)),
     Maker("states", "a", states.add_linear_system, ("states",)),
     Maker("states", "pid", states.add_controller, ("states",)),

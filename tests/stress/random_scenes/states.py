@@ -16,6 +16,15 @@ def add_state(draft: Draft) -> str:
     return name
 
 
+def add_sampled_state(draft: Draft) -> str:
+    """Add a state that steps towards a formula at the times of a clock."""
+    name = draft.add("states", "sampled", start=draft.uniform(-0.5, 0.5), period=draft.uniform(0.01, 0.2))
+    draft.content["states"][name]["offset"] = draft.uniform(0, 0.1)
+    law = law_of_motion(draft, draft.choice(draft.bodies), 1.0, name)
+    draft.content["states"][name]["update"] = f"{name} + {draft.uniform(0.1, 0.9)!r}*(({law}) - {name})"
+    return name
+
+
 def add_algebraic_state(draft: Draft) -> str:
     """Add an algebraic state with a monotone equation."""
     name = draft.add("states", "solved", start=0.0)
