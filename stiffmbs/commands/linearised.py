@@ -46,12 +46,16 @@ def modes(
     from ..analyses.linearised.modes import modes as found_modes
     from ..results.files import check_output, write
     from ..show.modes import modes_text
-    from ..show.page.modes import check_page, write_modes
 
     page = output is not None and output.suffix == ".html"
     with refusing(scene, as_json, output):
         if output is not None:
-            check_page(output) if page else check_output(output)
+            if page:
+                from ..show.page.modes import check_page, write_modes
+
+                check_page(output)
+            else:
+                check_output(output)
         changes = changes_of(options)
         loaded = load_scene(scene, changes)
         start = {"at": at} if state is None else start_of(loaded, state, at, changes)
