@@ -46,24 +46,13 @@ def modes_data(found: Modes, amplitude: float = AMPLITUDE) -> dict[str, str] | N
 
 
 def check_page(path: Path) -> None:
-    """Check that a page can be written, before anything is solved.
-
-    Raises
-    ------
-    InputError
-    """
+    """Check that a page can be written, before anything is solved. Raises InputError."""
     refuse_path("-o", path, (".html",))
     refuse_missing("jinja2", "'stiffmbs[report]'", f"-o {path}: ")
 
 
 def write_modes(path: Path, found: Modes, amplitude: float) -> None:
-    """Write the page to a file, completely or not at all.
-
-    Raises
-    ------
-    InputError
-        If no mode can be shown.
-    """
+    """Write the page to a file, completely or not at all. Raises InputError if no mode can be shown."""
     data = modes_data(found, amplitude)
     if data is None:
         raise InputError(f"-o {path}: found no mode that can be shown, expected a vibration and a smaller --amplitude")
