@@ -202,7 +202,7 @@ class _Parts:
         ]  # fmt: skip
         return np.concatenate([
             np.zeros(3), to_axes @ offset, (to_axes @ square @ to_axes.T).ravel(), frame.principal_moments(),
-            [reduced.mass, len(stretch) if stiffened else 0, len(stretch)], of_modes.ravel(), np.concatenate(of_pairs, axis=-1).ravel(), stretch.ravel(),
+            [reduced.mass, len(stretch) if stiffened else 0, len(stretch), int(stiffened) if self._body.mesh else -1], of_modes.ravel(), np.concatenate(of_pairs, axis=-1).ravel(), stretch.ravel(),
         ])  # fmt: skip
 
     def _stiffness_and_damping(self, n: int) -> tuple[np.ndarray, np.ndarray]:

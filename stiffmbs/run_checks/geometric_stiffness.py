@@ -27,7 +27,7 @@ def geometric_stiffness_notes(system: System, rows: OutputRows) -> Iterator[str]
             numbers = parts(group.numbers[first + int(group.numbers[first]) :], n)
             places = group.index[e, : 2 * group.kind.n_bodies].reshape(-1, 2)
             yield from _note_on_large_deformation(name, numbers, rows.q[:, (places[1:, :1] + np.arange(3)).ravel()])
-            if numbers["known"][0]:
+            if n and numbers["stiffened"][0] >= 0:
                 yield from _note(name, numbers, rows, places)
             elif n:
                 yield from _note_without_mesh(name, numbers, system, rows, int(places[0, 1]))
@@ -58,7 +58,7 @@ def _note(name: str, numbers: dict[str, np.ndarray], rows: OutputRows, places: n
     if max(-lowest, highest) > RUN_CHECKS.stiffened:
         yield (
             f"'{name}': loads and rotation change the stiffness by {100 * lowest:+.2g} % to {100 * highest:+.2g} % at t = {rows.t[chosen[at]]:.4g} s; "
-            f"this geometric stiffness is {'included' if numbers['stretch'][0] else 'not included (stiffening: false)'}"
+            f"this geometric stiffness is {'included' if numbers['stiffened'][0] else 'not included (stiffening: false)'}"
         )
 
 

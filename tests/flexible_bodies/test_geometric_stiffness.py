@@ -214,6 +214,14 @@ def test_an_equilibrium_has_the_note(folder):
     assert float(note.split(" by ")[1].split(" %")[0]) == pytest.approx(-12.5, abs=0.5)
 
 
+def test_the_note_on_a_mesh_with_one_interface_does_not_miss_a_mesh(folder):
+    """One interface has no static shapes; the stiffness by rotation is there."""
+    one = BODY.replace("      b: {plane: {point: [400 mm, 0, 0], normal: [1, 0, 0]}}\n", "")
+    found = run(scene(folder, "joints: {}\n" + RUN, one + "    omega: [0, 0, 1000]\n"))
+    (note,) = (note for note in found.notes if "stiffness" in note)
+    assert note.endswith("this geometric stiffness is included")
+
+
 def test_a_large_deflection_is_noted(folder):
     force = "forces: {P: {type: force, i: bar.b, force: [0, 0, F]}}\nrun: {duration: 0.1, points: 11, solver: radau}\n"
     damped = BODY + "    damping: 1\n"

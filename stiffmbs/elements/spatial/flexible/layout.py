@@ -2,7 +2,8 @@
 
 `PAIR` has Z + W, the axial vector and the trace of Z, and T (`stiffmbs.compile.machine.native.flexible.sums`). The pairs
 are followed by `known` vectors b_i of the stretch of second order, each with its matrix Gamma_i by rows; `stretch` is
-the number of these in the equations, `known` or zero (`stiffmbs.compile.machine.native.flexible.elastic`).
+the number of these in the equations, `known` or zero (`stiffmbs.compile.machine.native.flexible.elastic`). `stiffened`
+is 1 with geometric stiffness, 0 if it is left out, and -1 for a body that has none.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-BODY = {"gravity": 3, "d0": 3, "X": 9, "moments": 3, "modal_mass": 1, "stretch": 1, "known": 1}
+BODY = {"gravity": 3, "d0": 3, "X": 9, "moments": 3, "modal_mass": 1, "stretch": 1, "known": 1, "stiffened": 1}
 MODE = {"stiffness": 1, "damping": 1, "S": 3, "Y": 9}
 PAIR = {"ZW": 9, "axial": 3, "trace": 1, "T": 3}
 """Names and lengths of consecutive numbers."""
