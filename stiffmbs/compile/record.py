@@ -18,7 +18,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..cache.source_files import digest_of, python_files
-from ..elements.element import Component, Element
+from ..elements.element import CompiledTerms, Component, Element
+from ..errors import InputError
 from ..interrupts import uncollected
 from .formula_shape import Shape
 from .kind import Kind, with_place
@@ -158,14 +159,29 @@ def _terms(kind: Kind) -> Derived:
     return derive(kind)
 
 
+def loops_along(kind: Kind, term_set: str) -> str:
+    """Return the source of the directional derivatives of a kind with kernels written as loops.
+
+    Raises
+    ------
+    InputError
+        If it has none.
+    """
+    terms = kind.element.compiled_terms(kind)  # type: ignore[attr-defined]
+    if terms.along is None:
+        raise InputError("found no derivatives by parameters, expected elements that have them")
+    return str(terms.along(_places(terms, term_set)))
+
+
+def _places(terms: CompiledTerms, term_set: str) -> dict[str, int]:
+    """Return the places of an element's terms in a set."""
+    return {name: k for k, name in enumerate(TERM_SETS[term_set]) if name in terms.patterns}
+
+
 def _by_loops(kind: Kind) -> KindRecord:
     """Return the record of a kind with kernels written as loops."""
-    terms = kind.element.compiled_terms(kind.n_bodies)  # type: ignore[attr-defined]
-    sources = {}
-    for term_set, names in TERM_SETS.items():
-        places = {name: k for k, name in enumerate(names) if name in terms.patterns}
-        if places:
-            sources[term_set] = terms.source(places)
+    terms = kind.element.compiled_terms(kind)  # type: ignore[attr-defined]
+    sources = {name: terms.source(places) for name in TERM_SETS if (places := _places(terms, name))}
     return KindRecord(0, 0, [], 0, [], dict(terms.patterns), sources, None, [], [], [])
 
 

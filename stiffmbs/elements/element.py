@@ -66,10 +66,13 @@ class CompiledTerms:
         Row and column of each entry of each term in the element's own block.
     source : callable
         Return the source of a kernel with some terms, given their places in it by name.
+    along : callable, optional
+        Return that of a kernel with their directional derivatives (`stiffmbs.compile.directional`).
     """
 
     patterns: Mapping[str, list[tuple[int, int]]]
     source: Callable[[Mapping[str, int]], str]
+    along: Callable[[Mapping[str, int]], str] | None = None
 
 
 class Component(Described):

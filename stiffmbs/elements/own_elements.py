@@ -131,7 +131,7 @@ def _lacks(element: Any) -> Iterator[str]:
         for name in element.coordinates:
             if not hasattr(element, name):
                 yield f"found the coordinate '{name}' without a function, expected a static method {name}(e)"
-    elif element.efforts is Force.efforts and _is_inherited(element, "powers"):
+    elif element.efforts is Force.efforts and all(_is_inherited(element, law) for law in ("powers", "compiled_terms")):
         yield "found no law, expected a static method efforts(e) or powers(e)"
 
 

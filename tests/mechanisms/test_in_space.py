@@ -188,6 +188,19 @@ forces:
     damping_ratio: 0.01
   z: {type: exact_beam, i: a, j: ground.anchor, length: 0.6, stiffness: [300, 200, 5]}
 """,
+    "beam_section": """
+forces:
+  x:
+    type: beam_section
+    nodes: [a.end, {body: b, point: [-0.5, 0], angle: 6.5}, ground.anchor]
+    reference: 1
+    shapes: [0.4, 0.5, 0.1]
+    slopes: [-1.2, 0.9, 0.3]
+    length: 0.8
+    stiffness: [[300, 0, 4], [0, 200, 0], [4, 0, 8]]
+    unloaded: [1, 0.05, 0.4]
+    damping_ratio: 0.01
+""",
     "force": """
 forces:
   x: {type: force, i: a.end, force: [3, -2]}

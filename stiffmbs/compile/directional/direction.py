@@ -14,7 +14,7 @@ from ..machine.compiler import Compiled, compiled_source
 from ..machine.layout import packed
 from ..machine.native.tables import DIRECTION
 from ..machine.routines import Routine
-from ..record import source_of
+from ..record import loops_along, source_of
 from ..state import State
 from ..system import System
 from ..terms import TERM_AXES
@@ -53,10 +53,13 @@ def directional_kernel(kind: Kind, term_set: str, along: tuple[str, ...]) -> Com
         return None
     name = with_place(kind, "")
     try:
-        found = directional_source(source, "kernel", along)
+        by_loops = hasattr(kind.element, "compiled_terms")
+        found = loops_along(kind, term_set) if by_loops else directional_source(source, "kernel", along)
     except InputError as error:
         raise InputError(f"{name}: {error}") from None
-    if all(line.endswith("] = 0.0") for line in found.splitlines() if line.lstrip().startswith("value[")):
+    if not by_loops and all(
+        line.endswith("] = 0.0") for line in found.splitlines() if line.lstrip().startswith("value[")
+    ):
         return None
     return compiled_source(found, "kernel", SIGNATURE, f"{name}, derivatives")
 

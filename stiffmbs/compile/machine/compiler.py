@@ -91,8 +91,10 @@ def _called(with_geometry: bool) -> str:
     """Return a digest of the modules that generated sources call, and of what these read."""
     here = Path(__file__).parent
     names = ("access", "nonsmooth", "spline", "rotation_vector", "python_call")
-    files = [here / "native" / f"{name}.py" for name in names] + python_files(here / "native" / "flexible")
-    files += [here / "layout.py", here.parents[1] / "elements" / "spatial" / "flexible" / "layout.py"]
+    files = [here / "native" / f"{name}.py" for name in names]
+    files += [file for folder in ("flexible", "beams") for file in python_files(here / "native" / folder)]
+    elements = here.parents[1] / "elements"
+    files += [here / "layout.py", elements / "spatial/flexible/layout.py", elements / "forces/beam_layout.py"]
     return digest_of(files + python_files(here / "geometry") * with_geometry)
 
 

@@ -1,4 +1,4 @@
-"""Element of a geometrically exact beam in the plane."""
+"""Element and section of a geometrically exact beam in the plane."""
 
 from __future__ import annotations
 
@@ -11,11 +11,13 @@ from ...reading.fields import Measured
 from ...reading.marker import Marker
 from ...reading.units import si
 from ..element import Symbolic
+from .beam_section import BeamSectionLaw
 from .beam_strain import BeamStrain
 from .bushing import check_symmetric, from_diagonal
 
 _Bending = Annotated[float, Measured("bending stiffness")]
 _Forces = tuple[si.Force | None, si.Force | None, si.Torque | None]
+_Three = tuple[si.Force, si.Force, si.Torque]
 SectionStiffness = Annotated[
     tuple[_Forces, _Forces, tuple[si.Torque | None, si.Torque | None, _Bending | None]],
     WithJsonSchema({"type": "array", "minItems": 3, "maxItems": 3}),
@@ -65,3 +67,39 @@ class ExactBeam(BeamStrain):
     @classmethod
     def powers(cls, e: Symbolic) -> list[tuple[Any, Any]]:
         return cls.relative_powers(e)
+
+
+class BeamSection(BeamSectionLaw):
+    """Elastic cross section at an inner point of a beam with 3 to 5 nodes, for any displacement and rotation.
+
+    The rigid displacements from a reference node to the others have the screws xi_k. They are interpolated along the
+    axis, xi(s) = sum shapes_k xi_k, and the strain of the curve exp(xi(s)) is::
+
+        (Gamma + (1, 0), kappa) = T(xi) xi'
+        (n, m) = K ((Gamma + (1, 0), kappa) - unloaded) + damping_ratio K (Gamma', kappa')
+
+    n is the axial and the shear force and m the bending moment at the section; they are reported as n1, n2 and m3. The
+    forces on the nodes follow from the strain energy, length times K/2 strain^2. The run stops where a node is turned by
+    three quarters of a turn against the reference.
+
+    The line body ``beam`` creates such sections together with their nodes (docs: Beams).
+
+    Sonneville, Cardona, Bruls, Geometrically exact beam finite element formulated on the special Euclidean group SE(3),
+    Comput. Methods Appl. Mech. Eng. 268 (2014) 451-474; Wang, Sprague, Jonkman, Johnson, BeamDyn: a high-fidelity wind
+    turbine blade solver in the FAST modular framework, Wind Energy 20 (2017) 1439-1462 (Legendre spectral elements).
+    """
+
+    kind: ClassVar[str] = "beam_section"
+    channels: ClassVar[tuple[str, ...]] = ("n1", "n2", "m3")
+
+    nodes: tuple[Marker, ...] = Field(
+        description="markers of the nodes, whose axes are tangents", min_length=3, max_length=5
+    )
+    unloaded: tuple[si.Number, si.Number, Annotated[float, Measured("curvature")]] = Field(
+        (1.0, 0.0, 0.0), description="strain without load: 1, 0, and the curvature of the axis, rad/m"
+    )
+    stiffness: tuple[_Three, _Three, tuple[si.Torque, si.Torque, _Bending]] = Field(
+        description="K: a symmetric 3x3 matrix of EA, GA (N), EI (N m^2)"
+    )
+
+    _symmetric = field_validator("stiffness")(check_symmetric)

@@ -117,9 +117,7 @@ class Beam(LineBody):
         for full, entry in made.bodies.items():
             model.add(full, model.body_type(**entry))
         for full, entry in made.forces.items():
-            model.add(
-                full, model.kinds[1]["exact_beam"](**{key: value for key, value in entry.items() if key != "type"})
-            )
+            model.add(full, model.kinds[1][entry.pop("type")](**entry))
         return BeamHandle(
             name, {node.name: model.handle_type(f"{name}.{node.name}", model) for node in made.line.nodes}
         )

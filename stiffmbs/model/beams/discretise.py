@@ -9,10 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from .axis import Piece, frame, upward
-from .rigid_motion import logarithm
+from .axis import Arc, Piece, frame, upward
+from .interpolation import Group, group_sizes
+from .rigid_motion import adjoint, logarithm, tangent
 from .section import Material, Section
-from .stiffness import element_stiffness, node_weights
+from .stiffness import element_stiffness
 
 LARGEST_ROTATION = 3.0
 """Largest rotation between the ends of an unloaded element, rad."""
@@ -61,28 +62,34 @@ class Node:
 
 @dataclass(frozen=True)
 class Element:
-    """Elastic element between two nodes.
+    """Elastic element: one between two nodes, or a section at an inner point of a group of nodes.
 
     Attributes
     ----------
-    first, second : Node
+    nodes : list of Node
     turned : ndarray
         Rotation matrix of the element's axes at its first node against the node's axes, other than the identity after a
         corner.
     length : float
-        m.
+        Length that it stands for, m.
     unloaded : ndarray
         Strain without load, shape (6,).
     stiffness : ndarray
         Shape (6, 6).
+    reference : int
+        Place of the reference node.
+    shapes, slopes : ndarrays
+        Values and derivatives of the nodes' polynomials at the section; empty between two nodes.
     """
 
-    first: Node
-    second: Node
+    nodes: list[Node]
     turned: np.ndarray
     length: float
     unloaded: np.ndarray
     stiffness: np.ndarray
+    reference: int = 0
+    shapes: np.ndarray = field(default_factory=lambda: np.zeros(0))
+    slopes: np.ndarray = field(default_factory=lambda: np.zeros(0))
 
 
 @dataclass(frozen=True)
@@ -145,7 +152,7 @@ def discretise(beam: Any) -> Line:
     """Return the nodes and elements of a beam.
 
     The elements are distributed over the smooth intervals between ends, corners and stations by length, at least one in
-    each. In the plane the height of a section is in the plane, so axes 2 and 3 change places.
+    each. Groups of up to four of them share an interpolation (`Group`). In the plane the height of a section is in the plane, so axes 2 and 3 change places.
 
     Raises
     ------
@@ -161,7 +168,9 @@ def discretise(beam: Any) -> Line:
     counts = _counts([b - a for _, _, a, b in intervals], int(beam.elements))
     for (piece, first, a, b), count in zip(intervals, counts, strict=True):
         up = Z if planar else upward(piece) if beam.up is None else np.array(beam.up, dtype=float)
-        _add_interval(nodes, elements, (piece, first), np.linspace(a, b, count + 1), constants, up, planar)
+        add = _Interval(piece, first, constants, up, planar, nodes, elements)
+        for start, end, size in group_sizes(a, b, count, _turn(piece)):
+            add.group(start, end, Group.of(size))
     at = {round(s / total, 12): name for name, s in beam.stations.items()}
     for k, node in enumerate(nodes):
         node.name = at.get(round(node.s / total, 12), f"node{k}")
@@ -194,38 +203,75 @@ def _counts(lengths: list[float], wanted: int) -> list[int]:
     return counts
 
 
-def _add_interval(
-    nodes: list[Node], elements: list[Element], placed: tuple[Piece, float], where: np.ndarray, constants: Constants,
-    up: np.ndarray, planar: bool,
-) -> None:  # fmt: skip
-    piece, first = placed
-    poses = []
-    for s in where:
-        point, tangent = piece.at(s - first)
-        try:
-            poses.append((point, frame(tangent, up)))
-        except ValueError as error:
-            raise ValueError(f"up: {error}") from None
-    if not nodes:
-        nodes.append(Node("", float(where[0]), *poses[0]))
-    start = len(nodes) - 1
-    nodes += [Node("", float(s), *pose) for s, pose in zip(where[1:], poses[1:], strict=True)]
-    spacing = float(where[1] - where[0])
-    for k, weight in enumerate(node_weights(len(where) - 1)):
-        _, mass, inertia = constants.at(float(where[k]))
-        nodes[start + k].lump(float(weight) * spacing, mass, inertia, poses[k][1])
-    for k in range(len(where) - 1):
-        (a, A), (b, B) = poses[k], poses[k + 1]
-        screw = logarithm(A.T @ (b - a), A.T @ B)
+def _turn(piece: Piece) -> float:
+    """Return the curvature of the axis, rad/m."""
+    return piece.angle / piece.length if isinstance(piece, Arc) else 0.0
+
+
+@dataclass(frozen=True)
+class _Interval:
+    """Smooth interval of a beam, whose nodes and elements are added to those of the beam."""
+
+    piece: Piece
+    first: float
+    constants: Constants
+    up: np.ndarray
+    planar: bool
+    nodes: list[Node]
+    elements: list[Element]
+
+    def group(self, start: float, end: float, group: Group) -> None:
+        """Add the nodes and elements of a group of elements between two places, m along the axis."""
+        where = start + (end - start) * group.nodes
+        poses = [self._pose(s) for s in where]
+        if not self.nodes:
+            self.nodes.append(Node("", float(where[0]), *poses[0]))
+        self.nodes.extend(Node("", float(s), *pose) for s, pose in zip(where[1:], poses[1:], strict=True))
+        own = self.nodes[-len(where) :]
+        for node, s, (_, axes), weight in zip(own, where, poses, group.weights, strict=True):
+            _, mass, inertia = self.constants.at(float(s))
+            node.lump(float(weight) * (end - start), mass, inertia, axes)
+        turned = own[0].axes.T @ poses[0][1]
+        if not group.sections:
+            for k, pair in enumerate(pairwise(where)):
+                axes = turned if k == 0 else np.eye(3)
+                self.elements.append(self._single(own[k : k + 2], axes, pair, _screw(poses[k], poses[k + 1])))
+            return
+        relative = [_screw(poses[group.reference], pose) for pose in poses]
+        compliances = group.compliances(lambda share: 1 / self._stiffness(start + share * (end - start)))
+        for (_, weight, shapes, slopes), compliance in zip(group.sections, compliances, strict=True):
+            screw, slope = shapes @ relative, slopes @ relative / (end - start)
+            strain = tangent(adjoint(screw)) @ slope
+            unloaded = np.where(np.abs(strain) < 1e-13 * np.linalg.norm(strain), 0.0, strain)
+            K = np.diag(1 / compliance)
+            length = float(weight) * (end - start)
+            self.elements.append(
+                Element(own, turned, length, unloaded, K, group.reference, shapes, slopes / (end - start))
+            )
+
+    def _single(
+        self, nodes: list[Node], turned: np.ndarray, ends: tuple[float, float], screw: np.ndarray
+    ) -> Element:  # fmt: skip
+        start, end = ends
         length = float(np.linalg.norm(screw[:3]))
-        if np.linalg.norm(screw[3:]) > LARGEST_ROTATION or length < spacing / 2:
+        if np.linalg.norm(screw[3:]) > LARGEST_ROTATION or length < (end - start) / 2:
             raise ValueError("elements: found an element that turns by half a turn, expected more elements")
         unloaded = np.where(np.abs(screw) < 1e-14 * length, 0.0, screw) / length
+        K = element_stiffness(unloaded, length, lambda share: self._stiffness(start + share * (end - start)))
+        return Element(nodes, turned, length, unloaded, K)
 
-        def section(share: float, from_: float = float(where[k]), planar: bool = planar) -> np.ndarray:
-            K = constants.at(from_ + share * spacing)[0]
-            return K[[0, 2, 1, 3, 5, 4]] if planar else K
+    def _pose(self, s: float) -> tuple[np.ndarray, np.ndarray]:
+        point, along = self.piece.at(s - self.first)
+        try:
+            return point, frame(along, self.up)
+        except ValueError as error:
+            raise ValueError(f"up: {error}") from None
 
-        found = element_stiffness(unloaded, length, section)
-        turned = nodes[start + k].axes.T @ A
-        elements.append(Element(nodes[start + k], nodes[start + k + 1], turned, length, unloaded, found))
+    def _stiffness(self, s: float) -> np.ndarray:
+        K = self.constants.at(s)[0]
+        return K[[0, 2, 1, 3, 5, 4]] if self.planar else K
+
+
+def _screw(one: tuple[np.ndarray, np.ndarray], other: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
+    (a, A), (b, B) = one, other
+    return logarithm(A.T @ (b - a), A.T @ B)

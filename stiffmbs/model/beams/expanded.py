@@ -38,11 +38,10 @@ def expanded(name: str, beam: Any) -> Expanded:
     planar = beam.dimensions == 2
     neighbours = _neighbours(line)
     body = _planar_body if planar else _spatial_body
-    force = _planar_force if planar else _spatial_force
     bodies = {
         f"{name}.{node.name}": body(node, beam, line.nodes[0], neighbours[k]) for k, node in enumerate(line.nodes)
     }
-    forces = {f"{name}.element{k + 1}": force(name, element, beam) for k, element in enumerate(line.elements)}
+    forces = {f"{name}.element{k + 1}": _force(name, element, beam) for k, element in enumerate(line.elements)}
     return Expanded(bodies, forces, line)
 
 
@@ -84,24 +83,34 @@ def _angle(axes: np.ndarray) -> float:
     return float(np.arctan2(axes[1, 0], axes[0, 0]))
 
 
-def _common(element: Element, beam: Any, components: list[int]) -> dict[str, Any]:
-    K = element.stiffness[np.ix_(components, components)]
-    return {
-        "type": "exact_beam", "length": element.length, "unloaded": _numbers(element.unloaded[components]),
-        "stiffness": [[float(part) or None for part in row] for row in K],
+def _planar_marker(body: str, turned: np.ndarray) -> dict[str, Any]:
+    return {"body": body, "angle": _angle(turned)}
+
+
+def _spatial_marker(body: str, turned: np.ndarray) -> dict[str, Any]:
+    straight = np.allclose(turned, np.eye(3), rtol=0, atol=1e-14)
+    return {"body": body, "orientation": list(IDENTITY if straight else from_matrix(turned))}
+
+
+def _force(name: str, element: Element, beam: Any) -> dict[str, Any]:
+    """Return the entry of an element."""
+    marker, components = (_planar_marker, IN_PLANE) if beam.dimensions == 2 else (_spatial_marker, list(range(6)))
+    first, *others = (f"{name}.{node.name}" for node in element.nodes)
+    i, j = {"body": others[-1]}, marker(first, element.turned)
+    K = element.stiffness[np.ix_(components, components)].tolist()
+    common = {
+        "length": element.length, "unloaded": _numbers(element.unloaded[components]),
         **({"damping_ratio": beam.damping} if beam.damping else {}),
     }  # fmt: skip
-
-
-def _planar_force(name: str, element: Element, beam: Any) -> dict[str, Any]:
-    first = {"body": f"{name}.{element.first.name}", "angle": _angle(element.turned)}
-    return {**_common(element, beam, IN_PLANE), "i": {"body": f"{name}.{element.second.name}"}, "j": first}
-
-
-def _spatial_force(name: str, element: Element, beam: Any) -> dict[str, Any]:
-    turned = np.allclose(element.turned, np.eye(3), rtol=0, atol=1e-14)
-    first = {
-        "body": f"{name}.{element.first.name}",
-        "orientation": list(IDENTITY if turned else from_matrix(element.turned)),
-    }
-    return {**_common(element, beam, list(range(6))), "i": {"body": f"{name}.{element.second.name}"}, "j": first}
+    if len(others) == 1:
+        return {
+            "type": "exact_beam",
+            "stiffness": [[part or None for part in row] for row in K],
+            **common,
+            "i": i,
+            "j": j,
+        }
+    return {
+        "type": "beam_section", "stiffness": K, **common, "nodes": [j, *({"body": body} for body in others)],
+        "reference": element.reference, "shapes": _numbers(element.shapes), "slopes": _numbers(element.slopes),
+    }  # fmt: skip

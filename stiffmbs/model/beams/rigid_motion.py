@@ -27,6 +27,11 @@ def exponential(A: np.ndarray) -> np.ndarray:
     return _series(A, lambda k: 1 / math.factorial(k), TERMS)
 
 
+def tangent(A: np.ndarray) -> np.ndarray:
+    """Return (1 - exp(-A))/A by its series."""
+    return _series(-A, lambda k: 1 / math.factorial(k + 1), TERMS)
+
+
 def half_sine(A: np.ndarray) -> np.ndarray:
     """Return sinh(A/2)/(A/2) by its series."""
     return _series(A @ A, lambda k: 1 / (4**k * math.factorial(2 * k + 1)), TERMS // 2)

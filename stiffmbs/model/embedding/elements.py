@@ -10,7 +10,7 @@ from ...elements.element import Element, Joint
 from ...elements.forces.applied import AppliedForce, AppliedTorque
 from ...elements.forces.bushing import Bushing
 from ...elements.forces.contact import Contact
-from ...elements.forces.exact_beam import ExactBeam
+from ...elements.forces.exact_beam import BeamSection, ExactBeam
 from ...elements.forces.python_force import PythonForce
 from ...elements.forces.torsion_spring import TorsionSpring
 from ...elements.initial_pose import initial_element
@@ -107,6 +107,13 @@ def _six_by_six(three: Any) -> list[Any] | None:
 def exact_beam(element: Any, angles: Angles) -> Written:
     """Return a beam element without stiffness across the plane."""
     return same(element, angles, stiffness=_six_by_six(element.stiffness), unloaded=_six(element.unloaded, 0))
+
+
+@element_in_space.register(BeamSection)
+def beam_section(element: Any, angles: Angles) -> Written:
+    """Return a section of a beam without stiffness across the plane."""
+    rows = _six([_six(row, 0.0) for row in element.stiffness], [0.0] * 6)
+    return same(element, angles, stiffness=rows, unloaded=_six(element.unloaded, 0))
 
 
 @element_in_space.register(Contact)

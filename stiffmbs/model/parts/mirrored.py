@@ -94,6 +94,8 @@ class Mirror:
         match value:
             case MarkerReference():
                 return self._marker(value, way)
+            case (MarkerReference(), *_):
+                return tuple(self._marker(marker, way) for marker in value)
             case None | bool() | str():
                 return value
         return self._image(value, self._signs(element, way), way in ALONG_AXES)

@@ -34,8 +34,9 @@ class FlexibleInertia(Force):
     modes: tuple[MarkerReference, ...]
 
     @classmethod
-    def compiled_terms(cls, n_bodies: int) -> CompiledTerms:
+    def compiled_terms(cls, kind: Any) -> CompiledTerms:
         """Return the patterns of the terms and the sources of the kernels for 3 modal coordinates in each body but one."""
+        n_bodies = kind.n_bodies
         n = 3 * (n_bodies - 1)
         angular, velocities = [3, 4, 5], [6 * (1 + k // 3) + k % 3 for k in range(n)]
         turning, coordinates = [3, 4, 5, 6], [7 * (1 + k // 3) + k % 3 for k in range(n)]

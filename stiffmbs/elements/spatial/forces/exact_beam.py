@@ -1,4 +1,4 @@
-"""Element of a geometrically exact beam in space."""
+"""Element and section of a geometrically exact beam in space."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from pydantic import Field, field_validator
 from ....reading.fields import Measured
 from ....reading.units import si
 from ...element import Symbolic
+from ...forces.beam_section import BeamSectionLaw
 from ...forces.beam_strain import BeamStrain
 from ...forces.bushing import check_symmetric
 from ..elastic import AS_WRITTEN, nearest, six_rows, without_zeros
@@ -26,6 +27,8 @@ _Moments = tuple[
     si.Torque | None, si.Torque | None, si.Torque | None, _Bending | None, _Bending | None, _Bending | None
 ]
 SectionStiffness = Annotated[tuple[_Forces, _Forces, _Forces, _Moments, _Moments, _Moments], AS_WRITTEN]
+_Six = tuple[si.Force, si.Force, si.Force, si.Torque, si.Torque, si.Torque]
+_SixMoments = tuple[si.Torque, si.Torque, si.Torque, _Bending, _Bending, _Bending]
 STRAIGHT = (1.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
@@ -77,3 +80,44 @@ class ExactBeam(BeamStrain):
         along = [effort for effort, _ in cls.relative_powers(e)]
         force, torque = (e.named(along_axes(part, e.j.axes)) for part in (along[:3], along[3:]))
         return [*force_at(e, force, e.i, e.j), *torque_on(torque, e.i, e.j)]
+
+
+class BeamSection(BeamSectionLaw):
+    """Elastic cross section at an inner point of a beam with 3 to 5 nodes, for any displacement and rotation.
+
+    The rigid displacements from a reference node to the others have the screws xi_k. They are interpolated along the
+    axis, xi(s) = sum shapes_k xi_k, and the strain of the curve exp(xi(s)) is::
+
+        (Gamma + (1, 0, 0), kappa) = T(xi) xi'
+        (n, m) = K ((Gamma + (1, 0, 0), kappa) - unloaded) + damping_ratio K (Gamma', kappa')
+
+    n is the axial force and the two shear forces, m the torque and the two bending moments at the section; they are
+    reported as n1, n2, n3, m1, m2, m3. The forces on the nodes follow from the strain energy, length times K/2 strain^2. The run stops where a node is turned by
+    three quarters of a turn against the reference.
+
+    The line body ``beam`` creates such sections together with their nodes (docs: Beams).
+
+    Sonneville, Cardona, Bruls, Geometrically exact beam finite element formulated on the special Euclidean group SE(3),
+    Comput. Methods Appl. Mech. Eng. 268 (2014) 451-474; Wang, Sprague, Jonkman, Johnson, BeamDyn: a high-fidelity wind
+    turbine blade solver in the FAST modular framework, Wind Energy 20 (2017) 1439-1462 (Legendre spectral elements).
+    """
+
+    kind: ClassVar[str] = "beam_section"
+    channels: ClassVar[tuple[str, ...]] = ("n1", "n2", "n3", "m1", "m2", "m3")
+
+    nodes: tuple[Marker, ...] = Field(
+        description="markers of the nodes, whose axes are tangents", min_length=3, max_length=5
+    )
+    unloaded: tuple[si.Number, si.Number, si.Number, _Curvature, _Curvature, _Curvature] = Field(
+        STRAIGHT, description="strain without load: 1, 0, 0, and the torsion and curvatures of the axis, rad/m"
+    )
+    stiffness: tuple[_Six, _Six, _Six, _SixMoments, _SixMoments, _SixMoments] = Field(
+        description="K: a symmetric 6x6 matrix of EA, GA2, GA3 (N), GJ, EI2, EI3 (N m^2)"
+    )
+
+    _symmetric = field_validator("stiffness")(check_symmetric)
+
+    def at_initial_pose(self, model: ModelData) -> Self:
+        """Return the section with the signs of the nodes' quaternions for initial rotations below half a turn."""
+        reference = self.nodes[self.reference]
+        return self.model_copy(update={"nodes": tuple(nearest(model, node, reference) for node in self.nodes)})

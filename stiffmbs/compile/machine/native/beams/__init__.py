@@ -1,0 +1,1 @@
+"""Compiled loops of beam sections whose strain is interpolated between several nodes."""
