@@ -169,7 +169,9 @@ def _of_many(parts: list[str]) -> str:
         return "given.Matrix"
     if inner <= {"given.Law"}:
         return "given.Laws"
-    raise TypeError(f"found a field of several {inner}, expected numbers, rows of them, or formulas")
+    if inner <= {"given.Marker"}:
+        return "given.Markers"
+    raise TypeError(f"found a field of several {inner}, expected numbers, rows of them, formulas or markers")
 
 
 TAKEN: Mapping[type, str] = {

@@ -6,6 +6,7 @@ from stiffmbs.elements.forces.applied import AppliedForce as _AppliedForce
 from stiffmbs.elements.forces.applied import AppliedTorque as _AppliedTorque
 from stiffmbs.elements.forces.bushing import Bushing as _Bushing
 from stiffmbs.elements.forces.contact import Contact as _Contact
+from stiffmbs.elements.forces.exact_beam import BeamSection as _BeamSection
 from stiffmbs.elements.forces.exact_beam import ExactBeam as _ExactBeam
 from stiffmbs.elements.forces.joint_friction import JointFriction as _JointFriction
 from stiffmbs.elements.forces.line_force import LineForce as _LineForce
@@ -114,6 +115,22 @@ class AppliedTorque(_AppliedTorque):
     """Torque on a body: constant, or a formula of time and of any measured quantity."""
     def __init__(
         self, *, i: given.Marker, j: given.Marker | None = ..., torque: given.Law, type: Literal["torque"] = ...
+    ) -> None: ...
+
+class BeamSection(_BeamSection):
+    """Elastic cross section at an inner point of a beam with 3 to 5 nodes, for any displacement and rotation."""
+    def __init__(
+        self,
+        *,
+        nodes: given.Markers,
+        reference: int,
+        shapes: given.Numbers,
+        slopes: given.Numbers,
+        length: given.Number,
+        unloaded: given.Numbers = ...,
+        stiffness: given.Matrix,
+        damping_ratio: given.Number | None = ...,
+        type: Literal["beam_section"] = ...,
     ) -> None: ...
 
 class Bushing(_Bushing):

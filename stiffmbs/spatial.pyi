@@ -16,6 +16,7 @@ from stiffmbs.elements.spatial.forces.brake import Brake as _Brake
 from stiffmbs.elements.spatial.forces.bushing import Bushing as _Bushing
 from stiffmbs.elements.spatial.forces.cylinder_plane_impact import CylinderPlaneImpact as _CylinderPlaneImpact
 from stiffmbs.elements.spatial.forces.ellipsoid_plane_impact import EllipsoidPlaneImpact as _EllipsoidPlaneImpact
+from stiffmbs.elements.spatial.forces.exact_beam import BeamSection as _BeamSection
 from stiffmbs.elements.spatial.forces.exact_beam import ExactBeam as _ExactBeam
 from stiffmbs.elements.spatial.forces.fiala_tyre import FialaTyre as _FialaTyre
 from stiffmbs.elements.spatial.forces.field import FieldForce as _FieldForce
@@ -107,6 +108,22 @@ class Beam(_Beam):
         damping_ratio: given.Number | None = ...,
         damping: given.Matrix = ...,
         type: Literal["beam"] = ...,
+    ) -> None: ...
+
+class BeamSection(_BeamSection):
+    """Elastic cross section at an inner point of a beam with 3 to 5 nodes, for any displacement and rotation."""
+    def __init__(
+        self,
+        *,
+        nodes: given.Markers,
+        reference: int,
+        shapes: given.Numbers,
+        slopes: given.Numbers,
+        length: given.Number,
+        unloaded: given.Numbers = ...,
+        stiffness: given.Matrix,
+        damping_ratio: given.Number | None = ...,
+        type: Literal["beam_section"] = ...,
     ) -> None: ...
 
 class BoxPlaneImpact(_BoxPlaneImpact):

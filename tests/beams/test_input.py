@@ -7,7 +7,7 @@ import pytest
 
 import stiffmbs
 from stiffmbs import AppliedTorque, BeamBody, Fixed, InputError, Model, read_scene, spatial
-from stiffmbs.model.beams.interpolation import Group, divided
+from stiffmbs.model.beams.stiffness import node_weights
 
 SECTION = "section: {type: circle, diameter: 20 mm}"
 MATERIAL = "material: {E: 5 MPa, density: 1100}"
@@ -63,22 +63,10 @@ def test_bad_references_are_reported():
 
 
 def test_a_straight_beam_has_the_mass_the_centre_and_the_inertia_of_the_rod():
-    for p in (2, 3, 4):
-        group = Group.of(p)
-        places = group.nodes - 0.5
-        assert np.all(group.weights > 0) and group.weights.sum() == pytest.approx(1)
-        assert group.weights @ places == pytest.approx(0, abs=1e-12)
-        assert group.weights @ places**2 == pytest.approx(1 / 12)
-        for place, _, values, slopes in group.sections:
-            assert values @ group.nodes**p == pytest.approx(place**p)
-            assert slopes @ group.nodes**p == pytest.approx(p * place ** (p - 1))
-
-
-def test_elements_form_groups_of_three_and_four():
-    for n in range(1, 40):
-        sizes = divided(n, 4)
-        assert sum(sizes) == n and max(sizes) <= 4
-        assert min(sizes) > 2 or n in (1, 2, 5)
+    for n in (2, 3, 4, 5, 6, 7, 20):
+        weights, places = node_weights(n), np.arange(n + 1) - n / 2
+        assert np.all(weights > 0) and weights.sum() == pytest.approx(n)
+        assert weights @ places == pytest.approx(0, abs=1e-12) and weights @ places**2 == pytest.approx(n**3 / 12)
 
 
 def test_an_arc_has_its_length_and_its_curvature():

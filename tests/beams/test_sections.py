@@ -1,17 +1,27 @@
-"""Sections of beams with several nodes: derivatives against differences, energy, and directions of parameters."""
+"""Spectral beams: derivatives of their sections against differences, closed forms, and converged values of motions."""
+
+import math
 
 import numpy as np
 import pytest
 
+import stiffmbs
 from stiffmbs import Body, InputError, Model, compile_model, spatial
 from stiffmbs.compile.directional.direction import Direction, Numbers
 from stiffmbs.compile.state import State
 from stiffmbs.compile.terms import TERM_SETS
 from stiffmbs.elements.forces.exact_beam import BeamSection
+from stiffmbs.model.beams.interpolation import Group, divided
 
 from ..elements.test_element_derivatives import assert_close, derivative, rates, term
+from .scenes import at_rest, cantilever, flying_in_space, pendulum, princeton, right_angle
 
-FORMS = [(d, n, damping) for d in (2, 3) for n in (3, 4, 5) for damping in (None, 0.3)]
+FORMS = [
+    pytest.param(d, n, damping, marks=[] if (d + n, damping) in ((6, 0.3), (8, 0.3)) else pytest.mark.long)
+    for d in (2, 3)
+    for n in (3, 4, 5)
+    for damping in (None, 0.3)
+]
 
 
 def state_with(dimensions, n, damping):
@@ -59,7 +69,7 @@ def test_forces_follow_from_the_energy_and_derivatives_from_the_forces(dimension
     assert term(state, "motion", "f") @ state.u == pytest.approx(lost - stored[0], rel=1e-8)
 
 
-@pytest.mark.parametrize(("dimensions", "n", "damping"), [FORMS[1], FORMS[-1]])
+@pytest.mark.parametrize(("dimensions", "n", "damping"), [(2, 3, 0.3), (3, 5, 0.3)])
 def test_directional_derivatives_by_numbers_and_state(dimensions, n, damping):
     state = state_with(dimensions, n, damping)
     rng = np.random.default_rng(3)
@@ -90,3 +100,107 @@ def test_lengths_of_the_polynomials_are_checked():
         BeamSection(shapes=(1, 2), **fields)
     with pytest.raises(InputError, match="expected the place of a node from 0 to 2"):
         BeamSection(shapes=(1, 2, 3), **{**fields, "reference": 3})
+
+
+def spectral(text):
+    return text.replace("elements:", "interpolation: spectral, elements:")
+
+
+def test_groups_integrate_mass_and_polynomials_exactly():
+    for p in (2, 3, 4):
+        group = Group.of(p)
+        places = group.nodes - 0.5
+        assert np.all(group.weights > 0) and group.weights.sum() == pytest.approx(1)
+        assert group.weights @ places == pytest.approx(0, abs=1e-12)
+        assert group.weights @ places**2 == pytest.approx(1 / 12)
+        for place, _, values, slopes in group.sections:
+            assert values @ group.nodes**p == pytest.approx(place**p)
+            assert slopes @ group.nodes**p == pytest.approx(p * place ** (p - 1))
+
+
+def test_elements_form_groups_of_three_and_four():
+    for n in range(1, 40):
+        sizes = divided(n, 4)
+        assert sum(sizes) == n and max(sizes) <= 4
+        assert min(sizes) > 2 or n in (1, 2, 5)
+
+
+@pytest.mark.parametrize("n", [3, 4, 7])
+def test_an_end_moment_rolls_a_beam_up_to_a_circle(n):
+    found = at_rest(spectral(cantilever(n, torque=math.tau)))
+    assert [found["strip.end.x"], found["strip.end.y"]] == pytest.approx([0, 0], abs=1e-9)
+    assert found["strip.element1.m3"] == pytest.approx(math.tau, rel=1e-9)
+
+
+@pytest.mark.parametrize("n", [3, 4])
+def test_the_end_of_a_linear_cantilever_has_no_error(n):
+    found = at_rest(spectral(cantilever(n, force="[0, 1e-5]", stiffness="[1e4, 50, 1]")))
+    assert found["strip.end.y"] == pytest.approx(1e-5 * (1 / 3 + 1 / 50), rel=1e-7)
+
+
+def test_a_tapered_cantilever_has_no_error():
+    """A cone of diameters D and d: the deflection under an end load is 64 P L^3/(3 pi E D^3 d)."""
+    found = at_rest("""
+bodies:
+  cone:
+    type: beam
+    start: [0, 0]
+    end: [1, 0]
+    elements: 6
+    interpolation: spectral
+    section: {type: circle, diameter: 40 mm}
+    section_end: {type: circle, diameter: 20 mm}
+    material: {E: 200 GPa, nu: 0, density: 7800}
+joints: {clamp: {type: fixed, i: cone.start, j: ground}}
+forces: {P: {type: force, i: cone.end, force: [0, 1]}}
+""")
+    bending = 64 / (3 * math.pi * 200e9 * 0.04**3 * 0.02)
+    shear = 1 / (6 / 7 * 100e9 * math.pi / 4 * 0.04 * 0.02)
+    assert found["cone.end.y"] == pytest.approx(bending + shear, rel=1e-6)
+
+
+def test_the_princeton_beam():
+    found = at_rest(spectral(princeton(8, 13.345, 45)))
+    tip = [found["strip.end.y"], found["strip.end.z"], found["strip.end.x"] - 0.508]
+    assert tip == pytest.approx([0.156587823, 0.015342258, -0.030361114], abs=1e-7)
+
+
+def test_a_rubber_pendulum():
+    found = stiffmbs.run(stiffmbs.read_scene(spectral(pendulum(8))), solver="radau")
+    end = [found["rod.end.x"][-1], found["rod.end.y"][-1]]
+    assert end == pytest.approx([0.4365326, -0.8979798], abs=1e-3)
+    assert np.ptp(found["energy.total"]) < 1e-5 * np.max(found["energy.kinetic"])
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(
+    ("text", "channels", "expected", "tolerance"),
+    [
+        (flying_in_space(8), ("rod.start.x", "rod.start.y", "rod.start.z"), (19.213600, 1.625556, -2.127248), 2e-3),
+        (right_angle(4), ("frame.elbow.z", "frame.end.z"), (4.642067, 3.508934), 4e-3),
+    ],
+)  # fmt: skip
+def test_thick_beams_converge_fast(text, channels, expected, tolerance):
+    """Beams with a rotary inertia of a hundred times that of a real section, and waves along them."""
+    found = stiffmbs.run(stiffmbs.read_scene(spectral(text)), solver="radau")
+    assert [found[name][-1] for name in channels] == pytest.approx(expected, abs=tolerance)
+
+
+def test_sensitivities_against_differences():
+    text = spectral("""
+parameters: {E: 5 MPa, L: 1 m, d: 20 mm, rho: 1100}
+gravity: [0, -2]
+bodies:
+  s: {type: beam, start: [0, 0], end: [L, 0], elements: 4, section: {type: circle, diameter: d},
+      material: {E: E, density: rho}, damping: 10 ms}
+joints: {c: {type: fixed, i: s.start, j: ground}}
+run: {duration: 0.2, rtol: 1e-9}
+""")
+    values = {"E": 5e6, "L": 1.0, "d": 0.02, "rho": 1100.0}
+    found = stiffmbs.sensitivities(stiffmbs.read_scene(text), to=list(values), of="final(s.end.y)")
+    for name, value in values.items():
+        ends = [
+            stiffmbs.run(stiffmbs.read_scene(text, [(name, value * factor)]), rtol=1e-10)["s.end.y"][-1]
+            for factor in (1 - 1e-4, 1 + 1e-4)
+        ]
+        assert found.to[name] == pytest.approx((ends[1] - ends[0]) / (2e-4 * value), rel=1e-3)

@@ -55,6 +55,9 @@ class Beam(LineBody):
 
     type: Literal["beam"] = "beam"
     elements: Count = Field(description="number of elements")
+    interpolation: Literal["pairs", "spectral"] = Field(
+        "pairs", description="of the strain: constant between two nodes, or by polynomials through three to five nodes"
+    )
     section: AnySection | None = Field(None, description="cross section: circle, tube, rectangle, i or numbers")
     section_end: AnySection | None = Field(
         None, description="cross section at the end, if it varies linearly along the beam: of the same type"

@@ -152,7 +152,7 @@ def discretise(beam: Any) -> Line:
     """Return the nodes and elements of a beam.
 
     The elements are distributed over the smooth intervals between ends, corners and stations by length, at least one in
-    each. Groups of up to four of them share an interpolation (`Group`). In the plane the height of a section is in the plane, so axes 2 and 3 change places.
+    each. With spectral interpolation, groups of up to four of them share polynomials (`Group`). In the plane the height of a section is in the plane, so axes 2 and 3 change places.
 
     Raises
     ------
@@ -169,6 +169,9 @@ def discretise(beam: Any) -> Line:
     for (piece, first, a, b), count in zip(intervals, counts, strict=True):
         up = Z if planar else upward(piece) if beam.up is None else np.array(beam.up, dtype=float)
         add = _Interval(piece, first, constants, up, planar, nodes, elements)
+        if beam.interpolation == "pairs":
+            add.group(a, b, Group.of_pairs(count))
+            continue
         for start, end, size in group_sizes(a, b, count, _turn(piece)):
             add.group(start, end, Group.of(size))
     at = {round(s / total, 12): name for name, s in beam.stations.items()}

@@ -15,6 +15,8 @@ from typing import cast
 import numpy as np
 from numpy.polynomial import legendre
 
+from .stiffness import node_weights
+
 LARGEST = 4
 """Largest number of elements in a group."""
 QUADRATURE = 8
@@ -76,6 +78,11 @@ class Group:
         values, slopes = legendre.legvander(points, p) @ inverse, 2 * derivatives @ inverse
         sections = zip((1 + points) / 2, of_points / 2, values, slopes, strict=True)
         return cls((1 + x) / 2, weights, tuple(sections) if p > 2 else ())
+
+    @classmethod
+    def of_pairs(cls, count: int) -> Group:
+        """Return elements between two nodes each, exact for small deformations, with equidistant nodes."""
+        return cls(np.linspace(0, 1, count + 1), node_weights(count) / count, ())
 
 
 def group_sizes(start: float, end: float, count: int, turn: float) -> Iterator[tuple[float, float, int]]:

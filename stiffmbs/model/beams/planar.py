@@ -35,6 +35,8 @@ class BeamBody(Beam):
     points : sequence of 2 floats, optional
         In place of `start` and `end`: corners of straight pieces, rigidly connected, m.
     elements : int
+    interpolation : {'pairs', 'spectral'}
+        Of the strain: constant between two nodes, or by polynomials through three to five nodes, of higher order.
     section, material : mappings
         Cross section and material, or in their place `stiffness`, `mass_per_length` and `inertia_per_length`.
     section_end : mapping, optional
@@ -67,6 +69,7 @@ class BeamBody(Beam):
             self,
             *,
             elements: given.Number,
+            interpolation: str = "pairs",
             start: given.Numbers | None = None,
             end: given.Numbers | None = None,
             through: given.Numbers | None = None,

@@ -38,6 +38,8 @@ class BeamBody(Beam):
         Direction to which axis 3 of the section, along its height, is nearest; z by default, or x for a
         nearly vertical piece.
     elements : int
+    interpolation : {'pairs', 'spectral'}
+        Of the strain: constant between two nodes, or by polynomials through three to five nodes, of higher order.
     section, material : mappings
         Cross section and material, or in their place `stiffness`, `mass_per_length` and `inertia_per_length`.
     section_end : mapping, optional
@@ -77,6 +79,7 @@ class BeamBody(Beam):
             self,
             *,
             elements: given.Number,
+            interpolation: str = "pairs",
             start: given.Numbers | None = None,
             end: given.Numbers | None = None,
             through: given.Numbers | None = None,

@@ -44,3 +44,23 @@ def _scale(K: np.ndarray) -> np.ndarray:
     """Return the geometric mean of the diagonal entries of each row and column."""
     root = np.sqrt(np.diag(K))
     return np.outer(root, root)
+
+
+def node_weights(elements: int) -> np.ndarray:
+    """Return the weights of equidistant nodes in an integral, in lengths of an element; exact for cubics.
+
+    Simpson's rules for two and three elements, Gregory's rule of fourth order from four on; the trapezoidal rule for a
+    single element. All weights are positive, so they serve as lumped masses, and the mass, centre of mass and inertia of
+    a straight uniform beam are exact.
+    """
+    if elements == 1:
+        return np.array([0.5, 0.5])
+    if elements == 2:
+        return np.array([1.0, 4.0, 1.0]) / 3
+    if elements == 3:
+        return np.array([3.0, 9.0, 9.0, 3.0]) / 8
+    weights = np.ones(elements + 1)
+    for k, correction in enumerate((-5 / 8, 1 / 6, -1 / 24)):
+        weights[k] += correction
+        weights[-1 - k] += correction
+    return weights

@@ -1,7 +1,7 @@
 """Forces and energies of a cross section of a beam whose strain is interpolated between nodes.
 
 The screws of the nodes from the reference are interpolated by polynomials, xi(s) = sum a_k xi_k, and the strain is
-T(xi) xi'. Numbers: the markers of the nodes, the reference, a_k, a_k', the length that the section stands for, the strain
+T(xi) xi'. The numbers are the markers of the nodes, the reference, a_k, a_k', and the section's length. They end with the strain
 without load, the stiffness by rows, and the ratio of viscous to elastic stiffness. Strains are in the order of the
 section's forces: three translations and rotations, in the plane two and one.
 """
