@@ -90,7 +90,9 @@ PARTS: tuple[Maker, ...] = tuple(
 WITHOUT: Mapping[str, str] = MappingProxyType(
     {
         "python_force": "a function of Python is no part of a scene file",
-        **dict.fromkeys(("exact_beam", "beam_section"), "the line body beam creates it, and tests/beams has its scenes"),
+        **dict.fromkeys(
+            ("exact_beam", "beam_section"), "the line body beam creates it, and tests/beams has its scenes"
+        ),
         "road_contact": "it needs a road; tests/elements/test_road_contact.py compares it with a contact with a plane",
         "driver": "it needs a car with four wheels on tyres, which examples/car.yaml is",
         **dict.fromkeys(
