@@ -42,7 +42,7 @@ SUBSYSTEMS = {
     "linear_solver": "solve.ida.choice:COSTS",
     "long_steps": "solve.events.long_steps:LONG_STEP",
     "loop": "solve.ida.native.parameters:LOOP",
-    "masking": "solve.events.masked:MASKING",
+    "masking": "solve.events.chattering:MASKING",
     "narrow_inputs": "solve.events.narrow_inputs:NARROW_INPUTS",
     "newton": "solve.error_control.native.parameters:NEWTON",
     "next_step": "solve.events.native.parameters:NEXT_STEP",

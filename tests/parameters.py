@@ -39,6 +39,10 @@ DAMPED = """
 """
 
 
+CHANGED = "run.tuning changes parameters"
+"""Beginning of the note that names changed parameters; it is no result."""
+
+
 class Case(NamedTuple):
     """Short run of an example or of a scene's text, with changed settings."""
 
@@ -52,7 +56,8 @@ class Case(NamedTuple):
         except StiffmbsError as error:
             return str(error)
         counters = {name: value for name, value in found.solver.items() if "seconds" not in name}
-        digest = hashlib.sha256(repr((found.message, found.notes, sorted(counters.items()))).encode())
+        notes = [note for note in found.notes if not note.startswith(CHANGED)]
+        digest = hashlib.sha256(repr((found.message, notes, sorted(counters.items()))).encode())
         for name in sorted(found.channels):
             digest.update(found.channels[name].tobytes())
         return digest.hexdigest()

@@ -14,10 +14,9 @@ from ..model.settings import RunSettings
 from .error_control.error_test import CHOSEN, ErrorControl
 from .error_control.newton import newton_tolerance, stiffness_at
 from .error_control.relaxation import relax
-from .events.chattering import Chattering
+from .events.chattering import Chattering, MaskedEvents
 from .events.discontinuity import VELOCITY_JUMP, VelocityJumps
 from .events.long_steps import LongSteps
-from .events.masked import MaskedEvents
 from .events.refusals import refuse_beyond_limits
 from .events.restart import just_after, restarted_past, straight_on
 from .ida.choice import dense_cost, driven_by_callbacks, driven_natively

@@ -7,12 +7,11 @@ from collections.abc import Iterator, Sequence
 
 from ...compile.system import System
 from ...errors import AssemblyError
-from ..directions import Direction
 from ..inconsistent_constraints import Inconsistency, LoopRankResult
 from ..overconstraint import Overconstraint, listed, overconstraints
 from ..parameters import REDUNDANCY
 from ..redundancy import Redundancy
-from ..uniqueness import Indeterminate, unproven
+from ..uniqueness import Direction, Indeterminate, unproven
 
 STOPS_WHERE = "stops where formulas or tables no longer hold the same"
 

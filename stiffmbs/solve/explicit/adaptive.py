@@ -23,10 +23,9 @@ from ..step_logging import is_logged, log_step
 from ..suspect import suspect
 from ..trajectory import Ending, Grid, History, Outcome, ProgressCallback, Rows, Trajectory
 from .integration import REASONS, Integration, stiff_sentence
-from .memory import ADVANCE
 from .native.parameters import CONTROL
 from .rounding import Rounding
-from .scheme import Scheme
+from .scheme import ADVANCE, Scheme
 from .stable_step import StableStep
 
 

@@ -14,9 +14,8 @@ from ..error_control.tolerances import absolute_tolerances
 from ..events.event_functions import EventSearch, StepBound
 from ..events.long_steps import LongStepLog, LongSteps
 from ..trajectory import Grid, Rows
-from .memory import StepMemory
 from .native.parameters import CONTROL
-from .scheme import Scheme
+from .scheme import Scheme, StepMemory
 
 
 class Integration:

@@ -16,8 +16,7 @@ from ...dynamics.algebraic_states import rates_by_states
 from ...dynamics.dynamics import Dynamics
 from ...tuning import tuned
 from .integration import Integration
-from .memory import FASTEST_RATE
-from .scheme import Scheme
+from .scheme import FASTEST_RATE, Scheme
 
 
 @dataclass(frozen=True)

@@ -22,8 +22,7 @@ from .native.layouts import NATIVE_IDA
 from .native.parameters import LOOP
 from .output_correction import OutputCorrection
 from .session import Session
-from .statistics import failure_sentence
-from .step_log import StepLog
+from .statistics import StepLog, failure_sentence
 
 MODULE = "stiffmbs.solve.ida.native.ida_loop"
 RESIDUAL = Routine(MODULE, "residual", "int32(float64, int64, int64, int64, int64*)")

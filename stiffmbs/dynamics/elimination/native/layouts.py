@@ -20,7 +20,7 @@ PIN_ELIMINATION = Layout({
     "start": INDICES, "later": INDICES, "update": INDICES,
     "block": FLOATS, "diagonal": FLOATS, "beside": FLOATS, "scaled": FLOATS, "x": FLOATS,
 })  # fmt: skip
-"""Matrix and factors of planar revolute joints in the order of elimination (`stiffmbs.dynamics.elimination.pins`).  The
+"""Matrix and factors of planar revolute joints in the order of elimination (`stiffmbs.dynamics.elimination.eliminated`).  The
 rows of `pin` are `Pin`, `inverse` holds the inverse masses of both bodies.  Off-diagonal blocks are
 stored joint by joint from `start` on, each with its `later` joint.  Rows of `product` (`PinProduct`) list the blocks of J M^-1
 that form them, `mass` the masses between these; `update` lists the block that two blocks of a joint update."""

@@ -17,7 +17,13 @@ from stiffmbs.compile.machine.native.statuses import (
     UNSTABLE,
 )
 from stiffmbs.dynamics.native.layouts import dynamics_view
-from stiffmbs.solve.error_control.native.accumulated_errors import accumulated_errors_view, displace
+from stiffmbs.solve.error_control.native.accumulated_errors import (
+    accumulated_errors_view,
+    displace,
+    note_damping,
+    note_error,
+)
+from stiffmbs.solve.error_control.native.parameters import ACCUMULATION
 from stiffmbs.solve.events.native.step_bound import (
     STRETCHED,
     is_to_be_kept,
@@ -29,10 +35,9 @@ from stiffmbs.solve.events.native.step_bound import (
 from stiffmbs.solve.explicit.native.attempt import arrive, attempt, uncertain_end
 from stiffmbs.solve.explicit.native.error_estimate import fastest_rate, trusted_error
 from stiffmbs.solve.explicit.native.explicit_events import AT_ANOTHER_LAW, RETRIED, end_at_event, retaken
-from stiffmbs.solve.explicit.native.halved_step import is_halved, note_difference, two_halves
 from stiffmbs.solve.explicit.native.interpolant import interpolated, prepare, store_rows, store_step
 from stiffmbs.solve.explicit.native.parameters import CONTROL, ENDS
-from stiffmbs.solve.explicit.native.stages import explicit_view, scheme_view
+from stiffmbs.solve.explicit.native.stages import explicit_view, load_state, rates, scheme_view
 from stiffmbs.solve.explicit.native.start import first_step, start_steps
 
 __all__ = ["advance", "end_at_event", "fastest_rate", "fixed_steps"]
@@ -240,3 +245,59 @@ def fixed_steps(start, h, steps, explicit):
         if status < 0:
             return status
     return 0
+
+
+@compiled
+def is_halved(x):
+    """Return True if the error of the next step is estimated."""
+    return x.steps % ACCUMULATION.halved_apart == ACCUMULATION.halved_apart // 2
+
+
+@compiled
+def _look_at_damping(x, s, m, t):
+    """Note the damping at the start of a step, by accelerations in the second stage; 0 or a negative status."""
+    for i in range(x.n):
+        x.halved[i] = x.y_before[i] * (1.0 + ACCUMULATION.faster) if i >= x.n_q else x.y_before[i]
+    load_state(s, x.halved)
+    status = rates(x, s, m, 1, t)
+    if status == 0:
+        note_damping(accumulated_errors_view(x.accumulated), x.y_before, x.k, shifted(x.k, x.n), ACCUMULATION.faster)
+    return status
+
+
+@compiled
+def two_halves(x, c, s, m, h):
+    """Store the result of two half steps from y_before, and restore everything else; 0 or a negative status."""
+    start = shifted(x.halved, x.n)
+    rate = shifted(x.halved, 2 * x.n)
+    end = shifted(x.k, c.stages * x.n)
+    t = x.t_before
+    copied(start, x.y_before, x.n)
+    copied(rate, x.k, x.n)
+    status = _look_at_damping(x, s, m, t)
+    if status == 0:
+        status = attempt(x, c, s, m, 0.5 * h)
+    if status == 0:
+        status = arrive(x, c, s, m, t + 0.5 * h)
+    if status == 0:
+        x.t_before = t + 0.5 * h
+        copied(x.y_before, x.y, x.n)
+        copied(x.k, end, x.n)
+        status = attempt(x, c, s, m, 0.5 * h)
+    if status == 0:
+        status = arrive(x, c, s, m, t + h)
+    copied(x.halved, x.y, x.n)
+    x.t_before = t
+    copied(x.y_before, start, x.n)
+    copied(x.y, start, x.n)
+    copied(x.k, rate, x.n)
+    copied(end, rate, x.n)
+    return status
+
+
+@compiled
+def note_difference(x):
+    """Note the difference between the new state and that of two halves as the error of the step."""
+    for i in range(x.n):
+        x.halved[i] = x.y[i] - x.halved[i]
+    note_error(accumulated_errors_view(x.accumulated), x.y, x.halved)
