@@ -100,7 +100,7 @@ def test_models_with_linear_systems_are_written_and_read_again():
         ("input: smooth", "input: lead", "found an output that depends on itself at once \\(lead -> lead\\)"),
         ("b: [[0], [1]]", "b: [[0, 1]]", "two: b: found 1 rows of 2 numbers, expected 2 rows of 1"),
         ("outputs: [p, q]", "outputs: [p]", "two: outputs: found 1 names, expected 2"),
-        (", filter: 10 ms", "", "motor: filter: found none beside kd"),
+        (", filter: 10 ms", "", "motor: filter: found none with kd"),
         ("kp: 50,", "kp: 50, kq: 3,", "motor: found the unknown key 'kq'"),
         ("{numerator: [w^2], denominator: [1, 1.4*w, w^2], input: cart.vx}", "{input: 3}", "smooth: found none of the keys"),
     ],
