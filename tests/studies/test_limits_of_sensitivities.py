@@ -201,3 +201,8 @@ def test_an_output_that_is_no_text_is_refused(of):
     scene = stiffmbs.read_scene("{bodies: {a: {mass: 1, inertia: 1}}}")
     with pytest.raises(stiffmbs.InputError, match=r"of: found .*, expected the text of one formula"):
         sensitivities(scene, "bodies.a.mass", of)
+
+
+def test_the_field_formula_of_a_tyre_is_no_formula():
+    set_up = import_module("stiffmbs.studies.sensitivities.set_up")
+    assert not set_up._has_table((("formula", ("choice", "5.2")), ("LMUX", ("number",))))

@@ -252,6 +252,8 @@ def _same_structure(a: System, b: System) -> bool:
 def _has_table(shape: Any) -> bool:
     if not isinstance(shape, tuple):
         return False
-    if shape[:1] == ("table",) or (shape[:1] == ("formula",) and shape[2][2]):
+    if shape[:1] == ("table",) or (
+        shape[:1] == ("formula",) and len(shape) > 2 and shape[2][2]
+    ):  # tyres have a field `formula`
         return True
     return any(map(_has_table, shape))
