@@ -170,7 +170,7 @@ def _of_many(parts: list[str]) -> str:
     if inner <= {"given.Law"}:
         return "given.Laws"
     if inner <= {"given.Marker"}:
-        return "given.Markers"
+        return "given.MarkerSequence"
     raise TypeError(f"found a field of several {inner}, expected numbers, rows of them, formulas or markers")
 
 

@@ -122,7 +122,7 @@ class BeamSection(_BeamSection):
     def __init__(
         self,
         *,
-        nodes: given.Markers,
+        nodes: given.MarkerSequence,
         reference: int,
         shapes: given.Numbers,
         slopes: given.Numbers,
