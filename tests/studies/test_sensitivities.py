@@ -48,6 +48,27 @@ def test_a_force_that_ends_at_an_instant_that_moves(solver):
     assert found.to == pytest.approx(expected, rel=1e-7)
 
 
+SWITCHED = """
+parameters: {y: -0.0995525}
+bodies: {bar: {mass: 1.966, inertia: 0.1}}
+joints: {hinge: {type: revolute, i: {body: bar, point: [-0.0710, y]}, j: {body: ground, point: [-0.0710, y]}}}
+forces:
+  push: {type: force, i: bar, force: [0, "3.37*step(t, 0.0586, 0, 0.156, 1)"]}
+  held: {type: spring_damper, i: bar, j: {body: ground, point: [-0.8067, -0.3361]}, stiffness: 98.5, damping: 0.249, free_length: 0.3}
+states: {z: {rate: "branch(bar.vy - 0.0339, 1, 0, -1)", start: 0}}
+run: {duration: 0.1, points: 17, rtol: 1e-6}
+"""
+
+
+def test_short_steps_before_an_event_do_not_spoil_those_along_radau():
+    """The last steps before the event take 1e-12 s and less; bdf has the formula of another method."""
+    along_bdf, along_radau = (
+        sensitivities(stiffmbs.read_scene(SWITCHED), ["y"], "final(z)", solver=solver).to["y"]
+        for solver in ("bdf", "radau")
+    )
+    assert along_radau == pytest.approx(along_bdf, rel=1e-8)
+
+
 @pytest.mark.long
 def test_an_event_at_which_a_force_jumps():
     """A sled at speed v meets a constant resistance behind x = a: x = a + v s - R/(2 m) s^2, s = 1 - a/v."""
