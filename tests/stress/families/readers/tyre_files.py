@@ -54,7 +54,7 @@ RANGES: dict[str, tuple[str, str]] = {
     "camber": ("[INCLINATION_ANGLE_RANGE]\nCAMMAX = 1\nCAMMIN = -1\n", "camber reaches 0.05"), "camber within": ("[INCLINATION_ANGLE_RANGE]\nCAMMAX = 3\nCAMMIN = -3\n", ""),
 }  # fmt: skip
 REFUSED: dict[str, tuple[tuple[str, str], str]] = {
-    "an unknown FITTYP": (("LONGVL = 16700", "FITTYP = 63"), "line 9: found FITTYP = 63"), "FITTYP in words": (("LONGVL = 16700", "FITTYP = 'MF6'"), "line 9: found FITTYP = 'MF6'"),
+    "an unknown FITTYP": (("LONGVL = 16700", "FITTYP = 63"), "line 9: found FITTYP = 63"), "FITTYP in words": (("LONGVL = 16700", "FITTYP = 'MF6'"), "line 9: found FITTYP = MF6"),
     "a coefficient of 6.1 without FITTYP": (("PCX1 = 1.6", "PCX1 = 1.6\nPPX1 = -0.4"), "line 17: found PPX1"),
     "a key twice in a section": (("PCX1 = 1.6", "PCX1 = 1.6\nPCX1 = 1.7"), "line 17"), "a curve of three columns": (("[VERTICAL]", "[DEFLECTION_LOAD_CURVE]\n0 0\n10 2 3\n[VERTICAL]"), "line 13: [DEFLECTION_LOAD_CURVE]: found"),
     "a curve that turns back": (("[VERTICAL]", "[DEFLECTION_LOAD_CURVE]\n10 0\n0 2\n[VERTICAL]"), "expected increasing arguments"),
