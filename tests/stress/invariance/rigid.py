@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import copy
 import math
+from collections.abc import Collection
 from dataclasses import dataclass
 from typing import Any
 
@@ -81,7 +82,7 @@ def placed(content: Content, placing: Placing, what: str) -> Change:
     NotLegitimate
         When an element has numbers along the ground's axes that cannot be rotated.
     """
-    replace = _replace(placing)
+    replace = _replace(placing, content.get("joints", ()))
     mapper = _Moved(placing, replace)
     found = with_other_formulas(copy.deepcopy(content), replace)
     dimensions = placing.dimensions
@@ -97,11 +98,14 @@ def placed(content: Content, placing: Placing, what: str) -> Change:
                 changed.setdefault("j", f"{GROUND}.{LAB}")
             _turn_components(changed, described, placing)
             found[section][name] = changed
-    return Change(what, found, lambda channels, _: _back(channels, placing))
+    return Change(what, found, lambda channels, _: _back(channels, placing, content.get("use", ())))
 
 
 def _body(body: Content, placing: Placing) -> Content:
     found = dict(body)
+    if "start" in body:
+        found |= {end: placing.point(body[end]) for end in ("start", "end")}
+        return found | ({"up": placing.direction(body["up"])} if "up" in body else {})
     found["position"] = placing.point(body.get("position", [0.0, 0.0, 0.0][: placing.dimensions]))
     if "velocity" in body:
         found["velocity"] = placing.direction(body["velocity"])
@@ -149,7 +153,7 @@ def _turned(components: list[Any], placing: Placing) -> list[Any]:
     ]
 
 
-def _replace(placing: Placing) -> Any:
+def _replace(placing: Placing, joints: Collection[str]) -> Any:
     """Return the substitution for coordinates, measures and reactions."""
     axes = "xyz"[: placing.dimensions]
 
@@ -167,7 +171,8 @@ def _replace(placing: Placing) -> Any:
                 return mixed([f"({body}.{axis} - ({float(part)!r}))" for axis, part in moved], name)
             if name[0] == "v" and name[1:] in axes:
                 return mixed([f"{body}.v{axis}" for axis in axes], name[1:])
-            return f"({body}.angle - ({placing.angle!r}))" if name == "angle" else None
+            is_of_body = name == "angle" and body not in joints
+            return f"({body}.angle - ({placing.angle!r}))" if is_of_body else None
         if call is None:
             return None
         name, markers = call
@@ -186,10 +191,12 @@ def _replace(placing: Placing) -> Any:
     return replace
 
 
-def _back(channels: Channels, placing: Placing) -> Channels:
-    """Return channels along the axes of the original, relative to its origin."""
+def _back(channels: Channels, placing: Placing, parts: Collection[str]) -> Channels:
+    """Return channels along the axes of the original, relative to its origin; those of a part itself are its states."""
     found, inverse = dict(channels), placing.rotation.T
     for owner in dict.fromkeys(name.rpartition(".")[0] for name in channels):
+        if owner in parts:
+            continue
         for kind, labels in VECTORS.items():
             values = vector(channels, owner, labels)
             if values is not None:

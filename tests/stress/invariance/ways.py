@@ -99,7 +99,9 @@ def step_by_step(content: Content, **how: Any) -> Found:
 def as_a_study(content: Content, **how: Any) -> Found:
     """Return the channels of the second of two cases of a study that differ in the mass of a body."""
     scene = scene_of(content)
-    body = next(iter(content["bodies"]))
+    body = next((name for name, each in content["bodies"].items() if "mass" in each), None)
+    if body is None:
+        raise NotLegitimate("no body has a mass of its own")
     mass = content["bodies"][body]["mass"]
     names = [name for name in at_once(content, **how).channels if not name.startswith("constraint.")]
     path = f"bodies.{body}.mass"

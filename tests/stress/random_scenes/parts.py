@@ -17,12 +17,13 @@ SMALL_PARTS: dict[str, tuple[str, ...]] = {
     "leaf_spring": ("axle",),
 }
 """Mounts that need a second body."""
+SPRINGS = {"air_spring": "above", "hydromount": "load", "viscoelastic_bushing": "other"}
+"""Suspension elements, and their mounts for a second body."""
 
 
 def add_part(draft: Draft, part: str) -> str:
     """Add a part on the body of a car, and an end body if it needs one."""
     chassis = _car(draft)
-    name = f"part{len(draft.section('use'))}"
     use: Content = {"part": part, "on": chassis, "compliance": draft.choice(["rigid", "bushing"])}
     if part == "aerodynamics":
         use = {"part": part, "on": chassis}
@@ -34,7 +35,21 @@ def add_part(draft: Draft, part: str) -> str:
         use["position"] = draft.vector(0.2, 3)
     if draft.chance(0.4) and part != "steering_rack":
         use["mirror"] = draft.choice(["x", "y"])
-    mounts = {mount: _end(draft) for mount in SMALL_PARTS.get(part, ())}
+    return _added(draft, use, SMALL_PARTS.get(part, ()))
+
+
+def add_spring(draft: Draft, part: str) -> str:
+    """Add an air spring, a hydraulic mount or a viscoelastic bushing between a car body and another body."""
+    use: Content = {"part": part, "on": _car(draft)}
+    if part == "air_spring":
+        use["parameters"] = {"load": draft.uniform(100, 400)}
+    return _added(draft, use, (SPRINGS[part],))
+
+
+def _added(draft: Draft, use: Content, ends: tuple[str, ...]) -> str:
+    """Add the use of a part with bodies at its ends and return its name."""
+    name = f"part{len(draft.section('use'))}"
+    mounts = {mount: _end(draft) for mount in ends}
     if mounts:
         use["mounts"] = mounts
     draft.section("use")[name] = use

@@ -34,23 +34,33 @@ def random_scene(rng: np.random.Generator, dimensions: int | None = None, featur
         What the scene may have.
     """
     draft = Draft(rng, dimensions or int(rng.integers(2, 4)), features)
-    draft.content = _beginning(draft)
+    draft.content = beginning(draft)
     if features.inputs and draft.chance(0.2):
         draft.section("inputs")["push"] = draft.uniform(-1, 1)
     _add_part(draft)
-    _add_tree(draft)
+    add_tree(draft)
     _some(draft, RELATIONS, int(rng.integers(0, 3)))
     if features.loops and draft.chance(0.4):
         _close_loop(draft)
     if features.redundant and draft.chance(0.3):
         _double_joint(draft)
     _some(draft, STATES, int(rng.choice([0, 0, 1, 2])))
-    _some(draft, tuple(maker for maker in FORCES if maker.needs != ("tyres",)), int(rng.integers(2, 5)))
+    add_forces(draft, int(rng.integers(2, 5)))
     _add_requests(draft)
+    return without_empty_sections(draft)
+
+
+def without_empty_sections(draft: Draft) -> Content:
+    """Return the content of a draft."""
     return {name: section for name, section in copy.deepcopy(draft.content).items() if section not in ({}, None)}
 
 
-def _beginning(draft: Draft) -> Content:
+def add_forces(draft: Draft, count: int) -> None:
+    """Add random forces other than tyres."""
+    _some(draft, tuple(maker for maker in FORCES if maker.needs != ("tyres",)), count)
+
+
+def beginning(draft: Draft) -> Content:
     """Return a scene without bodies."""
     down = [0.0] * (draft.dimensions - 1) + [-9.81]
     gravity = draft.choice([down, down, down, draft.vector(9.0), [0.0] * draft.dimensions])
@@ -68,7 +78,7 @@ def _add_part(draft: Draft) -> None:
         _some(draft, tuple(maker for maker in FORCES if maker.needs == ("tyres",)), 1)
 
 
-def _add_tree(draft: Draft) -> None:
+def add_tree(draft: Draft) -> None:
     """Add bodies, each free or with a random joint to a previous body or the ground."""
     for _ in range(int(draft.rng.integers(1, 4 if draft.in_space else 5))):
         parent = draft.choice([*draft.poses, GROUND, GROUND])
