@@ -27,7 +27,7 @@ from stiffmbs.dynamics.native.block_systems import (
     to_position_constraints,
     to_velocity_constraints,
 )
-from stiffmbs.dynamics.native.layouts import eliminated_view
+from stiffmbs.dynamics.native.views import eliminated_view
 
 KEPT = 1e-3
 """Least pivot relative to its diagonal for elimination, which then loses at most three of sixteen digits."""

@@ -19,7 +19,7 @@ from stiffmbs.dynamics.native.block_systems import (
     to_velocity_constraints,
 )
 from stiffmbs.dynamics.native.consistent import consistent_accelerations, from_row_to_row
-from stiffmbs.dynamics.native.layouts import dynamics_view, eliminated_view
+from stiffmbs.dynamics.native.views import dynamics_view, eliminated_view
 
 AMPLIFIED, MOVED = 1e6, 1e-6
 """Amplification of a violation, and fraction of the largest coordinate, above which the move of a projection is

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from stiffmbs.compile.machine.layout import FLOAT_CELL, FLOATS, INDICES, INT, INT_CELL, INTS, Layout
-from stiffmbs.compile.machine.native.access import view_of
 
 DYNAMICS = Layout({
     "state": INTS, "constraining": INTS, "positions": INTS, "position_factors": INTS, "velocities": INTS, "velocity_factors": INTS,
@@ -33,7 +32,3 @@ state; residuals of the block system, sizes of their terms, and the least allowe
 
 POSITION_TOLERANCE = 1e-12
 """Largest violation after a projection onto the positions, apart from rounding, m or rad."""
-
-
-dynamics_view = view_of("Dynamics", DYNAMICS)
-eliminated_view = view_of("Eliminated", ELIMINATED)

@@ -15,7 +15,7 @@ from stiffmbs.dynamics.native.block_systems import (
     to_position_constraints,
     to_velocity_constraints,
 )
-from stiffmbs.dynamics.native.layouts import eliminated_view
+from stiffmbs.dynamics.native.views import eliminated_view
 
 
 @compiled

@@ -14,7 +14,7 @@ from stiffmbs.dynamics.elimination.native.by_blocks import accelerate_by_blocks,
 from stiffmbs.dynamics.elimination.native.by_pins import accelerate_by_pins, move_by_pins, pins_view
 from stiffmbs.dynamics.elimination.native.digits import keeps_digits
 from stiffmbs.dynamics.elimination.native.layouts import ENTRY_ELIMINATION
-from stiffmbs.dynamics.native.layouts import eliminated_view
+from stiffmbs.dynamics.native.views import eliminated_view
 
 
 @compiled

@@ -7,7 +7,7 @@ from stiffmbs.compile.machine.native.evaluate import ACCELERATION, SWITCH, evalu
 from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.orientation import add_rates, take_unit_length
 from stiffmbs.dynamics.native.consistent import consistent_accelerations
-from stiffmbs.dynamics.native.layouts import dynamics_view
+from stiffmbs.dynamics.native.views import dynamics_view
 from stiffmbs.solve.events.native.parameters import SEARCH
 from stiffmbs.solve.explicit.native.stages import add_rates_behind
 

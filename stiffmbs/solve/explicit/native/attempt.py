@@ -7,8 +7,8 @@ from math import isfinite
 from stiffmbs.compile.machine.native.access import compiled, shifted
 from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.statuses import NOT_FINITE
-from stiffmbs.dynamics.native.layouts import eliminated_view
 from stiffmbs.dynamics.native.projection import back_to_constraints
+from stiffmbs.dynamics.native.views import eliminated_view
 from stiffmbs.solve.events.native.parameters import EPSILON
 from stiffmbs.solve.explicit.native.parameters import ENDS
 from stiffmbs.solve.explicit.native.stages import keep_algebraic, load_state, rates, take_stage, weighted

@@ -9,7 +9,7 @@ from stiffmbs.compile.machine.native.evaluate import SWITCH, evaluate
 from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.orientation import add_rates
 from stiffmbs.dynamics.native.block_systems import largest_of
-from stiffmbs.dynamics.native.layouts import dynamics_view
+from stiffmbs.dynamics.native.views import dynamics_view
 from stiffmbs.solve.events.native.bounds import event_search_view, zone
 from stiffmbs.solve.explicit.native.parameters import CONTROL
 from stiffmbs.solve.explicit.native.stages import accelerated, add_stages, load_state

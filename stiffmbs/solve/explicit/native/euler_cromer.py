@@ -13,7 +13,7 @@ from stiffmbs.dynamics.native.block_systems import (
     to_position_constraints,
     to_velocity_constraints,
 )
-from stiffmbs.dynamics.native.layouts import dynamics_view
+from stiffmbs.dynamics.native.views import dynamics_view
 from stiffmbs.solve.explicit.native.stages import add_rates_behind
 
 

@@ -8,7 +8,7 @@ from stiffmbs.compile.machine.native.evaluate import SWITCH, evaluate
 from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.orientation import add_rates
 from stiffmbs.dynamics.native.block_systems import to_accelerations
-from stiffmbs.dynamics.native.layouts import dynamics_view
+from stiffmbs.dynamics.native.views import dynamics_view
 from stiffmbs.solve.events.native.bounds import (
     LOOKED_AT,
     event_search_view,

@@ -16,7 +16,7 @@ from stiffmbs.compile.machine.native.statuses import (
     STIFF,
     UNSTABLE,
 )
-from stiffmbs.dynamics.native.layouts import dynamics_view
+from stiffmbs.dynamics.native.views import dynamics_view
 from stiffmbs.solve.error_control.native.accumulated_errors import (
     accumulated_errors_view,
     displace,

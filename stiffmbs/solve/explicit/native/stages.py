@@ -8,7 +8,7 @@ from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.orientation import add_rates
 from stiffmbs.dynamics.elimination.native.eliminated import eliminated_accelerations
 from stiffmbs.dynamics.native.block_systems import to_accelerations
-from stiffmbs.dynamics.native.layouts import eliminated_view
+from stiffmbs.dynamics.native.views import eliminated_view
 from stiffmbs.solve.explicit.native.layouts import EXPLICIT, SCHEME
 
 explicit_view = view_of("Explicit", EXPLICIT)

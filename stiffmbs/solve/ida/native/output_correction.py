@@ -15,7 +15,8 @@ from stiffmbs.compile.machine.native.evaluate import add_entries, add_products, 
 from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.statuses import OK
 from stiffmbs.dynamics.native.block_systems import MOST_MOVES, to_position_constraints
-from stiffmbs.dynamics.native.layouts import POSITION_TOLERANCE, dynamics_view
+from stiffmbs.dynamics.native.layouts import POSITION_TOLERANCE
+from stiffmbs.dynamics.native.views import dynamics_view
 from stiffmbs.solve.error_control.native.parameters import POLISHING
 from stiffmbs.solve.ida.native.layouts import OUTPUT_CORRECTION
 

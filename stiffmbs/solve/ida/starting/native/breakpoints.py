@@ -9,7 +9,7 @@ from stiffmbs.compile.machine.native.calls import call_int, int32
 from stiffmbs.compile.machine.native.evaluate import POSITION, SWITCH, evaluate, load
 from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.statuses import OK, STOP_RETURN
-from stiffmbs.dynamics.native.layouts import dynamics_view
+from stiffmbs.dynamics.native.views import dynamics_view
 from stiffmbs.solve.events.native.sides import crossing, following_velocities, moved_past
 from stiffmbs.solve.ida.native.ida_loop import advanced, clear_call
 from stiffmbs.solve.ida.native.ida_memory import array_of, native_ida_view
