@@ -171,8 +171,8 @@ def section(module: str, kind: str, element: type[Element]) -> Iterator[str]:
 
 
 def _sketched(module: str, kind: str, element: type[Element]) -> Iterator[str]:
-    """A drawing of the kind between two bodies; none for equations, which have no place."""
-    if element.__module__.startswith("stiffmbs") and not kind.endswith("equation"):
+    """A drawing of the kind between two bodies; none for equations, which have no place, and for kinds without a form."""
+    if element.__module__.startswith("stiffmbs") and not kind.endswith("equation") and getattr(element, "forms", True):
         yield from (".. plot::", "   :include-source: false", f"   :alt: sketch of {kind}", "")
         yield from (
             "   from sketches import sketch",
