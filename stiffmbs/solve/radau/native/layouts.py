@@ -42,8 +42,8 @@ in each stage.  Vectors of a linear system, real and complex.  The state y and y
 step with its beginning; error estimate and inverse tolerances.
 
 Cells: tolerances, the requested relative one, part that Newton's iteration may leave; largest and first step, stop
-time; time, next step, last step, methods of both; step size, method and time of the factors, place of the matrix
-(old, or in this step); convergence rate of Newton's iteration, its last ratio, and what it left, in tolerances; error and size of the last
+time; time, next step, last step, methods of both; step size, method and time of the factors, 1 if the matrix belongs to
+the beginning of the step; convergence rate of Newton's iteration, its last ratio, and what it left, in tolerances; error and size of the last
 accepted step; steps since a change of the method.  Corrections between steps (`stiffmbs.solve.radau.native.between_steps`),
 their number, 1 if they suffice, and outputs of the step. Event functions at both ends of the step.  Counters, then the parameters of
 `stiffmbs.solve.radau.parameters`."""

@@ -9,7 +9,7 @@ from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.solve.ida.native.error_norm import error_norm_view
 from stiffmbs.solve.ida.native.output_correction import output_correction_view
 from stiffmbs.solve.radau.native.between_steps import close_end
-from stiffmbs.solve.radau.native.memory import basis, collocation_view, polynomial, polynomial_rates
+from stiffmbs.solve.radau.native.memory import basis, collocation_view
 from stiffmbs.solve.radau.native.newton import (
     CONVERGED,
     SLOW,
@@ -33,10 +33,6 @@ EXCLUDED = 1e10
 """Absolute tolerance above which an unknown is in no norm."""
 PART, NEGLIGIBLE, SHORT = 0.01, 1e-5, 1e-6
 """Relative change of the state in a first step; sizes in tolerances that say nothing; first step without information, s."""
-OLD, AT_START, AT_MIDDLE = 0, 1, 2
-"""Places of the matrix: in an earlier step, at the start of this one, at its extrapolated middle."""
-LONGER = 2.0
-"""Largest ratio of successive steps up to which the middle of a step is extrapolated."""
 STRETCHED = 1.01
 """Factor by which a step may be longer, to end at the stop time."""
 ROUNDING = 1e-10
@@ -231,31 +227,15 @@ def _begun(x):
 
 
 @compiled
-def _factored_in_step(x, c, h):
-    """Factor the matrices of a step; new ones are those at its extrapolated middle at first, where that can be extrapolated.
-
-    In steps that are long for the stiff forces, errors of extrapolated positions would make large forces.
-    """
-    short = output_correction_view(x.output_correction).long
-    if x.renewed and x.failures == 1 and h <= min(LONGER * x.h_past, short):
-        place = 1.0 + 0.5 * h / x.h_past
-        polynomial(x, place, x.n, x.y_stage)
-        polynomial_rates(x, place, x.yp_stage)
-        x.current = AT_MIDDLE
-        return factored(x, c, h, x.t + 0.5 * h, x.y_stage, x.yp_stage, 1)
-    if x.renewed:
-        x.current = AT_START
-    return factored(x, c, h, x.t, x.y, x.yp, x.renewed)
-
-
-@compiled
 def _has_matrices(x, c, h):
     """Provide factored matrices for a step of length h; return False if one is singular."""
     if x.renewed == 0 and h == x.h_factored and x.method == x.method_factored:
         return True
-    if not _factored_in_step(x, c, h):
+    if not factored(x, c, h, x.t, x.y, x.yp, x.renewed):
         x.renewed = 1
         return False
+    if x.renewed:
+        x.current = 1
     x.renewed = 0
     return True
 
@@ -265,12 +245,11 @@ def _after_failed_iteration(x, outcome, h):
     """Return the length of the next attempt: the same with a new matrix, if the last one was old, or a shorter one."""
     x.newton_failures += 1
     x.rate = 1.0
-    if x.current == OLD:
+    if not x.current:
         x.renewed = 1
         return h * x.suggested if outcome == SLOW else h
     x.step_failures += 1
     x.rejected = 1
-    x.renewed = 1 if x.current == AT_MIDDLE else 0
     return h * x.suggested
 
 
@@ -355,7 +334,7 @@ def step(x):
         x.rejected = 1
         x.error_failures += 1
         h *= FIRST_REJECTED if first and x.failures == 1 else _growth(x, c, error)
-        x.renewed = 1 if x.current == OLD and x.rate_kept == 0 else 0
+        x.renewed = 1 if not x.current and x.rate_kept == 0 else 0
     x.error_size = error
     _choose_next(x, c, h, x.h, at_stop)
     if x.acting > 0:
@@ -363,6 +342,6 @@ def step(x):
     _accept(x, c, x.t, h)
     if at_stop:
         x.t = x.stop
-    x.current = OLD
+    x.current = 0
     _choose_method(x, c, h if at_stop else float("inf"))
     return 0
