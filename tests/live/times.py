@@ -1,0 +1,77 @@
+"""Times of the live page in Chromium: until it shows its text, until it is solved, and from a slider to the new curve.
+
+    python -m tests.live.times [RUNS]
+
+Prints the median and the range of RUNS pages (5 by default) for the cart-pendulum, the half car, and the car over 3 s of motion.  Every
+page belongs to a server of its own with a warm cache; a slider is moved five times in each page.
+"""
+
+from __future__ import annotations
+
+import shutil
+import statistics
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import stiffmbs
+
+from ..conftest import EXAMPLES
+from ..show.page import browser
+
+SLIDERS = {"cart_pendulum": "L", "half_car": "k_b", "car": "k_b"}
+POSITIONS = (300, 700, 400, 600, 350)
+
+
+def main() -> None:
+    """Print one line for each scene."""
+    runs = int(sys.argv[1]) if len(sys.argv) > 1 else 5
+    with tempfile.TemporaryDirectory() as folder, browser.tab(Path(folder)) as tab:
+        for tyre in EXAMPLES.glob("*.tir"):
+            shutil.copy(tyre, folder)
+        for name, slider in SLIDERS.items():
+            scene = Path(folder) / f"{name}.yaml"
+            text = (EXAMPLES / scene.name).read_text(encoding="utf-8")
+            scene.write_text(text.replace("duration: 10 s", "duration: 3 s") if name == "car" else text, encoding="utf-8")
+            page_times(tab, scene, slider)  # fills the caches
+            found = [page_times(tab, scene, slider) for _ in range(runs)]
+            shown, solved, moved = zip(*found)
+            print(f"{name:14}  text {_spread(shown)}  solved {_spread(solved)}  slider {_spread(sum(moved, []))}", flush=True)
+
+
+def page_times(tab: browser.Tab, scene: Path, slider: str) -> tuple[float, float, list[float]]:
+    """Return the seconds until the text is shown, until the first answer, and of each move of the slider."""
+    begun = time.monotonic()
+    page = stiffmbs.open(scene, browser=False)
+    try:
+        tab.do("Page.navigate", url=page.url)
+        tab.wait("typeof LIVE === 'object' && LIVE.editor")
+        shown = time.monotonic() - begun
+        tab.wait("LIVE.answers > 0 && LIVE.complete")
+        solved = time.monotonic() - begun
+        moved = [_moved(tab, slider, position) for position in POSITIONS]
+        tab.run("LIVE.saved = LIVE.editor?.state.doc.toString()")  # leaving the page asks nothing
+        tab.do("Page.navigate", url="about:blank")
+        tab.wait("location.href === 'about:blank' && document.readyState === 'complete'")
+    finally:
+        page.close()
+    return shown, solved, moved
+
+
+def _moved(tab: browser.Tab, slider: str, position: int) -> float:
+    answers = tab.run("LIVE.answers")
+    begun = time.monotonic()
+    tab.run(
+        f"(() => {{ const r = document.getElementById('slider-{slider}'); r.value = {position}; r.dispatchEvent(new Event('input')); }})()"
+    )
+    tab.wait(f"LIVE.answers > {answers}")
+    return time.monotonic() - begun
+
+
+def _spread(seconds: list[float]) -> str:
+    return f"{statistics.median(seconds):.2f} s ({min(seconds):.2f} to {max(seconds):.2f})"
+
+
+if __name__ == "__main__":
+    main()
