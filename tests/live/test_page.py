@@ -103,6 +103,25 @@ def test_a_slider_moves_the_curve_and_writes_its_value(tab, opened):
     assert "L: 0.6 m" in tab.run("LIVE.editor.state.doc.toString()") and curve(tab) == before
 
 
+def test_every_text_has_the_contrast_of_wcag_with_and_without_an_error(tab, opened):
+    opened(TEXT)
+    assert tab.run(browser.FAINT) == []
+    replace(tab, "mass: 10 kg", "mass: ten")
+    tab.wait("document.querySelector('.cm-lint-marker-error')")
+    assert tab.run(browser.FAINT) == []
+
+
+def test_every_control_is_reached_by_the_tab_key(tab, opened):
+    opened(TEXT)
+    tab.run("document.activeElement.blur()")
+    controls = "[...document.querySelectorAll('button, input, select, summary')].filter((e) => !e.disabled && e.checkVisibility())"
+    tab.run(f"window.reached = new Set(); {controls}.forEach((e) => e.addEventListener('focus', () => reached.add(e)))")
+    for _ in range(tab.run(f"{controls}.length") + 10):
+        tab.key("Escape", number=27)  # leaves the text, where Tab indents
+        tab.key("Tab", number=9)
+    assert tab.run(f"{controls}.filter((e) => !reached.has(e)).map((e) => e.id || e.textContent)") == []
+
+
 def test_a_further_channel_is_fetched(tab, opened):
     opened(TEXT)
     tab.run("shown.plotted.choose('cart.x')")

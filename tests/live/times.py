@@ -33,11 +33,16 @@ def main() -> None:
         for name, slider in SLIDERS.items():
             scene = Path(folder) / f"{name}.yaml"
             text = (EXAMPLES / scene.name).read_text(encoding="utf-8")
-            scene.write_text(text.replace("duration: 10 s", "duration: 3 s") if name == "car" else text, encoding="utf-8")
+            scene.write_text(
+                text.replace("duration: 10 s", "duration: 3 s") if name == "car" else text, encoding="utf-8"
+            )
             page_times(tab, scene, slider)  # fills the caches
             found = [page_times(tab, scene, slider) for _ in range(runs)]
             shown, solved, moved = zip(*found)
-            print(f"{name:14}  text {_spread(shown)}  solved {_spread(solved)}  slider {_spread(sum(moved, []))}", flush=True)
+            print(
+                f"{name:14}  text {_spread(shown)}  solved {_spread(solved)}  slider {_spread(sum(moved, []))}",
+                flush=True,
+            )
 
 
 def page_times(tab: browser.Tab, scene: Path, slider: str) -> tuple[float, float, list[float]]:

@@ -288,7 +288,7 @@ const LIVE = (() => {
         extensions: [
           CM.lineNumbers(), CM.foldGutter(), CM.history(), CM.drawSelection(), CM.indentOnInput(), CM.bracketMatching(), CM.closeBrackets(),
           CM.highlightActiveLine(), CM.highlightSelectionMatches(), CM.lintGutter(), CM.indentUnit.of("  "), CM.yaml(),
-          CM.syntaxHighlighting(CM.defaultHighlightStyle), EditorView.contentAttributes.of({ "aria-label": "text of the scene" }),
+          CM.syntaxHighlighting(CM.defaultHighlightStyle), EditorView.contentAttributes.of({ "aria-label": "text of the scene; Escape and then Tab leaves it" }),
           CM.autocompletion({ override: [complete] }), EditorState.readOnly.of(!start.editable), EditorView.lineWrapping,
           keymap.of([
             { key: "Mod-s", run: () => { save(); return true; }, preventDefault: true },

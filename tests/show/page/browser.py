@@ -21,6 +21,28 @@ def found():
     return next((path for name in NAMES if (path := shutil.which(name))), None)
 
 
+FAINT = """
+(() => {
+  const numbers = (color) => color.match(/[\\d.]+/g).map(Number);
+  const luminance = ([r, g, b]) => [r, g, b].map((v) => v / 255).map((v) => v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4)
+    .reduce((sum, v, k) => sum + v * [0.2126, 0.7152, 0.0722][k], 0);
+  const over = ([r, g, b, a = 1], below) => [r, g, b].map((v, k) => a * v + (1 - a) * below[k]);
+  const behind = (element) => element ? over(numbers(getComputedStyle(element).backgroundColor), behind(element.parentElement)) : [255, 255, 255];
+  const texts = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT), faint = [];
+  while (texts.nextNode()) {
+    const text = texts.currentNode.textContent.trim(), element = texts.currentNode.parentElement;
+    if (!text || !element.checkVisibility({visibilityProperty: true, opacityProperty: true}) || element.closest(":disabled, script, style")) continue;
+    const style = getComputedStyle(element), below = behind(element);
+    const [high, low] = [luminance(over(numbers(style.color), below)), luminance(below)].sort((a, b) => b - a);
+    const large = parseFloat(style.fontSize) >= (style.fontWeight >= 700 ? 18.66 : 24), ratio = (high + 0.05) / (low + 0.05);
+    if (ratio < (large ? 3 : 4.5)) faint.push([text.slice(0, 40), Math.round(100 * ratio) / 100]);
+  }
+  return faint;
+})()
+"""
+"""Finds texts whose contrast with their background is below that of WCAG 2.1, level AA."""
+
+
 class Tab:
     """A page in a browser: its console, scripts run in it, pictures of it."""
 
@@ -78,10 +100,12 @@ class Tab:
         content = self.do("Page.captureScreenshot", format="png", captureBeyondViewport=whole)["data"]
         return base64.b64decode(content)
 
-    def key(self, key, code="", text=""):
+    def key(self, key, code="", text="", number=0):
+        """Press and release a key; its number makes the browser do what it does by default, 9 for Tab."""
         for kind in ("keyDown", "keyUp"):
+            text = text if kind == "keyDown" else ""
             self.do(
-                "Input.dispatchKeyEvent", type=kind, key=key, code=code or key, text=text if kind == "keyDown" else ""
+                "Input.dispatchKeyEvent", type=kind, key=key, code=code or key, text=text, windowsVirtualKeyCode=number
             )
 
     def drag(self, start, end):

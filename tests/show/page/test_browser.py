@@ -205,6 +205,16 @@ def test_every_control_has_a_name_for_screen_readers(tab, opened):
 
 
 @pytest.mark.long
+@pytest.mark.parametrize("command", [["report", "--no-verify"], ["animate", "--duration", "1"], ["modes"]])
+def test_every_text_has_the_contrast_of_wcag(tab, opened, command):
+    opened(command[0], EXAMPLES / "half_car.yaml", *command[1:])
+    tab.run("document.querySelectorAll('details').forEach((d) => { d.open = true; })")
+    assert tab.run(browser.FAINT) == []
+    tab.run("document.querySelector('h1, label').style.color = '#999'")  # the measure sees a faint text
+    assert len(tab.run(browser.FAINT)) == 1
+
+
+@pytest.mark.long
 def test_a_mode_is_chosen_and_its_motion_repeats(tab, opened):
     opened("modes", EXAMPLES / "half_car.yaml")
     assert tab.run("document.querySelector('select').options.length") == 8  # the rigid motion is left out
