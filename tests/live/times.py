@@ -38,9 +38,9 @@ def main() -> None:
             )
             page_times(tab, scene, slider)  # fills the caches
             found = [page_times(tab, scene, slider) for _ in range(runs)]
-            shown, solved, moved = zip(*found)
+            shown, solved, moved = zip(*found, strict=True)
             print(
-                f"{name:14}  text {_spread(shown)}  solved {_spread(solved)}  slider {_spread(sum(moved, []))}",
+                f"{name:14}  text {_spread(shown)}  solved {_spread(solved)}  slider {_spread([one for page in moved for one in page])}",
                 flush=True,
             )
 
