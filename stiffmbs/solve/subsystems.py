@@ -151,7 +151,7 @@ def _merged(histories: Sequence[History]) -> History:
 
 
 ITERATIONS = 5
-"""Iterations of the power method, as in `stiffmbs.solve.explicit.native.error_estimate`."""
+"""Iterations of the power method, as in `stiffmbs.solve.explicit.native.fastest_rate`."""
 MOVE = 1e-7
 """Largest perturbation of a coordinate or velocity in the difference quotient, m, rad, m/s, rad/s."""
 IMPLICIT_STEPS, EXPLICIT_STEPS = 30.0, 2.0

@@ -20,9 +20,8 @@ from ..saddle_point import ACCELERATIONS
 from .joint_blocks import Joints, block_lists
 from .native.layouts import BLOCK_ELIMINATION, ENTRY_ELIMINATION, PIN_ELIMINATION, Pin, PinProduct
 
-ACCELERATE, ATTEMPT, MOVE = together(
+ATTEMPT, MOVE = together(
     "stiffmbs.dynamics.elimination.native.eliminated",
-    accelerate="int64(float64, float64*, int64*)",
     attempt="int32(float64, float64*, int64*)",
     move="int32(float64*, int64*)",
 )

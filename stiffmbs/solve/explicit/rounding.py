@@ -16,7 +16,7 @@ import numpy as np
 
 from ...compile.machine.layout import address
 from ...dynamics.dynamics import Dynamics
-from ...dynamics.elimination.eliminated import ACCELERATE
+from ...dynamics.elimination.eliminated import ATTEMPT
 from ...tuning import tuned
 from ..suspect import acceleration_name, suspect
 from .integration import Integration
@@ -78,7 +78,7 @@ class Rounding:
         """Return True if errors of the elimination are large enough to shorten the steps."""
         found, off = np.empty(len(work.u)), []
         for t in self._along(work, ROUNDING.within * pace, ROUNDING.few):
-            if ACCELERATE.call(t, address(found), address(self._dynamics.eliminated.table)):
+            if ATTEMPT.call(t, address(found), address(self._dynamics.eliminated.table)):
                 off.append(np.abs(found - self._dynamics.accelerate(t)[1]))
         self._dynamics.forget_pivots()
         return bool(off) and bool(np.any(pace * np.max(off, axis=0) > ROUNDING.loses * self._tolerance(work)))

@@ -92,11 +92,10 @@ class Scheme:
         return full
 
 
-ADVANCE, END_AT_EVENT, FASTEST_RATE = together(
+ADVANCE, END_AT_EVENT = together(
     "stiffmbs.solve.explicit.native.runge_kutta",
     advance="int64(float64, int64, int64, int64, int64*)",
     end_at_event="int32(int64*)",
-    fastest_rate="float64(float64, int64, float64*, float64*, int64*, int64*)",
 )
 MOST_STEPS, MOST_VALUES = 1024, 300_000
 """Limits of one call of compiled code: steps, and numbers in the stored rows."""

@@ -12,11 +12,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...compile.machine.layout import addresses
+from ...compile.machine.routines import Routine
 from ...dynamics.algebraic_states import rates_by_states
-from ...dynamics.dynamics import Dynamics
+from ...dynamics.dynamics import ACCELERATE, Dynamics
 from ...tuning import tuned
 from .integration import Integration
-from .scheme import FASTEST_RATE, Scheme
+from .scheme import Scheme
 
 
 @dataclass(frozen=True)
@@ -43,6 +45,9 @@ class StabilityBoundParameters:
 
 STABILITY_BOUND = tuned("stability_bound", StabilityBoundParameters())
 
+FASTEST_RATE = Routine(
+    "stiffmbs.solve.explicit.native.fastest_rate", "fastest_rate", "float64(float64, float64*, float64*, int64*, int64)"
+)
 NOT_ASKED, UNBOUNDED = 0.0, float("inf")
 
 
@@ -121,11 +126,11 @@ def fastest_rate(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> 
 
     It costs about as much as a step of order 8.
     """
-    state, eliminated = dynamics.state, dynamics.eliminated
+    state = dynamics.state
     state.q[:], state.u[:] = q, u
     work = np.empty(3 * dynamics.system.n_u + dynamics.system.n_q)
-    addresses = (dynamics.system.mass, work, eliminated.table, dynamics.table)
-    rate = FASTEST_RATE.call(t, eliminated.serves, *(array.ctypes.data for array in addresses))
+    arrays = dynamics.system.mass, work, dynamics.table
+    rate = FASTEST_RATE.call(t, *addresses(*arrays), ACCELERATE.address)
     dynamics.forget_pivots()
     return max(float(rate), _of_states(dynamics, t, q, u))
 

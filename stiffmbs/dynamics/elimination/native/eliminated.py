@@ -89,15 +89,6 @@ def move(violations, eliminated):
     return int32(0)
 
 
-def accelerate(t, acceleration, eliminated):
-    """Call `eliminated_accelerations` from Python, and copy the accelerations."""
-    r = eliminated_view(eliminated)
-    done = eliminated_accelerations(r, state_view(r.state), t)
-    for k in range(r.n_u):
-        acceleration[k] = r.a[k]
-    return done
-
-
 entries_view = view_of("EntryElimination", ENTRY_ELIMINATION)
 
 

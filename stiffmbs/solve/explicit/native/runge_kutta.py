@@ -33,14 +33,14 @@ from stiffmbs.solve.events.native.step_bound import (
     step_bound_view,
 )
 from stiffmbs.solve.explicit.native.attempt import arrive, attempt, uncertain_end
-from stiffmbs.solve.explicit.native.error_estimate import fastest_rate, trusted_error
+from stiffmbs.solve.explicit.native.error_estimate import trusted_error
 from stiffmbs.solve.explicit.native.explicit_events import AT_ANOTHER_LAW, RETRIED, end_at_event, retaken
 from stiffmbs.solve.explicit.native.interpolant import interpolated, prepare, store_rows, store_step
 from stiffmbs.solve.explicit.native.parameters import CONTROL, ENDS
 from stiffmbs.solve.explicit.native.stages import explicit_view, load_state, rates, scheme_view
 from stiffmbs.solve.explicit.native.start import first_step, start_steps
 
-__all__ = ["advance", "end_at_event", "fastest_rate", "fixed_steps"]
+__all__ = ["advance", "end_at_event", "fixed_steps"]
 
 
 @compiled

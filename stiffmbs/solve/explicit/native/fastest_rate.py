@@ -1,0 +1,86 @@
+"""Fastest rate of the motion about a state, by power iteration on differences of accelerations.
+
+Apart from the steps and linked by addresses: runs of implicit solvers need the rate, too, and compile little for it.
+"""
+
+from __future__ import annotations
+
+from math import sin, sqrt
+
+from stiffmbs.compile.machine.native.access import compiled, shifted, state_view
+from stiffmbs.compile.machine.native.calls import call_int
+from stiffmbs.compile.machine.native.memory import copied
+from stiffmbs.compile.machine.native.orientation import add_rates
+from stiffmbs.dynamics.native.block_systems import largest_of
+from stiffmbs.dynamics.native.views import dynamics_view, eliminated_view
+
+ITERATIONS = 5
+"""Number of iterations; they give a lower bound close to the largest eigenvalue."""
+MOVE = 1e-7
+"""Largest change of a coordinate or velocity, m, rad, m/s, rad/s; small compared with the breakpoints of laws."""
+
+
+@compiled
+def _accelerated(t, target, dynamics, accelerate):
+    """Compute target = u' at the current state, by elimination if worthwhile; 0 or a negative status."""
+    m = dynamics_view(dynamics)
+    if m.eliminates and call_int(eliminated_view(m.eliminated).attempt, (t, target, m.eliminated)):
+        return 0
+    return call_int(accelerate, (t, target, dynamics))
+
+
+@compiled
+def _size(mass, v, n):
+    """Return the norm of a motion in the mass matrix, in which stiffness and damping are symmetric."""
+    total = 0.0
+    for k in range(n):
+        total += mass[k] * v[k] * v[k]
+    return sqrt(total)
+
+
+@compiled
+def _growth(t, of_pose, mass, work, s, dynamics, accelerate):
+    """Return the amplification from changes of the pose, or of velocities, to accelerations."""
+    n = s.n_u
+    at_start, v, w, start = work, shifted(work, n), shifted(work, 2 * n), shifted(work, 3 * n)
+    if of_pose:
+        copied(start, s.q, s.n_q)
+    else:
+        copied(start, s.u, n)
+    for k in range(n):
+        v[k] = sin(1.0 + 3.7 * k) / mass[k]
+    growth = 0.0
+    for _ in range(ITERATIONS):
+        scale = MOVE / largest_of(v, n)
+        if of_pose:
+            add_rates(s, v, scale, s.q)
+        else:
+            for k in range(n):
+                s.u[k] += scale * v[k]
+        status = _accelerated(t, w, dynamics, accelerate)
+        if of_pose:
+            copied(s.q, start, s.n_q)
+        else:
+            copied(s.u, start, n)
+        if status < 0:
+            return 0.0
+        for k in range(n):
+            w[k] = (w[k] - at_start[k]) / scale
+        growth = _size(mass, w, n) / _size(mass, v, n)
+        if not 0.0 < growth < float("inf"):
+            return 0.0
+        copied(v, w, n)
+    return growth
+
+
+def fastest_rate(t, mass, work, dynamics, accelerate):
+    """Return the largest |lambda|, 1/s, of the motion at the current state; 0 without accelerations.
+
+    `accelerate`: address of `stiffmbs.dynamics.native.dynamics.accelerate`.
+    """
+    s = state_view(dynamics_view(dynamics).state)
+    if _accelerated(t, work, dynamics, accelerate) < 0:
+        return 0.0
+    stiffness = _growth(t, 1, mass, work, s, dynamics, accelerate)
+    damping = _growth(t, 0, mass, work, s, dynamics, accelerate)
+    return max(sqrt(stiffness), damping)
