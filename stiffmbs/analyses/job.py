@@ -16,7 +16,8 @@ from ..compile.callbacks import fault_of
 from ..compile.compile_model import compile_model
 from ..compile.system import System
 from ..dynamics.dynamics import POSITION_TOLERANCE, Dynamics
-from ..dynamics.initial import InitialValues, consistent_values, initial_values, take_nearest_turns
+from ..dynamics.initial import InitialValues, consistent_values, initial_values
+from ..dynamics.turns import counted_angles, take_nearest_turns
 from ..errors import AssemblyError, InputError, StiffmbsError
 from ..model.model_builder import ModelBuilder
 from ..model.model_data import ModelData
@@ -61,6 +62,9 @@ def hold_at_start(dynamics: Dynamics, scene: Scene, t: float) -> None:
     velocities = consistent_values(moving, t).u
     n_pose = dynamics.system.n_pose
     dynamics.state.q[:n_pose], dynamics.state.u[:] = placed.q[:n_pose], velocities
+    dynamics.system.start_angles.update(
+        (angle.channel, placed.q[angle.place]) for angle in counted_angles(system) if angle.channel
+    )
 
 
 @contextmanager
@@ -226,7 +230,7 @@ def start_of_job(job: Job) -> InitialValues:
 def _start(data: ModelData, dynamics: Dynamics, t: float, state: SavedState | None) -> InitialValues:
     """Return the saved state if given, else the equilibrium or the described state, as the scene requests."""
     if state is not None:
-        take_nearest_turns(dynamics, t, state.is_new)
+        take_nearest_turns(dynamics, t, lambda element: state.turn(element) is None)
         start = consistent_values(dynamics, t)
         return replace(
             start, notes=(*start.notes, f"the run starts from the state at t = {state.t:g} s of {state.source}")

@@ -11,6 +11,7 @@ import numpy as np
 
 from ..compile.bodies import BODY_KINDS
 from ..compile.system import System
+from ..dynamics.turns import counted_angles
 from ..errors import InputError
 from ..model.model_data import ModelData
 from ..model.settings import RunSettings
@@ -80,13 +81,18 @@ def started_from(system: System, model: ModelData, state: SavedState | None) -> 
 
 
 def _turns(system: System, model: ModelData, state: SavedState) -> np.ndarray:
-    """Return the revolution counters; those of requests that the state does not have start at zero."""
+    """Return the revolution counters.
+
+    Those of requests that the state does not have start at zero. Angles of joints that the state has are set later.
+    """
+    of_joint = {angle.place: angle.channel for angle in counted_angles(system)}
     of_requests = {name for name, _ in model.angle_counters()}
     first = system.n_pose
     turns = np.zeros(system.n_counters)
     for (name, k), place in counters_of(system).items():
-        known = state.turns.get(f"{name}/{k}", state.channels.get(name))
-        if known is None and name not in of_requests and not state.is_new(name):
+        known = state.turn(name, k)
+        is_known = name in of_requests or of_joint[place] in state.channels or state.is_new(name)
+        if known is None and not is_known:
             raise InputError(
                 f"{state.source}: found no count of the turns of '{name}', expected a file .npz of the same mechanism"
             )

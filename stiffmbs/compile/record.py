@@ -45,7 +45,8 @@ class KindRecord:
     - `n_equations`, `n_holonomic`: number of constraint equations of one element, and of those with a position form,
       which come first.
     - `joint_equations`: number of equations of each joint that it refers to.
-    - `n_counters`: number of turn counters of one element.
+    - `counted`: for each turn counter of one element, the slot of the referenced joint and its coordinate; None for
+      other angles.
     - `laws`: law of each argument: a function of `stiffmbs.compile.law_zones`, or ``table`` and the index of its
       offset.
     - `patterns`: (row, column) of the entries of each term in the element's own block.
@@ -59,7 +60,7 @@ class KindRecord:
     n_equations: int
     n_holonomic: int
     joint_equations: list[int]
-    n_counters: int
+    counted: list[tuple[int, str] | None]
     laws: list[tuple[str, int]]
     patterns: dict[str, list[tuple[int, int]]]
     sources: dict[str, str]
@@ -67,6 +68,11 @@ class KindRecord:
     variation: list[list[tuple[list[list[int]], list[int], bool]]]
     removable: list[bool]
     timed: list[bool]
+
+    @property
+    def n_counters(self) -> int:
+        """Number of turn counters of one element."""
+        return len(self.counted)
 
     @cached_property
     def entries(self) -> defaultdict[str, int]:
@@ -182,13 +188,14 @@ def _by_loops(kind: Kind) -> KindRecord:
     """Return the record of a kind with kernels written as loops."""
     terms = kind.element.compiled_terms(kind)  # type: ignore[attr-defined]
     sources = {name: terms.source(places) for name in TERM_SETS if (places := _places(terms, name))}
-    return KindRecord(0, 0, [], 0, [], dict(terms.patterns), sources, None, [], [], [])
+    return KindRecord(0, 0, [], [], [], dict(terms.patterns), sources, None, [], [], [])
 
 
 def _derived(kind: Kind) -> KindRecord:
     from .symbolic.generate import kernel_source
 
     derived = _terms(kind)
+    element = derived.symbols.element
     patterns = {term: [(entry.row, entry.column) for entry in entries] for term, entries in derived.terms.items()}
     sources = {
         term_set: kernel_source(term_set, derived, "kernel")
@@ -197,7 +204,7 @@ def _derived(kind: Kind) -> KindRecord:
     }
     return KindRecord(
         derived.n_equations, derived.n_holonomic, [len(lam) for lam in derived.symbols.joint_lam],
-        len(derived.symbols.element.angles), [law.of for law in derived.symbols.laws], patterns, sources, derived.losses,
+        [element.joint_angles.get(k) for k in range(len(element.angles))], [law.of for law in derived.symbols.laws], patterns, sources, derived.losses,
         [[(list(map(list, part.factors)), list(part.columns), part.bounded) for part in parts] for parts in derived.variation],
         derived.removable, derived.timed,
     )  # fmt: skip

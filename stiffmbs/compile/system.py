@@ -6,7 +6,7 @@ equation and coordinate of each.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -75,8 +75,9 @@ class System:
         True for rows with a position form, and for rows that are not redundant and therefore solved for.
     size : float
         Size of the mechanism at the start, m.
-    start_angles : mapping of str to float
-        Continuous angles of joints at a start from a saved state, rad, by channel.
+    start_angles : dict of str to float
+        Continuous angles of joints at a start from a saved state or with joints that hold at the start alone, rad, by
+        channel; may be changed in place.
     n_q, n_u, n_c : int
         Numbers of coordinates, velocities and constraint equations.
     n_pose, n_counters : int
@@ -110,7 +111,7 @@ class System:
     holonomic: np.ndarray
     active: np.ndarray
     size: float
-    start_angles: Mapping[str, float] = field(default_factory=dict)
+    start_angles: dict[str, float] = field(default_factory=dict)
     n_q: int = field(init=False)
     n_u: int = field(init=False)
     n_c: int = field(init=False)

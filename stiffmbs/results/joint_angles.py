@@ -14,11 +14,10 @@ import numpy as np
 
 from ..compile.system import INITIAL_COUNT, System
 from ..dynamics.dynamics import OutputRows
-from ..dynamics.initial import counted_coordinates
+from ..dynamics.turns import TURN, counted_angles
 from ..elements.element import Joint
 from ..reading.joint_name import ORDERS
 
-TURN = 2 * np.pi
 UNCERTAIN_TURN = 1.0
 """Difference of an angle's change between output times and that predicted from its rates, rad, from which on the number
 of turns is uncertain."""
@@ -101,7 +100,7 @@ def joint_angles(system: System) -> JointAngles | None:
     }
     places = {name: found for name, found in angles.items() if min(found) >= 0}
     return (
-        JointAngles(places, {name: place for name, place, _ in counted_coordinates(system)}, system.start_angles)
+        JointAngles(places, {a.channel: a.place for a in counted_angles(system) if a.channel}, system.start_angles)
         if places
         else None
     )

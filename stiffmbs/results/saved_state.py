@@ -80,6 +80,10 @@ class SavedState:
         """Return True if the saved run is known not to have an element."""
         return self.elements is not None and element not in self.elements
 
+    def turn(self, element: str, k: int = 0) -> float | None:
+        """Return the angle at an element's counter of revolutions, or that of a request, rad; None if not known."""
+        return self.turns.get(f"{element}/{k}", self.channels.get(element))
+
 
 def read_state(path: str | Path, at: float | None = None) -> SavedState:
     """Read one row of a file that ``stiffmbs run -o`` or ``stiffmbs equilibrium -o`` wrote.

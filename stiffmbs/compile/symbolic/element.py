@@ -72,6 +72,7 @@ class SymbolicElement:
     - `own`: the element's own states, which come first.
     - `state_rates`: rates of the states, in the equations of joints.
     - `angles`: continuous angles, in the order of their counters.
+    - `joint_angles`: slot of the joint and its coordinate, for each of these that is the coordinate of a referenced joint.
     - `counts`: false for values that are only reported: angles without a counter are then within one turn.
     - `breakpoints`: event functions of the equations (``Abs``, ``Max``, ``Piecewise``), as they are read.
     - `derivatives`: derivatives of expressions in its symbols.
@@ -91,6 +92,7 @@ class SymbolicElement:
         self.states, self.own = states, states[:n_own]
         self.state_rates: tuple[sp.Expr, ...] = ()
         self.angles: list[sp.Expr] = []
+        self.joint_angles: dict[int, tuple[int, str]] = {}
         self.counts = True
         self.breakpoints: list[sp.Expr] = []
         self.derivatives = derivatives

@@ -32,10 +32,10 @@ class ReferredJoint(SymbolicElement):
         self, of: SymbolicElement, joint: Any, fields: dict[str, object], coordinate: str | None, slot: int
     ) -> None:
         super().__init__(of.frames, fields, of.derivatives, of.states)
-        self.kind, self._joint, self._coordinate = joint.kind, joint, coordinate
+        self.kind, self._joint, self._coordinate, self._slot = joint.kind, joint, coordinate, slot
         count = len(list(joint.position(self))) + len(list(joint.velocity(self)))
         self.lam = [sp.Symbol(f"joint{slot}_lam{k}", real=True) for k in range(count)]
-        self.angles, self.breakpoints = of.angles, of.breakpoints
+        self.angles, self.joint_angles, self.breakpoints = of.angles, of.joint_angles, of.breakpoints
 
     @cached_property
     def velocity_level(self) -> list[sp.Expr]:
@@ -61,13 +61,19 @@ class ReferredJoint(SymbolicElement):
     def channel(self, name: str) -> sp.Expr:
         """Return a free coordinate of the joint, ``angle``, or its rate, ``angle_rate``."""
         coordinate = name.removesuffix("_rate")
-        x = getattr(self._joint, coordinate)(self)
+        x = self._free(coordinate)
         return self.read(x) if name == coordinate else self.rate(x)
 
     @cached_property
     def coordinate(self) -> Any:
         """Referenced coordinate, or None; an angle gets a turn counter only if it is used."""
-        return None if self._coordinate is None else getattr(self._joint, self._coordinate)(self)
+        return None if self._coordinate is None else self._free(self._coordinate)
+
+    def _free(self, coordinate: str) -> Any:
+        first = len(self.angles)
+        x = getattr(self._joint, coordinate)(self)
+        self.joint_angles.update(dict.fromkeys(range(first, len(self.angles)), (self._slot, coordinate)))
+        return x
 
 
 def measure(name: str, e: SymbolicElement, markers: list[Any]) -> sp.Expr:

@@ -1,0 +1,106 @@
+"""Full turns of angles in space at the start: those of drives, and of every element that reads the same angle."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..compile.group import Group
+from ..compile.system import INITIAL_COUNT, System
+from ..elements.element import Joint
+from .dynamics import Dynamics
+
+TURN = 2 * math.pi
+
+
+@dataclass(frozen=True)
+class CountedAngle:
+    """Angle whose turns an element counts.
+
+    `place`: index of its counter in q. `element`: name of the element. `channel`: the coordinate of a joint, such as
+    ``hinge.angle``; None for other angles. `constrained`: true if the element's position equations contain the angle.
+    """
+
+    place: int
+    element: str
+    channel: str | None
+    constrained: bool
+
+
+def counted_angles(system: System) -> Iterator[CountedAngle]:
+    """Yield the angles whose turns are counted, by element."""
+    joint_at = {
+        group.first_row + k * group.record.n_equations: name
+        for group in system.groups
+        if issubclass(group.kind.element, Joint)
+        for k, name in enumerate(group.names)
+    }
+    for group in system.groups:
+        first = 2 * group.kind.n_bodies + 1
+        for name, index, places in zip(group.names, group.index, group.counters, strict=True):
+            for of, place in zip(group.record.counted, places, strict=True):
+                channel = f"{joint_at[index[first + of[0]]]}.{of[1]}" if of else _own_angle(group, name)
+                yield CountedAngle(int(place), name, channel, group.record.n_holonomic > 0)
+
+
+def take_nearest_turns(dynamics: Dynamics, t: float, wanted: Callable[[str], bool] = lambda name: True) -> None:
+    """Set the counters of the wanted elements to the turns in which position equations have the smallest violation.
+
+    A drive from 200 degrees finds its joint at -160 degrees, one turn short. Without unwrapping, assembly would search
+    for the turn in other poses. Drives come first, then relations of several angles. All elements that read the same
+    coordinate of a joint, and requests for it, take the same turn.
+    """
+    angles = list(counted_angles(dynamics.system))
+    q, known = dynamics.state.q, dict[str | None, float](dynamics.system.start_angles)
+    known |= {angle.channel: q[angle.place] for angle in angles if angle.channel and not wanted(angle.element)}
+    free = {angle.place: angle for angle in angles if wanted(angle.element)}
+    q[[place for place, angle in free.items() if angle.constrained]] = INITIAL_COUNT
+    while True:
+        decided = {place: known[angle.channel] for place, angle in free.items() if angle.channel in known}
+        for place, turned in decided.items():
+            q[place] = turned
+            del free[place]
+        undecided: dict[str, list[CountedAngle]] = {}
+        for angle in free.values():
+            if angle.constrained:
+                undecided.setdefault(angle.element, []).append(angle)
+        if not undecided:
+            break
+        chosen = [found for found in undecided.values() if len(found) == 1] or [min(undecided.values(), key=len)]
+        _take_nearest_turns(dynamics, t, [first for first, *_ in chosen])
+        for angle in (angle for found in chosen for angle in found):
+            del free[angle.place]
+            known |= {angle.channel: q[angle.place]} if angle.channel else {}
+
+
+def _own_angle(group: Group, name: str) -> str | None:
+    """Return the coordinate of a joint that counts its own angle, such as a screw."""
+    if not issubclass(group.kind.element, Joint) or group.record.n_counters != 1:
+        return None
+    own = [coordinate for coordinate in group.kind.element.free_coordinates() if coordinate.startswith("angle")]
+    return f"{name}.{own[0]}" if len(own) == 1 else None
+
+
+def _take_nearest_turns(dynamics: Dynamics, t: float, angles: Sequence[CountedAngle]) -> None:
+    """Set the counters of angles of different elements, each to the turn with the smallest violation of its element."""
+    state, places = dynamics.state, [angle.place for angle in angles]
+    of_element = {angle.element: k for k, angle in enumerate(angles)}
+    element = np.array([of_element.get(name, len(angles)) for name, _ in dynamics.system.equations])
+
+    def violations() -> np.ndarray:
+        state.evaluate("position", t)
+        return state.vector("position", "C")
+
+    def sums(products: np.ndarray) -> np.ndarray:
+        return np.bincount(element, products, len(angles) + 1)[:-1]
+
+    state.count_anew(t)
+    within = state.q[places]
+    left = violations()
+    state.q[places] = within + TURN
+    of_a_turn = violations() - left
+    squares = sums(of_a_turn**2)
+    state.q[places] = within - TURN * np.round(sums(of_a_turn * left) / np.where(squares > 0, squares, np.inf))
