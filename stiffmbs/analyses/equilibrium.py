@@ -23,7 +23,7 @@ from ..results.solution import Solution
 from ..solve.sampling import held
 from ..solve.trajectory import History, Outcome
 from ..tuning import in_use
-from .job import Job, Runnable, data_of, prepare
+from .job import Job, Runnable, data_of, prepare, with_elements
 from .run import flexible_body_notes
 from .settled import Settled, settled
 from .start_from import StartFrom
@@ -143,6 +143,7 @@ def equilibrium(
         If there is no equilibrium or none is found; the message names the body with the largest imbalance.
     """
     data = data_of(model)
+    data = with_elements(data, lambda scene: equilibrium(scene, settings, start_from, motion, **changes).solution)
     if isinstance(data, Scene):
         motion = motion or (data.start if isinstance(data.start, SteadyMotion) else None)
         data = data.model_copy(update={"start": "described"})
@@ -151,7 +152,8 @@ def equilibrium(
     system, start = job.dynamics.system, found.start
     how = {"name": "equilibrium", "moves": found.moves, "imbalance": found.imbalance}
     times = np.array([job.grid.start])
-    solution = solution_at_rest(job, times, start.q[None], start.u[None], _message(found), found.notes, how)
+    notes = (*(job.data.notes if isinstance(job.data, Scene) else ()), *found.notes)
+    solution = solution_at_rest(job, times, start.q[None], start.u[None], _message(found), notes, how)
     moves = system.move(job.start.q, found.start.q).reshape(len(system.bodies), -1)
     straight, turned = (np.linalg.norm(part, axis=1) for part in np.split(moves, [system.of_body.linear], axis=1))
     moved = dict(zip(system.bodies, zip(straight.tolist(), turned.tolist(), strict=True), strict=True))
@@ -210,7 +212,7 @@ def quasi_static(model: Runnable, settings: RunSettings | None = None, **changes
     SolverError
         If no equilibrium is found; the message names the instant.
     """
-    data = data_of(model)
+    data = with_elements(data_of(model), lambda scene: quasi_static(scene, settings, **changes))
     if isinstance(data, Scene):
         data = data.model_copy(update={"start": "described"})
     job = prepare(data, settings, **changes)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -173,11 +173,30 @@ def data_of(model: Runnable) -> ModelData:
     raise InputError(f"found {model!r}, expected a Model, a Scene, or the name of a scene's file")
 
 
+def with_elements(data: ModelData, solve: Callable[[Scene], Any]) -> ModelData:
+    """Return a model whose beams have as many elements as their tolerances require; see `beam_elements.divided_by`."""
+    if not isinstance(data, Scene) or not data._beams.by_tolerance:
+        return data
+    from .beam_elements import divided_by
+
+    return divided_by(data, solve)
+
+
+def refuse_tolerances(data: ModelData) -> None:
+    """Raise an InputError if the number of elements of a beam depends on a tolerance that was not followed yet."""
+    if isinstance(data, Scene) and data._beams.by_tolerance:
+        raise InputError(
+            f"bodies.{data._beams.by_tolerance[0]}.elements: found a tolerance, which run, equilibrium and studies of runs follow, "
+            "expected a number"
+        )
+
+
 def prepare(
     model: Runnable, settings: RunSettings | None = None, start_from: StartFrom | None = None, **changes: Any
 ) -> Job:
     """Compile and assemble a model; parameters and errors as for `run`."""
     found = examined(model, settings, start_from, **changes)
+    refuse_tolerances(found.data)
     if found.redundancy.rank_results:
         from ..redundancy.messages.redundancy import refuse_inconsistencies
 

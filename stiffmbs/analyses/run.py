@@ -33,7 +33,7 @@ from ..solve.suspect import suspect
 from ..solve.trajectory import IN_DOUBT, Outcome, ProgressCallback, Trajectory
 from ..tuning import in_use
 from .given_inputs import Given, with_inputs
-from .job import Job, Runnable, data_of, prepare, up_to_a_fault
+from .job import Job, Runnable, data_of, prepare, up_to_a_fault, with_elements
 from .start_from import StartFrom
 from .taken_again import Computed, on_exact_constraints, rerun_after_missed_events
 
@@ -83,6 +83,7 @@ def run(
         from .staged import run_stages
 
         return run_stages(data, settings, watch, start_from, inputs, **changes)
+    data = with_elements(data, lambda scene: run(scene, settings, None, start_from, inputs, **changes))
     if inputs:
         chosen = changed(settings or (data.run if isinstance(data, Scene) else RunSettings()), {**changes})
         data = with_inputs(data, inputs, chosen)

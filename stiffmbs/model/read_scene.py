@@ -23,6 +23,7 @@ from ..reading.files.unchanged import Unchanged
 from ..reading.files.variables import read_variables
 from ..reading.files.yaml_text import read_yaml
 from ..reading.units.units import Quantity
+from .beams.division import beams_read
 from .beams.entries import with_beams
 from .files.expand import (
     read_parameters,
@@ -116,12 +117,21 @@ def made_scene(
         If the scene is not valid.
     """
     kept = None if unchanged else WrittenScene(copy.deepcopy(found), tuple(changes), source, folder, dict(files))
-    with recorded() as read:
+    with recorded() as read, beams_read() as beams:
         scene = _made_scene(found, changes, source, line_of, folder, unchanged or Unchanged(), kept)
         record(own_sources(scene))
+    scene._beams = beams
     if kept:
         kept.files.update(read)
     return scene
+
+
+def read_changed(
+    written: WrittenScene, changes: Sequence[tuple[str, Any]], unchanged: Unchanged | None = None
+) -> Scene:
+    """Read a scene with other values, without what was validated before; errors as for `made_scene`."""
+    content = copy.deepcopy(dict(written.content))
+    return made_scene(content, (*written.changes, *changes), written.source, lambda _: None, written.folder, unchanged)
 
 
 def _made_scene(

@@ -19,6 +19,7 @@ from ..reading.files.unchanged import Unchanged
 from ..reading.formula.text import FormulaError
 from ..reading.table import Table
 from ..reading.units.units import Quantity, in_text
+from .beams.division import Beams
 from .files.stages import Stage, WrittenScene
 from .model import PlanarData
 from .model_data import ModelData
@@ -80,6 +81,7 @@ class Scene(ModelData):
     _validated: Unchanged = PrivateAttr(default_factory=Unchanged)
     _stage_scenes: tuple[Scene, ...] = PrivateAttr(default=())
     _held_at_start: Scene | None = PrivateAttr(default=None)
+    _beams: Beams = PrivateAttr(default_factory=Beams)
 
     def check_requests(self) -> None:
         """Refuse invalid requests, and invalid variables, which are read as requests."""
@@ -106,6 +108,17 @@ class Scene(ModelData):
     def held_at_start(self) -> Scene | None:
         """Scene with its initial conditions of joints; None without any."""
         return self._held_at_start
+
+    @property
+    def beams(self) -> Beams:
+        """Beams and how they are divided into elements."""
+        return self._beams
+
+    @property
+    def is_as_read(self) -> bool:
+        """Return True if it is as it was read, not a changed copy."""
+        as_read = self.validated.scene
+        return as_read is None or as_read is self or bool(as_read == self)
 
     @property
     def whole_duration(self) -> float:

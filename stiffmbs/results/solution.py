@@ -56,6 +56,8 @@ class Solution(SolutionMethods, Mapping[str, np.ndarray]):
         Error bars of channels, if the run was verified.
     verification : tuple of str
         Sentences on the runs used for verification.
+    discretisation : mapping of str to float
+        Estimated errors of channels by the elements of beams, if the run was verified.
     balance : Balance
         Balance of energy and work.
     figure : Figure, optional
@@ -78,6 +80,7 @@ class Solution(SolutionMethods, Mapping[str, np.ndarray]):
     presolve: tuple[str, ...] = ()
     errors: Mapping[str, ErrorBar] = field(default_factory=dict)
     verification: tuple[str, ...] = ()
+    discretisation: Mapping[str, float] = field(default_factory=dict)
     figure: Figure | None = None
     turns: Mapping[str, np.ndarray] = field(default_factory=dict)
 

@@ -116,6 +116,8 @@ def _with_errors(solution: Solution) -> dict[str, dict[str, float]]:
         for name, cell in ranges.items():
             bar = solution.errors.get(name, UNKNOWN)
             cell |= {"error": bar.over_time, "min_error": bar.least, "max_error": bar.greatest}
+            if name in solution.discretisation:
+                cell["discretisation"] = solution.discretisation[name]
     return ranges
 
 

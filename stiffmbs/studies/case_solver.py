@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -15,7 +14,7 @@ from ..analyses.run import Finished, finished, solved
 from ..errors import InputError, StiffmbsError
 from ..model.files.other_forces import OtherForces
 from ..model.files.stages import WrittenScene
-from ..model.read_scene import made_scene
+from ..model.read_scene import read_changed
 from ..model.scene import Scene
 from ..model.settings import RunSettings
 from ..reading.files.files_read import recorded
@@ -184,24 +183,19 @@ def _kept(output: Output, solution: Finished, done: bool) -> float | np.ndarray:
     return output.value(solution)
 
 
-def read_changed(written: WrittenScene, changes: Sequence[tuple[str, Any]], unchanged: Unchanged) -> Scene:
-    """Read a scene with other values, without what was validated before."""
-    content = copy.deepcopy(dict(written.content))
-    return made_scene(content, (*written.changes, *changes), written.source, lambda _: None, written.folder, unchanged)
-
-
 def written_scene(model: Any) -> WrittenScene:
     """Return the source from which the cases of a model are read.
 
     Raises InputError if the file cannot be read, the scene is a changed copy, or the model cannot be written as a
     scene.
     """
-    from ..analyses.job import data_of
+    from ..analyses.job import data_of, with_elements
+    from ..analyses.run import run
     from ..model.model_text import model_text
     from ..model.read_scene import read_scene
 
-    data = data_of(model)
-    if isinstance(data, Scene) and not _as_written(data):
+    data = with_elements(data_of(model), run)
+    if isinstance(data, Scene) and not data.is_as_read:
         raise InputError(
             "study: found a changed copy of a scene, expected a scene as it was read; give the changes as values"
         )
@@ -218,9 +212,3 @@ def refuse_units(scene: WrittenScene, variations: Sequence[Variation]) -> None:
         if one.dimension is not None:
             value = one.range.low if one.range else one.values[0]
             CaseSolver(Task(scene, (one.name,), {}, ())).scene([in_text(Quantity(value, one.dimension))])
-
-
-def _as_written(scene: Scene) -> bool:
-    """Return True if a scene is as it was read, not a changed copy."""
-    as_read = scene.validated.scene
-    return as_read is None or as_read is scene or bool(as_read == scene)

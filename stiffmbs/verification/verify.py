@@ -12,6 +12,9 @@ another longest step:
 
 4. As 1, with several times as many steps, or with steps that resolve the events found by the search.
 
+A scene with beams is solved once more with coarser beams, which shows the error of the discretisation
+(`stiffmbs.analyses.beam_elements`).
+
 The first rerun uses a hundredth, as at a tenth of the tolerance bdf's error may decrease only slightly. The effort is
 counted in evaluations of the equations, independent of the load of the machine. Reruns that were not made are reported.
 """
@@ -23,9 +26,11 @@ from typing import Any, Unpack
 
 import numpy as np
 
-from ..analyses.job import Job, Runnable, prepare
+from ..analyses.job import Job, Runnable, data_of, prepare, with_elements
+from ..analyses.run import run as simulated
 from ..analyses.run import solved
 from ..analyses.start_from import StartFrom
+from ..model.scene import Scene
 from ..model.settings import RunSettings, Settings, takes_settings
 from ..results.error_bars import UNKNOWN, error_bar
 from ..results.scales import scales
@@ -56,7 +61,8 @@ def verify(
         As returned by `run`, with `errors` (the bars of each channel), `verification` (the reruns) and further `notes`
         on doubtful results.
     """
-    job = prepare(model, settings, start_from, **changes)
+    data = with_elements(data_of(model), lambda scene: simulated(scene, settings, None, start_from, **changes))
+    job = prepare(data, settings, start_from, **changes)
     first = solved(job, watch)
     if len(first.time) < 2:
         return replace(first, verification=("not verified: nothing was solved",))
@@ -66,9 +72,24 @@ def verify(
         with in_use(job.settings.tuning):
             system = job.dynamics.system
             least = VERIFICATION.effort_allowed / (system.n_q + system.n_u + system.n_c)
-            return verified(job, first, max(least, VERIFICATION.most_effort * job.evaluations()))
+            found = verified(job, first, max(least, VERIFICATION.most_effort * job.evaluations()))
+        return with_discretisation(job, found)
     except KeyboardInterrupt:
         return replace(first, verification=("verification interrupted by the user",))
+
+
+def with_discretisation(job: Job, found: Solution) -> Solution:
+    """Return the results of a job with the estimated discretisation errors of its beams."""
+    if not isinstance(job.data, Scene) or not job.data.beams.divided:
+        return found
+    from ..analyses.beam_elements import discretisation
+
+    def solve(scene: Scene) -> Solution:
+        other = prepare(scene, job.settings, job.start_from)
+        return solved(replace(other, grid=replace(other.grid, times=found.time)))
+
+    errors = discretisation(job.data, found, solve)
+    return replace(found, discretisation=errors.errors, verification=(*found.verification, errors.sentence))
 
 
 @np.errstate(all="ignore")  # as for `solved`

@@ -15,11 +15,10 @@ from ...reading.fields import Measured
 from ...reading.handle import Handle
 from ...reading.units import si
 from .axis import Piece, arc_through, pieces_through
+from .division import ElementsField
 from .section import AnySection, Material
 
-MOST_ELEMENTS = 10_000
 MassPerLength = Annotated[float, Measured("mass per length", above=0)]
-Count = Annotated[float, Measured("number", at_least=1, at_most=MOST_ELEMENTS)]
 
 
 class BeamHandle(Mapping[str, Handle]):
@@ -54,7 +53,9 @@ class Beam(LineBody):
     dimensions: ClassVar[int]
 
     type: Literal["beam"] = "beam"
-    elements: Count = Field(description="number of elements")
+    elements: Annotated[Any, ElementsField()] = Field(
+        description="number of elements; one for each interval between ends, corners and stations; auto; or {tolerance: 1 mm} of its position"
+    )
     interpolation: Literal["pairs", "spectral"] = Field(
         "pairs", description="of the strain: constant between two nodes, or by polynomials through three to five nodes"
     )
@@ -68,13 +69,6 @@ class Beam(LineBody):
     stations: dict[str, si.PositiveLength] = Field(
         default_factory=dict, description="nodes along the length by name: distance from the start along the axis, m"
     )
-
-    @field_validator("elements")
-    @classmethod
-    def _whole(cls, found: float) -> float:
-        if found != round(found):
-            raise ValueError(f"found {found:g}, expected a whole number of elements")
-        return found
 
     @field_validator("stations")
     @classmethod
@@ -113,6 +107,10 @@ class Beam(LineBody):
         """Add the nodes and elements to a model built in Python."""
         from .expanded import expanded
 
+        if self.elements.tolerance is not None:
+            raise InputError(
+                f"{name}.elements: found a tolerance, which a scene may have, expected a number in a model built in Python"
+            )
         try:
             made = expanded(name, self)
         except ValueError as error:

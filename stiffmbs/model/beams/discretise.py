@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from .axis import Arc, Piece, frame, upward
+from .division import AUTOMATIC, Divided, Elements
 from .interpolation import Group, group_sizes
 from .rigid_motion import adjoint, logarithm, tangent
 from .section import Material, Section
@@ -19,6 +20,8 @@ LARGEST_ROTATION = 3.0
 """Largest rotation between the ends of an unloaded element, rad."""
 SAME = 1e-12
 """Tolerance of the places of stations, relative to the length."""
+PLACES = 10
+"""Decimals of fractions of the length at which nodes of two divisions coincide."""
 Z = np.array([0.0, 0.0, 1.0])
 
 
@@ -94,10 +97,11 @@ class Element:
 
 @dataclass(frozen=True)
 class Line:
-    """Nodes and elements of a beam, in order."""
+    """Nodes and elements of a beam, in order, and the division into the latter."""
 
     nodes: list[Node]
     elements: list[Element]
+    divided: Divided
 
 
 @dataclass(frozen=True)
@@ -165,7 +169,10 @@ def discretise(beam: Any) -> Line:
     nodes: list[Node] = []
     elements: list[Element] = []
     intervals = list(_intervals(pieces, beam.stations, total))
-    counts = _counts([b - a for _, _, a, b in intervals], int(beam.elements))
+    wanted: Elements = beam.elements
+    counts = wanted.counts or _counts([b - a for _, _, a, b in intervals], wanted.number)
+    if len(counts) != len(intervals):
+        raise ValueError(f"elements: found {len(counts)} numbers, expected {len(intervals)}, one for each interval")
     for (piece, first, a, b), count in zip(intervals, counts, strict=True):
         up = Z if planar else upward(piece) if beam.up is None else np.array(beam.up, dtype=float)
         add = _Interval(piece, first, constants, up, planar, nodes, elements)
@@ -174,11 +181,16 @@ def discretise(beam: Any) -> Line:
             continue
         for start, end, size in group_sizes(a, b, count, _turn(piece)):
             add.group(start, end, Group.of(size))
-    at = {round(s / total, 12): name for name, s in beam.stations.items()}
+    names = {**wanted.names, **{name: s / total for name, s in beam.stations.items()}}
+    at = {round(share, PLACES): name for name, share in names.items()}
+    plain = "between" if wanted.names else "node"
     for k, node in enumerate(nodes):
-        node.name = at.get(round(node.s / total, 12), f"node{k}")
+        node.name = at.get(round(node.s / total, PLACES), f"{plain}{k}")
     nodes[0].name, nodes[-1].name = "start", "end"
-    return Line(nodes, elements)
+    tolerance = AUTOMATIC * total if wanted.tolerance == 0 else wanted.tolerance
+    return Line(
+        nodes, elements, Divided(total, tuple(counts), tolerance, {node.name: node.s / total for node in nodes})
+    )
 
 
 def _intervals(

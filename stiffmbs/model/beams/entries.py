@@ -10,7 +10,7 @@ LOAD = "distributed_load"
 
 
 def with_beams(
-    sections: dict[str, Any], parameters: Mapping[str, Any], dimensions: Any = None, part: str = ""
+    sections: dict[str, Any], parameters: Mapping[str, Any], dimensions: Any = None, part: str = "", instance: str = ""
 ) -> dict[str, Any]:
     """Return the sections of a scene or part with beams replaced by their nodes and elements.
 
@@ -23,6 +23,8 @@ def with_beams(
         By default those that the sections contain.
     part : str
         Path of a part, followed by a dot, for messages.
+    instance : str
+        Its name, followed by a dot.
 
     Raises
     ------
@@ -37,7 +39,7 @@ def with_beams(
     if not isinstance(bodies, dict | None):
         return sections
     chosen = sections.get("dimensions", 2) if dimensions is None else dimensions
-    found, forces = expand_beams(bodies or {}, forces, parameters, chosen, f"{part}bodies")
+    found, forces = expand_beams(bodies or {}, forces, parameters, chosen, f"{part}bodies", instance)
     return {**sections, "bodies": found, "forces": forces}
 
 

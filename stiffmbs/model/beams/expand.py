@@ -15,6 +15,7 @@ from ...reading.files.quoted import quoted
 from ..model_data import RESERVED
 from .beam import Beam
 from .discretise import Line
+from .division import record_beams
 from .expanded import expanded
 from .loads import DistributedLoad, node_forces
 from .planar import BeamBody as PlanarBeam
@@ -24,7 +25,7 @@ BEAM = "beam"
 
 
 def expand_beams(
-    bodies: dict[str, Any], forces: Any, parameters: Mapping[str, Any], dimensions: Any, where: str
+    bodies: dict[str, Any], forces: Any, parameters: Mapping[str, Any], dimensions: Any, where: str, instance: str
 ) -> tuple[Any, Any]:
     """Replace the beams among the bodies of a scene or part by their nodes and elements.
 
@@ -36,6 +37,8 @@ def expand_beams(
     dimensions : int
     where : str
         Path of the bodies for messages.
+    instance : str
+        Name of the part followed by a dot, for the record of all beams.
 
     Raises
     ------
@@ -45,6 +48,7 @@ def expand_beams(
     found: dict[Any, Any] = {}
     added: dict[Any, Any] = {}
     lines: dict[str, Line] = {}
+    of_beams: set[str] = set()
     for name, entry in bodies.items():
         if not (isinstance(entry, dict) and entry.get("type", FLEXIBLE) != FLEXIBLE):
             found[name] = entry
@@ -60,13 +64,18 @@ def expand_beams(
             raise InputError(f"{where}.{taken}: found a name that the beam '{name}' makes too, expected another")
         found |= made.bodies
         added |= made.forces
+        of_beams |= made.forces.keys()
         lines[str(name)] = made.line
     if not (forces is None or isinstance(forces, dict)):
         return found, forces
     for name, entry in (forces or {}).items():
         if name in added:
             raise InputError(f"forces.{name}: found a name that a beam makes too, expected another")
-        added |= _loads(name, entry, lines, f"{where.removesuffix('bodies')}forces.{name}")
+        loads = _loads(name, entry, lines, f"{where.removesuffix('bodies')}forces.{name}")
+        of_beams |= loads.keys() - {name}
+        added |= loads
+    divided = {f"{instance}{name}": line.divided for name, line in lines.items()}
+    record_beams(divided, [f"{instance}{name}" for name in of_beams])
     return found, added
 
 

@@ -34,7 +34,8 @@ class BeamBody(Beam):
         Another point of an arc, m.
     points : sequence of 2 floats, optional
         In place of `start` and `end`: corners of straight pieces, rigidly connected, m.
-    elements : int
+    elements : int or sequence of int
+        In all, or in each interval between ends, corners and stations.
     interpolation : {'pairs', 'spectral'}
         Of the strain: constant between two nodes, or by polynomials through three to five nodes, of higher order.
     section, material : mappings
@@ -68,7 +69,7 @@ class BeamBody(Beam):
         def __init__(
             self,
             *,
-            elements: given.Number,
+            elements: given.Number | Sequence[int],
             interpolation: str = "pairs",
             start: given.Numbers | None = None,
             end: given.Numbers | None = None,

@@ -37,7 +37,8 @@ class BeamBody(Beam):
     up : 3 floats, optional
         Direction to which axis 3 of the section, along its height, is nearest; z by default, or x for a
         nearly vertical piece.
-    elements : int
+    elements : int or sequence of int
+        In all, or in each interval between ends, corners and stations.
     interpolation : {'pairs', 'spectral'}
         Of the strain: constant between two nodes, or by polynomials through three to five nodes, of higher order.
     section, material : mappings
@@ -78,7 +79,7 @@ class BeamBody(Beam):
         def __init__(
             self,
             *,
-            elements: given.Number,
+            elements: given.Number | Sequence[int],
             interpolation: str = "pairs",
             start: given.Numbers | None = None,
             end: given.Numbers | None = None,

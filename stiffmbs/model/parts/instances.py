@@ -139,7 +139,7 @@ class Instances:
             section: repeat_entries(f"parts.{use.part}.{section}", definition[section], own) if section in REPEATED else definition[section]
             for section in (*NAMED, "markers") if definition.get(section) is not None
         }  # fmt: skip
-        sections = with_beams(sections, own, self.dimensions, f"parts.{use.part}.")
+        sections = with_beams(sections, own, self.dimensions, f"parts.{use.part}.", f"{name}.")
         used = definition.get("use") or {}
         inner = tuple(repeat_entries(f"parts.{use.part}.use", used, own)) if isinstance(used, dict) else ()
         _check_sections(use.part, sections, inner, vectors)

@@ -11,10 +11,11 @@ from ...analyses.job import data_of
 from ...errors import InputError
 from ...model.files.other_forces import OtherForces
 from ...model.files.stages import WrittenScene
+from ...model.read_scene import read_changed
 from ...model.scene import Scene
 from ...reading.did_you_mean import did_you_mean
 from ...reading.files.unchanged import Unchanged
-from ..case_solver import read_changed, written_scene
+from ..case_solver import written_scene
 
 STEP = 1e-4
 """Step of a parameter for set-up differences, relative to it; absolute, SI units, for a zero parameter."""
