@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Literal, Self
 
@@ -22,6 +23,13 @@ Direction = tuple[si.Number, si.Number, si.Number]
 NEAR = 1e-6
 """Default distance of nodes from a plane, relative to the size of the body."""
 NOT_CYCLES = re.compile(r"\b(rpm|rad|deg|rev)\b")
+
+
+def not_zero(normal: tuple[float, float, float]) -> tuple[float, float, float]:
+    """Refuse a direction of zero length. Raises ValueError."""
+    if not any(normal):
+        raise ValueError("found zero, expected a direction")
+    return normal
 
 
 class Units(Described):
@@ -58,6 +66,22 @@ class Matrices(Described):
     mass_name: str | None = Field(None, description="name of M in such a file")
 
 
+class Thickness(Described):
+    """Stretch of a mesh along a direction, about the middle of its extent; groups and selections are those before it."""
+
+    scale: si.PositiveNumber = Field(1.0, description="factor of the thickness")
+    normal: Direction = Field(description="direction of the thickness, in the axes of the mesh")
+
+    _not_zero = field_validator("normal")(not_zero)
+
+    def moved(self, points: np.ndarray, nodes: np.ndarray, scale: float) -> np.ndarray:
+        """Return points stretched by a factor about the middle of the nodes, both of shape (n, 3)."""
+        along = np.array(self.normal) / np.linalg.norm(self.normal)
+        heights = nodes @ along
+        middle = (heights.min() + heights.max()) / 2
+        return points + (scale - 1) * np.outer(points @ along - middle, along)
+
+
 class Sphere(Described):
     """Sphere that selects the nodes within it."""
 
@@ -72,12 +96,7 @@ class Plane(Described):
     normal: Direction = Field(description="direction across it")
     within: si.PositiveLength | None = Field(None, description="largest distance of a node, m")
 
-    @field_validator("normal")
-    @classmethod
-    def _not_zero(cls, normal: tuple[float, float, float]) -> tuple[float, float, float]:
-        if not any(normal):
-            raise ValueError("found zero, expected a direction")
-        return normal
+    _not_zero = field_validator("normal")(not_zero)
 
 
 class InterfaceOfNodes(Described):
@@ -162,6 +181,8 @@ class FlexibleBody(Described):
     units : Units
         Units of the file.
     material : Material, optional
+    thickness : Thickness, optional
+        Stretch of a mesh along its thickness.
     interfaces : mapping of str to InterfaceOfNodes
     modes : int or UpTo
         Normal modes with all interfaces held.
@@ -177,6 +198,7 @@ class FlexibleBody(Described):
     matrices: str | Matrices | None = Field(None, description="NumPy archive (.npz), or files of K, M and nodes")
     units: Units = Field(description="units of the file")
     material: Material | None = Field(None, description="of a mesh")
+    thickness: Thickness | None = Field(None, description="stretch of a mesh along its thickness")
     interfaces: dict[str, InterfaceOfNodes] = Field(default_factory=dict, description="nodes that move with markers")
     modes: int | UpTo = Field(20, description="number of normal modes, or up_to: a frequency")
     mass: si.PositiveMass | None = Field(None, description="stated mass, kg, to check units and density")
@@ -209,6 +231,8 @@ class FlexibleBody(Described):
             raise ValueError(
                 f"found {found}, expected {'E, nu and density for a mesh' if self.mesh else 'none: K and M have it'}"
             )
+        if self.thickness is not None and self.mesh is None:
+            raise ValueError("found a thickness with matrices, expected a mesh")
         if self.stiffening is True and self.mesh is None:
             raise ValueError(
                 "found stiffening: true with matrices, expected a mesh: geometric stiffening needs its shape functions"
@@ -236,7 +260,12 @@ class FlexibleBody(Described):
 
     def interfaces_on(self, model: FiniteElements) -> list[Interface]:
         """Return the interfaces on a model. Raises InputError."""
-        return [interface.on(name, model) for name, interface in self.interfaces.items()]
+        if self.thickness is None:
+            return [interface.on(name, model) for name, interface in self.interfaces.items()]
+        stretch, scale = self.thickness.moved, self.thickness.scale
+        before = replace(model, nodes=stretch(model.nodes, model.nodes, 1 / scale))
+        found = (interface.on(name, before) for name, interface in self.interfaces.items())
+        return [replace(each, point=stretch(each.point[None], model.nodes, scale)[0]) for each in found]
 
     def _read(self, folder: Path) -> FiniteElements:
         units = self.units.length, self.units.mass, self.units.time
@@ -256,7 +285,11 @@ class FlexibleBody(Described):
             from .mesh import from_mesh
 
             assert self.material is not None
-            return from_mesh(folder / self.files[0], units[0], self.material.E, self.material.nu, self.material.density)
+            stretch, material = self.thickness, self.material
+            return from_mesh(
+                folder / self.files[0], units[0], material.E, material.nu, material.density,
+                (lambda nodes: nodes) if stretch is None else (lambda nodes: stretch.moved(nodes, nodes, stretch.scale)),
+            )  # fmt: skip
         except InputError as error:
             raise InputError(f"{self.files[0]}: {error}") from None
 

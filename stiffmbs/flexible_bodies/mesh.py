@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import io
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -32,11 +33,15 @@ HARMLESS = {"vertex", "line", "line3", "triangle", "triangle6", "quad", "quad8",
 """Elements of a mesh that are not solids and are used only as groups."""
 
 
-def from_mesh(path: Path, length: float, modulus: float, poisson: float, density: float) -> FiniteElements:
+def from_mesh(
+    path: Path, length: float, modulus: float, poisson: float, density: float,
+    placed: Callable[[np.ndarray], np.ndarray] = lambda nodes: nodes,
+) -> FiniteElements:  # fmt: skip
     """Return the model of a mesh of tetrahedra or hexahedra of first or second order.
 
     `path`: file of a format of meshio: Gmsh, Abaqus, Nastran, VTK. `length`: unit of the mesh, m. `modulus`, `poisson`,
-    `density`: young's modulus, N/m^2, Poisson's ratio, and density, kg/m^3. Raises InputError.
+    `density`: Young's modulus, N/m^2, Poisson's ratio, and density, kg/m^3. `placed`: function of the positions of
+    all nodes, shape (n, 3), m, that returns other ones. Raises InputError.
     """
     mesh = _read(path)
     kinds = {block.type for block in mesh.cells}
@@ -54,6 +59,7 @@ def from_mesh(path: Path, length: float, modulus: float, poisson: float, density
         raise InputError(f"found nodes with {nodes.shape[1]} coordinates, expected x, y and z")
     if not np.isfinite(nodes).all():
         raise InputError("nodes: found a position that is not finite, expected numbers")
+    nodes = placed(nodes)
     _check_volumes(nodes, cells, kind)
     stiffness, mass, shapes = _assembled(nodes, cells, kind, modulus, poisson, density)
     numbers = np.full(len(mesh.points), -1)

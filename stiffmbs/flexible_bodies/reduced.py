@@ -28,6 +28,8 @@ SAME_MASS = 0.05
 def reduced_body(body: FlexibleBody, folder: Path) -> ReducedBody:
     """Return the reduced body, from the cache if its description and its files are unchanged.
 
+    The shapes of a mesh's modes do not depend on Young's modulus and density: it is reduced once for all their values.
+
     Parameters
     ----------
     body : FlexibleBody
@@ -38,13 +40,19 @@ def reduced_body(body: FlexibleBody, folder: Path) -> ReducedBody:
     ------
     InputError
     """
-    name = f"{BODY}-{_key(body, folder)}"
+    modulus, density = (body.material.E, body.material.density) if body.material else (1.0, 1.0)
+    highest = body.modes.up_to * np.sqrt(density / modulus) if isinstance(body.modes, UpTo) else None
+    if body.material:
+        body = body.model_copy(update={"material": body.material.model_copy(update={"E": 1.0, "density": 1.0})})
+    name = f"{BODY}-{_key(body, highest, folder)}"
     stored = folder_of_bodies().read(name)
     if stored is not None:
-        return _loaded(stored)
+        found = _loaded(stored)
+        _check_mass(body, found.mass * density)
+        return found.of_material(modulus, density)
     model = body.model(folder)
-    _check_mass(body, rigid_body(model)[0])
-    count, highest = (None, body.modes.up_to) if isinstance(body.modes, UpTo) else (body.modes, None)
+    _check_mass(body, rigid_body(model)[0] * density)
+    count = None if isinstance(body.modes, UpTo) else body.modes
     found = reduce(model, body.interfaces_on(model), count, highest, body.residual_modes)
     out = io.BytesIO()
     np.savez(
@@ -54,7 +62,7 @@ def reduced_body(body: FlexibleBody, folder: Path) -> ReducedBody:
     )
     folder_of_bodies().write(name, out.getvalue())
     folder_of_bodies().keep_newest(MOST, MOST_BYTES)
-    return found
+    return found.of_material(modulus, density)
 
 
 def _check_mass(body: FlexibleBody, mass: float) -> None:
@@ -75,10 +83,11 @@ def folder_of_bodies() -> Folder:
     return Folder(FOLDER, tag_of(own, version("numpy"), version("scipy")))
 
 
-def _key(body: FlexibleBody, folder: Path) -> str:
+def _key(body: FlexibleBody, highest: float | None, folder: Path) -> str:
     contents = (hashlib.sha256(content_of_file(folder / name)).hexdigest() for name in body.files)
-    described = body.model_dump_json(include=FlexibleBody.model_fields.keys() - {"stiffening"})
-    return digest(described, *contents)
+    unused = {"stiffening", "mass", "modes"} if highest else {"stiffening", "mass"}
+    described = body.model_dump_json(include=FlexibleBody.model_fields.keys() - unused)
+    return digest(described, repr(highest), *contents)
 
 
 def _loaded(content: bytes) -> ReducedBody:

@@ -9,7 +9,7 @@ Multibody System Dynamics 51, 2021).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.linalg import block_diag, eigh, null_space
@@ -88,6 +88,37 @@ class ReducedBody:
     pairs: np.ndarray
     dependent: int
     second_order: SecondOrder
+
+    def of_material(self, stiffer: float, heavier: float) -> ReducedBody:
+        """Return the body with other factors of its stiffness and its mass matrix."""
+        of_rates, of_modes = np.sqrt(stiffer / heavier), 1 / np.sqrt(heavier)
+        factors = {
+            "mass": heavier, "inertia": heavier, "frequencies": of_rates, "rigid_frequencies": of_rates,
+            "fixed_frequencies": of_rates, "modes": of_modes, "markers": of_modes, "first": 1 / of_modes,
+            "second": 1 / of_modes,
+        }  # fmt: skip
+        terms = self.second_order
+        scaled = replace(terms, static=terms.static / of_rates, stretch=terms.stretch * np.sqrt(stiffer) / heavier)
+        return replace(
+            self, second_order=scaled, **{name: getattr(self, name) * factor for name, factor in factors.items()}
+        )
+
+    def in_basis(self, turn: np.ndarray) -> ReducedBody:
+        """Return the body with other modes, which are orthogonal combinations of its own, shape (n, n), by columns.
+
+        Frequencies remain those of its own modes.
+        """
+        terms, pairs = self.second_order, "lkab,lm,kn->mnab"
+        moved = replace(
+            terms, first=np.einsum("lka,lm,kn->mna", terms.first, turn, turn, optimize=True),
+            moments=np.einsum(pairs, terms.moments, turn, turn, optimize=True), static=turn.T @ terms.static,
+            stretch=turn.T @ terms.stretch @ turn,
+        )  # fmt: skip
+        return replace(
+            self, modes=self.modes @ turn, markers=self.markers @ turn, first=turn.T @ self.first,
+            second=np.einsum("kab,km->mab", self.second, turn), pairs=np.einsum(pairs, self.pairs, turn, turn, optimize=True),
+            second_order=moved,
+        )  # fmt: skip
 
     def held_frequencies(self, held: Sequence[int]) -> np.ndarray:
         """Return the natural frequencies with some interfaces held, Hz. `held`: numbers of the interfaces."""

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -14,6 +15,7 @@ from ..elements.element import Joint
 from ..elements.spatial.body import Body
 from ..elements.spatial.flexible.bodies import FloatingFrame, ModalCoordinates
 from ..elements.spatial.flexible.interface import FlexibleInterface
+from ..elements.spatial.flexible.layout import COUPLING
 from ..elements.spatial.joints.orientation import Orientation as HeldAxes
 from ..elements.spatial.joints.point_on_line import PointOnLine
 from ..elements.spatial.joints.point_on_plane import PointOnPlane
@@ -32,6 +34,8 @@ SHARE = 1e-3
 """Mass of the body of an interface, relative to that of the flexible body, which has less by it."""
 SMALL = 1e-3
 """Radius of gyration of the body of an interface, relative to the largest of the flexible body."""
+SAME_SHAPES = 0.9
+"""Smallest singular value of the change of a basis of modes by a small change of a parameter."""
 BY_BODY = 3
 """Modal coordinates of one body."""
 
@@ -95,14 +99,70 @@ def with_flexible_bodies(raw: dict[str, Any], context: Mapping[str, Any]) -> dic
     return {**raw, "bodies": added_bodies, "joints": added_joints}
 
 
+def described_bodies(bodies: Mapping[str, Any]) -> dict[str, SceneFlexibleBody]:
+    """Return the descriptions of the flexible bodies of a scene by their names."""
+    frames = ((name, body) for name, body in bodies.items() if isinstance(body, FloatingFrame))
+    return {name.removesuffix(f".{FRAME}"): frame.source[0] for name, frame in frames}
+
+
+def with_same_modes(scenes: Sequence[Any], reference: Any) -> list[Any]:
+    """Return scenes in which each flexible body that differs in one of them has the modes nearest to those of the reference.
+
+    Modes are determined up to their signs, and those of equal frequencies up to a rotation. Numbers of both scenes can
+    be compared only if they belong to the same modes. Raises InputError if the modes differ too much.
+    """
+    known = described_bodies(reference.bodies)
+    others = [(scene, described_bodies(scene.bodies)) for scene in scenes]
+    differing = [name for name, body in known.items() if any(bodies[name] != body for _, bodies in others)]
+    found = []
+    for scene in scenes:
+        bodies, joints = dict(scene.bodies), dict(scene.joints)
+        for name in differing:
+            parts = _parts_with_modes(name, scene.bodies[f"{name}.{FRAME}"], reference.bodies[f"{name}.{FRAME}"])
+            bodies |= dict(parts.bodies())
+            joints |= dict(parts.joints())
+        found.append(scene.model_copy(update={"bodies": bodies, "joints": joints}) if differing else scene)
+    return found
+
+
+def _parts_with_modes(name: str, frame: FloatingFrame, like: FloatingFrame) -> _Parts:
+    """Return the parts of a flexible body with the modes and axes of another one."""
+    found, wanted = reduced_body(*frame.source), reduced_body(*like.source)
+    turn = _nearest(found.modes, wanted.modes, name)
+    found = found.in_basis(turn)
+    terms = found.second_order
+    shapes = _nearest(terms.static, wanted.second_order.static, name)
+    stretch = np.einsum("ikl,ij->jkl", terms.stretch, shapes)
+    found = replace(found, second_order=replace(terms, static=terms.static @ shapes, stretch=stretch))
+    return _Parts(name, frame.source[0], found, frame.source[1], like.inertia, turn)
+
+
+def _nearest(shapes: np.ndarray, wanted: np.ndarray, name: str) -> np.ndarray:
+    """Return the orthogonal combination of columns that is nearest to other columns, by the polar decomposition."""
+    if shapes.shape == wanted.shape:
+        combined = np.linalg.lstsq(shapes, wanted)[0]
+        left, sizes, right = np.linalg.svd(combined)
+        if sizes.min(initial=1.0) > SAME_SHAPES:
+            return left @ right  # type: ignore[no-any-return]
+    raise InputError(
+        f"bodies.{name}: found other modes for a slightly different value, expected similar ones; choose another number of modes"
+    )
+
+
 class _Parts:
     """Bodies and joints that represent one flexible body.
 
     The body of an interface has a small mass, which is taken from the flexible body at the same point: the sum is that
-    of the finite element model.
+    of the finite element model. `axes`: inertia tensor of the rigid body of the frame, whose principal axes are those of
+    the coordinates. `turn`: modes by columns, as combinations of those of the frequencies.
     """
 
-    def __init__(self, name: str, body: SceneFlexibleBody, reduced: ReducedBody, folder: Path) -> None:
+    def __init__(
+        self, name: str, body: SceneFlexibleBody, reduced: ReducedBody, folder: Path, axes: Any = None,
+        turn: np.ndarray | None = None,
+    ) -> None:  # fmt: skip
+        self._inertia = reduced.inertia.tolist() if axes is None else axes
+        self._basis, self._turned = np.eye(len(reduced.frequencies)) if turn is None else turn, turn is not None
         self._name, self._body, self._reduced, self._folder = name, body, reduced, folder
         self._share = SHARE * reduced.mass
         self._moment = self._share * SMALL**2 * float(np.linalg.eigvalsh(reduced.inertia)[-1]) / reduced.mass
@@ -116,7 +176,7 @@ class _Parts:
         """Yield the frame, the bodies with modal coordinates, and those of the interfaces."""
         body, reduced = self._body, self._reduced
         frame = Body(
-            mass=reduced.mass - len(reduced.points) * self._share, inertia=reduced.inertia.tolist(), center_of_mass=tuple(reduced.centre),
+            mass=reduced.mass - len(reduced.points) * self._share, inertia=self._inertia, center_of_mass=tuple(reduced.centre),
             position=body.position, orientation=body.orientation, velocity=body.velocity, omega=body.omega, any_moments=True,
         )  # fmt: skip
         fields = {name: getattr(frame, name) for name in Body.model_fields}
@@ -188,7 +248,12 @@ class _Parts:
             pairs -= self._share * np.einsum("la,kb->lkab", shape, shape)
         for k in range(own, n):  # unused coordinates: unit modal mass
             pairs[k, k] += np.eye(3) * reduced.mass / 3
+        elastic = np.zeros((n, n, COUPLING))
         stiffness, damping = self._stiffness_and_damping(n)
+        for k, values in enumerate((stiffness, damping)):
+            elastic[:own, :own, k] = self._basis.T @ (values[:own, None] * self._basis)
+            values[:own] = elastic[:own, :own, k].diagonal()
+            np.fill_diagonal(elastic[..., k], 0.0)
         of_modes = np.column_stack(
             [stiffness, damping, first @ to_axes.T, np.einsum("ia,jb,kab->kij", to_axes, to_axes, second).reshape(n, 9)]
         )
@@ -202,7 +267,7 @@ class _Parts:
         ]  # fmt: skip
         return np.concatenate([
             np.zeros(3), to_axes @ offset, (to_axes @ square @ to_axes.T).ravel(), frame.principal_moments(),
-            [reduced.mass, len(stretch) if stiffened else 0, len(stretch), int(stiffened) if self._body.mesh else -1], of_modes.ravel(), np.concatenate(of_pairs, axis=-1).ravel(), stretch.ravel(),
+            [reduced.mass, len(stretch) if stiffened else 0, len(stretch), int(stiffened) if self._body.mesh else -1, n if self._turned else 0], of_modes.ravel(), np.concatenate(of_pairs, axis=-1).ravel(), elastic.ravel(), stretch.ravel(),
         ])  # fmt: skip
 
     def _stiffness_and_damping(self, n: int) -> tuple[np.ndarray, np.ndarray]:
@@ -222,3 +287,8 @@ class _Numbers:
 
     def __init__(self, array: np.ndarray) -> None:
         self.array = array
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Numbers) and np.array_equal(self.array, other.array)
+
+    __hash__ = None  # type: ignore[assignment]

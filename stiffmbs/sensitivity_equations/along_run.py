@@ -138,7 +138,7 @@ class AlongRun:
         self._variations.shift(given.shift)
         defects, rates = self._variations.defects(first, s), np.zeros_like(s)
         rates[:, at["q"]] = -defects[:, at["q"]]
-        rates[:, at["u"]] = -defects[:, at["u"]] / self._dynamics.system.mass
+        rates[:, at["u"]] = change.acceleration
         self._variations.begin(first[0], segment.rows[0, 0] - first[0], s, rates)
 
     def _rows(self, rows: OutputRows) -> np.ndarray:

@@ -72,8 +72,9 @@ class BlockSystem:
             direction.q[algebraic] = 0.0
             direction.evaluate(t, of_t)
             force = (
-                direction.vector("f") - direction.numbers.mass * acceleration - direction.product("J", state.lam, True)
-            )
+                direction.vector("f") - direction.numbers.mass * acceleration - direction.product("inertia", acceleration)
+                - direction.product("J", state.lam, True)
+            )  # fmt: skip
             constraints = direction.vector("gamma") - direction.product("J", acceleration)
             right.append(np.concatenate([force, constraints, direction.vector("rate")[algebraic]]))
         accelerations, lam, states = np.split(
@@ -133,6 +134,7 @@ def _saddle(state: State, term_set: str) -> Iterator[Entries]:
     n_u = state.system.n_u
     row, column, value = _term(state, term_set, "J")
     yield np.arange(n_u), np.arange(n_u), state.system.mass
+    yield _term(state, term_set, "inertia")
     yield column, n_u + row, value
     yield n_u + row, column, value
 

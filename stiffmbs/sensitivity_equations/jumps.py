@@ -238,7 +238,8 @@ class Jumps:
         for direction, of_q, of_u, of_t in zip(self._motions, q, u, moved, strict=True):
             direction.q[:], direction.u[:] = of_q, of_u
             direction.evaluate(t, of_t)
-            force = -direction.numbers.mass * correction - direction.product("J", w, True)
+            force = -direction.numbers.mass * correction - direction.product("inertia", correction)
+            force -= direction.product("J", w, True)
             columns.append(np.concatenate([force, -direction.vector("V") - direction.product("J", correction)]))
         solved = saddle_solution(state, "motion", np.array(columns).T)
         return u + solved[: system.n_u].T

@@ -284,13 +284,6 @@ def test_mistakes_name_the_body(folder, changes, message):
         scene(folder, **changes)
 
 
-def test_sensitivities_refuse_flexible_bodies(folder):
-    from stiffmbs.studies.sensitivities.sensitivities import sensitivities
-
-    with pytest.raises(InputError, match="sensitivities do not include flexible bodies"):
-        sensitivities(scene(folder, PIN, "damping: zeta", more="parameters: {zeta: 0.02}"), "zeta", "peak(bar.b.y)")
-
-
 def test_a_fast_rotation_is_noted(folder):
     slow, fast = (run(scene(folder, motion=f"omega: [0, 0, {rate}]", run__duration="1 ms")) for rate in (20, 500))
     assert not any("stiffness" in note for note in slow.notes)

@@ -39,7 +39,7 @@ class Numbers:
 
 def unchanged(system: System) -> Numbers:
     """Return a direction for derivatives with respect to state and time; no numbers are differentiated."""
-    return Numbers(tuple(group.numbers for group in system.groups), frozenset(), np.zeros(system.n_u))
+    return Numbers(tuple(np.zeros_like(group.numbers) for group in system.groups), frozenset(), np.zeros(system.n_u))
 
 
 @cache

@@ -44,6 +44,7 @@ def changed_channels(
     channels = {name: slope.reshape(shape) for name, slope in channels.items()}
     masses = np.array([each.mass for each in numbers])
     kinetic = np.einsum("iu,idu->id", system.mass * u, moved_u.reshape(*shape, -1)) + 0.5 * u**2 @ masses.T
+    kinetic += flat[:, system.term("output", "kinetic").source].sum(axis=1).reshape(shape)
     return channels | {"energy.kinetic": kinetic, "energy.total": kinetic + channels["energy.potential"]}
 
 

@@ -130,6 +130,10 @@ def _found(scene: Scene, name: str) -> tuple[str, tuple[int, ...], Any]:
         )
     at: Any = scene
     k = 0
+    if parts[0] == "bodies" and any(not body.rigid for body in scene.bodies.values()):
+        from ...model.flexible import described_bodies
+
+        at, k = {**described_bodies(scene.bodies), **scene.bodies}, 1
     while k < len(parts):
         if parts[k].isdigit() and isinstance(at, list | tuple):
             places = tuple(map(int, parts[k:]))

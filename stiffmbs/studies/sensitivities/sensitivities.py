@@ -213,10 +213,6 @@ class DifferentiatedRun:
         parameters = [Parameter(scenes, name) for name in names]
         self._job = job
         system = job.dynamics.system
-        if system.has_coupled_inertia:
-            raise InputError(
-                "bodies: found a flexible body, expected rigid ones: sensitivities do not include flexible bodies"
-            )
         if system.sampled.any():
             name = system.states[int(np.argmax(system.sampled))]
             raise InputError(

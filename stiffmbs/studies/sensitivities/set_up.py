@@ -53,11 +53,20 @@ class SetUp:
             ((0.0, -1.0, -2.0), (1.5, -2.0, 0.5)),
         ):
             try:
-                scenes = [self.parameter.scene(value + shift * step) for shift in shifts]
+                scenes = self._scenes([value + shift * step for shift in shifts])
                 return scenes, [shift * step for shift in shifts], [weight / step for weight in weights]
             except InputError as error:
                 faults.append(error)
         raise InputError(f"to: found that '{self.parameter.name}' cannot be changed a little: {faults[0]}")
+
+    def _scenes(self, values: Sequence[float]) -> list[Scene]:
+        """Return scenes with other values, whose flexible bodies have the same modes. Raises InputError."""
+        found = [self.parameter.scene(value) for value in values]
+        if not self._job.dynamics.system.has_coupled_inertia:
+            return found
+        from ...model.flexible import with_same_modes
+
+        return with_same_modes(found, self._job.data)
 
     def derivative(self, values: Sequence[Any]) -> np.ndarray:
         """Return the derivative from the results of the scenes."""

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from ....reading.marker import MarkerReference
@@ -15,8 +16,23 @@ NATIVE = "stiffmbs.compile.machine.native"
 KERNELS = {
     "inertia": ("add_forces", "add_inertia", "kinetic_energy", "potential_energy", "dissipated_power"),
     "slopes": ("add_force_slopes", "add_inertia_slopes"),
+    "along": ("add_elastic_change", "energy_change", "power_change", "step_size"),
 }
 """Compiled functions by their modules."""
+CALLS = {
+    "f": "add_forces({n}, {own}, {gravity}, {pose}, {u}, work, {to})",
+    "inertia": "add_inertia({n}, {own}, {pose}, {u}, {to})",
+    "kinetic": "{to}[0] = kinetic_energy({n}, {own}, {pose}, {u})",
+    "potential": "{to}[0] = potential_energy({n}, {own}, {gravity}, {pose}, work)",
+    "power": "{to}[0] = dissipated_power({n}, {own}, {at}, {u}, work)",
+}
+"""Computation of the terms without their slopes."""
+CHANGES = {
+    "f": "add_elastic_change({changed}, {to})",
+    "potential": "{to}[0] += energy_change({changed})",
+    "power": "{to}[0] += power_change({changed})",
+}
+"""Parts of the derivatives by the numbers of the body that are not linear in these."""
 
 
 class FlexibleInertia(Force):
@@ -53,40 +69,87 @@ class FlexibleInertia(Force):
             "f_u": [(row, column) for row in rows for column in (*angular, *velocities)],
             "kinetic": [(0, 0)], "potential": [(0, 0)], "power": [(0, 0)],
         }  # fmt: skip
-        return CompiledTerms(patterns, lambda places: _source(n, n_bodies, patterns, places))
+        form = _Form(n, n_bodies, patterns)
+        return CompiledTerms(patterns, form.source, form.along)
 
 
-def _source(n: int, n_bodies: int, patterns: Mapping[str, Any], places: Mapping[str, int]) -> str:
-    """Return the source of a kernel with some of the terms, by their places."""
-    width = 2 * n_bodies + 1
-    to = {name: f"shifted(value, place[{1 + k}] + {len(patterns[name])}*e)" for name, k in places.items()}
-    pose = f"{n}, own, row, q, turned"
-    calls = {
-        "f": f"add_forces({pose}, u, work, {to.get('f')})",
-        "inertia": f"add_inertia({pose}, u, {to.get('inertia')})",
-        "f_q": f"add_force_slopes({pose}, u, work, {to.get('f_q')}, {to.get('f_u')})",
-        "inertia_q": f"add_inertia_slopes({pose}, a, {to.get('inertia_q')})",
-        "kinetic": f"value[place[{1 + places.get('kinetic', 0)}] + e] = kinetic_energy({pose}, u)",
-        "potential": f"value[place[{1 + places.get('potential', 0)}] + e] = potential_energy({pose}, work)",
-        "power": f"value[place[{1 + places.get('power', 0)}] + e] = dissipated_power({n}, own, row, q, u, work)",
-    }
-    return "\n".join(
-        [
+@dataclass(frozen=True)
+class _Form:
+    """Form of bodies with common kernels: numbers of modal coordinates and of bodies, and patterns of the terms."""
+
+    n: int
+    n_bodies: int
+    patterns: Mapping[str, Any]
+
+    def source(self, places: Mapping[str, int]) -> str:
+        """Return the source of a kernel with some of the terms, by their places."""
+        to, n, pose = self._to(places), self.n, "row, q, turned"
+        words = {"own": "own", "gravity": "own", "pose": pose, "at": "row, q", "u": "u"}
+        calls = [f"{name} = {to[name]}" for name in places]
+        calls += self._calls(places, words, {name: name for name in places})
+        if "f_q" in places:
+            calls.append(f"add_force_slopes({n}, own, {pose}, u, work, f_q, f_u)")
+        if "inertia_q" in places:
+            calls.append(f"add_inertia_slopes({n}, own, {pose}, a, inertia_q)")
+        return self._kernel("", calls)
+
+    def along(self, places: Mapping[str, int]) -> str:
+        """Return the source of a kernel of directional derivatives."""
+        smooth = {name: k for name, k in places.items() if name in CALLS}
+        to, n, bodies = self._to(smooth), self.n, self.n_bodies
+        size = max((len(self.patterns[name]) for name in smooth), default=1)
+        rooms = {
+            "none": 1, "places": 2 * bodies, "q_m": 7 * bodies, "turn_m": 14 * bodies, "u_m": 6 * bodies, "gravity_m": 3,
+            "found": size, "changes": 3 * n,
+        }  # fmt: skip
+        moved = {"own": "own", "gravity": "gravity_m", "pose": "places, q_m, turn_m", "at": "places, q_m", "u": "u_m"}
+        of_numbers = {"own": "own_d", "gravity": "own", "pose": "row, q, turned", "at": "row, q", "u": "u"}
+        lines = [
+            *(f"{name} = room({count})" for name, count in rooms.items()),
+            f"own_d = shifted(number_d, row[{2 * bodies}] + int(numbers[0]))",
+            *(f"{name} = {pointer}" for name, pointer in to.items()),
+            *self._calls(smooth, of_numbers, {name: name for name in smooth}),
+            *(CHANGES[name].format(changed=f"{n}, own, own_d, row, q, u, work, changes", to=name) for name in smooth if name in CHANGES),
+            f"h = step_size({n}, own, row, u, own_d, q_d, u_d)",
+            "for k in range(4 if h > 0.0 else 0):",
+            "    side = -2.0 if k == 0 else (-1.0 if k == 1 else (1.0 if k == 2 else 2.0))",
+            "    weight = (1.0 if k == 0 else (-8.0 if k == 1 else (8.0 if k == 2 else -1.0))) / (12.0 * h)",
+            f"    move(1, {bodies}, 0, side * h, none, row, q, u, none, q_d, u_d, none, places, q_m, turn_m, u_m)",
+            "    for i in range(3):",
+            "        gravity_m[i] = own[i] + side * h * own_d[i]",
+        ]  # fmt: skip
+        for name in smooth:
+            lines += [f"    {line}" for line in self._calls([name], moved, {name: "found"})]
+            lines.append(f"    add_times({len(self.patterns[name])}, weight, found, {name})")
+        imports = "beams.along import move", "beams.dual import add_times"
+        return self._kernel(", number_d, t_d, q_d, turn_d, u_d, a_d, lam_d, mu_d", lines, imports)
+
+    def _to(self, places: Mapping[str, int]) -> dict[str, str]:
+        """Return the pointers to the values of the terms."""
+        return {name: f"shifted(value, place[{1 + k}] + {len(self.patterns[name])}*e)" for name, k in places.items()}
+
+    def _calls(self, names: Iterable[str], words: Mapping[str, str], to: Mapping[str, str]) -> list[str]:
+        """Return the computations of some terms."""
+        return [CALLS[name].format(n=self.n, to=to[name], **words) for name in names if name in CALLS]
+
+    def _kernel(self, arguments: str, body: Iterable[str], imports: Iterable[str] = ()) -> str:
+        """Return the text of a kernel with statements for each body."""
+        width = 2 * self.n_bodies + 1
+        return "\n".join([
             f"from {NATIVE}.access import room, shifted",
+            *(f"from {NATIVE}.{each}" for each in imports),
             *(f"from {NATIVE}.flexible.{module} import {', '.join(names)}" for module, names in KERNELS.items()),
-            "",
-            "",
-            "def kernel(count, index, number, t, q, turn, u, a, lam, mu, place, value):",
-            f"    work = room({work_size(n)})",
+            "", "",
+            f"def kernel(count, index, number, t, q, turn, u, a, lam, mu, place, value{arguments}):",
+            f"    work = room({work_size(self.n)})",
             "    for e in range(count):",
             f"        row = shifted(index, {width}*e)",
             f"        numbers = shifted(number, row[{width - 1}])",
             "        own = shifted(numbers, int(numbers[0]))",
             "        turned = shifted(turn, 2*row[0])  # rotation matrix turn[0:9] and quaternion turn[9:13] of the frame",
-            *(f"        {call}" for name, call in calls.items() if name in places),
+            *(f"        {line}" for line in body),
             "",
-        ]
-    )
+        ])  # fmt: skip
 
 
 def flexible_inertias(bodies: Mapping[str, Any], gravity: tuple[float, ...]) -> Iterator[tuple[str, FlexibleInertia]]:

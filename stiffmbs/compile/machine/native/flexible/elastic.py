@@ -9,12 +9,13 @@ from __future__ import annotations
 
 from stiffmbs.compile.machine.native.access import compiled, shifted
 from stiffmbs.compile.machine.native.flexible.sums import body_view, coordinate, mode, mode_view, pair, velocity
+from stiffmbs.elements.spatial.flexible.layout import COUPLING
 
 
 @compiled
 def shape(n, number, i):
     """Return b_i of the stretch of second order; Gamma_i follows by rows."""
-    return shifted(pair(n, number, n, 0), i * (n + n * n))
+    return shifted(pair(n, number, n, 0), COUPLING * n * n + i * (n + n * n))
 
 
 @compiled
@@ -74,6 +75,16 @@ def pulled(n, number, v, e, x):
 
 
 @compiled
+def add_coupling(n, number, x, place, e):
+    """Add the product of the couplings of modes by stiffness (place 0) or damping (place 1) and x to e."""
+    first = pair(n, number, n, 0)
+    for k in range(int(body_view(number).coupled[0])):
+        row = shifted(first, COUPLING * n * k)
+        for l in range(n):
+            e[k] += row[COUPLING * l + place] * x[l]
+
+
+@compiled
 def elastic_forces(n, number, index, q, u, work):
     """Compute elastic and damping forces by mode with opposite sign; return them."""
     p, dp, e, x = shifted(work, 2 * n), shifted(work, 3 * n), shifted(work, 4 * n), shifted(work, 5 * n)
@@ -82,6 +93,8 @@ def elastic_forces(n, number, index, q, u, work):
     for k in range(n):
         of_mode = mode_view(mode(number, k))
         e[k] = of_mode.stiffness[0] * p[k] + of_mode.damping[0] * dp[k]
+    add_coupling(n, number, p, 0, e)
+    add_coupling(n, number, dp, 1, e)
     pulled(n, number, shifted(work, 7 * n), e, x)
     return x
 
@@ -90,6 +103,7 @@ def elastic_forces(n, number, index, q, u, work):
 def add_elastic_slopes(n, number, index, q, u, work, f_q, f_u):
     """Add the derivatives of the elastic and damping forces by modal coordinates and their velocities."""
     e, w, z = shifted(work, 4 * n), shifted(work, 5 * n), shifted(work, 6 * n)
+    dz, dw = shifted(work, 2 * n), shifted(work, 3 * n)
     v, dv = shifted(work, 7 * n), shifted(work, 7 * n + n * n)
     rank = int(body_view(number).stretch[0])
     elastic_forces(n, number, index, q, u, work)
@@ -102,17 +116,20 @@ def add_elastic_slopes(n, number, index, q, u, work, f_q, f_u):
                 f_q[(4 + n) * (6 + l) + 4 + j] -= much * stretch[n * l + j]
     for j in range(n):
         for k in range(n):
-            w[k] = 0.0
-            z[k] = 1.0 if k == j else 0.0
+            dw[k] = 0.0
+            dz[k] = 1.0 if k == j else 0.0
         for i in range(rank):
             b = shape(n, number, i)
             for k in range(n):
-                w[k] += b[k] * dv[n * i + j]
-                z[k] += b[k] * v[n * i + j]
+                dw[k] += b[k] * dv[n * i + j]
+                dz[k] += b[k] * v[n * i + j]
         for k in range(n):
             of_mode = mode_view(mode(number, k))
-            w[k] = of_mode.stiffness[0] * z[k] + of_mode.damping[0] * w[k]
-            z[k] *= of_mode.damping[0]
+            w[k] = of_mode.stiffness[0] * dz[k] + of_mode.damping[0] * dw[k]
+            z[k] = of_mode.damping[0] * dz[k]
+        add_coupling(n, number, dz, 0, w)
+        add_coupling(n, number, dw, 1, w)
+        add_coupling(n, number, dz, 1, z)
         for l in range(n):
             f_q[(4 + n) * (6 + l) + 4 + j] -= w[l]
             f_u[(3 + n) * (6 + l) + 3 + j] -= z[l]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from stiffmbs.compile.machine.native.access import compiled, room, shifted
-from stiffmbs.compile.machine.native.flexible.elastic import elastic_forces, strain_rates, strains
+from stiffmbs.compile.machine.native.flexible.elastic import add_coupling, along, elastic_forces, strain_rates, strains
 from stiffmbs.compile.machine.native.flexible.sums import (
     axial,
     body_view,
@@ -31,13 +31,13 @@ from stiffmbs.compile.machine.native.flexible.sums import (
 
 
 @compiled
-def add_forces(n, number, index, q, A, u, work, f):
+def add_forces(n, number, gravity, index, q, A, u, work, f):
     """Compute the quadratic velocity terms, elastic and damping forces, and the weight of the first moment."""
-    w = shifted(u, index[1] + 3)
+    w = shifted(u, int(index[1]) + 3)
     d, s, g, x, y, z, I, K = room(3), room(3), room(3), room(3), room(3), room(3), room(9), room(9)
     first_moment(n, number, index, q, d)
     first_rate(n, number, index, q, u, s)
-    transposed_times(A, body_view(number).gravity, g)
+    transposed_times(A, gravity, g)
     second_moments(n, number, index, q, u, I, K)
     for i in range(3):
         s[i] *= 2.0
@@ -106,7 +106,7 @@ def modal_mass(n, number, l, k):
 @compiled
 def kinetic_energy(n, number, index, q, A, u):
     """Return the kinetic energy of this part of the mass matrix."""
-    v, w = shifted(u, index[1]), shifted(u, index[1] + 3)
+    v, w = shifted(u, int(index[1])), shifted(u, int(index[1]) + 3)
     d, s, x, y, I, K = room(3), room(3), room(3), room(3), room(9), room(9)
     first_moment(n, number, index, q, d)
     first_rate(n, number, index, q, u, s)
@@ -124,17 +124,18 @@ def kinetic_energy(n, number, index, q, A, u):
 
 
 @compiled
-def potential_energy(n, number, index, q, A, work):
+def potential_energy(n, number, gravity, index, q, A, work):
     """Return the strain energy, and the potential energy of the first moment of mass."""
     d, x = room(3), room(3)
     first_moment(n, number, index, q, d)
     times(A, d, x)
-    total = -dot(body_view(number).gravity, x)
+    total = -dot(gravity, x)
     strains(n, number, index, q, work)
-    p = shifted(work, 2 * n)
+    p, e = shifted(work, 2 * n), shifted(work, 4 * n)
     for k in range(n):
-        total += 0.5 * mode_view(mode(number, k)).stiffness[0] * p[k] * p[k]
-    return total
+        e[k] = mode_view(mode(number, k)).stiffness[0] * p[k]
+    add_coupling(n, number, p, 0, e)
+    return total + 0.5 * along(n, p, e)
 
 
 @compiled
@@ -142,7 +143,8 @@ def dissipated_power(n, number, index, q, u, work):
     """Return the power of modal damping."""
     strains(n, number, index, q, work)
     strain_rates(n, number, index, u, work)
-    rates, total = shifted(work, 3 * n), 0.0
+    rates, e = shifted(work, 3 * n), shifted(work, 4 * n)
     for k in range(n):
-        total -= mode_view(mode(number, k)).damping[0] * rates[k] * rates[k]
-    return total
+        e[k] = mode_view(mode(number, k)).damping[0] * rates[k]
+    add_coupling(n, number, rates, 1, e)
+    return -along(n, rates, e)

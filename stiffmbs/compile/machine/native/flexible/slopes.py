@@ -145,7 +145,7 @@ def _of_mode(n, l, number, index, q, u, w, g, f_q, f_u):
 @compiled
 def add_force_slopes(n, number, index, q, turn, u, work, f_q, f_u):
     """Compute the derivatives of the forces by the pose and by velocities."""
-    w, gravity = shifted(u, index[1] + 3), body_view(number).gravity
+    w, gravity = shifted(u, int(index[1]) + 3), body_view(number).gravity
     d, s, g, x, y, I, K = room(3), room(3), room(3), room(3), room(3), room(9), room(9)
     first_moment(n, number, index, q, d)
     first_rate(n, number, index, q, u, s)
@@ -170,7 +170,7 @@ def add_force_slopes(n, number, index, q, turn, u, work, f_q, f_u):
 @compiled
 def add_inertia_slopes(n, number, index, q, turn, a, m_q):
     """Compute the derivatives by the pose of this mass matrix times accelerations."""
-    v, w = shifted(a, index[1]), shifted(a, index[1] + 3)
+    v, w = shifted(a, int(index[1])), shifted(a, int(index[1]) + 3)
     d, s, b, x, y, z, N, P = room(3), room(3), room(3), room(3), room(3), room(3), room(9), room(9)
     first_moment(n, number, index, q, d)
     first_rate(n, number, index, q, a, s)

@@ -36,13 +36,13 @@ def pair(n, number, l, k):
 @compiled
 def coordinate(index, k):
     """Return the place of a modal coordinate in q: the modes follow three by three in bodies after the frame."""
-    return index[2 + 2 * (k // 3)] + k % 3
+    return int(index[2 + 2 * (k // 3)]) + k % 3
 
 
 @compiled
 def velocity(index, k):
     """Return the place of a modal velocity in u."""
-    return index[3 + 2 * (k // 3)] + k % 3
+    return int(index[3 + 2 * (k // 3)]) + k % 3
 
 
 @compiled
