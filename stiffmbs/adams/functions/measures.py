@@ -18,7 +18,7 @@ from typing import Any
 from ...elements.spatial.number_format import plain
 from ...reading.files.quoted import quoted
 from ..scene.mechanism import ORIGIN, Mechanism, Place
-from ..statements.constraints import Joint
+from ..statements.constraints import Primitive
 from .function import Function
 from .trees import call, difference, measured, number, power, product, quotient, total
 
@@ -66,7 +66,7 @@ BY_ITS_PLACE = ("RACKPIN",)
 """Joints that become equations in the scene; formulas cannot use their reactions."""
 
 
-def reaction(joint: Joint, component: str, on_j: bool, axes: Place | None, mechanism: Mechanism) -> ast.expr:
+def reaction(joint: Primitive, component: str, on_j: bool, axes: Place | None, mechanism: Mechanism) -> ast.expr:
     """Return a component of the reaction on marker I or J of a joint, N or N m, in ground axes or those of a marker."""
     vector = _vector(joint, component[0].lower(), on_j, mechanism)
     if component[1] == "M":
@@ -79,7 +79,7 @@ def reaction(joint: Joint, component: str, on_j: bool, axes: Place | None, mecha
     return total([product(part, way) for part, way in zip(vector, ways, strict=True)])
 
 
-def _vector(joint: Joint, letter: str, on_j: bool, mechanism: Mechanism) -> list[ast.expr]:
+def _vector(joint: Primitive, letter: str, on_j: bool, mechanism: Mechanism) -> list[ast.expr]:
     """Return force ('f') on marker I or J, or torque ('t') about it, in ground axes."""
     on_i = [call(f"{letter}{axis}", ast.Name(joint.name)) for axis in "xyz"]
     if not on_j:

@@ -14,8 +14,8 @@ from .function import Function
 from .trees import name_of, times
 
 if TYPE_CHECKING:
-    from ..statements.arguments import Numbered
     from ..statements.dataset import Dataset
+    from ..statements.declared import Numbered
     from .translate import Translation
 
 
@@ -51,14 +51,14 @@ def _differential(one: Differential, translation: Translation) -> dict[str, Any]
     """
     per_second = 1 / translation.units.time
     if not one.implicit:
-        return {one.name: {"rate": translation.formula(one.function, per_second), "start": plain(one.start)}}
+        return {one.name: {"rate": translation.formula(one.function, per_second), "start": plain(one.starts[0])}}
     rate = one.rate
     used = {node.id for node in ast.walk(translation.translated(one.function)) if isinstance(node, ast.Name)}
     if rate not in used:
-        return {one.name: {"zero": translation.formula(one.function), "start": plain(one.start)}}
+        return {one.name: {"zero": translation.formula(one.function), "start": plain(one.starts[0])}}
     return {
-        one.name: {"rate": ast.unparse(times(name_of(rate), per_second)), "start": plain(one.start)},
-        rate: {"zero": translation.formula(one.function), "start": plain(one.start_of_rate)},
+        one.name: {"rate": ast.unparse(times(name_of(rate), per_second)), "start": plain(one.starts[0])},
+        rate: {"zero": translation.formula(one.function), "start": plain(one.starts[1])},
     }
 
 

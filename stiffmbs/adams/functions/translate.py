@@ -14,7 +14,7 @@ from functools import cached_property
 from ...reading.files.quoted import quoted
 from ...reading.units.quantity import CONSTANTS
 from ..scene.mechanism import Mechanism
-from ..statements.arguments import Numbered
+from ..statements.declared import Numbered
 from .adams_functions import ADAMS_FUNCTIONS
 from .expression import IF, OMITTED, parse
 from .function import Function

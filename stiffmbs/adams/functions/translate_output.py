@@ -8,10 +8,10 @@ from collections.abc import Callable, Iterator
 from ..scene.contacts import swapped
 from ..scene.forces import TORQUE
 from ..scene.joints import markers_of, rod
-from ..statements.arguments import Numbered
 from ..statements.constraints import GeneralConstraint
 from ..statements.contact import Contact
 from ..statements.curves import CurveOnCurve, PointOnCurve
+from ..statements.declared import Numbered
 from ..statements.elastic import Elastic
 from ..statements.forces import SingleForce, VectorForce
 from .function import Function

@@ -112,12 +112,12 @@ def _law(contact: Contact, units: Units) -> dict[str, float]:
 
 def contacts(mechanism: Mechanism, translation: Translation) -> dict[str, Any]:
     """Return the forces of all contacts by name."""
-    pairs = [pair for contact in mechanism.dataset.contacts.values() for pair in contact.pairs()]
+    pairs = [pair for contact in mechanism.dataset.contacts.values() for pair in contact.of_pairs()]
     return of_each(pairs, lambda contact: _made(contact, mechanism, translation))
 
 
 def _made(contact: Contact, mechanism: Mechanism, translation: Translation) -> dict[str, Any]:
-    first, second = (_shape(contact, ident, mechanism) for ident in contact.shapes)
+    first, second = (_shape(contact, ident, mechanism) for ident in contact.pairs[0])
     if (first.sort, second.sort) == (SPHERE, SPHERE) and not contact.friction:
         return _of_spheres(contact, first, second, mechanism, translation)
     if {first.sort, second.sort} == {SPHERE, PLANE}:
@@ -128,11 +128,11 @@ def _made(contact: Contact, mechanism: Mechanism, translation: Translation) -> d
 
 def swapped(contact: Contact, mechanism: Mechanism) -> bool:
     """Return True if the scene's force acts on the part of JGEOM."""
-    if contact.others:
+    if len(contact.pairs) > 1:
         raise contact.fault(
             "found a function of its force and several geometries on a side, expected one GRAPHICS on each side"
         )
-    first, second = (_shape(contact, ident, mechanism) for ident in contact.shapes)
+    first, second = (_shape(contact, ident, mechanism) for ident in contact.pairs[0])
     return is_swapped(first, second)
 
 

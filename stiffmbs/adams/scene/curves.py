@@ -13,8 +13,8 @@ import numpy as np
 
 from ...elements.spatial.massless import MASSLESS, massless_moment
 from ...elements.spatial.number_format import plain, quaternion, vector
-from ..statements.arguments import Numbered
 from ..statements.curves import CurveOnCurve, FirstContact, PointOnCurve
+from ..statements.declared import Numbered
 from ..statements.geometry import Frame
 from ..statements.text import of_each
 from .laid_curves import LaidCurve, laid_curve

@@ -134,7 +134,7 @@ class Forces:
         i, j = self._mechanism.ends(beam)
         section = {
             "length": beam.length, "young": beam.young, "shear_modulus": beam.shear_modulus, "area": beam.area,
-            "torsion": beam.torsion, "iyy": beam.iyy, "izz": beam.izz, "asy": beam.shear[0], "asz": beam.shear[1],
+            "torsion": beam.torsion, "iyy": beam.iyy, "izz": beam.izz, "asy": beam.asy, "asz": beam.asz,
         }  # fmt: skip
         made: dict[str, Any] = {"type": "beam", "i": i.reference, "j": j.reference}
         made |= {name: plain(value) for name, value in section.items() if value}

@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 
 from ..functions.trees import difference, measured, number, product, times, total
-from ..statements.arguments import Numbered
 from ..statements.constraints import ROTATIONAL, Joint
+from ..statements.declared import Numbered
 from ..statements.geometry import ROUNDING
 from .mechanism import Mechanism, Place
 from .relations import SORTS, coupled_joint, initial_displacement

@@ -11,7 +11,7 @@ import numpy as np
 from ...elements.spatial.number_format import plain, quaternion, vector
 from ..functions.translate import ANGULAR_VELOCITIES as TURNING
 from ..functions.translate import VELOCITIES, Translation
-from ..statements.constraints import GeneralConstraint, Joint
+from ..statements.constraints import GeneralConstraint, Joint, Primitive
 from ..statements.geometry import Frame
 from ..statements.text import of_each
 from .mechanism import Mechanism, Place
@@ -65,14 +65,14 @@ def _on_ground(frame: Frame) -> Any:
     return {"body": "ground", "orientation": quaternion(frame.axes)}
 
 
-def _joint(joint: Joint, mechanism: Mechanism) -> dict[str, Any]:
+def _joint(joint: Primitive, mechanism: Mechanism) -> dict[str, Any]:
     i, j = mechanism.ends(joint)
     match joint.kind:
         case "HOOKE":
             return {"type": "universal", "i": turned(i, Z_ALONG_X), "j": turned(j, Z_ALONG_Y)}
-        case "SCREW":
+        case "SCREW" if isinstance(joint, Joint):
             return {"type": "thread", "i": i.reference, "j": j.reference, "pitch": plain(joint.pitch)}
-        case "RACKPIN":
+        case "RACKPIN" if isinstance(joint, Joint):
             return rolling(joint, mechanism)
     return {"type": KINDS[joint.kind], "i": i.reference, "j": j.reference}
 

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from ...elements.spatial.number_format import plain, quaternion, vector
-from ..statements.arguments import Numbered
+from ..statements.declared import Numbered
 from ..statements.geometry import IDENTITY, PRECISION, Frame
 from ..statements.outputs import FEWEST_POINTS
 from .mechanism import Mechanism, Place

@@ -17,10 +17,10 @@ from ...elements.spatial.massless import MASSLESS
 from ...elements.spatial.number_format import plain
 from ...reading.marker import GROUND
 from ..functions.function import Function
-from ..statements.arguments import Numbered
 from ..statements.bodies import Marker, Part
-from ..statements.constraints import Joint
+from ..statements.constraints import Primitive
 from ..statements.dataset import Dataset
+from ..statements.declared import Numbered
 from ..statements.elastic import Beam, Elastic, SpringDamper
 from ..statements.forces import SingleForce
 from ..statements.geometry import IDENTITY, Frame
@@ -165,7 +165,7 @@ class Mechanism:
             raise user.fault(f"found {name} = {ident}, expected the number of a marker")
         return self.placed(marker)
 
-    def ends(self, user: Joint | SingleForce | SpringDamper | Elastic | Beam) -> tuple[Place, Place]:
+    def ends(self, user: Primitive | SingleForce | SpringDamper | Elastic | Beam) -> tuple[Place, Place]:
         """Return markers I and J of a joint or a force."""
         return self.place(user.i, user, "I"), self.place(user.j, user, "J")
 

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from ...elements.spatial.number_format import plain
-from ..statements.arguments import Numbered
 from ..statements.constraints import ROTATIONAL, TRANSLATIONAL, Coupler, Joint
+from ..statements.declared import Numbered
 from .mechanism import Mechanism, Place
 
 SORTS = {"REVOLUTE": ROTATIONAL, "TRANSLATIONAL": TRANSLATIONAL}

@@ -25,29 +25,6 @@ class Argument:
     line: int
 
 
-@dataclass(frozen=True)
-class Numbered:
-    """Statement with a number."""
-
-    ident: int
-    line: int
-    alias: str
-    keyword: str
-
-    @property
-    def label(self) -> str:
-        return f"{self.keyword}/{self.ident}"
-
-    @property
-    def name(self) -> str:
-        """Name of its element in the scene."""
-        return f"{self.keyword}_{self.ident}"
-
-    def fault(self, reason: str) -> DatasetFault:
-        """Return the error for a fault of the statement in its dataset."""
-        return DatasetFault(self.line, self.label, reason)
-
-
 class Arguments:
     """Arguments of a statement by full name.
 

@@ -3,48 +3,70 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 from ...reading.marker import GROUND
-from .arguments import Arguments, Numbered
+from .arguments import Arguments
+from .declared import Numbered, constant, given, ident_or_none, number, read_by
 from .geometry import Frame, read_frame
-from .text import Statement
 from .units import Units
 
 Vector = tuple[float, float, float]
+ASSEMBLY = {"EXACT": "assembly may move every part"}
+
+
+def _frame(origin: str, x_point: str, z_point: str, *words: str) -> Any:
+    names = (origin, "REULER", x_point, z_point, *words)
+    return read_by(lambda found, units: read_frame(found, origin, x_point, z_point, units.length), *names)
+
+
+def _moments(found: Arguments, units: Units) -> tuple[float, ...]:
+    moments = found.numbers("IP", 3, 6) or (0.0,) * 6
+    unit = units.of(mass=1, length=2)
+    return tuple(moment * unit for moment in (*moments, *(0.0,) * (6 - len(moments))))
+
+
+def _rates(letter: str, **powers: float) -> Any:
+    """Declare three components of a velocity; None if none is given."""
+    names = tuple(f"{letter}{axis}" for axis in "XYZ")
+
+    def read(found: Arguments, units: Units) -> Vector | None:
+        if not any(name in found for name in names):
+            return None
+        x, y, z = ((found.number(name) or 0.0) * units.of(**powers) for name in names)
+        return x, y, z
+
+    return read_by(read, *names)
 
 
 @dataclass(frozen=True)
 class Part(Numbered):
-    """Rigid body, point mass or ground, in SI units.
+    """Rigid body or ground, in SI units; its mass is checked once all markers are known.
 
     Attributes
     ----------
     frame : Frame
         The part's axes at the start, in ground axes.
-    center : int or None
-        Centre-of-mass marker.
     moments : tuple of float
         Ixx, Iyy, Izz and the products Ixy, Ixz, Iyz (positive integrals) in the axes of the inertia marker, about its
         origin.
-    velocity : tuple of float or None
-        Velocity of the centre of mass, in the axes of `velocity_marker` or ground; None if not given.
-    omega : tuple of float or None
-        Angular velocity in the axes of `omega_marker`, or of the centre-of-mass marker.
-    exact : bool
-        True if assembly must not move some of its coordinates.
+    velocity, omega : tuple of float or None
+        Velocity of the centre of mass, in the axes of `velocity_marker` or ground; angular velocity in those of
+        `omega_marker`, or of the centre-of-mass marker.
     """
 
-    frame: Frame
-    ground: bool = False
-    mass: float = 0.0
-    center: int | None = None
-    inertia_marker: int | None = None
-    moments: tuple[float, ...] = (0.0,) * 6
-    velocity: Vector | None = None
-    velocity_marker: int | None = None
-    omega: Vector | None = None
-    omega_marker: int | None = None
-    exact: bool = False
+    ground: bool = given("GROUND")
+    mass: float = number("MASS", mass=1)
+    center: int | None = ident_or_none("CM")
+    inertia_marker: int | None = ident_or_none("IM")
+    moments: tuple[float, ...] = read_by(_moments, "IP")
+    frame: Frame = _frame("QG", "XG", "ZG")
+    velocity: Vector | None = _rates("V", length=1, time=-1)
+    velocity_marker: int | None = ident_or_none("VM")
+    omega: Vector | None = _rates("W", time=-1)
+    omega_marker: int | None = ident_or_none("WM")
+    exact: bool = given("EXACT")
+    ignored = {"MATERIAL": "masses are given", **ASSEMBLY}
 
     @property
     def point(self) -> bool:
@@ -57,65 +79,27 @@ class Part(Numbered):
 
 
 @dataclass(frozen=True)
-class Marker(Numbered):
-    """Point and axes on a part, given by keyword and number; in SI units, in the part's axes."""
+class PointMass(Part):
+    """Part that does not rotate."""
 
-    owner: tuple[str, int]
-    frame: Frame
-    floating: bool = False
-
-
-_FRAME = ("QG", "REULER", "XG", "ZG")
-_PART = (
-    "GROUND", "MASS", "CM", "IM", "IP", *_FRAME, "MATERIAL", "VX", "VY", "VZ", "VM", "WX", "WY", "WZ", "WM", "EXACT",
-)  # fmt: skip
+    ground: bool = constant(False)
+    inertia_marker: int | None = constant(None)
+    moments: tuple[float, ...] = constant((0.0,) * 6)
+    velocity_marker: int | None = constant(None)
+    omega: Vector | None = constant(None)
+    omega_marker: int | None = constant(None)
+    ignored = ASSEMBLY
 
 
-def read_part(statement: Statement, units: Units) -> Part:
-    """Read a part; its mass is checked once all markers are known. Raises DatasetFault."""
-    found = Arguments(statement, "PART", _PART)
-    frame = read_frame(found, "QG", "XG", "ZG", units.length)
-    moments = found.numbers("IP", 3, 6) or (0.0,) * 6
-    of_inertia = units.of(mass=1, length=2)
-    return Part(
-        *found.head(), frame, ground="GROUND" in found,
-        mass=(found.number("MASS") or 0.0) * units.mass, center=found.reference("CM"),
-        inertia_marker=found.reference("IM"),
-        moments=tuple(moment * of_inertia for moment in (*moments, *(0.0,) * (6 - len(moments)))),
-        velocity=_rates(found, ("VX", "VY", "VZ"), units.of(length=1, time=-1)),
-        velocity_marker=found.reference("VM"),
-        omega=_rates(found, ("WX", "WY", "WZ"), units.of(time=-1)), omega_marker=found.reference("WM"),
-        exact="EXACT" in found,
-    )  # fmt: skip
-
-
-def read_point_mass(statement: Statement, units: Units) -> Part:
-    """Read a point mass: a part that does not rotate."""
-    found = Arguments(statement, "POINT_MASS", ("MASS", "CM", *_FRAME, "VX", "VY", "VZ", "EXACT"))
-    return Part(
-        *found.head(), read_frame(found, "QG", "XG", "ZG", units.length),
-        mass=(found.number("MASS") or 0.0) * units.mass, center=found.reference("CM"),
-        velocity=_rates(found, ("VX", "VY", "VZ"), units.of(length=1, time=-1)), exact="EXACT" in found,
-    )  # fmt: skip
-
-
-def _rates(found: Arguments, names: tuple[str, str, str], unit: float) -> Vector | None:
-    if not any(name in found for name in names):
-        return None
-    x, y, z = ((found.number(name) or 0.0) * unit for name in names)
-    return x, y, z
-
-
-def read_marker(statement: Statement, units: Units, before: Part | None = None) -> Marker:
-    """Read a marker, fixed or floating, on a part or a point mass; by default on the part `before`."""
-    names = ("PART", "POINT_MASS", "QP", "REULER", "XP", "ZP", "USEXP", "FLOATING")
-    found = Arguments(statement, "MARKER", names)
+def _owner(found: Arguments, _: Units) -> tuple[str, int]:
     owner = found.one_of("PART", "POINT_MASS")
-    if owner is not None:
-        carrier = owner, found.required(owner)
-    elif before is not None:
-        carrier = before.keyword, before.ident
-    else:
-        raise found.fault("found neither PART nor POINT_MASS, expected the part that carries the marker")
-    frame = read_frame(found, "QP", "XP", "ZP", units.length)
-    return Marker(*found.head(), carrier, frame, "FLOATING" in found)
+    return (owner, found.required(owner)) if owner else ("", 0)
+
+
+@dataclass(frozen=True)
+class Marker(Numbered):
+    """Point and axes, in SI units, in the axes of the part that its keyword and number name (empty: the one before)."""
+
+    owner: tuple[str, int] = read_by(_owner, "PART", "POINT_MASS")
+    frame: Frame = _frame("QP", "XP", "ZP", "USEXP")
+    floating: bool = given("FLOATING")

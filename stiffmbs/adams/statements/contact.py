@@ -5,14 +5,18 @@ from __future__ import annotations
 import itertools
 from dataclasses import dataclass, replace
 
-from .arguments import Arguments, Numbered
+from .arguments import Arguments
+from .declared import Numbered, above_zero, number, read_by
 from .geometry import ROUNDING
 from .text import DatasetFault, Statement
 from .units import Units
 
 SPHERE, PLANE, ELLIPSOID, CYLINDER, BOX = "SPHERE", "PLANE", "ELLIPSOID", "CYLINDER", "BOX"
 SOLIDS = "SOLID_TO_SOLID"
-_SHAPES = ("ELLIPSOID", "PLANE", "CYLINDER", "BOX", "FRUSTUM", "TORUS", "CIRCLE", "ARC", "EXTERNAL", "OUTLINE", "FORCE", "SPRINGDAMPER", "CURVE")  # fmt: skip
+_SHAPES = (
+    "ELLIPSOID", "PLANE", "CYLINDER", "BOX", "FRUSTUM", "TORUS", "CIRCLE", "ARC", "EXTERNAL", "OUTLINE", "FORCE",
+    "SPRINGDAMPER", "CURVE",
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -25,45 +29,70 @@ class Friction:
     friction_velocity: float
 
 
+_FRICTION = ("MU_STATIC", "MU_DYNAMIC", "STICTION_TRANSITION_VELOCITY", "FRICTION_TRANSITION_VELOCITY")
+
+
+def _friction(found: Arguments, _: Units) -> Friction | None:
+    asked = (found.text("COULOMB_FRICTION") or "OFF").strip().upper()
+    if asked == "OFF":
+        return None
+    if asked != "ON":
+        raise found.fault(f"found COULOMB_FRICTION = {asked}, expected ON or OFF", found.line("COULOMB_FRICTION"))
+    static, dynamic, slow, fast = (found.number(name) for name in _FRICTION)
+    if static is None or dynamic is None or slow is None or fast is None or not 0 < slow < fast:
+        raise found.fault(
+            f"found friction without all of {', '.join(_FRICTION)}, expected them, the last the largest velocity"
+        )
+    return Friction(static, dynamic, slow, fast)
+
+
+def _pairs(found: Arguments, _: Units) -> tuple[tuple[int, int], ...]:
+    sides = found.idents("IGEOM"), found.idents("JGEOM")
+    if not all(sides):
+        raise found.fault("found no IGEOM or no JGEOM, expected one or more GRAPHICS for each")
+    return tuple(itertools.product(*sides))
+
+
+_NOT_READ = (
+    "POISSON", "PENALTY", "RESTITUTION_COEFFICIENT", "NORMAL_FUNCTION", "NORMAL_ROUTINE", "FRICTION_FUNCTION",
+    "FRICTION_ROUTINE", "AUGMENTED_LAGRANGIAN_FORMULATION", "IFLIP_GEOMETRY", "JFLIP_GEOMETRY", "IFLIP_NORMAL",
+    "JFLIP_NORMAL",
+)  # fmt: skip
+
+
 @dataclass(frozen=True)
 class Contact(Numbered):
     """Contact force by Adams' IMPACT function, in the dataset's units.
 
-    Attributes
-    ----------
-    shapes : (int, int)
-        GRAPHICS statements of its two sides.
-    others : tuple of (int, int)
-        Further pairs, if a side lists several.
-    part : int
-        Number of the pair: 0 for the first, then 2, 3, ...
-    stiffness, damping, exponent, depth : float
-        K, C, e, and the penetration at which full damping applies.
+    `pairs`: GRAPHICS statements of both sides, each of one with each of the other. `part`: number of the only pair
+    among several; 0 for the first.
     """
 
-    shapes: tuple[int, int]
-    stiffness: float
-    damping: float
-    exponent: float
-    depth: float
-    friction: Friction | None
-    others: tuple[tuple[int, int], ...] = ()
+    pairs: tuple[tuple[int, int], ...] = read_by(_pairs, "IGEOM", "JGEOM")
+    stiffness: float = above_zero("STIFFNESS")
+    damping: float = number("DAMPING")
+    exponent: float = above_zero("EXPONENT")
+    depth: float = above_zero("DMAX")
+    friction: Friction | None = read_by(_friction, "COULOMB_FRICTION", *_FRICTION)
     part: int = 0
+    others = ("TYPE", "IMPACT", "NO_FRICTION")
+    refused = dict.fromkeys(_NOT_READ, "a contact by IMPACT between primitives")
+
+    @classmethod
+    def check(cls, found: Arguments) -> None:
+        """Refuse other types of contact."""
+        if (kind := (found.text("TYPE") or SOLIDS).strip().upper()) and not SOLIDS.startswith(kind):
+            raise found.fault(f"found TYPE = {kind}, expected {SOLIDS}", found.line("TYPE"))
+        found.without_effect("IMPACT", "NO_FRICTION")
 
     @property
     def name(self) -> str:
         """Name of its force in the scene."""
-        return f"{self.keyword}_{self.ident}" + (f"_{self.part}" if self.part else "")
+        return super().name + (f"_{self.part}" if self.part else "")
 
-    @property
-    def graphics(self) -> set[int]:
-        """Numbers of all its GRAPHICS."""
-        return {number for pair in (self.shapes, *self.others) for number in pair}
-
-    def pairs(self) -> list[Contact]:
+    def of_pairs(self) -> list[Contact]:
         """Return a contact for each pair of geometries."""
-        further = (replace(self, shapes=pair, others=(), part=k) for k, pair in enumerate(self.others, start=2))
-        return [replace(self, others=()), *further]
+        return [replace(self, pairs=(pair,), part=k + 1 if k else 0) for k, pair in enumerate(self.pairs)]
 
 
 @dataclass(frozen=True)
@@ -79,48 +108,13 @@ class Shape:
     sizes: tuple[float, ...] = ()
 
 
-_CONTACT = (
-    "TYPE", "IGEOM", "JGEOM", "IFLIP_GEOMETRY", "JFLIP_GEOMETRY", "IFLIP_NORMAL", "JFLIP_NORMAL", "IMPACT", "STIFFNESS", "DAMPING",
-    "EXPONENT", "DMAX", "POISSON", "PENALTY", "RESTITUTION_COEFFICIENT", "NORMAL_FUNCTION", "NORMAL_ROUTINE",
-    "COULOMB_FRICTION", "NO_FRICTION", "MU_STATIC", "MU_DYNAMIC", "STICTION_TRANSITION_VELOCITY",
-    "FRICTION_TRANSITION_VELOCITY", "FRICTION_FUNCTION", "FRICTION_ROUTINE", "AUGMENTED_LAGRANGIAN_FORMULATION",
-)  # fmt: skip
-_NOT_READ = (
-    "POISSON", "PENALTY", "RESTITUTION_COEFFICIENT", "NORMAL_FUNCTION", "NORMAL_ROUTINE", "FRICTION_FUNCTION", "FRICTION_ROUTINE",
-    "AUGMENTED_LAGRANGIAN_FORMULATION", "IFLIP_GEOMETRY", "JFLIP_GEOMETRY", "IFLIP_NORMAL", "JFLIP_NORMAL",
-)  # fmt: skip
-
-
-def read_contact(statement: Statement, units: Units) -> Contact:
-    """Read a contact between two primitives with stiffness and damping."""
-    found = Arguments(statement, "CONTACT", _CONTACT)
-    found.refuse(_NOT_READ, "a contact by IMPACT between primitives")
-    if (kind := (found.text("TYPE") or SOLIDS).strip().upper()) and not SOLIDS.startswith(kind):
-        raise found.fault(f"found TYPE = {kind}, expected {SOLIDS}", found.line("TYPE"))
-    sides = found.idents("IGEOM"), found.idents("JGEOM")
-    if not all(sides):
-        raise found.fault("found no IGEOM or no JGEOM, expected one or more GRAPHICS for each")
-    found.without_effect("IMPACT", "NO_FRICTION")
-    first, *others = itertools.product(*sides)
-    stiffness, exponent, depth = (found.needed(name) for name in ("STIFFNESS", "EXPONENT", "DMAX"))
-    damping = found.number("DAMPING") or 0.0
-    return Contact(*found.head(), first, stiffness, damping, exponent, depth, _friction(found), tuple(others))
-
-
-def _friction(found: Arguments) -> Friction | None:
-    asked = (found.text("COULOMB_FRICTION") or "OFF").strip().upper()
-    if asked == "OFF":
-        return None
-    if asked != "ON":
-        raise found.fault(f"found COULOMB_FRICTION = {asked}, expected ON or OFF", found.line("COULOMB_FRICTION"))
-    names = ("MU_STATIC", "MU_DYNAMIC", "STICTION_TRANSITION_VELOCITY", "FRICTION_TRANSITION_VELOCITY")
-    values = [found.number(name) for name in names]
-    static, dynamic, slow, fast = values
-    if static is None or dynamic is None or slow is None or fast is None or not 0 < slow < fast:
-        raise found.fault(
-            f"found friction without all of {', '.join(names)}, expected them, the last the largest velocity"
-        )
-    return Friction(static, dynamic, slow, fast)
+_SIZES: dict[str, tuple[str, tuple[str, ...], tuple[str, ...]]] = {
+    ELLIPSOID: ("CM", ("XSCALE", "YSCALE", "ZSCALE"), ("SEG",)),
+    PLANE: ("RM", (), ("XMINIMUM", "XMAXIMUM", "YMINIMUM", "YMAXIMUM")),
+    CYLINDER: ("CM", ("RADIUS", "LENGTH"), ("SIDES", "SEG")),
+    BOX: ("CORNER", ("X", "Y", "Z"), ()),
+}
+"""Marker argument, size arguments and display-only arguments of each shape."""
 
 
 def read_shape(statement: Statement) -> Shape:
@@ -142,12 +136,3 @@ def read_shape(statement: Statement) -> Shape:
         if max(sizes) - min(sizes) <= ROUNDING * max(sizes):
             return Shape(SPHERE, found.required(at), sizes[:1])
     return Shape(sort, found.required(at), sizes)
-
-
-_SIZES: dict[str, tuple[str, tuple[str, ...], tuple[str, ...]]] = {
-    ELLIPSOID: ("CM", ("XSCALE", "YSCALE", "ZSCALE"), ("SEG",)),
-    PLANE: ("RM", (), ("XMINIMUM", "XMAXIMUM", "YMINIMUM", "YMAXIMUM")),
-    CYLINDER: ("CM", ("RADIUS", "LENGTH"), ("SIDES", "SEG")),
-    BOX: ("CORNER", ("X", "Y", "Z"), ()),
-}
-"""Marker argument, size arguments and display-only arguments of each shape."""

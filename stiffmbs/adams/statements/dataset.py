@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Generic, TypeVar
 
 from ...errors import InputError
 from ...reading.files.requested import unused_notes
-from .arguments import Numbered
-from .bodies import Marker, Part, read_marker
+from .bodies import Marker, Part
 from .changes import Changes, Key, key_of
-from .constraints import Coupler, Gear, GeneralConstraint, Joint, Motion
+from .constraints import Coupler, Gear, GeneralConstraint, Joint, Motion, Primitive
 from .contact import Contact
 from .curves import CurveOnCurve, PointOnCurve, SpaceCurve
+from .declared import Numbered
 from .elastic import Beam, Elastic, SpringDamper
 from .forces import SingleForce, VectorForce, read_gravity
 from .friction import JointFriction
@@ -98,7 +98,7 @@ class Dataset:
 
     markers = _Section[Marker]("MARKER")
     joints = _Section[Joint]("JOINT")
-    primitives = _Section[Joint]("JPRIM")
+    primitives = _Section[Primitive]("JPRIM")
     general_constraints = _Section[GeneralConstraint]("GCON")
     motions = _Section[Motion]("MOTION")
     couplers = _Section[Coupler]("COUPLER")
@@ -134,7 +134,7 @@ def read_dataset(text: str, changes: Changes = NO_CHANGES) -> Dataset:
         raise InputError("; ".join([unread, *map(str, faults[:MOST_TOLD])]))
     raise_all(faults)
     graphics = {key_of(statement)[1]: statement for name, statement in named if name == "GRAPHICS"}
-    solids = {number for contact in data.get("CONTACT", {}).values() for number in contact.graphics}
+    solids = {number for contact in data.get("CONTACT", {}).values() for pair in contact.pairs for number in pair}
     drawn = [(name, one) for name, one in named if name != "GRAPHICS" or key_of(one)[1] not in solids]
     notes = (*_notes(drawn, ended, title is None), *_unused_arguments(named))
     return Dataset(title or "", units, gravity, data, notes, frozenset(changes.inactive), graphics)
@@ -194,11 +194,14 @@ def read_statement(name: str, statement: Statement, units: Units, before: Part |
 
     Raises DatasetFault.
     """
-    if name == "MARKER":
-        return read_marker(statement, units, before)
     if name in SINGLE:
         return read_units(statement) if name == "UNITS" else read_gravity(statement, units)
-    return READERS[name](statement, units)
+    one = READERS[name].read(name, statement, units)
+    if isinstance(one, Marker) and not one.owner[0]:
+        if before is None:
+            raise one.fault("found neither PART nor POINT_MASS, expected the part that carries the marker")
+        return replace(one, owner=(before.keyword, before.ident))
+    return one
 
 
 def _refuse_zero_bytes(name: str | None, statement: Statement) -> None:

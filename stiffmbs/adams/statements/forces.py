@@ -4,40 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..functions.function import Function, read_function, required_function
-from .arguments import Arguments, Numbered
+from ..functions.function import Function, read_function
+from .arguments import Arguments
 from .constraints import ROTATIONAL, TRANSLATIONAL
+from .declared import Numbered, constant, expression, expressions, given, ident, ident_or_none, one_of
 from .text import Statement
 from .units import Units
 
-
-@dataclass(frozen=True)
-class SingleForce(Numbered):
-    """Force along the line between two markers, or torque about the z axis of the second.
-
-    `sort`: rotational or translational. `action_only`: true if there is no reaction on the second marker's part; a
-    force then acts along that marker's z axis.
-    """
-
-    i: int
-    j: int
-    sort: str
-    action_only: bool
-    function: Function
-
-
-@dataclass(frozen=True)
-class VectorForce(Numbered):
-    """Force and torque at marker i in the axes of `axes`, with the reaction on the part of `floating`.
-
-    `force` and `torque` hold three functions each, None if not given.
-    """
-
-    i: int
-    floating: int
-    axes: int | None
-    force: tuple[Function | None, ...]
-    torque: tuple[Function | None, ...]
+FORCE, TORQUE = ("FX", "FY", "FZ"), ("TX", "TY", "TZ")
 
 
 def read_gravity(statement: Statement, units: Units) -> tuple[float, float, float]:
@@ -47,36 +21,56 @@ def read_gravity(statement: Statement, units: Units) -> tuple[float, float, floa
     return x, y, z
 
 
-def read_single_force(statement: Statement, units: Units) -> SingleForce:
-    """Read a force or torque of one component."""
-    names = ("I", "J", TRANSLATIONAL, ROTATIONAL, "ACTIONONLY", "REACTION", "FUNCTION", "ROUTINE")
-    found = Arguments(statement, "SFORCE", names, ("FUNCTION",))
-    sort = found.one_of(TRANSLATIONAL, ROTATIONAL)
-    if sort is None:
-        raise found.fault("found no kind of force, expected TRANSLATIONAL or ROTATIONAL")
-    return SingleForce(
-        *found.head(), found.required("I"), found.required("J"), sort,
-        "ACTIONONLY" in found, required_function(found, "FUNCTION"),
-    )  # fmt: skip
+@dataclass(frozen=True)
+class SingleForce(Numbered):
+    """Force along the line between two markers, or torque about the z axis of the second.
+
+    `action_only`: true if there is no reaction on the second marker's part; a force then acts along that marker's z
+    axis.
+    """
+
+    i: int = ident("I")
+    j: int = ident("J")
+    sort: str = one_of(
+        TRANSLATIONAL, ROTATIONAL, missing="found no kind of force, expected TRANSLATIONAL or ROTATIONAL"
+    )
+    action_only: bool = given("ACTIONONLY")
+    function: Function = expression("FUNCTION")
+    others = ("REACTION", "ROUTINE")
 
 
-_FORCE, _TORQUE = ("FX", "FY", "FZ"), ("TX", "TY", "TZ")
-_COMPONENTS = {"VFORCE": _FORCE, "VTORQUE": _TORQUE, "GFORCE": (*_FORCE, *_TORQUE)}
+@dataclass(frozen=True)
+class VectorForce(Numbered):
+    """Force and torque at marker i in the axes of `axes`, with the reaction on the part of `floating`."""
+
+    i: int = ident("I")
+    floating: int = ident("JFLOAT")
+    axes: int | None = ident_or_none("RM")
+    force: tuple[Function | None, ...] = expressions(*FORCE)
+    torque: tuple[Function | None, ...] = expressions(*TORQUE)
+    others = ("FUNCTION", "ROUTINE")
+
+    @classmethod
+    def check(cls, found: Arguments) -> None:
+        """Refuse a user's subroutine, and a VFORCE or VTORQUE without all three components."""
+        read_function(found, "FUNCTION")
+        names = {"VFORCE": FORCE, "VTORQUE": TORQUE}.get(found.keyword, (*FORCE, *TORQUE))
+        missing = [name for name in names if name not in found]
+        if "FUNCTION" in found or (missing and found.keyword != "GFORCE"):
+            raise found.fault(
+                f"found no {', no '.join(missing)}, expected an expression for each of {', '.join(names)}"
+            )
 
 
-def read_vector_force(statement: Statement, units: Units, keyword: str) -> VectorForce:
-    """Read a force of three components, a torque of three, or both."""
-    names = _COMPONENTS[keyword]
-    found = Arguments(statement, keyword, ("I", "JFLOAT", "RM", *names, "FUNCTION", "ROUTINE"), (*names, "FUNCTION"))
-    read_function(found, "FUNCTION")  # refuses a user subroutine
-    missing = [name for name in names if name not in found]
-    if "FUNCTION" in found or (missing and keyword != "GFORCE"):
-        raise found.fault(f"found no {', no '.join(missing)}, expected an expression for each of {', '.join(names)}")
-    return VectorForce(
-        *found.head(), found.required("I"), found.required("JFLOAT"),
-        found.reference("RM"), *(tuple(_function_or_none(found, n, names) for n in kind) for kind in (_FORCE, _TORQUE)),
-    )  # fmt: skip
+@dataclass(frozen=True)
+class ForceAlone(VectorForce):
+    """Force of three components."""
+
+    torque: tuple[Function | None, ...] = constant((None, None, None))
 
 
-def _function_or_none(found: Arguments, name: str, names: tuple[str, ...]) -> Function | None:
-    return read_function(found, name) if name in names else None
+@dataclass(frozen=True)
+class TorqueAlone(VectorForce):
+    """Torque of three components."""
+
+    force: tuple[Function | None, ...] = constant((None, None, None))

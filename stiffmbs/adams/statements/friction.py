@@ -3,89 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
-from .arguments import Arguments, Numbered
-from .text import Statement
+from .arguments import Arguments
+from .declared import Numbered, ident, named_words, read_by
 from .units import Units
 
 INPUTS = ("PRELOAD", "REACTION_FORCE", "BENDING_MOMENT", "TORSIONAL_MOMENT")
 YOKES = {"BOTH": "IJ", "I_YOKE": "I", "J_YOKE": "J"}
 OVERLAP = {"CONSTANT": 0, "INCREASE": 1, "DECREASE": -1}
-
-
-@dataclass(frozen=True)
-class JointFriction(Numbered):
-    """Friction of one joint, in the dataset's units.
-
-    Attributes
-    ----------
-    static, dynamic : float
-        Coefficients.
-    stiction_velocity, friction_velocity : float
-        Sliding speeds at which the static coefficient is reached, and the dynamic one.
-    inputs : frozenset of str
-        Those of `INPUTS` that contribute to the normal force.
-    pin, ball, collar, bending_arm, torsion_arm, overlap : float
-        PIN_RADIUS, BALL_RADIUS, FRICTION_ARM, BENDING_REACTION_ARM, REACTION_ARM, INITIAL_OVERLAP.
-    growth : int
-        Derivative of the overlap with respect to the displacement: 0, 1 or -1.
-    force, torque : float
-        Friction without load.
-    yokes : str
-        Parts with friction in the arms of a universal joint's cross: ``I``, ``J`` or ``IJ``.
-    """
-
-    joint: int
-    static: float
-    dynamic: float
-    stiction_velocity: float
-    friction_velocity: float
-    inputs: frozenset[str]
-    pin: float
-    ball: float
-    collar: float
-    bending_arm: float
-    torsion_arm: float
-    overlap: float
-    growth: int
-    force: float
-    torque: float
-    yokes: str
-
-
-_ABOVE_ZERO = {
-    "STICTION_TRANSITION_VELOCITY": 0.1, "TRANSITION_VELOCITY_COEFFICIENT": 1.5, "PIN_RADIUS": 1.0, "BALL_RADIUS": 1.0,
-    "FRICTION_ARM": 1.0, "BENDING_REACTION_ARM": 1.0, "REACTION_ARM": 1.0, "INITIAL_OVERLAP": 1000.0,
-}  # fmt: skip
-"""Positive numbers with Adams' defaults."""
-FROM_ZERO = ("MU_STATIC", "MU_DYNAMIC", "FRICTION_FORCE_PRELOAD", "FRICTION_TORQUE_PRELOAD")
-LEFT_OUT = ("MAX_STICTION_DEFORMATION", "INACTIVE", "INACTIVE_DURING")
 _NOT_READ = ("MAX_FRICTION_FORCE", "MAX_FRICTION_TORQUE", "BRISTLE_STIFFNESS", "BRISTLE_DAMPING", "VISCOUS_DAMPING")
-_WORDS = ("JOINT", "FORMULATION", "OVERLAP_DELTA", "EFFECT", "INPUTS", "YOKE")
-ARGUMENTS = (*FROM_ZERO, *_ABOVE_ZERO, *_WORDS, *LEFT_OUT, *_NOT_READ)
-
-
-def read_friction(statement: Statement, units: Units) -> JointFriction:
-    """Read joint friction of Adams' ORIGINAL formulation, with stiction."""
-    found = Arguments(statement, "FRICTION", ARGUMENTS)
-    found.refuse(_NOT_READ, "friction without it")
-    _one_word(found, "FORMULATION", ("ORIGINAL",))
-    for name in ("INACTIVE", "INACTIVE_DURING"):
-        _one_word(found, name, ("STATICS",))
-    effect = _effect(found)
-    numbers = {name: found.positive(name) or usual for name, usual in _ABOVE_ZERO.items()}
-    static, dynamic, force, torque = (_from_zero(found, name) for name in FROM_ZERO)
-    if numbers["TRANSITION_VELOCITY_COEFFICIENT"] <= 1:
-        raise found.fault("found TRANSITION_VELOCITY_COEFFICIENT up to 1, expected a larger number")
-    slow = numbers["STICTION_TRANSITION_VELOCITY"]
-    return JointFriction(
-        *found.head(), found.required("JOINT"),
-        dynamic if effect == "SLIDING" else static, dynamic, slow, slow * numbers["TRANSITION_VELOCITY_COEFFICIENT"],
-        _inputs(found), numbers["PIN_RADIUS"], numbers["BALL_RADIUS"], numbers["FRICTION_ARM"],
-        numbers["BENDING_REACTION_ARM"], numbers["REACTION_ARM"], numbers["INITIAL_OVERLAP"],
-        OVERLAP[_one_word(found, "OVERLAP_DELTA", tuple(OVERLAP))], force, torque,
-        YOKES[_one_word(found, "YOKE", tuple(YOKES))],
-    )  # fmt: skip
+_SLOW, _FACTOR = ("STICTION_TRANSITION_VELOCITY", 0.1), ("TRANSITION_VELOCITY_COEFFICIENT", 1.5)
 
 
 def _from_zero(found: Arguments, name: str) -> float:
@@ -97,6 +25,15 @@ def _from_zero(found: Arguments, name: str) -> float:
     return value or 0.0
 
 
+def _zero_or_more(name: str) -> Any:
+    return read_by(lambda found, _: _from_zero(found, name), name)
+
+
+def _size(name: str, usual: float) -> Any:
+    """Declare a positive number with Adams' default."""
+    return read_by(lambda found, _: found.positive(name) or usual, name)
+
+
 def _one_word(found: Arguments, name: str, words: tuple[str, ...]) -> str:
     """Return the one of the given words that the argument abbreviates; the first word if it is missing."""
     text = (found.text(name) or words[0]).strip(" ()").upper()
@@ -106,22 +43,30 @@ def _one_word(found: Arguments, name: str, words: tuple[str, ...]) -> str:
     raise found.fault(f"found {name} = {found.text(name)}, expected {' or '.join(words)}", found.line(name))
 
 
-def _effect(found: Arguments) -> str:
-    """Return ``ALL``, also if both effects are named, or ``SLIDING``."""
-    words = {word.strip() for word in (found.text("EFFECT") or "ALL").strip(" ()").upper().replace(",", ":").split(":")}
-    if (
-        len(words) == 2
-        and any(w and "STICTION".startswith(w) for w in words)
-        and any(w and "SLIDING".startswith(w) for w in words)
-    ):
-        return "ALL"
-    return _one_word(found, "EFFECT", ("ALL", "SLIDING"))
+def _word_of(name: str, meanings: dict[str, Any]) -> Any:
+    return read_by(lambda found, _: meanings[_one_word(found, name, tuple(meanings))], name)
 
 
-def _inputs(found: Arguments) -> frozenset[str]:
-    text = (found.text("INPUTS") or "ALL").strip().strip("()").upper()
+def _static(found: Arguments, _: Units) -> float:
+    """Return the static coefficient: the dynamic one if sliding is the only effect."""
+    words = {*named_words(found, "EFFECT", "ALL")}
+    both = len(words) == 2 and all(
+        any(word and name.startswith(word) for word in words) for name in ("STICTION", "SLIDING")
+    )
+    effect = "ALL" if both else _one_word(found, "EFFECT", ("ALL", "SLIDING"))
+    return _from_zero(found, "MU_DYNAMIC" if effect == "SLIDING" else "MU_STATIC")
+
+
+def _friction_velocity(found: Arguments, _: Units) -> float:
+    slow, factor = (found.positive(name) or usual for name, usual in (_SLOW, _FACTOR))
+    if factor <= 1:
+        raise found.fault("found TRANSITION_VELOCITY_COEFFICIENT up to 1, expected a larger number")
+    return slow * factor
+
+
+def _inputs(found: Arguments, _: Units) -> frozenset[str]:
     asked: set[str] = set()
-    for word in (word.strip() for word in text.replace(",", ":").split(":")):
+    for word in named_words(found, "INPUTS", "ALL"):
         if word == "ALL":
             asked |= {*INPUTS}
         elif word != "NONE":
@@ -133,3 +78,53 @@ def _inputs(found: Arguments) -> frozenset[str]:
                 )
             asked.add(named[0])
     return frozenset(asked)
+
+
+@dataclass(frozen=True)
+class JointFriction(Numbered):
+    """Friction of one joint by Adams' ORIGINAL formulation, with stiction, in the dataset's units.
+
+    Attributes
+    ----------
+    stiction_velocity, friction_velocity : float
+        Sliding speeds at which the static coefficient is reached, and the dynamic one.
+    inputs : frozenset of str
+        Those of `INPUTS` that contribute to the normal force.
+    growth : int
+        Derivative of the overlap with respect to the displacement: 0, 1 or -1.
+    force, torque : float
+        Friction without load.
+    yokes : str
+        Parts with friction in the arms of a universal joint's cross: ``I``, ``J`` or ``IJ``.
+    """
+
+    static: float = read_by(_static, "MU_STATIC", "EFFECT")
+    dynamic: float = _zero_or_more("MU_DYNAMIC")
+    force: float = _zero_or_more("FRICTION_FORCE_PRELOAD")
+    torque: float = _zero_or_more("FRICTION_TORQUE_PRELOAD")
+    stiction_velocity: float = _size(*_SLOW)
+    friction_velocity: float = read_by(_friction_velocity, _FACTOR[0])
+    pin: float = _size("PIN_RADIUS", 1.0)
+    ball: float = _size("BALL_RADIUS", 1.0)
+    collar: float = _size("FRICTION_ARM", 1.0)
+    bending_arm: float = _size("BENDING_REACTION_ARM", 1.0)
+    torsion_arm: float = _size("REACTION_ARM", 1.0)
+    overlap: float = _size("INITIAL_OVERLAP", 1000.0)
+    joint: int = ident("JOINT")
+    growth: int = _word_of("OVERLAP_DELTA", OVERLAP)
+    inputs: frozenset[str] = read_by(_inputs, "INPUTS")
+    yokes: str = _word_of("YOKE", YOKES)
+    others = ("FORMULATION",)
+    ignored = {
+        "MAX_STICTION_DEFORMATION": "the joint creeps below STICTION_TRANSITION_VELOCITY",
+        **dict.fromkeys(("INACTIVE", "INACTIVE_DURING"), "friction is zero in statics"),
+    }
+    refused = dict.fromkeys(_NOT_READ, "friction without it")
+
+    @classmethod
+    def check(cls, found: Arguments) -> None:
+        """Refuse other formulations, and friction that is inactive in a dynamic simulation."""
+        _one_word(found, "FORMULATION", ("ORIGINAL",))
+        for name in ("INACTIVE", "INACTIVE_DURING"):
+            _one_word(found, name, ("STATICS",))
+        _from_zero(found, "MU_STATIC")

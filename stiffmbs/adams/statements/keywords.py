@@ -3,52 +3,48 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping, Sequence
-from functools import partial
-from typing import Any
+from collections.abc import Mapping, Sequence
 
 from . import bodies, constraints, contact, curves, elastic, forces, friction, outputs, sensor, systems
-from .constraints import WITHOUT_FRICTION
-from .curves import WITHOUT_EFFECT as CURVE_STARTS
-from .sensor import WITHOUT_EFFECT
+from .declared import Numbered
 from .text import Statement
-from .units import Units
 
-Reader = Callable[[Statement, Units], Any]
-
-READERS: dict[str, Reader] = {
-    "PART": bodies.read_part,
-    "POINT_MASS": bodies.read_point_mass,
-    "MARKER": bodies.read_marker,
-    "JOINT": constraints.read_joint,
-    "JPRIM": constraints.read_primitive,
-    "GCON": constraints.read_general_constraint,
-    "MOTION": constraints.read_motion,
-    "COUPLER": constraints.read_coupler,
-    "GEAR": constraints.read_gear,
-    "SFORCE": forces.read_single_force,
-    **{name: partial(forces.read_vector_force, keyword=name) for name in ("VFORCE", "VTORQUE", "GFORCE")},
-    "SPRINGDAMPER": elastic.read_spring_damper,
-    "BUSHING": elastic.read_bushing,
-    "BEAM": elastic.read_beam,
-    "FIELD": elastic.read_field,
-    "REQUEST": outputs.read_request,
-    "VARIABLE": outputs.read_variable,
-    "SPLINE": outputs.read_spline,
-    "ARRAY": outputs.read_array,
-    "CONTACT": contact.read_contact,
-    "FRICTION": friction.read_friction,
-    "SENSOR": sensor.read_sensor,
-    **{name: partial(systems.read_plant, keyword=name) for name in ("PINPUT", "POUTPUT")},
-    "CURVE": curves.read_curve,
-    "PTCV": curves.read_point_on_curve,
-    "CVCV": curves.read_curve_on_curve,
-    "DIFF": systems.read_differential,
-    "LSE": systems.read_linear_system,
-    "TFSISO": systems.read_transfer_function,
-    "MATRIX": systems.read_matrix,
+READERS: dict[str, type[Numbered]] = {
+    "PART": bodies.Part,
+    "POINT_MASS": bodies.PointMass,
+    "MARKER": bodies.Marker,
+    "JOINT": constraints.Joint,
+    "JPRIM": constraints.Primitive,
+    "GCON": constraints.GeneralConstraint,
+    "MOTION": constraints.Motion,
+    "COUPLER": constraints.Coupler,
+    "GEAR": constraints.Gear,
+    "SFORCE": forces.SingleForce,
+    "VFORCE": forces.ForceAlone,
+    "VTORQUE": forces.TorqueAlone,
+    "GFORCE": forces.VectorForce,
+    "SPRINGDAMPER": elastic.SpringDamper,
+    "BUSHING": elastic.Bushing,
+    "BEAM": elastic.Beam,
+    "FIELD": elastic.Field,
+    "REQUEST": outputs.Request,
+    "VARIABLE": outputs.Variable,
+    "SPLINE": outputs.Spline,
+    "ARRAY": outputs.Array,
+    "CONTACT": contact.Contact,
+    "FRICTION": friction.JointFriction,
+    "SENSOR": sensor.Sensor,
+    "PINPUT": systems.Plant,
+    "POUTPUT": systems.Plant,
+    "CURVE": curves.SpaceCurve,
+    "PTCV": curves.PointOnCurve,
+    "CVCV": curves.CurveOnCurve,
+    "DIFF": systems.Differential,
+    "LSE": systems.LinearSystem,
+    "TFSISO": systems.TransferFunction,
+    "MATRIX": systems.Matrix,
 }
-"""Reader of each numbered statement; UNITS and ACCGRAV have no number and are read separately."""
+"""Class of each numbered statement; UNITS and ACCGRAV have no number and are read separately."""
 
 SINGLE = ("UNITS", "ACCGRAV")
 LEFT_OUT = {
@@ -87,30 +83,10 @@ def keyword(word: str) -> str | None:
     return next((name for name in _ALL if name.startswith(word)), None)
 
 
-TEXT = "text"
-_NO_STATICS = "in statics states find their own equilibrium"
-LEFT_OUT_ARGUMENTS: Mapping[str, Mapping[str, str]] = {
-    "PART": {"MATERIAL": "masses are given", "EXACT": "assembly may move every part"},
-    "POINT_MASS": {"EXACT": "assembly may move every part"},
-    "JOINT": dict.fromkeys(WITHOUT_FRICTION, "of friction of old versions, which is off"),
-    "REQUEST": {
-        "COMMENT": TEXT, "TITLE": TEXT, "CUNITS": TEXT, "CLABELS": TEXT, "RESULTS_NAME": TEXT,
-        "ROUTINE": "a user's own subroutine",
-    },
-    "SPLINE": {"BLOCK": "of a file", "CHANNEL": "of a file"},
-    "FRICTION": {
-        "MAX_STICTION_DEFORMATION": "the joint creeps below STICTION_TRANSITION_VELOCITY",
-        "INACTIVE": "friction is zero in statics", "INACTIVE_DURING": "friction is zero in statics",
-    },
-    "CURVE": {"MINPAR": "of a subroutine", "MAXPAR": "of a subroutine"},
-    "PTCV": dict.fromkeys(CURVE_STARTS, "parts start where they are drawn"),
-    "SENSOR": dict.fromkeys(WITHOUT_EFFECT, "no effect on results"),
-    "DIFF": {"STATIC_HOLD": _NO_STATICS},
-    "LSE": {"STATIC_HOLD": _NO_STATICS},
-    "TFSISO": {"STATIC_HOLD": _NO_STATICS},
-    "MATRIX": {"NAME": TEXT, "UNITS": TEXT},
-}  # fmt: skip
+LEFT_OUT_ARGUMENTS: Mapping[str, Mapping[str, str]] = {name: kind.ignored for name, kind in READERS.items()}
 """Ignored arguments of each statement, with the reason."""
+TEXT = "text"
+"""Reason of ignored arguments that are not reported."""
 UNREAD_SYSTEM = "its equations are in a subroutine, and no function reads its states or outputs"
 _ARRAY = re.compile(r"\s*(?:X|XD|Y)\s*=\s*(\d+)\s*", re.IGNORECASE)
 

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import dataclass
+from typing import Any
 
 from ..functions.expression import parse
 from ..functions.function import Function, is_subroutine, read_any_function, read_function, required_function
-from .arguments import Arguments, Numbered
-from .text import Statement
+from .arguments import Arguments
+from .declared import Numbered, given, number, one_of, read_by
 from .units import Units
 
 FEWEST_POINTS = 4
@@ -16,6 +17,26 @@ FEWEST_POINTS = 4
 SORTS = ("DISPLACEMENT", "VELOCITY", "ACCELERATION", "FORCE")
 COLUMNS = tuple(f"F{k}" for k in range(1, 9))
 FUNCTIONS = (*COLUMNS, "FUNCTION")
+
+
+def _marker(name: str) -> Any:
+    """Declare a marker; None for ground."""
+    return read_by(lambda found, _: found.reference(name) or None, name)
+
+
+def _computed(found: Arguments) -> tuple[str, ...]:
+    return tuple(column for column in FUNCTIONS if is_subroutine(found, column))
+
+
+def _functions(found: Arguments, _: Units) -> tuple[tuple[str, Function], ...]:
+    read = {column: read_function(found, column) for column in FUNCTIONS if column not in _computed(found)}
+    functions = [(column, function) for column, function in read.items() if function is not None]
+    for variable in found.idents("VARIABLES"):
+        text = f"VARVAL({variable})"
+        functions.append((
+            f"VARIABLE_{variable}", Function(text, parse(text), found.line("VARIABLES"), found.label),
+        ))  # fmt: skip
+    return tuple(functions)
 
 
 @dataclass(frozen=True)
@@ -34,22 +55,44 @@ class Request(Numbered):
         Column names, if given.
     """
 
-    sort: str | None
-    i: int | None
-    j: int | None
-    axes: int | None
-    functions: tuple[tuple[str, Function], ...]
-    computed: tuple[str, ...]
-    names: tuple[str, ...]
-    comment: str
+    sort: str | None = one_of(*SORTS)
+    i: int | None = _marker("I")
+    j: int | None = _marker("J")
+    axes: int | None = _marker("RM")
+    comment: str = read_by(lambda found, _: found.text("COMMENT") or "", "COMMENT")
+    functions: tuple[tuple[str, Function], ...] = read_by(_functions, *FUNCTIONS, expressions=True)
+    computed: tuple[str, ...] = read_by(lambda found, _: _computed(found))
+    names: tuple[str, ...] = read_by(
+        lambda found, _: tuple(text.strip().strip("\"'") for text in found.texts("CNAMES")), "TITLE", "CNAMES"
+    )
+    others = ("VARIABLES",)
+    ignored = {
+        **dict.fromkeys(("COMMENT", "TITLE", "CUNITS", "CLABELS", "RESULTS_NAME"), "text"),
+        "ROUTINE": "a user's own subroutine",
+    }
+
+    @classmethod
+    def check(cls, found: Arguments) -> None:
+        """Refuse a request of nothing."""
+        sort = found.one_of(*SORTS)
+        if sort is None and not (found.idents("VARIABLES") or any(column in found for column in FUNCTIONS)):
+            raise found.fault(f"found no quantity, expected one of {', '.join(SORTS)} or {COLUMNS[1]} = an expression")
+        if sort is not None and not found.reference("I"):
+            raise found.fault(f"found no I, expected the marker whose {sort.lower()} is asked for")
+
+
+def _of_variable(found: Arguments, _: Units) -> Function:
+    reader = read_any_function if is_subroutine(found, "FUNCTION") else required_function
+    return reader(found, "FUNCTION")
 
 
 @dataclass(frozen=True)
 class Variable(Numbered):
     """Named expression, with an initial guess if it depends on itself."""
 
-    function: Function
-    start: float = 0.0
+    start: float = number("IC")
+    function: Function = read_by(_of_variable, "FUNCTION")
+    others = ("ROUTINE",)
 
     @property
     def state(self) -> str:
@@ -61,75 +104,27 @@ class Variable(Numbered):
 class Spline(Numbered):
     """Points of a curve with increasing arguments, in the dataset's units."""
 
-    x: tuple[float, ...]
-    y: tuple[float, ...]
-    lines_outside: bool
+    x: tuple[float, ...] = read_by(lambda found, _: found.numbers("X") or (), "X")
+    y: tuple[float, ...] = read_by(lambda found, _: found.numbers("Y") or (), "Y")
+    lines_outside: bool = given("LINEAR_EXTRAPOLATE")
+    ignored = dict.fromkeys(("BLOCK", "CHANNEL"), "of a file")
+    refused = {"FILE": "the points in X and Y"}
+
+    @classmethod
+    def check(cls, found: Arguments) -> None:
+        """Refuse points that do not define a curve."""
+        x, y = found.numbers("X") or (), found.numbers("Y") or ()
+        if not x or not y or len(x) != len(y):
+            raise found.fault(f"found {len(x)} X and {len(y)} Y, expected as many of each")
+        if len(x) < FEWEST_POINTS or any(after <= before for before, after in itertools.pairwise(x)):
+            raise found.fault(
+                "found less than four X or such that do not increase, expected four or more increasing ones"
+            )
 
 
 @dataclass(frozen=True)
 class Array(Numbered):
     """List of numbers, or of VARIABLEs that are the inputs of a system."""
 
-    numbers: tuple[float, ...]
-    variables: tuple[int, ...] = ()
-
-
-_REQUEST = (
-    *SORTS, "I", "J", "RM", "COMMENT", *COLUMNS, "FUNCTION", "TITLE", "CNAMES", "CUNITS", "CLABELS", "RESULTS_NAME", "VARIABLES",
-    "ROUTINE",
-)  # fmt: skip
-
-
-def read_request(statement: Statement, units: Units) -> Request:
-    """Read a request of displacements, velocities, accelerations or forces between markers, or of functions."""
-    found = Arguments(statement, "REQUEST", _REQUEST, FUNCTIONS)
-    sort = found.one_of(*SORTS)
-    i, j, axes = (found.reference(name) or None for name in ("I", "J", "RM"))
-    computed = tuple(column for column in FUNCTIONS if is_subroutine(found, column))
-    read = {column: read_function(found, column) for column in FUNCTIONS if column not in computed}
-    functions = tuple((column, function) for column, function in read.items() if function is not None)
-    functions += tuple(_of_variable(found, ident) for ident in found.idents("VARIABLES"))
-    if sort is None and not functions and not computed:
-        raise found.fault(f"found no quantity, expected one of {', '.join(SORTS)} or {COLUMNS[1]} = an expression")
-    if sort is not None and i is None:
-        raise found.fault(f"found no I, expected the marker whose {sort.lower()} is asked for")
-    return Request(
-        *found.head(), sort, i, j, axes,
-        functions, computed, tuple(text.strip().strip("\"'") for text in found.texts("CNAMES")), found.text("COMMENT") or "",
-    )  # fmt: skip
-
-
-def _of_variable(found: Arguments, ident: int) -> tuple[str, Function]:
-    """Return a column that reports a variable."""
-    text = f"VARVAL({ident})"
-    return f"VARIABLE_{ident}", Function(text, parse(text), found.line("VARIABLES"), found.label)
-
-
-def read_variable(statement: Statement, units: Units) -> Variable:
-    """Read a named expression."""
-    found = Arguments(statement, "VARIABLE", ("IC", "FUNCTION", "ROUTINE"), ("FUNCTION",))
-    reader = read_any_function if is_subroutine(found, "FUNCTION") else required_function
-    return Variable(*found.head(), reader(found, "FUNCTION"), found.number("IC") or 0.0)
-
-
-def read_spline(statement: Statement, units: Units) -> Spline:
-    """Read a curve by points."""
-    found = Arguments(statement, "SPLINE", ("X", "Y", "LINEAR_EXTRAPOLATE", "FILE", "BLOCK", "CHANNEL"))
-    if "FILE" in found:
-        raise found.fault("found FILE, expected the points in X and Y", found.line("FILE"))
-    x, y = found.numbers("X"), found.numbers("Y")
-    if x is None or y is None or len(x) != len(y):
-        raise found.fault(f"found {len(x or ())} X and {len(y or ())} Y, expected as many of each")
-    if len(x) < FEWEST_POINTS or any(after <= before for before, after in itertools.pairwise(x)):
-        raise found.fault("found less than four X or such that do not increase, expected four or more increasing ones")
-    return Spline(*found.head(), x, y, "LINEAR_EXTRAPOLATE" in found)
-
-
-def read_array(statement: Statement, units: Units) -> Array:
-    """Read a list of numbers, or the states, inputs or outputs of a system."""
-    found = Arguments(statement, "ARRAY", ("IC", "SIZE", "NUMBERS", "X", "Y", "U", "VARIABLES"))
-    return Array(
-        *found.head(),
-        found.numbers("NUMBERS") or (),
-        found.idents("VARIABLES"),
-    )
+    numbers: tuple[float, ...] = read_by(lambda found, _: found.numbers("NUMBERS") or (), "IC", "SIZE", "NUMBERS")
+    variables: tuple[int, ...] = read_by(lambda found, _: found.idents("VARIABLES"), "X", "Y", "U", "VARIABLES")

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..functions.function import Function, read_function, required_function
-from .arguments import Arguments, Numbered
-from .text import Statement
+from ..functions.function import Function, read_function
+from .arguments import Arguments
+from .declared import Numbered, expression, read_by
 from .units import Units
 
 RELATIONS = {"EQ": "equals", "GE": "at_least", "LE": "at_most"}
@@ -16,6 +16,16 @@ RECORDS = ("PRINT", "DT", "EVALUATE")
 WITHOUT_EFFECT = ("CODGEN", "RESTART", "STEPSIZE", "YYDUMP", "BISECTION")
 """Integrator settings, which do not apply: integration restarts at a sensor in any case."""
 USUAL_ERROR = 1e-3
+
+
+def _error(found: Arguments, _: Units) -> float:
+    error = found.number("ERROR")
+    return USUAL_ERROR if error is None else error
+
+
+def _then(found: Arguments, _: Units) -> str:
+    ends = found.one_of(*ENDS)
+    return ENDS[ends] if ends else "on" if any(name in found for name in RECORDS) else ""
 
 
 @dataclass(frozen=True)
@@ -39,32 +49,25 @@ class Sensor(Numbered):
         Arguments without effect.
     """
 
-    function: Function
-    relation: str
-    value: float
-    error: float
-    then: str
-    interval: float | None
-    evaluated: Function | None
-    left_out: tuple[str, ...]
+    function: Function = expression("FUNCTION")
+    value: float = read_by(lambda found, _: found.number("VALUE"), "VALUE")
+    error: float = read_by(_error, "ERROR", "ANGULAR")
+    relation: str = read_by(lambda found, _: RELATIONS[found.one_of(*RELATIONS) or "EQ"], *RELATIONS)
+    then: str = read_by(_then, *ENDS, "PRINT")
+    interval: float | None = read_by(lambda found, _: found.positive("DT"), "DT")
+    evaluated: Function | None = read_by(
+        lambda found, _: read_function(found, "EVALUATE"), "EVALUATE", expressions=True
+    )
+    left_out: tuple[str, ...] = read_by(lambda found, _: tuple(name for name in WITHOUT_EFFECT if name in found))
+    others = ("ROUTINE", "EVAL_ROUTINE")
+    ignored = dict.fromkeys(WITHOUT_EFFECT, "no effect on results")
 
-
-def read_sensor(statement: Statement, units: Units) -> Sensor:
-    """Read a sensor."""
-    own = ("FUNCTION", "VALUE", "ERROR", "ANGULAR", "ROUTINE", "EVAL_ROUTINE")
-    names = (*own[:4], *RELATIONS, *ENDS, *RECORDS, *WITHOUT_EFFECT, *own[4:])
-    found = Arguments(statement, "SENSOR", names, ("FUNCTION", "EVALUATE"))
-    value, error = found.number("VALUE"), found.number("ERROR")
-    if value is None:
-        raise found.fault("found no VALUE, expected the number that the function is compared with")
-    if error is not None and error < 0:
-        raise found.fault(f"found ERROR = {found.text('ERROR')}, expected no number below zero", found.line("ERROR"))
-    relation = RELATIONS[found.one_of(*RELATIONS) or "EQ"]
-    ends = found.one_of(*ENDS)
-    interval = found.positive("DT")
-    then = ENDS[ends] if ends else "on" if any(name in found for name in RECORDS) else ""
-    return Sensor(
-        *found.head(), required_function(found, "FUNCTION"), relation, value,
-        USUAL_ERROR if error is None else error, then, interval, read_function(found, "EVALUATE"),
-        tuple(name for name in WITHOUT_EFFECT if name in found),
-    )  # fmt: skip
+    @classmethod
+    def check(cls, found: Arguments) -> None:
+        """Refuse a sensor without a value, or with a negative tolerance."""
+        if found.number("VALUE") is None:
+            raise found.fault("found no VALUE, expected the number that the function is compared with")
+        if (found.number("ERROR") or 0.0) < 0:
+            raise found.fault(
+                f"found ERROR = {found.text('ERROR')}, expected no number below zero", found.line("ERROR")
+            )
