@@ -53,7 +53,7 @@ class AlongRun:
     def __init__(
         self, dynamics: Dynamics, recorder: Recorder, directions: Sequence[Numbers], breakpoint_rates: BreakpointRates
     ) -> None:
-        self._dynamics, self._recorder = dynamics, recorder
+        self._dynamics, self._recorder, self._directions = dynamics, recorder, directions
         self._equations = recorder.equations
         self.block = BlockSystem(dynamics, directions)
         kind = CollocationVariations if len(recorder.nodes) else VariationalEquations
@@ -70,10 +70,11 @@ class AlongRun:
         """
         s, asked = Shifted(start_q, start_u, np.zeros(len(start_q))), list(wanted)
         segments = self._recorder.passed(rows.t[-1] - rows.t[0])
-        Touches(self._recorder).refuse(segments)
+        touches = Touches(self._recorder, self._directions)
+        resting = touches.refuse(segments)
         while asked and rows.t[asked[0]] <= segments[0].first[0]:
             yield self._instant(rows, asked.pop(0), s)
-        for segment, following in zip(segments, [*segments[1:], None], strict=True):
+        for segment, following, at_rest in zip(segments, [*segments[1:], None], resting, strict=True):
             self._begin(segment, s)
             end = segment.rows[-1, 0] if following else np.inf
             done = 0
@@ -85,10 +86,12 @@ class AlongRun:
                 done = step
                 following_step = self._steps(segment, step, step + 1)[0]
                 at_instant = self._variations.within(self._rows(rows.at(np.array([k])))[0], following_step)
+                touches.refuse_rest(at_rest, segment, at_instant)
                 yield self._instant(rows, k, self._parts(at_instant, s.shift))
             if not asked or following is None:
                 return
             self._variations.advance(self._steps(segment, done, len(segment.rows)))
+            touches.refuse_rest(at_rest, segment, self._variations.last)
             jump = self._jumps.over(segment, following, self._parts(self._variations.last, s.shift))
             while asked and rows.t[asked[0]] <= following.first[0]:
                 yield self._between(rows, asked.pop(0), jump)
@@ -174,22 +177,29 @@ NEAR = 1e-3
 """Largest extremum near zero, relative to the largest value of an event function in a segment: the largest rtol."""
 FURTHER, LINEAR = 1e3, 0.1
 """Ratio of two displacements from a grazed breakpoint, and ratio of rate changes that indicates a jump."""
+REST, MOVED, KINKED, NOTICED = 1e-12, 1e-6, 0.4, 1e-12
+"""Value, SI units, of an event function that is on its breakpoint; displacement, m or rad, from such a state; second difference of rates over half of it, relative to that over the
+whole, which is 1/2 at a kink and 1/4 without one; and least second difference relative to the rates."""
 
 
 class Touches:
-    """Detector of grazing events in a recorded run."""
+    """Detector of events that graze a breakpoint, or rest on it, in a recorded run with some directions of change."""
 
-    def __init__(self, recorder: Recorder) -> None:
+    def __init__(self, recorder: Recorder, directions: Sequence[Numbers]) -> None:
+        self._directions = directions
         self._recorder, self._dynamics = recorder, recorder.dynamics
         self._count = self._dynamics.system.n_event_functions
         self._atol = np.zeros(recorder.equations.n)
         self._atol[recorder.equations.independent] = independent_tolerances(recorder.equations, recorder.settings)
         self._by_time = Direction(self._dynamics.state, "event_function", unchanged(self._dynamics.system), STATE)
 
-    def refuse(self, segments: Sequence[Segment]) -> None:
-        """Raise a SolverError if a discontinuous force almost reaches, or barely crosses, its breakpoint."""
+    def refuse(self, segments: Sequence[Segment]) -> list[np.ndarray]:
+        """Return the event functions that are on their breakpoints throughout each segment.
+
+        Raise a SolverError if a discontinuous force almost reaches, or barely crosses, its breakpoint.
+        """
         if not self._count:
-            return
+            return [np.empty(0, dtype=int)] * len(segments)
         rows = np.concatenate([part for each in segments for part in (each.first[None], each.rows)])
         found = np.array([self._values(row) for row in rows])
         g, rates = found[:, 0], found[:, 1]
@@ -206,6 +216,40 @@ class Touches:
                     f"sensitivities: found that '{name}' grazes its breakpoint at t = {t:.9g} s, within the integration error, where "
                     "the motion is not differentiable with respect to parameters; expected an event that crosses it or stays clear of it"
                 )
+
+        ends = np.cumsum([1 + len(each.rows) for each in segments])
+        return [np.flatnonzero(np.abs(part).max(axis=0) <= REST) for part in np.split(g, ends[:-1])]
+
+    def refuse_rest(self, resting: np.ndarray, segment: Segment, s: np.ndarray) -> None:
+        """Raise a SolverError if a parameter moves the state off a breakpoint that it rests on, with other forces on each side.
+
+        `s` of shape (directions, n): sensitivities of the recorded state.
+        """
+        if not len(resting):
+            return
+        n, row = self._recorder.equations.n, segment.rows[-1]
+        for numbers, way in zip(self._directions, s, strict=True):
+            size = MOVED / max(float(np.abs(way).max()), 1.0)
+            whole, half = (self._bend(row[0], row[2 : 2 + n], way, numbers, part * size) for part in (1.0, 0.5))
+            if np.any((half > KINKED * whole) & (whole > NOTICED * (1.0 + np.abs(row[2 + n :]).max()))):
+                name = writer(self._dynamics.system, "event_function", int(resting[0]))
+                raise SolverError(
+                    f"sensitivities: found that '{name}' stays on its breakpoint from t = {segment.first[0]:.9g} s to {row[0]:.9g} s, "
+                    "and that a parameter moves it off: the motion is not differentiable there; expected an event that crosses it or "
+                    "stays clear of it"
+                )
+
+    def _bend(self, t: float, y: np.ndarray, way: np.ndarray, numbers: Numbers, size: float) -> np.ndarray:
+        """Return the second difference of the rates along a change of state and numbers."""
+        groups, found = self._dynamics.system.groups, []
+        kept = {g: groups[g].numbers.copy() for g in numbers.moved}
+        for part in (-size, 0.0, size):
+            for g, own in kept.items():
+                groups[g].numbers[:] = own + part * numbers.of_groups[g]
+            found.append(np.concatenate(list(self._rates(t, y + part * way))))
+        for g, own in kept.items():
+            groups[g].numbers[:] = own
+        return np.asarray(np.abs(found[0] - 2 * found[1] + found[2]))
 
     def _take(self, t: float, y: np.ndarray) -> None:
         state, lam = self._dynamics.state, self._recorder.equations.at["lam"]

@@ -25,8 +25,12 @@ ROUNDING = 1e-13
 """Rounding of times, relative to the time: least shift of a segment's end before an event, duration of an empty segment."""
 FURTHEST = 1e-6
 """Largest shift of a segment's end before an event, relative to the segment."""
-SUDDEN, JUMP, FELT = 1e-9, 1e-3, 1e-6
-"""Relative step size that indicates a discontinuity, and smallest jump, relative to own and all accelerations."""
+SUDDEN, JUMP, FELT = 10.0, 1e-3, 1e-6
+"""Change of an acceleration in a step, relative to that expected from the steps around it, that may be a discontinuity;
+and smallest jump, relative to own and all accelerations."""
+HALVINGS, LEFT, ROUNDINGS = 10, 0.5, 1e3
+"""Halvings of the way through a step, and part of a change that a discontinuity leaves in the last one. Least size of a
+discontinuity relative to the effect of rounding of the state."""
 STAGES = 5
 """Stages of the method by which sensitivities are integrated along steps of `radau`."""
 MOST_NUMBERS = 2e8
@@ -98,25 +102,43 @@ class Recorder(Integrator):
         found = [each for each in self.segments if len(each.rows)]
         found = [each for each in found if each.rows[-1, 0] - each.first[0] > ROUNDING * duration] or found
         for segment in found:
-            self._refuse_jumps_within(segment, SUDDEN * duration)
+            self._refuse_jumps_within(segment)
         return found
 
-    def _refuse_jumps_within(self, segment: Segment, sudden: float) -> None:
-        """Refuse forces with undeclared discontinuities, where steps are as short as rounding allows."""
-        n, at = self.equations.n, self.equations.at["u"]
-        t, a = segment.rows[:, 0], segment.rows[:, 2 + n + at]
+    def _refuse_jumps_within(self, segment: Segment) -> None:
+        """Refuse forces with undeclared discontinuities, where an acceleration changes more than around a step."""
+        rows, n = segment.rows, self.equations.n
+        if len(rows) < 2:
+            return
+        t, a = rows[:, 0], np.array([self._accelerations(row[0], row[2 : 2 + n]) for row in rows])
         system, largest = self.dynamics.system, np.abs(a).max(axis=0)
         scale = system.per_velocity(system.size, 1.0)
         least = np.maximum(JUMP * largest, FELT * np.max(largest / scale) * scale)
-        short = (np.diff(t) < sudden) & np.any(np.abs(np.diff(a, axis=0)) > least, axis=1)
-        for k in np.flatnonzero(short):
-            there = [self._accelerations(row[0], row[2 : 2 + n]) for row in segment.rows[k : k + 2]]
-            if np.any(np.abs(there[1] - there[0]) > least):
+        change, h = np.abs(np.diff(a, axis=0)), np.diff(t)[:, None]
+        slopes = np.pad(change / h, ((1, 1), (0, 0)))
+        expected = h * np.maximum(slopes[:-2], slopes[2:])
+        for k in np.flatnonzero(np.any((change > least) & (change > SUDDEN * expected), axis=1)):
+            if self._jumps_between(rows[k], rows[k + 1], least):
                 raise SolverError(
                     f"sensitivities: found that accelerations are discontinuous at t = {t[k]:.9g} s, where no force declares a breakpoint (a spring "
                     "that passes its anchor, a discontinuous Python function): the motion is not differentiable there; expected "
                     "continuous forces"
                 )
+
+    def _jumps_between(self, before: np.ndarray, after: np.ndarray, least: np.ndarray) -> bool:
+        """Return True if the change of accelerations between two states is in a small part of the way between them."""
+        n = self.equations.n
+        ends = [(row[: 2 + n], self._accelerations(row[0], row[2 : 2 + n])) for row in (before, after)]
+        changed = ends[1][1]
+        whole = np.abs(changed - ends[0][1])
+        for _ in range(HALVINGS):
+            middle = (ends[0][0] + ends[1][0]) / 2
+            found = middle, self._accelerations(middle[0], middle[2:])
+            changes = [np.max(np.abs(found[1] - end) / np.maximum(whole, least)) for _, end in ends]
+            ends[int(np.argmin(changes))] = found
+        left = np.abs(ends[1][1] - ends[0][1])
+        noise = self._accelerations(after[0], after[2 : 2 + n] * (1 + np.finfo(float).eps)) - changed
+        return bool(np.any((left > least) & (left > LEFT * whole) & (left > ROUNDINGS * np.abs(noise))))
 
     def _accelerations(self, t: float, y: np.ndarray) -> np.ndarray:
         """Return the accelerations at a state."""

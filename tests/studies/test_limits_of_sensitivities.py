@@ -169,31 +169,83 @@ def test_coordinates_at_rest_have_no_jumps():
 
 
 @pytest.mark.parametrize(
-    ("step", "jumps", "refused"),
+    ("jumps", "width", "around", "refused"),
     [
-        (0.7e-9, (0.5, 0.0), True),
-        (1.5e-9, (0.5, 0.0), False),  # a force may change so far in so long a step
-        (1e-12, (1.5e-3, 0.0), True),
-        (1e-12, (0.7e-3, 0.0), False),
-        (1e-12, (0.0, 1.5e-6), True),
-        (1e-12, (0.0, 0.7e-6), False),  # below a millionth of the other coordinate's acceleration
+        ((0.5, 0.0), 1e-4, 0.0, True),
+        ((0.5, 0.0), 1.3e-3, 0.0, True),
+        ((0.5, 0.0), 2.9e-3, 0.0, False),
+        ((0.5, 0.0), 1e-2, 0.0, False),  # steep, but continuous
+        ((0.5, 0.0), 1.0, 0.0, False),
+        ((1.5e-3, 0.0), 1e-4, 0.0, True),
+        ((0.7e-3, 0.0), 1e-4, 0.0, False),
+        ((0.0, 1.5e-6), 1e-4, 0.0, True),
+        ((0.0, 0.7e-6), 1e-4, 0.0, False),  # below a millionth of the other coordinate's acceleration
+        ((0.5, 0.0), 1e-4, 0.5 / 15, True),
+        ((0.5, 0.0), 1e-4, 0.5 / 7, False),  # accelerations change so much in the steps around it, too
     ],
 )
-def test_a_jump_of_accelerations_is_refused_from_a_size_on(step, jumps, refused):
-    """Accelerations of about 1 and 0 change by `jumps` within a step of a run of 1 s."""
+def test_a_jump_of_accelerations_is_refused_from_a_size_on(jumps, width, around, refused):
+    """Accelerations of about 1 and 0 change by `jumps` within a part of a step, and the first one by `around` in the step before."""
+    t = np.array([0.49, 0.5, 0.51])
+
+    def accelerations(at, _):
+        passed = np.clip((at - 0.5037) / (0.01 * width), 0, 1) if width < 1 else np.clip((at - 0.5) / 0.01, 0, 1)
+        return np.array([1.0, 0.0]) - np.array(jumps) * (1 - passed) - [around * (at < 0.495), 0.0]
+
     recorder = Recorder.__new__(Recorder)
     recorder.equations = SimpleNamespace(n=2, at={"u": np.arange(2)})
     recorder.dynamics = SimpleNamespace(system=SimpleNamespace(size=1.0, per_velocity=lambda *_: np.ones(2)))
-    recorder._accelerations = lambda _, y: y
-    after = np.array([1.0, 0.0])
-    before = after - jumps
-    rows = np.array([[0.5, 1.0, *before, *before], [0.5 + step, 1.0, *after, *after]])
-    recorder.segments = [Segment(None, np.array([0.0, 1.0, *before, *before]), [rows])]
+    recorder._accelerations = accelerations
+    rows = np.array([[at, 1.0, *np.zeros(4)] for at in t])
+    recorder.segments = [Segment(None, rows[0], [rows])]
     if refused:
         with pytest.raises(SolverError, match="discontinuous"):
             recorder.passed(1.0)
     else:
         recorder.passed(1.0)
+
+
+THROUGH_ITS_ANCHOR = """
+parameters: {m: 1.3 kg}
+bodies: {sled: {mass: m, inertia: 1, position: [0, 0]}}
+forces:
+  held: {type: spring_damper, i: sled, j: {body: ground, point: [-0.74, 0.92]}, stiffness: 88, damping: 0.2, free_length: 0.3}
+run: {duration: 0.5, points: 6}
+"""
+
+
+@pytest.mark.parametrize("solver", ["bdf", "radau"])
+@pytest.mark.parametrize("rtol", [1e-4, 1e-6, 1e-9])
+def test_a_spring_that_passes_its_anchor_is_refused_by_every_solver(solver, rtol):
+    with pytest.raises(SolverError, match="passes its anchor"):
+        sensitivities(stiffmbs.read_scene(THROUGH_ITS_ANCHOR), ["m"], "final(sled.x)", solver=solver, rtol=rtol)
+
+
+ON_A_KINK = """
+gravity: [0, 0]
+parameters: {push: 0 N, edge: 0 m/s, c: 3 N s/m}
+bodies:
+  a: {mass: 2, inertia: 1}
+  b: {mass: 1, inertia: 1, position: [1, 0], velocity: [0.1, 0]}
+forces:
+  pushed: {type: force, i: a, force: [push, 0]}
+  follows: {type: force, i: b, force: ["-c*LAW", 0]}
+run: {duration: 1, points: 5}
+"""
+
+
+@pytest.mark.parametrize("solver", ["bdf", "radau"])
+@pytest.mark.parametrize("to", ["push", "edge"])
+@pytest.mark.parametrize("law", ["max(a.vx - edge, 0)", "abs(a.vx - edge)"])
+def test_a_parameter_that_moves_a_body_off_a_kink_has_no_derivative(law, to, solver):
+    with pytest.raises(SolverError, match="stays on its breakpoint"):
+        sensitivities(stiffmbs.read_scene(ON_A_KINK.replace("LAW", law)), [to], "final(b.vx)", solver=solver)
+
+
+def test_a_body_that_moves_along_a_kink_has_one():
+    scene = stiffmbs.read_scene(ON_A_KINK.replace("LAW", "max(a.vy, 0)"))
+    found = [sensitivities(scene, ["push"], f"final({body}.vx)").to["push"] for body in ("a", "b")]
+    assert found == pytest.approx([0.5, 0.0], abs=1e-9)
 
 
 @pytest.mark.parametrize("of", [["final(a.x)", "final(a.y)"], ("final(a.x)",), 3])
