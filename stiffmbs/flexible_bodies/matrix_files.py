@@ -71,7 +71,7 @@ def _read(path: Path, letter: str, name: str | None) -> Found:
         raise
     except Exception as error:  # readers raise many types
         reason = (str(error).splitlines() or [type(error).__name__])[0]
-        raise InputError(f"found no {kind} ({reason}), expected a file that {kind} has written") from None
+        raise InputError(f"found no {kind} ({reason}), expected one that is complete") from None
     key = _chosen(list(named), letter, name)
     matrix = csr_array(named[key])
     if np.iscomplexobj(matrix):

@@ -27,6 +27,8 @@ SOLIDS = {
 CORNERS = {"tetra": 4, "tetra10": 4, "hexahedron": 8, "hexahedron20": 8, "hexahedron27": 8}
 APART = 1e-6
 """Largest distance of a node from its place in the element, relative to the size of the body."""
+FLAT = 1e-9
+"""Smallest volume of an element, relative to the product of its edges, and smallest density of volume relative to the largest."""
 NASTRAN = {".bdf", ".fem", ".nas"}
 """Suffixes of Nastran files."""
 HARMLESS = {"vertex", "line", "line3", "triangle", "triangle6", "quad", "quad8", "quad9"}
@@ -78,7 +80,10 @@ def _read(path: Path) -> Any:
     except SystemExit:
         reason = "unknown format"
     except Exception as error:  # readers raise many types
-        reason = (str(error).splitlines() or [type(error).__name__])[0]
+        reason = (
+            "reference to the unknown number " * isinstance(error, KeyError)
+            + (str(error).splitlines() or [type(error).__name__])[0]
+        )
     raise InputError(f"found no mesh ({reason}), expected Gmsh .msh, Abaqus .inp, Nastran .bdf, VTK .vtu or .vtk")
 
 
@@ -98,12 +103,29 @@ def _check_volumes(nodes: np.ndarray, cells: np.ndarray, kind: str) -> None:
         edges = corner[:, others] - corner[:, [here]]
         volume = np.linalg.det(edges)
         scale = np.prod(np.linalg.norm(edges, axis=2), axis=1)
-        bad = np.flatnonzero(volume <= 1e-9 * scale)
+        bad = np.flatnonzero(volume <= FLAT * scale)
         if len(bad):
             raise InputError(
                 f"found {len(bad)} inverted or flat elements, the first with nodes "
                 f"{', '.join(map(str, cells[bad[0], : CORNERS[kind]]))}, expected elements of positive volume"
             )
+
+
+def _check_jacobians(mesh: Any, element: Any, order: int, cells: np.ndarray) -> None:
+    """Refuse elements with curved edges that are inverted in parts: at a node or a point of the quadrature."""
+    from skfem.quadrature import get_quadrature
+
+    places = np.column_stack([element.doflocs.T, get_quadrature(element.refdom, order)[0]])
+    slopes = np.moveaxis(mesh.mapping().DF(places), (0, 1), (-2, -1))
+    volumes = np.broadcast_to(np.linalg.det(slopes), (len(cells), places.shape[1]))
+    largest = np.abs(volumes).max(axis=1) * np.where(volumes[:, 0] < 0, -1.0, 1.0)  # hexahedra are reflected here
+    ratios = volumes / np.where(largest == 0, 1.0, largest)[:, None]
+    bad = np.flatnonzero(~(ratios > FLAT).all(axis=1))
+    if len(bad):
+        raise InputError(
+            f"found {len(bad)} elements that are inverted or flat in places, the first with nodes "
+            f"{', '.join(map(str, cells[bad[0]]))}, expected elements of positive volume; are nodes on their edges misplaced?"
+        )
 
 
 def _assembled(
@@ -126,6 +148,7 @@ def _assembled(
         mesh = meshio.Mesh(nodes[corners], [(geometry, number[cells[:, : CORNERS[kind]]])])
     with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
         of_skfem, scalar = from_meshio(mesh), getattr(skfem, element)()
+        _check_jacobians(of_skfem, scalar, order, cells)
         basis = skfem.Basis(of_skfem, skfem.ElementVector(scalar), intorder=order)
     distance, node = cKDTree(nodes).query(basis.doflocs.T)
     if distance.max() > APART * np.ptp(nodes, axis=0).max():
