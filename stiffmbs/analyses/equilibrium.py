@@ -152,7 +152,8 @@ def equilibrium(
     system, start = job.dynamics.system, found.start
     how = {"name": "equilibrium", "moves": found.moves, "imbalance": found.imbalance}
     times = np.array([job.grid.start])
-    notes = (*(job.data.notes if isinstance(job.data, Scene) else ()), *found.notes)
+    assembly = [job.start.position_sentence(3)] if job.start.moved_far else []
+    notes = (*(job.data.notes if isinstance(job.data, Scene) else ()), *assembly, *found.notes)
     solution = solution_at_rest(job, times, start.q[None], start.u[None], _message(found), notes, how)
     moves = system.move(job.start.q, found.start.q).reshape(len(system.bodies), -1)
     straight, turned = (np.linalg.norm(part, axis=1) for part in np.split(moves, [system.of_body.linear], axis=1))

@@ -19,6 +19,7 @@ from ..dynamics.dynamics import POSITION_TOLERANCE, Dynamics
 from ..dynamics.initial import InitialValues, consistent_values, initial_values
 from ..dynamics.turns import counted_angles, take_nearest_turns
 from ..errors import AssemblyError, InputError, StiffmbsError
+from ..model.beams.entries import GROUND_AXES
 from ..model.model_builder import ModelBuilder
 from ..model.model_data import ModelData
 from ..model.scene import Scene
@@ -236,7 +237,14 @@ def assembled(data: ModelData, dynamics: Dynamics, t: float) -> InitialValues:
                 break
             if np.abs(move).max() <= POSITION_TOLERANCE * system.size:
                 break
-    return initial_values(dynamics, t)
+    found = initial_values(dynamics, t)
+    node = next(
+        (move.body for move in found.moved_far if GROUND_AXES in getattr(data.bodies[move.body], "markers", ())), None
+    )
+    hint = (
+        f"; the axes of a beam's node are along the beam, those of its marker {node}.{GROUND_AXES} along the ground's"
+    )
+    return replace(found, hint=hint) if node else found
 
 
 def start_of_job(job: Job) -> InitialValues:

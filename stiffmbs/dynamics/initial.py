@@ -44,6 +44,7 @@ class InitialValues:
     moved: tuple[Move, ...]
     size: float
     notes: tuple[str, ...] = ()
+    hint: str = ""
 
     def sentence(self) -> str:
         """Return a sentence on the largest moves of bodies and changes of their velocities, or an empty string."""
@@ -77,7 +78,7 @@ class InitialValues:
         bodies = f"{len(far)} bodies move" if len(far) > 1 else f"{far[0].body} moves"
         return (
             f": {bodies} by more than a quarter of the mechanism's size ({self.size:.3g} m) or 45 deg; "
-            "look for a wrong point of a marker, position or angle"
+            f"look for a wrong point of a marker, position or angle{self.hint}"
         )
 
 

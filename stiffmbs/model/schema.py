@@ -48,7 +48,8 @@ def scene_schema() -> dict[str, Any]:
         schema["$defs"][name]["properties"]["for"] = loop
     for scene, beam in ((PlanarScene, PlanarBeam), (SpatialScene, SpatialBeam)):
         whole = schema["$defs"][found[scene, "validation"]["$ref"].rpartition("/")[2]]
-        _add_beams(whole["properties"], found[beam, "validation"], found[DistributedLoad, "validation"])
+        contact = schema["$defs"]["Contact" if beam is PlanarBeam else "SphereContact"]
+        _add_beams(whole["properties"], found[beam, "validation"], found[DistributedLoad, "validation"], contact)
     for scene, use in ((PlanarScene, PlanarUse), (SpatialScene, SpatialUse)):
         _add_parts(schema["$defs"], found[scene, "validation"], found[use, "validation"])
     in_plane, in_space = (found[scene, "validation"] for scene in scenes)
@@ -56,11 +57,14 @@ def scene_schema() -> dict[str, Any]:
     return {"if": three, "then": in_space, "else": in_plane, "$defs": schema["$defs"]}
 
 
-def _add_beams(properties: dict[str, Any], beam: dict[str, Any], load: dict[str, Any]) -> None:
-    """Add line bodies and distributed loads to the sections of a scene."""
+def _add_beams(properties: dict[str, Any], beam: dict[str, Any], load: dict[str, Any], contact: dict[str, Any]) -> None:
+    """Add line bodies, distributed loads and contacts of beams to the sections of a scene."""
     bodies, forces = properties["bodies"], properties["forces"]["additionalProperties"]
     bodies["additionalProperties"] = {"anyOf": [bodies["additionalProperties"], {**beam, "required": ["type"]}]}
-    forces["oneOf"].append(load)
+    named = {**contact["properties"], "type": {"const": "beam_contact"}, "beam": {"type": "string"}}
+    named.pop("i")
+    required = [key for key in contact["required"] if key != "i"]
+    forces["oneOf"] += [load, {**contact, "properties": named, "required": [*required, "type", "beam"]}]
     forces["discriminator"]["mapping"]["distributed_load"] = load["$ref"]
 
 

@@ -189,3 +189,34 @@ def test_modes_of_a_cantilever():
     found = stiffmbs.modes(stiffmbs.read_scene(text))
     frequencies = [mode.frequency for mode in found.modes[:3]]
     assert frequencies == pytest.approx([x**2 / math.tau for x in (1.8751041, 4.6940911, 7.8547574)], rel=3e-4)
+
+
+def test_nodes_of_a_ring_have_continuous_angles():
+    end = f"[{math.cos(1.75 * math.pi)!r}, {math.sin(1.75 * math.pi)!r}]"
+    middle = f"[{math.cos(0.875 * math.pi)!r}, {math.sin(0.875 * math.pi)!r}]"
+    text = cantilever(20, force="[1e-5, 0]").replace("[1, 0], elements", f"{end}, through: {middle}, elements")
+    found = stiffmbs.equilibrium(
+        stiffmbs.read_scene(
+            text.replace("start: [0, 0]", "start: [1, 0]").replace(
+                "strip.start, j: ground", "strip.start.ground_axes, j: {body: ground, point: [1, 0]}"
+            )
+        )
+    )
+    assert found.channels["strip.end.angle"] == pytest.approx(2.25 * math.pi, abs=1e-3)
+    assert max(turn for _, turn in found.moved.values()) < 1e-3
+
+
+def test_a_corner_of_two_beams_and_the_message_if_it_is_folded_straight():
+    text = """
+bodies:
+  post: {type: beam, start: [0, 0], end: [0, 1], elements: 4, stiffness: [1e6, 1e6, 1e3], mass_per_length: 1, inertia_per_length: 1e-4}
+  bar: {type: beam, start: [0, 1], end: [1, 1], elements: 4, stiffness: [1e6, 1e6, 1e3], mass_per_length: 1, inertia_per_length: 1e-4}
+joints:
+  foot: {type: fixed, i: post.start.ground_axes, j: ground}
+  corner: {type: fixed, i: bar.start, j: post.end.ground_axes}
+forces: {P: {type: force, i: bar.end, force: [0, -0.01]}}
+"""
+    found = stiffmbs.equilibrium(stiffmbs.read_scene(text))
+    assert found.channels["bar.end.y"] - 1 == pytest.approx(-0.01 * (4 / 3e3 + 2e-6), rel=1e-4) and not found.notes
+    folded = stiffmbs.equilibrium(stiffmbs.read_scene(text.replace("post.end.ground_axes", "post.end")))
+    assert "the axes of a beam's node are along the beam, those of its marker post.end.ground_axes" in folded.notes[0]

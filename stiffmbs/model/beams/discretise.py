@@ -45,6 +45,8 @@ class Node:
         kg.
     inertia : ndarray
         In the node's axes, kg m^2.
+    radius : float
+        Distance of the surface from the axis, m; 0 if it depends on the direction.
     """
 
     name: str
@@ -54,6 +56,7 @@ class Node:
     share: float = 0.0
     mass: float = 0.0
     inertia: np.ndarray = field(default_factory=lambda: np.zeros((3, 3)))
+    radius: float = 0.0
 
     def lump(self, share: float, mass: float, inertia: np.ndarray, axes: np.ndarray) -> None:
         """Add the mass of a length of the beam whose inertia per length is given along its axes."""
@@ -186,6 +189,8 @@ def discretise(beam: Any) -> Line:
     plain = "between" if wanted.names else "node"
     for k, node in enumerate(nodes):
         node.name = at.get(round(node.s / total, PLACES), f"{plain}{k}")
+        if beam.section is not None:
+            node.radius = _between(beam.section, beam.section_end, node.s / total).radius(planar)
     nodes[0].name, nodes[-1].name = "start", "end"
     tolerance = AUTOMATIC * total if wanted.tolerance == 0 else wanted.tolerance
     return Line(

@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-LOAD = "distributed_load"
-"""Type of the loads on beams among the forces."""
+GROUND_AXES = "ground_axes"
+"""Marker of each node with axes parallel to those of the scene or part, for joints to bodies with such axes."""
+LOAD, CONTACT = "distributed_load", "beam_contact"
+"""Types of the forces on all nodes of a beam."""
 
 
 def with_beams(
@@ -32,7 +34,7 @@ def with_beams(
         If a beam cannot be read, or one of its names is taken.
     """
     bodies, forces = sections.get("bodies"), sections.get("forces")
-    if not (_any(bodies, lambda kind: True) or _any(forces, lambda kind: kind == LOAD)):
+    if not (_any(bodies, lambda kind: True) or _any(forces, lambda kind: kind in (LOAD, CONTACT))):
         return sections
     from .expand import expand_beams
 

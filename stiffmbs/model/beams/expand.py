@@ -16,8 +16,9 @@ from ..model_data import RESERVED
 from .beam import Beam
 from .discretise import Line
 from .division import record_beams
+from .entries import CONTACT, LOAD
 from .expanded import expanded
-from .loads import DistributedLoad, node_forces
+from .loads import DistributedLoad, node_contacts, node_forces
 from .planar import BeamBody as PlanarBeam
 from .spatial import BeamBody as SpatialBeam
 
@@ -71,7 +72,7 @@ def expand_beams(
     for name, entry in (forces or {}).items():
         if name in added:
             raise InputError(f"forces.{name}: found a name that a beam makes too, expected another")
-        loads = _loads(name, entry, lines, f"{where.removesuffix('bodies')}forces.{name}")
+        loads = _loads(name, entry, lines, f"{where.removesuffix('bodies')}forces.{name}", dimensions)
         of_beams |= loads.keys() - {name}
         added |= loads
     divided = {f"{instance}{name}": line.divided for name, line in lines.items()}
@@ -88,9 +89,12 @@ def _check_name(name: Any, where: str) -> None:
         raise InputError(f"{where}: found the name '{name}', which is reserved, expected another")
 
 
-def _loads(name: str, entry: Any, lines: Mapping[str, Line], where: str) -> dict[str, Any]:
-    """Return the forces of a distributed load; other forces as they are."""
-    if not (isinstance(entry, dict) and entry.get("type") == DistributedLoad.model_fields["type"].default):
+def _loads(name: str, entry: Any, lines: Mapping[str, Line], where: str, dimensions: Any) -> dict[str, Any]:
+    """Return the forces of a distributed load or a contact of a beam; other forces as they are."""
+    kind = entry.get("type") if isinstance(entry, dict) else None
+    if kind == CONTACT:
+        return node_contacts(name, entry, lines, where, "sphere_contact" if dimensions == 3 else "contact")
+    if kind != LOAD:
         return {name: entry}
     try:
         load = DistributedLoad.model_validate(entry)

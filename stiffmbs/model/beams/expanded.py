@@ -10,9 +10,8 @@ import numpy as np
 
 from ...elements.spatial.orientation import IDENTITY, from_matrix
 from .discretise import Element, Line, Node, discretise
+from .entries import GROUND_AXES
 
-GROUND_AXES = "ground_axes"
-"""Marker of each node with axes parallel to those of the scene or part, for joints to bodies with such axes."""
 IN_PLANE = [0, 1, 5]
 """Components of strain in the plane."""
 
@@ -41,6 +40,8 @@ def expanded(name: str, beam: Any) -> Expanded:
     bodies = {
         f"{name}.{node.name}": body(node, beam, line.nodes[0], neighbours[k]) for k, node in enumerate(line.nodes)
     }
+    if planar:
+        _unwrap([*bodies.values()])
     forces = {f"{name}.element{k + 1}": _force(name, element, beam) for k, element in enumerate(line.elements)}
     return Expanded(bodies, forces, line)
 
@@ -65,6 +66,12 @@ def _planar_body(node: Node, beam: Any, start: Node, shape: list[np.ndarray]) ->
         "velocity": [beam.velocity[0] - beam.omega * float(arm[1]), beam.velocity[1] + beam.omega * float(arm[0])],
         "geometry": {"type": "polyline", "points": [_numbers(p[:2]) for p in shape]},
     }  # fmt: skip
+
+
+def _unwrap(bodies: list[dict[str, Any]]) -> None:
+    """Add whole turns to the angles of nodes, so that neighbours differ by less than half a turn."""
+    for body, angle in zip(bodies, np.unwrap([body["angle"] for body in bodies]), strict=True):
+        body["angle"] = float(angle)
 
 
 def _spatial_body(node: Node, beam: Any, start: Node, shape: list[np.ndarray]) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""Distributed loads on beams, as forces at their nodes."""
+"""Distributed loads on beams and their contacts, as forces at their nodes."""
 
 from __future__ import annotations
 
@@ -42,18 +42,51 @@ def node_forces(name: str, load: DistributedLoad, lines: Mapping[str, Line], whe
 
     The weights of the nodes are those of their masses. Raises InputError if the load names an unknown beam.
     """
-    if load.beam not in lines:
-        near = did_you_mean(load.beam, lines)
-        raise InputError(
-            f"{where}.beam: found the unknown beam '{quoted(load.beam)}'{near}, expected {', '.join(lines) or 'one of type beam'}"
-        )
     axes = {"axes": "body"} if load.axes == "section" else {}
     return {
         f"{name}.{node.name}": {
             "type": "force", "i": f"{load.beam}.{node.name}", "force": [_times(part, node.share) for part in load.force], **axes
         }
-        for node in lines[load.beam].nodes
+        for node in _line(load.beam, lines, where).nodes
     }  # fmt: skip
+
+
+def node_contacts(
+    name: str, entry: Mapping[str, Any], lines: Mapping[str, Line], where: str, kind: str
+) -> dict[str, Any]:
+    """Return the contacts of the nodes of a beam that stand for an entry ``beam_contact``, as entries of a scene.
+
+    They are of the given kind and have its fields, with `beam` in place of `i`. The stiffness is per length of the beam; the
+    radius of a node is by default that of its section. Raises InputError for an unknown beam or without a stiffness.
+    """
+    if "i" in entry:
+        raise InputError(f"{where}.i: found a marker of a contact of a beam, expected 'beam' alone")
+    for key in ("beam", "stiffness"):
+        if entry.get(key) is None:
+            raise InputError(f"{where}.{key}: found nothing, expected a value (the key is required)")
+    fields = {key: value for key, value in entry.items() if key not in ("beam", "stiffness")}
+    stiffness = entry["stiffness"]
+    return {
+        f"{name}.{node.name}": {
+            "radius": node.radius, "exponent": 1.0, **fields, "type": kind, "i": f"{entry['beam']}.{node.name}",
+            "stiffness": f"({node.share!r} m)*({stiffness})" if isinstance(stiffness, str) else _product(stiffness, node.share),
+        }
+        for node in _line(entry["beam"], lines, where).nodes
+    }  # fmt: skip
+
+
+def _line(beam: Any, lines: Mapping[str, Line], where: str) -> Line:
+    if beam not in lines:
+        near = did_you_mean(beam, lines)
+        raise InputError(
+            f"{where}.beam: found the unknown beam '{quoted(beam)}'{near}, expected {', '.join(lines) or 'one of type beam'}"
+        )
+    return lines[beam]
+
+
+def _product(stiffness: Any, length: float) -> Any:
+    """Return a stiffness from one per length; other entries as they are, for the message of the contact."""
+    return stiffness * length if type(stiffness) in (int, float) else stiffness
 
 
 def _times(component: float | str, length: float) -> float | str:

@@ -55,6 +55,12 @@ class Section(Described):
         """Return the constants for a Poisson ratio."""
         raise NotImplementedError
 
+    def radius(self, planar: bool) -> float:
+        """Return the distance of the surface from the axis, m; 0 if it depends on the direction or is unknown."""
+        if "diameter" in type(self).model_fields:
+            return float(self.diameter / 2)  # type: ignore[attr-defined]
+        return float(self.height / 2) if planar and "height" in type(self).model_fields else 0.0  # type: ignore[attr-defined]
+
 
 class Circle(Section):
     """Solid circle."""
