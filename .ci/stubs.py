@@ -19,7 +19,9 @@ import stiffmbs
 from stiffmbs.elements.element import Element
 from stiffmbs.elements.roads.envelope import Envelope
 from stiffmbs.elements.roads.road import Road
+from stiffmbs.elements.shape import OneFor
 from stiffmbs.elements.spatial.orientation import OrientationField
+from stiffmbs.elements.states.amount import Amount
 from stiffmbs.elements.tyres.coefficients import TyreProperties
 from stiffmbs.loaded_later import elements_of
 from stiffmbs.reading.fields import Measured
@@ -32,6 +34,7 @@ from stiffmbs.reading.table import Table
 ROOT = Path(stiffmbs.__file__).parent
 HEAD = '"""Types of the module; written by .ci/stubs.py."""\n'
 PLANE = """
+from collections.abc import Sequence
 from typing import Literal
 
 from . import spatial as spatial
@@ -40,11 +43,10 @@ from .comparison.compare import compare as compare
 from .comparison.over import compare_over as compare_over
 from .compile.compile_model import compile_model as compile_model
 from .reading import given
-from .elements.body import Body as Body
+from .reading.handle import Handle as _Handle
 from .model.beams.planar import BeamBody as BeamBody
 from .elements.element import Force as Force
 from .elements.element import Joint as Joint
-from .reading.marker import Marker as Marker
 from .model.model import Model as Model
 from .elements.own_elements import register as register
 from .reading.python_function import PythonFunction as PythonFunction
@@ -53,13 +55,6 @@ from .model.read_scene import read_scene as read_scene
 from .model.schema import scene_schema as scene_schema
 from .model.settings import RunSettings as RunSettings
 from .model.settings import SteadyMotion as SteadyMotion
-from .elements.states.linear_system import PID as PID
-from .elements.states.state import AlgebraicState as AlgebraicState
-from .elements.states.linear_system import LinearSystem as LinearSystem
-from .elements.states.linear_system import TransferFunction as TransferFunction
-from .elements.states.state import SampledState as SampledState
-from .elements.states.state import State as State
-from .reading.table import Table as Table
 from .reading.units import si as si
 from .live.page import open as open
 from .errors import AssemblyError as AssemblyError
@@ -105,48 +100,63 @@ from .reading.variation import Range as Range
 from .verification.verify import verify as verify
 """
 SPACE = """
+from collections.abc import Sequence
 from typing import Literal
 
 from .reading import given
+from .reading.handle import Handle as _Handle
 from .elements.element import Force as Force
 from .elements.element import Joint as Joint
-from .elements.spatial.body import Body as Body
 from .model.beams.spatial import BeamBody as BeamBody
-from .elements.spatial.marker import Marker as Marker
 from .model.spatial_model import Model as Model
 from .analyses.in_space import in_space as in_space
 """
 VALUES = "__version__: str\nground: str"
 MODULES = {"__init__.pyi": (PLANE, VALUES, stiffmbs), "spatial.pyi": (SPACE, "", stiffmbs.spatial)}
+OTHERS = (
+    "AlgebraicState",
+    "Body",
+    "LinearSystem",
+    "Marker",
+    "PID",
+    "SampledState",
+    "State",
+    "Table",
+    "TransferFunction",
+)
+"""Described classes besides elements."""
 
 
 def stub(file: str) -> str:
     """The content of a stub, before it is formatted."""
     exports, others, module = MODULES[file]
-    elements = sorted(elements_of(module._KINDS).items())
+    described = {name: getattr(module, name) for name in OTHERS if hasattr(module, name)}
+    elements = sorted((elements_of(module._KINDS) | described).items())
     imports = [f"from {element.__module__} import {name} as _{name}" for name, element in elements]
     classes = ["\n".join(_class(name, element)) for name, element in elements]
     return "\n\n".join([HEAD + exports + "\n".join(imports), others, *classes]) + "\n"
 
 
-def _class(name: str, element: type[Element]) -> Iterator[str]:
+def _class(name: str, element: type[Any]) -> Iterator[str]:
     yield f"class {name}(_{name}):"
     yield f'    """{(inspect.getdoc(element) or name).partition(chr(10) * 2)[0]}"""'
     fields = [_field(key, field) for key, field in element.model_fields.items() if key != "type"]
-    fields.append(f"type: Literal['{element.kind}'] = ...")
+    if issubclass(element, Element):
+        fields.append(f"type: Literal['{element.kind}'] = ...")
     yield f"    def __init__(self, *, {', '.join(fields)}) -> None: ..."
 
 
 def _field(name: str, field: Any) -> str:
-    taken = _given(field.annotation, field.metadata)
+    taken = GIVEN_AS.get(name) or _given(field.annotation, field.metadata)
     required = field.default is PydanticUndefined and field.default_factory is None
     return f"{field.alias or name}: {taken}{'' if required else ' = ...'}"
 
 
 def _given(annotation: Any, metadata: Any = ()) -> str:
     """The type of what may be given for a field."""
-    if any(isinstance(mark, OrientationField) for mark in metadata):
-        return "given.Orientation"
+    for mark, word in ((OrientationField, "given.Orientation"), (OneFor, "given.Geometry")):
+        if any(isinstance(one, mark) for one in metadata):
+            return word
     origin, parts = get_origin(annotation), get_args(annotation)
     if origin is Annotated:
         return _given(parts[0], parts[1:])
@@ -158,6 +168,8 @@ def _given(annotation: Any, metadata: Any = ()) -> str:
         return " | ".join(dict.fromkeys(_given(part) for part in parts))
     if origin is tuple:
         return _of_many([_given(part) for part in parts if part is not Ellipsis])
+    if origin is dict:
+        return "given.Markers"
     return _named(annotation, metadata)
 
 
@@ -171,6 +183,8 @@ def _of_many(parts: list[str]) -> str:
         return "given.Laws"
     if inner <= {"given.Marker"}:
         return "given.MarkerSequence"
+    if len(inner) == 1 and not any("given" in part for part in inner):
+        return f"Sequence[{inner.pop()}]"
     raise TypeError(f"found a field of several {inner}, expected numbers, rows of them, formulas or markers")
 
 
@@ -184,11 +198,13 @@ TAKEN: Mapping[type, str] = {
     TyreProperties: "given.TyreProperties",
     Envelope: "given.Envelope",
 }
+GIVEN_AS = {"body": "str | _Handle"}
+"""Types of fields that take more than their own type shows."""
 PLAIN = {bool: "bool", int: "int", str: "str", type(None): "None"}
 
 
 def _named(annotation: Any, metadata: Any) -> str:
-    if annotation is float or any(isinstance(mark, Measured) for mark in metadata):
+    if annotation in (float, Amount) or any(isinstance(mark, Measured) for mark in metadata):
         return "given.Number"
     if annotation in PLAIN:
         return PLAIN[annotation]

@@ -1,7 +1,9 @@
 """Types of the module; written by .ci/stubs.py."""
 
+from collections.abc import Sequence
 from typing import Literal
 
+from stiffmbs.elements.body import Body as _Body
 from stiffmbs.elements.forces.applied import AppliedForce as _AppliedForce
 from stiffmbs.elements.forces.applied import AppliedTorque as _AppliedTorque
 from stiffmbs.elements.forces.bushing import Bushing as _Bushing
@@ -25,6 +27,14 @@ from stiffmbs.elements.joints.prismatic import Prismatic as _Prismatic
 from stiffmbs.elements.joints.rack_and_pinion import RackAndPinion as _RackAndPinion
 from stiffmbs.elements.joints.revolute import Revolute as _Revolute
 from stiffmbs.elements.joints.velocity_equation import VelocityEquation as _VelocityEquation
+from stiffmbs.elements.states.linear_system import PID as _PID
+from stiffmbs.elements.states.linear_system import LinearSystem as _LinearSystem
+from stiffmbs.elements.states.linear_system import TransferFunction as _TransferFunction
+from stiffmbs.elements.states.state import AlgebraicState as _AlgebraicState
+from stiffmbs.elements.states.state import SampledState as _SampledState
+from stiffmbs.elements.states.state import State as _State
+from stiffmbs.reading.marker import Marker as _Marker
+from stiffmbs.reading.table import Table as _Table
 
 from . import spatial as spatial
 from .adams.listing import listed_statements as listed_statements
@@ -39,16 +49,9 @@ from .analyses.run import run as run
 from .comparison.compare import compare as compare
 from .comparison.over import compare_over as compare_over
 from .compile.compile_model import compile_model as compile_model
-from .elements.body import Body as Body
 from .elements.element import Force as Force
 from .elements.element import Joint as Joint
 from .elements.own_elements import register as register
-from .elements.states.linear_system import PID as PID
-from .elements.states.linear_system import LinearSystem as LinearSystem
-from .elements.states.linear_system import TransferFunction as TransferFunction
-from .elements.states.state import AlgebraicState as AlgebraicState
-from .elements.states.state import SampledState as SampledState
-from .elements.states.state import State as State
 from .errors import AssemblyError as AssemblyError
 from .errors import InputError as InputError
 from .errors import SolverError as SolverError
@@ -62,9 +65,8 @@ from .model.schema import scene_schema as scene_schema
 from .model.settings import RunSettings as RunSettings
 from .model.settings import SteadyMotion as SteadyMotion
 from .reading import given
-from .reading.marker import Marker as Marker
+from .reading.handle import Handle as _Handle
 from .reading.python_function import PythonFunction as PythonFunction
-from .reading.table import Table as Table
 from .reading.units import si as si
 from .reading.variation import Range as Range
 from .results.listings import differences as differences
@@ -99,6 +101,10 @@ from .verification.verify import verify as verify
 __version__: str
 ground: str
 
+class AlgebraicState(_AlgebraicState):
+    """Variable x with zero(x) = 0 at every time; formulas use it by its name."""
+    def __init__(self, *, zero: given.Law, start: given.Number = ..., scale: given.Number = ...) -> None: ...
+
 class AppliedForce(_AppliedForce):
     """Force at a point of a body: constant, or a formula of time and of any measured quantity."""
     def __init__(
@@ -131,6 +137,21 @@ class BeamSection(_BeamSection):
         stiffness: given.Matrix,
         damping_ratio: given.Number | None = ...,
         type: Literal["beam_section"] = ...,
+    ) -> None: ...
+
+class Body(_Body):
+    """Planar rigid body with the coordinates x, y of its centre of mass and its angle phi."""
+    def __init__(
+        self,
+        *,
+        mass: given.Number,
+        inertia: given.Number,
+        position: given.Numbers = ...,
+        angle: given.Number = ...,
+        velocity: given.Numbers = ...,
+        omega: given.Number = ...,
+        markers: given.Markers = ...,
+        geometry: given.Geometry = ...,
     ) -> None: ...
 
 class Bushing(_Bushing):
@@ -264,6 +285,39 @@ class LineForce(_LineForce):
         self, *, i: given.Marker, j: given.Marker, force: given.Law, type: Literal["line_force"] = ...
     ) -> None: ...
 
+class LinearSystem(_LinearSystem):
+    """State space x' = A x + B u, y = C x + D u with formulas u; outputs are used by its name, or as ``name.output``."""
+    def __init__(
+        self,
+        *,
+        a: given.Matrix,
+        b: given.Matrix,
+        c: given.Matrix,
+        d: given.Matrix | None = ...,
+        input: given.Laws,
+        outputs: Sequence[str] = ...,
+        start: given.Numbers | None = ...,
+    ) -> None: ...
+
+class Marker(_Marker):
+    """Marker used by an element: a named marker of a body, or an explicit one."""
+    def __init__(
+        self, *, body: str | _Handle, marker: str | None = ..., point: given.Numbers = ..., angle: given.Number = ...
+    ) -> None: ...
+
+class PID(_PID):
+    """Controller kp e + ki (integral of e) + kd (filtered derivative of e) with e = setpoint - input, used by name."""
+    def __init__(
+        self,
+        *,
+        input: given.Law,
+        setpoint: given.Law | None = ...,
+        kp: given.Number = ...,
+        ki: given.Number = ...,
+        kd: given.Number = ...,
+        filter: given.Number | None = ...,
+    ) -> None: ...
+
 class PointOnCurve(_PointOnCurve):
     """Point follower: the point of marker i remains on a curve fixed to marker j."""
     def __init__(
@@ -312,6 +366,12 @@ class Revolute(_Revolute):
     """Pin: a point of body i and a point of body j coincide."""
     def __init__(self, *, i: given.Marker, j: given.Marker, type: Literal["revolute"] = ...) -> None: ...
 
+class SampledState(_SampledState):
+    """Variable x that takes the value of a formula at the times offset + k period and keeps it in between."""
+    def __init__(
+        self, *, update: given.Law, period: given.Number, offset: given.Number = ..., start: given.Number = ...
+    ) -> None: ...
+
 class SpringDamper(_SpringDamper):
     """Spring and damper along the line between two points, linear or nonlinear."""
     def __init__(
@@ -326,6 +386,22 @@ class SpringDamper(_SpringDamper):
         spring_law: given.Curve | None = ...,
         damper_law: given.Curve | None = ...,
         type: Literal["spring_damper"] = ...,
+    ) -> None: ...
+
+class State(_State):
+    """Variable x with x' = rate and the initial value start; formulas use it by its name."""
+    def __init__(self, *, rate: given.Law, start: given.Number = ..., scale: given.Number = ...) -> None: ...
+
+class Table(_Table):
+    """Function through points, by default a monotone piecewise cubic with continuous slope (PCHIP)."""
+    def __init__(
+        self,
+        *,
+        table: given.Matrix,
+        ends: Literal["natural", "clamped", "periodic", "not-a-knot"] | None = ...,
+        lines: bool = ...,
+        akima: bool = ...,
+        spline: bool = ...,
     ) -> None: ...
 
 class TorsionSpring(_TorsionSpring):
@@ -343,6 +419,10 @@ class TorsionSpring(_TorsionSpring):
         damper_law: given.Curve | None = ...,
         type: Literal["torsion_spring"] = ...,
     ) -> None: ...
+
+class TransferFunction(_TransferFunction):
+    """Output y of G(s) = numerator(s)/denominator(s) with a formula as input; formulas use y by the name of the entry."""
+    def __init__(self, *, numerator: given.Numbers, denominator: given.Numbers, input: given.Law) -> None: ...
 
 class VelocityEquation(_VelocityEquation):
     """Formulas linear in velocities that remain zero, J(q) u - b(q, t) = 0, also nonholonomic ones."""

@@ -1,5 +1,6 @@
 """Types of the module; written by .ci/stubs.py."""
 
+from collections.abc import Sequence
 from typing import Literal
 
 from stiffmbs.elements.joints.constraint_equation import ConstraintEquation as _ConstraintEquation
@@ -8,29 +9,30 @@ from stiffmbs.elements.joints.drive import Drive as _Drive
 from stiffmbs.elements.joints.gear import Gear as _Gear
 from stiffmbs.elements.joints.rack_and_pinion import RackAndPinion as _RackAndPinion
 from stiffmbs.elements.joints.velocity_equation import VelocityEquation as _VelocityEquation
+from stiffmbs.elements.spatial.body import Body as _Body
 from stiffmbs.elements.spatial.forces.applied import AppliedForce as _AppliedForce
 from stiffmbs.elements.spatial.forces.applied import AppliedTorque as _AppliedTorque
 from stiffmbs.elements.spatial.forces.beam import Beam as _Beam
-from stiffmbs.elements.spatial.forces.box_plane_impact import BoxPlaneImpact as _BoxPlaneImpact
 from stiffmbs.elements.spatial.forces.brake import Brake as _Brake
 from stiffmbs.elements.spatial.forces.bushing import Bushing as _Bushing
-from stiffmbs.elements.spatial.forces.cylinder_plane_impact import CylinderPlaneImpact as _CylinderPlaneImpact
-from stiffmbs.elements.spatial.forces.ellipsoid_plane_impact import EllipsoidPlaneImpact as _EllipsoidPlaneImpact
 from stiffmbs.elements.spatial.forces.exact_beam import BeamSection as _BeamSection
 from stiffmbs.elements.spatial.forces.exact_beam import ExactBeam as _ExactBeam
 from stiffmbs.elements.spatial.forces.fiala_tyre import FialaTyre as _FialaTyre
 from stiffmbs.elements.spatial.forces.field import FieldForce as _FieldForce
 from stiffmbs.elements.spatial.forces.joint_friction import JointFriction as _JointFriction
 from stiffmbs.elements.spatial.forces.magic_formula_tyre import MagicFormulaTyre as _MagicFormulaTyre
+from stiffmbs.elements.spatial.forces.plane_impact import BoxPlaneImpact as _BoxPlaneImpact
+from stiffmbs.elements.spatial.forces.plane_impact import CylinderPlaneImpact as _CylinderPlaneImpact
+from stiffmbs.elements.spatial.forces.plane_impact import EllipsoidPlaneImpact as _EllipsoidPlaneImpact
 from stiffmbs.elements.spatial.forces.python_force import PythonForce as _PythonForce
 from stiffmbs.elements.spatial.forces.road_contact import RoadContact as _RoadContact
 from stiffmbs.elements.spatial.forces.shared import LineForce as _LineForce
 from stiffmbs.elements.spatial.forces.shared import SpringDamper as _SpringDamper
 from stiffmbs.elements.spatial.forces.solid_impact import SolidImpact as _SolidImpact
-from stiffmbs.elements.spatial.forces.sphere_box_impact import SphereBoxImpact as _SphereBoxImpact
 from stiffmbs.elements.spatial.forces.sphere_contact import SphereContact as _SphereContact
-from stiffmbs.elements.spatial.forces.sphere_cylinder_impact import SphereCylinderImpact as _SphereCylinderImpact
-from stiffmbs.elements.spatial.forces.sphere_sphere_impact import SphereSphereImpact as _SphereSphereImpact
+from stiffmbs.elements.spatial.forces.sphere_impact import SphereBoxImpact as _SphereBoxImpact
+from stiffmbs.elements.spatial.forces.sphere_impact import SphereCylinderImpact as _SphereCylinderImpact
+from stiffmbs.elements.spatial.forces.sphere_impact import SphereSphereImpact as _SphereSphereImpact
 from stiffmbs.elements.spatial.forces.torsion_spring import TorsionSpring as _TorsionSpring
 from stiffmbs.elements.spatial.forces.vertical_tyre import VerticalTyre as _VerticalTyre
 from stiffmbs.elements.spatial.forces.wheel_torque import WheelTorque as _WheelTorque
@@ -53,15 +55,15 @@ from stiffmbs.elements.spatial.joints.spherical import Spherical as _Spherical
 from stiffmbs.elements.spatial.joints.tangent_to_curve import TangentToCurve as _TangentToCurve
 from stiffmbs.elements.spatial.joints.thread import Thread as _Thread
 from stiffmbs.elements.spatial.joints.universal import Universal as _Universal
+from stiffmbs.elements.spatial.marker import Marker as _Marker
 
 from .analyses.in_space import in_space as in_space
 from .elements.element import Force as Force
 from .elements.element import Joint as Joint
-from .elements.spatial.body import Body as Body
-from .elements.spatial.marker import Marker as Marker
 from .model.beams.spatial import BeamBody as BeamBody
 from .model.spatial_model import Model as Model
 from .reading import given
+from .reading.handle import Handle as _Handle
 
 class AppliedForce(_AppliedForce):
     """Force at a point of a body: constant, or a formula of time and of any measured quantity."""
@@ -124,6 +126,24 @@ class BeamSection(_BeamSection):
         stiffness: given.Matrix,
         damping_ratio: given.Number | None = ...,
         type: Literal["beam_section"] = ...,
+    ) -> None: ...
+
+class Body(_Body):
+    """Spatial rigid body, with its own origin and axes for everything on it."""
+    def __init__(
+        self,
+        *,
+        mass: given.Number,
+        any_moments: bool = ...,
+        inertia: given.Matrix,
+        center_of_mass: given.Numbers = ...,
+        position: given.Numbers = ...,
+        orientation: given.Orientation = ...,
+        velocity: given.Numbers = ...,
+        omega: given.Numbers = ...,
+        open: Sequence[Literal["velocity", "omega"]] = ...,
+        markers: given.Markers = ...,
+        geometry: given.Geometry = ...,
     ) -> None: ...
 
 class BoxPlaneImpact(_BoxPlaneImpact):
@@ -387,6 +407,17 @@ class MagicFormulaTyre(_MagicFormulaTyre):
         pressure: given.Number | None = ...,
         turn_slip: bool | None = ...,
         type: Literal["magic_formula_tyre"] = ...,
+    ) -> None: ...
+
+class Marker(_Marker):
+    """Marker used by an element: a named marker of a body, or an explicit one."""
+    def __init__(
+        self,
+        *,
+        body: str | _Handle,
+        marker: str | None = ...,
+        point: given.Numbers = ...,
+        orientation: given.Orientation = ...,
     ) -> None: ...
 
 class Orientation(_Orientation):

@@ -12,8 +12,6 @@ import pytest
 
 import stiffmbs
 from stiffmbs import spatial
-from stiffmbs.elements.spatial.body import Body as SpatialBody
-from stiffmbs.elements.spatial.marker import Marker as SpatialMarker
 from stiffmbs.model.settings import Settings
 
 ROOT = Path(stiffmbs.__file__).parent
@@ -151,25 +149,6 @@ def test_completion_finds_fields_and_settings(described, names):
 
 def test_settings_are_known_to_type_checkers():
     assert Settings.__annotations__.keys() == stiffmbs.RunSettings.model_fields.keys()
-
-
-@pytest.mark.parametrize(
-    "described",
-    [stiffmbs.Body, stiffmbs.Marker, stiffmbs.Table, SpatialBody, SpatialMarker],
-    ids=lambda c: c.__module__,
-)
-def test_fields_are_known_to_type_checkers(described):
-    """The signature for type checkers, which is never run, has the fields of the class."""
-    tree = ast.parse(Path(inspect.getfile(described)).read_text())
-    of_class = next(node for node in tree.body if isinstance(node, ast.ClassDef) and node.name == described.__name__)
-    made = next(node for node in ast.walk(of_class) if isinstance(node, ast.FunctionDef) and node.name == "__init__")
-    assert [argument.arg for argument in made.args.kwonlyargs] == list(described.model_fields)
-    required = [
-        argument.arg
-        for argument, default in zip(made.args.kwonlyargs, made.args.kw_defaults, strict=True)
-        if default is None
-    ]
-    assert required == [name for name, field in described.model_fields.items() if field.is_required()]
 
 
 def test_importing_the_package_loads_no_solver():

@@ -121,6 +121,8 @@ def documented(module: str, name: str) -> Iterator[str]:
         if not issubclass(thing, Described | Exception):
             yield from ("   :members:", "   :inherited-members: Mapping", f"   :exclude-members: {INNER}")
         yield ""
+        if issubclass(thing, Described) and thing.model_fields.keys() - {"type"}:
+            yield from field_table(thing)
     elif callable(thing):
         yield from (f".. autofunction:: {module}.{name}", "")
     else:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 from pydantic import Field, field_validator
 
@@ -23,52 +23,26 @@ FLEXIBLE = "flexible"
 
 
 class Body(Described):
-    """Planar rigid body with the coordinates x, y of its centre of mass and its angle phi.
-
-    Parameters
-    ----------
-    mass : float
-        kg, greater than zero.
-    inertia : float
-        About the centre of mass, kg m^2, greater than zero.
-    position, angle : floats
-        Position of the centre of mass (m) and angle (rad) at the start; assembly changes them if joints require it.
-    velocity, omega : floats
-        At the start, m/s, rad/s.
-    markers : mapping of str to Placement
-        Named points and directions on the body.
-    geometry : mappings, optional
-        Shapes shown in drawings; by default derived from the markers and joints of the body.
-    """
+    """Planar rigid body with the coordinates x, y of its centre of mass and its angle phi."""
 
     rigid: ClassVar[bool] = True
     """True for all planar bodies: fixed joints may merge them."""
 
     mass: si.PositiveMass = Field(description="mass, kg")
     inertia: si.PositiveInertia = Field(description="moment of inertia about the centre of mass, kg m^2")
-    position: tuple[si.Length, si.Length] = Field((0.0, 0.0), description="centre of mass at the start, m")
+    position: tuple[si.Length, si.Length] = Field(
+        (0.0, 0.0), description="centre of mass at the start, m; assembly changes it if joints require it"
+    )
     angle: si.Angle = Field(0.0, description="angle at the start, rad")
     velocity: tuple[si.Velocity, si.Velocity] = Field(
         (0.0, 0.0), description="velocity of the centre of mass at the start, m/s"
     )
     omega: si.AngularVelocity = Field(0.0, description="angular velocity at the start, rad/s")
     markers: dict[str, Placement] = Field(default_factory=dict, description="named points and directions on the body")
-    geometry: PlanarGeometry = Field((), description="shapes that drawings show: polyline, box, cylinder, sphere, mesh")
-
-    if TYPE_CHECKING:
-
-        def __init__(
-            self,
-            *,
-            mass: given.Number,
-            inertia: given.Number,
-            position: given.Numbers = (0.0, 0.0),
-            angle: given.Number = 0.0,
-            velocity: given.Numbers = (0.0, 0.0),
-            omega: given.Number = 0.0,
-            markers: given.Markers = {},  # noqa: B006 is never called
-            geometry: given.Geometry = (),
-        ) -> None: ...
+    geometry: PlanarGeometry = Field(
+        (),
+        description="shapes that drawings show: polyline, box, cylinder, sphere, mesh; by default derived from markers and joints",
+    )
 
     @field_validator("markers")
     @classmethod

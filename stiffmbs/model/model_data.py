@@ -20,9 +20,8 @@ from ..elements.states.amount import InputValue, formulas_of_inputs
 from ..elements.states.equation import FormulaOfRate, Reported, SampledUpdate, StateName, own_state
 from ..elements.states.section import (
     AnyState,
-    check_reactions,
+    check_formula,
     check_states,
-    check_states_of,
     names_in_formulas,
     refuse_algebraic_loops,
 )
@@ -35,7 +34,7 @@ from ..reading.formula.names import NAMES, FormulaNames
 from ..reading.formula.nodes import TIME
 from ..reading.formula.text import UNIT
 from ..reading.joint_name import JointName
-from ..reading.marker import GROUND, MarkerReference, check_marker, listed
+from ..reading.marker import GROUND, MarkerReference, check_marker
 from ..reading.names import beginnings
 
 if TYPE_CHECKING:
@@ -47,19 +46,7 @@ RESERVED = (GROUND, "energy", "constraint", "time", TIME, UNIT)
 class ModelData(NotebookMethods, Described):
     """Content of a model as in a scene, validated as a whole.
 
-    Parameters
-    ----------
-    name : str
-        Shown in summaries.
-    dimensions : int
-        2 in the plane, 3 in space.
-    gravity : tuple of float
-        Acceleration along the ground's axes, m/s^2.
-    markers : mapping of str to Placement
-        Named points of ground, ``ground.name``.
-    bodies, states, joints, forces, requests : mappings by name
-        Names are unique across these sections, because channels are named after them. A request is one formula, or
-        several by name.
+    Names are unique across the sections, because channels are named after them.
     """
 
     origin: ClassVar[Any]
@@ -279,14 +266,8 @@ def check_element(
     for field, reason in element.validation_errors(joints):
         raise ValueError(f"{where}.{field}: {reason}")
     for field, formula in element.parts(Formula):
-        for body in formula.bodies():
-            if body not in bodies and body not in joints and body != GROUND:
-                near = did_you_mean(body, bodies)
-                raise ValueError(f"{where}.{field}: found the unknown body '{body}'{near}, expected {listed(bodies)}")
-        check_states_of(f"{where}.{field}", formula, states)
-        check_reactions(f"{where}.{field}", formula, joints)
-        for reason in names.validation_errors(formula, joints):
-            raise ValueError(f"{where}.{type(element).model_fields[field].alias or field}: {reason}")
+        written = type(element).model_fields[field].alias or field
+        check_formula(f"{where}.{written}", formula, bodies, joints, names, states)
     placed = [marker.body for field, marker in element.parts(MarkerReference) if field in ("i", "j")]
     if len(placed) > 1 and len(set(placed)) == 1:
         raise ValueError(f"{where}: found '{placed[0]}' on both sides, expected two different bodies")

@@ -27,20 +27,7 @@ from .settings import RunSettings, SteadyMotion
 
 
 class Figure(Described):
-    """Plot of channels, drawn by ``stiffmbs run SCENE --figure FILE``.
-
-    Parameters
-    ----------
-    title : str
-    x : str
-        A channel, or ``time``.
-    y : tuple of str
-        Channels.
-    z : str
-        A channel: the figure is then a path in space, of one `y` over `x`.
-    equal : bool
-        Whether all axes have the same scale, as for paths.
-    """
+    """Plot of channels, drawn by ``stiffmbs run SCENE --figure FILE``."""
 
     title: str = Field("", description="shown above the plot")
     x: str = Field("time", description="a channel, or time")

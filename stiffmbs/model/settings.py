@@ -46,82 +46,59 @@ class Settings(TypedDict, total=False):
 
 
 class RunSettings(Described):
-    """Duration, output and solver of a run.
-
-    Parameters
-    ----------
-    duration : float
-        s, greater than zero.
-    start : float
-        Time at the start, s.
-    output : float, optional
-        Spacing of the output points, s; without it (and without `points`) a thousandth of the duration.
-    points : int or "steps", optional
-        Number of output points, evenly spaced, ends included; or the solver's internal steps.
-    solver : str
-        ``bdf`` (SUNDIALS IDA), ``radau`` (Radau IIA), ``projected`` (explicit, with projection onto the constraints), ``kinematic`` (for
-        scenes whose drives fix every coordinate), or ``auto`` (projected, and bdf while the scene is stiff).
-    formulation : str
-        Formulation of the residual that ``bdf`` and ``radau`` integrate (`stiffmbs.solve.formulations`).
-    stabilisation : float
-        For the formulation ``index1``: decay rate of constraint violations, 1/s; 0 shows its drift.
-    scheme : str, optional
-        For ``projected``: ``euler_cromer`` and ``rk4`` have fixed steps, ``dopri5`` and ``dop853`` adaptive steps. The
-        default is ``dop853``, or ``euler_cromer`` if a step is given.
-    rtol, atol : floats
-        Error tolerances of ``bdf``, ``radau`` and the adaptive schemes. The default of atol (m, rad, m/s, rad/s) is rtol, times
-        the size of a mechanism that is smaller than 1 m.
-    step : float
-        Step of the fixed schemes, s; reduced if it does not divide the time between output points.
-    projection : bool
-        Whether ``projected`` returns to the constraints after each step.
-    max_step : float
-        Largest step of ``bdf``, ``radau`` and the adaptive schemes, s; 0 for none.
-    max_order : int, optional
-        Highest order of the formulas of ``bdf``, 1 to 5. The default is 5, reduced temporarily to 2 if orders 3 to 5
-        require very small steps for a stiff, lightly damped vibration (`stiffmbs.solve.error_control.stability_limit`).
-        A given order is never reduced.
-    stages : 3, 5, 7 or "auto"
-        Number of stages of ``radau``, whose order is 2 stages - 1; by default chosen by the convergence of Newton's
-        iteration.
-    presolve : bool
-        Whether the model is reduced to a smaller problem with the same results, if possible.
-    drop_first : tuple of str
-        Joints whose equations are dropped first if the scene has redundant ones, the last name first.
-    tuning : mapping
-        Changed parameters of solvers, by subsystem and name (`stiffmbs.tuning`), for experts.
-    """
+    """Duration, output and solver of a run."""
 
     duration: si.PositiveTime = Field(10.0, description="s")
     start: si.Time = Field(0.0, description="time at the start, s")
-    output: si.PositiveTime | None = Field(None, description="spacing of the output points, s")
-    points: int | Literal["steps"] | None = Field(
-        None, description="number of output points, or the solver's own steps"
+    output: si.PositiveTime | None = Field(
+        None, description="spacing of the output points, s; a thousandth of the duration without it and points"
     )
-    solver: SolverName = Field("bdf", description="how to solve")
+    points: int | Literal["steps"] | None = Field(
+        None, description="number of output points, evenly spaced, ends included; or the solver's own steps"
+    )
+    solver: SolverName = Field(
+        "bdf",
+        description="bdf (SUNDIALS IDA), radau (Radau IIA), projected (explicit, with projection onto the constraints), kinematic (for scenes whose drives fix every coordinate), or auto (projected, and bdf while the scene is stiff)",
+    )
     formulation: FormulationName = Field("SI2", description="of the residual of bdf and radau")
     stabilisation: Annotated[float, Measured("angular velocity", at_least=0)] = Field(
-        0.0, description="of index1: rate at which violations decay, 1/s"
+        0.0, description="of index1: rate at which violations decay, 1/s; 0 shows its drift"
     )
     scheme: SchemeName | None = Field(
-        None, description="of projected; without it dop853, and euler_cromer where a step is given"
+        None,
+        description="of projected: euler_cromer and rk4 have fixed steps, dopri5 and dop853 adaptive ones; dop853 by default, euler_cromer with a step",
     )
     rtol: Annotated[float, Measured("number", at_least=1e-14, at_most=0.1)] = Field(
         1e-6, description="relative error tolerance of bdf, radau and the adaptive schemes"
     )
-    atol: si.PositiveNumber | None = Field(None, description="absolute error tolerance; rtol unless given")
-    step: si.PositiveTime = Field(1e-3, description="step of the fixed schemes, s")
+    atol: si.PositiveNumber | None = Field(
+        None,
+        description="absolute error tolerance (m, rad, m/s, rad/s); by default rtol, times the size of a mechanism that is smaller than 1 m",
+    )
+    step: si.PositiveTime = Field(
+        1e-3, description="step of the fixed schemes, s; reduced if it does not divide the time between output points"
+    )
     projection: bool = Field(True, description="whether projected returns to the constraints after each step")
     max_step: si.TimeOrZero = Field(
         0.0, description="largest step of bdf, radau and the adaptive schemes, s; 0 for none"
     )
     max_order: Annotated[int, Field(ge=1, le=5)] | None = Field(
-        None, description="highest order of bdf's formulas, 1 to 5; without it 5, and 2 for a while where that pays"
+        None,
+        description="highest order of bdf, 1 to 5, which is never reduced; by default 5, and 2 for a while if orders 3 to 5 require very small steps for a stiff, lightly damped vibration",
     )
-    stages: Literal[3, 5, 7, "auto"] = Field("auto", description="of radau, whose order is 2 stages - 1")
-    presolve: bool = Field(True, description="whether unknowns that others determine are left out of the solution")
-    drop_first: tuple[str, ...] = Field((), description="joints whose redundant equations are dropped first")
-    tuning: dict[str, dict[str, Any]] = Field({}, description="changed parameters of solvers, for experts")
+    stages: Literal[3, 5, 7, "auto"] = Field(
+        "auto",
+        description="of radau, whose order is 2 stages - 1; by default chosen by the convergence of Newton's iteration",
+    )
+    presolve: bool = Field(
+        True, description="whether the model is reduced to a smaller problem with the same results, if possible"
+    )
+    drop_first: tuple[str, ...] = Field(
+        (), description="joints whose redundant equations are dropped first, the last name first"
+    )
+    tuning: dict[str, dict[str, Any]] = Field(
+        {}, description="changed parameters of solvers by subsystem and name (`stiffmbs.tuning`), for experts"
+    )
 
     if TYPE_CHECKING:
 
@@ -176,36 +153,27 @@ class SteadyMotion(Described):
     """Motion of all bodies as one rigid body: along a straight line, or on circles about one axis, at constant speed.
 
     Adams calls such an equilibrium quasi-static.
-
-    Parameters
-    ----------
-    velocity : tuple of float
-        Velocity of every point in addition to the rotation, in ground axes, m/s: one number for each dimension; empty
-        for zero.
-    rotation : float or tuple of float
-        Angular velocity, rad/s: a number in the plane; in space a vector in ground axes, or a number for a rotation
-        about the direction opposite to gravity. ``found`` if forces determine that number, as of a car that pulls to
-        one side; it is sought too if nothing is given and the forces do not balance on a straight line.
-    about : tuple of float
-        Point on the axis of rotation, m; by default the origin.
-    rolling : tuple of str
-        Bodies with an additional spin about their axis of symmetry. Rolling constraints determine it, or forces that
-        depend on the spin, such as a tyre's; otherwise it is as described.
-    speed : str
-        ``found`` if forces determine it, such as drag and a driver's traction; the velocity is then an initial guess
-        along its line.
     """
 
-    velocity: tuple[si.Velocity, ...] = Field((), description="of every point, in ground axes, m/s")
+    velocity: tuple[si.Velocity, ...] = Field(
+        (), description="of every point in addition to the rotation, in ground axes, m/s: one number for each dimension"
+    )
     rotation: (
         Literal["found"] | si.AngularVelocity | tuple[si.AngularVelocity, si.AngularVelocity, si.AngularVelocity]
-    ) = Field(0.0, description="angular velocity, rad/s, or `found`; a number in space is about the vertical")
+    ) = Field(
+        0.0,
+        description="angular velocity, rad/s: a number in the plane, in space a vector in ground axes, or a number about the direction opposite to gravity; `found` if forces determine that number, as of a car that pulls to one side (it is sought too if nothing is given and the forces do not balance on a straight line)",
+    )
     about: tuple[si.Length, ...] = Field(
         (), description="a point of the axis of the rotation, m; the origin without it"
     )
-    rolling: tuple[str, ...] = Field((), description="bodies that spin about their axis of symmetry too")
+    rolling: tuple[str, ...] = Field(
+        (),
+        description="bodies with an additional spin about their axis of symmetry, which rolling constraints determine, or forces that depend on it, such as a tyre's; otherwise it is as described",
+    )
     speed: Literal["given", "found"] = Field(
-        "given", description="whether the forces determine the speed along `velocity`"
+        "given",
+        description="`found` if forces determine it, such as drag and a driver's traction: the velocity is then an initial guess along its line",
     )
 
 

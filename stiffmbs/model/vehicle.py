@@ -6,7 +6,6 @@ from collections.abc import Iterable, Mapping
 from typing import Annotated, Any
 
 from pydantic import Field
-from pydantic import ValidationError as PydanticError
 
 from ..elements.element import Element
 from ..elements.requests.names import OF_SPACE
@@ -19,7 +18,7 @@ from ..elements.spatial.spatial_kinds import FORCES
 from ..elements.spatial.tyre import Tyre
 from ..errors import InputError
 from ..reading.did_you_mean import did_you_mean
-from ..reading.fields import Described, sentence
+from ..reading.fields import Described, located
 from ..reading.files.quoted import written
 
 VEHICLE = "vehicle"
@@ -70,19 +69,6 @@ class Vehicle(Described):
     The vehicle axes are x forward, y to the left, z upwards on the body. Velocities and accelerations are resolved in
     the intermediate axes: horizontal, with x below the vehicle's x axis. ISO 8855:2011, Road vehicles, vehicle dynamics
     and road-holding ability, vocabulary.
-
-    Parameters
-    ----------
-    body : str
-        Sprung body.
-    point : tuple of float
-        Reference point in the body's axes, m; by default its origin.
-    orientation : Orientation
-        Vehicle axes relative to the body's, for bodies whose axes are not x forward and z upwards.
-    points : mapping of str to tuple of float
-        Further points on the body, whose velocity, acceleration and sideslip become ``vehicle.NAME.vx`` ...
-    tyres : tuple of str, optional
-        Tyres whose slips and loads become ``vehicle.TYRE.kappa`` ...; by default all.
     """
 
     body: str = Field(description="the sprung body")
@@ -91,10 +77,13 @@ class Vehicle(Described):
         IDENTITY, description="of the vehicle axes, x forward and z upwards, against the body's"
     )
     points: dict[str, Point] = Field(
-        default_factory=dict, description="further points on the body by name, in its axes, m"
+        default_factory=dict,
+        description="further points on the body by name, in its axes, m, with velocity, acceleration and sideslip vehicle.NAME.vx ...",
     )
     steering: Steering | None = Field(None, description="formulas of the steering wheel's angle and torque")
-    tyres: tuple[str, ...] | None = Field(None, description="tyres to report; all of the scene by default")
+    tyres: tuple[str, ...] | None = Field(
+        None, description="tyres with slips and loads vehicle.TYRE.kappa ...; all of the scene by default"
+    )
 
 
 def with_vehicle(raw: dict[str, Any], context: Mapping[str, Any]) -> dict[str, Any]:
@@ -105,10 +94,8 @@ def with_vehicle(raw: dict[str, Any], context: Mapping[str, Any]) -> dict[str, A
     """
     if raw.get(VEHICLE) is None:
         return raw
-    try:
+    with located(VEHICLE):
         vehicle = Vehicle.model_validate(raw[VEHICLE], context=context)
-    except PydanticError as error:
-        raise InputError(_at(VEHICLE, sentence(error))) from None
     bodies, forces, requests = (_section(raw, name) for name in ("bodies", "forces", "requests"))
     if vehicle.body not in bodies:
         near = did_you_mean(vehicle.body, bodies)
@@ -178,7 +165,3 @@ def _section(raw: Mapping[str, Any], name: str) -> dict[str, Any]:
     if not isinstance(found, dict):
         raise InputError(f"{name}: found {written(found)}, expected a mapping of names to entries")
     return found
-
-
-def _at(path: str, message: str) -> str:
-    return f"{path}: {message}" if message.startswith("found") else f"{path}.{message}"

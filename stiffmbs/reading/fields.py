@@ -9,6 +9,7 @@ from __future__ import annotations
 import operator
 import re
 from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -210,6 +211,17 @@ def sentence(error: PydanticError) -> str:
     others = {location(other["loc"]) for other in faults} - {where}
     more = f" (and {len(others)} more)" if others else ""
     return f"{where}{': ' if where else ''}{_reason(fault)}{more}"
+
+
+@contextmanager
+def located(where: str) -> Iterator[None]:
+    """Raise an `InputError` with its place in a scene for a fault of a field, a formula or another value."""
+    try:
+        yield
+    except ValueError as error:  # FormulaError and ValidationError are such errors
+        message = sentence(error) if isinstance(error, PydanticError) else str(error)
+        begins_with_field = isinstance(error, PydanticError) and " " not in message.partition(":")[0]
+        raise InputError(f"{where}{'.' if begins_with_field else ': '}{message}") from None
 
 
 def location(parts: tuple[Any, ...]) -> str:

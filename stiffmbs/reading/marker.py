@@ -22,7 +22,6 @@ from .units import si
 if TYPE_CHECKING:
     from ..elements.element import Element
     from ..model.model_data import ModelData
-    from . import given
 
 _REFERENCE = {"type": "string", "description": "a body ('cart'), a marker of a body ('bar.end'), or 'ground'"}
 
@@ -35,10 +34,6 @@ class Placement(Described):
     )
     angle: si.Angle = Field(0.0, description="direction of the marker's axis against the body's, rad")
 
-    if TYPE_CHECKING:
-
-        def __init__(self, *, point: given.Numbers = (0.0, 0.0), angle: given.Number = 0.0) -> None: ...
-
     def numbers(self) -> tuple[float, ...]:
         """Return the inputs of kernels: the point, the angle, its cosine and its sine."""
         return (*self.point, self.angle, math.cos(self.angle), math.sin(self.angle))
@@ -46,13 +41,6 @@ class Placement(Described):
 
 class MarkerReference(Described):
     """Body, or named marker of a body: ``cart``, ``bar.end``, ``ground``.
-
-    Parameters
-    ----------
-    body : str
-        The body, or ``"ground"``.
-    marker : str, optional
-        Name of a marker of the body.
 
     Attributes
     ----------
@@ -110,34 +98,12 @@ class Marker(MarkerReference):
 
     Written as ``cart`` (the centre of mass), ``bar.end`` (a named marker of the body), ``ground``, or ``{body: bar,
     point: [-300 mm, 0], angle: 90 deg}``.
-
-    Parameters
-    ----------
-    body : str
-        The body, or ``"ground"``.
-    marker : str, optional
-        Name of a marker of the body; excludes `point` and `angle`.
-    point : tuple of float
-        Position in the body's axes, from its centre of mass, m.
-    angle : float
-        Direction of the marker's axis relative to the body's, rad.
     """
 
     dimensions: ClassVar[int | None] = 2
 
     point: tuple[si.Length, si.Length] = Field((0.0, 0.0), description="position in the body's own axes, m")
     angle: si.Angle = Field(0.0, description="direction of the axis against the body's, rad")
-
-    if TYPE_CHECKING:
-
-        def __init__(
-            self,
-            *,
-            body: str | Handle,
-            marker: str | None = None,
-            point: given.Numbers = (0.0, 0.0),
-            angle: given.Number = 0.0,
-        ) -> None: ...
 
     def placement(self) -> Placement:
         """Return the explicit placement on the body."""

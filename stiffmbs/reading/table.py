@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 from pydantic import Field, ModelWrapValidatorHandler, PrivateAttr, ValidationInfo, field_validator, model_validator
 
 from .fields import Described
 from .formula.dimension import UNKNOWN, Known, known_of, same
-from .given import Matrix
 from .units import si
 from .units.quantity import quantity
 from .units.units import Quantity, named_unit
@@ -20,43 +19,23 @@ class Table(Described):
     """Function through points, by default a monotone piecewise cubic with continuous slope (PCHIP).
 
     Outside its points a table is extrapolated with the slope of its end (zero for ``clamped``); a periodic table
-    repeats.
-
-    Parameters
-    ----------
-    table : list of pairs
-        Argument and value, arguments increasing.
-    spline : bool
-        Cubic spline: continuous curvature, but it may overshoot its points (Adams: CUBSPL).
-    ends : str
-        End condition, which selects a cubic spline: ``natural`` (zero curvature, the default of a spline), ``clamped``
-        (zero slope), ``not-a-knot``, ``periodic`` (equal first and last value; also for linear interpolation).
-    lines : bool
-        Linear interpolation; the points are breakpoints.
-    akima : bool
-        Akima's interpolation, which may overshoot unevenly spaced points (Adams: AKISPL). Akima, A new method of
-        interpolation and smooth curve fitting, J. ACM 17 (1970) 589-602.
+    repeats. Akima, A new method of interpolation and smooth curve fitting, J. ACM 17 (1970) 589-602.
     """
 
-    table: tuple[tuple[si.Anything, si.Anything], ...] = Field(min_length=2, description="pairs of argument and value")
-    ends: Literal["natural", "clamped", "periodic", "not-a-knot"] | None = Field(
-        None, description="of a cubic spline: its end condition"
+    table: tuple[tuple[si.Anything, si.Anything], ...] = Field(
+        min_length=2, description="pairs of argument and value, arguments increasing"
     )
-    lines: bool = Field(False, description="straight lines between the points")
-    akima: bool = Field(False, description="Akima's local cubics")
-    spline: bool = Field(False, description="a cubic spline, which may leave the range of its points")
-
-    if TYPE_CHECKING:
-
-        def __init__(
-            self,
-            *,
-            table: Matrix,
-            ends: Literal["natural", "clamped", "periodic", "not-a-knot"] | None = None,
-            lines: bool = False,
-            akima: bool = False,
-            spline: bool = False,
-        ) -> None: ...
+    ends: Literal["natural", "clamped", "periodic", "not-a-knot"] | None = Field(
+        None,
+        description="end condition, which selects a cubic spline: natural (zero curvature, the default of a spline), clamped (zero slope), not-a-knot, periodic (equal first and last value; also for lines)",
+    )
+    lines: bool = Field(False, description="straight lines between the points, which are breakpoints")
+    akima: bool = Field(
+        False, description="Akima's local cubics, which may overshoot unevenly spaced points (Adams: AKISPL)"
+    )
+    spline: bool = Field(
+        False, description="a cubic spline with continuous curvature, which may overshoot its points (Adams: CUBSPL)"
+    )
 
     _argument: Known = PrivateAttr(UNKNOWN)
     _value: Known = PrivateAttr(UNKNOWN)

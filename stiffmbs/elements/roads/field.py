@@ -7,11 +7,8 @@ from importlib import import_module
 from types import MappingProxyType
 from typing import Annotated, Any
 
-from pydantic import ValidationError as PydanticError
-
-from ...errors import InputError
 from ...reading.did_you_mean import did_you_mean
-from ...reading.fields import named_entries, sentence
+from ...reading.fields import located, named_entries
 from ...reading.files.quoted import quoted, written
 from ..read_by import Context, JsonSchema, ReadBy
 from .road import Road
@@ -76,10 +73,6 @@ def read_roads(found: Any, context: Mapping[str, Any]) -> dict[str, Road]:
     """
     roads: dict[str, Road] = {}
     for name, road in named_entries("roads", found, "roads"):
-        try:
+        with located(f"roads.{name}"):
             roads[name] = read_road(road, context)
-        except PydanticError as error:
-            raise InputError(f"roads.{name}.{sentence(error)}") from None
-        except ValueError as error:
-            raise InputError(f"roads.{name}: {error}") from None
     return roads

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import ast
-from functools import partial
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 from pydantic import Field, model_validator
 
@@ -13,9 +12,6 @@ from ...reading.formula.formula import Formula
 from ...reading.units import si
 from ..element import Symbolic
 from .road import OF_PLACE, Road
-
-if TYPE_CHECKING:
-    import numpy as np
 
 Height = Annotated[Formula, FormulaOf(*OF_PLACE, "length", time=False)]
 
@@ -45,23 +41,6 @@ class FormulaRoad(Road):
 
     def extent(self) -> tuple[float, float] | None:
         return None if self.first is None or self.last is None else (self.first, self.last)
-
-    def profile_heights(self, x: np.ndarray) -> np.ndarray:
-        """Return the heights, m, of the formula at positions x, m."""
-        return self.heights(x, 0.0 * x)
-
-    def heights(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-        """Return the heights, m, of the formula."""
-        from numpy import broadcast_to
-
-        from ...reading.formula.functions import IN_FORMULAS
-        from ...reading.formula.text import evaluate
-        from .rolling_filter import heights_of
-
-        functions = {name: function.array for name, function in IN_FORMULAS.items()}
-        tables = {name: partial(heights_of, table) for name, table in self.z.tables.items()}
-        found = evaluate(self.z.tree, {**self.z.values, "x": x, "y": y}.__getitem__, {**functions, **tables})
-        return broadcast_to(found, x.shape)
 
     @staticmethod
     def height(r: Symbolic, x: Any, y: Any) -> Any:

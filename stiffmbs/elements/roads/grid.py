@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import itertools
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 from pydantic import Field
 
@@ -18,9 +18,6 @@ from ..element import Symbolic
 from ..read_by import in_file
 from .road import Road, clipped
 from .rolling_filter import through_filter
-
-if TYPE_CHECKING:
-    import numpy as np
 
 MOST_LINES = 32
 """Largest number of lines along the road; each is a table in the equations."""
@@ -103,26 +100,9 @@ class GridRoad(Road):
         tables = tuple(through_filter(table, self.filter_shape) for table in self.file.tables)
         return {"friction": self.friction, "lines": tables, "across": self.file.across}
 
-    def heights(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-        """Return the heights, m, interpolated linearly between two lines."""
-        return heights_between(self.file.tables, self.file.across, x, y)
-
     @staticmethod
     def height(r: Symbolic, x: Any, y: Any) -> Any:
         return between_lines(r, x, y)
-
-
-def heights_between(lines: Sequence[Table], across: Sequence[float], x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Return the heights of lines along x at positions `across`, interpolated linearly, as `between_lines`."""
-    import numpy as np
-
-    from .rolling_filter import heights_of
-
-    found = heights_of(lines[0], x)
-    for k in range(1, len(lines)):
-        part = np.clip((y - across[k - 1]) / (across[k] - across[k - 1]), 0.0, 1.0)
-        found = found + (heights_of(lines[k], x) - heights_of(lines[k - 1], x)) * part
-    return found
 
 
 def between_lines(r: Symbolic, x: Any, y: Any) -> Any:

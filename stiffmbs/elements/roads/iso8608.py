@@ -11,8 +11,8 @@ from pydantic import Field, model_validator
 from ...reading.table import Table
 from ...reading.units import si
 from ..element import Symbolic
-from .profile import heights_of_tracks, two_tracks
-from .road import Road, ramp, ramp_at
+from .profile import two_tracks
+from .road import Road, ramp
 from .rolling_filter import table_of, through_filter
 
 if TYPE_CHECKING:
@@ -78,15 +78,6 @@ class Iso8608Road(Road):
         left, right = (through_filter(table, self.filter_shape) for table in tables)
         own = {name: getattr(self, name) for name in ("friction", "track", "start", "entry")}
         return {**own, "left": left, "right": right}
-
-    def heights(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-        """Return the heights, m, of the tracks, blended in after the start."""
-        own = self.model_copy(update={"filter_radius": None}).in_equations()
-        found = heights_of_tracks(own["left"], own["right"], self.track, x, y)
-        if self.start is None:
-            return found
-        s = ramp_at(x, self.start, self.entry)
-        return found * s**2 * (3 - 2 * s)
 
     @staticmethod
     def height(r: Symbolic, x: Any, y: Any) -> Any:

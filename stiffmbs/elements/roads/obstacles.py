@@ -8,10 +8,7 @@ from pydantic import Field
 
 from ...reading.units import si
 from ..element import Symbolic
-from .road import Road, ramp, ramp_at
-
-if TYPE_CHECKING:
-    import numpy as np
+from .road import Road, functions_of, ramp
 
 
 class Obstacle(Road):
@@ -38,11 +35,6 @@ class StepRoad(Obstacle):
         s = ramp(x, r.start, r.length)
         return r.rise * s**2 * (3 - 2 * s)
 
-    def profile_heights(self, x: np.ndarray) -> np.ndarray:
-        """Return the heights, m, at positions x, m."""
-        s = ramp_at(x, self.start, self.length)
-        return self.rise * s**2 * (3 - 2 * s)
-
 
 class CosineBump(Obstacle):
     """Level road with one bump: crest (1 - cos(2 pi (x - start)/length))/2."""
@@ -54,15 +46,8 @@ class CosineBump(Obstacle):
 
     @staticmethod
     def height(r: Symbolic, x: Any, y: Any) -> Any:
-        from sympy import Rational, cos, pi
-
-        return r.crest * (1 - cos(2 * pi * ramp(x, r.start, r.length))) * Rational(1, 2)
-
-    def profile_heights(self, x: np.ndarray) -> np.ndarray:
-        """Return the heights, m, at positions x, m."""
-        from numpy import cos, pi
-
-        return self.crest * (1 - cos(2 * pi * ramp_at(x, self.start, self.length))) / 2
+        of = functions_of(x)
+        return r.crest * (1 - of.cos(2 * of.pi * ramp(x, r.start, r.length))) / 2
 
 
 class SineSweep(Obstacle):
@@ -82,17 +67,6 @@ class SineSweep(Obstacle):
 
     @staticmethod
     def height(r: Symbolic, x: Any, y: Any) -> Any:
-        """Return the height of the sine sweep."""
-        from sympy import Rational, pi, sin
-
-        s = ramp(x, r.start, r.length)
+        of, s = functions_of(x), ramp(x, r.start, r.length)
         first, last = 1 / r.first_wavelength, 1 / r.last_wavelength
-        return r.amplitude * sin(2 * pi * r.length * (first * s + (last - first) * s**2 * Rational(1, 2)))
-
-    def profile_heights(self, x: np.ndarray) -> np.ndarray:
-        """Return the heights, m, of the sweep at positions x, m."""
-        from numpy import pi, sin
-
-        s = ramp_at(x, self.start, self.length)
-        first, last = 1 / self.first_wavelength, 1 / self.last_wavelength
-        return self.amplitude * sin(2 * pi * self.length * (first * s + (last - first) * s**2 / 2))
+        return r.amplitude * of.sin(2 * of.pi * r.length * (first * s + (last - first) * s**2 / 2))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from pydantic import Field, ValidationInfo, field_validator, model_validator
 
@@ -12,9 +12,6 @@ from ...reading.units import si
 from ..element import Component, Symbolic
 from .road import Road, clipped
 from .rolling_filter import through_filter
-
-if TYPE_CHECKING:
-    import numpy as np
 
 
 class TableRoad(Road):
@@ -63,33 +60,13 @@ class TableRoad(Road):
         }
         return {**own, **filtered}
 
-    def heights(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-        """Return the heights, m, of the profile, or of two tracks."""
-        from .rolling_filter import heights_of
-
-        if self.profile is not None:
-            return heights_of(self.profile, x)
-        assert self.left is not None and self.right is not None and self.track is not None
-        return heights_of_tracks(self.left, self.right, self.track, x, y)
-
     @staticmethod
     def height(r: Symbolic, x: Any, y: Any) -> Any:
         return r.profile(x) if r.profile is not None else two_tracks(r, x, y)
 
 
-def heights_of_tracks(left: Table, right: Table, track: float, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Return the heights of two tracks, as `two_tracks`."""
-    from .rolling_filter import heights_of
-
-    s = (y / track + 0.5).clip(0.0, 1.0)
-    on_right = heights_of(right, x)
-    return on_right + (heights_of(left, x) - on_right) * s**2 * (3 - 2 * s)
-
-
 def two_tracks(r: Symbolic, x: Any, y: Any) -> Any:
     """Return the height of a road with tables `left` and `right`, a `track` apart."""
-    from sympy import Rational
-
-    s = clipped(y / r.track + Rational(1, 2))
+    s = clipped((2 * y / r.track + 1) / 2)
     right, left = r.right(x), r.left(x)
     return right + (left - right) * s**2 * (3 - 2 * s)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from pydantic import Field, PrivateAttr, model_validator
@@ -65,8 +66,11 @@ class Road(Component):
         return None
 
     def profile_heights(self, x: np.ndarray) -> np.ndarray:
-        """Return the heights, m, at positions x, m, for the rolling-radius filter; they are independent of y."""
-        raise NotImplementedError
+        """Return the heights, m, at positions x, m, for the rolling-radius filter; they are independent of y.
+
+        By default they are those of `height`, which then has to take arrays.
+        """
+        return self._of_equation(x, 0.0 * x)
 
     def heights(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
         """Return the unfiltered heights, m, at points along and across the road, m, for drawings.
@@ -74,11 +78,25 @@ class Road(Component):
         Raises
         ------
         NotImplementedError
-            If the road states no numbers.
+            If `height` does not take arrays, and there are no `profile_heights`.
         """
+        if type(self).profile_heights is Road.profile_heights:
+            return self._of_equation(x, y)
+        return self.profile_heights(x.ravel()).reshape(x.shape)
+
+    def _of_equation(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        """Return the unfiltered heights by `height`, with functions of arrays for tables and formulas."""
         import numpy as np
 
-        return np.zeros(x.shape) if self.level else np.asarray(self.profile_heights(x.ravel())).reshape(x.shape)
+        from .rolling_filter import of_arrays
+
+        plain = self.model_copy(update={"filter_radius": None})
+        plain._cam = None
+        r = SimpleNamespace(**{name: of_arrays(value) for name, value in plain.in_equations().items()})
+        try:
+            return np.broadcast_to(np.asarray(self.height(r, x, y), dtype=float), x.shape)
+        except (AttributeError, TypeError, ValueError):  # of a function of symbols
+            raise NotImplementedError from None
 
     def in_equations(self) -> dict[str, Any]:
         """Return its fields, and with `filter_radius` the table ``rolled`` of filtered heights."""
@@ -133,23 +151,26 @@ class Road(Component):
         return 1 if r.friction is None else r.friction(x, y)
 
 
-def ramp_at(x: np.ndarray, start: float, length: float) -> np.ndarray:
-    """Evaluate `ramp` for numbers."""
-    return ((x - start) / length).clip(0.0, 1.0)
+def functions_of(x: Any) -> Any:
+    """Return the module with the functions of x: of NumPy for arrays, of SymPy for symbols."""
+    from importlib import import_module
+
+    return import_module("numpy" if hasattr(x, "clip") else "sympy")
 
 
 def ramp(x: Any, start: Any, length: Any) -> Any:
-    """Return a linear ramp from 0 at `start` to 1 at `start` + `length`, constant outside."""
-    import sympy
+    """Return a linear ramp from 0 at `start` to 1 at `start` + `length`, constant outside; x may be an array."""
+    s = (x - start) / length
+    if hasattr(s, "clip"):
+        return s.clip(0.0, 1.0)
+    from sympy import Max, Min
 
-    return sympy.Min(sympy.Max((x - start) / length, 0), 1)
+    return Min(Max(s, 0), 1)
 
 
 def clipped(s: Any) -> Any:
-    """Return s limited to 0 .. 1 without events, for functions with zero slope at the limits."""
-    from sympy import Rational
-
-    return (magnitude(s) - magnitude(s - 1) + 1) * Rational(1, 2)
+    """Return s limited to 0 .. 1 without events, for functions with zero slope at the limits; s may be an array."""
+    return s.clip(0.0, 1.0) if hasattr(s, "clip") else (magnitude(s) - magnitude(s - 1) + 1) / 2
 
 
 def above_zero(x: Any) -> Any:

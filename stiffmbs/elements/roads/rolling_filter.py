@@ -14,6 +14,7 @@ from functools import lru_cache, partial
 from typing import TYPE_CHECKING, Any
 
 from ...errors import InputError
+from ...reading.formula.formula import Formula
 from ...reading.table import Table
 
 if TYPE_CHECKING:
@@ -129,6 +130,28 @@ def heights_of(table: Table, x: np.ndarray) -> np.ndarray:
     local = {"akima": Akima1DInterpolator, "monotone": PchipInterpolator}.get(table.interpolation)
     found = local(at, heights) if local else CubicSpline(at, heights, bc_type=table.ends or "natural")
     return np.asarray(found(inside) + found(inside, 1) * (x - inside))
+
+
+def of_arrays(value: Any) -> Any:
+    """Return a field of a road with functions of arrays for tables and formulas."""
+    match value:
+        case Table():
+            return partial(heights_of, value)
+        case Formula():
+            return partial(_formula_of_arrays, value)
+        case tuple():
+            return tuple(map(of_arrays, value))
+    return value
+
+
+def _formula_of_arrays(formula: Formula, *arguments: np.ndarray) -> Any:
+    from ...reading.formula.functions import IN_FORMULAS
+    from ...reading.formula.text import evaluate
+
+    functions = {name: function.array for name, function in IN_FORMULAS.items()}
+    tables = {name: partial(heights_of, table) for name, table in formula.tables.items()}
+    values = {**formula.values, **dict(zip(formula.variables, arguments, strict=True))}
+    return evaluate(formula.tree, values.__getitem__, functions | tables)
 
 
 def _disc(s: np.ndarray, shape: Shape) -> np.ndarray:

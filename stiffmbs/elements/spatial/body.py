@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field, ValidationInfo, WithJsonSchema, field_validator
@@ -26,34 +25,7 @@ MOMENT_ROUNDING = 1e-9
 
 
 class Body(Described):
-    """Spatial rigid body, with its own origin and axes for everything on it.
-
-    Parameters
-    ----------
-    mass : float
-        kg, greater than zero.
-    inertia : 3 floats or 3x3 floats
-        About the centre of mass in the body's axes, kg m^2: Ixx, Iyy, Izz, or the symmetric tensor by rows (its
-        off-diagonal entries are minus the products of inertia).
-    center_of_mass : tuple of float
-        In the body's axes from its origin, m.
-    position, orientation
-        Position of the body's origin (m) and orientation of its axes at the start; assembly changes them if joints
-        require it.
-    velocity : tuple of float
-        Velocity of the centre of mass at the start in ground axes, m/s.
-    omega : tuple of float
-        Angular velocity at the start in the body's axes, rad/s.
-    open : tuple of str
-        Which of ``velocity`` and ``omega`` are not prescribed. Joints and drives determine them from the others; if
-        they remain undetermined, the given value is used.
-    any_moments : bool
-        Whether the principal moments may violate the triangle inequality, which no mass distribution does.
-    markers : mapping of str to Placement
-        Named points and orientations on the body, in its axes from its origin.
-    geometry : mappings, optional
-        Shapes shown in drawings; by default derived from the markers and joints of the body.
-    """
+    """Spatial rigid body, with its own origin and axes for everything on it."""
 
     weighs: ClassVar[bool] = True
     """False for a body without weight."""
@@ -62,13 +34,16 @@ class Body(Described):
 
     mass: si.PositiveMass = Field(description="mass, kg")
     any_moments: bool = Field(
-        False, description="whether a principal moment may be greater than the sum of the other two"
+        False,
+        description="whether a principal moment may be greater than the sum of the other two, which no mass distribution has",
     )
     inertia: Inertia = Field(
-        description="Ixx, Iyy, Izz or the 3x3 tensor about the centre of mass in the body's own axes, kg m^2"
+        description="Ixx, Iyy, Izz or the symmetric 3x3 tensor (off the diagonal minus the products of inertia) about the centre of mass in the body's own axes, kg m^2"
     )
     center_of_mass: Point = Field(ORIGIN, description="in the body's own axes from its origin, m")
-    position: Point = Field(ORIGIN, description="of the body's origin at the start, m")
+    position: Point = Field(
+        ORIGIN, description="of the body's origin at the start, m; assembly changes the pose if joints require it"
+    )
     orientation: Orientation = Field(IDENTITY, description="of the body's own axes at the start")
     velocity: tuple[si.Velocity, si.Velocity, si.Velocity] = Field(
         (0.0, 0.0, 0.0), description="velocity of the centre of mass at the start, in ground axes, m/s"
@@ -77,32 +52,16 @@ class Body(Described):
         (0.0, 0.0, 0.0), description="angular velocity at the start, in the body's own axes, rad/s"
     )
     open: tuple[Literal["velocity", "omega"], ...] = Field(
-        (), description="which of velocity and omega follow at the start from joints, drives and what is given"
+        (),
+        description="which of velocity and omega joints and drives determine at the start; the given value is used if they do not",
     )
     markers: dict[str, Placement] = Field(
         default_factory=dict, description="named points and orientations on the body, in its own axes"
     )
     geometry: SpatialGeometry = Field(
-        (), description="shapes that drawings show: polyline, box, cylinder, sphere, mesh"
+        (),
+        description="shapes that drawings show: polyline, box, cylinder, sphere, mesh; by default derived from markers and joints",
     )
-
-    if TYPE_CHECKING:
-
-        def __init__(
-            self,
-            *,
-            mass: given.Number,
-            any_moments: bool = False,
-            inertia: given.Matrix,
-            center_of_mass: given.Numbers = ORIGIN,
-            position: given.Numbers = ORIGIN,
-            orientation: given.Orientation = IDENTITY,
-            velocity: given.Numbers = ORIGIN,
-            omega: given.Numbers = ORIGIN,
-            open: Sequence[Literal["velocity", "omega"]] = (),
-            markers: given.Markers = {},  # noqa: B006 is never called
-            geometry: given.Geometry = (),
-        ) -> None: ...
 
     @field_validator("inertia", mode="before")
     @classmethod

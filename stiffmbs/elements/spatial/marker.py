@@ -12,8 +12,7 @@ from ...reading.units import si
 from .orientation import IDENTITY, Orientation, matrix
 
 if TYPE_CHECKING:
-    from ...reading import given
-    from ...reading.handle import Handle
+    pass
 
 Point = tuple[si.Length, si.Length, si.Length]
 ORIGIN = (0.0, 0.0, 0.0)
@@ -25,10 +24,6 @@ class Placement(Described):
     point: Point = Field(ORIGIN, description="position in the body's own axes, from its origin, m")
     orientation: Orientation = Field(IDENTITY, description="of the marker's axes against the body's")
 
-    if TYPE_CHECKING:
-
-        def __init__(self, *, point: given.Numbers = ORIGIN, orientation: given.Orientation = IDENTITY) -> None: ...
-
     def numbers(self) -> tuple[float, ...]:
         """Return the inputs of kernels: the point, the rotation matrix by rows, and the quaternion."""
         return (*self.point, *(float(part) for part in matrix(self.orientation).ravel()), *self.orientation)
@@ -39,34 +34,12 @@ class Marker(MarkerReference):
 
     Written as ``cart`` (the body's origin with its axes), ``bar.end`` (a named marker of the body), ``ground``, or
     ``{body: bar, point: [-300 mm, 0, 0], orientation: {z: [1, 0, 0]}}``.
-
-    Parameters
-    ----------
-    body : str
-        The body, or ``"ground"``.
-    marker : str, optional
-        Name of a marker of the body; excludes `point` and `orientation`.
-    point : tuple of float
-        Position in the body's axes, from its origin, m.
-    orientation : Orientation
-        Orientation of the marker's axes relative to the body's. The axis of a joint is z.
     """
 
     dimensions = 3
 
     point: Point = Field(ORIGIN, description="position in the body's own axes, from its origin, m")
     orientation: Orientation = Field(IDENTITY, description="of the axes against the body's; a joint's axis is z")
-
-    if TYPE_CHECKING:
-
-        def __init__(
-            self,
-            *,
-            body: str | Handle,
-            marker: str | None = None,
-            point: given.Numbers = ORIGIN,
-            orientation: given.Orientation = IDENTITY,
-        ) -> None: ...
 
     def placement(self) -> Placement:
         """Return the explicit placement on the body."""

@@ -6,7 +6,6 @@ import ast
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 from pydantic import Field, field_validator, model_validator
 
@@ -14,8 +13,6 @@ from ...reading.fields import NAME_PATTERN
 from ...reading.formula.dimension import UNKNOWN
 from ...reading.formula.field import OfMotion
 from ...reading.formula.formula import Formula
-from ...reading.given import Law, Laws, Number, Numbers
-from ...reading.given import Matrix as GivenMatrix
 from ...reading.table import Table
 from ...reading.units import si
 from .state import AlgebraicState, Entry, SampledState, State, StateValue
@@ -79,10 +76,6 @@ class TransferFunction(Entry):
         description="coefficients of the denominator, that of the highest power of s first", min_length=1
     )
     input: OfMotion = Field(description="a formula of time, coordinates, velocities and states")
-
-    if TYPE_CHECKING:
-
-        def __init__(self, *, numerator: Numbers, denominator: Numbers, input: Law) -> None: ...
 
     @model_validator(mode="after")
     def _proper(self) -> TransferFunction:
@@ -149,13 +142,6 @@ class LinearSystem(Entry):
     outputs_: tuple[str, ...] = Field((), alias="outputs", description="names of the outputs, where there are several")
     start: Row | None = Field(None, description="initial values of x; zeros by default")
 
-    if TYPE_CHECKING:
-
-        def __init__(
-            self, *, a: GivenMatrix, b: GivenMatrix, c: GivenMatrix, input: Law | Laws, d: GivenMatrix | None = None,
-            outputs: Sequence[str] = (), start: Numbers | None = None,
-        ) -> None: ...  # fmt: skip
-
     @field_validator("input", mode="before")
     @classmethod
     def _one_or_more(cls, found: object) -> object:
@@ -217,13 +203,6 @@ class PID(Entry):
     ki: si.Anything = Field(0.0, description="integral gain")
     kd: si.Anything = Field(0.0, description="derivative gain")
     filter: si.PositiveTime | None = Field(None, description="time constant of the derivative's filter, s")
-
-    if TYPE_CHECKING:
-
-        def __init__(
-            self, *, input: Law, setpoint: Law | None = None, kp: Number = 0.0, ki: Number = 0.0, kd: Number = 0.0,
-            filter: Number | None = None,
-        ) -> None: ...  # fmt: skip
 
     @model_validator(mode="after")
     def _filtered(self) -> PID:

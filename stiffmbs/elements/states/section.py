@@ -108,19 +108,35 @@ def check_states(
             for _, markers in formula.measures():
                 for marker in markers:
                     check_marker(where, marker, bodies, on_ground)
-            for body in formula.bodies():
-                if body not in bodies and body not in joints and body != GROUND:
-                    raise ValueError(
-                        f"{where}: found the unknown body '{body}'{did_you_mean(body, bodies)}, expected {listed(bodies)}"
-                    )
-            check_reactions(where, formula, joints)
-            if known is not None:
-                check_states_of(where, formula, known)
-            for reason in names.validation_errors(formula, joints):
-                raise ValueError(f"{where}: {reason}")
+            check_formula(where, formula, bodies, joints, names, known)
 
 
-def check_reactions(where: str, formula: Formula, joints: Mapping[str, Any]) -> None:
+def check_formula(
+    where: str,
+    formula: Formula,
+    bodies: Mapping[str, Any],
+    joints: Mapping[str, Any],
+    names: FormulaNames,
+    states: Collection[str] | None,
+) -> None:
+    """Refuse a formula that names an unknown body, joint or state; the states may be unknown yet."""
+    for body in formula.bodies():
+        if body not in bodies and body not in joints and body != GROUND:
+            near = did_you_mean(body, bodies)
+            raise ValueError(f"{where}: found the unknown body '{body}'{near}, expected {listed(bodies)}")
+    _check_reactions(where, formula, joints)
+    known = formula.states if states is None else states
+    for state in formula.states:
+        if state not in known:
+            raise ValueError(
+                f"{where}: found the unknown name '{state}'{did_you_mean(state, known)} in '{formula.text}', expected t, a body's "
+                f"coordinate such as cart.x, a parameter or a state ({', '.join(sorted(known)) or 'there is none'})"
+            )
+    for reason in names.validation_errors(formula, joints):
+        raise ValueError(f"{where}: {reason}")
+
+
+def _check_reactions(where: str, formula: Formula, joints: Mapping[str, Any]) -> None:
     """Refuse a formula of reactions of unknown joints, or of joints that are not between two markers."""
     for name, joint in formula.reactions():
         if joint not in joints:
@@ -131,14 +147,4 @@ def check_reactions(where: str, formula: Formula, joints: Mapping[str, Any]) -> 
         if next(joints[joint].parts(JointName), None) or next(joints[joint].parts(Formula), None):
             raise ValueError(
                 f"{where}: found '{name}({joint})' of the type {joints[joint].kind}, expected a joint between markers without a formula"
-            )
-
-
-def check_states_of(where: str, formula: Formula, states: Collection[str]) -> None:
-    """Refuse a formula with unknown states."""
-    for state in formula.states:
-        if state not in states:
-            raise ValueError(
-                f"{where}: found the unknown name '{state}'{did_you_mean(state, states)} in '{formula.text}', expected t, a body's "
-                f"coordinate such as cart.x, a parameter or a state ({', '.join(sorted(states)) or 'there is none'})"
             )

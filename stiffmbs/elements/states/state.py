@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 from pydantic import AfterValidator, Field, model_validator
 
@@ -12,7 +12,6 @@ from ...reading.fields import Described
 from ...reading.formula.dimension import Known, measured_in, product
 from ...reading.formula.field import OfMotion
 from ...reading.formula.formula import Formula
-from ...reading.given import Law, Number
 from ...reading.units import si
 from ...reading.units.units import named_unit
 from .amount import Amount, AnyAmount, positive, stated_dimension
@@ -83,10 +82,6 @@ class State(Entry):
         Amount(1.0), description="a size of it that matters, for its absolute tolerance; 1 in SI units by default"
     )
 
-    if TYPE_CHECKING:
-
-        def __init__(self, *, rate: Law, start: Number = 0.0, scale: Number = 1.0) -> None: ...
-
     @model_validator(mode="after")
     def _rate_fits(self) -> State:
         _refuse_other_dimension(
@@ -122,10 +117,6 @@ class AlgebraicState(Entry):
         Amount(1.0), description="a size of it that matters, for its absolute tolerance; 1 in SI units by default"
     )
 
-    if TYPE_CHECKING:
-
-        def __init__(self, *, zero: Law, start: Number = 0.0, scale: Number = 1.0) -> None: ...
-
     def values(self, name: str) -> Iterator[tuple[str, StateValue]]:
         """Yield its unknowns by full name."""
         yield name, StateValue(self.zero, float(self.start), float(self.scale), algebraic=True)
@@ -155,10 +146,6 @@ class SampledState(Entry):
     period: si.PositiveTime = Field(description="time between two samples, s")
     offset: si.Time = Field(0.0, description="time of a sample, s: the others are whole periods before and after it")
     start: AnyAmount = Field(Amount(0.0), description="value before the first sample; a unit states its dimension")
-
-    if TYPE_CHECKING:
-
-        def __init__(self, *, update: Law, period: Number, offset: Number = 0.0, start: Number = 0.0) -> None: ...
 
     @model_validator(mode="after")
     def _update_fits(self) -> SampledState:

@@ -10,16 +10,14 @@ import re
 from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
-from pydantic import ValidationError as PydanticError
-
 from ...errors import InputError
 from ...reading.did_you_mean import did_you_mean
-from ...reading.fields import named_entries, sentence
+from ...reading.fields import located, named_entries
 from ...reading.files.quoted import written
 from ...reading.formula.functions import IN_FORMULAS, IN_NUMBERS
 from ...reading.formula.names import MEASURES, REACTIONS
 from ...reading.formula.nodes import TIME
-from ...reading.formula.text import UNIT, FormulaError
+from ...reading.formula.text import UNIT
 from ...reading.names import beginnings
 from ...reading.table import Table
 from ...reading.units.quantity import in_si, quantity
@@ -123,10 +121,8 @@ def read_parameter(
     name: str, value: Any, above: Mapping[str, Quantity], replaced: Mapping[str, Quantity] | None = None
 ) -> Quantity:
     """Read one parameter, given the ones above it; errors as for `read_parameters`."""
-    try:
+    with located(f"parameters.{name}"):
         found = quantity(value, above) if isinstance(value, str) else Quantity(in_si(value, "number"))
-    except FormulaError as error:
-        raise InputError(f"parameters.{name}: {error}") from None
     if replaced and name in replaced and found.dimension is None:
         return Quantity(found.value, replaced[name].dimension)
     return found
@@ -150,10 +146,8 @@ def read_tables(found: Any, parameters: Mapping[str, Quantity]) -> dict[str, Tab
     for name, table in named_entries("tables", found, "tables"):
         if name in (*IN_FORMULAS, *MEASURES, *REACTIONS, *parameters):
             raise InputError(f"tables.{name}: found the name of a function or parameter, expected another")
-        try:
+        with located(f"tables.{name}"):
             tables[name] = Table.model_validate(table, context={"parameters": parameters})
-        except PydanticError as error:
-            raise InputError(f"tables.{name}: {sentence(error)}") from None
     return tables
 
 
@@ -190,10 +184,8 @@ def _loop(where: str, text: Any, parameters: Mapping[str, Quantity]) -> tuple[st
     variable = match[1]
     if variable in parameters or variable in IN_NUMBERS:
         raise InputError(f"{where}.for: found the loop variable '{variable}', which has a meaning already")
-    try:
+    with located(f"{where}.for"):
         first, last = (quantity(bound, parameters).value for bound in (match[2], match[3]))
-    except FormulaError as error:
-        raise InputError(f"{where}.for: {error}") from None
     if first != round(first) or last != round(last) or last - first > MOST_REPEATS:
         raise InputError(
             f"{where}.for: found {first:g}..{last:g}, expected whole numbers, at most {MOST_REPEATS} apart"
@@ -212,10 +204,8 @@ def _filled(where: str, value: Any, names: Mapping[str, Quantity], variable: str
 
     def number(match: re.Match[str]) -> str:
         """Return the value of the expression in braces as text."""
-        try:
+        with located(where):
             result = quantity(match[1], names).value
-        except FormulaError as error:
-            raise InputError(f"{where}: {error}") from None
         return str(round(result)) if result == round(result) else repr(result)
 
     filled = _BRACES.sub(number, value)

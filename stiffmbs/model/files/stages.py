@@ -47,38 +47,23 @@ BOUNDS = ("at_least", "at_most", "equals")
 
 
 class Until(Described):
-    """Condition that ends a stage or changes its course (Adams: SENSOR).
+    """Condition that ends a stage or changes its course (Adams: SENSOR)."""
 
-    Parameters
-    ----------
-    request : str
-        Request whose value is monitored over the solver's internal steps.
-    at_least, at_most, equals : float
-        Exactly one: the condition is met when the value rises to it, falls to it, or reaches it from either side.
-    within : float
-        Tolerance for an extremum of the value that does not quite reach `equals`, and hysteresis: the distance by which
-        the value must move back before the condition can be met again.
-    then : str
-        ``next`` continues with the next stage, ``stop`` ends all stages, ``on`` continues this stage.
-    output : float, optional
-        Time between output points from then on, s; with ``on``.
-    sets : mapping of str to str
-        Inputs that are set to the value that a request has at that time.
-    """
-
-    request: str = Field(description="name of the request that is watched")
+    request: str = Field(description="name of the request that is watched over the solver's internal steps")
     at_least: Number | None = Field(None, description="the stage ends where the value comes to be this or more")
     at_most: Number | None = Field(None, description="where it comes to be this or less")
     equals: Number | None = Field(None, description="where it comes to this from either side")
     within: Annotated[float, Measured("number", at_least=0)] = Field(
         0.0,
-        description="how near to `equals` a value that turns round before it must come, and how far back before it counts again",
+        description="tolerance for an extremum that does not quite reach `equals`, and the distance by which the value must move back before the condition can be met again",
     )
     then: Literal["next", "stop", "on"] = Field(
-        "next", description="whether the next stage follows, none, or this one goes on"
+        "next", description="continue with the next stage, end all stages, or continue this one"
     )
     output: si.PositiveTime | None = Field(None, description="time between output points from there on, s; with on")
-    sets: dict[str, str] = Field(default_factory=dict, description="inputs that take the value of a request there")
+    sets: dict[str, str] = Field(
+        default_factory=dict, description="inputs that take the value that a request has at that time"
+    )
 
     @model_validator(mode="after")
     def _one_bound(self) -> Self:
@@ -96,27 +81,19 @@ GRIDS = ("output", "points")
 
 
 class Stage(Described):
-    """Stage of a scene, which starts where the previous one ends.
+    """Stage of a scene, which starts where the previous one ends."""
 
-    Parameters
-    ----------
-    analysis : str
-        ``dynamic`` over time, or ``static``: the equilibrium found from the state at the start of the stage, at that
-        time; with a duration, one at each output time.
-    change : mapping
-        Changes from the previous stage (from the scene, for the first), as a merge patch (RFC 7386): mappings are
-        merged, null removes an entry, anything else replaces the old value.
-    run : mapping
-        Settings of this stage, in addition to those of the scene.
-    end : float, optional
-        End time, s, independent of the start; in place of a duration.
-    until : mapping of str to Until
-        Conditions that end the stage earlier, by name.
-    """
-
-    analysis: Literal["dynamic", "static"] = Field("dynamic", description="over time, or the equilibrium at its start")
-    change: dict[str, Any] = Field(default_factory=dict, description="what is other than before; null takes away")
-    run: dict[str, Any] = Field(default_factory=dict, description="settings of this stage")
+    analysis: Literal["dynamic", "static"] = Field(
+        "dynamic",
+        description="over time, or static: the equilibrium found from the state at its start, at that time; with a duration, one at each output time",
+    )
+    change: dict[str, Any] = Field(
+        default_factory=dict,
+        description="changes from the previous stage, or the scene, as a merge patch (RFC 7386): null removes an entry",
+    )
+    run: dict[str, Any] = Field(
+        default_factory=dict, description="settings of this stage, in addition to those of the scene"
+    )
     end: si.Time | None = Field(None, description="when it ends, s, in place of a duration")
     until: dict[str, Until] = Field(default_factory=dict, description="conditions that end it earlier, by name")
 

@@ -9,15 +9,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from pydantic import ValidationError as PydanticError
-
 from ...errors import InputError
 from ...reading.did_you_mean import did_you_mean
-from ...reading.fields import sentence
+from ...reading.fields import located
 from ...reading.files.include import read_including
 from ...reading.files.quoted import written
 from ...reading.files.yaml_text import read_yaml
-from ...reading.formula.text import FormulaError
 from ...reading.units.units import Quantity
 from .frame import Use
 from .options import OPTIONS, choices_of
@@ -111,13 +108,8 @@ class Definitions:
                 raise InputError(
                     f"{where}: found the unknown key {written(key)}{near}, expected one of {', '.join(keys)}"
                 )
-        try:
+        with located(where):
             use = self.kind.model_validate(entry, context={"parameters": parameters})
-        except PydanticError as error:
-            message = sentence(error)
-            raise InputError(
-                f"{where}{'' if message.startswith('found') else '.'}{': ' if message.startswith('found') else ''}{message}"
-            ) from None
         if self.written(use.part) is None:
             own = list(map(str, self.parts)) if isinstance(self.parts, dict) else []
             near = did_you_mean(use.part, (*shipped_parts(), *own))
@@ -143,9 +135,7 @@ class Definitions:
 
 def definition_in_components(definition: dict[str, Any], vectors: Vectors, where: str) -> dict[str, Any]:
     """Return a definition with vectors replaced by their components."""
-    try:
+    with located(where):
         parameters = parameters_in_components(definition.get("parameters"), vectors, f"{where}.parameters")
         rest = in_components({key: value for key, value in definition.items() if key != "parameters"}, vectors)
-    except FormulaError as error:
-        raise InputError(f"{where}: {error}") from None
     return {"parameters": parameters, **rest}

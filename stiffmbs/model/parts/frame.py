@@ -18,24 +18,15 @@ STRAIGHT = 1e-6
 
 
 class Use(Described):
-    """Part placed in a scene or in another part.
-
-    Parameters
-    ----------
-    part : str
-        Name in ``parts``.
-    on : str, optional
-        Body that it is mounted on, its ``mount``. The default is ground, and within a part that part's mount.
-    parameters : mapping
-        Values of the part's parameters that differ from its defaults; formulas use the parameters of the enclosing
-        scene or part.
-    mounts : mapping
-        Bodies of further mounts, in place of the defaults.
-    """
+    """Part placed in a scene or in another part."""
 
     part: str = Field(description="which of the parts")
-    on: str | None = Field(None, description="the body that it is placed on; ground unless given")
-    parameters: dict[str, Any] = Field(default_factory=dict, description="values of the part's parameters")
+    on: str | None = Field(
+        None, description="the body that it is mounted on; ground unless given, and within a part that part's mount"
+    )
+    parameters: dict[str, Any] = Field(
+        default_factory=dict, description="values of the part's parameters, by formulas of the parameters around it"
+    )
     mounts: dict[str, str] = Field(
         default_factory=dict, description="further bodies that the part connects to, by what it calls them"
     )

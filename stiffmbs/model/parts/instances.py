@@ -8,6 +8,7 @@ from typing import Any
 
 from ...elements.body import check_names
 from ...errors import InputError
+from ...reading.fields import located
 from ...reading.files.quoted import written
 from ...reading.names import MOUNT, beginnings
 from ...reading.units.units import Quantity
@@ -174,10 +175,8 @@ def _above(instance: Instance | None) -> Iterator[Instance]:
 
 
 def _check_name(where: str, name: Any) -> None:
-    try:
+    with located(where):
         check_names([name], "a part")
-    except ValueError as error:
-        raise InputError(f"{where}: {error}") from None
     if name.partition(".")[0] == MOUNT:
         raise InputError(f"{where}.{name}: found the name of what a part is placed on, expected another")
 

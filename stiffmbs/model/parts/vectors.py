@@ -12,6 +12,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from ...errors import InputError
+from ...reading.fields import located
 from ...reading.files.quoted import quoted, written
 from ...reading.formula.text import FormulaError, parse
 
@@ -27,10 +28,8 @@ def vectors_of(parameters: Any, where: str) -> dict[str, int]:
     """
     vectors: dict[str, int] = {}
     for name, value in parameters.items() if isinstance(parameters, dict) else ():
-        try:
+        with located(f"{where}.{name}"):
             found = in_components(value, vectors) if isinstance(value, str) else value
-        except FormulaError as error:
-            raise InputError(f"{where}.{name}: {error}") from None
         if isinstance(name, str) and isinstance(found, list) and len(found) in (2, 3):
             vectors[name] = len(found)
     return vectors

@@ -7,10 +7,9 @@ from typing import Annotated, Any, Literal, Self
 
 import numpy as np
 from pydantic import Field, model_validator
-from pydantic import ValidationError as PydanticError
 
 from ...errors import InputError
-from ...reading.fields import Described, Measured, sentence
+from ...reading.fields import Described, Measured, located
 from ...reading.units import si
 from .curves import Curve, circle, curve_through
 from .lanes import STANDARDS, path_through
@@ -26,31 +25,10 @@ class Path(Described):
 
     The course is a spline through `points`, or a `circle`, or leads through the `lanes` of a standard. It becomes the
     tables ``path_x path_y path_cos path_sin path_curvature`` over the arc length, for use in formulas.
-
-    Parameters
-    ----------
-    points : tuple of (float, float)
-        Points of a cubic spline, x and y, m.
-    closed : bool
-        True for a lap: the spline returns to its first point, and the course repeats.
-    circle : float
-        Radius, m, positive to the left.
-    entry, transition : float
-        Straight line before a circle, and the length over which its curvature grows, m.
-    turns : float
-        Turns on the circle.
-    lanes : str
-        ``iso3888-1`` or ``iso3888-2``.
-    width : float
-        Width of the vehicle, which determines the lanes, m.
-    start : float
-        Straight distance before the first lane, m.
-    speed : tuple of (float, float)
-        Arc length, m, and speed, m/s, of a speed profile: the table ``path_speed``.
     """
 
-    points: tuple[Point2, ...] = Field((), description="points of a spline: x and y, m")
-    closed: bool = Field(False, description="whether the spline is a lap that returns to its first point")
+    points: tuple[Point2, ...] = Field((), description="points of a cubic spline: x and y, m")
+    closed: bool = Field(False, description="whether the spline is a lap that returns to its first point and repeats")
     circle: si.Length | None = Field(None, description="radius of a circle, m, positive to the left")
     entry: Annotated[float, Measured("length", at_least=0)] = Field(
         20.0, description="straight line before the circle, m"
@@ -66,7 +44,9 @@ class Path(Described):
     start: Annotated[float, Measured("length", at_least=0)] = Field(
         30.0, description="straight line before the first lane, m"
     )
-    speed: tuple[Station, ...] = Field((), description="speed profile: arc length, m, and speed, m/s")
+    speed: tuple[Station, ...] = Field(
+        (), description="speed profile: arc length, m, and speed, m/s; the table path_speed"
+    )
 
     @model_validator(mode="after")
     def _one_course(self) -> Self:
@@ -102,14 +82,10 @@ def with_path(raw: dict[str, Any], parameters: Mapping[str, Any]) -> dict[str, A
     """
     if raw.get(PATH) is None:
         return raw
-    try:
+    with located(PATH):
         path = Path.model_validate(raw[PATH], context={"parameters": parameters})
+    with located(f"{PATH}.points"):
         curve = path.curve()
-    except PydanticError as error:
-        message = sentence(error)
-        raise InputError(f"{PATH}: {message}" if message.startswith("found") else f"{PATH}.{message}") from None
-    except ValueError as error:
-        raise InputError(f"{PATH}.points: {error}") from None
     tables = raw.get("tables") or {}
     own = tables_of(curve)
     if path.speed:

@@ -1,0 +1,133 @@
+"""Contacts of a sphere with a sphere, a box and a cylinder."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pydantic import Field
+
+from ....reading.units import si
+from ...element import Symbolic
+from ...forces.friction import magnitude
+from ..impact import Impact, Touch
+from ..marker import Marker
+from ..wrench import along_axes, seen_from
+
+LEAST_DISTANCE = 1e-9
+"""Offset of distances in quadrature, m, for finite derivatives at zero."""
+
+
+def above(x: Any) -> Any:
+    """Return max(x, 0)."""
+    from sympy import Max
+
+    return Max(x, 0)
+
+
+def length(*parts: Any) -> Any:
+    """Return the length of a vector, with a finite derivative at zero."""
+    return magnitude(*parts, tiny=LEAST_DISTANCE**2)
+
+
+class SphereImpact(Impact):
+    """Base of contacts of a sphere about marker i with a solid about marker j; scenes use its subclasses.
+
+    The contact point is the point of the solid nearest to the sphere's centre. The run stops when the centre enters the
+    solid.
+    """
+
+    beyond = "found the centre of a sphere inside the solid that it meets, expected it outside: more stiffness, or a lower speed"
+
+    i: Marker = Field(description="the sphere's centre")
+    radius: si.PositiveLength = Field(description="of the sphere, m")
+
+    @classmethod
+    def way(cls, e: Symbolic) -> Any:
+        """Return the vector from the nearest point of the solid to the sphere's centre, along the axes of j."""
+        raise NotImplementedError
+
+    @classmethod
+    def touches(cls, e: Symbolic) -> list[Touch]:
+        """Return the contact at the nearest point."""
+        way = cls.way(e)
+        distance = e.named(length(*way))
+        normal = e.named(along_axes([part / distance for part in way], e.j.axes))
+        return [Touch(distance - e.radius, e.i.point - e.radius * normal, normal)]
+
+    @classmethod
+    def limits(cls, e: Symbolic) -> Any:
+        """Return the distance of the centre from the solid, less a thousandth of the radius."""
+        return (length(*cls.way(e)) - e.radius / 1000,)
+
+
+class SphereSphereImpact(SphereImpact):
+    """Contact of a sphere about marker i with a sphere about marker j.
+
+    The run stops when the centres coincide.
+    The force law is that of `Impact`: N = max(0, k (-g)^e - c g' step(g, -d, 1, 0, 0)), and mu(v) N.
+    """
+
+    kind = "sphere_sphere_impact"
+
+    j: Marker = Field(description="the other sphere's centre")
+    other_radius: si.PositiveLength = Field(description="of the sphere about j, m")
+
+    @classmethod
+    def way(cls, e: Symbolic) -> Any:
+        """Return the vector from the centre of j to that of i, along the axes of j."""
+        return e.named(seen_from(e.i.point, e.j))
+
+    @classmethod
+    def touches(cls, e: Symbolic) -> list[Touch]:
+        """Return the contact, with the gap reduced by the radius of the sphere about j."""
+        (touch,) = super().touches(e)
+        return [Touch(touch.gap - e.other_radius, touch.point, touch.normal)]
+
+
+class SphereBoxImpact(SphereImpact):
+    """Contact of a sphere about marker i with a face, an edge or a corner of a solid box.
+
+    The contact point is the point of the box nearest to the sphere's centre. The run stops when the centre enters the
+    box. The force law is that of `Impact`: N = max(0, k (-g)^e - c g' step(g, -d, 1, 0, 0)), and mu(v) N.
+    """
+
+    kind = "sphere_box_impact"
+
+    j: Marker = Field(description="the middle of the box, with its axes")
+    x: si.PositiveLength = Field(description="size of the box along x of j, m")
+    y: si.PositiveLength = Field(description="along y, m")
+    z: si.PositiveLength = Field(description="along z, m")
+
+    @classmethod
+    def way(cls, e: Symbolic) -> Any:
+        """Return the vector from the nearest point of the box to the sphere's centre, along the axes of j."""
+        from sympy import sign
+
+        at = e.named(seen_from(e.i.point, e.j))
+        return e.named(
+            [sign(part) * above(abs(part) - size / 2) for part, size in zip(at, (e.x, e.y, e.z), strict=True)]
+        )
+
+
+class SphereCylinderImpact(SphereImpact):
+    """Contact of a sphere about marker i with the lateral surface, an end or an edge of a solid cylinder.
+
+    The contact point is the point of the cylinder nearest to the sphere's centre. The run stops when the centre enters
+    the cylinder. The force law is that of `Impact`: N = max(0, k (-g)^e - c g' step(g, -d, 1, 0, 0)), and mu(v) N.
+    """
+
+    kind = "sphere_cylinder_impact"
+
+    j: Marker = Field(description="the middle of the cylinder, its z along the axis")
+    cylinder_radius: si.PositiveLength = Field(description="m")
+    cylinder_length: si.PositiveLength = Field(description="m")
+
+    @classmethod
+    def way(cls, e: Symbolic) -> Any:
+        """Return the vector from the nearest point of the cylinder to the sphere's centre, along the axes of j."""
+        from sympy import sign
+
+        x, y, z = e.named(seen_from(e.i.point, e.j))
+        out = e.named(length(x, y))
+        across = e.named(above(out - e.cylinder_radius) / out)
+        return e.named([across * x, across * y, sign(z) * above(abs(z) - e.cylinder_length / 2)])
