@@ -20,21 +20,23 @@ from stiffmbs.elements.element import Element
 from stiffmbs.elements.roads.envelope import Envelope
 from stiffmbs.elements.roads.road import Road
 from stiffmbs.elements.shape import OneFor
+from stiffmbs.elements.spatial.marker import Placement as SpatialPlacement
 from stiffmbs.elements.spatial.orientation import OrientationField
 from stiffmbs.elements.states.amount import Amount
 from stiffmbs.elements.tyres.coefficients import TyreProperties
 from stiffmbs.loaded_later import elements_of
+from stiffmbs.model.beams.section import Material
 from stiffmbs.reading.fields import Measured
 from stiffmbs.reading.formula.formula import Formula
 from stiffmbs.reading.joint_name import JointName
-from stiffmbs.reading.marker import MarkerReference
+from stiffmbs.reading.marker import MarkerReference, Placement
 from stiffmbs.reading.python_function import PythonFunction
 from stiffmbs.reading.table import Table
 
 ROOT = Path(stiffmbs.__file__).parent
 HEAD = '"""Types of the module; written by .ci/stubs.py."""\n'
 PLANE = """
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Literal
 
 from . import spatial as spatial
@@ -44,7 +46,6 @@ from .comparison.over import compare_over as compare_over
 from .compile.compile_model import compile_model as compile_model
 from .reading import given
 from .reading.handle import Handle as _Handle
-from .model.beams.planar import BeamBody as BeamBody
 from .elements.element import Force as Force
 from .elements.element import Joint as Joint
 from .model.model import Model as Model
@@ -100,14 +101,13 @@ from .reading.variation import Range as Range
 from .verification.verify import verify as verify
 """
 SPACE = """
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Literal
 
 from .reading import given
 from .reading.handle import Handle as _Handle
 from .elements.element import Force as Force
 from .elements.element import Joint as Joint
-from .model.beams.spatial import BeamBody as BeamBody
 from .model.spatial_model import Model as Model
 from .analyses.in_space import in_space as in_space
 """
@@ -115,6 +115,7 @@ VALUES = "__version__: str\nground: str"
 MODULES = {"__init__.pyi": (PLANE, VALUES, stiffmbs), "spatial.pyi": (SPACE, "", stiffmbs.spatial)}
 OTHERS = (
     "AlgebraicState",
+    "BeamBody",
     "Body",
     "LinearSystem",
     "Marker",
@@ -169,7 +170,7 @@ def _given(annotation: Any, metadata: Any = ()) -> str:
     if origin is tuple:
         return _of_many([_given(part) for part in parts if part is not Ellipsis])
     if origin is dict:
-        return "given.Markers"
+        return "given.Markers" if parts[1] in PLACEMENTS else f"Mapping[str, {_given(parts[1])}]"
     return _named(annotation, metadata)
 
 
@@ -197,9 +198,11 @@ TAKEN: Mapping[type, str] = {
     Road: "given.Road",
     TyreProperties: "given.TyreProperties",
     Envelope: "given.Envelope",
+    Material: "Mapping[str, object]",
 }
-GIVEN_AS = {"body": "str | _Handle"}
+GIVEN_AS = {"body": "str | _Handle", "elements": "given.Number | Sequence[int] | Mapping[str, given.Number]"}
 """Types of fields that take more than their own type shows."""
+PLACEMENTS = (Placement, SpatialPlacement)
 PLAIN = {bool: "bool", int: "int", str: "str", type(None): "None"}
 
 
@@ -208,6 +211,8 @@ def _named(annotation: Any, metadata: Any) -> str:
         return "given.Number"
     if annotation in PLAIN:
         return PLAIN[annotation]
+    if annotation is Any:
+        return "Mapping[str, object]"
     for base, word in TAKEN.items():
         if issubclass(annotation, base):
             return word

@@ -1,6 +1,6 @@
 """Types of the module; written by .ci/stubs.py."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Literal
 
 from stiffmbs.elements.body import Body as _Body
@@ -33,6 +33,7 @@ from stiffmbs.elements.states.linear_system import TransferFunction as _Transfer
 from stiffmbs.elements.states.state import AlgebraicState as _AlgebraicState
 from stiffmbs.elements.states.state import SampledState as _SampledState
 from stiffmbs.elements.states.state import State as _State
+from stiffmbs.model.beams.planar import BeamBody as _BeamBody
 from stiffmbs.reading.marker import Marker as _Marker
 from stiffmbs.reading.table import Table as _Table
 
@@ -57,7 +58,6 @@ from .errors import InputError as InputError
 from .errors import SolverError as SolverError
 from .errors import StiffmbsError as StiffmbsError
 from .live.page import open as open
-from .model.beams.planar import BeamBody as BeamBody
 from .model.model import Model as Model
 from .model.read_scene import read_scene as read_scene
 from .model.scene import Scene as Scene
@@ -121,6 +121,29 @@ class AppliedTorque(_AppliedTorque):
     """Torque on a body: constant, or a formula of time and of any measured quantity."""
     def __init__(
         self, *, i: given.Marker, j: given.Marker | None = ..., torque: given.Law, type: Literal["torque"] = ...
+    ) -> None: ...
+
+class BeamBody(_BeamBody):
+    """Geometrically exact beam in the plane: rigid nodes with lumped mass, joined by elements `exact_beam`."""
+    def __init__(
+        self,
+        *,
+        elements: given.Number | Sequence[int] | Mapping[str, given.Number],
+        interpolation: Literal["pairs", "spectral"] = ...,
+        section: Mapping[str, object] | None = ...,
+        section_end: Mapping[str, object] | None = ...,
+        material: Mapping[str, object] | None = ...,
+        mass_per_length: given.Number | None = ...,
+        damping: given.Number = ...,
+        stations: Mapping[str, given.Number] = ...,
+        start: given.Numbers | None = ...,
+        end: given.Numbers | None = ...,
+        through: given.Numbers | None = ...,
+        points: given.Matrix | None = ...,
+        stiffness: given.Numbers | None = ...,
+        inertia_per_length: given.Number | None = ...,
+        velocity: given.Numbers = ...,
+        omega: given.Number = ...,
     ) -> None: ...
 
 class BeamSection(_BeamSection):

@@ -1,6 +1,6 @@
 """Types of the module; written by .ci/stubs.py."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Literal
 
 from stiffmbs.elements.joints.constraint_equation import ConstraintEquation as _ConstraintEquation
@@ -56,11 +56,11 @@ from stiffmbs.elements.spatial.joints.tangent_to_curve import TangentToCurve as 
 from stiffmbs.elements.spatial.joints.thread import Thread as _Thread
 from stiffmbs.elements.spatial.joints.universal import Universal as _Universal
 from stiffmbs.elements.spatial.marker import Marker as _Marker
+from stiffmbs.model.beams.spatial import BeamBody as _BeamBody
 
 from .analyses.in_space import in_space as in_space
 from .elements.element import Force as Force
 from .elements.element import Joint as Joint
-from .model.beams.spatial import BeamBody as BeamBody
 from .model.spatial_model import Model as Model
 from .reading import given
 from .reading.handle import Handle as _Handle
@@ -110,6 +110,30 @@ class Beam(_Beam):
         damping_ratio: given.Number | None = ...,
         damping: given.Matrix = ...,
         type: Literal["beam"] = ...,
+    ) -> None: ...
+
+class BeamBody(_BeamBody):
+    """Geometrically exact beam in space: rigid nodes with lumped mass, joined by elements `exact_beam`."""
+    def __init__(
+        self,
+        *,
+        elements: given.Number | Sequence[int] | Mapping[str, given.Number],
+        interpolation: Literal["pairs", "spectral"] = ...,
+        section: Mapping[str, object] | None = ...,
+        section_end: Mapping[str, object] | None = ...,
+        material: Mapping[str, object] | None = ...,
+        mass_per_length: given.Number | None = ...,
+        damping: given.Number = ...,
+        stations: Mapping[str, given.Number] = ...,
+        start: given.Numbers | None = ...,
+        end: given.Numbers | None = ...,
+        through: given.Numbers | None = ...,
+        points: given.Matrix | None = ...,
+        up: given.Numbers | None = ...,
+        stiffness: given.Numbers | None = ...,
+        inertia_per_length: given.Numbers | None = ...,
+        velocity: given.Numbers = ...,
+        omega: given.Numbers = ...,
     ) -> None: ...
 
 class BeamSection(_BeamSection):

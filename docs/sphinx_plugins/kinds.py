@@ -188,7 +188,8 @@ def sources(element: type[Element]) -> Iterator[str]:
     ((base, names),) = ((base, names) for base, names in EQUATIONS.items() if issubclass(element, base))
     for name in names:
         own, inherited = (inspect.getattr_static(owner, name, None) for owner in (element, base))
-        if own is not inherited:
+        is_coordinate = name in ("displacement", "angle")
+        if own is not inherited and not (is_coordinate and name not in element.free_coordinates()):  # type: ignore[attr-defined]
             source = dedent(inspect.getsource(getattr(element, name)))
             yield source.removeprefix("@staticmethod\n").removeprefix("@classmethod\n").rstrip()
 

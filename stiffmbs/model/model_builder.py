@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from typing import Any, overload
 
 from pydantic import TypeAdapter
+from pydantic import ValidationError as PydanticError
 
 from ..elements.body import LineBody
 from ..elements.element import Force, Joint
@@ -16,7 +17,7 @@ from ..elements.requests.output_field import read_request
 from ..elements.states.amount import InputValue
 from ..elements.states.linear_system import StateEntry
 from ..errors import InputError
-from ..reading.fields import located
+from ..reading.fields import sentence
 from ..reading.formula.text import FormulaError
 from ..reading.given import Law
 from ..reading.marker import GROUND, MarkerReference
@@ -154,8 +155,10 @@ class ModelBuilder(Sections[Data, Body, BodyHandle]):
             If the name is taken, or the value is none of these.
         """
         self._check_name(name)
-        with located(f"inputs.{name}"):
+        try:
             self.inputs[name] = TypeAdapter(InputValue).validate_python(value)
+        except PydanticError as error:
+            raise InputError(f"inputs.{name}: {sentence(error)}") from None
 
     def request(self, name: str, formula: Law | Mapping[str, Law]) -> None:
         """Report a formula as a channel of the given name, or several formulas as ``name.component``.

@@ -21,7 +21,6 @@ from .units import si
 
 if TYPE_CHECKING:
     from ..elements.element import Element
-    from ..model.model_data import ModelData
 
 _REFERENCE = {"type": "string", "description": "a body ('cart'), a marker of a body ('bar.end'), or 'ground'"}
 
@@ -154,24 +153,3 @@ class PlacedMarkers(dict[MarkerReference, tuple[str, tuple[float, ...]]]):
         body, placed = self._model.carried(marker)
         self[marker] = found = body, placed.numbers()
         return found
-
-
-def same_turn(model: ModelData, i: Marker, j: Marker) -> Marker:
-    """Return marker i with its angle reduced by the full turns between the initial markers i and j.
-
-    An equation between both angles then holds in the described poses.
-    """
-    turns = round((model.initial_marker(i).angle - model.initial_marker(j).angle) / math.tau)
-    if not turns:
-        return i
-    placed = model.place(i)
-    return Marker(body=i.body, point=placed.point, angle=placed.angle - math.tau * turns)
-
-
-class InOneTurn:
-    """Base of planar joints that constrain the angles of their markers, within the turn of the described poses."""
-
-    def at_initial_pose(self, model: ModelData) -> Any:
-        """Return the joint with the angle of marker i in the same turn as that of marker j."""
-        joint: Any = self
-        return joint.model_copy(update={"i": same_turn(model, joint.i, joint.j)})

@@ -2,26 +2,22 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, ClassVar, Generic, TypeVar
+from typing import Annotated, Any, ClassVar, Generic
 
 from pydantic import Field
 
 from ...reading.fields import Measured
-from ...reading.marker import Marker, MarkerReference
-from ..element import Joint, Symbolic
+from ...reading.marker import Marker
+from ..element import Symbolic
+from .pair import M, Pair
 
-M = TypeVar("M", bound=MarkerReference)
 
-
-class Rod(Joint, Generic[M]):
+class Rod(Pair[M], Generic[M]):
     """Base of the planar and the spatial distance joint."""
 
     kind = "distance"
-    reflected = {}
     equations: ClassVar[tuple[str, ...]] = ("length",)
 
-    i: M = Field(description="marker of the first body, on which the reaction is reported")
-    j: M = Field(description="marker of the second body")
     length: Annotated[float, Measured("length", above=0)] = Field(description="L, from point to point, m")
 
     def spins_with(self) -> dict[str, str]:

@@ -4,26 +4,20 @@ from __future__ import annotations
 
 from typing import Any
 
-from pydantic import Field
-
-from ...reading.marker import InOneTurn, Marker
-from ..element import Joint, Symbolic
+from ..element import Symbolic
+from .pair import InOneTurn
 
 
-class Fixed(InOneTurn, Joint):
+class Fixed(InOneTurn):
     """Weld: two markers coincide in position and direction.
 
     The reaction is a force of any direction and a torque. This is Adams' FIXED in the plane.
     """
 
     kind = "fixed"
-    reflected = {}
     equations = ("x", "y", "angle")
     elastic = "bushing"
     keeps_in_plane = True
-
-    i: Marker = Field(description="marker of the first body, on which the reaction is reported")
-    j: Marker = Field(description="marker of the second body")
 
     @staticmethod
     def position(e: Symbolic) -> Any:

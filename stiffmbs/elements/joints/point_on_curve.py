@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Annotated, Any, ClassVar, Generic, Self, TypeVar
+from typing import Annotated, Any, ClassVar, Generic, Self
 
 import numpy as np
 from pydantic import Field, field_validator, model_validator
@@ -13,11 +13,11 @@ from ...reading.fields import exactly_one
 from ...reading.formula.field import FormulaOf
 from ...reading.formula.formula import Formula
 from ...reading.formula.value import formula_value
-from ...reading.marker import Marker, MarkerReference
+from ...reading.marker import Marker
 from ...reading.table import Table
 from ..element import Joint, Symbolic
+from .pair import M, PlanarPair
 
-M = TypeVar("M", bound=MarkerReference)
 TURN = 2 * math.pi
 CLOSED = 1e-9
 """Tolerance of the change over a full turn, relative to the largest radius, for a closed cam."""
@@ -81,11 +81,7 @@ class PointOnCurve(Curve[Marker]):
     """
 
     further_coordinates = ("displacement_x", "displacement_y", "angle")
-
-    @staticmethod
-    def angle(e: Symbolic) -> Any:
-        """Return the angle of marker i relative to marker j."""
-        return e.i.angle - e.j.angle
+    angle: ClassVar = staticmethod(PlanarPair.angle)
 
     @staticmethod
     def position(e: Symbolic) -> Any:

@@ -7,10 +7,11 @@ from typing import Any
 from pydantic import Field
 
 from ...reading.marker import Marker
-from ..element import Joint, Symbolic
+from ..element import Symbolic
+from .pair import PlanarPair
 
 
-class PointOnLine(Joint):
+class PointOnLine(PlanarPair):
     """Pin in a slot: the point of marker i remains on the line through marker j along j's axis, d . n_j = 0.
 
     Body i can rotate. Nikravesh, Computer-Aided Analysis of Mechanical Systems (1988), section 4.2.1 (the first of the
@@ -18,7 +19,6 @@ class PointOnLine(Joint):
     """
 
     kind = "point_on_line"
-    reflected = {}
     equations = ("normal",)
     coordinates = ("displacement",)
     further_coordinates = ("angle",)
@@ -30,13 +30,3 @@ class PointOnLine(Joint):
     @staticmethod
     def position(e: Symbolic) -> Any:
         return [(e.i.point - e.j.point).dot(e.j.normal)]
-
-    @staticmethod
-    def displacement(e: Symbolic) -> Any:
-        """Return the displacement of the pin along the line, from marker j."""
-        return (e.i.point - e.j.point).dot(e.j.axis)
-
-    @staticmethod
-    def angle(e: Symbolic) -> Any:
-        """Return the angle of marker i relative to marker j."""
-        return e.i.angle - e.j.angle

@@ -6,12 +6,13 @@ from typing import Any
 
 from pydantic import Field
 
-from ...reading.marker import InOneTurn, Marker
-from ..element import Joint, Symbolic
+from ...reading.marker import Marker
+from ..element import Symbolic
 from ..forces.friction import Loads, magnitude
+from .pair import InOneTurn
 
 
-class Prismatic(InOneTurn, Joint):
+class Prismatic(InOneTurn):
     """Slider: marker i remains on the line through marker j along j's axis, and keeps j's direction.
 
     The reaction is a force normal to the line and a torque.
@@ -21,7 +22,6 @@ class Prismatic(InOneTurn, Joint):
     """
 
     kind = "prismatic"
-    reflected = {}
     equations = ("normal", "angle")
     coordinates = ("displacement",)
     elastic = "bushing"
@@ -33,11 +33,6 @@ class Prismatic(InOneTurn, Joint):
     @staticmethod
     def position(e: Symbolic) -> Any:
         return [(e.i.point - e.j.point).dot(e.j.normal), e.i.angle - e.j.angle]
-
-    @staticmethod
-    def displacement(e: Symbolic) -> Any:
-        """Return the displacement of marker i along the axis of marker j."""
-        return (e.i.point - e.j.point).dot(e.j.axis)
 
     @staticmethod
     def loads(e: Symbolic) -> Loads:

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
-from pydantic import Field
-
-from ...reading.marker import Marker
-from ..element import Joint, Symbolic
+from ..element import Symbolic
 from ..forces.friction import Loads, magnitude
+from .pair import PlanarPair
 
 
-class Revolute(Joint):
+class Revolute(PlanarPair):
     """Pin: a point of body i and a point of body j coincide.
 
     The reaction is a force of any direction at the pin, without torque.
@@ -20,23 +18,14 @@ class Revolute(Joint):
     """
 
     kind = "revolute"
-    reflected = {}
     equations = ("x", "y")
     coordinates = ("angle",)
     elastic = "bushing"
     keeps_in_plane = True
 
-    i: Marker = Field(description="marker of the first body, on which the reaction is reported")
-    j: Marker = Field(description="marker of the second body")
-
     @staticmethod
     def position(e: Symbolic) -> Any:
         return e.i.point - e.j.point
-
-    @staticmethod
-    def angle(e: Symbolic) -> Any:
-        """Return the angle of marker i relative to marker j."""
-        return e.i.angle - e.j.angle
 
     @staticmethod
     def loads(e: Symbolic) -> Loads:

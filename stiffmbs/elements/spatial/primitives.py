@@ -9,10 +9,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
-from pydantic import Field
-
-from ..element import Joint
+from ..element import Symbolic
 from ..initial_pose import InitialPose
+from ..joints.pair import Pair
 from .marker import Marker
 
 if TYPE_CHECKING:
@@ -63,33 +62,30 @@ def on_axis(i: Any, j: Any) -> list[Any]:
     return [along(i, j, j.x), along(i, j, j.y)]
 
 
-def along_z(e: Any) -> Any:
-    """Return the displacement of marker i along the z axis of marker j."""
-    return along(e.i, e.j, e.j.z)
+class SpatialJoint(Pair[Marker]):
+    """Base of the spatial joints between two markers; a subclass names its coordinates among these."""
 
+    @staticmethod
+    def angle(e: Symbolic) -> Any:
+        """Return the angle of marker i relative to marker j about their common z axis, with full revolutions."""
+        return e.angle(e.i.x.dot(e.j.y), e.i.x.dot(e.j.x))
 
-def angle_about_z(e: Any) -> Any:
-    """Return the angle of marker i relative to marker j about their common z axis, with full revolutions."""
-    return e.angle(e.i.x.dot(e.j.y), e.i.x.dot(e.j.x))
+    @staticmethod
+    def displacement(e: Symbolic) -> Any:
+        """Return the displacement of marker i along the z axis of marker j."""
+        return along(e.i, e.j, e.j.z)
 
+    displacement_z = displacement
 
-def along_x(e: Any) -> Any:
-    """Return the displacement of marker i along the x axis of marker j."""
-    return along(e.i, e.j, e.j.x)
+    @staticmethod
+    def displacement_x(e: Symbolic) -> Any:
+        """Return the displacement of marker i along the x axis of marker j."""
+        return along(e.i, e.j, e.j.x)
 
-
-def along_y(e: Any) -> Any:
-    """Return the displacement of marker i along the y axis of marker j."""
-    return along(e.i, e.j, e.j.y)
-
-
-class SpatialJoint(Joint):
-    """Base of the spatial joints between two markers; scenes use its subclasses."""
-
-    reflected = {}
-
-    i: Marker = Field(description="marker of the first body, on which the reaction is reported")
-    j: Marker = Field(description="marker of the second body")
+    @staticmethod
+    def displacement_y(e: Symbolic) -> Any:
+        """Return the displacement of marker i along the y axis of marker j."""
+        return along(e.i, e.j, e.j.y)
 
     @staticmethod
     def initially(model: ModelData, i: Marker, j: Marker) -> Iterator[str]:

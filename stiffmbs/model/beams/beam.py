@@ -18,6 +18,8 @@ from .axis import Piece, arc_through, pieces_through
 from .division import ElementsField
 from .section import AnySection, Material
 
+Bending = Annotated[float, Measured("bending stiffness", above=0)]
+InertiaPerLength = Annotated[float, Measured("inertia per length", above=0)]
 MassPerLength = Annotated[float, Measured("mass per length", above=0)]
 
 

@@ -2,22 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+from typing import ClassVar
 
 from pydantic import Field
 
-from ...reading.fields import Measured
 from ...reading.units import si
-from .beam import Beam
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from ...reading import given
+from .beam import Beam, Bending, InertiaPerLength
 
 Point = tuple[si.Length, si.Length, si.Length]
-Bending = Annotated[float, Measured("bending stiffness", above=0)]
-InertiaPerLength = Annotated[float, Measured("inertia per length", above=0)]
 
 
 class BeamBody(Beam):
@@ -25,31 +17,6 @@ class BeamBody(Beam):
 
     Its nodes are bodies with the names ``start``, ``node1``, ``node2`` ..., ``end`` and those of its stations, after
     its own name and a dot. A node's x axis is the tangent, y and z are axes 2 and 3 of the section.
-
-    Parameters
-    ----------
-    start, end : 3 floats
-        Ends, m.
-    through : 3 floats, optional
-        Another point of an arc, m.
-    points : sequence of 3 floats, optional
-        In place of `start` and `end`: corners of straight pieces, rigidly connected, m.
-    up : 3 floats, optional
-        Direction to which axis 3 of the section, along its height, is nearest; z by default, or x for a
-        nearly vertical piece.
-    elements : int or sequence of int
-        In all, or in each interval between ends, corners and stations.
-    interpolation : {'pairs', 'spectral'}
-        Of the strain: constant between two nodes, or by polynomials through three to five nodes, of higher order.
-    section, material : mappings
-        Cross section and material, or in their place `stiffness`, `mass_per_length` and `inertia_per_length`.
-    section_end : mapping, optional
-    damping : float
-        Viscous over elastic stiffness, s.
-    stations : mapping of str to float
-        Further nodes by their distance from the start, m.
-    velocity, omega : 3 floats
-        Velocity of the start point and angular velocity of the whole beam at the start of the run, m/s, rad/s.
     """
 
     dimensions: ClassVar[int] = 3
@@ -57,7 +24,9 @@ class BeamBody(Beam):
     start: Point | None = Field(None, description="its start, m")
     end: Point | None = Field(None, description="its end, m")
     through: Point | None = Field(None, description="a further point of an arc from start to end, m")
-    points: tuple[Point, ...] | None = Field(None, min_length=2, description="corners of straight pieces, m")
+    points: tuple[Point, ...] | None = Field(
+        None, min_length=2, description="in place of start and end: corners of straight pieces, rigidly connected, m"
+    )
     up: tuple[si.Number, si.Number, si.Number] | None = Field(
         None, description="direction of axis 3 of the section; z by default, or x for a nearly vertical piece"
     )
@@ -71,29 +40,5 @@ class BeamBody(Beam):
         (0.0, 0.0, 0.0), description="of its start point, m/s"
     )
     omega: tuple[si.AngularVelocity, si.AngularVelocity, si.AngularVelocity] = Field(
-        (0.0, 0.0, 0.0), description="of the whole beam, rad/s"
+        (0.0, 0.0, 0.0), description="of the whole beam at the start of the run, rad/s"
     )
-
-    if TYPE_CHECKING:
-
-        def __init__(
-            self,
-            *,
-            elements: given.Number | Sequence[int],
-            interpolation: str = "pairs",
-            start: given.Numbers | None = None,
-            end: given.Numbers | None = None,
-            through: given.Numbers | None = None,
-            points: Sequence[given.Numbers] | None = None,
-            up: given.Numbers | None = None,
-            section: Mapping[str, Any] | None = None,
-            section_end: Mapping[str, Any] | None = None,
-            material: Mapping[str, Any] | None = None,
-            stiffness: given.Numbers | None = None,
-            mass_per_length: given.Number | None = None,
-            inertia_per_length: given.Numbers | None = None,
-            damping: given.Number = 0.0,
-            stations: Mapping[str, given.Number] = ...,
-            velocity: given.Numbers = ...,
-            omega: given.Numbers = ...,
-        ) -> None: ...

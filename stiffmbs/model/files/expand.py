@@ -10,9 +10,11 @@ import re
 from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
+from pydantic import ValidationError as PydanticError
+
 from ...errors import InputError
 from ...reading.did_you_mean import did_you_mean
-from ...reading.fields import located, named_entries
+from ...reading.fields import located, named_entries, sentence
 from ...reading.files.quoted import written
 from ...reading.formula.functions import IN_FORMULAS, IN_NUMBERS
 from ...reading.formula.names import MEASURES, REACTIONS
@@ -146,8 +148,10 @@ def read_tables(found: Any, parameters: Mapping[str, Quantity]) -> dict[str, Tab
     for name, table in named_entries("tables", found, "tables"):
         if name in (*IN_FORMULAS, *MEASURES, *REACTIONS, *parameters):
             raise InputError(f"tables.{name}: found the name of a function or parameter, expected another")
-        with located(f"tables.{name}"):
+        try:
             tables[name] = Table.model_validate(table, context={"parameters": parameters})
+        except PydanticError as error:
+            raise InputError(f"tables.{name}: {sentence(error)}") from None
     return tables
 
 

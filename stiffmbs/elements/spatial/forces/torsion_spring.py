@@ -10,7 +10,7 @@ from ...forces.torsion_spring import AngleSpring
 from ...initial_pose import InitialPose
 from ..branches import initially_without_axis
 from ..marker import Marker
-from ..primitives import angle_about_z
+from ..primitives import SpatialJoint
 
 
 class TorsionSpring(AngleSpring[Marker]):
@@ -31,4 +31,4 @@ class TorsionSpring(AngleSpring[Marker]):
 
     @staticmethod
     def angle(e: Symbolic) -> Any:
-        return angle_about_z(e)
+        return SpatialJoint.angle(e)

@@ -10,7 +10,7 @@ from ...element import Symbolic
 from ...forces.friction import Loads, magnitude
 from ..branches import initially_apart
 from ..marker import Marker
-from ..primitives import ALIGN, ON_AXIS, SpatialJoint, align, along_z, angle_about_z, on_axis
+from ..primitives import ALIGN, ON_AXIS, SpatialJoint, align, on_axis
 
 
 class Cylindrical(SpatialJoint):
@@ -28,8 +28,6 @@ class Cylindrical(SpatialJoint):
     transmits = ("fx", "fy", "tx", "ty")
     elastic = "bushing"
     initially: ClassVar = staticmethod(initially_apart)
-    displacement: ClassVar = staticmethod(along_z)
-    angle: ClassVar = staticmethod(angle_about_z)
 
     j: Marker = Field(description="marker whose z axis is the line to slide along and to turn about")
 

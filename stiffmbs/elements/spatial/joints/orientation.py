@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 
 from ...element import Symbolic
 from ..branches import initially_rotated
-from ..primitives import ORIENT, SpatialJoint, along_x, along_y, along_z, orient
+from ..primitives import ORIENT, SpatialJoint, orient
 
 
 class Orientation(SpatialJoint):
@@ -25,9 +25,6 @@ class Orientation(SpatialJoint):
     further_coordinates = ("displacement_x", "displacement_y", "displacement_z")
     transmits = ("tx", "ty", "tz")
     elastic = "bushing"
-    displacement_x: ClassVar = staticmethod(along_x)
-    displacement_y: ClassVar = staticmethod(along_y)
-    displacement_z: ClassVar = staticmethod(along_z)
     initially: ClassVar = staticmethod(initially_rotated)
 
     @staticmethod

@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 
 from ...element import Symbolic
 from ..branches import initially_apart
-from ..primitives import ALIGN, SpatialJoint, align, along_x, along_y, along_z, angle_about_z
+from ..primitives import ALIGN, SpatialJoint, align
 
 
 class Parallel(SpatialJoint):
@@ -22,10 +22,6 @@ class Parallel(SpatialJoint):
     further_coordinates = ("displacement_x", "displacement_y", "displacement_z", "angle")
     transmits = ("tx", "ty")
     elastic = "bushing"
-    displacement_x: ClassVar = staticmethod(along_x)
-    displacement_y: ClassVar = staticmethod(along_y)
-    displacement_z: ClassVar = staticmethod(along_z)
-    angle: ClassVar = staticmethod(angle_about_z)
     initially: ClassVar = staticmethod(initially_apart)
 
     @staticmethod

@@ -9,7 +9,7 @@ from pydantic import Field
 from ...element import Symbolic
 from ..branches import initially_apart
 from ..marker import Marker
-from ..primitives import ALIGN, IN_PLANE, SpatialJoint, align, along, along_x, along_y, angle_about_z
+from ..primitives import ALIGN, IN_PLANE, SpatialJoint, align, along
 
 
 class Planar(SpatialJoint):
@@ -27,9 +27,6 @@ class Planar(SpatialJoint):
     transmits = ("fz", "tx", "ty")
     elastic = "bushing"
     initially: ClassVar = staticmethod(initially_apart)
-    displacement_x: ClassVar = staticmethod(along_x)
-    displacement_y: ClassVar = staticmethod(along_y)
-    angle: ClassVar = staticmethod(angle_about_z)
 
     j: Marker = Field(description="marker whose xy plane is the one to slide on")
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import Any
 
 from pydantic import Field
 
 from ...element import Symbolic
 from ..marker import Marker
-from ..primitives import ON_AXIS, SpatialJoint, along_z, on_axis
+from ..primitives import ON_AXIS, SpatialJoint, on_axis
 
 
 class PointOnLine(SpatialJoint):
@@ -24,7 +24,6 @@ class PointOnLine(SpatialJoint):
     coordinates = ("displacement",)
     transmits = ("fx", "fy")
     elastic = "bushing"
-    displacement: ClassVar = staticmethod(along_z)
 
     i: Marker = Field(description="marker of the body with the point, on which the reaction is reported")
     j: Marker = Field(description="marker whose z axis is the line")

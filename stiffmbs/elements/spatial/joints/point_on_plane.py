@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import Any
 
 from pydantic import Field
 
 from ...element import Symbolic
 from ..marker import Marker
-from ..primitives import IN_PLANE, SpatialJoint, along, along_x, along_y
+from ..primitives import IN_PLANE, SpatialJoint, along
 
 
 class PointOnPlane(SpatialJoint):
@@ -24,8 +24,6 @@ class PointOnPlane(SpatialJoint):
     further_coordinates = ("displacement_x", "displacement_y")
     transmits = ("fz",)
     elastic = "bushing"
-    displacement_x: ClassVar = staticmethod(along_x)
-    displacement_y: ClassVar = staticmethod(along_y)
 
     i: Marker = Field(description="marker of the body with the point, on which the reaction is reported")
     j: Marker = Field(description="marker whose xy plane is the plane")

@@ -10,7 +10,7 @@ from ...element import Symbolic
 from ...forces.friction import Loads, magnitude
 from ..branches import initially_askew
 from ..marker import Marker
-from ..primitives import ON_AXIS, ORIENT, SpatialJoint, along_z, on_axis, orient
+from ..primitives import ON_AXIS, ORIENT, SpatialJoint, on_axis, orient
 
 
 class Prismatic(SpatialJoint):
@@ -27,7 +27,6 @@ class Prismatic(SpatialJoint):
     transmits = ("fx", "fy", "tx", "ty", "tz")
     elastic = "bushing"
     initially: ClassVar = staticmethod(initially_askew)
-    displacement: ClassVar = staticmethod(along_z)
 
     i: Marker = Field(description="marker of the sliding body, on which the reaction is reported")
     j: Marker = Field(description="marker whose z axis is the line to slide along")

@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 from ...element import Symbolic
 from ...forces.friction import Loads, magnitude
 from ..branches import initially_apart
-from ..primitives import ALIGN, COINCIDE, SpatialJoint, align, angle_about_z, coincide
+from ..primitives import ALIGN, COINCIDE, SpatialJoint, align, coincide
 
 
 class Revolute(SpatialJoint):
@@ -24,7 +24,6 @@ class Revolute(SpatialJoint):
     transmits = ("fx", "fy", "fz", "tx", "ty")
     elastic = "bushing"
     initially: ClassVar = staticmethod(initially_apart)
-    angle: ClassVar = staticmethod(angle_about_z)
 
     def spins_with(self) -> dict[str, str]:
         return {"i": "z", "j": "z"}

@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 from ...element import Symbolic
 from ...initial_pose import InitialPose
 from ..branches import initially_apart
-from ..primitives import ALIGN, ON_AXIS, align, along_z, angle_about_z, on_axis
+from ..primitives import ALIGN, ON_AXIS, SpatialJoint, align, on_axis
 from .thread import Thread
 
 
@@ -28,8 +28,8 @@ class Screw(Thread):
     reflected = {"pitch": "pitch", "offset": "z"}
     equations = (*ON_AXIS, *ALIGN, *Thread.equations)
     coordinates = ("displacement", "angle")
-    displacement: ClassVar = staticmethod(along_z)
-    angle: ClassVar = staticmethod(angle_about_z)
+    displacement: ClassVar = staticmethod(SpatialJoint.displacement)
+    angle: ClassVar = staticmethod(SpatialJoint.angle)
 
     def invalid_placement(self, pose: InitialPose) -> Iterator[str]:
         yield from initially_apart(pose.model, self.i, self.j)

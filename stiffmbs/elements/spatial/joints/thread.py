@@ -11,7 +11,7 @@ from ....reading.units import si
 from ...element import Symbolic
 from ...joints.relation import OffsetConstraint
 from ..marker import Marker
-from ..primitives import along_z, angle_about_z
+from ..primitives import SpatialJoint
 
 
 class Thread(OffsetConstraint):
@@ -36,4 +36,4 @@ class Thread(OffsetConstraint):
 
     @staticmethod
     def relation(e: Symbolic) -> Any:
-        return along_z(e) - e.pitch / (2 * math.pi) * angle_about_z(e) - e.offset
+        return SpatialJoint.displacement(e) - e.pitch / (2 * math.pi) * SpatialJoint.angle(e) - e.offset
