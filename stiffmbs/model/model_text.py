@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import partial
 from typing import Any
 
 from ..elements.states.amount import Amount
@@ -33,40 +34,43 @@ def model_text(data: ModelData) -> str:
             raise InputError(
                 f"bodies.{name}: found a flexible body, expected rigid ones: only its own scene file describes it"
             )
-    parts = {name: _written(getattr(data, name)) for name in (*PLAIN, *SECTIONS)}
+    parts = {name: written(getattr(data, name)) for name in (*PLAIN, *SECTIONS)}
     formulas = list(_formulas([getattr(data, section) for section in SECTIONS]))
     parts["parameters"] = _agreed(
         (name, in_text(value)) for formula in formulas for name, value in formula.parameters.items()
     )
-    parts["tables"] = _agreed((name, _written(table)) for formula in formulas for name, table in formula.tables.items())
+    parts["tables"] = _agreed((name, written(table)) for formula in formulas for name, table in formula.tables.items())
     order = ("name", "dimensions", "parameters", "tables", "gravity", *SECTIONS)
     return scene_text({name: parts[name] for name in order if parts[name]})
 
 
-def _written(value: Any) -> Any:
-    """Return a value in the form of a scene file."""
+def written(value: Any, marker: Callable[[Any], Any] | None = None, formula: Callable[[Any], Any] | None = None) -> Any:
+    """Return a value in the form of a scene file.
+
+    `marker`, `formula`: forms of markers and of formulas; by default those that they have.
+    """
+    again = partial(written, marker=marker, formula=formula)
     match value:
         case MarkerReference():
-            return _marker(value)
+            return (marker or _marker)(value)
         case Amount():
             return in_text(value.written())
         case Table():
             rows = [[_quantity(*entry) for entry in zip(row, value.dimensions, strict=True)] for row in value.table]
-            return {**_fields(value), "table": rows}
-        case PID():
-            return {"pid": _fields(value)}
+            return {**dict(value.__repr_args__()), "table": rows}
         case Described():
             kind = {"type": getattr(value, "type", "")} if "type" in type(value).model_fields else {}
-            return {**kind, **_fields(value)}
+            fields = kind | {name: again(part) for name, part in value.__repr_args__()}
+            return {"pid": fields} if isinstance(value, PID) else fields
         case JointName():
             return str(value)
         case PythonFunction():
             raise InputError(f"found {value!r}, expected a formula: a scene file cannot hold a Python function")
         case dict():
-            return {name: _written(part) for name, part in value.items()}
+            return {name: again(part) for name, part in value.items()}
         case tuple():
-            return [_written(part) for part in value]
-    return _formula(value) if hasattr(value, "expanded") else value
+            return [again(part) for part in value]
+    return (formula or _formula)(value) if hasattr(value, "expanded") else value
 
 
 def _formula(formula: Any) -> str | float:
@@ -78,12 +82,8 @@ def _formula(formula: Any) -> str | float:
         return formula.expanded or text
 
 
-def _fields(described: Described) -> dict[str, Any]:
-    return {name: _written(value) for name, value in described.__repr_args__()}
-
-
 def _marker(found: MarkerReference) -> Any:
-    fields = _fields(found)
+    fields = {name: written(value) for name, value in found.__repr_args__()}
     return found.label if fields.keys() <= {"body", "marker"} else fields
 
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any, ClassVar, Protocol
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol, TypeVar
 
 from pydantic import Field, GetJsonSchemaHandler, ValidationInfo, model_validator
 
@@ -90,6 +90,10 @@ class MarkerReference(Described):
     def label(self) -> str:
         """Name in messages: ``body.marker``, or the body alone."""
         return f"{self.body}.{self.marker}" if self.marker else self.body
+
+
+M = TypeVar("M", bound=MarkerReference)
+"""Marker of an element that is the same in the plane and in space."""
 
 
 class Marker(MarkerReference):

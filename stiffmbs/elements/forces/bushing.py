@@ -37,6 +37,18 @@ def times(matrix: Any, vector: Any) -> list[Any]:
     return [sum(k * part for k, part in zip(row, vector, strict=True) if k is not None) for row in matrix]
 
 
+def stored(stiffness: Any, s: Any, preload: Any) -> Any:
+    """Return 1/2 s^T K s - preload . s, J."""
+    resisting = times(stiffness, s)
+    return sum(f * x / 2 - (p or 0) * x for f, p, x in zip(resisting, preload, s, strict=True))
+
+
+def stored_with_laws(e: Symbolic, s: Any, laws: Any) -> Any:
+    """Return `stored` plus the integrals of laws, J; zero if one has no closed-form integral."""
+    of_laws = [e.integral(law, part) for law, part in zip(laws, s, strict=True) if law is not None]
+    return 0 if None in of_laws else stored(e.stiffness, s, e.preload) + sum(of_laws)
+
+
 K = si.Stiffness | None
 Kc = si.CouplingStiffness | None
 Kt = si.TorsionalStiffness | None
@@ -124,13 +136,7 @@ class Bushing(Force):
 
     @staticmethod
     def potential(e: Symbolic) -> Any:
-        """Return 1/2 s^T K s - preload . s plus integrals of laws; zero if one has no closed-form integral."""
-        s = Bushing.deformation(e)
-        elastic = times(e.stiffness, s)
-        of_laws = [e.integral(law, part) for law, part in zip(_laws(e), s, strict=True) if law is not None]
-        if None in of_laws:
-            return 0
-        return sum(elastic[k] * s[k] / 2 - e.preload[k] * s[k] for k in range(3)) + sum(of_laws)
+        return stored_with_laws(e, Bushing.deformation(e), _laws(e))
 
 
 def _laws(e: Symbolic) -> tuple[Any, Any, Any]:

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic
 
 from pydantic import Field
 
 from ...reading.formula.field import ForceOfMotion
-from ...reading.marker import Marker, MarkerReference
+from ...reading.marker import M, Marker
 from ..element import Force, Symbolic
 
 if TYPE_CHECKING:
     from ..initial_pose import InitialPose
-
-M = TypeVar("M", bound=MarkerReference)
 
 
 class ForceAlongLine(Force, Generic[M]):

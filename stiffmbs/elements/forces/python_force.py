@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Generic, TypeVar
+from typing import Any, Generic
 
 from pydantic import Field
 
 from ...reading.formula.field import OfMotion
-from ...reading.marker import Marker, MarkerReference
+from ...reading.marker import M, Marker
 from ...reading.python_function import PythonFunction
 from ..element import Force, Symbolic
 from .applied import AppliedTorque, force_at
-
-M = TypeVar("M", bound=MarkerReference)
 
 
 def _example(x: Any) -> Any:

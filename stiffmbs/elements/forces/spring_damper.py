@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic
 
 from pydantic import Field
 
 from ...reading.formula.field import ForceOfDeflection, ForceOfRate
-from ...reading.marker import Marker, MarkerReference
+from ...reading.marker import M, Marker
 from ...reading.units import si
 from ..element import Force, Symbolic
 
@@ -39,9 +39,6 @@ class Spring(Force):
         """Return the potential energy, J, zero without a closed form; the preload's is zero at `way` = 0."""
         of_law = e.integral(e.spring_law, s) if e.spring_law is not None else 0
         return e.stiffness * s**2 / 2 + e.preload * way + of_law if of_law is not None else 0
-
-
-M = TypeVar("M", bound=MarkerReference)
 
 
 class LineSpring(Spring, Generic[M]):

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any, Generic, TypeVar
+from typing import Any, Generic
 
 from pydantic import Field
 
 from ...reading.formula.field import TorqueOfDeflection, TorqueOfRate
-from ...reading.marker import Marker, MarkerReference
+from ...reading.marker import M, Marker
 from ...reading.units import si
 from ..element import Symbolic
 from .spring_damper import Spring
-
-M = TypeVar("M", bound=MarkerReference)
 
 
 class AngleSpring(Spring, Generic[M]):

@@ -7,9 +7,9 @@ from typing import Annotated, Any, ClassVar, Generic
 from pydantic import Field
 
 from ...reading.fields import Measured
-from ...reading.marker import Marker
+from ...reading.marker import M, Marker
 from ..element import Symbolic
-from .pair import M, Pair
+from .pair import Pair
 
 
 class Rod(Pair[M], Generic[M]):

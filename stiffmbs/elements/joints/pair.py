@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, Generic, Self, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, Self
 
 from pydantic import Field
 
-from ...reading.marker import Marker, MarkerReference
+from ...reading.marker import M, Marker
 from ..element import Joint, Symbolic
 
 if TYPE_CHECKING:
     from ...model.model_data import ModelData
-
-M = TypeVar("M", bound=MarkerReference)
 
 
 class Pair(Joint, Generic[M]):

@@ -13,10 +13,10 @@ from ...reading.fields import exactly_one
 from ...reading.formula.field import FormulaOf
 from ...reading.formula.formula import Formula
 from ...reading.formula.value import formula_value
-from ...reading.marker import Marker
+from ...reading.marker import M, Marker
 from ...reading.table import Table
 from ..element import Joint, Symbolic
-from .pair import M, PlanarPair
+from .pair import PlanarPair
 
 TURN = 2 * math.pi
 CLOSED = 1e-9

@@ -7,7 +7,7 @@ sin(a) = 0 from less than 66.8 degrees, where tan(a) = 2 a.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -26,23 +26,20 @@ HALF_TURNS = tuple(np.diag(signs) for signs in ((1, 1, 1), (1, -1, -1), (-1, 1, 
 
 def initially_apart(model: ModelData, i: Marker, j: Marker) -> Iterator[str]:
     """Yield an error if z axes are too far from parallel or opposite for a joint that keeps them so."""
-    angle = _between_axes(model, i, j)
     expected = f"less than {FARTHEST:g} or more than {180 - FARTHEST:g} (the joint holds them parallel or opposite)"
-    yield from _too_far(min(angle, 180 - angle), f"the z axes of its markers drawn {angle:.4g} degrees apart", expected)
+    yield from _axes_apart(model, i, j, lambda angle: min(angle, 180 - angle), expected)
 
 
 def initially_without_axis(model: ModelData, i: Marker, j: Marker) -> Iterator[str]:
     """Yield an error if z axes are too far from parallel or opposite for a force about their common axis."""
-    angle = _between_axes(model, i, j)
     expected = "one common axis to turn about (a joint has to keep them parallel)"
-    yield from _too_far(min(angle, 180 - angle), f"the z axes of its markers drawn {angle:.4g} degrees apart", expected)
+    yield from _axes_apart(model, i, j, lambda angle: min(angle, 180 - angle), expected)
 
 
 def initially_aligned(model: ModelData, i: Marker, j: Marker) -> Iterator[str]:
     """Yield an error if z axes are too far from perpendicular for a joint that keeps them so."""
-    angle = _between_axes(model, i, j)
     expected = f"between {90 - FARTHEST:g} and {90 + FARTHEST:g} (the joint holds them at right angles)"
-    yield from _too_far(abs(angle - 90), f"the z axes of its markers drawn {angle:.4g} degrees apart", expected)
+    yield from _axes_apart(model, i, j, lambda angle: abs(angle - 90), expected)
 
 
 def initially_rotated(model: ModelData, i: Marker, j: Marker) -> Iterator[str]:
@@ -78,9 +75,13 @@ def _too_far(angle: float, found: str, expected: str) -> Iterator[str]:
         yield f"found {found}, expected {expected}"
 
 
-def _between_axes(model: ModelData, i: Marker, j: Marker) -> float:
+def _axes_apart(
+    model: ModelData, i: Marker, j: Marker, departure: Callable[[float], float], expected: str
+) -> Iterator[str]:
+    """Yield an error if the angle between the z axes departs too far from the expected one."""
     a, b = model.initial_marker(i), model.initial_marker(j)
-    return math.degrees(math.acos(np.clip(a.z @ b.z, -1, 1)))
+    angle = math.degrees(math.acos(np.clip(a.z @ b.z, -1, 1)))
+    yield from _too_far(departure(angle), f"the z axes of its markers drawn {angle:.4g} degrees apart", expected)
 
 
 def _between_frames(model: ModelData, i: Marker, j: Marker) -> np.ndarray:

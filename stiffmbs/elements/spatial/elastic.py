@@ -189,12 +189,6 @@ def pull_back(stiffness: Any, s: list[Any], preload: Any) -> list[Any]:
     return [(p or 0) - resisting for p, resisting in zip(preload, times(stiffness, s), strict=True)]
 
 
-def stored(stiffness: Any, s: list[Any], preload: Any) -> Any:
-    """Return 1/2 s^T K s - preload . s, J."""
-    resisting = times(stiffness, s)
-    return sum(resisting[k] * s[k] / 2 - (preload[k] or 0) * s[k] for k in range(6))
-
-
 def has_moments(stiffness: Any, preload: Any) -> list[bool]:
     """Return True for each axis x, y, z about which stiffness or preload has a moment."""
     return [any(part is not None for part in (*stiffness[k], preload[k])) for k in (3, 4, 5)]

@@ -7,7 +7,7 @@ Dynamics of Mechanical Systems (1989), section 9.4; Nikravesh (1988), section 7.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from ..element import Symbolic
 from ..initial_pose import InitialPose
@@ -75,7 +75,7 @@ class SpatialJoint(Pair[Marker]):
         """Return the displacement of marker i along the z axis of marker j."""
         return along(e.i, e.j, e.j.z)
 
-    displacement_z = displacement
+    displacement_z: ClassVar = displacement
 
     @staticmethod
     def displacement_x(e: Symbolic) -> Any:

@@ -16,7 +16,7 @@ from ..model_data import ModelData
 from ..scene import Scene
 from ..settings import SteadyMotion
 from .elements import element_in_space
-from .fields import fields, plain
+from .fields import plain
 from .formulas import Angles, Written, placement, point, request, turned
 
 ORDER = (
@@ -40,8 +40,8 @@ def scene_in_space(data: PlanarData) -> Written:
         "name": data.name,
         "dimensions": 3,
         "gravity": [*data.gravity, 0] if any(data.gravity) else None,
-        "states": {name: fields(state, angles) for name, state in data.states.items()},
-        "inputs": {name: plain(value, angles) for name, value in data.inputs.items()},
+        "states": plain(data.states, angles),
+        "inputs": plain(data.inputs, angles),
         "joints": joints,
         "forces": _elements("forces", data.forces, angles),
         "requests": requests,

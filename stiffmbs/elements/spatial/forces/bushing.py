@@ -8,7 +8,8 @@ from pydantic import Field
 
 from ....reading.formula.field import ForceOfDeflection, TorqueOfDeflection
 from ...element import Symbolic
-from ..elastic import NO_ROW, Connection, Preload, pull_back, stored
+from ...forces.bushing import stored_with_laws
+from ..elastic import NO_ROW, Connection, Preload, pull_back
 
 
 class Bushing(Connection):
@@ -89,10 +90,7 @@ class Bushing(Connection):
 
     @classmethod
     def potential(cls, e: Symbolic) -> Any:
-        """Return 1/2 s^T K s - preload . s plus integrals of laws; zero if one has no closed-form integral."""
-        s = cls.deformation(e)
-        of_laws = [e.integral(law, part) for law, part in zip(_laws(e), s, strict=True) if law is not None]
-        return 0 if None in of_laws else stored(e.stiffness, s, e.preload) + sum(of_laws)
+        return stored_with_laws(e, cls.deformation(e), _laws(e))
 
 
 def _laws(e: Symbolic) -> tuple[Any, ...]:

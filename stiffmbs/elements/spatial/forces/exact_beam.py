@@ -43,13 +43,8 @@ class ExactBeam(BeamStrain):
         (n, m) = K ((Gamma + (1, 0, 0), kappa) - unloaded) + damping_ratio K (Gamma', kappa')
 
     n is the axial force and the two shear forces, m the torque and the two bending moments, along the axes of the
-    section; they are reported as n1, n2, n3, m1, m2, m3. The element is objective and free of locking, and exact for a
-    beam under end moments. The run stops where its ends are turned by three quarters of a turn against each other.
-
-    The line body ``beam`` creates such elements together with their nodes (docs: Beams).
-
-    Simo, A finite strain beam formulation, Comput. Methods Appl. Mech. Eng. 49 (1985) 55-70; Sonneville, Cardona, Bruls,
-    Geometrically exact beam finite element formulated on the special Euclidean group SE(3), ibid. 268 (2014) 451-474.
+    section; they are reported as n1, n2, n3, m1, m2, m3. Its properties, limits and sources are those of the planar
+    `exact_beam`.
     """
 
     kind: ClassVar[str] = "exact_beam"
@@ -92,14 +87,7 @@ class BeamSection(BeamSectionLaw):
         (n, m) = K ((Gamma + (1, 0, 0), kappa) - unloaded) + damping_ratio K (Gamma', kappa')
 
     n is the axial force and the two shear forces, m the torque and the two bending moments at the section; they are
-    reported as n1, n2, n3, m1, m2, m3. The forces on the nodes follow from the strain energy, length times K/2 strain^2. The run stops where a node is turned by
-    three quarters of a turn against the reference.
-
-    The line body ``beam`` creates such sections together with their nodes (docs: Beams).
-
-    Sonneville, Cardona, Bruls, Geometrically exact beam finite element formulated on the special Euclidean group SE(3),
-    Comput. Methods Appl. Mech. Eng. 268 (2014) 451-474; Wang, Sprague, Jonkman, Johnson, BeamDyn: a high-fidelity wind
-    turbine blade solver in the FAST modular framework, Wind Energy 20 (2017) 1439-1462 (Legendre spectral elements).
+    reported as n1, n2, n3, m1, m2, m3. Its forces, limits and sources are those of the planar `beam_section`.
     """
 
     kind: ClassVar[str] = "beam_section"

@@ -8,7 +8,8 @@ from pydantic import Field
 
 from ....reading.units import si
 from ...element import Symbolic
-from ..elastic import NO_ROW, Connection, Preload, pull_back, stored
+from ...forces.bushing import stored
+from ..elastic import NO_ROW, Connection, Preload, pull_back
 
 
 class FieldForce(Connection):

@@ -19,14 +19,17 @@ DARK = "#707070"
 
 
 def shape(d: Draft, site: Site, solid: Solid, color: str = "") -> None:
+    """Draw a solid with its edges."""
     d.put(site, "joint", solids.edged(solid), color=color)
 
 
 def pin(d: Draft, site: Site, radius: float = 0.45, length: float = 2.0) -> None:
+    """Draw a cylinder along z; sizes in units of symbols."""
     shape(d, site, solids.cylinder(radius * d.u, length * d.u, 16))
 
 
 def ball(d: Draft, site: Site, radius: float = 0.6) -> None:
+    """Draw a ball; its radius in units of symbols."""
     d.put(site, "joint", solids.sphere(radius * d.u))
 
 
