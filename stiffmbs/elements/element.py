@@ -34,10 +34,10 @@ elements. Also ``e.t`` for time, ``e.rate(expression)`` and ``e.acceleration(exp
 
 IN_EQUATIONS = frozenset([
     "a", "acceleration", "angle", "angles", "at_extremum", "at_root", "breakpoints", "by", "by_accelerations", "by_q", "by_u", "channel", "common_normal",
-    "composed", "coordinate", "coordinates", "counts", "depends", "derivatives", "distance", "frames", "in_state", "integral",
+    "composed", "coordinate", "coordinates", "counts", "depends", "derivatives", "distance", "frames", "in_state", "integral", "joint_angles",
     "is_constant", "kind", "lam", "loads", "logarithm", "meanings", "named", "own", "point", "q", "rate", "reaction",
     "read", "relative_rotation", "second_rate", "shortest_rotation", "slope", "state_rates", "states", "t", "type", "u",
-    "variable", "velocities", "velocity_level", "_accelerations", "_coordinate", "_joint", "_logarithms", "_new_rotation", "_note",
+    "variable", "velocities", "velocity_level", "_accelerations", "_coordinate", "_free", "_joint", "_logarithms", "_new_rotation", "_note",
     "_rotations", "_state",
 ])  # fmt: skip
 """Attributes of the symbolic element `e` in addition to the fields (`stiffmbs.compile.symbolic.element`)."""
