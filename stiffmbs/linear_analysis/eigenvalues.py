@@ -35,14 +35,22 @@ def eigen(matrix: np.ndarray, n_poses: int, n_states: int = 0) -> tuple[np.ndarr
     fastest rate. `n_states`: rows of states, which come last and are not scaled.
     """
     end = len(matrix) - n_states
-    rate = np.sqrt(np.linalg.norm(matrix[n_poses:end, :n_poses], 2)) if n_poses < end else 0.0
-    row = np.arange(len(matrix))
-    scale = np.where((row < n_poses) | (row >= end), 1.0, rate or 1.0)
+    scale = np.ones(len(matrix))
+    scale[n_poses:end] = _fastest_rate(matrix, n_poses, end) or 1.0
     values, vectors, levels = _deflated(matrix * scale / scale[:, None])
     at_zero = [scale[:, None] * level for level in levels]
     nothing = np.zeros((len(matrix), 0))
     generalised = np.hstack([nothing, *at_zero[1:]])
     return values, scale[:, None] * vectors, Zeros(at_zero[0] if at_zero else nothing, generalised)
+
+
+def _fastest_rate(matrix: np.ndarray, n_poses: int, end: int) -> float:
+    """Return the fastest rate of velocities due to poses, if it is not rounding next to those of damping and states, 1/s."""
+    if n_poses == end:
+        return 0.0
+    velocities, states = slice(n_poses, end), slice(end, len(matrix))
+    others = [np.linalg.norm(matrix[part, part], 2) for part in (velocities, states) if part.start < part.stop]
+    return float(max(np.sqrt(np.linalg.norm(matrix[velocities, :n_poses], 2)), CLOSE * max(others)))
 
 
 def is_singular(matrix: np.ndarray) -> bool:

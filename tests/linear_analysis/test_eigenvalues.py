@@ -19,3 +19,21 @@ def test_singular_values_count_as_zero_up_to_ten_roundings_for_each_row(part, si
     """Two rows of length 1 with the angle phi between them have the smallest singular value phi/sqrt(2)."""
     phi = np.sqrt(2) * part * 10 * 2 * np.finfo(float).eps
     assert is_singular(np.array([[1.0, 0.0], [1.0, phi]])) is singular
+
+
+@pytest.mark.parametrize("rounding", [0.0, 1e-34, -1e-30, 1e-22, 1e-17])
+def test_stiffness_of_rounding_hides_no_rate_of_a_state(rounding):
+    """A free sled pushed by two states, whose input has the velocity's rounding."""
+    matrix = np.array(
+        [
+            [0.0, 1.0, 0.0, 0.0, 0.0],
+            [rounding, 0.0, 0.0, -2.8, -2.4],
+            [0.0, 0.0, -7.0, 0.0, 0.0],
+            [0.0, 0.0, 0.0, -4.9, -0.06],
+            [-rounding, -rounding / 10, 0.0, 0.03, -4.8],
+        ]
+    )
+    values, _, zeros = eigen(matrix, 1, 3)
+    expected = np.linalg.eigvals(matrix[2:, 2:])
+    assert np.sort(values.real) == pytest.approx(np.sort(expected), rel=1e-9)
+    assert zeros.eigenvectors.shape[1] + zeros.generalised.shape[1] == 2
