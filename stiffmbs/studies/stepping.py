@@ -150,7 +150,8 @@ class ImplicitSteps:
             self._begin(restarted(self._dynamics, self._t, self.q, self.u), self._t)
         while self._t < t:
             reached = next(self._steps, None)
-            if reached is None:  # end of the interval with known input features
+            if reached is None:  # end of the interval with known input features, up to rounding
+                self._end = self._t
                 self._look_through(self._t)
                 self._begin(
                     restarted(self._dynamics, self._t, *self._integrator.split(self._engine.at(self._t))), self._t

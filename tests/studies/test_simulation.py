@@ -5,6 +5,7 @@ import pytest
 
 import stiffmbs
 from stiffmbs import AppliedForce, Body, InputError, Model, simulation
+from stiffmbs.studies.stepping import ImplicitSteps
 
 SLED = """
 parameters: {F: 0 N, k: 100 N/m}
@@ -29,6 +30,24 @@ def test_steps_give_the_states_of_one_run(examples, name, solver):
         assert sim.t == pytest.approx(expected.time[k], abs=1e-12)
         for channel in channels:
             assert sim[channel] == pytest.approx(expected[channel][k], abs=1e-8), (channel, k)
+
+
+@pytest.mark.parametrize("solver", ["bdf", "radau"])
+def test_a_breakpoint_one_rounding_before_the_end_is_passed(solver, monkeypatch):
+    """A run up to the duration ends at the breakpoint; steps beyond it go on from there."""
+    begun = []
+
+    def begin(self, start, t, own=ImplicitSteps._begin):
+        begun.append(t)
+        assert len(begun) < 10, "starts again and again"
+        own(self, start, t)
+
+    monkeypatch.setattr(ImplicitSteps, "_begin", begin)
+    text = SLED.replace("force: [F, 0]", f'force: ["F*step(t, 0, 0, {float(np.nextafter(2.0, 0))!r}, 1)", 0]')
+    sim = simulation(stiffmbs.read_scene(text), solver=solver)
+    for _ in range(25):
+        sim.step(0.1)
+    assert sim.t == pytest.approx(2.5)
 
 
 @pytest.mark.parametrize("solver", ["bdf", "projected", "auto"])
