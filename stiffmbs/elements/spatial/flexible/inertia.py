@@ -16,13 +16,15 @@ NATIVE = "stiffmbs.compile.machine.native"
 KERNELS = {
     "inertia": ("add_forces", "add_inertia", "kinetic_energy", "potential_energy", "dissipated_power"),
     "slopes": ("add_force_slopes", "add_inertia_slopes"),
+    "sums": ("take_sums",),
     "along": ("add_elastic_change", "energy_change", "power_change", "step_size"),
 }
 """Compiled functions by their modules."""
+SUMS = "take_sums({n}, {own}, {at}, {u}, work)"
 CALLS = {
     "f": "add_forces({n}, {own}, {gravity}, {pose}, {u}, work, {to})",
-    "inertia": "add_inertia({n}, {own}, {pose}, {u}, {to})",
-    "kinetic": "{to}[0] = kinetic_energy({n}, {own}, {pose}, {u})",
+    "inertia": "add_inertia({n}, {own}, {pose}, {u}, work, {to})",
+    "kinetic": "{to}[0] = kinetic_energy({n}, {own}, {pose}, {u}, work)",
     "potential": "{to}[0] = potential_energy({n}, {own}, {gravity}, {pose}, work)",
     "power": "{to}[0] = dissipated_power({n}, {own}, {at}, {u}, work)",
 }
@@ -90,7 +92,7 @@ class _Form:
         if "f_q" in places:
             calls.append(f"add_force_slopes({n}, own, {pose}, u, work, f_q, f_u)")
         if "inertia_q" in places:
-            calls.append(f"add_inertia_slopes({n}, own, {pose}, a, inertia_q)")
+            calls.append(f"add_inertia_slopes({n}, own, {pose}, a, work, inertia_q)")
         return self._kernel("", calls)
 
     def along(self, places: Mapping[str, int]) -> str:
@@ -130,7 +132,8 @@ class _Form:
 
     def _calls(self, names: Iterable[str], words: Mapping[str, str], to: Mapping[str, str]) -> list[str]:
         """Return the computations of some terms."""
-        return [CALLS[name].format(n=self.n, to=to[name], **words) for name in names if name in CALLS]
+        first = SUMS.format(n=self.n, **words)
+        return [first, *(CALLS[name].format(n=self.n, to=to[name], **words) for name in names if name in CALLS)]
 
     def _kernel(self, arguments: str, body: Iterable[str], imports: Iterable[str] = ()) -> str:
         """Return the text of a kernel with statements for each body."""

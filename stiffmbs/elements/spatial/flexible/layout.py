@@ -26,8 +26,8 @@ MODES, OF_MODE, OF_PAIR = sum(BODY.values()), sum(MODE.values()), sum(PAIR.value
 
 
 def work_size(n: int) -> int:
-    """Return the number of doubles that kernels use for the elastic forces of n modes."""
-    return 7 * n + 2 * n * n
+    """Return the number of doubles that kernels use for n modes: for elastic forces, and for sums over one mode of pairs."""
+    return 7 * n + 2 * n * n + 3 * OF_PAIR * n
 
 
 def parts(numbers: np.ndarray, n: int) -> dict[str, np.ndarray]:

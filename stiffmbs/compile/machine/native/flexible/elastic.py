@@ -8,7 +8,16 @@ has the vectors y, y', p, p', the forces, two columns, then all Gamma_i y and Ga
 from __future__ import annotations
 
 from stiffmbs.compile.machine.native.access import compiled, shifted
-from stiffmbs.compile.machine.native.flexible.sums import body_view, coordinate, mode, mode_view, pair, velocity
+from stiffmbs.compile.machine.native.flexible.sums import (
+    add_row,
+    body_view,
+    clear,
+    coordinate,
+    mode,
+    mode_view,
+    pair,
+    velocity,
+)
 from stiffmbs.elements.spatial.flexible.layout import COUPLING
 
 
@@ -31,9 +40,10 @@ def along(n, b, x):
 def stretched(n, number, x, v):
     """Compute v_i = Gamma_i x for all i."""
     for i in range(int(body_view(number).stretch[0])):
-        stretch = shifted(shape(n, number, i), n)
-        for k in range(n):
-            v[n * i + k] = along(n, shifted(stretch, n * k), x)
+        stretch, to = shifted(shape(n, number, i), n), shifted(v, n * i)
+        clear(n, to)
+        for l in range(n):
+            add_row(n, x[l], shifted(stretch, n * l), to)
 
 
 @compiled
@@ -45,9 +55,7 @@ def strains(n, number, index, q, work):
         p[k] = y[k]
     stretched(n, number, y, v)
     for i in range(int(body_view(number).stretch[0])):
-        b, much = shape(n, number, i), 0.5 * along(n, shifted(v, n * i), y)
-        for k in range(n):
-            p[k] += b[k] * much
+        add_row(n, 0.5 * along(n, shifted(v, n * i), y), shape(n, number, i), p)
 
 
 @compiled
@@ -58,9 +66,7 @@ def strain_rates(n, number, index, u, work):
         rate[k] = u[velocity(index, k)]
         dp[k] = rate[k]
     for i in range(int(body_view(number).stretch[0])):
-        b, much = shape(n, number, i), along(n, shifted(v, n * i), rate)
-        for k in range(n):
-            dp[k] += b[k] * much
+        add_row(n, along(n, shifted(v, n * i), rate), shape(n, number, i), dp)
 
 
 @compiled
@@ -69,9 +75,7 @@ def pulled(n, number, v, e, x):
     for l in range(n):
         x[l] = e[l]
     for i in range(int(body_view(number).stretch[0])):
-        much = along(n, shape(n, number, i), e)
-        for l in range(n):
-            x[l] += v[n * i + l] * much
+        add_row(n, along(n, shape(n, number, i), e), shifted(v, n * i), x)
 
 
 @compiled
@@ -120,9 +124,8 @@ def add_elastic_slopes(n, number, index, q, u, work, f_q, f_u):
             dz[k] = 1.0 if k == j else 0.0
         for i in range(rank):
             b = shape(n, number, i)
-            for k in range(n):
-                dw[k] += b[k] * dv[n * i + j]
-                dz[k] += b[k] * v[n * i + j]
+            add_row(n, dv[n * i + j], b, dw)
+            add_row(n, v[n * i + j], b, dz)
         for k in range(n):
             of_mode = mode_view(mode(number, k))
             w[k] = of_mode.stiffness[0] * dz[k] + of_mode.damping[0] * dw[k]

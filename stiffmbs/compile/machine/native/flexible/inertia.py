@@ -8,22 +8,22 @@ from stiffmbs.compile.machine.native.flexible.sums import (
     axial,
     body_view,
     centrifugal,
-    coriolis,
     cross,
     dot,
     first_moment,
     first_moment_of_mode,
     first_rate,
-    first_rate_of_mode,
     mode,
     mode_view,
     moment_of_rotation,
     moment_rate_of_mode,
+    of_mode,
     pair,
     pair_view,
     rigid_momentum,
     second_moments,
     sum_of_mode,
+    sums,
     times,
     transposed_times,
     velocity,
@@ -35,10 +35,10 @@ def add_forces(n, number, gravity, index, q, A, u, work, f):
     """Compute the quadratic velocity terms, elastic and damping forces, and the weight of the first moment."""
     w = shifted(u, int(index[1]) + 3)
     d, s, g, x, y, z, I, K = room(3), room(3), room(3), room(3), room(3), room(3), room(9), room(9)
-    first_moment(n, number, index, q, d)
-    first_rate(n, number, index, q, u, s)
+    first_moment(n, number, index, q, work, d)
+    first_rate(n, number, index, u, work, s)
     transposed_times(A, gravity, g)
-    second_moments(n, number, index, q, u, I, K)
+    second_moments(n, number, index, q, u, work, I, K)
     for i in range(3):
         s[i] *= 2.0
     rigid_momentum(w, d, s, x)
@@ -53,14 +53,13 @@ def add_forces(n, number, gravity, index, q, A, u, work, f):
     elastic = elastic_forces(n, number, index, q, u, work)
     for k in range(n):
         rate = u[velocity(index, k)]
-        sum_of_mode(n, k, number, index, q, N)
-        coriolis(n, k, number, index, u, x)
-        first_moment_of_mode(n, k, number, index, q, D)
-        f[6 + k] = dot(D, g) + centrifugal(N, w) - elastic[k] - 2.0 * dot(w, x)
-        first_rate_of_mode(n, k, number, index, u, s)
-        moment_rate_of_mode(n, k, number, index, u, x)
+        sum_of_mode(n, k, number, work, N)
+        rates = pair_view(of_mode(sums(n, work, 1), k))
+        first_moment_of_mode(n, k, number, work, D)
+        f[6 + k] = dot(D, g) + centrifugal(N, w) - elastic[k] - 2.0 * dot(w, rates.axial)
+        moment_rate_of_mode(n, k, work, x)
         for i in range(3):
-            y[i] += rate * s[i]
+            y[i] += rate * rates.T[i]
             f[3 + i] -= rate * x[i]
     times(A, y, f)
     for i in range(3):
@@ -68,10 +67,10 @@ def add_forces(n, number, gravity, index, q, A, u, work, f):
 
 
 @compiled
-def add_inertia(n, number, index, q, A, u, m):
+def add_inertia(n, number, index, q, A, u, work, m):
     """Compute the entries of the mass matrix besides its diagonal part, in the order of `FlexibleInertia.compiled_terms`."""
     d, x, y, D, I, K, N = room(3), room(3), room(3), room(3), room(9), room(9), room(9)
-    first_moment(n, number, index, q, d)
+    first_moment(n, number, index, q, work, d)
     for c in range(3):
         for i in range(3):
             x[i] = 1.0 if i == c else 0.0
@@ -80,19 +79,19 @@ def add_inertia(n, number, index, q, A, u, m):
         for i in range(3):
             m[3 * c + i] = x[i]
             m[9 + 3 * c + i] = x[i]
-    second_moments(n, number, index, q, u, I, K)
+    second_moments(n, number, index, q, u, work, I, K)
     for i in range(9):
         m[18 + i] = I[i]
     for k in range(n):
-        sum_of_mode(n, k, number, index, q, N)
-        first_moment_of_mode(n, k, number, index, q, D)
+        sum_of_mode(n, k, number, work, N)
+        first_moment_of_mode(n, k, number, work, D)
         times(A, D, x)
-        of_mode = shifted(m, 27 + 12 * k)
+        to = shifted(m, 27 + 12 * k)
         for i in range(3):
-            of_mode[i] = x[i]
-            of_mode[3 + i] = x[i]
-            of_mode[6 + i] = axial(N, i)
-            of_mode[9 + i] = axial(N, i)
+            to[i] = x[i]
+            to[3 + i] = x[i]
+            to[6 + i] = axial(N, i)
+            to[9 + i] = axial(N, i)
         for l in range(n):
             m[27 + 12 * n + n * k + l] = modal_mass(n, number, l, k)
 
@@ -104,13 +103,13 @@ def modal_mass(n, number, l, k):
 
 
 @compiled
-def kinetic_energy(n, number, index, q, A, u):
+def kinetic_energy(n, number, index, q, A, u, work):
     """Return the kinetic energy of this part of the mass matrix."""
     v, w = shifted(u, int(index[1])), shifted(u, int(index[1]) + 3)
     d, s, x, y, I, K = room(3), room(3), room(3), room(3), room(9), room(9)
-    first_moment(n, number, index, q, d)
-    first_rate(n, number, index, q, u, s)
-    second_moments(n, number, index, q, u, I, K)
+    first_moment(n, number, index, q, work, d)
+    first_rate(n, number, index, u, work, s)
+    second_moments(n, number, index, q, u, work, I, K)
     rigid_momentum(w, d, s, x)
     times(A, x, y)
     times(I, w, x)
@@ -127,7 +126,7 @@ def kinetic_energy(n, number, index, q, A, u):
 def potential_energy(n, number, gravity, index, q, A, work):
     """Return the strain energy, and the potential energy of the first moment of mass."""
     d, x = room(3), room(3)
-    first_moment(n, number, index, q, d)
+    first_moment(n, number, index, q, work, d)
     times(A, d, x)
     total = -dot(gravity, x)
     strains(n, number, index, q, work)

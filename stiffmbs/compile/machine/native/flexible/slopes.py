@@ -12,22 +12,23 @@ from stiffmbs.compile.machine.native.flexible.sums import (
     axial,
     body_view,
     centrifugal,
-    coriolis,
     cross,
     dot,
     first_moment,
     first_moment_of_mode,
     first_rate,
-    first_rate_of_mode,
     inertia_by_mode,
     mode_with_rates,
     moment_of_rotation,
     moment_rate_of_mode,
+    of_mode,
     pair,
     pair_view,
     rigid_momentum,
     second_moments,
     sum_of_mode,
+    sums,
+    take_acceleration_sums,
     times,
     trace,
     transposed_times,
@@ -50,7 +51,7 @@ def by_quaternion(turn, j, y):
 
 
 @compiled
-def _by_rotation(n, number, index, q, turn, d, of_frame, field, sign, to):
+def _by_rotation(n, number, turn, d, of_frame, field, sign, work, to):
     """Compute the derivatives by the quaternion of a rotated vector A `of_frame` and of moments by a field in ground axes."""
     x, y, z, turned, D = room(3), room(3), room(3), room(3), room(3)
     times(turn, of_frame, z)
@@ -67,7 +68,7 @@ def _by_rotation(n, number, index, q, turn, d, of_frame, field, sign, to):
             to[(4 + n) * i + j] = y[i]
             to[(4 + n) * (3 + i) + j] = z[i]
         for k in range(n):
-            first_moment_of_mode(n, k, number, index, q, D)
+            first_moment_of_mode(n, k, number, work, D)
             to[(4 + n) * (6 + k) + j] = dot(D, turned)
 
 
@@ -97,40 +98,40 @@ def _by_angular_velocity(n, A, w, d, s, I, K, f_u):
 
 
 @compiled
-def _of_frame_by_mode(n, l, number, index, q, A, u, w, g, f_q, f_u):
+def _of_frame_by_mode(n, l, number, index, A, u, w, g, work, f_q, f_u):
     """Compute the derivatives of the forces on the frame by a modal coordinate and its velocity."""
     N, P, D, s, x, y, z, turned = room(9), room(9), room(3), room(3), room(3), room(3), room(3), room(3)
-    first_moment_of_mode(n, l, number, index, q, D)
-    first_rate_of_mode(n, l, number, index, u, s)
+    first_moment_of_mode(n, l, number, work, D)
+    rates = pair_view(of_mode(sums(n, work, 1), l))
     cross(w, D, x)
     for i in range(3):
-        z[i] = x[i] + 2.0 * s[i]
-        s[i] += x[i]
+        z[i] = x[i] + 2.0 * rates.T[i]
+        s[i] = rates.T[i] + x[i]
     cross(w, z, y)
     times(A, y, z)
     times(A, s, turned)
     for i in range(3):
         f_q[(4 + n) * i + 4 + l] = -z[i]
         f_u[(3 + n) * i + 3 + l] = -2.0 * turned[i]
-    sum_of_mode(n, l, number, index, q, N)
+    sum_of_mode(n, l, number, work, N)
     inertia_by_mode(N, w, x)
     cross(w, x, y)
     cross(D, g, z)
     mode_with_rates(n, l, number, index, u, P)
     moment_of_rotation(P, w, x)
     moment_of_rotation(N, w, turned)
-    moment_rate_of_mode(n, l, number, index, u, s)
+    moment_rate_of_mode(n, l, work, s)
     for i in range(3):
         f_q[(4 + n) * (3 + i) + 4 + l] = -y[i] - 2.0 * x[i] + z[i]
         f_u[(3 + n) * (3 + i) + 3 + l] = -2.0 * (turned[i] + s[i])
 
 
 @compiled
-def _of_mode(n, l, number, index, q, u, w, g, f_q, f_u):
+def _of_mode(n, l, number, w, g, work, f_q, f_u):
     """Compute the derivatives of all modal inertial forces by a modal coordinate and its velocity, and of one by w."""
-    N, x = room(9), room(3)
-    sum_of_mode(n, l, number, index, q, N)
-    coriolis(n, l, number, index, u, x)
+    N = room(9)
+    sum_of_mode(n, l, number, work, N)
+    x = pair_view(of_mode(sums(n, work, 1), l)).axial
     for i in range(3):
         total = 2.0 * w[i] * trace(N) - 2.0 * x[i]
         for j in range(3):
@@ -147,46 +148,47 @@ def add_force_slopes(n, number, index, q, turn, u, work, f_q, f_u):
     """Compute the derivatives of the forces by the pose and by velocities."""
     w, gravity = shifted(u, int(index[1]) + 3), body_view(number).gravity
     d, s, g, x, y, I, K = room(3), room(3), room(3), room(3), room(3), room(9), room(9)
-    first_moment(n, number, index, q, d)
-    first_rate(n, number, index, q, u, s)
+    first_moment(n, number, index, q, work, d)
+    first_rate(n, number, index, u, work, s)
     transposed_times(turn, gravity, g)
-    second_moments(n, number, index, q, u, I, K)
+    second_moments(n, number, index, q, u, work, I, K)
     for i in range(3):
         s[i] *= 2.0
     rigid_momentum(w, d, s, x)
     cross(w, x, y)
     for k in range(n):
-        first_rate_of_mode(n, k, number, index, u, x)
+        T = pair_view(of_mode(sums(n, work, 1), k)).T
         for i in range(3):
-            y[i] += u[velocity(index, k)] * x[i]
-    _by_rotation(n, number, index, q, turn, d, y, gravity, -1.0, f_q)
+            y[i] += u[velocity(index, k)] * T[i]
+    _by_rotation(n, number, turn, d, y, gravity, -1.0, work, f_q)
     _by_angular_velocity(n, turn, w, d, s, I, K, f_u)
     for l in range(n):
-        _of_frame_by_mode(n, l, number, index, q, turn, u, w, g, f_q, f_u)
-        _of_mode(n, l, number, index, q, u, w, g, f_q, f_u)
+        _of_frame_by_mode(n, l, number, index, turn, u, w, g, work, f_q, f_u)
+        _of_mode(n, l, number, w, g, work, f_q, f_u)
     add_elastic_slopes(n, number, index, q, u, work, f_q, f_u)
 
 
 @compiled
-def add_inertia_slopes(n, number, index, q, turn, a, m_q):
+def add_inertia_slopes(n, number, index, q, turn, a, work, m_q):
     """Compute the derivatives by the pose of this mass matrix times accelerations."""
     v, w = shifted(a, int(index[1])), shifted(a, int(index[1]) + 3)
     d, s, b, x, y, z, N, P = room(3), room(3), room(3), room(3), room(3), room(3), room(9), room(9)
-    first_moment(n, number, index, q, d)
-    first_rate(n, number, index, q, a, s)
+    take_acceleration_sums(n, number, index, a, work)
+    first_moment(n, number, index, q, work, d)
+    first_rate(n, number, index, a, work, s)
     transposed_times(turn, v, b)
     rigid_momentum(w, d, s, x)
-    _by_rotation(n, number, index, q, turn, d, x, v, 1.0, m_q)
-    D, T = room(3), room(3)
+    _by_rotation(n, number, turn, d, x, v, 1.0, work, m_q)
+    D = room(3)
     for l in range(n):
-        first_moment_of_mode(n, l, number, index, q, D)
-        first_rate_of_mode(n, l, number, index, a, T)
+        first_moment_of_mode(n, l, number, work, D)
+        T = pair_view(of_mode(sums(n, work, 2), l)).T
         cross(w, D, x)
         for i in range(3):
             x[i] += T[i]
         times(turn, x, y)
         cross(D, b, z)
-        sum_of_mode(n, l, number, index, q, N)
+        sum_of_mode(n, l, number, work, N)
         inertia_by_mode(N, w, x)
         mode_with_rates(n, l, number, index, a, P)
         for k in range(n):

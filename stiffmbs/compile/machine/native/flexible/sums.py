@@ -90,28 +90,58 @@ def trace(N):
 
 
 @compiled
-def sum_of_mode(n, k, number, index, q, N):
-    """Compute N_k = sum m r psi_k(q)^T, the derivative of sum m r r^T / 2 by a modal coordinate."""
-    of_mode = mode_view(mode(number, k))
-    for i in range(9):
-        N[i] = of_mode.Y[i]
-    for l in range(n):
-        Z = pair_view(pair(n, number, l, k)).ZW
-        y = q[coordinate(index, l)]
-        for i in range(9):
-            N[i] += y * Z[i]
+def sums(n, work, which):
+    """Return the sums over the first mode of all numbers of pairs, by the second mode: times modal coordinates (0),
+    velocities (1) or accelerations (2)."""
+    return shifted(work, 7 * n + 2 * n * n + OF_PAIR * n * which)
 
 
 @compiled
-def coriolis(n, k, number, index, rate, x):
-    """Compute sum m u' x psi_k from modal velocities."""
-    for i in range(3):
-        x[i] = 0.0
+def add_row(count, y, row, to):
+    """Add y times some numbers to others."""
+    for j in range(count):
+        to[j] += y * row[j]
+
+
+@compiled
+def clear(count, to):
+    """Set some numbers to zero."""
+    for j in range(count):
+        to[j] = 0.0
+
+
+@compiled
+def take_sums(n, number, index, q, u, work):
+    """Compute the sums by modal coordinates and velocities."""
+    of_q, of_u = sums(n, work, 0), sums(n, work, 1)
+    clear(2 * OF_PAIR * n, of_q)
     for l in range(n):
-        a = pair_view(pair(n, number, l, k)).axial
-        y = rate[velocity(index, l)]
-        for i in range(3):
-            x[i] += y * a[i]
+        row = pair(n, number, l, 0)
+        add_row(OF_PAIR * n, q[coordinate(index, l)], row, of_q)
+        add_row(OF_PAIR * n, u[velocity(index, l)], row, of_u)
+
+
+@compiled
+def take_acceleration_sums(n, number, index, a, work):
+    """Compute the sums by modal accelerations."""
+    of_a = sums(n, work, 2)
+    clear(OF_PAIR * n, of_a)
+    for l in range(n):
+        add_row(OF_PAIR * n, a[velocity(index, l)], pair(n, number, l, 0), of_a)
+
+
+@compiled
+def of_mode(s, k):
+    """Return the numbers of a mode in the sums."""
+    return shifted(s, OF_PAIR * k)
+
+
+@compiled
+def sum_of_mode(n, k, number, work, N):
+    """Compute N_k = sum m r psi_k(q)^T, the derivative of sum m r r^T / 2 by a modal coordinate."""
+    Y, Z = mode_view(mode(number, k)).Y, pair_view(of_mode(sums(n, work, 0), k)).ZW
+    for i in range(9):
+        N[i] = Y[i] + Z[i]
 
 
 @compiled
@@ -127,69 +157,48 @@ def mode_with_rates(n, l, number, index, rate, P):
 
 
 @compiled
-def first_moment_of_mode(n, k, number, index, q, D):
+def first_moment_of_mode(n, k, number, work, D):
     """Compute D_k = S_k + sum T_kl q_l, the derivative of the first moment by a modal coordinate."""
-    of_mode = mode_view(mode(number, k))
+    S, T = mode_view(mode(number, k)).S, pair_view(of_mode(sums(n, work, 0), k)).T
     for i in range(3):
-        D[i] = of_mode.S[i]
-    for l in range(n):
-        T = pair_view(pair(n, number, l, k)).T
-        y = q[coordinate(index, l)]
-        for i in range(3):
-            D[i] += y * T[i]
+        D[i] = S[i] + T[i]
 
 
 @compiled
-def first_rate_of_mode(n, k, number, index, rate, s):
-    """Compute sum T_kl rate_l of modal velocities or accelerations."""
-    for i in range(3):
-        s[i] = 0.0
-    for l in range(n):
-        T = pair_view(pair(n, number, l, k)).T
-        y = rate[velocity(index, l)]
-        for i in range(3):
-            s[i] += y * T[i]
-
-
-@compiled
-def moment_rate_of_mode(n, k, number, index, rate, s):
+def moment_rate_of_mode(n, k, work, s):
     """Compute the axial vector of sum W_kl rate_l of modal velocities."""
+    rates = pair_view(of_mode(sums(n, work, 1), k))
     for i in range(3):
-        s[i] = 0.0
-    for l in range(n):
-        of_pair = pair_view(pair(n, number, l, k))
-        y = rate[velocity(index, l)]
-        for i in range(3):
-            s[i] += y * (axial(of_pair.ZW, i) - of_pair.axial[i])
+        s[i] = axial(rates.ZW, i) - rates.axial[i]
 
 
 @compiled
-def first_moment(n, number, index, q, d):
+def first_moment(n, number, index, q, work, d):
     """Compute the first moment of mass d = d0 + sum S_k q_k + 1/2 sum T_kl q_k q_l."""
     b, D = body_view(number), room(3)
     for i in range(3):
         d[i] = b.d0[i]
     for k in range(n):
-        of_mode = mode_view(mode(number, k))
-        first_moment_of_mode(n, k, number, index, q, D)
+        S = mode_view(mode(number, k)).S
+        first_moment_of_mode(n, k, number, work, D)
         for i in range(3):
-            d[i] += 0.5 * (of_mode.S[i] + D[i]) * q[coordinate(index, k)]
+            d[i] += 0.5 * (S[i] + D[i]) * q[coordinate(index, k)]
 
 
 @compiled
-def first_rate(n, number, index, q, rate, s):
+def first_rate(n, number, index, rate, work, s):
     """Compute sum D_k rate_k of modal velocities or accelerations."""
     D = room(3)
     for i in range(3):
         s[i] = 0.0
     for k in range(n):
-        first_moment_of_mode(n, k, number, index, q, D)
+        first_moment_of_mode(n, k, number, work, D)
         for i in range(3):
             s[i] += D[i] * rate[velocity(index, k)]
 
 
 @compiled
-def second_moments(n, number, index, q, u, I, K):
+def second_moments(n, number, index, q, u, work, I, K):
     """Compute the inertia tensor without the moments of the frame, and K = sum m (x + u) u'^T."""
     b = body_view(number)
     N, J = room(9), room(9)
@@ -197,12 +206,12 @@ def second_moments(n, number, index, q, u, I, K):
         J[i] = b.X[i]
         K[i] = 0.0
     for k in range(n):
-        sum_of_mode(n, k, number, index, q, N)
-        of_mode = mode_view(mode(number, k))
+        sum_of_mode(n, k, number, work, N)
+        Y = mode_view(mode(number, k)).Y
         y, rate = q[coordinate(index, k)], u[velocity(index, k)]
         for i in range(3):
             for j in range(3):
-                J[3 * i + j] += y * (of_mode.Y[3 * j + i] + N[3 * i + j])
+                J[3 * i + j] += y * (Y[3 * j + i] + N[3 * i + j])
                 K[3 * i + j] += rate * N[3 * i + j]
     for i in range(3):
         for j in range(3):
