@@ -51,7 +51,7 @@ COMMANDS = (
     ["modes", "IN", "--json"], ["response", "IN", "--input", "sled.fx", "--output", "sled.x", "-o", "OUT.csv"], STUDY,
     [*STUDY, "--workers", "2"], ["sensitivities", "IN", "--of", "final(where)", "--to", "k", "--json"], ["draw", "IN", "-o", "OUT.svg"],
     ["animate", "IN", "-o", "OUT.html"], ["report", "IN", "-o", "OUT.html"], ["convert", "IN", "-o", "OUT.adm"], ["fmu", "IN", "-o", "OUT.fmu"],
-    ["plot", "state.npz", "where", "-o", "OUT.png"], ["diff", "state.npz", "state.npz"], ["cache", "--json"],
+    ["plot", "state.npz", "where", "-o", "OUT.png"], ["diff", "state.npz", "state.npz"], ["cache", "show", "--json"],
     ["fit", "IN", "--data", "state.npz", "--parameter", "k=30:60", "--json"], ["version"], ["init", "OUT.yaml"],
 )  # fmt: skip
 LIMITS = (0, 1, 100, 4096, 20_000, 200_000)
