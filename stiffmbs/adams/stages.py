@@ -67,7 +67,8 @@ def _staged(
 ) -> dict[str, Any]:
     """Return one stage per simulation; if sensors may end stages (`watched`), an end time stays absolute."""
     stages: list[dict[str, Any]] = []
-    notes = [f"{source} asks for {len(segments)} simulation{'s' if len(segments) > 1 else ''}, one after the other"]
+    count = len(segments)
+    notes = [f"{source} asks for {f'{count} simulations, one after the other' if count > 1 else 'one simulation'}"]
     units = described[0].units
     time, before, known = 0.0, segments[0], described
     for k, segment in enumerate(segments, start=1):

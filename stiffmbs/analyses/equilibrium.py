@@ -15,7 +15,7 @@ from ..elements.requests.order import units
 from ..equilibria.equilibrium import Equilibrium, find_equilibrium
 from ..errors import AssemblyError, SolverError
 from ..model.model_data import ModelData
-from ..model.scene import Scene
+from ..model.scene import Scene, notes_of
 from ..model.settings import RunSettings, Settings, SteadyMotion, takes_settings
 from ..results.channels import channels_of, turns_of
 from ..results.energy_balance import energy_balance
@@ -153,7 +153,7 @@ def equilibrium(
     how = {"name": "equilibrium", "moves": found.moves, "imbalance": found.imbalance}
     times = np.array([job.grid.start])
     assembly = [job.start.position_sentence(3)] if job.start.moved_far else []
-    notes = (*(job.data.notes if isinstance(job.data, Scene) else ()), *assembly, *found.notes)
+    notes = (*notes_of(job.data), *assembly, *found.notes)
     solution = solution_at_rest(job, times, start.q[None], start.u[None], _message(found), notes, how)
     moves = system.move(job.start.q, found.start.q).reshape(len(system.bodies), -1)
     straight, turned = (np.linalg.norm(part, axis=1) for part in np.split(moves, [system.of_body.linear], axis=1))

@@ -16,7 +16,7 @@ import numpy as np
 
 from ..errors import InputError, StiffmbsError
 from ..model.files.stages import OWN_SETTINGS, Stage, Until
-from ..model.scene import Scene, notes_of
+from ..model.scene import Scene
 from ..model.settings import RunSettings
 from ..results.joined import joined
 from ..results.saved_state import SavedState
@@ -248,13 +248,13 @@ def _solved(
         runner = partial(run, scene, watch=watch)
         return run_until(runner, stage.until, _interval(scene, changes), inputs, start_from=state, **changes)
     if not stage.over_time:
-        return Ended(_settled(scene, state, changes))
+        return Ended(equilibrium(scene, start_from=state, **changes).solution)
     grid = output_grid(changed(scene.run, {**changes, "start": state.t if state else scene.run.start}))
     if grid.times is None:
         raise InputError("found points = steps for an equilibrium, expected a number or an output interval")
     rows: list[Solution] = []
     for t in grid.times:
-        rows.append(_settled(scene, state, {**changes, "start": float(t)}))
+        rows.append(equilibrium(scene, start_from=state, **{**changes, "start": float(t)}).solution)
         state = replace(rows[-1].state(), elements=_elements(scene))
     return Ended(joined(scene.name, rows))
 
@@ -270,8 +270,3 @@ def _up_to(end: float, start: float) -> float:
     if not end > start:
         raise InputError(f"found its end at {end:g} s, expected a time after {start:g} s, where it starts")
     return end - start
-
-
-def _settled(scene: Scene, state: SavedState | None, changes: dict[str, Any]) -> Solution:
-    found = equilibrium(scene, start_from=state, **changes).solution
-    return replace(found, notes=(*notes_of(scene), *found.notes))

@@ -48,13 +48,15 @@ def solver_lines(solver: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
         "solver",
         ", ".join([solver["name"], *(f"{word} {solver[key]}" for key, word in chosen.items() if key in solver)]),
     )
-    yield "steps", ", ".join(_steps(solver))
+    if "steps" in solver:
+        yield "steps", ", ".join(_steps(solver))
     restarts = [
         f"{solver[counter]} {words[solver[counter] > 1]}" for counter, words in RESTARTS.items() if solver.get(counter)
     ]
     if restarts:
         yield "restarts", f"at {' and '.join(restarts)}"
-    yield "cost", ", ".join([*_work(solver), f"{solver['seconds'] * 1e3:.1f} ms"])
+    seconds = [f"{solver['seconds'] * 1e3:.1f} ms"] if "seconds" in solver else []
+    yield "cost", ", ".join([*_work(solver), *seconds])
 
 
 def _steps(solver: Mapping[str, Any]) -> Iterator[str]:
