@@ -88,3 +88,22 @@ def test_the_schema_describes_contacts_of_beams():
     schema = jsonschema.Draft202012Validator(stiffmbs.scene_schema())
     assert not list(schema.iter_errors(yaml.safe_load(rod(2, 0.1))))
     assert list(schema.iter_errors(yaml.safe_load(rod(2, 0.1).replace("stiffness: 1e4", "stifness: 1e4"))))
+
+
+def test_a_cable_is_lifted_from_the_ground_as_a_catenary():
+    """With the forces H and V at its end, V/w of its length is in the air."""
+    found = at_rest("""
+gravity: [0, -10]
+bodies:
+  cable: {type: beam, start: [0, 0], end: [4, 0], elements: 80, stiffness: [1e6, 1e6, 1e-3], mass_per_length: 1, inertia_per_length: 1e-5}
+joints: {anchor: {type: revolute, i: cable.start, j: ground}}
+forces:
+  floor: {type: beam_contact, beam: cable, j: ground, stiffness: 1e5}
+  pull: {type: force, i: cable.end, force: [10, 10]}
+""")
+    assert found["cable.end.y"] == pytest.approx(math.sqrt(2) - 1, abs=1e-3)
+    assert found["cable.end.x"] == pytest.approx(3 + math.asinh(1), abs=1e-3)
+    carried = sum(value for name, value in found.items() if name.startswith("floor.") and name.endswith(".fy"))
+    assert carried + found["anchor.fy"] == pytest.approx(30, rel=1e-9) and found["anchor.fx"] == pytest.approx(
+        -10, rel=1e-9
+    )

@@ -61,7 +61,7 @@ def test_the_nodes_of_a_linear_cantilever_have_no_error(n):
 @pytest.mark.parametrize("load", BEND)
 def test_a_curved_beam_bends_out_of_its_plane(load):
     tip = np.array([at_rest(bend(8, load, 5e6 / 6))[f"bend.end.{axis}"] for axis in "xyz"])
-    assert np.max(np.abs(tip - BEND[load])) < 5e-4
+    assert np.max(np.abs(tip - BEND[load])) < 6e-4
 
 
 def test_different_stiffness_in_bending_and_torsion_gives_second_order():

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any, ClassVar
 
-from pydantic import Field
+from pydantic import Field, field_validator
 
 from ...reading.units import si
 from ..element import Force, Symbolic
@@ -25,6 +25,17 @@ class BeamStrain(Force):
 
     length: si.PositiveLength = Field(description="L, without load, m")
     damping_ratio: si.TimeOrZero | None = Field(None, description="viscous over elastic stiffness, s")
+    bowing: tuple[si.NumberOrZero, ...] | None = Field(
+        None, description="b for each shear, so that the axis is stretched by b/2 shear^2: 6/5 for a slender element"
+    )
+
+    @field_validator("bowing")
+    @classmethod
+    def _one_for_each_shear(cls, found: tuple[float, ...] | None) -> tuple[float, ...] | None:
+        shears = len(cls.channels) // 3
+        if found is not None and len(found) != shears:
+            raise ValueError(f"found {len(found)} numbers, expected {shears}, one for each shear")
+        return found if found and any(found) else None
 
     @staticmethod
     def strain(e: Symbolic) -> list[Any]:
@@ -35,11 +46,24 @@ class BeamStrain(Force):
     @classmethod
     def stress(cls, e: Symbolic) -> list[Any]:
         """Return the section forces and moments, N and N m."""
-        elastic = times(e.stiffness, cls.strain(e))
+        strain = cls.strain(e)
+        elastic = times(e.stiffness, cls.bowed(e, strain))
+        if e.bowing is not None:
+            axial = e.named(elastic[0])
+            for k, share in enumerate(e.bowing, 1):
+                elastic[k] += share * axial * strain[k]
         if e.damping_ratio is None:
             return e.named(elastic)  # type: ignore[no-any-return]
         viscous = times(e.stiffness, e.named([rate / e.length for rate in e.logarithm(e.i, e.j).rates]))
         return e.named([f + e.damping_ratio * g for f, g in zip(elastic, viscous, strict=True)])  # type: ignore[no-any-return]
+
+    @classmethod
+    def bowed(cls, e: Symbolic, strain: list[Any]) -> list[Any]:
+        """Return the strain with the stretch of an axis that is bent to an S between the nodes, as the shear shows."""
+        if e.bowing is None:
+            return strain
+        shear = zip(e.bowing, strain[1:], strict=False)
+        return e.named([strain[0] + sum(share * x**2 for share, x in shear) / 2, *strain[1:]])  # type: ignore[no-any-return]
 
     @classmethod
     def condensed_powers(cls, e: Symbolic) -> list[tuple[Any, Any]]:
@@ -55,8 +79,8 @@ class BeamStrain(Force):
 
     @classmethod
     def potential(cls, e: Symbolic) -> Any:
-        """Return L/2 (Gamma, kappa) K (Gamma, kappa), J."""
-        strain = cls.strain(e)
+        """Return L/2 (Gamma, kappa) K (Gamma, kappa) with bowing, J."""
+        strain = cls.bowed(e, cls.strain(e))
         return e.length * sum(f * x for f, x in zip(times(e.stiffness, strain), strain, strict=True)) / 2
 
     @classmethod

@@ -14,7 +14,7 @@ from .division import AUTOMATIC, Divided, Elements
 from .interpolation import Group, group_sizes
 from .rigid_motion import adjoint, logarithm, tangent
 from .section import Material, Section
-from .stiffness import element_stiffness
+from .stiffness import bowing, element_stiffness
 
 LARGEST_ROTATION = 3.0
 """Largest rotation between the ends of an unloaded element, rad."""
@@ -82,6 +82,8 @@ class Element:
         Strain without load, shape (6,).
     stiffness : ndarray
         Shape (6, 6).
+    bowing : ndarray
+        Factors of the stretch by both shears; of elements between two nodes.
     reference : int
         Place of the reference node.
     shapes, slopes : ndarrays
@@ -93,6 +95,7 @@ class Element:
     length: float
     unloaded: np.ndarray
     stiffness: np.ndarray
+    bowing: np.ndarray = field(default_factory=lambda: np.zeros(2))
     reference: int = 0
     shapes: np.ndarray = field(default_factory=lambda: np.zeros(0))
     slopes: np.ndarray = field(default_factory=lambda: np.zeros(0))
@@ -266,7 +269,16 @@ class _Interval:
             K = np.diag(1 / compliance)
             length = float(weight) * (end - start)
             self.elements.append(
-                Element(own, turned, length, unloaded, K, group.reference, shapes, slopes / (end - start))
+                Element(
+                    own,
+                    turned,
+                    length,
+                    unloaded,
+                    K,
+                    reference=group.reference,
+                    shapes=shapes,
+                    slopes=slopes / (end - start),
+                )
             )
 
     def _single(
@@ -278,7 +290,7 @@ class _Interval:
             raise ValueError("elements: found an element that turns by half a turn, expected more elements")
         unloaded = np.where(np.abs(screw) < 1e-14 * length, 0.0, screw) / length
         K = element_stiffness(unloaded, length, lambda share: self._stiffness(start + share * (end - start)))
-        return Element(nodes, turned, length, unloaded, K)
+        return Element(nodes, turned, length, unloaded, K, bowing(K, self._stiffness((start + end) / 2)))
 
     def _pose(self, s: float) -> tuple[np.ndarray, np.ndarray]:
         point, along = self.piece.at(s - self.first)

@@ -113,6 +113,7 @@ def _force(name: str, element: Element, beam: Any) -> dict[str, Any]:
         return {
             "type": "exact_beam",
             "stiffness": [[part or None for part in row] for row in K],
+            "bowing": _numbers(element.bowing[: len(components) // 3]),
             **common,
             "i": i,
             "j": j,

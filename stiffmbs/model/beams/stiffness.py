@@ -40,6 +40,28 @@ def element_stiffness(unloaded: np.ndarray, length: float, section: Callable[[fl
     return cast(np.ndarray, np.where(np.abs(found) < 1e-13 * _scale(found), 0.0, found))
 
 
+HERMITE = 6 / 5
+"""Geometric stiffness for the rotation of both ends of a slender element, per axial force and length: 1/5 + 1."""
+
+
+def bowing(K: np.ndarray, section: np.ndarray) -> np.ndarray:
+    """Return the factors b of an `exact_beam` for its two shears.
+
+    Without bowing, elements under a tension above 12 EI/L^2 would fold. The shear of a thick element is real, and does
+    not stretch it: b is 6/5 times the square of the part of its compliance that stands for bending.
+
+    Parameters
+    ----------
+    K : ndarray, shape (6, 6)
+        Stiffness of the element.
+    section : ndarray, shape (6,)
+        That of its cross section.
+    """
+    compliance = np.diag(np.linalg.inv(K))[1:3]
+    bending = np.maximum(1 - 1 / (section[1:3] * compliance), 0.0)
+    return cast(np.ndarray, HERMITE * np.where(bending > 1e-6, bending, 0.0) ** 2)
+
+
 def _scale(K: np.ndarray) -> np.ndarray:
     """Return the geometric mean of the diagonal entries of each row and column."""
     root = np.sqrt(np.diag(K))

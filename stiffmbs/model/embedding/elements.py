@@ -106,7 +106,9 @@ def _six_by_six(three: Any) -> list[Any] | None:
 @element_in_space.register(ExactBeam)
 def exact_beam(element: Any, angles: Angles) -> Written:
     """Return a beam element without stiffness across the plane."""
-    return same(element, angles, stiffness=_six_by_six(element.stiffness), unloaded=_six(element.unloaded, 0))
+    gains = None if element.bowing is None else [*element.bowing, 0]
+    K = _six_by_six(element.stiffness)
+    return same(element, angles, stiffness=K, unloaded=_six(element.unloaded, 0), bowing=gains)
 
 
 @element_in_space.register(BeamSection)
