@@ -92,29 +92,12 @@ def made_scene(
     unchanged: Unchanged | None = None,
     files: Mapping[str, str] = NO_FILES,
 ) -> Scene:
-    """Return the scene described by a mapping.
+    """Return the scene described by a mapping, which is modified in place; InputError if the scene is not valid.
 
-    Parameters
-    ----------
-    found : mapping
-        Modified in place.
-    changes : sequence of (path, text)
-        Values that are not text are used unchanged.
-    source : str
-        Name of the scene in messages.
-    line_of : callable
-        Returns the line in the source of a path of keys.
-    folder : Path, optional
-        Folder of meshes and property files; the working folder by default.
-    unchanged : Unchanged, optional
-        Parts that have been validated before. The scene then does not keep its source.
-    files : mapping of str to str
-        Digests of the files from which the mapping was read.
-
-    Raises
-    ------
-    InputError
-        If the scene is not valid.
+    The changes are values by their paths; those that are not text are used unchanged. `source` names the scene in
+    messages, and `line_of` returns the line in it of a path of keys. Meshes and property files are found in the folder,
+    by default the working folder. `unchanged` holds parts that have been validated before; the scene then does not keep
+    its source. `files` are digests of the files from which the mapping was read.
     """
     kept = None if unchanged else WrittenScene(copy.deepcopy(found), tuple(changes), source, folder, dict(files))
     with recorded() as read, beams_read() as beams:

@@ -19,10 +19,7 @@ Read = Callable[[Any], float]
 def checked(found: Any, read: Read) -> dict[str, dict[str, Any]]:
     """Return changed parameters by subsystem and name.
 
-    Raises
-    ------
-    ValueError
-        If a name is unknown, or a value has another type than the default, or is out of its range.
+    ValueError if a name is unknown, or a value has another type than the default, or is out of its range.
     """
     changes: dict[str, dict[str, Any]] = {}
     for name, values in _entries(found, "subsystems"):

@@ -47,10 +47,7 @@ def draw(path: Path, solution: Solution, figure: Figure | None) -> None:
 def drawn(solution: Solution, figure: Figure | None) -> Sheet:
     """Draw a scene's own figure, or the total energy over time if it has none.
 
-    Raises
-    ------
-    InputError
-        If the figure names an unknown channel.
+    InputError if the figure names an unknown channel.
     """
     sheet = new_sheet(SIZE)
     draw_on(sheet, solution, figure or TOTAL_ENERGY)

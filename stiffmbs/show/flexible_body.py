@@ -20,15 +20,7 @@ LARGE_CONDITION = 1e12
 def flexible_body_text(name: str, body: ReducedBody, interfaces: Sequence[str], held: Mapping[str, np.ndarray]) -> str:
     """Return the report as text.
 
-    Parameters
-    ----------
-    name : str
-        Name of the file.
-    body : ReducedBody
-    interfaces : sequence of str
-        Names of the interfaces.
-    held : mapping of str to ndarray
-        Natural frequencies with some interfaces held, Hz.
+    `name` is that of the file, and `interfaces` are names; `held` has the natural frequencies, Hz, with some interfaces held.
     """
     nodes, elastic = len(body.modes) // 3, len(body.frequencies)
     interface_modes = int(body.sizes.sum())

@@ -60,23 +60,9 @@ def write_report(
 ) -> None:  # fmt: skip
     """Write the page to a file, completely or not at all.
 
-    Parameters
-    ----------
-    scene : Scene
-        Scene as it was solved.
-    solution : Solution
-        Its solution, with error bars if it was verified.
-    text : str
-        Text of the scene's file.
-    sections : sequence of Section
-        Additional sections.
-    other : (str, Solution), optional
-        Name and solution of another run; the page begins with the differences, and shows both motions.
-
-    Raises
-    ------
-    InputError
-        If the other run has no channels or times in common with this one.
+    The scene is the one that was solved, and `text` that of its file. The solution has error bars if it was verified.
+    `sections` are additional ones. With `other`, the name and solution of another run, the page begins with the
+    differences and shows both motions. InputError if that run has no channels or times in common with this one.
     """
     page = report_page(scene, solution, text, sections, other)
     write_text(path, page)

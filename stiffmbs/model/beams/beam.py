@@ -126,13 +126,7 @@ class Beam(LineBody):
         )
 
     def pieces(self) -> list[Piece]:
-        """Return the pieces of the axis in space.
-
-        Raises
-        ------
-        ValueError
-            If the axis is not given by exactly one of its forms, or has no length.
-        """
+        """Return the pieces of the axis in space; ValueError unless exactly one of its forms gives it a length."""
         start, end, through, points = (getattr(self, name) for name in ("start", "end", "through", "points"))
         if points is not None:
             if start is not None or end is not None or through is not None:

@@ -162,12 +162,9 @@ def discretise(beam: Any) -> Line:
     """Return the nodes and elements of a beam.
 
     The elements are distributed over the smooth intervals between ends, corners and stations by length, at least one in
-    each. With spectral interpolation, groups of up to four of them share polynomials (`Group`). In the plane the height of a section is in the plane, so axes 2 and 3 change places.
-
-    Raises
-    ------
-    ValueError
-        If a station is beyond the beam, or an element turns by more than half a turn.
+    each. With spectral interpolation, groups of up to four of them share polynomials (`Group`). In the plane the height
+    of a section is in the plane, so axes 2 and 3 change places. ValueError if a station is beyond the beam, or an
+    element turns by more than half a turn.
     """
     pieces, planar = beam.pieces(), beam.dimensions == 2
     total = sum(piece.length for piece in pieces)

@@ -16,22 +16,9 @@ def with_beams(
 ) -> dict[str, Any]:
     """Return the sections of a scene or part with beams replaced by their nodes and elements.
 
-    Parameters
-    ----------
-    sections : mapping
-        As written, with repeated entries expanded.
-    parameters : mapping of str to Quantity
-    dimensions : int, optional
-        By default those that the sections contain.
-    part : str
-        Path of a part, followed by a dot, for messages.
-    instance : str
-        Its name, followed by a dot.
-
-    Raises
-    ------
-    InputError
-        If a beam cannot be read, or one of its names is taken.
+    The sections are as written, with repeated entries expanded; the dimensions are by default those that they contain.
+    `part` is the path of a part for messages, `instance` its name, both followed by a dot. InputError if a beam cannot
+    be read, or one of its names is taken.
     """
     bodies, forces = sections.get("bodies"), sections.get("forces")
     if not (_any(bodies, lambda kind: True) or _any(forces, lambda kind: kind in (LOAD, CONTACT))):

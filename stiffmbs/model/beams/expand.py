@@ -28,23 +28,11 @@ BEAM = "beam"
 def expand_beams(
     bodies: dict[str, Any], forces: Any, parameters: Mapping[str, Any], dimensions: Any, where: str, instance: str
 ) -> tuple[Any, Any]:
-    """Replace the beams among the bodies of a scene or part by their nodes and elements.
+    """Return the bodies and forces of a scene or part with beams replaced by their nodes and elements.
 
-    Parameters
-    ----------
-    bodies, forces : mappings of names to entries
-        As written, with repeated entries expanded.
-    parameters : mapping of str to Quantity
-    dimensions : int
-    where : str
-        Path of the bodies for messages.
-    instance : str
-        Name of the part followed by a dot, for the record of all beams.
-
-    Raises
-    ------
-    InputError
-        If a beam cannot be read, or one of its names is taken.
+    The entries are as written, with repeated ones expanded. `where` is the path of the bodies for messages, `instance`
+    the name of the part followed by a dot, for the record of all beams. InputError if a beam cannot be read, or one of
+    its names is taken.
     """
     found: dict[Any, Any] = {}
     added: dict[Any, Any] = {}

@@ -26,13 +26,7 @@ class Expanded:
 
 
 def expanded(name: str, beam: Any) -> Expanded:
-    """Return the bodies and forces that stand for a beam.
-
-    Raises
-    ------
-    ValueError
-        As for `discretise`.
-    """
+    """Return the bodies and forces that stand for a beam; ValueError as for `discretise`."""
     line = discretise(beam)
     planar = beam.dimensions == 2
     neighbours = _neighbours(line)

@@ -13,21 +13,15 @@ POINTS, WEIGHTS = np.polynomial.legendre.leggauss(5)
 
 
 def element_stiffness(unloaded: np.ndarray, length: float, section: Callable[[float], np.ndarray]) -> np.ndarray:
-    """Return K of an `exact_beam` whose linear deformation is that of the continuous beam.
+    """Return K of an `exact_beam` of a length L, m, whose linear deformation is that of the continuous beam.
 
     The strain of an element under end loads is not constant. Its average depends on the loads by the compliance of the
     continuous beam, the integral of P(s) K(s)^-1 P(s)^T / L. P(s) is the relative displacement of the ends by a unit
     strain at s. For a straight beam this adds L^2/(12 EI) to 1/GA, the residual bending flexibility of MacNeal (1978).
     The nodes of a linear beam under nodal loads then have no discretisation error.
 
-    Parameters
-    ----------
-    unloaded : ndarray, shape (6,)
-        (Gamma, kappa) without load; the first is (1, 0, 0) for a tangent axis.
-    length : float
-        L, m.
-    section : callable
-        Returns the stiffness of the section, shape (6,), at a fraction of the length.
+    `unloaded` is (Gamma, kappa) without load, shape (6,); its first part is (1, 0, 0) for a tangent axis. `section`
+    returns the stiffness of the section, shape (6,), at a fraction of the length.
     """
     bracket = adjoint(unloaded)
     symmetric = np.linalg.inv(half_sine(length * bracket))

@@ -12,16 +12,9 @@ from .formulas import Angles, Written, formula, placement, point
 
 
 def same(element: Element, angles: Angles, **others: Any) -> Written:
-    """Return the spatial element of the same kind, with fields of the same meaning.
+    """Return the spatial element of the same kind as a planar one, with fields of the same meaning.
 
-    Parameters
-    ----------
-    element : Element
-        Planar element.
-    angles : Angles
-        Angles of its model.
-    **others
-        Fields with other values; None for omitted ones.
+    `angles` are those of its model. `others` are fields with other values; None for omitted ones.
     """
     own = {name: plain(value, angles) for name, value in element.__repr_args__() if name not in others}
     return {"type": element.kind, **own, **{name: value for name, value in others.items() if value is not None}}

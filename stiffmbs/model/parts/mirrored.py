@@ -53,12 +53,9 @@ class Mirror:
         return own or f"{marker.body}.".startswith(f"{self.name}.")
 
     def mirrored(self, element: Element, where: str) -> Element:
-        """Return the mirror image of an element; markers on `mount` are resolved when the part is placed.
+        """Return the mirror image of an element; InputError if that of the element or of a formula is not defined.
 
-        Raises
-        ------
-        InputError
-            If the mirror image of the element or of a formula is not defined.
+        Markers on `mount` are resolved when the part is placed.
         """
         if element.reflected is None:
             raise InputError(
@@ -76,10 +73,7 @@ class Mirror:
     def mirrored_state(self, state: Any, where: str) -> Any:
         """Return a state or a system of states with mirrored coordinates in its formulas; its value is the same.
 
-        Raises
-        ------
-        InputError
-            If the mirror image of a formula is not defined.
+        InputError if the mirror image of a formula is not defined.
         """
         changed = {}
         for name in type(state).model_fields:

@@ -38,21 +38,9 @@ def with_parts(
 ) -> tuple[dict[str, Any], dict[str, Any]]:
     """Return a scene with its ``use`` expanded, and its validation context.
 
-    Parameters
-    ----------
-    raw : mapping
-        Scene as written, with repeated entries expanded.
-    scene : type of Scene
-        For the plane or space.
-    context : mapping
-        Validation context: parameters, tables, variables.
-    changes : sequence of (path, value)
-        Values set in instances of parts.
-
-    Raises
-    ------
-    InputError
-        If a part cannot be read or placed.
+    The scene is as written, with repeated entries expanded; its type is that of the plane or of space. The context
+    holds parameters, tables and variables. The changes are values, by their paths, set in instances of parts.
+    InputError if a part cannot be read or placed.
     """
     raw = {key: dict(value) if isinstance(value, dict) else value for key, value in raw.items()}
     parts, used = raw.pop("parts", None), raw.pop("use", None)

@@ -100,14 +100,8 @@ def _closing(curve: Curve) -> Curve:
 def circle(radius: float, entry: float, transition: float, turns: float) -> Curve:
     """Return a straight line along x, a transition of linear curvature (clothoid), and a circle.
 
-    Parameters
-    ----------
-    radius : float
-        Positive to the left, m.
-    entry, transition : float
-        Lengths of the straight line and of the transition, m.
-    turns : float
-        Number of turns on the circle.
+    The radius, m, is positive to the left. `entry` and `transition` are the lengths of the straight line and of the
+    transition, m; `turns` counts turns on the circle.
     """
     length = entry + transition + 2 * np.pi * turns * abs(radius)
     s = np.linspace(0.0, length, int(np.clip(np.ceil(length / FINEST), 40, MOST_STATIONS)) + 1)

@@ -60,13 +60,7 @@ class Path(Described):
         return self
 
     def curve(self) -> Curve:
-        """Return the course over its arc length.
-
-        Raises
-        ------
-        ValueError
-            If two consecutive points coincide.
-        """
+        """Return the course over its arc length; ValueError if two consecutive points coincide."""
         if self.circle is not None:
             return circle(self.circle, self.entry, self.transition, self.turns)
         if self.lanes is not None:

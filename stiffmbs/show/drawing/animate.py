@@ -66,21 +66,9 @@ def write_animation(
 ) -> None:  # fmt: skip
     """Write an animation of runs of a model, drawn over each other; the file is complete or not written at all.
 
-    Parameters
-    ----------
-    path : Path
-        Name in .gif, .mp4 or .html.
-    runs : mapping of str to Solution
-        Runs by their names in the legend; the first one is drawn in full colors.
-    view, pace, shown
-        Options of a film; a page can be rotated by hand.
-    traces : sequence of str
-        Markers or bodies whose paths are drawn.
-
-    Raises
-    ------
-    InputError
-        If a run belongs to another model, or a marker is unknown.
+    The name of the file ends in .gif, .mp4 or .html. The runs have their names in the legend, and the first one is
+    drawn in full colors. `view`, `pace` and `shown` are options of a film; a page can be rotated by hand. `traces` are
+    markers or bodies whose paths are drawn. InputError if a run belongs to another model, or a marker is unknown.
     """
     poses = {name: poses_of(data, run.time, run.channels) for name, run in runs.items()}
     drawing = drawing_of(data, along=next(iter(poses.values())))

@@ -42,24 +42,11 @@ def check_drawing(path: Path) -> None:
 def state_drawn(
     model: Any, at: float | None = None, described: bool = False, checked: bool = False, **changes: Any
 ) -> tuple[Drawing, Poses]:
-    """Return a model's drawing and its poses at one instant.
+    """Return the drawing of a model, scene or file and its poses at one instant, s; by default the start of the run.
 
-    Parameters
-    ----------
-    model : Model, Scene, str or Path
-    at : float, optional
-        Time, s; the start of the run by default.
-    described : bool
-        True for the bodies as described, before assembly; nothing is solved, so there are no forces.
-    checked : bool
-        True to mark joints with redundant equations, and joints whose forces are not unique.
-    **changes
-        Fields of the settings to change.
-
-    Raises
-    ------
-    InputError, AssemblyError, SolverError
-        As for `stiffmbs.modes`.
+    `described` is for the bodies before assembly: nothing is solved, so there are no forces. `checked` marks joints
+    with redundant equations, and joints whose forces are not unique. `changes` are fields of the settings. Errors are
+    those of `stiffmbs.modes`.
     """
     marks = marks_of(check(model, **changes)) if checked else {}
     if described:

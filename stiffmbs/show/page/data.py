@@ -70,22 +70,12 @@ def page_data(
 ) -> dict[str, str]:  # fmt: skip
     """Return the two texts of a page: ``head``, JSON, and ``numbers``, both compressed.
 
-    Parameters
-    ----------
-    runs : mapping of str to Poses
-        Runs drawn over each other, by their names in the legend; the first one in full colors.
-    solution : Solution, optional
-        Solution with the channels that can be plotted.
-    shown : sequence of str
-        Channels that are plotted first.
-    traces : sequence of Anchor
-        Points whose paths are drawn first.
-    only : sequence of str, optional
-        Channels whose values are included; of the others only names and units.  By default all.
-    level : int
-        Level of compression, 1 (fast) to 9 (small).
-    choose : str
-        Label of a choice of one run that is shown and repeated; empty to show all runs over each other.
+    The runs, by their names in the legend, are drawn over each other, the first one in full colors. The channels of the
+    solution can be plotted, and those of `shown` are plotted first. The paths of the points `traces` are drawn first.
+    `only` names the channels whose values are included, by default all; of the others only names and units are.
+
+    The level of compression is 1 (fast) to 9 (small). `choose` is the label of a choice of one run that is shown and
+    repeated; empty to show all runs over each other.
     """
     packed = Packed()
     width = sum(7 * len(poses.points) + 3 * len(poses.forces) for poses in runs.values()) or 1
