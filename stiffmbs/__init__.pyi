@@ -264,6 +264,7 @@ class ExactBeam(_ExactBeam):
         *,
         length: given.Number,
         damping_ratio: given.Number | None = ...,
+        bowing: given.Numbers | None = ...,
         i: given.Marker,
         j: given.Marker,
         stiffness: given.Matrix,
