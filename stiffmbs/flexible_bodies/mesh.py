@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import io
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +14,7 @@ from scipy.spatial import cKDTree
 
 from ..errors import InputError, needs
 from .finite_elements import FiniteElements
+from .mesh_files import refuse_ignored, sets_of_sets
 from .solid import Solid
 
 SOLIDS = {
@@ -29,8 +30,6 @@ APART = 1e-6
 """Largest distance of a node from its place in the element, relative to the size of the body."""
 FLAT = 1e-9
 """Smallest volume of an element, relative to the product of its edges, and smallest density of volume relative to the largest."""
-NASTRAN = {".bdf", ".fem", ".nas"}
-"""Suffixes of Nastran files."""
 HARMLESS = {"vertex", "line", "line3", "triangle", "triangle6", "quad", "quad8", "quad9"}
 """Elements of a mesh that are not solids and are used only as groups."""
 
@@ -66,14 +65,13 @@ def from_mesh(
     stiffness, mass, shapes = _assembled(nodes, cells, kind, modulus, poisson, density)
     numbers = np.full(len(mesh.points), -1)
     numbers[used] = np.arange(len(used))
-    return FiniteElements(nodes, stiffness, mass, _groups(mesh, numbers), {kind: cells}, shapes)
+    return FiniteElements(nodes, stiffness, mass, _groups(mesh, numbers, sets_of_sets(path)), {kind: cells}, shapes)
 
 
 def _read(path: Path) -> Any:
     with needs("meshio", "flexible"):
         import meshio
-    if path.suffix.lower() in NASTRAN and not _is_complete(path):
-        raise InputError("found no line ENDDATA after BEGIN BULK, expected a complete Nastran file")
+    refuse_ignored(path)
     try:
         with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
             return meshio.read(path)
@@ -85,12 +83,6 @@ def _read(path: Path) -> Any:
             + (str(error).splitlines() or [type(error).__name__])[0]
         )
     raise InputError(f"found no mesh ({reason}), expected Gmsh .msh, Abaqus .inp, Nastran .bdf, VTK .vtu or .vtk")
-
-
-def _is_complete(path: Path) -> bool:
-    """Return True if the bulk data of a Nastran file end; the reader would never return otherwise."""
-    _, begin, bulk = path.read_text(encoding="utf-8", errors="replace").partition("BEGIN BULK")
-    return not begin or any(line.startswith("ENDDATA") for line in bulk.splitlines())
 
 
 def _check_volumes(nodes: np.ndarray, cells: np.ndarray, kind: str) -> None:
@@ -171,7 +163,7 @@ def _assembled(
     return found[0], found[1], Solid(of_skfem, scalar, order, node[basis.element_dofs[::3]], modulus, poisson)
 
 
-def _groups(mesh: Any, numbers: np.ndarray) -> dict[str, np.ndarray]:
+def _groups(mesh: Any, numbers: np.ndarray, within: Mapping[str, Sequence[str]]) -> dict[str, np.ndarray]:
     """Return the named groups of nodes: sets of points, and nodes of sets or physical groups of elements."""
     found: dict[str, list[np.ndarray]] = {}
     for name, points in mesh.point_sets.items():
@@ -186,5 +178,9 @@ def _groups(mesh: Any, numbers: np.ndarray) -> dict[str, np.ndarray]:
             members = np.flatnonzero(tags == tag)
             if len(members) and block.dim == dimension:
                 found.setdefault(name, []).append(np.unique(block.data[members]))
-    groups = {name: numbers[np.unique(np.concatenate(parts))] for name, parts in found.items()}
+    for name, members in within.items():
+        found[name] = [*found.get(name, []), *(part for member in members for part in found.get(member, []))]
+    groups = {
+        name: numbers[np.unique(np.concatenate([*parts, np.empty(0, dtype=np.int64)]))] for name, parts in found.items()
+    }
     return {name: nodes[nodes >= 0] for name, nodes in groups.items()}

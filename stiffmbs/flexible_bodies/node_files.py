@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import InputError, needs
+from .mesh_files import data_lines
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,16 +98,7 @@ def _abaqus(path: Path) -> Found:
     numbers: list[int] = []
     points: list[list[float]] = []
     groups: dict[str, list[int]] = {}
-    keyword, options = "", {}
-    for line in path.read_text().splitlines():
-        if line.startswith("**") or not line.strip():
-            continue
-        words = [word.strip() for word in line.split(",")]
-        if line.startswith("*"):
-            keyword = words[0].upper()
-            pairs = (word.partition("=") for word in words[1:])
-            options = {key.strip().upper(): value.strip() for key, _, value in pairs}
-            continue
+    for keyword, options, words in data_lines(path):
         if keyword == "*NODE":
             numbers.append(int(words[0]))
             points.append([float(word or 0) for word in words[1:4]])

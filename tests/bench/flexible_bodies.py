@@ -159,21 +159,26 @@ def car(folder: Path) -> None:
     for place in ("on: chassis, position: [a, 0, -height]", "on: chassis\n    position: [a, 0, -height]"):
         flexible = flexible.replace(place, place.replace("chassis", "shell.front").replace("[a,", "[0,"))
     flexible = flexible.replace("on: chassis, position: [-b, 0, -height]", "on: shell.rear, position: [0, 0, -height]")
+    flexible = flexible.replace("parts:\n", "parts:\n  links: {include: links.yaml}\n", 1)
     begin, end = flexible.index("  front.bar:"), flexible.index("  air:")
     flexible = (
         flexible[:begin]
-        + "  front.bar: {use: links.yaml, on: shell.front, position: [0, 0, -height], mounts: {left: front.left.lower.arm, "
+        + "  front.bar: {use: links, on: shell.front, position: [0, 0, -height], mounts: {left: front.left.lower.arm, "
         + "right: front.right.lower.arm, bar_left: bar.left, bar_right: bar.right}}\n"
         + flexible[end:]
     ).replace("forces:\n", "joints: {seat: {type: fixed, i: chassis, j: shell.seat}}\nforces:\n", 1)
     for name, content in (("rigid", text), ("flexible", flexible)):
+        content = content.replace("speed: found, ", "")  # equilibria in steady motion refuse flexible bodies
         path = folder / f"{name}.yaml"
         path.write_text(content)
         scene = read_scene(content, [("choose.manoeuvre", "step_steer")], file=path)
-        solutions = [run(scene) for _ in range(3)]
-        best = min((solution.solver for solution in solutions), key=lambda solver: solver["seconds"])
-        how = f"{best['seconds']:.2f} s by {best['name']}, {best['steps']} steps"
-        print(f"step steer of 10 s, {name}: {how}, {solutions[0].message}", flush=True)
+        solution, seconds = run(scene), []
+        for _ in range(3):
+            begin = time.process_time()
+            solution = run(scene)
+            seconds.append(time.process_time() - begin)
+        how = f"{min(seconds):.2f} s of processor time by {solution.solver['name']}, {solution.solver['steps']} steps"
+        print(f"step steer of 10 s, {name}: {how}, {solution.message}", flush=True)
 
 
 COMMANDS = {"residual": residual, "car": car}

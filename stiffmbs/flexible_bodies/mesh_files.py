@@ -1,0 +1,98 @@
+"""Statements of Nastran and Abaqus files that the reader of meshes ignores although they move nodes or name them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+from ..errors import InputError
+
+NASTRAN, ABAQUS = {".bdf", ".fem", ".nas"}, ".inp"
+"""Suffixes of Nastran and Abaqus files."""
+MASSES = {"CONM1", "CONM2", "CMASS1", "CMASS2", "CMASS3", "CMASS4"}
+NOT_ZERO = re.compile(r"[^EeDd]*[1-9]")
+
+
+def refuse_ignored(path: Path) -> None:
+    """Refuse local coordinate systems, several or moved instances, and files without an end. Raises InputError."""
+    suffix = path.suffix.lower()
+    if suffix in NASTRAN:
+        _check_nastran(path.read_text(encoding="utf-8", errors="replace"))
+    elif suffix == ABAQUS:
+        _check_abaqus(path)
+
+
+def sets_of_sets(path: Path) -> dict[str, list[str]]:
+    """Return the names of sets within each set of an Abaqus file."""
+    found: dict[str, list[str]] = {}
+    for keyword, options, words in data_lines(path) if path.suffix.lower() == ABAQUS else ():
+        name = options.get("NSET") if keyword == "*NSET" else options.get("ELSET") if keyword == "*ELSET" else None
+        names = [word for word in words if word and not word.isdigit()]
+        if name and names and "GENERATE" not in options:
+            found.setdefault(name, []).extend(names)
+    return found
+
+
+def _check_nastran(text: str) -> None:
+    _, begin, bulk = text.partition("BEGIN BULK")
+    if begin and not any(line.startswith("ENDDATA") for line in bulk.splitlines()):
+        raise InputError("found no line ENDDATA after BEGIN BULK, expected a complete Nastran file")
+    for line in text.splitlines():
+        if (card := line[:8].split(",")[0].strip(" *").upper()) in MASSES:
+            raise InputError(
+                f"found {card}, a mass besides the elements, expected none: fix a rigid body to an interface"
+            )
+        if line[:4].upper() == "GRID" or line[:6].upper() == "GRDSET":
+            wide = "*" in line[:8]
+            fields = (
+                line.split(",")
+                if "," in line
+                else [line[:8], line[8:24] if wide else line[8:16], line[24:40] if wide else line[16:24]]
+            )
+            if len(fields) > 2 and fields[2].strip() not in ("", "0"):
+                raise InputError(
+                    f"found {fields[0].strip()} {fields[1].strip()} in the coordinate system {fields[2].strip()}, "
+                    "expected positions in the basic one (CP empty)"
+                )
+
+
+def _check_abaqus(path: Path) -> None:
+    instances, moved, numbers = 0, "", "expected one instance of one part without a translation or rotation"
+    for line in _lines(path):
+        words = line.replace(" ", "").upper().split(",")
+        instances += words[0] == "*INSTANCE"
+        if words[0] == "*SYSTEM" or (
+            words[0] == "*NODE" and any(word.startswith("SYSTEM=") and word != "SYSTEM=R" for word in words)
+        ):
+            raise InputError(f"found '{line.strip()}', expected positions in the global rectangular coordinate system")
+    for keyword, _, words in data_lines(path):
+        if keyword == "*INSTANCE" and any(NOT_ZERO.match(word) for word in words):
+            moved = ", ".join(words)
+    if instances > 1 or moved:
+        raise InputError(f"found {f'an instance moved by {moved}' if moved else f'{instances} instances'}, {numbers}")
+
+
+def data_lines(path: Path) -> Iterator[tuple[str, dict[str, str], list[str]]]:
+    """Yield the keyword, its options, and the words of each line of data."""
+    keyword, options = "", {}
+    for line in _lines(path):
+        words = [word.strip() for word in line.split(",")]
+        if line.startswith("*"):
+            keyword = words[0].upper()
+            pairs = (word.partition("=") for word in words[1:])
+            options = {key.strip().upper(): value.strip() for key, _, value in pairs}
+        else:
+            yield keyword, options, words
+
+
+def _lines(path: Path, depth: int = 0) -> Iterator[str]:
+    """Yield the lines of an Abaqus file and of those that it includes, without comments."""
+    for line in path.read_text(encoding="utf-8", errors="replace").splitlines():
+        if line.startswith("**") or not line.strip():
+            continue
+        yield line
+        if line.upper().startswith("*INCLUDE") and depth < 10:
+            included = path.parent / line.partition("=")[2].strip()
+            if included.is_file():
+                yield from _lines(included, depth + 1)

@@ -1,0 +1,60 @@
+"""Statements of Nastran and Abaqus files besides nodes and elements: sets, supports, coordinate systems, instances."""
+
+import numpy as np
+import pytest
+
+from stiffmbs.errors import InputError
+from stiffmbs.flexible_bodies.mesh import from_mesh
+
+POINTS = [(x, y, z) for x in (0, 1, 2) for y in (0, 1) for z in (0, 1)]
+ELEMENTS = [(1, 5, 7, 3, 2, 6, 8, 4), (5, 9, 11, 7, 6, 10, 12, 8)]
+NODES = "".join(f"{k + 1}, {x}, {y}, {z}\n" for k, (x, y, z) in enumerate(POINTS))
+ABAQUS = f"*Node\n{NODES}*Element, type=C3D8R, elset=body\n" + "".join(
+    f"{k + 1}, {', '.join(map(str, nodes))}\n" for k, nodes in enumerate(ELEMENTS)
+)
+
+
+def nastran(system="", more=""):
+    grids = "".join(f"GRID,{k + 1},{system},{x}.,{y}.,{z}.\n" for k, (x, y, z) in enumerate(POINTS))
+    cells = "".join(f"CHEXA,{k + 1},1,{','.join(map(str, n[:6]))},+\n+,{n[6]},{n[7]}\n" for k, n in enumerate(ELEMENTS))
+    return f"SOL 103\nCEND\nBEGIN BULK\nPSOLID,1,1\n{grids}{cells}{more}ENDDATA\n"
+
+
+def read(path, text):
+    path.write_text(text)
+    return from_mesh(path, 1.0, 2.1e11, 0.3, 7850.0)
+
+
+def test_supports_and_rigid_elements_are_left_out(tmp_path):
+    more = "GRID,100,,3.,.5,.5\nRBE2,50,100,123456,9,10,11,12\nSPC1,1,123456,1,2,3,4\n"
+    found = read(tmp_path / "a.bdf", nastran(more=more))
+    assert len(found.nodes) == 12
+    assert found.mass.sum() / 3 == pytest.approx(2 * 7850)
+
+
+def test_sets_of_nodes_elements_and_sets(tmp_path):
+    text = (
+        ABAQUS + "*Nset, nset=start, generate\n1, 4, 1\n*Nset, nset=end\n9, 10,\n11, 12\n*Nset, nset=ends\nstart, end\n"
+    )
+    groups = read(tmp_path / "a.inp", text + "*Elset, elset=first\n1\n").groups
+    wanted = {"start": range(4), "end": range(8, 12), "ends": [*range(4), *range(8, 12)], "first": range(8)}
+    assert {name: groups[name].tolist() for name in wanted} == {name: list(nodes) for name, nodes in wanted.items()}
+
+
+@pytest.mark.parametrize(("name", "text", "message"), [
+    ("a.bdf", nastran("7", "CORD2R,7,0,0.,0.,0.,0.,0.,1.,+\n+,0.,1.,0.\n"), "found GRID 1 in the coordinate system 7"),
+    ("a.bdf", nastran(more="GRDSET,,7\n"), "found GRDSET"),
+    ("a.bdf", nastran(more="CONM2,9,1,,5.\n"), "found CONM2, a mass besides the elements"),
+    ("a.inp", "*System\n5., 0., 0.\n" + ABAQUS, r"found '\*System'"),
+    ("a.inp", ABAQUS.replace("*Node", "*Node, system=C"), r"found '\*Node, system=C'"),
+    ("a.inp", ABAQUS + "*Instance, name=i, part=p\n10., 0., 0.\n*End Instance\n", "an instance moved by 10., 0., 0."),
+    ("a.inp", ABAQUS + "*Instance, name=i\n*End Instance\n*Instance, name=j\n*End Instance\n", "found 2 instances"),
+])  # fmt: skip
+def test_statements_that_would_be_ignored_are_refused(tmp_path, name, text, message):
+    with pytest.raises(InputError, match=message):
+        read(tmp_path / name, text)
+
+
+def test_an_instance_in_place_is_read(tmp_path):
+    text = ABAQUS + "*Instance, name=i, part=p\n0., 0.0E+00, 0.\n*End Instance\n"
+    assert np.ptp(read(tmp_path / "a.inp", text).nodes, axis=0).tolist() == [2, 1, 1]
