@@ -1,4 +1,4 @@
-"""Cost of flexible bodies: ``python -m tests.bench.flexible_bodies [residual] [car]``.
+"""Cost of flexible bodies: ``python -m tests.bench.solvers.flexible_bodies [residual] [car]``.
 
 `residual`: time of one residual of a half car in space whose trailing arms are flexible, over that with rigid arms.
 `car`: time of a step steer of 10 s of `examples/car.yaml` with a flexible shell of 30 modes and a flexible anti-roll bar.
@@ -22,7 +22,7 @@ from stiffmbs.model.read_scene import read_scene
 from stiffmbs.model.scene import Scene
 from stiffmbs.solve.formulations import FORMULATIONS
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
+EXAMPLES = Path(__file__).parents[3] / "examples"
 HALF_CAR = """
 dimensions: 3
 gravity: [0, 0, -9.81]
