@@ -28,7 +28,8 @@ def reported_terms(system: System) -> Iterator[tuple[str, int]]:
     """Yield the channels of `reactions` with their index in the values of the output terms; -1 for zero."""
     for g, group in enumerate(system.groups):
         if group.kind.element.kind:
-            yield from _of_term(system, g, group, "reaction", system.of_body.reactions)
+            if getattr(group.kind.element, "has_reaction", True):
+                yield from _of_term(system, g, group, "reaction", system.of_body.reactions)
             yield from _of_term(system, g, group, "measured", getattr(group.kind.element, "channels", ()))
 
 

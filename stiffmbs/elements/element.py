@@ -281,6 +281,8 @@ class Force(Element):
     ----------
     channels : tuple of str
         Names of the values that `measured` returns, reported as channels of the element.
+    has_reaction : bool
+        Whether force and torque on its first body are reported.
     may_keep_energy : bool
         Whether the force is conservative for some values of its fields; its equations are tested for them.
     turns : bool
@@ -297,6 +299,7 @@ class Force(Element):
     """
 
     channels: ClassVar[tuple[str, ...]] = ()
+    has_reaction: ClassVar[bool] = True
     may_keep_energy: ClassVar[bool] = True
     turns: ClassVar[bool] = False
     beyond: ClassVar[str] = ""

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import stiffmbs
-from stiffmbs import Body, InputError, Model, compile_model, spatial
+from stiffmbs import Body, InputError, Model, compile_model, read_scene, spatial
 from stiffmbs.compile.directional.direction import Direction, Numbers
 from stiffmbs.compile.state import State
 from stiffmbs.compile.terms import TERM_SETS
@@ -157,6 +157,21 @@ forces: {P: {type: force, i: cone.end, force: [0, 1]}}
     bending = 64 / (3 * math.pi * 200e9 * 0.04**3 * 0.02)
     shear = 1 / (6 / 7 * 100e9 * math.pi / 4 * 0.04 * 0.02)
     assert found["cone.end.y"] == pytest.approx(bending + shear, rel=1e-6)
+
+
+def test_section_forces_follow_from_statics_and_there_are_no_others():
+    """Shear is P and the moment P (L - x); the moment is exact at the Gauss points of each group."""
+    scene = read_scene(spectral(cantilever(8, force="[2e-3, 1e-3]")))
+    found = stiffmbs.equilibrium(scene).channels
+    places = np.concatenate(
+        [k / 2 + Group.of(4).nodes[0] + [place / 2 for place, *_ in Group.of(4).sections] for k in (0, 1)]
+    )
+    for k, x in enumerate(places, 1):
+        forces = [found[f"strip.element{k}.{name}"] for name in ("n1", "n2", "m3")]
+        assert forces == pytest.approx([2e-3, 1e-3, 1e-3 * (1 - x)], abs=2e-6)
+    assert "strip.element1.fx" not in found
+    with pytest.raises(InputError, match=r"strip\.element1\.fx"):
+        read_scene(spectral(cantilever(8)) + "requests: {q: strip.element1.fx}")
 
 
 def test_the_princeton_beam():

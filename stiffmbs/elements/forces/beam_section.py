@@ -29,6 +29,7 @@ class BeamSectionLaw(Force):
     """Base of cross sections at an inner point of a beam with several nodes; scenes use its subclasses `beam_section`."""
 
     symbol: ClassVar[str] = "beam"
+    has_reaction: ClassVar[bool] = False
     beyond: ClassVar[str] = BEYOND
     doubtful: ClassVar[float] = 2**-0.5
     doubt: ClassVar[str] = DOUBT

@@ -108,7 +108,7 @@ def _of(owner: str, model: Any, names: OutputNames) -> tuple[str, ...]:
         return names.of_bodies
     if owner in model.forces:
         force = model.forces[owner]
-        return (*names.of_elements, *force.channels, *force.own_states())
+        return (*(names.of_elements if force.has_reaction else ()), *force.channels, *force.own_states())
     if owner in model.joints:
         return (*names.of_elements, *model.joints[owner].channels)
     return OF_RUN.get(owner, ())

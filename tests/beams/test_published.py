@@ -1,0 +1,102 @@
+"""Stability, frequencies and deflections of beams against published formulas."""
+
+import math
+
+import pytest
+
+import stiffmbs
+from stiffmbs import read_scene
+
+from .scenes import at_rest
+
+
+def column(load, end="", follower=False, n=8):
+    """A clamped column of unit length and bending stiffness with an axial load at its end."""
+    axes = ", axes: body" if follower else ""
+    return read_scene(f"""
+bodies:
+  c: {{type: beam, start: [0, 0], end: [1, 0], elements: {n}, stiffness: [1e6, 1e6, 1], mass_per_length: 1, inertia_per_length: 1e-7}}
+joints: {{a: {{type: fixed, i: c.start, j: ground}}{end}}}
+forces: {{P: {{type: force, i: c.end, force: [{-load}, 0]{axes}}}}}
+""")
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(
+    ("end", "critical"),
+    [
+        ("", math.pi**2 / 4),
+        (", b: {type: prismatic, i: c.end, j: ground}", 4 * math.pi**2),
+        (", b: {type: point_on_line, i: c.end, j: ground}", 20.1907),
+    ],
+    ids=["free", "guided", "pinned"],
+)
+def test_a_column_buckles_at_the_load_of_euler(end, critical):
+    for share in (0.97, 1.03):
+        found = stiffmbs.equilibrium(column(share * critical, end))
+        deflection = max(abs(found.channels[f"c.node{k}.y"]) for k in range(1, 8))
+        assert (deflection > 1e-2) == (share > 1)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("load", "flutters"), [(0.97 * 20.05, False), (1.03 * 20.05, True)])
+def test_a_follower_load_makes_a_column_flutter(load, flutters):
+    """Beck, Die Knicklast des einseitig eingespannten, tangential gedrueckten Stabes, ZAMP 3 (1952): 20.05 EI/L^2."""
+    scene = column(load, follower=True, n=12)
+    modes = stiffmbs.modes(scene, start_from=stiffmbs.equilibrium(scene).solution).modes
+    assert (max(value.real for mode in modes for value in mode.eigenvalues) > 1e-3) == flutters
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("share", "buckles"), [(0.97, False), (1.03, True)])
+def test_a_narrow_cantilever_buckles_sideways(share, buckles):
+    """Prandtl (1899): 4.0126 sqrt(EI GJ)/L^2."""
+    found = at_rest(f"""
+dimensions: 3
+bodies:
+  c: {{type: beam, start: [0, 0, 0], end: [1, 0, 0], elements: 12, stiffness: [1e7, 1e7, 1e7, 0.6, 1e5, 1], mass_per_length: 1,
+      inertia_per_length: [2e-4, 1e-4, 1e-4]}}
+joints: {{a: {{type: fixed, i: c.start, j: ground}}}}
+forces: {{P: {{type: force, i: c.end, force: [0, 0, {-share * 4.0126 * math.sqrt(0.6)!r}]}}}}
+""")
+    assert (abs(found["c.end.y"]) > 1e-2) == buckles
+
+
+@pytest.mark.long
+def test_a_taut_string_has_its_frequencies():
+    scene = read_scene("""
+bodies: {c: {type: beam, start: [0, 0], end: [1, 0], elements: 20, stiffness: [1e6, 1e6, 1e-4], mass_per_length: 1, inertia_per_length: 1e-8}}
+joints: {a: {type: revolute, i: c.start, j: ground}, b: {type: point_on_line, i: c.end, j: ground}}
+forces: {P: {type: force, i: c.end, force: [100, 0]}}
+""")
+    found = stiffmbs.modes(scene, start_from=stiffmbs.equilibrium(scene).solution)
+    assert [mode.frequency for mode in found.modes[:3]] == pytest.approx([5, 10, 15], rel=2e-3)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("form", "tolerance"), [("pairs", 7e-3), ("spectral", 2e-5)])
+def test_a_pinned_timoshenko_beam_has_its_frequencies(form, tolerance):
+    scene = read_scene(f"""
+bodies:
+  c: {{type: beam, start: [0, 0], end: [1, 0], elements: 16, interpolation: {form}, stiffness: [1e6, 100, 1], mass_per_length: 1,
+      inertia_per_length: 0.01}}
+joints: {{a: {{type: revolute, i: c.start, j: ground}}, b: {{type: revolute, i: c.end, j: {{body: ground, point: [1, 0]}}}}}}
+""")
+    expected = []
+    for k in (1, 2, 3):
+        a, b, c = 0.01 / 100, -(1 + (k * math.pi) ** 2 * (0.01 + 1 / 100)), (k * math.pi) ** 4
+        expected.append(math.sqrt((-b - math.sqrt(b * b - 4 * a * c)) / (2 * a)) / math.tau)
+    assert [mode.frequency for mode in stiffmbs.modes(scene).modes[:3]] == pytest.approx(expected, rel=tolerance)
+
+
+def test_a_quarter_circle_bends_as_by_castigliano():
+    """Under the load P at its end: pi P R^3/(4 EI) along the load, P R^3/(2 EI) across it."""
+    found = at_rest(f"""
+bodies:
+  c: {{type: beam, start: [0, 0], through: [{1 - math.sqrt(0.5)!r}, {math.sqrt(0.5)!r}], end: [1, 1], elements: 8, stiffness: [1e7, 1e7, 1],
+      mass_per_length: 1, inertia_per_length: 1e-4}}
+joints: {{a: {{type: fixed, i: c.start.ground_axes, j: ground}}}}
+forces: {{P: {{type: force, i: c.end, force: [0, -1e-4]}}}}
+""")
+    moved = [(found["c.end.x"] - 1) / 1e-4, (found["c.end.y"] - 1) / 1e-4]
+    assert moved == pytest.approx([0.5, -math.pi / 4], rel=2e-4)
