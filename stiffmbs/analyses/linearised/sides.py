@@ -75,7 +75,8 @@ class Moves:
     curved : float
         Relative deviation from proportionality between the changes over both perturbations that a smooth law may have.
     rounding : float
-        Size that counts as zero, relative to the sum of all terms of an entry or to the largest force.
+        Size that counts as zero, relative to the sum of all terms of an entry or to the largest force. Entries that are
+        rounding of the largest one in their row are zero, too: the damping of an undamped bushing.
     """
 
     wide: float = 1e-6
@@ -125,10 +126,12 @@ def kink_at(found: AtState, state: StateMatrix, linear: Linearised, moves: Moves
             "no linearisation exists; expected a state away from the discontinuity, or a continuous law, such as step()"
         )
     changes = [after.matrix - before.matrix for before, after in (wide, narrow)]
-    bends = moves.break_between(*changes) & (np.abs(changes[0]) > moves.rounding * wide[0].parts)
+    parts = wide[0].parts
+    zero = np.maximum(moves.rounding * parts, np.finfo(float).eps * parts.max(axis=1, keepdims=True))
+    bends = moves.break_between(*changes) & (np.abs(changes[0]) > zero)
     if not bends.any():
         return None
-    share = np.where(bends, np.abs(changes[0]) / np.where(bends, wide[0].parts + np.abs(changes[0]), 1.0), 0.0)
+    share = np.where(bends, np.abs(changes[0]) / np.where(bends, parts + np.abs(changes[0]), 1.0), 0.0)
     where = rows[int(np.argmax(share.max(axis=1)))]
     return Kink(where, (wide[0].linear, wide[1].linear))
 
