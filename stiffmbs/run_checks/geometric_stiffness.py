@@ -12,6 +12,7 @@ from ..dynamics.dynamics import OutputRows
 from ..elements.spatial.flexible.layout import parts
 from .parameters import RUN_CHECKS
 
+REMEDY = "use a body of type: beam, or divide the body into several"
 CLAMPED = 36.0
 """Stiffening of a slender beam clamped at one end, over the square of its angular velocity by its lowest free one."""
 EULER = 4 * 4.730041**4 / np.pi**2
@@ -40,7 +41,7 @@ def _note_on_large_deformation(name: str, numbers: dict[str, np.ndarray], y: np.
     if error > RUN_CHECKS.too_much:
         yield (
             f"'{name}' deforms by up to {100 * ratio:.2g} % of its length (root mean square), beyond the theory of second order: "
-            f"deflections of a beam would be wrong by about {100 * error:.1g} %; use a body of type: beam, or divide the body into several"
+            f"deflections of a beam would be wrong by about {100 * error:.1g} %; {REMEDY}"
         )
 
 
@@ -56,9 +57,14 @@ def _note(name: str, numbers: dict[str, np.ndarray], rows: OutputRows, places: n
     at = int(np.abs(ratios).max(axis=1).argmax())
     lowest, highest = ratios[at]
     if max(-lowest, highest) > RUN_CHECKS.stiffened:
+        beyond = (
+            f". A body that loses all its stiffness buckles, beyond the theory of second order: {REMEDY}"
+            if lowest < -1
+            else ""
+        )
         yield (
             f"'{name}': loads and rotation change the stiffness by {100 * lowest:+.2g} % to {100 * highest:+.2g} % at t = {rows.t[chosen[at]]:.4g} s; "
-            f"this geometric stiffness is {'included' if numbers['stiffened'][0] else 'not included (stiffening: false)'}"
+            f"this geometric stiffness is {'included' if numbers['stiffened'][0] else 'not included (stiffening: false)'}{beyond}"
         )
 
 

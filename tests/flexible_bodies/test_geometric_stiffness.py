@@ -214,6 +214,13 @@ def test_an_equilibrium_has_the_note(folder):
     assert float(note.split(" by ")[1].split(" %")[0]) == pytest.approx(-12.5, abs=0.5)
 
 
+def test_a_load_beyond_buckling_is_noted(folder):
+    """Five times Euler's load of the clamped column is more than that of the free bar, which is four times it."""
+    force = f"forces: {{P: {{type: force, i: bar.b, force: [{-5 * EULER}, 0, 0]}}}}\n"
+    notes = run(scene(folder, CLAMP + force + RUN, run__duration="1 ms")).notes
+    assert any("buckles, beyond the theory of second order: use a body of type: beam" in note for note in notes)
+
+
 def test_the_note_on_a_mesh_with_one_interface_does_not_miss_a_mesh(folder):
     """One interface has no static shapes; the stiffness by rotation is there."""
     one = BODY.replace("      b: {plane: {point: [400 mm, 0, 0], normal: [1, 0, 0]}}\n", "")
