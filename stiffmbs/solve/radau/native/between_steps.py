@@ -12,10 +12,14 @@ from stiffmbs.compile.machine.native.evaluate import EFFORT, evaluate, load
 from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.solve.ida.native.output_correction import output_correction_view
 from stiffmbs.solve.radau.native.memory import collocation_view, polynomial, polynomial_rates
-from stiffmbs.solve.radau.native.newton import add_efforts, residual, solved_real, store_misfit
+from stiffmbs.solve.radau.native.newton import add_efforts, residual, size_in_tolerances, solved_real, store_misfit
 
-MOST_CORRECTIONS, CLOSED = 5, 1.0
-"""Largest number of corrections of a state, and misfit that remains, in rtol of the largest effort."""
+MOST_CORRECTIONS, MISFIT, ROUNDING = 5, 1.0, 1e-13
+"""Largest number of corrections of a state, misfit that remains, in rtol of the largest effort, and relative size of
+corrections that are rounding."""
+MOST_MOVED, MOST_MOVED_WITHIN = 0.5, 30.0
+"""Largest changes of the state at the end of a step and of states within it, in tolerances."""
+AGREED, CLOSED, OPEN = 0, 1, 2
 FEW = 2
 """Outputs of a step that are corrected one by one."""
 
@@ -36,14 +40,21 @@ def _defects(x, t):
 
 
 @compiled
-def closed(x, t):
-    """Close the state in `x.y_stage`; return True if its forces had agreed with the efforts before."""
+def closed(x, t, most):
+    """Close the state in `x.y_stage`.
+
+    Returns AGREED if its forces had agreed with the efforts before, or OPEN if they do not after the corrections, or if
+    these exceed a number of tolerances.
+    """
     allowed = 0.0
     for k in range(x.n, x.n_all):
         allowed = max(allowed, abs(x.y_stage[k]))
-    allowed *= CLOSED * x.rtol
+    allowed *= MISFIT * x.rtol
     first = 0.0
     before = 0.0
+    size = 0.0
+    moved = 0.0
+    enough = False
     for count in range(MOST_CORRECTIONS):
         _defects(x, t)
         apart = 0.0
@@ -52,6 +63,7 @@ def closed(x, t):
         if count == 0:
             first = apart
         if apart <= allowed and (count > 0 or x.n_tested == x.n):
+            enough = True
             break
         if count > 0:
             x.closing = apart / before
@@ -63,23 +75,29 @@ def closed(x, t):
         add_efforts(x, x.d, x.misfit)
         for k in range(x.n_all):
             x.y_stage[k] += x.d[k]
+        size = size_in_tolerances(x, x.d)
+        moved += size
         if x.closing * apart <= allowed:
+            enough = True
             break
-    return first <= allowed
+    if moved > most or not (enough or x.rtol * size <= ROUNDING):
+        return OPEN
+    return AGREED if first <= allowed else CLOSED
 
 
 @compiled
 def close_end(x, c, t, h):
-    """Close the state at the end of the step, at a time t before the stop time."""
+    """Close the state at the end of the step, at a time t before the stop time; return True if that succeeded."""
     last = shifted(x.z, (c.stages - 1) * x.n_all)
     for k in range(x.n_all):
         x.y_stage[k] = x.y[k] + last[k]
     for k in range(x.n):
         x.yp_stage[k] = 0.0
     x.closing = 1.0
-    closed(x, t)
+    succeeded = closed(x, t, MOST_MOVED) != OPEN
     for k in range(x.n_all):
         last[k] = x.y_stage[k] - x.y[k]
+    return succeeded
 
 
 @compiled
@@ -100,7 +118,8 @@ def _closed_at(x, c, t, place):
     _corrected(x, c, place, 0)
     if x.n_tested < x.n:
         polynomial_rates(x, place, x.yp_stage)
-    return closed(x, t)
+    if closed(x, t, MOST_MOVED_WITHIN) == OPEN:
+        _corrected(x, c, place, 0)
 
 
 @compiled
@@ -113,10 +132,12 @@ def _find_corrections(x, c):
         correction = shifted(x.corrections, j * x.n_all)
         copied(correction, x.y_stage, x.n_all)
         x.n_corrections = j + 1
-        agreed = closed(x, x.t - (1.0 - place) * x.h_past)
+        outcome = closed(x, x.t - (1.0 - place) * x.h_past, MOST_MOVED_WITHIN)
+        if outcome == OPEN:
+            return
         for k in range(x.n_all):
             correction[k] = (x.y_stage[k] - correction[k]) / factor
-        if agreed and j + 1 >= c.stages:
+        if outcome == AGREED and j + 1 >= c.stages:
             x.suffice = 1
             return
 

@@ -160,7 +160,6 @@ def reinitialise(memory, t, y, yp):
     x.h = 0.0
     x.rate_kept = 0
     x.current = 0
-    x.rate = 1.0
     x.h_accepted = 0.0
     x.since_change = 0
     x.stops = 0

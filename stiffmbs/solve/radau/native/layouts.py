@@ -25,7 +25,7 @@ RADAU = Layout({
     "t": FLOAT_CELL, "h": FLOAT_CELL, "h_past": FLOAT_CELL, "method": INT_CELL, "method_past": INT_CELL, "begun": INT_CELL,
     "h_factored": FLOAT_CELL, "method_factored": INT_CELL, "current": INT_CELL, "rate_kept": INT_CELL, "rejected": INT_CELL, "failures": INT_CELL, "renewed": INT_CELL, "error_size": FLOAT_CELL, "left": FLOAT_CELL, "closing": FLOAT_CELL, "suggested": FLOAT_CELL,
     "corrections": FLOATS, "n_corrections": INT_CELL, "suffice": INT_CELL, "outputs": INT_CELL,
-    "rate": FLOAT_CELL, "contraction": FLOAT_CELL, "last_error": FLOAT_CELL, "h_accepted": FLOAT_CELL, "since_change": INT_CELL, "iterations_taken": INT_CELL,
+    "contraction": FLOAT_CELL, "last_error": FLOAT_CELL, "h_accepted": FLOAT_CELL, "since_change": INT_CELL, "iterations_taken": INT_CELL,
     "n_functions": INT, "functions": INT, "ida": INTS, "before": FLOATS, "after": FLOATS, "within": FLOATS, "fired": INTS,
     "steps": INT_CELL, "residuals": INT_CELL, "jacobians": INT_CELL, "factorizations": INT_CELL, "error_failures": INT_CELL,
     "step_failures": INT_CELL, "iterations": INT_CELL, "newton_failures": INT_CELL,

@@ -28,12 +28,11 @@ MOST_ITERATIONS = 7
 """Largest number of iterations with three stages; each further stage adds two and a half."""
 ROUNDINGS = 4e-16
 """Distance of the last stage from a stop time, relative to the time."""
-LEAST_RATE = 1e-4
-"""Least rate of convergence expected of the next step. That of a linear motion is no larger than rounding, and would let
-the first correction past a change of law."""
-REMEMBERED, DIVERGING, SHORTER, MOST_LEFT = 0.8, 0.99, 0.8, 20.0
-"""As in RADAU5: exponent of the rate of the last step, ratio of corrections that ends the
-iteration; factor of a step whose iteration is too slow, and most that counts of what it would leave."""
+DIVERGING, SHORTER, MOST_LEFT = 0.99, 0.8, 20.0
+"""As in RADAU5: ratio of corrections that ends the iteration; factor of a step whose iteration is too slow, and most
+that counts of what it would leave."""
+NEGLIGIBLE, ROUNDING = 1e-6, 1e-14
+"""Sizes of a correction that ends the iteration without a rate of convergence: in tolerances, and relative."""
 CONVERGED, SLOW, DIVERGED, NOT_FINITE_STAGE = 0, 1, 2, 3
 
 
@@ -97,6 +96,16 @@ def add_efforts(x, change, misfit):
         efforts[k] = misfit[k]
     for k in range(x.n_slopes):
         efforts[x.slope_effort[k]] += x.slope[k] * change[x.slope_unknown[k]]
+
+
+@compiled
+def size_in_tolerances(x, values):
+    """Return the RMS of a vector in tolerances."""
+    total = 0.0
+    for k in range(x.n):
+        part = values[k] * x.weight[k]
+        total += part * part
+    return sqrt(total / x.n_tested)
 
 
 @compiled
@@ -196,26 +205,46 @@ def stage_time(x, t):
 
 
 @compiled
+def _stage_residual(x, c, t, h, i, target):
+    """Compute the residual of a stage."""
+    z = shifted(x.z, i * x.n_all)
+    for k in range(x.n_all):
+        x.y_stage[k] = x.y[k] + z[k]
+    for k in range(x.n):
+        x.yp_stage[k] = 0.0
+    for j in range(c.stages):
+        factor = c.derivative[i * c.stages + j] / h
+        other = shifted(x.z, j * x.n_all)
+        for k in range(x.n):
+            x.yp_stage[k] += factor * other[k]
+    residual(x, stage_time(x, t + c.nodes[i] * h), x.y_stage, x.yp_stage, target, shifted(x.misfit, i * x.n_efforts))
+
+
+@compiled
 def _residuals(x, c, t, h):
     """Compute the residuals of all stages; return True if they are finite."""
-    n = x.n
     total = 0.0
     for i in range(c.stages):
-        z = shifted(x.z, i * x.n_all)
-        for k in range(x.n_all):
-            x.y_stage[k] = x.y[k] + z[k]
-        for k in range(n):
-            x.yp_stage[k] = 0.0
-        for j in range(c.stages):
-            factor = c.derivative[i * c.stages + j] / h
-            other = shifted(x.z, j * x.n_all)
-            for k in range(n):
-                x.yp_stage[k] += factor * other[k]
-        r = shifted(x.r, i * n)
-        residual(x, stage_time(x, t + c.nodes[i] * h), x.y_stage, x.yp_stage, r, shifted(x.misfit, i * x.n_efforts))
-        for k in range(n):
+        r = shifted(x.r, i * x.n)
+        _stage_residual(x, c, t, h, i, r)
+        for k in range(x.n):
             total += 0.0 * r[k]
     return total == 0.0
+
+
+@compiled
+def _confirmed(x, c, t, h, size):
+    """Return True if the residual at the end of the step is small after a second correction of a given size.
+
+    A matrix that is too stiff for a motion hides it: its corrections are small and do not decrease. Large corrections
+    of other motions conceal that in the ratio of the first two.
+    """
+    _stage_residual(x, c, t, h, c.stages - 1, x.b)
+    for k in range(x.n):
+        x.b[k] = -x.b[k]
+    solved_real(x)
+    following = size_in_tolerances(x, x.x)
+    return following * following <= x.newton * (size - following)
 
 
 @compiled
@@ -281,7 +310,7 @@ def most_iterations(c):
 def iterated(x, c, t, h):
     """Solve the stages of a step; CONVERGED, or a reason with the suggested factor of the step in `x.suggested`."""
     most = most_iterations(c)
-    contraction = max(x.rate, LEAST_RATE) ** REMEMBERED if x.h_past > 0.0 else 1.0
+    negligible = min(x.newton, max(NEGLIGIBLE, ROUNDING / x.rtol))
     before = 0.0
     ratio_before = 0.0
     x.suggested = x.after_failure
@@ -305,12 +334,13 @@ def iterated(x, c, t, h):
             if left >= 1.0 and count < most:
                 x.suggested = SHORTER * min(MOST_LEFT, left) ** (-1.0 / (3.0 + most - count))
                 return SLOW
-        if count > 1 and x.contraction < DIVERGING:
-            contraction = x.contraction / (1.0 - x.contraction)
         before = max(size, 1e-300)
-        known = count > 1 or x.current  # old matrices of a force that has ended make small corrections of large errors
-        if known and contraction * size <= x.newton:
-            x.rate = contraction
-            x.left = contraction * size
+        x.left = size
+        if size <= negligible:
             return CONVERGED
+        if count > 1 and x.contraction < DIVERGING:
+            x.left = x.contraction / (1.0 - x.contraction) * size
+            doubtful = count == 2 or x.acting > 0 and x.current
+            if x.left <= x.newton and not (doubtful and not _confirmed(x, c, t, h, size)):
+                return CONVERGED
     return SLOW

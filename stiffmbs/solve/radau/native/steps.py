@@ -12,6 +12,7 @@ from stiffmbs.solve.radau.native.between_steps import close_end
 from stiffmbs.solve.radau.native.memory import basis, collocation_view
 from stiffmbs.solve.radau.native.newton import (
     CONVERGED,
+    DIVERGED,
     SLOW,
     add_efforts,
     extrapolated,
@@ -19,6 +20,7 @@ from stiffmbs.solve.radau.native.newton import (
     iterated,
     most_iterations,
     residual,
+    size_in_tolerances,
     solved_real,
     stage_time,
     store_efforts,
@@ -49,16 +51,6 @@ def set_weights(x):
 
 
 @compiled
-def _size(x, values):
-    """Return the RMS of a vector in tolerances."""
-    total = 0.0
-    for k in range(x.n):
-        part = values[k] * x.weight[k]
-        total += part * part
-    return sqrt(total / x.n_tested)
-
-
-@compiled
 def _solved_defect(x, t, y):
     """Compute (gamma/h M - f_y)^-1 (f(t, y) - M y') for y' in `x.yp_stage`; return its size in tolerances."""
     residual(x, t, y, x.yp_stage, x.b, x.misfit)
@@ -66,7 +58,7 @@ def _solved_defect(x, t, y):
         x.b[k] = -x.b[k]
     solved_real(x)
     repeats = error_norm_view(x.error_norm).repeats  # periods of a law among which the tolerance is shared
-    return repeats * _size(x, x.x)
+    return repeats * size_in_tolerances(x, x.x)
 
 
 @compiled
@@ -129,8 +121,8 @@ def first_step(x):
     """Return a first step by the rates of the state (Hairer, Norsett, Wanner I, ch. II.4)."""
     if x.first > 0.0:
         return x.first
-    of_state = _size(x, x.y)
-    of_rates = _size(x, x.yp)
+    of_state = size_in_tolerances(x, x.y)
+    of_rates = size_in_tolerances(x, x.yp)
     if min(of_state, of_rates) <= NEGLIGIBLE:
         return SHORT
     order = collocation_view(ints(x.methods[0])).stages
@@ -244,7 +236,6 @@ def _has_matrices(x, c, h):
 def _after_failed_iteration(x, outcome, h):
     """Return the length of the next attempt: the same with a new matrix, if the last one was old, or a shorter one."""
     x.newton_failures += 1
-    x.rate = 1.0
     if not x.current:
         x.renewed = 1
         return h * x.suggested if outcome == SLOW else h
@@ -330,15 +321,16 @@ def step(x):
             h *= x.after_failure
             continue
         if error < 1.0:
-            break
+            if x.acting == 0 or close_end(x, c, stage_time(x, x.t + h), h):
+                break
+            h = _after_failed_iteration(x, DIVERGED, h)
+            continue
         x.rejected = 1
         x.error_failures += 1
         h *= FIRST_REJECTED if first and x.failures == 1 else _growth(x, c, error)
         x.renewed = 1 if not x.current and x.rate_kept == 0 else 0
     x.error_size = error
     _choose_next(x, c, h, x.h, at_stop)
-    if x.acting > 0:
-        close_end(x, c, stage_time(x, x.t + h), h)
     _accept(x, c, x.t, h)
     if at_stop:
         x.t = x.stop
