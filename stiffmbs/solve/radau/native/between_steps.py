@@ -14,7 +14,7 @@ from stiffmbs.solve.ida.native.output_correction import output_correction_view
 from stiffmbs.solve.radau.native.memory import collocation_view, polynomial, polynomial_rates
 from stiffmbs.solve.radau.native.newton import add_efforts, residual, size_in_tolerances, solved_real, store_misfit
 
-MOST_CORRECTIONS, MISFIT, ROUNDING = 5, 1.0, 1e-13
+MOST_CORRECTIONS, MISFIT, ROUNDING = 5, 1.0, 1e-11
 """Largest number of corrections of a state, misfit that remains, in rtol of the largest effort, and relative size of
 corrections that are rounding."""
 MOST_MOVED, MOST_MOVED_WITHIN = 0.5, 30.0

@@ -31,6 +31,8 @@ ROUNDINGS = 4e-16
 DIVERGING, SHORTER, MOST_LEFT = 0.99, 0.8, 20.0
 """As in RADAU5: ratio of corrections that ends the iteration; factor of a step whose iteration is too slow, and most
 that counts of what it would leave."""
+LATER = 5.0
+"""Factor of the allowed remainder for corrections after the second, whose rate is better known."""
 NEGLIGIBLE, ROUNDING = 1e-6, 1e-14
 """Sizes of a correction that ends the iteration without a rate of convergence: in tolerances, and relative."""
 CONVERGED, SLOW, DIVERGED, NOT_FINITE_STAGE = 0, 1, 2, 3
@@ -233,18 +235,18 @@ def _residuals(x, c, t, h):
 
 
 @compiled
-def _confirmed(x, c, t, h, size):
-    """Return True if the residual at the end of the step is small after a second correction of a given size.
+def _confirmed(x, c, t, h, size, allowed):
+    """Return True if the residual at the end of the step is small after a correction of a given size.
 
     A matrix that is too stiff for a motion hides it: its corrections are small and do not decrease. Large corrections
-    of other motions conceal that in the ratio of the first two.
+    of other motions conceal that in their ratio.
     """
     _stage_residual(x, c, t, h, c.stages - 1, x.b)
     for k in range(x.n):
         x.b[k] = -x.b[k]
     solved_real(x)
     following = size_in_tolerances(x, x.x)
-    return following * following <= x.newton * (size - following)
+    return following * following <= allowed * (size - following)
 
 
 @compiled
@@ -340,7 +342,8 @@ def iterated(x, c, t, h):
             return CONVERGED
         if count > 1 and x.contraction < DIVERGING:
             x.left = x.contraction / (1.0 - x.contraction) * size
-            doubtful = count == 2 or x.acting > 0 and x.current
-            if x.left <= x.newton and not (doubtful and not _confirmed(x, c, t, h, size)):
+            doubtful = count == 2 or (x.acting > 0 and x.current)
+            allowed = x.newton if count == 2 else LATER * x.newton
+            if x.left <= x.newton and not (doubtful and not _confirmed(x, c, t, h, size, allowed)):
                 return CONVERGED
     return SLOW
