@@ -61,7 +61,7 @@ class Beam(LineBody):
     interpolation: Literal["pairs", "spectral"] = Field(
         "pairs", description="of the strain: constant between two nodes, or by polynomials through three to five nodes"
     )
-    section: AnySection | None = Field(None, description="cross section: circle, tube, rectangle, i or numbers")
+    section: AnySection | None = Field(None, description="cross section: circle, tube, rectangle, i, numbers or points")
     section_end: AnySection | None = Field(
         None, description="cross section at the end, if it varies linearly along the beam: of the same type"
     )
@@ -71,6 +71,11 @@ class Beam(LineBody):
     stations: dict[str, si.PositiveLength] = Field(
         default_factory=dict, description="nodes along the length by name: distance from the start along the axis, m"
     )
+
+    @field_validator("section", "section_end", mode="before")
+    @classmethod
+    def _drawn(cls, found: Any) -> Any:
+        return {"type": "points", **found} if isinstance(found, dict) and "points" in found else found
 
     @field_validator("stations")
     @classmethod
@@ -102,6 +107,8 @@ class Beam(LineBody):
             raise ValueError(
                 f"section_end: found the type '{self.section_end.type}', expected '{self.section.type}' as at the start"  # type: ignore[union-attr]
             )
+        if self.section_end is not None and self.section_end.type == "points":
+            raise ValueError("section_end: found a drawn section, expected one whose numbers vary linearly")
         self.pieces()
         return self
 

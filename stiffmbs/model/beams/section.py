@@ -161,7 +161,27 @@ class Numbers(Section):
         return Properties(self.A, self.I2, I3, self.I2 + I3 if self.J is None else self.J, self.shear2, self.shear3)
 
 
-SECTIONS = (Circle, Tube, Rectangle, IProfile, Numbers)
+_Point = tuple[si.Length, si.Length]
+
+
+class Drawn(Section):
+    """Section drawn by its outline and holes, whose constants follow from finite elements."""
+
+    type: Literal["points"] = "points"
+    points: tuple[_Point, ...] = Field(min_length=3, description="outline, along axes 2 and 3 (the height), m")
+    holes: tuple[tuple[_Point, ...], ...] = Field((), description="outlines of holes, m")
+
+    def properties(self, nu: float) -> Properties:
+        """See `stiffmbs.model.beams.drawn_section`; the shear factors are those of a Poisson ratio of zero."""
+        from .drawn_section import constants_of
+
+        try:
+            return Properties(*constants_of(self.points, self.holes))
+        except ValueError as error:
+            raise ValueError(f"section: {error}") from None
+
+
+SECTIONS = (Circle, Tube, Rectangle, IProfile, Numbers, Drawn)
 
 
 AnySection = Annotated[Any, one_of("a section such as {type: circle, diameter: 10 mm}", *SECTIONS)]
