@@ -124,7 +124,8 @@ def _apart_otherwise(content: Content, weld: str, pair: set[str]) -> None:
     for section in ("joints", "forces"):
         for key, element in content.get(section, {}).items():
             ends = {body_of(element[end]) for end in "ij" if end in element}
-            if key != weld and (ends == pair or weld in element.values()):
+            named = set(re.findall(r"\w+", str(element.get("zero", ""))))
+            if key != weld and (ends == pair or pair <= named or weld in element.values()):
                 raise NotLegitimate(f"{key} acts between {' and '.join(sorted(pair))}")
 
 
