@@ -36,7 +36,7 @@ def constants_of(points: Loop, holes: tuple[Loop, ...]) -> tuple[float, float, f
         from sectionproperties.pre.geometry import Geometry
         from shapely import Polygon
     except ImportError:
-        raise ValueError("found no package for drawn sections, expected it: pip install sectionproperties") from None
+        raise ValueError("found no package for drawn sections, expected it: pip install 'stiffmbs[sections]'") from None
     outline = Polygon(points, holes)
     if not outline.is_valid or not outline.area:
         raise ValueError("found outlines that cross, touch or enclose no area, expected one outline around its holes")
