@@ -27,7 +27,10 @@ def test_on_a_tilted_road_it_is_the_contact_with_that_plane_and_the_ball_rolls()
     )
     found, known = (stiffmbs.run(scene, duration=1.5, output=0.01, rtol=1e-9) for scene in (road, plane))
     for name in ("ball.x", "ball.y", "ball.z", "ball.wx", "touch.fx", "touch.fz", "touch.tx"):
-        assert found[name] == pytest.approx(known[name], abs=2e-6 * max(1, np.abs(known[name]).max()))
+        rounding = (
+            1e-5 if name.startswith("touch") else 2e-6
+        )  # friction forces change with the slip within the tolerance
+        assert found[name] == pytest.approx(known[name], abs=rounding * max(1, np.abs(known[name]).max()))
     slope = np.hypot(0.2, 0.1) / np.sqrt(1 + 0.2**2 + 0.1**2)
     speed = np.sqrt(found["ball.vx"] ** 2 + found["ball.vy"] ** 2 + found["ball.vz"] ** 2)
     assert np.polyfit(found.time[100:], speed[100:], 1)[0] == pytest.approx(5 / 7 * 9.81 * slope, rel=2e-3)
