@@ -58,6 +58,7 @@ SUBSYSTEMS = {
     "stability_bound": "solve.explicit.stable_step:STABILITY_BOUND",
     "stability_limit": "solve.error_control.stability_limit:STABILITY_LIMIT",
     "sundae": "solve.ida.sundae:FALLBACK",
+    "suspect": "solve.suspect:SUSPECT",
     "velocity_jumps": "solve.events.discontinuity:VELOCITY_JUMP",
     "verification": "verification.parameters:VERIFICATION",
 }

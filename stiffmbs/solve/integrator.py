@@ -19,7 +19,7 @@ from .events.discontinuity import VELOCITY_JUMP, VelocityJumps
 from .events.long_steps import LongSteps
 from .events.refusals import refuse_beyond_limits
 from .events.restart import just_after, restarted_past, straight_on
-from .ida.choice import driven_by_callbacks, driven_natively
+from .ida.choice import dense_cost, driven_by_callbacks, driven_natively
 from .ida.engine import Engine, Reached
 from .ida.libraries import available
 from .ida.native.parameters import LOOP
@@ -51,7 +51,8 @@ class Integrator:
             )
             self.engine.forget()
         else:
-            self.equations, self.engine, cost = driven_by_callbacks(dynamics, settings)
+            self.equations, self.engine = driven_by_callbacks(dynamics, settings)
+            cost = dense_cost(self.equations.n)
             self._notes.append(
                 f"IDA runs through scikit-sundae's callbacks, which is slower, and coarser where forces are very stiff: {reason}"
             )

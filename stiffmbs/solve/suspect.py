@@ -3,14 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
-from ..compile.state import LEFT_OPEN
 from ..compile.system import System
 from ..compile.written_values import writer
 from ..dynamics.dynamics import Dynamics
-from .events.discontinuity import JUMP
+from ..tuning import tuned
+
+
+@dataclass(frozen=True)
+class SuspectParameters:
+    """Parameters of the search."""
+
+    beyond: tuple[float, ...] = (0.0, 1e-12, 1e-9, 1e-6)
+    """Times after the last state, relative to the time, at which undefined values are searched for."""
+    locked: float = 1e-5
+    """Violation of a constraint, m or rad, from which on a mechanism counts as locked."""
+
+
+SUSPECT = tuned("suspect", SuspectParameters())
 
 TERM_SETS = ("motion", "acceleration")
 
@@ -21,7 +34,7 @@ def suspect(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> str:
     It is an element with an undefined value at or just after a state, else an open joint, else the element with the
     largest acceleration of a body. `t`: s. `q`, `u`: last state that was reached.
     """
-    for ahead in (0.0, JUMP.smaller_move, JUMP.larger_move):  # relative to the time
+    for ahead in SUSPECT.beyond:
         later = ahead * max(1.0, abs(t))
         _move(dynamics, dynamics.system.of_body.moved(q, later * u), u)
         for term_set in TERM_SETS:
@@ -48,7 +61,7 @@ def _open(dynamics: Dynamics, t: float) -> str:
     system, state = dynamics.system, dynamics.state
     state.evaluate("motion", t)
     gaps = np.abs(state.vector("motion", "C")) * system.active
-    if not len(gaps) or gaps.max() < LEFT_OPEN:
+    if not len(gaps) or gaps.max() < SUSPECT.locked:
         return ""
     joint, equation = system.equations[int(np.argmax(gaps))]
     return f"; joint '{joint}' (equation {equation}) is open by {gaps.max():.3g}"

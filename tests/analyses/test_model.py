@@ -10,7 +10,7 @@ import stiffmbs
 from stiffmbs import Body, InputError, Marker, Model, Prismatic, Revolute, SpringDamper
 from stiffmbs.compile import record
 from stiffmbs.compile.machine import compiler as machine
-from stiffmbs.solve.ida import choice
+from stiffmbs.solve.ida import sundae
 from stiffmbs.tuning import parameters_of
 
 
@@ -146,8 +146,8 @@ def test_dense_and_sparse_solvers_agree_on_a_chain(count, monkeypatch):
     scene = stiffmbs.read_scene(text)
     assert len(scene.bodies) == count
     chosen = stiffmbs.run(scene)
-    changed = replace(parameters_of(choice.COSTS), dense_up_to=10_000 if 10 * count > 90 else 0)
-    monkeypatch.setattr(choice, "COSTS", changed)
+    changed = replace(parameters_of(sundae.FALLBACK), dense_up_to=10_000 if 10 * count > 90 else 0)
+    monkeypatch.setattr(sundae, "FALLBACK", changed)
     other = stiffmbs.run(scene)
     np.testing.assert_allclose(other[f"link{count}.x"], chosen[f"link{count}.x"], atol=1e-6)
 

@@ -9,7 +9,6 @@ import numpy as np
 from ...compile.equations import Equations
 from ...dynamics.dynamics import Dynamics
 from ...model.settings import RunSettings
-from ...sparse.blocks import QUAD
 from ...sparse.elimination_order import EliminationOrder, elimination_order
 from ...tuning import tuned
 from ..error_control.error_test import ErrorControl
@@ -17,7 +16,7 @@ from ..formulations import FORMULATIONS
 from ..linear_solvers.block_lu import BlockLU
 from ..linear_solvers.fixed_order import FixedOrder
 from .engine import Engine
-from .libraries import Unavailable, ida_libraries, sparse_libraries
+from .libraries import Unavailable, ida_libraries
 from .matrices import Dense, Matrix, Sparse
 from .native_engine import NativeEngine
 from .operations import replaceable
@@ -31,23 +30,32 @@ class LinearSolverCosts:
     Source: measured on examples with 10 to 1000 unknowns (`tests.bench`, problem ``linear_algebra``).
     """
 
+    dense: tuple[float, float, float] = (0.045, 2.92, 80.0)
+    """For a multiplication of the LU, an entry, an unknown."""
+    superlu: tuple[float, float, float] = (0.15, 6.6, 664.0)
+    """For an update of full blocks, an entry of their factors, an unknown, of SuperLU_MT."""
     fixed: tuple[float, float, float] = (0.36, 6.05, 8.0)
-    """For an update, an entry and an unknown in a fixed order."""
+    """The same in a fixed order."""
     blocks: tuple[float, float, float, float] = (0.05, 0.32, 40.0, 138.0)
-    """The same by blocks, and for a node."""
+    """The same, and for a node."""
     cached_nodes: int = 3000
     """Number of nodes whose blocks fit into a processor's own cache."""
     far_node: float = 450.0
     """Additional time for each further node."""
     worth_compiling: float = 200.0
     """Time that blocks must save to be worth compiling on a machine's first run."""
-    dense_up_to: int = 90
-    """Number of unknowns up to which the dense linear solver of SUNDIALS is used, where its operations cannot be
-    replaced; SuperLU_MT beyond."""
+    with_zeros: int = 8
+    """Upper bound of the numbers stored in the blocks, relative to the entries of a triangle of full blocks."""
 
 
 COSTS = tuned("linear_solver", LinearSolverCosts())
 """Costs of every run."""
+
+
+def dense_cost(n: int) -> float:
+    """Return the estimated cost of a dense matrix."""
+    update, entry, unknown = COSTS.dense
+    return update * n**3 / 3 + entry * n**2 + unknown * n
 
 
 def sparse_cost(n: int, order: EliminationOrder, costs: tuple[float, float, float]) -> float:
@@ -58,7 +66,7 @@ def sparse_cost(n: int, order: EliminationOrder, costs: tuple[float, float, floa
 
 def block_cost(n: int, order: EliminationOrder, n_nodes: int) -> float:
     """Return the estimated cost of an elimination by blocks; infinite if they are too many for 32-bit indices."""
-    if 2 * QUAD * order.fill > np.iinfo(np.int32).max:
+    if COSTS.with_zeros * order.fill > np.iinfo(np.int32).max:
         return np.inf
     *costs, node = COSTS.blocks
     far = COSTS.far_node * max(n_nodes - COSTS.cached_nodes, 0)
@@ -72,33 +80,36 @@ def cost_of(matrix: Matrix) -> float:
             return block_cost(matrix.n, matrix.order, len(matrix.nodes))
         case FixedOrder():
             return sparse_cost(matrix.n, matrix.order, COSTS.fixed)
-        case Dense() | Sparse():
+        case Dense():
+            return dense_cost(matrix.n)
+        case Sparse():
             entries = len(matrix.rows)
-            return sparse_cost(matrix.n, EliminationOrder(np.arange(matrix.n), entries, entries), COSTS.fixed)
+            return sparse_cost(matrix.n, EliminationOrder(np.arange(matrix.n), entries, entries), COSTS.superlu)
     raise TypeError(f"found {matrix.sentence()}, expected one of the linear solvers of this module")
 
 
 def chosen(equations: Equations) -> tuple[Equations, Matrix, float]:
     """Return the equations, the linear solver of the least estimated cost, and that cost, ns."""
-    n, pattern = equations.n, equations.pattern
-    if not replaceable(ida_libraries()):
-        other = Dense(n, *pattern) if is_dense(n) else Sparse(n, *pattern)
-        return equations, other, cost_of(other)
-    order = elimination_order(equations)
-    entries, blocks = FixedOrder(n, *pattern, order), BlockLU.of(equations, order)
-    by_entries, by_blocks = cost_of(entries), cost_of(blocks) + COSTS.worth_compiling
-    return (equations, blocks, by_blocks) if by_blocks < by_entries else (equations, entries, by_entries)
+    n, pattern, order = equations.n, equations.pattern, elimination_order(equations)
+    offers: list[tuple[float, Matrix]] = [
+        (dense_cost(n), Dense(n, *pattern)),
+        (sparse_cost(n, order, COSTS.superlu), Sparse(n, *pattern)),
+    ]
+    if replaceable(ida_libraries()):
+        blocks = BlockLU.of(equations, order)
+        offers.append((sparse_cost(n, order, COSTS.fixed), FixedOrder(n, *pattern, order)))
+        offers.append((block_cost(n, order, len(blocks.nodes)) + COSTS.worth_compiling, blocks))
+    cheapest_first = sorted(offers, key=lambda offer: offer[0])
+    return next((equations, matrix, cost) for cost, matrix in cheapest_first if _served(matrix))
 
 
-def is_dense(n: int) -> bool:
-    """Return True if SUNDIALS' own linear solver is the dense one; SuperLU_MT may be missing in scikit-sundae."""
-    if n <= COSTS.dense_up_to:
-        return True
+def _served(matrix: Matrix) -> bool:
+    """Return True if the libraries have the linear solver: scikit-sundae may be built without SuperLU_MT."""
     try:
-        sparse_libraries()
+        matrix.libraries()
     except Unavailable:
-        return True
-    return False
+        return False
+    return True
 
 
 def driven_natively(
@@ -109,14 +120,11 @@ def driven_natively(
     return equations, NativeEngine(equations, dynamics, matrix, settings, control), cost
 
 
-def driven_by_callbacks(dynamics: Dynamics, settings: RunSettings) -> tuple[Equations, Engine, float]:
-    """Return the equations, their driver by scikit-sundae's callbacks and the cost of its linear solver, ns."""
+def driven_by_callbacks(dynamics: Dynamics, settings: RunSettings) -> tuple[Equations, Engine]:
+    """Return the equations and their driver by scikit-sundae's callbacks."""
     equations = natural(dynamics, settings)
     tolerances = ErrorControl(margin=1.0).tolerances(equations, settings)  # with IDA's own Newton tolerance
-    engine = SundaeEngine(
-        equations, dynamics.state, *tolerances, settings.max_step, settings.max_order or 5, is_dense(equations.n)
-    )
-    return equations, engine, cost_of(Sparse(equations.n, *equations.pattern))
+    return equations, SundaeEngine(equations, dynamics.state, *tolerances, settings.max_step, settings.max_order or 5)
 
 
 def natural(dynamics: Dynamics, settings: RunSettings) -> Equations:

@@ -28,6 +28,8 @@ class FallbackParameters:
 
     most_ends: int = 200_000
     """Largest number of stored step ends."""
+    dense_up_to: int = 90
+    """Number of unknowns up to which the dense linear solver is used."""
     steps_at_once: int = 20_000
     """Steps after which a call returns."""
     together: int = 20
@@ -103,18 +105,17 @@ class SundaeEngine(Engine):
     """IDA through scikit-sundae; implements `stiffmbs.solve.ida.engine.Engine`.
 
     `state`: working memory of residual and Jacobian. `atol` of shape (n,): tolerance of each unknown; huge for those
-    excluded from the error test. `max_step`: largest step, s; 0 for none. `max_order`: highest order of BDF, 1 to 5. `dense`: linear
-    solver; SuperLU_MT if False.
+    excluded from the error test. `max_step`: largest step, s; 0 for none. `max_order`: highest order of BDF, 1 to 5.
     """
 
     def __init__(
-        self, equations: Equations, state: State, rtol: float, atol: np.ndarray, max_step: float,
-        max_order: int = 5, dense: bool = True,
-    ) -> None:  # fmt: skip
+        self, equations: Equations, state: State, rtol: float, atol: np.ndarray, max_step: float, max_order: int = 5
+    ) -> None:
         from sksundae.ida import IDA as SundialsIda
 
         self.equations = equations
         self._reported = equations.independent
+        dense = equations.n <= FALLBACK.dense_up_to
         self._linear_solver = f"{'dense' if dense else 'SuperLU_MT'}, {equations.n} unknowns"
         self.callbacks = Callbacks(equations, state, dense)
         options: dict[str, Any] = {"linsolver": "dense"} if dense else self._sparse()

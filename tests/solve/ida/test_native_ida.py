@@ -21,7 +21,7 @@ from stiffmbs.solve.ida.choice import chosen
 from stiffmbs.solve.ida.ida import NativeIda
 from stiffmbs.solve.ida.matrices import Dense, Sparse
 from stiffmbs.solve.ida.statistics import Status
-from stiffmbs.solve.ida.sundae import SundaeEngine
+from stiffmbs.solve.ida.sundae import FALLBACK, SundaeEngine
 from stiffmbs.solve.linear_solvers.block_lu import BlockLU
 from stiffmbs.solve.linear_solvers.fixed_order import FixedOrder, PairedColumns
 from stiffmbs.sparse.elimination_order import EliminationOrder, elimination_order
@@ -44,7 +44,7 @@ class Problem:
         self.yp[at["q"]], self.yp[at["u"]] = start.u, start.acceleration
 
     def native(self, **options):
-        kind = Dense if choice.is_dense(self.equations.n) else Sparse
+        kind = Dense if self.equations.n <= FALLBACK.dense_up_to else Sparse
         matrix = options.pop("matrix", kind(self.equations.n, *self.equations.pattern))
         atol, state = options.pop("atol", self.atol), options.pop("state", None) or State(self.system)
         return NativeIda(self.equations, state, matrix, self.rtol, atol, **options)
@@ -153,12 +153,12 @@ def test_the_linear_solver_is_that_of_the_least_estimated_cost(chain, squeezer, 
     assert isinstance(chosen(chain.equations)[1], BlockLU)
     monkeypatch.setattr(choice, "block_cost", lambda *_: np.inf)
     assert type(chosen(chain.equations)[1]) is FixedOrder
+    monkeypatch.setattr(choice, "replaceable", lambda libraries: False)
+    monkeypatch.setattr(choice, "dense_cost", lambda n: np.inf)
+    assert isinstance(chosen(chain.equations)[1], Sparse)
     monkeypatch.undo()
     monkeypatch.setattr(choice, "replaceable", lambda libraries: False)
-    monkeypatch.setattr(choice, "COSTS", replace(parameters_of(choice.COSTS), dense_up_to=squeezer.equations.n))
-    assert squeezer.equations.n < chain.equations.n
     assert isinstance(chosen(squeezer.equations)[1], Dense)
-    assert isinstance(chosen(chain.equations)[1], Sparse)
 
 
 def test_blocks_of_a_long_chain_come_from_memory():
@@ -176,11 +176,10 @@ def test_without_superlu_another_linear_solver_is_chosen(chain, monkeypatch):
     def missing():
         raise libraries.Unavailable("no SuperLU_MT")
 
-    monkeypatch.setattr(choice, "replaceable", lambda libraries: False)
-    monkeypatch.setattr(choice, "COSTS", replace(parameters_of(choice.COSTS), dense_up_to=1))
+    monkeypatch.setattr(choice, "COSTS", replace(parameters_of(choice.COSTS), superlu=(0.0, 0.0, 0.0)))
     assert isinstance(chosen(chain.equations)[1], Sparse)
-    monkeypatch.setattr(choice, "sparse_libraries", missing)
-    assert isinstance(chosen(chain.equations)[1], Dense)
+    monkeypatch.setattr("stiffmbs.solve.ida.matrices.sparse_libraries", missing)
+    assert isinstance(chosen(chain.equations)[1], FixedOrder)
 
 
 @pytest.mark.parametrize("kind", [FixedOrder, PairedColumns, BlockLU])
