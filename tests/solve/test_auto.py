@@ -189,7 +189,8 @@ def test_bdf_comes_back_where_explicit_steps_cost_more_than_its_own_had(examples
     solution = stiffmbs.run(road, solver="auto", rtol=1e-3)
     (note,) = (note for note in solution.notes if note.startswith("auto chose"))
     assert "as explicit steps cost more than its own had" in note
-    assert solution.solver["steps"] > 0.8 * stiffmbs.run(road, solver="bdf", rtol=1e-3).solver["steps"]
+    # rounding decides at which of the later changes of hands it stays; a run that stays explicit takes 0.35 of these steps
+    assert solution.solver["steps"] > 0.5 * stiffmbs.run(road, solver="bdf", rtol=1e-3).solver["steps"]
 
 
 @pytest.mark.parametrize(("rtol", "name"), [(1e-3, "bdf"), (1e-6, "projected")])

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from stiffmbs.dynamics.elimination.native.eliminated import accelerate
+from stiffmbs.dynamics.elimination.native.eliminated import attempt
 
 
 def accelerate_often(count, t, acceleration, eliminated):
-    """`accelerate`, so many times; how many could be done."""
+    """`attempt`, so many times; how many could be done."""
     done = 0
     for _ in range(count):
-        done += accelerate(t, acceleration, eliminated)
+        done += attempt(t, acceleration, eliminated)
     return done
