@@ -142,6 +142,13 @@ def test_the_magnitude_of_what_is_zero_up_to_rounding_has_the_mean_of_both_slope
     assert found.slope == pytest.approx([slope], abs=1e-12)
 
 
+@pytest.mark.parametrize(("size", "slope"), [(0.0, 0.0), (1e-17, 0.0), (0.7e-14, 0.0), (1.5e-14, 1.0), (1e-3, 1.0)])
+def test_the_rms_of_what_is_zero_up_to_rounding_has_the_mean_of_both_slopes(size, slope):
+    t = np.linspace(0, 1, 11)
+    found = Formula("rms(x)", t, {"x": np.full(11, size)}).dual({"x": np.ones((11, 1))})
+    assert found.slope == pytest.approx([slope], abs=1e-12)
+
+
 @pytest.mark.parametrize("reduction", ["max", "min", "peak"])
 def test_an_extremum_of_what_is_zero_up_to_rounding_has_no_single_time(reduction):
     t = np.linspace(0, 1, 11)

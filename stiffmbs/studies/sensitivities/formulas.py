@@ -140,7 +140,7 @@ class Formula:
         span = 1.0 if name == "integral" else self._time[-1] - self._time[0]
         if name == "rms":
             mean = np.trapezoid(series[:, None] * x.slope, self._time, axis=0) / span
-            return Dual(value, mean / value if value else 0.0 * mean)
+            return Dual(value, mean / value if value > ZERO else 0.0 * mean)  # at zero the mean of both slopes
         return Dual(value, np.trapezoid(x.slope, self._time, axis=0) / span)
 
     def _at_extreme(self, name: str, series: np.ndarray, slope: np.ndarray) -> np.ndarray:
