@@ -72,9 +72,10 @@ def _restored(path: Path, arrays: Mapping[str, Any]) -> Solution:
     about = json.loads(str(arrays[ABOUT]))
     channels = {name: array for name, array in arrays.items() if "/" not in name and name not in ("time", "not_unique")}
     balance = {part.name: arrays[BALANCE + part.name] for part in fields(Balance)}
+    texts: dict[str, Any] = {name: tuple(about[name]) for name in TEXTS}
     return Solution(
         name=about["name"], time=arrays["time"], channels=channels, outcome=Outcome[about["outcome"]], message=about["message"],
-        **{name: tuple(about[name]) for name in TEXTS}, requested=about["requested"], solver=about["solver"],
+        **texts, requested=about["requested"], solver=about["solver"],
         errors={channel: ErrorBar(*bar) for channel, bar in about["errors"].items()},
         history=History(*(arrays[HISTORY + part.name] for part in fields(History))),
         balance=Balance(**{name: array if array.ndim else array.item() for name, array in balance.items()}),

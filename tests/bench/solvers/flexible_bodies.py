@@ -176,9 +176,9 @@ def car(folder: Path) -> None:
         scene = read_scene(content, [("choose.manoeuvre", "step_steer")], file=path)
         solution, seconds = run(scene), []
         for _ in range(3):
-            begin = time.process_time()
+            started = time.process_time()
             solution = run(scene)
-            seconds.append(time.process_time() - begin)
+            seconds.append(time.process_time() - started)
         how = f"{min(seconds):.2f} s of processor time by {solution.solver['name']}, {solution.solver['steps']} steps"
         print(f"step steer of 10 s, {name}: {how}, {solution.message}", flush=True)
 
