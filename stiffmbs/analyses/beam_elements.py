@@ -176,8 +176,8 @@ def _sentence(found: Solution, errors: Mapping[str, float], beams: list[str], co
         unit = found.unit(name)
         if unit in ("m", "rad", "N", "N m") and errors[name] > errors.get(largest.get(unit, ""), 0.0):
             largest[unit] = name
-    told = [f"{errors[name]:.2g} {unit} of {name}" for unit, name in sorted(largest.items())]
+    errors_found = [f"{errors[name]:.2g} {unit} of {name}" for unit, name in sorted(largest.items())]
     other = ", ".join(
         f"{b} in place of {a} elements of {name}" for name, (a, b) in list(zip(beams, counts, strict=True))[:3]
     )
-    return f"discretisation of beams, by {other}: errors of at most about {', '.join(told) or 'zero'}"
+    return f"discretisation of beams, by {other}: errors of at most about {', '.join(errors_found) or 'zero'}"

@@ -249,6 +249,22 @@ def test_a_parameter_that_moves_a_body_off_a_kink_has_no_derivative(law, to, sol
         sensitivities(stiffmbs.read_scene(ON_A_KINK.replace("LAW", law)), [to], "final(b.vx)", solver=solver)
 
 
+@pytest.mark.parametrize(("edge", "refused"), [(0.7e-12, True), (1.5e-12, False)])
+def test_a_breakpoint_counts_as_touched_up_to_rounding(edge, refused):
+    scene = stiffmbs.read_scene(ON_A_KINK.replace("LAW", "max(a.vx - edge, 0)").replace("edge: 0", f"edge: {edge!r}"))
+    if refused:
+        with pytest.raises(SolverError, match="stays on its breakpoint"):
+            sensitivities(scene, ["push"], "final(b.vx)")
+    else:
+        assert sensitivities(scene, ["push"], "final(b.vx)").to["push"] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_a_law_with_a_zero_slope_at_its_breakpoint_has_a_derivative():
+    """Its second difference grows with the square of the displacement."""
+    law = ON_A_KINK.replace("c: 3 N s/m", "c: 3 N s^2/m^2").replace("LAW", "max(a.vx, 0)^2")
+    assert sensitivities(stiffmbs.read_scene(law), ["push"], "final(b.vx)").to["push"] == pytest.approx(0.0, abs=1e-12)
+
+
 def test_a_body_that_moves_along_a_kink_has_one():
     scene = stiffmbs.read_scene(ON_A_KINK.replace("LAW", "max(a.vy, 0)"))
     found = [sensitivities(scene, ["push"], f"final({body}.vx)").to["push"] for body in ("a", "b")]

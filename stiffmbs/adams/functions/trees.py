@@ -25,18 +25,22 @@ def call(name: str, *arguments: ast.expr) -> ast.expr:
 
 
 def product(left: ast.expr, right: ast.expr) -> ast.expr:
+    """Return left * right."""
     return ast.BinOp(left, ast.Mult(), right)
 
 
 def quotient(left: ast.expr, right: ast.expr) -> ast.expr:
+    """Return left / right."""
     return ast.BinOp(left, ast.Div(), right)
 
 
 def difference(left: ast.expr, right: ast.expr) -> ast.expr:
+    """Return left - right."""
     return ast.BinOp(left, ast.Sub(), right)
 
 
 def power(base: ast.expr, exponent: int) -> ast.expr:
+    """Return base**exponent."""
     return ast.BinOp(base, ast.Pow(), ast.Constant(exponent))
 
 

@@ -162,14 +162,17 @@ def step5(x: Any, x0: Any, h0: Any, x1: Any, h1: Any) -> Any:
 
 
 def tan(x: Enclosure) -> Enclosure:
+    """Return the tangent."""
     return sin(x) / cos(x)
 
 
 def sqrt(x: Enclosure) -> Enclosure:
+    """Return the square root."""
     return x**0.5
 
 
 def acos(x: Enclosure) -> Enclosure:
+    """Return the arc cosine."""
     return np.pi / 2 - asin(x)
 
 

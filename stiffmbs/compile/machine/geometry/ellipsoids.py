@@ -205,6 +205,7 @@ def moved(n, t, p, size, to):
 
 @compiled
 def take_unit_length(n):
+    """Divide a vector by its length."""
     size = 1.0 / sqrt(along(n, n))
     for k in range(3):
         n[k] *= size
