@@ -25,8 +25,9 @@ ROUNDING = 1e-13
 """Rounding of times, relative to the time: least shift of a segment's end before an event, duration of an empty segment."""
 FURTHEST = 1e-6
 """Largest shift of a segment's end before an event, relative to the segment."""
-SUDDEN, JUMP, FELT = 10.0, 1e-3, 1e-6
-"""Change of an acceleration in a step, relative to that expected from the steps around it, that may be a discontinuity;
+SHORT, SUDDEN, JUMP, FELT = 0.1, 10.0, 1e-3, 1e-6
+"""Size of a step, relative to the median of a segment, below which it may contain a discontinuity, as errors there shorten steps.
+Change of an acceleration in a step, relative to that expected from the steps around it, that may be a discontinuity;
 and smallest jump, relative to own and all accelerations."""
 HALVINGS, LEFT, ROUNDINGS = 10, 0.5, 1e3
 """Halvings of the way through a step, and part of a change that a discontinuity leaves in the last one. Least size of a
@@ -107,20 +108,25 @@ class Recorder(Integrator):
 
     def _refuse_jumps_within(self, segment: Segment) -> None:
         """Refuse forces with undeclared discontinuities, where an acceleration changes more than around a step."""
-        rows, n = segment.rows, self.equations.n
-        if len(rows) < 2:
+        rows, n, at = segment.rows, self.equations.n, self.equations.at["u"]
+        h = np.diff(rows[:, 0])[:, None]
+        short = h[:, 0] < SHORT * np.median(h) if len(h) else np.zeros(0, dtype=bool)
+        if not short.any():
             return
-        t, a = rows[:, 0], np.array([self._accelerations(row[0], row[2 : 2 + n]) for row in rows])
-        system, largest = self.dynamics.system, np.abs(a).max(axis=0)
+        near = np.convolve(np.append(short, False), np.ones(4), "full")[1 : 1 + len(rows)] > 0
+        a = np.full((len(rows), len(at)), np.nan)
+        a[near] = self._all_accelerations(rows[near])
+        system, largest = self.dynamics.system, np.abs(rows[:, 2 + n + at]).max(axis=0)
         scale = system.per_velocity(system.size, 1.0)
         least = np.maximum(JUMP * largest, FELT * np.max(largest / scale) * scale)
-        change, h = np.abs(np.diff(a, axis=0)), np.diff(t)[:, None]
+        change = np.abs(np.diff(a, axis=0))
         slopes = np.pad(change / h, ((1, 1), (0, 0)))
-        expected = h * np.maximum(slopes[:-2], slopes[2:])
-        for k in np.flatnonzero(np.any((change > least) & (change > SUDDEN * expected), axis=1)):
+        expected = h * np.nan_to_num(np.fmax(slopes[:-2], slopes[2:]))
+        sudden = np.any((change > least) & (change > SUDDEN * expected), axis=1)
+        for k in np.flatnonzero(short & sudden):
             if self._jumps_between(rows[k], rows[k + 1], least):
                 raise SolverError(
-                    f"sensitivities: found that accelerations are discontinuous at t = {t[k]:.9g} s, where no force declares a breakpoint (a spring "
+                    f"sensitivities: found that accelerations are discontinuous at t = {rows[k, 0]:.9g} s, where no force declares a breakpoint (a spring "
                     "that passes its anchor, a discontinuous Python function): the motion is not differentiable there; expected "
                     "continuous forces"
                 )
@@ -139,6 +145,13 @@ class Recorder(Integrator):
         left = np.abs(ends[1][1] - ends[0][1])
         noise = self._accelerations(after[0], after[2 : 2 + n] * (1 + np.finfo(float).eps)) - changed
         return bool(np.any((left > least) & (left > LEFT * whole) & (left > ROUNDINGS * np.abs(noise))))
+
+    def _all_accelerations(self, rows: np.ndarray) -> np.ndarray:
+        """Return the accelerations of the force law at recorded states, NaN where there are none."""
+        y = rows[:, 2 : 2 + self.equations.n]
+        q, u = self.equations.states(np.ascontiguousarray(y[:, self.equations.independent]))
+        found = self.dynamics.report(np.ascontiguousarray(rows[:, 0]), q, u, False).acceleration
+        return np.pad(found, ((0, len(rows) - len(found)), (0, 0)), constant_values=np.nan)
 
     def _accelerations(self, t: float, y: np.ndarray) -> np.ndarray:
         """Return the accelerations at a state."""

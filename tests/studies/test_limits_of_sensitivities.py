@@ -176,34 +176,41 @@ def test_coordinates_at_rest_have_no_jumps():
 
 
 @pytest.mark.parametrize(
-    ("jumps", "width", "around", "refused"),
+    ("jumps", "width", "around", "size", "refused"),
     [
-        ((0.5, 0.0), 1e-4, 0.0, True),
-        ((0.5, 0.0), 1.3e-3, 0.0, True),
-        ((0.5, 0.0), 2.9e-3, 0.0, False),
-        ((0.5, 0.0), 1e-2, 0.0, False),  # steep, but continuous
-        ((0.5, 0.0), 1.0, 0.0, False),
-        ((1.5e-3, 0.0), 1e-4, 0.0, True),
-        ((0.7e-3, 0.0), 1e-4, 0.0, False),
-        ((0.0, 1.5e-6), 1e-4, 0.0, True),
-        ((0.0, 0.7e-6), 1e-4, 0.0, False),  # below a millionth of the other coordinate's acceleration
-        ((0.5, 0.0), 1e-4, 0.5 / 15, True),
-        ((0.5, 0.0), 1e-4, 0.5 / 7, False),  # accelerations change so much in the steps around it, too
+        ((0.5, 0.0), 1e-4, 0.0, 0.05, True),
+        ((0.5, 0.0), 1.3e-3, 0.0, 0.05, True),
+        ((0.5, 0.0), 2.9e-3, 0.0, 0.05, False),
+        ((0.5, 0.0), 1e-2, 0.0, 0.05, False),  # steep, but continuous
+        ((0.5, 0.0), 1.0, 0.0, 0.05, False),
+        ((1.5e-3, 0.0), 1e-4, 0.0, 0.05, True),
+        ((0.7e-3, 0.0), 1e-4, 0.0, 0.05, False),
+        ((0.0, 1.5e-6), 1e-4, 0.0, 0.05, True),
+        ((0.0, 0.7e-6), 1e-4, 0.0, 0.05, False),  # below a millionth of the other coordinate's acceleration
+        ((0.5, 0.0), 1e-4, 0.0, 0.07, True),
+        ((0.5, 0.0), 1e-4, 0.0, 0.15, False),  # errors of a jump shorten the steps
+        ((0.5, 0.0), 1e-4, 0.5 / 15, 0.05, True),
+        ((0.5, 0.0), 1e-4, 0.5 / 7, 0.05, False),  # accelerations change so much in the steps around it, too
     ],
 )
-def test_a_jump_of_accelerations_is_refused_from_a_size_on(jumps, width, around, refused):
-    """Accelerations of about 1 and 0 change by `jumps` within a part of a step, and the first one by `around` in the step before."""
-    t = np.array([0.49, 0.5, 0.51])
+def test_a_jump_of_accelerations_is_refused_from_a_size_on(jumps, width, around, size, refused):
+    """Accelerations of about 1 and 0 change by `jumps` within a part of a step; around it, the first one changes as fast as by `around` in such a step.
+
+    `size`: of the step relative to those around it.
+    """
+    h = 0.01 * size
+    t = 0.5 + np.array([-0.03, -0.02, -0.01, 0.0, h, h + 0.01, h + 0.02])
 
     def accelerations(at, _):
-        passed = np.clip((at - 0.5037) / (0.01 * width), 0, 1) if width < 1 else np.clip((at - 0.5) / 0.01, 0, 1)
-        return np.array([1.0, 0.0]) - np.array(jumps) * (1 - passed) - [around * (at < 0.495), 0.0]
+        passed = np.clip((at - 0.5 - 0.37 * h) / (h * width), 0, 1) if width < 1 else np.clip((at - 0.5) / h, 0, 1)
+        return np.array([1.0, 0.0]) - np.array(jumps) * (1 - passed) - [around * min(at - 0.5, 0.0) / h, 0.0]
 
     recorder = Recorder.__new__(Recorder)
     recorder.equations = SimpleNamespace(n=2, at={"u": np.arange(2)})
     recorder.dynamics = SimpleNamespace(system=SimpleNamespace(size=1.0, per_velocity=lambda *_: np.ones(2)))
     recorder._accelerations = accelerations
-    rows = np.array([[at, 1.0, *np.zeros(4)] for at in t])
+    recorder._all_accelerations = lambda rows: np.array([accelerations(row[0], None) for row in rows])
+    rows = np.array([[at, 1.0, 0.0, 0.0, *accelerations(at, None)] for at in t])
     recorder.segments = [Segment(None, rows[0], [rows])]
     if refused:
         with pytest.raises(SolverError, match="discontinuous"):
