@@ -75,8 +75,8 @@ def _step_back(x, begin, h):
 def _stepped(x):
     """Take a step, up to just before an event if the change of law makes its error estimate invalid.
 
-    The tolerance of the estimate, of order s, is that of smooth solutions; a step over a jump has to meet the requested
-    one.
+    The tolerance of the estimate, of order s, is that of smooth solutions. A step over a jump has to stay within the part
+    of the requested tolerance that Newton's iteration may leave, because its estimate is then no bound of the error.
     """
     for _ in range(MOST_RETAKEN):
         begin = x.t
@@ -85,7 +85,7 @@ def _stepped(x):
             return flag
         _event_functions(x, x.t, x.y, x.yp, x.after)
         relaxed = collocation_view(ints(x.methods[x.method_past])).relaxed
-        if x.error_size * relaxed <= 1.0 or _changed(x, x.before, x.after) == 0:
+        if x.error_size * relaxed <= x.newton or _changed(x, x.before, x.after) == 0:
             return flag
         h = BEFORE_EVENT * _root(x, begin) * x.h_past
         if not h > ROUNDINGS * abs(begin):
