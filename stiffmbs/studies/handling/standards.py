@@ -359,8 +359,7 @@ def _turn(test: BrakingInATurn) -> tuple[float, float]:
 
 def _pressed(pedal: float | None) -> dict[str, float]:
     """Return the driver's parameters of a pedal; none where the driver's own apply."""
-    # the driver limits the force softly, by tanh(pedal/hardest): at a tenth, 0.3 % of it are lost
-    return {} if pedal is None else {"pedal": pedal, "hardest": 10 * pedal}
+    return {} if pedal is None else {"pedal": pedal}
 
 
 def braking_in_a_turn(known: Known, test: BrakingInATurn) -> list[Manoeuvre]:
