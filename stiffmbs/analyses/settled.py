@@ -104,12 +104,12 @@ def moving_in_equilibrium(dynamics: Dynamics, start: InitialValues, t: float) ->
     lam = state.lam[: dynamics.system.n_c].copy()
     notes = (
         "whether the equilibrium that the run starts in is stable was not looked at",
-        *_far_away(dynamics, start, found),
+        *far_away(dynamics, start, found),
     )
     return replace(start, q=found.q, u=state.u.copy(), acceleration=acceleration, lam=lam, moved=(), notes=notes)
 
 
-def _far_away(dynamics: Dynamics, start: InitialValues, found: Equilibrium) -> Iterator[str]:
+def far_away(dynamics: Dynamics, start: InitialValues, found: Equilibrium) -> Iterator[str]:
     """Yield a note if the equilibrium is far from the described pose, as of a car that has rolled there."""
     system, of_body = dynamics.system, dynamics.system.of_body
     pose = slice(0, of_body.n_q * len(system.bodies))

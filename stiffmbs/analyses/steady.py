@@ -22,7 +22,7 @@ from ..linear_analysis.stability import eigenvalues_beside
 from ..model.model_data import ModelData
 from ..model.settings import SteadyMotion as Described
 from ..reading.did_you_mean import did_you_mean
-from .settled import GROWING, MOST_FOR_EIGENVALUES, Settled
+from .settled import GROWING, MOST_FOR_EIGENVALUES, Settled, far_away
 
 MOTION_AHEAD = 1e-3
 """Distance along a motion, rad or parts of the mechanism's size, after which the balance of forces is checked."""
@@ -51,7 +51,8 @@ def start_in_motion(
 ) -> InitialValues:
     """Return initial values in steady motion, unchecked for stability; arguments as for `settled_in_motion`."""
     found = _found(model, dynamics, start, t, described)
-    return _moving(start, found, ("whether the steady motion that the run starts in is stable was not looked at",))
+    unseen = "whether the steady motion that the run starts in is stable was not looked at"
+    return _moving(start, found, (unseen, *far_away(dynamics, start, found)))
 
 
 def _found(model: ModelData, dynamics: Dynamics, start: InitialValues, t: float, described: Described) -> Equilibrium:

@@ -198,7 +198,7 @@ def handling(
 @click.option("--points", type=int, default=61, show_default=True, help="Of each curve.")
 @click.option(
     "--at", "states", multiple=True, metavar="Fz,kappa,...",
-    help="Evaluate one state of Fz, kappa, alpha, gamma, p, Vx, phit in SI units; any number of times.",
+    help="Evaluate one state of Fz, kappa, alpha, gamma, p, Vx, phit in SI units, each empty for its default; any number of times.",
 )  # fmt: skip
 @output_option("Draw Fx, Fy, Mz and the friction ellipse: .png, .svg or .pdf.")
 @click.option("--write", "copy", type=click.Path(path_type=Path), help="Write the properties that are used: .tir.")
@@ -248,11 +248,12 @@ def tyre(
     sys.exit(0 if written else Status.FAILED)
 
 
-def _state(text: str) -> tuple[float, ...]:
+def _state(text: str) -> tuple[float | None, ...]:
     from ..studies.tyre_curves import STATE
 
     try:
-        row = tuple(float(part) for part in text.split(","))
+        first, *others = text.split(",")
+        row = (float(first), *(float(part) if part.strip() else None for part in others))
     except ValueError:
         raise InputError(f"--at {text}: found no numbers, expected up to {len(STATE)}: {','.join(STATE)}") from None
     if len(row) > len(STATE):

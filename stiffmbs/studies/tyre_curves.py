@@ -117,10 +117,10 @@ def _within(tyre: TyreProperties, channel: str, end: float) -> tuple[float, floa
     return max(-end, low), min(end, high)
 
 
-def tyre_states(tyre: TyreProperties, rows: list[tuple[float, ...]]) -> list[dict[str, float]]:
-    """Return the steady state at single states of Fz, kappa, alpha, gamma, p, Vx and phit, of which the last may be omitted."""
+def tyre_states(tyre: TyreProperties, rows: list[tuple[float | None, ...]]) -> list[dict[str, float]]:
+    """Return the steady state at single states of Fz, kappa, alpha, gamma, p, Vx and phit; those omitted or None have their defaults."""
     found = []
     for row in rows:
-        state = tyre.steady_state(**dict(zip(STATE, row, strict=False)))
-        found.append({**dict(zip(STATE, row, strict=False)), **{name: float(x) for name, x in state.items()}})
+        given = {name: x for name, x in zip(STATE, row, strict=False) if x is not None}
+        found.append({**given, **{name: float(x) for name, x in tyre.steady_state(**given).items()}})
     return found

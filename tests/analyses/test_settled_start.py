@@ -25,3 +25,18 @@ def test_an_equilibrium_far_from_the_described_pose_is_told():
     near, far = (stiffmbs.run(stiffmbs.read_scene(SCENE.replace("-10", weight))) for weight in ("-10", "-40"))
     assert not any("away from the described pose" in note for note in near.notes)
     assert any("lies 0.4 m away from the described pose (load)" in note for note in far.notes)
+
+
+def test_a_steady_motion_far_from_the_described_pose_is_told():
+    text = """
+bodies: {sledge: {mass: 1, inertia: 1, velocity: [2, 0]}, load: {mass: 2, inertia: 1, velocity: [2, 0]}}
+joints:
+  rail: {type: prismatic, i: sledge, j: ground}
+  guide: {type: prismatic, i: load, j: {body: sledge, angle: 90 deg}}
+forces: {spring: {type: spring_damper, i: load, j: {body: sledge, point: [0, 1]}, stiffness: 200, free_length: 1}}
+start: {velocity: [2, 0]}
+run: {duration: 1 s}
+"""
+    near, far = (stiffmbs.run(stiffmbs.read_scene(f"gravity: [0, {weight}]{text}")) for weight in (-10, -40))
+    assert not any("away from the described pose" in note for note in near.notes)
+    assert any("lies 0.4 m away from the described pose (load)" in note for note in far.notes)

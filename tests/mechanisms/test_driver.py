@@ -74,6 +74,25 @@ def test_a_speed_profile_along_points_with_the_pedal_at_the_end():
     assert run["driver.speed"][-1] < 14, "braked"
 
 
+@pytest.mark.parametrize("manoeuvre", ["lane_change", "circle"])
+def test_a_car_with_a_driver_on_a_path_stands(manoeuvre):
+    scene = stiffmbs.load_scene(EXAMPLES / "car.yaml", [("choose.manoeuvre", manoeuvre), ("V", "0")])
+    found = stiffmbs.equilibrium(scene)
+    assert abs(found.channels["driver.travel"]) < 1e-4
+    assert found.channels["driver.pace"] == pytest.approx(1, abs=1e-9), "the least that the driver sees"
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("pedal", [6e3, 12e3])
+def test_the_pedal_is_the_braking_force(pedal):
+    """The wheels take it by the radius of the driver, 0.3 m, and the road gives it back by the loaded one."""
+    parameters = f"{{target: V, begins: -1 s, brakes: 0.5 s, pedal: {pedal} N}}"
+    run = driven("straight", ("V", "30"), ("use.driver.parameters", parameters), duration=2)
+    assert run["driver.brake"][-1] == pytest.approx(-pedal, rel=2e-3)
+    torques = sum(run[f"driver.brake_{end}_{side}.ty"][-1] for end in ("front", "rear") for side in ("left", "right"))
+    assert -torques == pytest.approx(0.3 * pedal, rel=2e-3)
+
+
 @pytest.mark.parametrize(
     ("path", "message"),
     [

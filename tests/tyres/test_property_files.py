@@ -242,3 +242,68 @@ def test_units_are_those_of_scipy():
     }
     for quantity, known in (("LENGTH", length), ("FORCE", force), ("MASS", mass)):
         assert {name: UNITS[quantity][name] for name in known} == pytest.approx(known, rel=1e-12)
+
+
+IMPLAUSIBLE = {
+    "LENGTH = 'mm'>LENGTH = 'meter'": r"line 12: found UNLOADED_RADIUS = 320, 320 m by \[UNITS\], expected 0.01 to 5 m",
+    "FORCE = 'kN'>FORCE = 'newton'": r"line 20: found FNOMIN = 4, 4 N by \[UNITS\], expected 10 to 2e\+06 N",
+    "FNOMIN = 4>FNOMIN = 4000": r"line 20: found FNOMIN = 4000, 4e\+06 N by",
+    "STIFFNESS = 0.2>STIFFNESS = 200": r"line 18: found VERTICAL_STIFFNESS = 200, by which FNOMIN deflects the tyre by 2e-05 m",
+    "STIFFNESS = 0.2>STIFFNESS = 0.01": r"deflects the tyre by 0.4 m, expected 0.00032 to 0.32 m",
+    "DAMPING = 5D-4>DAMPING = -5D-4": "line 19: found VERTICAL_DAMPING = -5D-4, -500 N s/m by",
+    "LONGVL = 16700>LONGVL = 0": "line 10: found LONGVL = 0, 0 m/s by",
+    "LONGVL = 16700>LONGVL = 16.7": "found LONGVL = 16.7, 0.0167 m/s by",
+    "PKY1 = -14>PKY1 = 14": "line 28: found PKY1 = 14, the cornering stiffness of SAE axes, expected the sign of ISO axes",
+    "PKX1 = 21>PKX1 = -21": "line 24: found PKX1 = -21, expected a number above zero",
+    "PDY1 = 1.0>PDY1 = -1.0": "line 27: found PDY1 = -1.0, expected a number above zero",
+}
+
+
+@pytest.mark.parametrize("change", IMPLAUSIBLE)
+def test_wrong_units_and_signs_are_refused_with_their_line(read, change):
+    with pytest.raises(InputError, match=IMPLAUSIBLE[change]):
+        read(FILE.replace(*change.split(">")))
+
+
+@pytest.mark.parametrize(
+    ("name", "least", "most"),
+    [("UNLOADED_RADIUS", 10, 5000), ("FNOMIN", 0.01, 2000), ("LONGVL", 100, 2e5)],
+)
+def test_the_ranges_of_plausible_numbers(read, name, least, most):
+    """From tyres of models to those of aircraft; the stiffness gives a deflection of a sixteenth of the radius."""
+
+    def changed(value):
+        text = "\n".join(f"{name} = {value}" if line.startswith(name) else line for line in FILE.splitlines())
+        numbers = {line.split(" = ")[0]: line.split(" = ")[1] for line in text.splitlines() if " = " in line}
+        stiffness = 16 * float(numbers["FNOMIN"]) / float(numbers["UNLOADED_RADIUS"])
+        return text.replace("VERTICAL_STIFFNESS = 0.2", f"VERTICAL_STIFFNESS = {stiffness}") + "\n"
+
+    for inside in (1.1 * least, 0.9 * most):
+        read(changed(inside))
+    for outside in (0.9 * least, 1.1 * most):
+        with pytest.raises(InputError, match=f"found {name} = "):
+            read(changed(outside))
+
+
+@pytest.mark.parametrize("pressure", ["2.4", "0.009e-3", "6"])
+def test_an_inflation_pressure_in_other_units_is_refused(read, pressure):
+    text = FILE.replace("LONGVL", "FITTYP = 61\nLONGVL") + "[OPERATING_CONDITIONS]\nNOMPRES = 0.00024\n"
+    with pytest.raises(InputError, match=r"found INFLPRES = .*Pa by \[UNITS\], expected 10000 to 5e\+06 Pa"):
+        read(f"{text}INFLPRES = {pressure}\n")
+    assert read(f"{text}INFLPRES = 0\n").nominal_pressure == pytest.approx(2.4e5)
+    tyre = read(text)
+    for value in (230.0, 9e3, 6e6):
+        with pytest.raises(InputError, match=r"pressure: found .* Pa, expected 10000 to 5e\+06 Pa"):
+            MagicFormulaTyre(i="wheel", properties=tyre, pressure=value)
+
+
+def test_missing_sections_are_named(read):
+    notes = " ".join(read().notes())
+    assert "there are no [ALIGNING_COEFFICIENTS]: the aligning torque is zero" in notes and "[UNITS]" not in notes
+    assert "ALIGNING" not in " ".join(read(f"{FILE}[ALIGNING_COEFFICIENTS]\nQDZ1 = 0.1\n").notes())
+    si = FILE.partition("[MODEL]")[2].replace("16700", "16.7").replace("320", "0.32").replace("0.2\n", "2e5\n", 1)
+    si = si.replace("FNOMIN = 4", "FNOMIN = 4000").replace("5D-4", "500")
+    assert "there is no [UNITS]: numbers are taken as SI units" in " ".join(read(f"[MODEL]{si}").notes())
+    start, _, end = FILE.partition("[VERTICAL]")
+    with pytest.raises(InputError, match=r"found no FNOMIN, expected one in \[VERTICAL\]"):
+        read(f"{start}[LONGITUDINAL_COEFFICIENTS]{end.partition('[LONGITUDINAL_COEFFICIENTS]')[2]}")

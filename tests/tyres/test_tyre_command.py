@@ -123,3 +123,17 @@ def test_a_pressure_of_an_older_tyre_and_its_own_file_are_refused(tmp_path):
     assert called(tmp_path / "tyre.tir", "--pressure", "2e5").exit_code == 2
     assert called(tmp_path / "tyre.tir", "--write", tmp_path / "tyre.tir").exit_code == 2
     assert called(tmp_path / "tyre.tir").exit_code == 0
+
+
+def test_a_state_leaves_out_the_pressure_of_a_tyre_of_5_2(tmp_path):
+    EARLIER.to_file(tmp_path / "own.tir")
+    states = []
+    for state in ("4000,0.02,0.05,0,,30", "4000,0.02,0.05"):
+        found = CliRunner().invoke(main, ["tyre", str(tmp_path / "own.tir"), "--json", "--at", state])
+        assert found.exit_code == 0, found.output
+        states.append(json.loads(found.stdout)["states"][0])
+    assert states[0]["Fy"] == states[1]["Fy"]
+    assert states[0]["omega"] == pytest.approx(30 * 1.02 / states[0]["Re"])
+    found = CliRunner().invoke(main, ["tyre", str(tmp_path / "own.tir"), "--at", ",0.02"])
+    assert found.exit_code == 2
+    assert "expected up to 7" in found.stderr

@@ -20,6 +20,7 @@ from ..element import Component
 from ..read_by import Context, JsonSchema, ReadBy
 from ..roads.envelope import MOST_TRACKS, Envelope
 from .names import AS_BEFORE, COMBINED, LATER, OF_THE_FILE, RANGES, REASONS, REQUIRED, TURN_SLIP, home
+from .plausible import check_numbers, missing_sections
 from .property_file import (
     NOMINAL_PRESSURE,
     OF_FITTYP,
@@ -352,11 +353,14 @@ def _of_file(file: PropertyFile) -> TyreProperties:
         remarks.append(f"there is no NOMPRES: the coefficients are taken to hold at {found['NOMPRES']:g} Pa")
     for name in OF_THE_FILE:
         file.entry(name)
+    remarks += missing_sections(file, found)
     remarks += unused_notes([*file.sections.values(), file.tables], REASONS)
     try:
-        return TyreProperties(**read, remarks=tuple(f"{file.source}: {note}" for note in remarks))
+        properties = TyreProperties(**read, remarks=tuple(f"{file.source}: {note}" for note in remarks))
     except InputError as error:
         raise InputError(f"{file.source}: {str(error).removeprefix('TyreProperties: ')}") from None
+    check_numbers(file, formula, found)
+    return properties
 
 
 def _version(file: PropertyFile) -> tuple[str, list[str]]:

@@ -119,7 +119,7 @@ class PropertyFile:
         """
         entry = self.entry(key, home)
         if entry is None:
-            raise InputError(f"{self.source}: found no {key}, expected one")
+            raise InputError(f"{self.source}: found no {key}, expected one" + (f" in [{home}]" if home else ""))
         return finite_number(entry.text, f"{self.source}, line {entry.line}: {key}") * self.factor(dimension)
 
     def factor(self, dimension: str) -> float:

@@ -16,6 +16,7 @@ from ..beams.entries import with_beams
 from ..files.expand import repeat_entries, set_value
 from .definitions import NAMED, Definitions, definition_in_components
 from .frame import Use
+from .hard_points import check_hard_points
 from .options import OPTIONS, refuse_unknown_choices, with_chosen
 from .parameters import mounts_of, parameters_of
 from .vectors import Vectors, parameters_in_components, vectors_of
@@ -136,6 +137,7 @@ class Instances:
         )
         definition = definition_in_components(definition, vectors, f"parts.{use.part}")
         own = parameters_of(use, where, definition.get("parameters"), parameters)
+        check_hard_points(use, where, vectors, own)
         sections = {
             section: repeat_entries(f"parts.{use.part}.{section}", definition[section], own) if section in REPEATED else definition[section]
             for section in (*NAMED, "markers") if definition.get(section) is not None

@@ -14,6 +14,9 @@ from ...reading.units.quantity import in_si, quantity
 from ...reading.units.units import Quantity
 from ..files.expand import read_parameters
 from .frame import Use
+from .vectors import COMPONENTS
+
+COMPONENT_ENDS = tuple(f"_{axis}" for axis in COMPONENTS)
 
 
 def parameters_of(use: Use, where: str, found: Any, outside: Mapping[str, Quantity]) -> dict[str, Quantity]:
@@ -27,10 +30,10 @@ def parameters_of(use: Use, where: str, found: Any, outside: Mapping[str, Quanti
         raise InputError(f"parts.{use.part}.parameters: found {written(own)}, expected a mapping of names to numbers")
     for name in use.parameters:
         if name not in own:
-            known = ", ".join(map(str, own)) or "none"
+            known = [*dict.fromkeys(_vector(each, own) for each in own)]
             raise InputError(
-                f"{where}.parameters.{name}: found no such parameter of '{use.part}'{did_you_mean(name, own)}, expected one "
-                f"of {known}"
+                f"{where}.parameters.{name}: found no such parameter of '{use.part}'{did_you_mean(name, [*known, *own])}, "
+                f"expected one of {', '.join(known) or 'none'}"
             )
     names: Mapping[str, Quantity]
     inside = dict(outside)
@@ -49,6 +52,13 @@ def parameters_of(use: Use, where: str, found: Any, outside: Mapping[str, Quanti
         except InputError as error:
             raise InputError(f"{place}{error}") from None
     return inside
+
+
+def _vector(name: Any, own: Mapping[Any, Any]) -> str:
+    """Return the name of the vector that a parameter is a component of, or its own name."""
+    start, end = str(name)[:-2], str(name)[-2:]
+    is_component = end in COMPONENT_ENDS and all(f"{start}{other}" in own for other in COMPONENT_ENDS[:2])
+    return start if is_component else str(name)
 
 
 def _quantity(given: Any, names: Mapping[str, Quantity]) -> Quantity:

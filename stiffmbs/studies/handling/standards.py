@@ -399,7 +399,7 @@ def of_straight_braking(known: Known, test: StraightBraking, runs: list[Run]) ->
     run = runs[0]
     part = run["time"] >= 1.0
     time, speed = run["time"][part], run["vehicle.speed"][part]
-    moving = speed > 0.05 * speed[0]
+    moving = speed > 0.1 * speed[0]  # as in the mean deceleration: anti-lock control ends at a few m/s
     slip = min(float(np.min(run[f"{tyre}.slip"][part][moving])) for tyre in known.car.tyres.values())
     distance = np.sum((speed[1:] + speed[:-1]) / 2 * np.diff(time))
     return {

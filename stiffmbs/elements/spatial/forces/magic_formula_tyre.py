@@ -14,6 +14,7 @@ from ...roads.envelope import Envelope
 from ...roads.road import above_zero, magnitude
 from ...tyres.coefficients import AnyProperties, TyreProperties
 from ...tyres.names import SAMPLE, SAMPLE_6
+from ...tyres.plausible import PLAUSIBLE
 from ..contact_point import ContactPoint
 from ..pressed_tyre import pressed, pressure_increment
 from ..relaxation import DEFLECTIONS
@@ -76,6 +77,9 @@ class MagicFormulaTyre(Tyre):
             raise ValueError(f"transient: found properties without {missing}, expected relaxation lengths")
         if self.pressure is not None and not p.formula.has_pressure:
             raise ValueError("pressure: found one for a tyre of version 5.2, expected properties of 6.1 or 6.2")
+        least, most = PLAUSIBLE["INFLPRES"]
+        if self.pressure is not None and not least <= self.pressure <= most:
+            raise ValueError(f"pressure: found {self.pressure:g} Pa, expected {least:g} to {most:g} Pa")
         if self._turns and not p.has_turn_slip:
             raise ValueError("turn_slip: found properties without its coefficients, expected some such as PDYP1, PHYP1")
         return self

@@ -1,0 +1,44 @@
+"""Hard points of a suspension: those in wrong units or on the wrong side are refused."""
+
+import json
+
+import pytest
+
+import stiffmbs
+
+
+def corner(parameters, part="double_wishbone", **words):
+    use = {"use": part, "parameters": parameters, **words}
+    return stiffmbs.read_scene(json.dumps({"dimensions": 3, "parts": {"left": use}}))
+
+
+@pytest.mark.parametrize(
+    ("parameters", "message"),
+    [
+        (
+            {"lower_ball": [5, 715, 175]},
+            "left.parameters.lower_ball: found (5, 715, 175) m, which is 735 m from wheel_centre (0, 0.76, 0.3) m",
+        ),
+        ({"wheel_centre": [0, 760, 300]}, "m from wheel_centre (0, 760, 300) m, expected 5 m or less"),
+        (
+            {"upper_ball_y": -0.66},
+            "left.parameters.upper_ball: found (-0.02, -0.66, 0.5) m, on the other side of the car",
+        ),
+        (
+            {"lower_ball": ["0 m", "-700 mm", "170 mm"]},
+            "on the other side of the car from wheel_centre (0, 0.76, 0.3) m",
+        ),
+        ({"lower_ball_z": 5.5}, "m from wheel_centre"),
+        ({"lower_bal": [0, 0, 0]}, "(did you mean 'lower_ball'?)"),
+    ],
+)
+def test_hard_points_that_are_no_car_are_refused(parameters, message):
+    with pytest.raises(stiffmbs.InputError) as error:
+        corner(parameters)
+    assert message in str(error.value)
+
+
+def test_points_near_the_middle_and_far_below_the_limit_are_read():
+    corner({"lower_front_y": -0.3, "lower_rear_z": 5.1})
+    corner({"wheel_centre": [0, "0.8 m", "0.3 m"]}, "twist_beam")
+    corner({}, mirror="y")
