@@ -67,7 +67,13 @@ def updates(blocks: Blocks) -> dict[str, np.ndarray]:
     shape = len(SHAPES) // 2 * kind + len(QUADS) * (max(ROWS) - rows[at_line]) + (max(QUADS) - count[at_piece])
     run, ahead = piece_run[at_piece], shift[at_piece]
     listed = np.stack(
-        [start + line[at_line] * stride + into[run] + ahead, stride, factors + line[at_line], own[run] + ahead], axis=1
+        [
+            start + line[at_line] * stride + into[run] + ahead,
+            stride,
+            factors + blocks.parts * line[at_line],
+            own[run] + ahead,
+        ],
+        axis=1,
     )
     order = np.argsort(len(SHAPES) * k + shape, kind="stable")
     counts = np.bincount(len(SHAPES) * k + shape, minlength=len(SHAPES) * len(blocks.nodes))

@@ -36,12 +36,14 @@ class Blocks:
     """Blocks of the factors of a matrix without pivoting.
 
     `nodes`: unknowns of each supernode, in the order of elimination. `below`, `right`: later supernodes with blocks in
-    the columns and in the rows of each supernode.
+    the columns and in the rows of each supernode. `parts`: 1, or 2 for complex numbers, stored as pairs; widths, offsets
+    and positions count their parts.
     """
 
     nodes: Sequence[np.ndarray]
     below: list[list[int]]
     right: list[list[int]]
+    parts: int = 1
 
     @cached_property
     def sizes(self) -> list[int]:
@@ -50,8 +52,8 @@ class Blocks:
 
     @cached_property
     def widths(self) -> list[int]:
-        """Return the sizes rounded up to whole quads."""
-        return [padded(size) for size in self.sizes]
+        """Return the lengths of the supernodes' lines, rounded up to whole quads."""
+        return [padded(self.parts * size) for size in self.sizes]
 
     @cached_property
     def down_at(self) -> list[dict[int, int]]:
@@ -84,11 +86,11 @@ class Blocks:
 
     @cached_property
     def places(self) -> np.ndarray:
-        """Return the position of each unknown in a vector whose supernodes begin at whole quads."""
-        place = np.empty(sum(self.sizes), dtype=np.int64)
+        """Return the position of each part of each unknown in a vector whose supernodes begin at whole quads."""
+        place = np.empty((sum(self.sizes), self.parts), dtype=np.int64)
         for start, node in zip(self.node_starts, self.nodes, strict=False):
-            place[node] = start + np.arange(len(node))
-        return place
+            place[node] = start + np.arange(self.parts * len(node)).reshape(-1, self.parts)
+        return place.ravel()
 
     @cached_property
     def node_starts(self) -> list[int]:
@@ -105,27 +107,32 @@ class Blocks:
         return {f"{name}_x": np.array([at for part in listed for at in part], dtype=np.int64), f"{name}_at": ends}
 
     def slots(self, rows: np.ndarray, columns: np.ndarray) -> np.ndarray:
-        """Return the positions of the matrix entries in the panels."""
-        n = len(self.nodes)
+        """Return the positions of the matrix entries in the panels.
+
+        Complex numbers are given as real blocks of two rows and columns. Their second columns, which follow from the
+        first, are stored after the panels.
+        """
+        n, (row, part), (column, second) = len(self.nodes), divmod(rows, self.parts), divmod(columns, self.parts)
         node, within = np.empty(sum(self.sizes), dtype=np.int64), np.empty(sum(self.sizes), dtype=np.int64)
         for k, own in enumerate(self.nodes):
             node[own], within[own] = k, np.arange(len(own))
-        pairs, pair = np.unique(node[rows] * n + node[columns], return_inverse=True)
+        pairs, pair = np.unique(node[row] * n + node[column], return_inverse=True)
         starts, by_row, by_column = np.array([self._block(*divmod(both, n)) for both in pairs.tolist()]).T
-        slots: np.ndarray = starts[pair] + by_row[pair] * within[rows] + by_column[pair] * within[columns]
-        return slots.astype(np.int32)
+        slots = starts[pair] + by_row[pair] * within[row] + by_column[pair] * within[column] + part
+        stored: np.ndarray = np.where(second == 0, slots, self.starts[-1]).astype(np.int32)
+        return stored
 
     def _block(self, row: int, column: int) -> tuple[int, int, int]:
         """Return the start of the block of two supernodes, and the strides of its rows and columns."""
         if row >= column:
-            return int(self.starts[2 * column]) + self.down_at[column][row], 1, self.down_width[column]
-        return int(self.starts[2 * row + 1]) + self.right_at[row][column], self.right_width[row], 1
+            return int(self.starts[2 * column]) + self.down_at[column][row], self.parts, self.down_width[column]
+        return int(self.starts[2 * row + 1]) + self.right_at[row][column], self.right_width[row], self.parts
 
     def _offsets(self, nodes: Sequence[int]) -> dict[int, int]:
         return dict(zip(nodes, accumulate((self.widths[a] for a in nodes), initial=0), strict=False))
 
 
-def filled(nodes: Sequence[np.ndarray], rows: np.ndarray, columns: np.ndarray) -> Blocks:
+def filled(nodes: Sequence[np.ndarray], rows: np.ndarray, columns: np.ndarray, parts: int = 1) -> Blocks:
     """Return the nonzero blocks of the factors, with the supernodes in postorder.
 
     Parameters
@@ -134,6 +141,8 @@ def filled(nodes: Sequence[np.ndarray], rows: np.ndarray, columns: np.ndarray) -
         Unknowns of each supernode; each unknown is in one of them.
     rows, columns : ndarrays of int
         Entries of the matrix.
+    parts : int
+        Parts of a number.
 
     References
     ----------
@@ -153,7 +162,7 @@ def filled(nodes: Sequence[np.ndarray], rows: np.ndarray, columns: np.ndarray) -
             below[b] |= _beyond(below[k], b)
         for a in rows_of:
             right[a] |= _beyond(right[k], a)
-    return Blocks(nodes, listed_below, listed_right)
+    return Blocks(nodes, listed_below, listed_right, parts)
 
 
 def filled_below(below: list[set[int]]) -> list[list[int]]:

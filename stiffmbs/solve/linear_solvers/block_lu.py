@@ -30,6 +30,8 @@ class BlockLU(FixedOrder):
     """Block LU in a fixed order, checked by its residual; `PairedColumns` with pivoting if the residual is too large.
 
     `nodes`: unknowns of each supernode, in the order of elimination. `kinds` of shape (n,): kind of each unknown.
+    `parts`: 2 for a complex matrix, given as a real one of twice the size. Its unknowns 2 k and 2 k + 1 are the parts of
+    unknown k of the supernodes.
     """
 
     setup: ClassVar[Routine] = SETUP
@@ -38,6 +40,7 @@ class BlockLU(FixedOrder):
 
     nodes: list[np.ndarray]
     kinds: np.ndarray
+    parts: int = 1
 
     @classmethod
     def of(cls, equations: Equations, order: EliminationOrder) -> BlockLU:
@@ -55,7 +58,7 @@ class BlockLU(FixedOrder):
     @cached_property
     def blocks(self) -> Blocks:
         """Return the nonzero blocks of the factors."""
-        return filled(self.nodes, self.rows, self.columns)
+        return filled(self.nodes, self.rows // self.parts, self.columns // self.parts, self.parts)
 
     @cached_property
     def _plan(self) -> dict[str, Any]:
@@ -70,7 +73,7 @@ class BlockLU(FixedOrder):
         random = np.random.default_rng(SEED)
         signs = random.choice([-1.0, 1.0], self.n)
         return {
-            "n": self.n, "pivots": 0, "last_flag": 0, "n_nodes": len(blocks.nodes), "n_diagonal": len(diagonal), "n_lu": int(blocks.starts[-1]),
+            "n": self.n, "parts": self.parts, "pivots": 0, "last_flag": 0, "n_nodes": len(blocks.nodes), "n_diagonal": len(diagonal), "n_lu": int(blocks.starts[-1]),
             **{name: held_once(np.asarray(part, dtype=np.int64)) for name, part in lists.items()},
             **{name: held_once(part) for name, part in updates(blocks).items()},
             "slot": held_once(blocks.slots(self.rows, self.columns)), "state": signs * random.uniform(0.5, 1.0, self.n),
@@ -80,7 +83,7 @@ class BlockLU(FixedOrder):
         """Return the memory of the compiled routines, given the address of N_VGetArrayPointer."""
         with_pivots = PairedColumns(self.n, self.rows, self.columns, self.order).memory(array_of)
         blocks = self.blocks
-        beside = [right + own for right, own in zip(blocks.right_width, blocks.widths, strict=True)]
+        beside = [self.parts * right + own for right, own in zip(blocks.right_width, blocks.widths, strict=True)]
         scratch = max([*beside, *blocks.down_width, *(2 * QUAD * size for size in blocks.sizes)])
         arrays = {
             **self._plan, "array_of": array_of, "factors": with_pivots.arrays["factors"],

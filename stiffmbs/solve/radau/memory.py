@@ -59,10 +59,10 @@ def in_pairs(matrix: Any, imaginary: np.ndarray) -> Pairs:
     parts = np.split(place, np.cumsum([len(rows), len(rows), len(row)]))
     fields: dict[str, Any] = {"n": 2 * matrix.n, "rows": all_rows[order], "columns": all_columns[order]}
     if hasattr(matrix, "order"):
-        own = matrix.order
-        fields["order"] = EliminationOrder(_doubled(own.unknowns), 4 * own.fill, 8 * own.updates)
-    if isinstance(matrix, BlockLU):
-        fields |= {"nodes": [_doubled(node) for node in matrix.nodes], "kinds": np.repeat(matrix.kinds, 2)}
+        own, blocks = matrix.order, isinstance(matrix, BlockLU)
+        work = (2 * own.fill, 4 * own.updates) if blocks else (4 * own.fill, 8 * own.updates)
+        fields["order"] = EliminationOrder(_doubled(own.unknowns), *work)
+        fields |= {"nodes": matrix.nodes, "kinds": np.repeat(matrix.kinds, 2), "parts": 2} if blocks else {}
     return Pairs(type(matrix)(**fields), *parts)
 
 

@@ -22,6 +22,7 @@ CONVERGED = 1e-12
 SOLVERS: dict[str, dict[str, Any]] = {
     "bdf": {"solver": "bdf"},
     "dop853": {"solver": "projected", "scheme": "dop853"},
+    "radau": {"solver": "radau"},
     "auto": {"solver": "auto"},
 }
 PLACE, MOTION = 7, 6

@@ -19,12 +19,13 @@ SAME_ADDRESS = ctypes.CFUNCTYPE(ctypes.c_void_p, ctypes.c_void_p)(lambda vector:
 class Solver:
     """The routines on one pattern, with the memory that IDA would keep for them."""
 
-    def __init__(self, kind, pattern, sizes=(3, 1, 4, 7, 2), kinds=None):
+    def __init__(self, kind, pattern, sizes=(3, 1, 4, 7, 2), kinds=None, parts=1):
         self.columns, self.rows = np.nonzero(pattern.T)
         n = len(pattern)
         order = EliminationOrder(np.arange(n), n * n, n**3)
-        parts = (nodes_of(n, sizes), np.full(n, COORDINATE) if kinds is None else kinds) if kind is BlockLU else ()
-        self.matrix = kind(n, self.rows, self.columns, order, *parts)
+        kinds = np.full(n, COORDINATE) if kinds is None else kinds
+        of_blocks = (nodes_of(n // parts, sizes), kinds, parts) if kind is BlockLU else ()
+        self.matrix = kind(n, self.rows, self.columns, order, *of_blocks)
         self.memory = self.matrix.memory(ctypes.cast(SAME_ADDRESS, ctypes.c_void_p).value)
         self.factors, self.arrays = self.memory.factors, self.memory.arrays
         self.solver = np.array([self.memory.content.ctypes.data])
@@ -60,18 +61,21 @@ def scattered(rng, n):
     return (rng.uniform(size=(n, n)) < 0.08) | np.eye(n, dtype=bool)
 
 
+PATTERNS = {
+    "one": lambda rng: np.ones((1, 1), dtype=bool),
+    "blocks": lambda rng: in_blocks(rng, 6, 5),
+    "odd": lambda rng: in_blocks(rng, 5, 3),
+    "scattered": lambda rng: scattered(rng, 40),
+    "full": lambda rng: np.ones((9, 9), dtype=bool),
+}
+
+
 @pytest.mark.parametrize("kind", [FixedOrder, PairedColumns, BlockLU])
 @pytest.mark.parametrize("seed", range(4))
-@pytest.mark.parametrize("pattern", ["one", "blocks", "odd", "scattered", "full"])
+@pytest.mark.parametrize("pattern", PATTERNS)
 def test_solutions_are_those_of_numpy(kind, pattern, seed):
     rng = np.random.default_rng(seed)
-    present = {
-        "one": np.ones((1, 1), dtype=bool),
-        "blocks": in_blocks(rng, 6, 5),
-        "odd": in_blocks(rng, 5, 3),
-        "scattered": scattered(rng, 40),
-        "full": np.ones((9, 9), dtype=bool),
-    }[pattern]
+    present = PATTERNS[pattern](rng)
     n = len(present)
     solver = Solver(kind, present)
     for round_ in range(4):  # the first seeks pivots, others take them; the last ones need new ones
@@ -80,6 +84,39 @@ def test_solutions_are_those_of_numpy(kind, pattern, seed):
         expected = np.linalg.solve(dense, b)
         limit = 1e-14 * np.linalg.cond(dense) * 1e3
         np.testing.assert_allclose(solver.solved(dense, b), expected, atol=limit * np.max(np.abs(expected)))
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("pattern", PATTERNS)
+def test_solutions_of_complex_blocks_are_those_of_numpy(pattern, seed):
+    """In the last rounds, rows are exchanged within the blocks."""
+    rng = np.random.default_rng(seed)
+    present = PATTERNS[pattern](rng)
+    n = len(present)
+    solver = Solver(BlockLU, np.kron(present, np.ones((2, 2), dtype=bool)), parts=2)
+    for round_ in range(4):
+        real, imaginary = (np.where(present, rng.uniform(-1, 1, (n, n)), 0.0) for _ in range(2))
+        dense = real + 1j * imaginary + (3.0 if round_ < 2 else 1e-9) * np.eye(n)
+        b = rng.uniform(-1, 1, n) + 1j * rng.uniform(-1, 1, n)
+        expected = np.linalg.solve(dense, b)
+        limit = 1e-14 * np.linalg.cond(dense) * 1e3
+        found = solver.solved(as_real(dense), b.view(float)).view(complex)
+        np.testing.assert_allclose(found, expected, atol=limit * np.max(np.abs(expected)))
+    assert solver.counted("refused") == 0
+
+
+def test_a_complex_block_without_a_regular_pivot_is_left_to_pivots():
+    dense = np.array([[1.0, 1j, 1.0, 0.0], [1j, -1.0, 0.0, 1.0], [1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0]])
+    solver = Solver(BlockLU, np.ones((8, 8), dtype=bool), sizes=(2,), parts=2)
+    b = np.array([1.0, 2.0, 3.0, 4.0j])
+    found = solver.solved(as_real(dense), b.view(float)).view(complex)
+    np.testing.assert_allclose(found, np.linalg.solve(dense, b), rtol=1e-14)
+    assert solver.counted("refused") == 1
+
+
+def as_real(matrix):
+    """The complex matrix as a real one, whose unknowns are pairs of real and imaginary part."""
+    return np.kron(matrix.real, np.eye(2)) + np.kron(matrix.imag, np.array([[0.0, -1.0], [1.0, 0.0]]))
 
 
 def test_most_columns_of_blocks_are_paired():

@@ -124,6 +124,55 @@ def add_products(
 
 
 @builtin
+def add_pair_products(
+    code: Code, rows: Operand, quads: Operand, into: Operand, stride: Operand, a: Operand, a_stride: Operand, b: Operand,
+    b_stride: Operand, depth: Operand,
+) -> None:  # fmt: skip
+    """Compute into[i, :] += sum of a[k, i] * b[k, :], as `add_products`, of complex numbers: pairs of real and imaginary part.
+
+    Sums with the real and with the imaginary parts of `a` stay in registers, hence of few rows at a time.
+    """
+    width, most = QUAD * literal(quads), QUAD // literal(quads)
+    for first in range(0, literal(rows), most):
+        numbers = range(first, min(first + most, literal(rows)))
+        places = [code.item(into, times(code, stride, i)).text for i in numbers]
+        real = [_kept(code, loaded(code, width, place)) for place in places]
+        imaginary = [_kept(code, Value(WIDTHS[width], "zeroinitializer")) for _ in places]
+        parts = [
+            (total, 2 * i + part)
+            for part, sums in enumerate((real, imaginary))
+            for i, total in zip(numbers, sums, strict=True)
+        ]
+
+        def add(at_a: Value, at_b: Value, parts: Sequence[tuple[Value, int]] = parts) -> None:
+            line = loaded(code, width, code.item(b, at_b).text)
+            for total, shift in parts:
+                number = code.load(code.item(a, plus(code, at_a, shift)))
+                code.store(total, fused(code, code.load(total), spread_over(code, width, number), line))
+
+        _loop(code, add, a_stride, b_stride, depth)
+        for place, re, im in zip(places, real, imaginary, strict=True):
+            total = code.load(re)
+            turn = _times_i(code, code.load(im), width)
+            write(code, place, code.put_value(total.kind, f"fadd {total.typed}, {turn.text}"))
+
+
+@builtin
+def times_i(code: Code, value: Operand) -> Value:
+    """Return two complex numbers, pairs of real and imaginary part, times the imaginary unit."""
+    return _times_i(code, as_quad(value), QUAD)
+
+
+def _times_i(code: Code, value: Value, width: int) -> Value:
+    exchanged = ", ".join(f"i32 {k ^ 1}" for k in range(width))
+    parts = code.put_value(
+        value.kind, f"shufflevector {value.typed}, <{width} x double> poison, <{width} x i32> <{exchanged}>"
+    )
+    signs = ", ".join(["double -1.0", "double 1.0"] * (width // 2))
+    return code.put_value(value.kind, f"fmul {parts.typed}, <{signs}>")
+
+
+@builtin
 def take_products(
     code: Code, rows: Operand, quads: Operand, into: Operand, stride: Operand, a: Operand, a_stride: Operand, b: Operand,
     b_stride: Operand, depth: Operand,

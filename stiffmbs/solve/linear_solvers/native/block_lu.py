@@ -22,6 +22,11 @@ from stiffmbs.compile.machine.native.statuses import CONTENT, FAILED, NOT_COMPIL
 from stiffmbs.solve.linear_solvers.native.block_trial import panel, refine, solved, trusted
 from stiffmbs.solve.linear_solvers.native.layouts import BLOCK_LU
 from stiffmbs.solve.linear_solvers.native.node_factors import add_one_quad, add_two_quads, factor_node
+from stiffmbs.solve.linear_solvers.native.pair_factors import (
+    add_one_quad_of_pairs,
+    add_two_quads_of_pairs,
+    factor_pair_node,
+)
 from stiffmbs.solve.linear_solvers.native.paired_columns import paired_view
 from stiffmbs.solve.linear_solvers.native.parameters import PIVOTS
 
@@ -47,11 +52,17 @@ def _taken_out(s, k):
             for place in range(at, s.update_end[shape]):
                 u = shifted(s.update, 4 * place)
                 a, b = panel(s, u[2]), panel(s, u[3])
-                add_two_quads(rows, panel(s, u[0]), u[1], a, a_stride, b, b_stride, depth)
+                if s.parts == 2:
+                    add_two_quads_of_pairs(rows, panel(s, u[0]), u[1], a, a_stride, b, b_stride, depth)
+                else:
+                    add_two_quads(rows, panel(s, u[0]), u[1], a, a_stride, b, b_stride, depth)
             for place in range(s.update_end[shape], s.update_end[shape + 1]):
                 u = shifted(s.update, 4 * place)
                 a, b = panel(s, u[2]), panel(s, u[3])
-                add_one_quad(rows, panel(s, u[0]), u[1], a, a_stride, b, b_stride, depth)
+                if s.parts == 2:
+                    add_one_quad_of_pairs(rows, panel(s, u[0]), u[1], a, a_stride, b, b_stride, depth)
+                else:
+                    add_one_quad(rows, panel(s, u[0]), u[1], a, a_stride, b, b_stride, depth)
             at = s.update_end[shape + 1]
 
 
@@ -64,7 +75,11 @@ def _eliminated(s, f):
         panels[s.slot[p]] = f.a[p]
     first = 0
     for k in range(s.n_nodes):
-        factor_node(s, k, panel(s, s.start[2 * k]), panel(s, s.start[2 * k + 1]), first)
+        down, right = panel(s, s.start[2 * k]), panel(s, s.start[2 * k + 1])
+        if s.parts == 2:
+            factor_pair_node(s, k, down, right, first)
+        else:
+            factor_node(s, k, down, right, first)
         _taken_out(s, k)
         first += s.size[k]
 

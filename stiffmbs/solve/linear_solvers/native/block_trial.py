@@ -10,6 +10,7 @@ from __future__ import annotations
 from stiffmbs.compile.machine.native.access import compiled, factors_view, floats, shifted
 from stiffmbs.compile.machine.native.quads import add_products, plus_product, quad, set_quad, spread, sum_of
 from stiffmbs.solve.linear_solvers.native.layouts import COORDINATE, MULTIPLIER
+from stiffmbs.solve.linear_solvers.native.pair_factors import backward_pairs, forward_pairs
 from stiffmbs.solve.linear_solvers.native.parameters import PIVOTS
 
 
@@ -162,6 +163,12 @@ def solved(s, of):
         s.x[p] = 0.0
     for j in range(s.n):
         s.x[s.place[j]] = of[j]
+    if s.parts == 2:
+        for k in range(s.n_nodes):
+            forward_pairs(s, k, panel(s, s.start[2 * k]), panel(s, s.start[2 * k + 1]))
+        for k in range(s.n_nodes - 1, -1, -1):
+            backward_pairs(s, k, panel(s, s.start[2 * k]), panel(s, s.start[2 * k + 1]))
+        return
     for k in range(s.n_nodes):
         _forward(s, k)
     for k in range(s.n_nodes - 1, -1, -1):

@@ -12,7 +12,15 @@ Du Croz and Higham, Stability of methods for matrix inversion, IMA J. Numer. Ana
 from __future__ import annotations
 
 from stiffmbs.compile.machine.native.access import compiled, shifted
-from stiffmbs.compile.machine.native.quads import add_products, plus_product, product_of, quad, set_quad, spread
+from stiffmbs.compile.machine.native.quads import (
+    add_products,
+    by_case,
+    plus_product,
+    product_of,
+    quad,
+    set_quad,
+    spread,
+)
 
 
 @compiled
@@ -95,30 +103,16 @@ def _inverted(s, d, stride, width, size):
         line[j] = inverse
 
 
-@compiled
-def add_two_quads(rows, into, stride, a, a_stride, b, b_stride, depth):
-    """Add products for one to four rows of two quads."""
-    if rows == 4:
-        add_products(4, 2, into, stride, a, a_stride, b, b_stride, depth)
-    elif rows == 3:
-        add_products(3, 2, into, stride, a, a_stride, b, b_stride, depth)
-    elif rows == 2:
-        add_products(2, 2, into, stride, a, a_stride, b, b_stride, depth)
-    else:
-        add_products(1, 2, into, stride, a, a_stride, b, b_stride, depth)
+ROWS = (4, 3, 2, 1)
+add_two_quads = by_case(add_products, {rows: (rows, 2) for rows in ROWS})
+add_one_quad = by_case(add_products, {rows: (rows, 1) for rows in ROWS})
+"""Products for one to four rows of two quads, and of one."""
 
 
 @compiled
-def add_one_quad(rows, into, stride, a, a_stride, b, b_stride, depth):
-    """Add products for one to four rows of one quad."""
-    if rows == 4:
-        add_products(4, 1, into, stride, a, a_stride, b, b_stride, depth)
-    elif rows == 3:
-        add_products(3, 1, into, stride, a, a_stride, b, b_stride, depth)
-    elif rows == 2:
-        add_products(2, 1, into, stride, a, a_stride, b, b_stride, depth)
-    else:
-        add_products(1, 1, into, stride, a, a_stride, b, b_stride, depth)
+def rows_at_once(left):
+    """Return the number of rows of the next product, as `stiffmbs.sparse.block_updates.split`."""
+    return 3 if left == 5 or left == 6 or left == 9 else min(left, 4)
 
 
 @compiled
@@ -137,8 +131,7 @@ def _multiplied(s, d, stride, u, width, size):
                 set_quad(u, place + 4, zero)
         line = 0
         while line < size:
-            left = size - line
-            rows = 3 if left == 5 or left == 6 or left == 9 else min(left, 4)
+            rows = rows_at_once(size - line)
             into = shifted(u, line * width + column)
             if two:
                 add_two_quads(rows, into, width, shifted(d, line), stride, s.scratch, 8, size)
