@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import builtins
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
@@ -30,6 +30,13 @@ Symbolic = Any
 """Element as its equations see it (`stiffmbs.compile.symbolic.element.SymbolicElement`). Markers are frames, numbers
 symbols, and formulas expressions. Formulas and tables of a variable are functions, and referenced joints are symbolic
 elements. Also ``e.t`` for time, ``e.rate(expression)`` and ``e.acceleration(expression)`` for total time derivatives, and ``e.frames`` for the bodies."""
+
+
+Expr = Any
+"""SymPy expression (`sympy.Expr`), or a number."""
+
+Matrix = Any
+"""SymPy column vector or matrix (`sympy.Matrix`)."""
 
 
 IN_EQUATIONS = frozenset([
@@ -237,23 +244,23 @@ class Joint(Element):
         return (*cls.coordinates, *cls.further_coordinates)
 
     @classmethod
-    def measured(cls, e: Symbolic) -> Any:
+    def measured(cls, e: Symbolic) -> Sequence[Expr]:
         """Return the reported values, one expression for each name in `channels`."""
         free = [getattr(cls, name)(e) for name in cls.free_coordinates()]
         return [value for x in free for value in (x, e.rate(x), e.acceleration(x))]
 
     @staticmethod
-    def position(e: Symbolic) -> Any:
+    def position(e: Symbolic) -> Sequence[Expr]:
         """Return the constraint equations C(q, t) = 0, one expression for each name in `equations`."""
         return ()
 
     @staticmethod
-    def velocity(e: Symbolic) -> Any:
+    def velocity(e: Symbolic) -> Sequence[Expr]:
         """Return the constraint equations linear in u without a position form, such as a prescribed rate."""
         return ()
 
     @staticmethod
-    def point(e: Symbolic) -> Any:
+    def point(e: Symbolic) -> Matrix:
         """Return the reference point of the joint's reaction torque."""
         return e.i.point
 
@@ -315,7 +322,7 @@ class Force(Element):
         return ()
 
     @classmethod
-    def rates(cls, e: Symbolic) -> Any:
+    def rates(cls, e: Symbolic) -> Sequence[Expr]:
         """Return the rates of its own states, per second, in their order."""
         return ()
 
@@ -325,7 +332,7 @@ class Force(Element):
         raise NotImplementedError
 
     @classmethod
-    def powers(cls, e: Symbolic) -> list[tuple[Any, Any]]:
+    def powers(cls, e: Symbolic) -> list[tuple[Expr, Expr]]:
         """Return pairs of an effort and its conjugate rate, which is linear in the velocities."""
         return [(effort, e.rate(coordinate)) for effort, coordinate in cls.efforts(e)]
 
@@ -338,26 +345,26 @@ class Force(Element):
         return []
 
     @staticmethod
-    def potential(e: Symbolic) -> Any:
+    def potential(e: Symbolic) -> Expr:
         """Return the potential energy, J; zero for a force without one."""
         return 0
 
     @classmethod
-    def measured(cls, e: Symbolic) -> Any:
+    def measured(cls, e: Symbolic) -> Sequence[Expr]:
         """Return the reported values in addition to the wrench, one expression for each name in `channels`."""
         return ()
 
     @staticmethod
-    def event_functions(e: Symbolic) -> Any:
+    def event_functions(e: Symbolic) -> Sequence[Expr]:
         """Return expressions that change sign at the state-dependent breakpoints of the force, such as a gap."""
         return ()
 
     @classmethod
-    def limits(cls, e: Symbolic) -> Any:
+    def limits(cls, e: Symbolic) -> Sequence[Expr]:
         """Return expressions that are positive within the valid range of the force law; otherwise the run stops."""
         return ()
 
     @staticmethod
-    def point(e: Symbolic) -> Any:
+    def point(e: Symbolic) -> Matrix:
         """Return the point on the first body that is the reference of the force's torque."""
         return e.i.point

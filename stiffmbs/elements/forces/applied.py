@@ -8,10 +8,10 @@ from pydantic import Field
 
 from ...reading.formula.field import ForceOfMotion, TorqueOfMotion
 from ...reading.marker import Marker
-from ..element import Force, Symbolic
+from ..element import Expr, Force, Symbolic
 
 
-def force_at(fx: Any, fy: Any, i: Any, j: Any = None) -> list[tuple[Any, Any]]:
+def force_at(fx: Expr, fy: Expr, i: Any, j: Any = None) -> list[tuple[Expr, Expr]]:
     """Return the efforts of a force at i's point on i's body, and of the opposite force on j's body at that point."""
     if j is None:
         return [(fx, i.point[0]), (fy, i.point[1])]
@@ -47,14 +47,14 @@ class AppliedForce(Force):
     axes: Literal["ground", "body"] = Field("ground", description="whether x and y are the ground's or marker i's axes")
 
     @staticmethod
-    def efforts(e: Symbolic) -> list[tuple[Any, Any]]:
+    def efforts(e: Symbolic) -> list[tuple[Expr, Expr]]:
         """Return the components on the point's coordinates in ground axes, or relative to j along j's axes."""
         along, across = e.force
         fx, fy = along * e.i.axis + across * e.i.normal if e.axes == "body" else (along, across)
         return force_at(fx, fy, e.i, e.j)
 
     @staticmethod
-    def potential(e: Symbolic) -> Any:
+    def potential(e: Symbolic) -> Expr:
         if e.j is not None or e.axes == "body" or not all(e.is_constant(component) for component in e.force):
             return 0
         return -e.force[0] * e.i.point[0] - e.force[1] * e.i.point[1]
@@ -76,14 +76,14 @@ class AppliedTorque(Force):
     torque: TorqueOfMotion = Field(description="about z, N m: a number or a formula")
 
     @staticmethod
-    def efforts(e: Symbolic) -> list[tuple[Any, Any]]:
+    def efforts(e: Symbolic) -> list[tuple[Expr, Expr]]:
         return [(e.torque, AppliedTorque.angle(e))]
 
     @staticmethod
-    def potential(e: Symbolic) -> Any:
+    def potential(e: Symbolic) -> Expr:
         return -e.torque * AppliedTorque.angle(e) if e.is_constant(e.torque) else 0
 
     @staticmethod
-    def angle(e: Symbolic) -> Any:
+    def angle(e: Symbolic) -> Expr:
         """Return the angle on which the torque does work."""
         return e.i.angle - (e.j.angle if e.j is not None else 0)

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from pydantic import Field, field_validator
 
 from ...reading.units import si
-from ..element import Force, Symbolic
+from ..element import Expr, Force, Symbolic
 from .bushing import times
 
 BEYOND = "found its ends turned by three quarters of a turn against each other, expected less; divide the beam into more elements"
@@ -38,13 +38,13 @@ class BeamStrain(Force):
         return found if found and any(found) else None
 
     @staticmethod
-    def strain(e: Symbolic) -> list[Any]:
+    def strain(e: Symbolic) -> list[Expr]:
         """Return the strain less that without load."""
         screw = e.logarithm(e.i, e.j).vector
         return e.named([x / e.length - rest for x, rest in zip(screw, e.unloaded, strict=True)])  # type: ignore[no-any-return]
 
     @classmethod
-    def stress(cls, e: Symbolic) -> list[Any]:
+    def stress(cls, e: Symbolic) -> list[Expr]:
         """Return the section forces and moments, N and N m."""
         strain = cls.strain(e)
         elastic = times(e.stiffness, cls.bowed(e, strain))
@@ -58,7 +58,7 @@ class BeamStrain(Force):
         return e.named([f + e.damping_ratio * g for f, g in zip(elastic, viscous, strict=True)])  # type: ignore[no-any-return]
 
     @classmethod
-    def bowed(cls, e: Symbolic, strain: list[Any]) -> list[Any]:
+    def bowed(cls, e: Symbolic, strain: list[Expr]) -> list[Expr]:
         """Return the strain with the stretch of an axis that is bent to an S between the nodes, as the shear shows."""
         if e.bowing is None:
             return strain
@@ -66,27 +66,27 @@ class BeamStrain(Force):
         return e.named([strain[0] + sum(share * x**2 for share, x in shear) / 2, *strain[1:]])  # type: ignore[no-any-return]
 
     @classmethod
-    def condensed_powers(cls, e: Symbolic) -> list[tuple[Any, Any]]:
+    def condensed_powers(cls, e: Symbolic) -> list[tuple[Expr, Expr]]:
         """Return the section forces and moments on the rates of the screw, of which they are linear functions."""
         return [(-f, rate) for f, rate in zip(cls.stress(e), e.logarithm(e.i, e.j).rates, strict=True)]
 
     @classmethod
-    def relative_powers(cls, e: Symbolic) -> list[tuple[Any, Any]]:
+    def relative_powers(cls, e: Symbolic) -> list[tuple[Expr, Expr]]:
         """Return the components of force and torque on i along j's axes, on those of the relative velocities."""
         found = e.logarithm(e.i, e.j)
         efforts = e.named([-x for x in found.conjugate(cls.stress(e))])
         return list(zip(efforts, [*found.velocity, *found.omega], strict=True))
 
     @classmethod
-    def potential(cls, e: Symbolic) -> Any:
+    def potential(cls, e: Symbolic) -> Expr:
         """Return L/2 (Gamma, kappa) K (Gamma, kappa) with bowing, J."""
         strain = cls.bowed(e, cls.strain(e))
         return e.length * sum(f * x for f, x in zip(times(e.stiffness, strain), strain, strict=True)) / 2
 
     @classmethod
-    def measured(cls, e: Symbolic) -> Any:
+    def measured(cls, e: Symbolic) -> list[Expr]:
         return cls.stress(e)
 
     @classmethod
-    def limits(cls, e: Symbolic) -> Any:
+    def limits(cls, e: Symbolic) -> list[Expr]:
         return [e.logarithm(e.i, e.j).margin]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from collections.abc import Sequence
 from typing import Annotated, Any, Literal
 
 from pydantic import Field, WithJsonSchema, field_validator
@@ -10,7 +11,7 @@ from pydantic import Field, WithJsonSchema, field_validator
 from ...reading.formula.field import ForceOfDeflection, TorqueOfDeflection
 from ...reading.marker import Marker
 from ...reading.units import si
-from ..element import Force, Symbolic
+from ..element import Expr, Force, Symbolic
 
 
 def from_diagonal(found: Any) -> Any:
@@ -32,18 +33,18 @@ def check_symmetric(matrix: Any) -> Any:
     return matrix
 
 
-def times(matrix: Any, vector: Any) -> list[Any]:
+def times(matrix: Any, vector: Sequence[Expr]) -> list[Expr]:
     """Return matrix times vector, skipping entries that are None."""
     return [sum(k * part for k, part in zip(row, vector, strict=True) if k is not None) for row in matrix]
 
 
-def stored(stiffness: Any, s: Any, preload: Any) -> Any:
+def stored(stiffness: Any, s: Sequence[Expr], preload: Any) -> Expr:
     """Return 1/2 s^T K s - preload . s, J."""
     resisting = times(stiffness, s)
     return sum(f * x / 2 - (p or 0) * x for f, p, x in zip(resisting, preload, s, strict=True))
 
 
-def stored_with_laws(e: Symbolic, s: Any, laws: Any) -> Any:
+def stored_with_laws(e: Symbolic, s: Sequence[Expr], laws: Any) -> Expr:
     """Return `stored` plus the integrals of laws, J; zero if one has no closed-form integral."""
     of_laws = [e.integral(law, part) for law, part in zip(laws, s, strict=True) if law is not None]
     return 0 if None in of_laws else stored(e.stiffness, s, e.preload) + sum(of_laws)
@@ -116,14 +117,14 @@ class Bushing(Force):
         return from_diagonal(found)
 
     @staticmethod
-    def deformation(e: Symbolic) -> tuple[Any, Any, Any]:
+    def deformation(e: Symbolic) -> tuple[Expr, Expr, Expr]:
         """Return x, y and angle of marker i relative to marker j."""
         d = e.i.point - e.j.point
         x, y = d if e.axes == "ground" else (d.dot(e.j.axis), d.dot(e.j.normal))
         return x, y, e.i.angle - e.j.angle
 
     @staticmethod
-    def efforts(e: Symbolic) -> list[tuple[Any, Any]]:
+    def efforts(e: Symbolic) -> list[tuple[Expr, Expr]]:
         """Return preload - K s - C s' - law(s) for each deformation."""
         s = Bushing.deformation(e)
         elastic, viscous = times(e.stiffness, s), times(e.damping, [e.rate(part) for part in s])
@@ -131,11 +132,11 @@ class Bushing(Force):
         return [(e.preload[k] - elastic[k] - viscous[k] - laws[k], s[k]) for k in range(3)]
 
     @classmethod
-    def condensed_powers(cls, e: Symbolic) -> list[tuple[Any, Any]]:
+    def condensed_powers(cls, e: Symbolic) -> list[tuple[Expr, Expr]]:
         return cls.powers(e)
 
     @staticmethod
-    def potential(e: Symbolic) -> Any:
+    def potential(e: Symbolic) -> Expr:
         return stored_with_laws(e, Bushing.deformation(e), _laws(e))
 
 

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
 
 from ...reading.fields import Measured
 from ...reading.marker import Marker
 from ...reading.units import si
-from ..element import Symbolic
+from ..element import Expr, Matrix, Symbolic
 from .friction import Friction
 
 
@@ -30,17 +31,17 @@ class PressedSurfaces(Friction):
         return self
 
     @classmethod
-    def gap(cls, e: Symbolic) -> Any:
+    def gap(cls, e: Symbolic) -> Expr:
         """Return the distance of the surfaces, m; negative for a penetration."""
         raise NotImplementedError
 
     @classmethod
-    def opening(cls, e: Symbolic) -> Any:
+    def opening(cls, e: Symbolic) -> Expr:
         """Return the rate of the gap, m/s."""
         return e.rate(e.named(cls.gap(e)))
 
     @classmethod
-    def pressure(cls, e: Symbolic) -> Any:
+    def pressure(cls, e: Symbolic) -> Expr:
         """Return the normal force N, zero without contact."""
         from sympy import And, Piecewise
 
@@ -49,7 +50,7 @@ class PressedSurfaces(Friction):
         return Piecewise((e.stiffness * (-gap) ** e.exponent * damped, And(gap < 0, damped > 0)), (0, True))
 
     @classmethod
-    def event_functions(cls, e: Symbolic) -> Any:
+    def event_functions(cls, e: Symbolic) -> Sequence[Expr]:
         """Return an expression that is positive while N > 0; dissipation can end N before the surfaces separate."""
         from sympy import Min
 
@@ -90,12 +91,12 @@ class ContactLaw(PressedSurfaces):
         return (0, 1, -1)[cls.surfaces.index(e.surface)]
 
     @staticmethod
-    def out_of(e: Symbolic) -> Any:
+    def out_of(e: Symbolic) -> Matrix:
         """Return the outward normal of marker j's flat surface."""
         raise NotImplementedError
 
     @classmethod
-    def gap(cls, e: Symbolic) -> Any:
+    def gap(cls, e: Symbolic) -> Expr:
         """Return the distance of the surfaces, m; negative for a penetration."""
         outward = cls.outward(e)
         if not outward:
@@ -103,7 +104,7 @@ class ContactLaw(PressedSurfaces):
         return outward * (e.distance(e.i.point, e.j.point) - e.surface_radius) - e.radius
 
     @classmethod
-    def potential(cls, e: Symbolic) -> Any:
+    def potential(cls, e: Symbolic) -> Expr:
         from sympy import Piecewise
 
         gap, power = cls.gap(e), e.exponent + 1
@@ -143,11 +144,11 @@ class Contact(ContactLaw):
     surface_radius: si.LengthOrZero = Field(0.0, description="of a circle or hole about j, m")
 
     @staticmethod
-    def out_of(e: Symbolic) -> Any:
+    def out_of(e: Symbolic) -> Matrix:
         return e.j.normal
 
     @staticmethod
-    def efforts(e: Symbolic) -> list[tuple[Any, Any]]:
+    def efforts(e: Symbolic) -> list[tuple[Expr, Expr]]:
         """Return N on the gap, and -mu(v) N on the sliding displacement at the contact point."""
         pressure = Contact.pressure(e)
         pairs = [(pressure, Contact.gap(e))]
@@ -159,7 +160,7 @@ class Contact(ContactLaw):
         return pairs + [(friction * weight, coordinate) for weight, coordinate in sliding]
 
     @staticmethod
-    def sliding(e: Symbolic) -> list[tuple[Any, Any]]:
+    def sliding(e: Symbolic) -> list[tuple[Expr, Expr]]:
         """Return weights and coordinates: the sum of weight times rate is the sliding speed at the contact point.
 
         That point is `radius` from i and the rest of the distance from j, both along the normal.

@@ -10,7 +10,7 @@ from pydantic import Field, WithJsonSchema, field_validator
 from ...reading.fields import Measured
 from ...reading.marker import Marker
 from ...reading.units import si
-from ..element import Symbolic
+from ..element import Expr, Symbolic
 from .beam_section import BeamSectionLaw
 from .beam_strain import BeamStrain
 from .bushing import check_symmetric, from_diagonal
@@ -72,7 +72,7 @@ class ExactBeam(BeamStrain):
         return found or None
 
     @classmethod
-    def powers(cls, e: Symbolic) -> list[tuple[Any, Any]]:
+    def powers(cls, e: Symbolic) -> list[tuple[Expr, Expr]]:
         return cls.relative_powers(e)
 
 

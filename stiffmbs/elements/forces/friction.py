@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from pydantic import Field
 
 from ...reading.units import si
-from ..element import Force, Symbolic
+from ..element import Expr, Force, Symbolic
 
 TINY = 1e-24
 """Offset under the root of a reaction's magnitude, N^2 or N^2 m^2, for a finite derivative at zero."""
@@ -17,7 +17,7 @@ AT_REST = 1e-6
 """Offset of a sliding speed in the same way, relative to the smoothed speed."""
 
 
-def magnitude(*parts: Any, tiny: Any = TINY) -> Any:
+def magnitude(*parts: Expr, tiny: Expr = TINY) -> Expr:
     """Return the magnitude of a vector, with a finite derivative at zero."""
     from sympy import sqrt
 
@@ -49,13 +49,13 @@ class Friction(Force):
     )
 
     @classmethod
-    def per_speed(cls, e: Symbolic, *sliding: Any) -> Any:
+    def per_speed(cls, e: Symbolic, *sliding: Expr) -> Expr:
         """Return mu / speed, finite at rest, for a sliding velocity of several components."""
         speed = e.named(magnitude(*sliding, tiny=(AT_REST * e.stiction_velocity) ** 2))
         return cls.coefficient(e, speed) / speed
 
     @staticmethod
-    def coefficient(e: Symbolic, v: Any) -> Any:
+    def coefficient(e: Symbolic, v: Expr) -> Expr:
         """Return mu at a sliding speed, with the sign of the speed."""
         from sympy import exp, tanh
 
@@ -75,7 +75,7 @@ class Loads:
         Moment normal to the axis and about it, N m.
     """
 
-    across: Any = 0
-    thrust: Any = 0
-    bending: Any = 0
-    torsion: Any = 0
+    across: Expr = 0
+    thrust: Expr = 0
+    bending: Expr = 0
+    torsion: Expr = 0

@@ -9,7 +9,7 @@ from pydantic import Field
 
 from ...reading.joint_name import JointReference
 from ...reading.units import si
-from ..element import Joint, Symbolic
+from ..element import Expr, Joint, Matrix, Symbolic
 from .friction import Friction
 
 PIN, GUIDE, SLEEVE, BALL = ("angle",), ("displacement",), ("displacement", "angle"), ()
@@ -53,7 +53,7 @@ class AnyJointFriction(Friction):
         ]
 
     @staticmethod
-    def point(e: Symbolic) -> Any:
+    def point(e: Symbolic) -> Matrix:
         return e.joint.i.point
 
 
@@ -84,7 +84,7 @@ class JointFriction(AnyJointFriction):
         return JOINTS
 
     @classmethod
-    def efforts(cls, e: Symbolic) -> list[tuple[Any, Any]]:
+    def efforts(cls, e: Symbolic) -> list[tuple[Expr, Expr]]:
         """Return -mu(v) N, times R for a pin, on the joint's coordinate."""
         coordinate = e.joint.coordinate
         arm = e.radius if e.joint.coordinates == PIN else 1
@@ -92,7 +92,7 @@ class JointFriction(AnyJointFriction):
         return [(-Friction.coefficient(e, v) * cls.pressure(e) * arm, coordinate)]
 
     @classmethod
-    def pressure(cls, e: Symbolic) -> Any:
+    def pressure(cls, e: Symbolic) -> Expr:
         """Return the normal force N on the sliding surfaces."""
         load = e.joint.loads
         return load.across + (load.bending / (e.length / 2) if e.length is not None else 0)

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any, Generic
+from typing import TYPE_CHECKING, Generic
 
 from pydantic import Field
 
 from ...reading.formula.field import ForceOfMotion
 from ...reading.marker import M, Marker
-from ..element import Force, Symbolic
+from ..element import Expr, Force, Symbolic
 
 if TYPE_CHECKING:
     from ..initial_pose import InitialPose
@@ -36,12 +36,12 @@ class ForceAlongLine(Force, Generic[M]):
         return {"i": "point", "j": "point"}
 
     @staticmethod
-    def efforts(e: Symbolic) -> list[tuple[Any, Any]]:
+    def efforts(e: Symbolic) -> list[tuple[Expr, Expr]]:
         """Return the force on the distance of the points."""
         return [(e.force, e.distance(e.i.point, e.j.point))]
 
     @staticmethod
-    def potential(e: Symbolic) -> Any:
+    def potential(e: Symbolic) -> Expr:
         return -e.force * e.distance(e.i.point, e.j.point) if e.is_constant(e.force) else 0
 
 

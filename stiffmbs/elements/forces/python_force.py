@@ -10,7 +10,7 @@ from pydantic import Field
 from ...reading.formula.field import OfMotion
 from ...reading.marker import M, Marker
 from ...reading.python_function import PythonFunction
-from ..element import Force, Symbolic
+from ..element import Expr, Force, Symbolic
 from .applied import AppliedTorque, force_at
 
 
@@ -56,6 +56,6 @@ class PythonForce(ForceOfFunction[Marker]):
     forms = ({"of": ("a.vx",), "function": _example},)
 
     @staticmethod
-    def efforts(e: Symbolic) -> list[tuple[Any, Any]]:
+    def efforts(e: Symbolic) -> list[tuple[Expr, Expr]]:
         fx, fy, torque = e.function(*e.of, count=3)
         return [*force_at(fx, fy, e.i, e.j), (torque, AppliedTorque.angle(e))]

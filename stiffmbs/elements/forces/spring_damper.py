@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any, Generic
+from typing import TYPE_CHECKING, Generic
 
 from pydantic import Field
 
 from ...reading.formula.field import ForceOfDeflection, ForceOfRate
 from ...reading.marker import M, Marker
 from ...reading.units import si
-from ..element import Force, Symbolic
+from ..element import Expr, Force, Symbolic
 
 if TYPE_CHECKING:
     from ..initial_pose import InitialPose
@@ -24,18 +24,18 @@ class Spring(Force):
     """
 
     @classmethod
-    def condensed_powers(cls, e: Symbolic) -> list[tuple[Any, Any]]:
+    def condensed_powers(cls, e: Symbolic) -> list[tuple[Expr, Expr]]:
         return cls.powers(e)
 
     @staticmethod
-    def pull(e: Symbolic, s: Any, v: Any) -> Any:
+    def pull(e: Symbolic, s: Expr, v: Expr) -> Expr:
         """Return the restoring force or moment."""
         linear = e.stiffness * s + e.damping * v + e.preload
         laws = [law(x) for law, x in ((e.spring_law, s), (e.damper_law, v)) if law is not None]
         return sum(laws, linear)
 
     @staticmethod
-    def stored(e: Symbolic, s: Any, way: Any) -> Any:
+    def stored(e: Symbolic, s: Expr, way: Expr) -> Expr:
         """Return the potential energy, J, zero without a closed form; the preload's is zero at `way` = 0."""
         of_law = e.integral(e.spring_law, s) if e.spring_law is not None else 0
         return e.stiffness * s**2 / 2 + e.preload * way + of_law if of_law is not None else 0
@@ -72,12 +72,12 @@ class LineSpring(Spring, Generic[M]):
         return {"i": "point", "j": "point"}
 
     @staticmethod
-    def efforts(e: Symbolic) -> list[tuple[Any, Any]]:
+    def efforts(e: Symbolic) -> list[tuple[Expr, Expr]]:
         length = e.distance(e.i.point, e.j.point)
         return [(-Spring.pull(e, length - e.free_length, e.rate(length)), length)]
 
     @staticmethod
-    def potential(e: Symbolic) -> Any:
+    def potential(e: Symbolic) -> Expr:
         length = e.distance(e.i.point, e.j.point)
         return Spring.stored(e, length - e.free_length, length)
 

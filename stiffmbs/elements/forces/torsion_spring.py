@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any, Generic
+from typing import Generic
 
 from pydantic import Field
 
 from ...reading.formula.field import TorqueOfDeflection, TorqueOfRate
 from ...reading.marker import M, Marker
 from ...reading.units import si
-from ..element import Symbolic
+from ..element import Expr, Symbolic
 from .spring_damper import Spring
 
 
@@ -37,17 +37,17 @@ class AngleSpring(Spring, Generic[M]):
     damper_law: TorqueOfRate | None = Field(None, description="moment added over v = angle' (rad/s), N m")
 
     @staticmethod
-    def angle(e: Symbolic) -> Any:
+    def angle(e: Symbolic) -> Expr:
         """Return the angle of marker i relative to marker j, with full revolutions."""
         raise NotImplementedError
 
     @classmethod
-    def efforts(cls, e: Symbolic) -> list[tuple[Any, Any]]:
+    def efforts(cls, e: Symbolic) -> list[tuple[Expr, Expr]]:
         angle = cls.angle(e)
         return [(-Spring.pull(e, angle - e.free_angle, e.rate(angle)), angle)]
 
     @classmethod
-    def potential(cls, e: Symbolic) -> Any:
+    def potential(cls, e: Symbolic) -> Expr:
         angle = cls.angle(e)
         return Spring.stored(e, angle - e.free_angle, angle)
 
@@ -65,5 +65,5 @@ class TorsionSpring(AngleSpring[Marker]):
     """
 
     @staticmethod
-    def angle(e: Symbolic) -> Any:
+    def angle(e: Symbolic) -> Expr:
         return e.i.angle - e.j.angle

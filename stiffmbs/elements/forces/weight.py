@@ -7,7 +7,7 @@ from typing import Any
 
 from ...reading.marker import MarkerReference
 from ...reading.units import si
-from ..element import Force, Symbolic
+from ..element import Expr, Force, Symbolic
 
 
 class Weight(Force):
@@ -26,11 +26,11 @@ class Weight(Force):
         return {"i": "body"}
 
     @staticmethod
-    def efforts(e: Symbolic) -> list[tuple[Any, Any]]:
+    def efforts(e: Symbolic) -> list[tuple[Expr, Expr]]:
         return [(e.mass * g, x) for g, x in zip(e.gravity, e.i.body.origin, strict=True)]
 
     @staticmethod
-    def potential(e: Symbolic) -> Any:
+    def potential(e: Symbolic) -> Expr:
         return -e.mass * sum(g * x for g, x in zip(e.gravity, e.i.body.origin, strict=True))
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Annotated, Any
 
 from pydantic import Field, WithJsonSchema, field_validator
@@ -9,7 +10,7 @@ from pydantic import Field, WithJsonSchema, field_validator
 from ...reading.formula.field import OfPosition
 from ...reading.formula.formula import Formula
 from ...reading.marker import MarkerReference
-from ..element import Joint, Symbolic
+from ..element import Expr, Joint, Matrix, Symbolic
 
 _FORMULA = {"type": "string", "description": "a formula of coordinates and t"}
 ONE_OR_MORE = WithJsonSchema({"anyOf": [_FORMULA, {"type": "array", "items": _FORMULA, "minItems": 1}]})
@@ -40,7 +41,7 @@ class UserConstraint(Joint):
         return zero
 
     @staticmethod
-    def point(e: Symbolic) -> Any:
+    def point(e: Symbolic) -> Matrix:
         return e.frames[0].origin if e.i is None else e.i.point
 
     def equation_names(self) -> tuple[str, ...]:
@@ -65,5 +66,5 @@ class ConstraintEquation(UserConstraint):
     )
 
     @staticmethod
-    def position(e: Symbolic) -> Any:
+    def position(e: Symbolic) -> Sequence[Expr]:
         return e.zero

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, ClassVar, Generic
+from typing import Annotated, ClassVar, Generic
 
 from pydantic import Field
 
 from ...reading.fields import Measured
 from ...reading.marker import M, Marker
-from ..element import Symbolic
+from ..element import Expr, Symbolic
 from .pair import Pair
 
 
@@ -24,7 +24,7 @@ class Rod(Pair[M], Generic[M]):
         return {"i": "point", "j": "point"}
 
     @staticmethod
-    def position(e: Symbolic) -> Any:
+    def position(e: Symbolic) -> list[Expr]:
         d = e.i.point - e.j.point
         return [(d.dot(d) - e.length**2) / (2 * e.length)]
 

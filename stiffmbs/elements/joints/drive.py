@@ -19,7 +19,7 @@ from ...reading.marker import MarkerReference
 from ...reading.table import Table
 from ...reading.units.quantity import refuse_cycles
 from ...reading.units.units import named_unit
-from ..element import Joint, Symbolic
+from ..element import Expr, Joint, Matrix, Symbolic
 from .point_on_curve import SLOT
 from .relation import unfit_joints
 
@@ -110,22 +110,22 @@ class Drive(Joint):
                 yield field, reason
 
     @classmethod
-    def measured(cls, e: Symbolic) -> Any:
+    def measured(cls, e: Symbolic) -> list[Expr]:
         """Return the effort of the motor along the driven coordinate: its power is effort times rate."""
         return [-e.lam[0]]
 
     @staticmethod
-    def position(e: Symbolic) -> Any:
+    def position(e: Symbolic) -> list[Expr]:
         if e.prescribed_position is None:
             return []
         return [_driven(e) - _at(e.prescribed_position, e.t)]
 
     @staticmethod
-    def velocity(e: Symbolic) -> Any:
+    def velocity(e: Symbolic) -> list[Expr]:
         return [] if e.prescribed_velocity is None else [e.rate(_driven(e)) - _at(e.prescribed_velocity, e.t)]
 
     @staticmethod
-    def point(e: Symbolic) -> Any:
+    def point(e: Symbolic) -> Matrix:
         """Return the joint's point; without a joint that of marker i, or the first body's centre of mass."""
         if e.joint is not None:
             return e.joint.i.point
@@ -148,10 +148,10 @@ def _unfit(field: str, law: Formula | Table, expected: Known) -> str:
     return ""
 
 
-def _driven(e: Symbolic) -> Any:
+def _driven(e: Symbolic) -> Expr:
     return e.driven if e.joint is None else e.joint.coordinate
 
 
-def _at(law: Any, t: Any) -> Any:
+def _at(law: Any, t: Expr) -> Expr:
     """Return the value of a law of time, a function for a table and an expression for a formula."""
     return law(t) if isinstance(law, FunctionType) else law

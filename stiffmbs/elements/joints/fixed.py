@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
-
-from ..element import Symbolic
+from ..element import Expr, Symbolic
 from .pair import InOneTurn
 
 
@@ -20,5 +18,5 @@ class Fixed(InOneTurn):
     keeps_in_plane = True
 
     @staticmethod
-    def position(e: Symbolic) -> Any:
+    def position(e: Symbolic) -> list[Expr]:
         return [*(e.i.point - e.j.point), e.i.angle - e.j.angle]

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from pydantic import Field
 
 from ...reading.joint_name import JointReference
 from ...reading.units import si
-from ..element import Symbolic
+from ..element import Expr, Matrix, Symbolic
 from .relation import Relation
 
 
@@ -36,9 +34,9 @@ class Gear(Relation):
     offset: si.Angle | None = Field(None, description="theta_1 + ratio theta_2, rad; as drawn unless given")
 
     @staticmethod
-    def relation(e: Symbolic) -> Any:
+    def relation(e: Symbolic) -> Expr:
         return e.joint_1.coordinate + e.ratio * e.joint_2.coordinate - e.offset
 
     @staticmethod
-    def point(e: Symbolic) -> Any:
+    def point(e: Symbolic) -> Matrix:
         return e.joint_1.i.point

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, Generic, Self
+from typing import TYPE_CHECKING, Generic, Self
 
 from pydantic import Field
 
 from ...reading.marker import M, Marker
-from ..element import Joint, Symbolic
+from ..element import Expr, Joint, Symbolic
 
 if TYPE_CHECKING:
     from ...model.model_data import ModelData
@@ -27,12 +27,12 @@ class PlanarPair(Pair[Marker]):
     """Base of the planar joints between two markers; a subclass names its coordinates among these."""
 
     @staticmethod
-    def angle(e: Symbolic) -> Any:
+    def angle(e: Symbolic) -> Expr:
         """Return the angle of marker i relative to marker j."""
         return e.i.angle - e.j.angle
 
     @staticmethod
-    def displacement(e: Symbolic) -> Any:
+    def displacement(e: Symbolic) -> Expr:
         """Return the displacement of marker i along the axis of marker j."""
         return (e.i.point - e.j.point).dot(e.j.axis)
 

@@ -15,7 +15,7 @@ from ...reading.formula.formula import Formula
 from ...reading.formula.value import formula_value
 from ...reading.marker import M, Marker
 from ...reading.table import Table
-from ..element import Joint, Symbolic
+from ..element import Expr, Joint, Symbolic
 from .pair import PlanarPair
 
 TURN = 2 * math.pi
@@ -53,12 +53,12 @@ class Curve(Joint, Generic[M]):
         return repeating(radius)
 
     @staticmethod
-    def displacement_x(e: Symbolic) -> Any:
+    def displacement_x(e: Symbolic) -> Expr:
         """Return x of the point in the axes of marker j."""
         return (e.i.point - e.j.point).dot(e.j.axes[0])
 
     @staticmethod
-    def displacement_y(e: Symbolic) -> Any:
+    def displacement_y(e: Symbolic) -> Expr:
         """Return y of the point in the axes of marker j."""
         return (e.i.point - e.j.point).dot(e.j.axes[1])
 
@@ -84,7 +84,7 @@ class PointOnCurve(Curve[Marker]):
     angle: ClassVar = staticmethod(PlanarPair.angle)
 
     @staticmethod
-    def position(e: Symbolic) -> Any:
+    def position(e: Symbolic) -> list[Expr]:
         """Return y - Y(x) of a slot, rho - R(theta) of a cam, in the axes of marker j."""
         d = e.i.point - e.j.point
         if e.y is not None:

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from pydantic import Field
 
 from ...reading.marker import Marker
-from ..element import Symbolic
+from ..element import Expr, Symbolic
 from .pair import PlanarPair
 
 
@@ -28,5 +26,5 @@ class PointOnLine(PlanarPair):
     j: Marker = Field(description="marker whose axis is the line")
 
     @staticmethod
-    def position(e: Symbolic) -> Any:
+    def position(e: Symbolic) -> list[Expr]:
         return [(e.i.point - e.j.point).dot(e.j.normal)]

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from pydantic import Field
 
 from ...reading.marker import Marker
-from ..element import Symbolic
+from ..element import Expr, Symbolic
 from ..forces.friction import Loads, magnitude
 from .pair import InOneTurn
 
@@ -31,7 +29,7 @@ class Prismatic(InOneTurn):
     j: Marker = Field(description="marker whose axis is the line to slide along")
 
     @staticmethod
-    def position(e: Symbolic) -> Any:
+    def position(e: Symbolic) -> list[Expr]:
         return [(e.i.point - e.j.point).dot(e.j.normal), e.i.angle - e.j.angle]
 
     @staticmethod

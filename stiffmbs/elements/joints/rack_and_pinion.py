@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from pydantic import Field
 
 from ...reading.joint_name import JointReference
 from ...reading.units import si
-from ..element import Symbolic
+from ..element import Expr, Matrix, Symbolic
 from .relation import Relation
 
 
@@ -37,9 +35,9 @@ class RackAndPinion(Relation):
     offset: si.Length | None = Field(None, description="s - R theta, m; as drawn unless given")
 
     @staticmethod
-    def relation(e: Symbolic) -> Any:
+    def relation(e: Symbolic) -> Expr:
         return e.rack.coordinate - e.pitch_radius * e.pinion.coordinate - e.offset
 
     @staticmethod
-    def point(e: Symbolic) -> Any:
+    def point(e: Symbolic) -> Matrix:
         return e.rack.i.point

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self, cast
 
 from ...reading.joint_name import COORDINATES, JointName
 from ...reading.units import si
-from ..element import Element, Joint, Symbolic
+from ..element import Element, Expr, Joint, Symbolic
 from ..initial_pose import initial_element
 
 if TYPE_CHECKING:
@@ -24,12 +24,12 @@ class OffsetConstraint(Joint):
     offset: si.Anything | None = None
 
     @staticmethod
-    def relation(e: Symbolic) -> Any:
+    def relation(e: Symbolic) -> Expr:
         """Return the residual of the equation, including the offset."""
         raise NotImplementedError
 
     @classmethod
-    def position(cls, e: Symbolic) -> Any:
+    def position(cls, e: Symbolic) -> list[Expr]:
         return [cls.relation(e)]
 
     def at_initial_pose(self, model: ModelData) -> Self:

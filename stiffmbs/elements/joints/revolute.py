@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
-
-from ..element import Symbolic
+from ..element import Matrix, Symbolic
 from ..forces.friction import Loads, magnitude
 from .pair import PlanarPair
 
@@ -24,7 +22,7 @@ class Revolute(PlanarPair):
     keeps_in_plane = True
 
     @staticmethod
-    def position(e: Symbolic) -> Any:
+    def position(e: Symbolic) -> Matrix:
         return e.i.point - e.j.point
 
     @staticmethod

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from collections.abc import Sequence
+from typing import Annotated
 
 from pydantic import Field, field_validator
 
@@ -10,7 +11,7 @@ from ...reading.formula.field import OfMotion
 from ...reading.formula.formula import Formula
 from ...reading.formula.names import VELOCITIES
 from ...reading.joint_name import ORDERS
-from ..element import Symbolic
+from ..element import Expr, Symbolic
 from .constraint_equation import ONE_OR_MORE, UserConstraint
 
 
@@ -45,5 +46,5 @@ class VelocityEquation(UserConstraint):
         return zero
 
     @staticmethod
-    def velocity(e: Symbolic) -> Any:
+    def velocity(e: Symbolic) -> Sequence[Expr]:
         return e.zero

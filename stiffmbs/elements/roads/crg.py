@@ -9,7 +9,7 @@ from pydantic import Field, PrivateAttr, model_validator
 
 from ...errors import InputError
 from ...reading.table import Table
-from ..element import Symbolic
+from ..element import Expr, Symbolic
 from ..read_by import in_file
 from .crg_grid import CrgGrid, read_crg
 from .grid import between_lines
@@ -141,7 +141,7 @@ class CrgRoad(Road):
         )
 
     @staticmethod
-    def place(r: Symbolic, e: Symbolic, x: Any, y: Any) -> tuple[Any, Any]:
+    def place(r: Symbolic, e: Symbolic, x: Expr, y: Expr) -> tuple[Expr, Expr]:
         """Return u and v of the point."""
         if r.guess is not None:
             return nearest(r, e, x, y)
@@ -149,7 +149,7 @@ class CrgRoad(Road):
         return e.named((x - x0) * c + (y - y0) * s + u0), e.named((y - y0) * c - (x - x0) * s)
 
     @staticmethod
-    def height(r: Symbolic, x: Any, y: Any) -> Any:
+    def height(r: Symbolic, x: Expr, y: Expr) -> Expr:
         return between_lines(r, x, y)
 
 

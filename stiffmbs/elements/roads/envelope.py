@@ -7,7 +7,7 @@ from typing import Any
 from pydantic import Field
 
 from ...reading.units import si
-from ..element import Component, Symbolic
+from ..element import Component, Expr, Matrix, Symbolic
 from .rolling_filter import Cam
 
 MOST_TRACKS = 20
@@ -45,7 +45,7 @@ class Envelope(Component):
         return {"shift": self.shift, "across": across}
 
 
-def enveloped(e: Symbolic, x: Any, y: Any, axis: Any) -> tuple[Any, Any, Any]:
+def enveloped(e: Symbolic, x: Expr, y: Expr, axis: Matrix) -> tuple[Expr, Expr, Expr]:
     """Return the effective height of the road, m, and its slopes along x and y, by the cams of a tyre.
 
     `x`, `y`: place of the wheel's centre in the axes of the road. `axis`: components of the spin axis along them.

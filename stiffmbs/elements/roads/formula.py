@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import ast
-from typing import Annotated, Any
+from typing import Annotated
 
 from pydantic import Field, model_validator
 
 from ...reading.formula.field import FormulaOf
 from ...reading.formula.formula import Formula
 from ...reading.units import si
-from ..element import Symbolic
+from ..element import Expr, Symbolic
 from .road import OF_PLACE, Road
 
 Height = Annotated[Formula, FormulaOf(*OF_PLACE, "length", time=False)]
@@ -43,5 +43,5 @@ class FormulaRoad(Road):
         return None if self.first is None or self.last is None else (self.first, self.last)
 
     @staticmethod
-    def height(r: Symbolic, x: Any, y: Any) -> Any:
+    def height(r: Symbolic, x: Expr, y: Expr) -> Expr:
         return r.z(x, y)

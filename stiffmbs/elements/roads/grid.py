@@ -14,7 +14,7 @@ from pydantic import Field
 from ...errors import InputError
 from ...reading.files.text_file import file_text, finite_number, lines
 from ...reading.table import Table
-from ..element import Symbolic
+from ..element import Expr, Symbolic
 from ..read_by import in_file
 from .road import Road, clipped
 from .rolling_filter import through_filter
@@ -101,11 +101,11 @@ class GridRoad(Road):
         return {"friction": self.friction, "lines": tables, "across": self.file.across}
 
     @staticmethod
-    def height(r: Symbolic, x: Any, y: Any) -> Any:
+    def height(r: Symbolic, x: Expr, y: Expr) -> Expr:
         return between_lines(r, x, y)
 
 
-def between_lines(r: Symbolic, x: Any, y: Any) -> Any:
+def between_lines(r: Symbolic, x: Expr, y: Expr) -> Expr:
     """Return the height of a road with tables `lines` at positions `across`, interpolated linearly between them."""
     heights = [line(x) for line in r.lines]
     height = heights[0]

@@ -10,7 +10,7 @@ from pydantic import Field, model_validator
 
 from ...reading.table import Table
 from ...reading.units import si
-from ..element import Symbolic
+from ..element import Expr, Symbolic
 from .profile import two_tracks
 from .road import Road, ramp
 from .rolling_filter import table_of, through_filter
@@ -80,7 +80,7 @@ class Iso8608Road(Road):
         return {**own, "left": left, "right": right}
 
     @staticmethod
-    def height(r: Symbolic, x: Any, y: Any) -> Any:
+    def height(r: Symbolic, x: Expr, y: Expr) -> Expr:
         """Return the height of the tracks, blended in after the start."""
         height = two_tracks(r, x, y)
         if r.start is None:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from pydantic import Field
 
 from ...reading.units import si
-from ..element import Symbolic
+from ..element import Expr, Symbolic
 from .road import Road, functions_of, ramp
 
 
@@ -31,7 +31,7 @@ class StepRoad(Obstacle):
     rise: si.Length = Field(description="height behind it, m; below zero it falls")
 
     @staticmethod
-    def height(r: Symbolic, x: Any, y: Any) -> Any:
+    def height(r: Symbolic, x: Expr, y: Expr) -> Expr:
         s = ramp(x, r.start, r.length)
         return r.rise * s**2 * (3 - 2 * s)
 
@@ -45,7 +45,7 @@ class CosineBump(Obstacle):
     crest: si.Length = Field(description="its height in the middle, m; below zero it is a hole")
 
     @staticmethod
-    def height(r: Symbolic, x: Any, y: Any) -> Any:
+    def height(r: Symbolic, x: Expr, y: Expr) -> Expr:
         of = functions_of(x)
         return r.crest * (1 - of.cos(2 * of.pi * ramp(x, r.start, r.length))) / 2
 
@@ -66,7 +66,7 @@ class SineSweep(Obstacle):
     last_wavelength: si.PositiveLength = Field(description="at the end, m; the same: a plain sine wave")
 
     @staticmethod
-    def height(r: Symbolic, x: Any, y: Any) -> Any:
+    def height(r: Symbolic, x: Expr, y: Expr) -> Expr:
         of, s = functions_of(x), ramp(x, r.start, r.length)
         first, last = 1 / r.first_wavelength, 1 / r.last_wavelength
         return r.amplitude * of.sin(2 * of.pi * r.length * (first * s + (last - first) * s**2 / 2))

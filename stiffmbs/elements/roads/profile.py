@@ -9,7 +9,7 @@ from pydantic import Field, ValidationInfo, field_validator, model_validator
 from ...reading.did_you_mean import did_you_mean
 from ...reading.table import Table
 from ...reading.units import si
-from ..element import Component, Symbolic
+from ..element import Component, Expr, Symbolic
 from .road import Road, clipped
 from .rolling_filter import through_filter
 
@@ -61,11 +61,11 @@ class TableRoad(Road):
         return {**own, **filtered}
 
     @staticmethod
-    def height(r: Symbolic, x: Any, y: Any) -> Any:
+    def height(r: Symbolic, x: Expr, y: Expr) -> Expr:
         return r.profile(x) if r.profile is not None else two_tracks(r, x, y)
 
 
-def two_tracks(r: Symbolic, x: Any, y: Any) -> Any:
+def two_tracks(r: Symbolic, x: Expr, y: Expr) -> Expr:
     """Return the height of a road with tables `left` and `right`, a `track` apart."""
     s = clipped((2 * y / r.track + 1) / 2)
     right, left = r.right(x), r.left(x)

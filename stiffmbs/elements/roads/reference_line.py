@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from ...errors import InputError
 from ...reading.table import Table
-from ..element import Symbolic
+from ..element import Expr, Symbolic
 from .rolling_filter import table_of
 
 if TYPE_CHECKING:
@@ -127,7 +127,7 @@ def _try_it(line: ReferenceLine, u: np.ndarray, v: np.ndarray, source: str) -> N
         )
 
 
-def nearest(r: Symbolic, e: Symbolic, x: Any, y: Any) -> tuple[Any, Any]:
+def nearest(r: Symbolic, e: Symbolic, x: Expr, y: Expr) -> tuple[Expr, Expr]:
     """Return u and v of a point, m; r has the fields of `ReferenceLine.in_equations`."""
     from sympy import Symbol, sqrt
 
@@ -143,7 +143,7 @@ def nearest(r: Symbolic, e: Symbolic, x: Any, y: Any) -> tuple[Any, Any]:
     return u, e.named(((y - at_y) * dx - (x - at_x) * dy) / sqrt(dx**2 + dy**2))
 
 
-def _at(r: Symbolic, e: Symbolic, u: Any) -> list[tuple[Any, Any]]:
+def _at(r: Symbolic, e: Symbolic, u: Expr) -> list[tuple[Expr, Expr]]:
     from sympy import Dummy
 
     s = Dummy("s", real=True)
@@ -151,7 +151,7 @@ def _at(r: Symbolic, e: Symbolic, u: Any) -> list[tuple[Any, Any]]:
     return [tuple(e.named(each.diff(s, k).subs(s, u)) for each in (x, y)) for k in range(3)]  # type: ignore[misc]
 
 
-def _newton(r: Symbolic, e: Symbolic, u: Any, x: Any, y: Any) -> Any:
+def _newton(r: Symbolic, e: Symbolic, u: Expr, x: Expr, y: Expr) -> Expr:
     (at_x, at_y), (dx, dy), (ddx, ddy) = _at(r, e, u)
     slope = dx**2 + dy**2 - (x - at_x) * ddx - (y - at_y) * ddy
     return u + ((x - at_x) * dx + (y - at_y) * dy) / slope

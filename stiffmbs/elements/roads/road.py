@@ -12,7 +12,7 @@ from ...reading.formula.field import FormulaOf
 from ...reading.formula.formula import Formula
 from ...reading.table import Table
 from ...reading.units import si
-from ..element import Component, Symbolic
+from ..element import Component, Expr, Symbolic
 from .rolling_filter import Cam
 
 if TYPE_CHECKING:
@@ -131,22 +131,22 @@ class Road(Component):
         return road
 
     @staticmethod
-    def height(r: Symbolic, x: Any, y: Any) -> Any:
+    def height(r: Symbolic, x: Expr, y: Expr) -> Expr:
         """Return the height of the road at x along and y across, m."""
         raise NotImplementedError
 
     @staticmethod
-    def place(r: Symbolic, e: Symbolic, x: Any, y: Any) -> tuple[Any, Any]:
+    def place(r: Symbolic, e: Symbolic, x: Expr, y: Expr) -> tuple[Expr, Expr]:
         """Return the position of a point along and across the road, m; e is the element on the road."""
         return x, y
 
     @staticmethod
-    def surface(r: Symbolic, x: Any, y: Any) -> Any:
+    def surface(r: Symbolic, x: Expr, y: Expr) -> Expr:
         """Return the height for a wheel, m, filtered if the road has a filter."""
         return r.height(x, y) if r.rolled is None else r.rolled(x)
 
     @staticmethod
-    def factor(r: Symbolic, x: Any, y: Any) -> Any:
+    def factor(r: Symbolic, x: Expr, y: Expr) -> Expr:
         """Return the factor on friction."""
         return 1 if r.friction is None else r.friction(x, y)
 
@@ -158,7 +158,7 @@ def functions_of(x: Any) -> Any:
     return import_module("numpy" if hasattr(x, "clip") else "sympy")
 
 
-def ramp(x: Any, start: Any, length: Any) -> Any:
+def ramp(x: Expr, start: Expr, length: Expr) -> Expr:
     """Return a linear ramp from 0 at `start` to 1 at `start` + `length`, constant outside; x may be an array."""
     s = (x - start) / length
     if hasattr(s, "clip"):
@@ -168,12 +168,12 @@ def ramp(x: Any, start: Any, length: Any) -> Any:
     return Min(Max(s, 0), 1)
 
 
-def clipped(s: Any) -> Any:
+def clipped(s: Expr) -> Expr:
     """Return s limited to 0 .. 1 without events, for functions with zero slope at the limits; s may be an array."""
     return s.clip(0.0, 1.0) if hasattr(s, "clip") else (magnitude(s) - magnitude(s - 1) + 1) / 2
 
 
-def above_zero(x: Any) -> Any:
+def above_zero(x: Expr) -> Expr:
     """Return max(x, 0) without an event at zero.
 
     Name x before if it is a small sum of large terms, because rounding errors would be those of the terms.
@@ -183,7 +183,7 @@ def above_zero(x: Any) -> Any:
     return (x + magnitude(x)) * Rational(1, 2)
 
 
-def magnitude(*parts: Any) -> Any:
+def magnitude(*parts: Expr) -> Expr:
     """Return the absolute value of a number, or the magnitude of a vector, without an event at zero."""
     from sympy import Float, sqrt
 
@@ -199,5 +199,5 @@ class FlatRoad(Road):
     z: si.Length = Field(0.0, description="its height, m")
 
     @staticmethod
-    def height(r: Symbolic, x: Any, y: Any) -> Any:
+    def height(r: Symbolic, x: Expr, y: Expr) -> Expr:
         return r.z

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from ..element import Symbolic
+from ..element import Expr, Matrix, Symbolic
 from ..roads.envelope import enveloped
 from ..roads.road import above_zero, magnitude
 from .wrench import along_axes, seen_from, velocity
@@ -38,17 +38,17 @@ class ContactPoint:
         Friction factor of the road.
     """
 
-    point: Any
-    forward: Any
-    left: Any
-    normal: Any
-    radius: Any
-    camber: Any
-    vx: Any
-    vy: Any
-    vz: Any
-    spin: Any
-    friction: Any
+    point: Matrix
+    forward: Matrix
+    left: Matrix
+    normal: Matrix
+    radius: Expr
+    camber: Expr
+    vx: Expr
+    vy: Expr
+    vz: Expr
+    spin: Expr
+    friction: Expr
 
 
 def contact_point(e: Symbolic) -> ContactPoint:
@@ -73,7 +73,7 @@ def contact_point(e: Symbolic) -> ContactPoint:
     return ContactPoint(e.named(centre + arm), forward, left, n, radius, camber, vx, vy, vz, spin, friction)
 
 
-def surface(e: Symbolic, point: Any) -> tuple[Any, Any, Any, Any]:
+def surface(e: Symbolic, point: Matrix) -> tuple[Expr, Expr, Expr, Expr]:
     """Return a point's coordinates along and across the road, its distance from the tangent plane, and the normal."""
     local = point if e.j is None else seen_from(point, e.j)
     x, y = e.variable(local[0]), e.variable(local[1])
@@ -83,7 +83,7 @@ def surface(e: Symbolic, point: Any) -> tuple[Any, Any, Any, Any]:
     return along, across, *_plane(e, local[2] - height, slopes)
 
 
-def _effective_surface(e: Symbolic, centre: Any, axis: Any) -> tuple[Any, Any, Any, Any]:
+def _effective_surface(e: Symbolic, centre: Matrix, axis: Matrix) -> tuple[Expr, Expr, Expr, Expr]:
     """Return the same for the effective plane of the cams of an enveloping tyre."""
     local = centre if e.j is None else seen_from(centre, e.j)
     direction = axis if e.j is None else [axis.dot(along) for along in (e.j.x, e.j.y, e.j.z)]
@@ -93,7 +93,7 @@ def _effective_surface(e: Symbolic, centre: Any, axis: Any) -> tuple[Any, Any, A
     return along, across, *_plane(e, local[2] - height, slopes)
 
 
-def _plane(e: Symbolic, above: Any, slopes: Any) -> tuple[Any, Any]:
+def _plane(e: Symbolic, above: Expr, slopes: list[Expr]) -> tuple[Any, Any]:
     """Return the distance of a point from a plane, given its height above it, and the plane's normal."""
     from sympy import Matrix, sqrt
 
@@ -103,7 +103,7 @@ def _plane(e: Symbolic, above: Any, slopes: Any) -> tuple[Any, Any]:
     return e.named(above * upright), e.named(n)
 
 
-def _heading(e: Symbolic, axis: Any, n: Any) -> tuple[Any, Any]:
+def _heading(e: Symbolic, axis: Matrix, n: Matrix) -> tuple[Matrix, Matrix]:
     """Return the wheel's heading in the road plane, and the direction in the wheel's plane away from the road."""
     from sympy import sqrt
 
@@ -112,7 +112,7 @@ def _heading(e: Symbolic, axis: Any, n: Any) -> tuple[Any, Any]:
     return forward, e.named(forward.cross(axis))
 
 
-def _motion(e: Symbolic, centre: Any, axis: Any, arm: Any) -> tuple[Any, Any]:
+def _motion(e: Symbolic, centre: Matrix, axis: Matrix, arm: Matrix) -> tuple[Any, Any]:
     """Return the spin, and the velocity of the contact point, both relative to the road."""
     omega, v = e.named(e.i.omega), e.rate(e.i.point)
     if e.j is not None:
@@ -122,7 +122,7 @@ def _motion(e: Symbolic, centre: Any, axis: Any, arm: Any) -> tuple[Any, Any]:
     return spin, e.named(v + (omega - spin * axis).cross(arm))
 
 
-def slips(e: Symbolic, contact: ContactPoint, sliding: Any, slow: Any) -> tuple[Any, Any, Any]:
+def slips(e: Symbolic, contact: ContactPoint, sliding: Expr, slow: Expr) -> tuple[Expr, Expr, Expr]:
     """Return the steady-state longitudinal slip, the tangent of the slip angle, and their reference speed.
 
     kappa = -Vsx/V and tan(alpha) = Vy/V, with the sliding velocity Vsx = Vx - Re Omega and V = abs(Vx). Below the speed
@@ -134,7 +134,7 @@ def slips(e: Symbolic, contact: ContactPoint, sliding: Any, slow: Any) -> tuple[
     return e.named(-sliding / speed), e.named(contact.vy / speed), speed
 
 
-def yaw_rate(e: Symbolic, contact: ContactPoint) -> Any:
+def yaw_rate(e: Symbolic, contact: ContactPoint) -> Expr:
     """Return the rate at which the heading turns about the road's normal, rad/s.
 
     With the angular velocity omega = yaw n + tilt x + turns y about the normal, the heading, and the spin axis, which is

@@ -10,7 +10,7 @@ from pydantic import Field, WithJsonSchema, field_validator
 from ...reading.files.quoted import written
 from ...reading.marker import GROUND
 from ...reading.units import si
-from ..element import Force, Symbolic
+from ..element import Expr, Force, Matrix, Symbolic
 from ..forces.bushing import C, Cc, Ct, K, Kc, Kt, check_symmetric, from_diagonal, times
 from .marker import Marker
 from .orientation import Quaternion, product
@@ -110,7 +110,7 @@ class Elastic(Force):
         return [True, True, True]
 
     @classmethod
-    def turned(cls, e: Symbolic) -> Any:
+    def turned(cls, e: Symbolic) -> Expr:
         """Return the rotation, or only the tilt, of marker i relative to marker j."""
         resisted = cls.resisted(e)
         return (
@@ -120,13 +120,13 @@ class Elastic(Force):
         )
 
     @classmethod
-    def deformation(cls, e: Symbolic) -> list[Any]:
+    def deformation(cls, e: Symbolic) -> list[Expr]:
         """Return s, m and rad."""
         d = e.named(e.i.point - e.j.point)
         return e.named([*(d.dot(axis) for axis in cls.frame(e)), *cls.turned(e).rotation])
 
     @classmethod
-    def elastic(cls, e: Symbolic) -> list[Any]:
+    def elastic(cls, e: Symbolic) -> list[Expr]:
         """Return -dU/ds: three forces, and three moments on the rates of the rotation vector."""
         raise NotImplementedError
 
@@ -136,12 +136,12 @@ class Elastic(Force):
         return e.damping
 
     @classmethod
-    def frame(cls, e: Symbolic) -> list[Any]:
+    def frame(cls, e: Symbolic) -> list[Matrix]:
         """Return the unit vectors along which force and displacement are resolved."""
         return e.j.axes
 
     @classmethod
-    def drift(cls, e: Symbolic) -> Any:
+    def drift(cls, e: Symbolic) -> Matrix:
         """Return the velocity conjugate to the force: that of i's point relative to j's body."""
         return e.rate(e.i.point) - velocity(e, e.j, e.i.point)
 
@@ -164,7 +164,7 @@ class Elastic(Force):
         return list(zip(along, rates, strict=True))
 
     @classmethod
-    def limits(cls, e: Symbolic) -> Any:
+    def limits(cls, e: Symbolic) -> list[Expr]:
         """Return the margin of the relative rotation, if there are moments."""
         return [cls.turned(e).margin] if any(cls.resisted(e)) else []
 
@@ -184,7 +184,7 @@ class Connection(Elastic):
         return has_moments(e.stiffness, e.preload)
 
 
-def pull_back(stiffness: Any, s: list[Any], preload: Any) -> list[Any]:
+def pull_back(stiffness: Any, s: list[Expr], preload: Any) -> list[Expr]:
     """Return preload - K s."""
     return [(p or 0) - resisting for p, resisting in zip(preload, times(stiffness, s), strict=True)]
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar, Self
 
@@ -10,7 +10,7 @@ from pydantic import Field, model_validator
 
 from ...reading.fields import Measured
 from ...reading.units import si
-from ..element import Force, Symbolic
+from ..element import Expr, Force, Matrix, Symbolic
 from ..forces.friction import AT_REST, magnitude
 from .marker import Marker
 from .wrench import Pairs, velocity
@@ -24,9 +24,9 @@ class Touch:
     towards the solid of marker i.
     """
 
-    gap: Any
-    point: Any
-    normal: Any
+    gap: Expr
+    point: Matrix
+    normal: Matrix
 
 
 class Impact(Force):
@@ -83,7 +83,7 @@ class Impact(Force):
         return pairs
 
     @classmethod
-    def potential(cls, e: Symbolic) -> Any:
+    def potential(cls, e: Symbolic) -> Expr:
         """Return the sum of k (-g)^(e+1)/(e+1) over all penetrations."""
         from sympy import Piecewise
 
@@ -92,7 +92,7 @@ class Impact(Force):
         return sum(Piecewise((e.stiffness * (-gap) ** power / power, gap < 0), (0, True)) for gap in gaps)
 
     @classmethod
-    def event_functions(cls, e: Symbolic) -> Any:
+    def event_functions(cls, e: Symbolic) -> Sequence[Expr]:
         """Return each gap, and an expression that is positive while N > 0; damping can interrupt N."""
         from sympy import Max, Min
 
@@ -104,26 +104,26 @@ class Impact(Force):
         return tuple(found)
 
 
-def _pressure(e: Symbolic, gap: Any, rate: Any) -> Any:
+def _pressure(e: Symbolic, gap: Expr, rate: Expr) -> Expr:
     from sympy import Piecewise
 
     force = e.named(_push(e, -gap, rate))
     return Piecewise((Piecewise((force, force > 0), (0, True)), gap < 0), (0, True))
 
 
-def _push(e: Symbolic, depth: Any, rate: Any) -> Any:
+def _push(e: Symbolic, depth: Expr, rate: Expr) -> Expr:
     """Return the force at a penetration, N; negative if damping exceeds the elastic force."""
     return e.stiffness * depth**e.exponent - e.damping * rate * _rising(depth / e.depth)
 
 
-def _per_speed(e: Symbolic, sliding: Any) -> Any:
+def _per_speed(e: Symbolic, sliding: Expr) -> Expr:
     speed = e.named(magnitude(*sliding, tiny=(AT_REST * e.stiction_velocity) ** 2))
     up = e.static_friction * (2 * _rising((speed / e.stiction_velocity + 1) / 2) - 1)
     down = _rising((speed - e.stiction_velocity) / (e.friction_velocity - e.stiction_velocity))
     return (up + (e.friction - e.static_friction) * down) / speed
 
 
-def _rising(x: Any) -> Any:
+def _rising(x: Expr) -> Expr:
     """Return Adams' STEP from 0 at 0 to 1 at 1."""
     from sympy import Max, Min
 

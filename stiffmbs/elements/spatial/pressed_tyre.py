@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from ..element import Symbolic
+from ..element import Expr, Symbolic
 from ..roads.road import above_zero
 from .contact_point import ContactPoint, contact_point, slips, yaw_rate
 from .relaxation import lagged
@@ -22,7 +22,7 @@ VARIABLES = ("radius", "camber", "vx", "vy", "vz", "spin", "friction")
 """Quantities of the contact through which load and forces depend on the state."""
 
 
-def pressure_increment(e: Symbolic) -> Any:
+def pressure_increment(e: Symbolic) -> Expr:
     """Return dpi, the relative deviation from the nominal pressure."""
     p = e.properties
     return e.named((p.INFLPRES if e.pressure is None else e.pressure) / p.NOMPRES - 1)
@@ -34,17 +34,17 @@ class _Pressed:
 
     e: Symbolic
     contact: ContactPoint
-    hand: Any
-    dpi: Any
-    free: Any
-    yaw: Any
+    hand: Expr
+    dpi: Expr
+    free: Expr
+    yaw: Expr
     """Yaw rate, rad/s, or None without turn slip."""
 
     @property
-    def gamma(self) -> Any:
+    def gamma(self) -> Expr:
         return self.e.named(self.hand * self.contact.camber)
 
-    def slip(self, load: Any) -> tuple[Any, Any, Any, tuple[Any, ...]]:
+    def slip(self, load: Expr) -> tuple[Any, Any, Any, tuple[Any, ...]]:
         """Return the slip, the tangent of the slip angle, the reference speed, and the rates of own states."""
         from ..tyres.deflection_6 import effective_radius
         from ..tyres.magic_formula_6 import relaxation_lengths
@@ -59,7 +59,7 @@ class _Pressed:
         slip, tangent, rates = lagged(e, contact, sliding, lengths)
         return slip, tangent, speed, rates
 
-    def turn(self, angle: Any, speed: Any) -> tuple[Any, ...]:
+    def turn(self, angle: Expr, speed: Expr) -> tuple[Any, ...]:
         """Return phi_t and Omega/V, 1/m, of a tyre with turn slip."""
         from sympy import cos
 
@@ -68,7 +68,7 @@ class _Pressed:
         path = self.e.named(cos(angle) / speed)
         return self.e.named(self.yaw * path), self.e.named(self.contact.spin * path)
 
-    def forces(self, load: Any) -> tuple[Any, Any]:
+    def forces(self, load: Expr) -> tuple[Expr, Expr]:
         """Return Fx and Fy at a load, in the axes of the file; the load in the formula is limited to FZMAX."""
         from sympy import atan
 
@@ -86,7 +86,7 @@ class _Pressed:
         )  # fmt: skip
         return slip_forces(p, state, e.named, p.mode, p.ellipse)
 
-    def load(self) -> Any:
+    def load(self) -> Expr:
         """Return the load without the limit at zero, N."""
         from ..tyres.deflection_6 import stiffening
 
@@ -96,12 +96,12 @@ class _Pressed:
         damping = e.named(-e.properties.VERTICAL_DAMPING * contact.vz)
         variables = [x for x in (*(getattr(contact, name) for name in VARIABLES), self.yaw, *e.own) if x is not None]
 
-        def excess(load: Any) -> Any:
+        def excess(load: Expr) -> Expr:
             return load - z.load(*self.forces(e.named(above_zero(load)))) - damping
 
         return e.at_root(excess, self.estimated(z, damping), [x for x in variables if e.in_state(x)])
 
-    def estimated(self, z: Stiffening, damping: Any) -> Any:
+    def estimated(self, z: Stiffening, damping: Expr) -> Expr:
         """Return the load after two iterations, an extrapolation (Aitken), and one more.
 
         Each iteration keeps the ratios of the forces to the load, which depend little on it.
@@ -110,7 +110,7 @@ class _Pressed:
 
         e, least = self.e, Float("1e-12")
 
-        def improved(load: Any) -> Any:
+        def improved(load: Expr) -> Expr:
             pressing = e.named(above_zero(load) + least)
             fx, fy = self.forces(pressing)
             return e.named(z.load_at_ratios(e.named(fx / pressing), e.named(fy / pressing), damping))
@@ -122,7 +122,7 @@ class _Pressed:
         return improved(e.named(third - change**2 * bend / (bend**2 + least**2)))
 
 
-def pressed(e: Symbolic, hand: Any, turns: bool) -> Touch:
+def pressed(e: Symbolic, hand: Expr, turns: bool) -> Touch:
     """Return the contact with its load and slips.
 
     `hand`: -1 for a tyre that is mirrored. `turns`: whether the yaw rate acts on the forces.

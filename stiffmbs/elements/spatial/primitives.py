@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from ..element import Symbolic
+from ..element import Expr, Matrix, Symbolic
 from ..initial_pose import InitialPose
 from ..joints.pair import Pair
 from .marker import Marker
@@ -32,32 +32,32 @@ ON_AXIS = ("along_x", "along_y")
 """Rows of `on_axis`, along the x and y axes of marker j."""
 
 
-def coincide(i: Any, j: Any) -> list[Any]:
+def coincide(i: Any, j: Any) -> list[Expr]:
     """Return the residuals of coincident points."""
     return list(i.point - j.point)
 
 
-def perpendicular(a: Any, b: Any) -> Any:
+def perpendicular(a: Matrix, b: Matrix) -> Expr:
     """Return the residual of perpendicular vectors."""
     return a.dot(b)
 
 
-def along(i: Any, j: Any, axis: Any) -> Any:
+def along(i: Any, j: Any, axis: Matrix) -> Expr:
     """Return the displacement of i's point from j's along a unit vector."""
     return (i.point - j.point).dot(axis)
 
 
-def align(i: Any, j: Any) -> list[Any]:
+def align(i: Any, j: Any) -> list[Expr]:
     """Return the residuals of parallel z axes, with the same or opposite direction as at the start."""
     return [perpendicular(i.x, j.z), perpendicular(i.y, j.z)]
 
 
-def orient(i: Any, j: Any) -> list[Any]:
+def orient(i: Any, j: Any) -> list[Expr]:
     """Return the residuals of parallel axes, which also vanish for half turns about an axis and cyclic permutations."""
     return [perpendicular(i.x, j.y), perpendicular(i.y, j.z), perpendicular(i.z, j.x)]
 
 
-def on_axis(i: Any, j: Any) -> list[Any]:
+def on_axis(i: Any, j: Any) -> list[Expr]:
     """Return the residuals of i's point on the z axis of j."""
     return [along(i, j, j.x), along(i, j, j.y)]
 
@@ -66,24 +66,24 @@ class SpatialJoint(Pair[Marker]):
     """Base of the spatial joints between two markers; a subclass names its coordinates among these."""
 
     @staticmethod
-    def angle(e: Symbolic) -> Any:
+    def angle(e: Symbolic) -> Expr:
         """Return the angle of marker i relative to marker j about their common z axis, with full revolutions."""
         return e.angle(e.i.x.dot(e.j.y), e.i.x.dot(e.j.x))
 
     @staticmethod
-    def displacement(e: Symbolic) -> Any:
+    def displacement(e: Symbolic) -> Expr:
         """Return the displacement of marker i along the z axis of marker j."""
         return along(e.i, e.j, e.j.z)
 
     displacement_z: ClassVar = displacement
 
     @staticmethod
-    def displacement_x(e: Symbolic) -> Any:
+    def displacement_x(e: Symbolic) -> Expr:
         """Return the displacement of marker i along the x axis of marker j."""
         return along(e.i, e.j, e.j.x)
 
     @staticmethod
-    def displacement_y(e: Symbolic) -> Any:
+    def displacement_y(e: Symbolic) -> Expr:
         """Return the displacement of marker i along the y axis of marker j."""
         return along(e.i, e.j, e.j.y)
 

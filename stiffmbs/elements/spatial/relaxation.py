@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..element import Symbolic
+from ..element import Expr, Symbolic
 from ..roads.road import above_zero, magnitude
 from .contact_point import ContactPoint
 
@@ -26,7 +26,7 @@ DAMPING = 0.02
 
 
 def lagged(
-    e: Symbolic, contact: ContactPoint, sliding: Any, lengths: tuple[Any, Any]
+    e: Symbolic, contact: ContactPoint, sliding: Expr, lengths: tuple[Expr, Expr]
 ) -> tuple[Any, Any, tuple[Any, Any]]:
     """Return slip, tangent of the slip angle, and state rates of a tyre whose own states are the deflections.
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 from pydantic import Field, model_validator
 
 from ...reading.units import si
-from ..element import Force, Symbolic
+from ..element import Expr, Force, Matrix, Symbolic
 from ..roads.envelope import Envelope
 from ..roads.field import AnyRoad
 from ..roads.road import FlatRoad, above_zero
@@ -46,15 +46,15 @@ class Rolling:
         Yaw rate and spin over the speed of the contact point, 1/m, of a tyre with turn slip.
     """
 
-    load: Any
-    slip: Any
-    slip_angle: Any
-    camber: Any
-    speed: Any
-    direction: Any
-    friction: Any
-    turn: Any = None
-    rolling: Any = None
+    load: Expr
+    slip: Expr
+    slip_angle: Expr
+    camber: Expr
+    speed: Expr
+    direction: Matrix
+    friction: Expr
+    turn: Expr = None
+    rolling: Expr = None
 
 
 @dataclass(frozen=True)
@@ -62,13 +62,13 @@ class Touch:
     """Contact, deflection (m), load (N), slip, tangent of slip angle, reference speed (m/s), state rates, turn slip."""
 
     contact: ContactPoint
-    deflection: Any
-    load: Any
-    slip: Any
-    tangent: Any
-    speed: Any
-    rates: tuple[Any, ...] = ()
-    turn: tuple[Any, ...] = ()
+    deflection: Expr
+    load: Expr
+    slip: Expr
+    tangent: Matrix
+    speed: Expr
+    rates: tuple[Expr, ...] = ()
+    turn: tuple[Expr, ...] = ()
 
 
 class Tyre(Force):
@@ -116,37 +116,37 @@ class Tyre(Force):
         return {"i": "y"}
 
     @staticmethod
-    def law(e: Symbolic, rolling: Rolling) -> tuple[Any, Any, Any, Any, Any]:
+    def law(e: Symbolic, rolling: Rolling) -> tuple[Expr, Expr, Expr, Expr, Expr]:
         """Return Fx, Fy, Mx, My, Mz on the tyre at the contact point, along the ISO axes, N and N m."""
         raise NotImplementedError
 
     @classmethod
-    def relaxation_lengths(cls, e: Symbolic, load: Any, camber: Any) -> tuple[Any, Any]:
+    def relaxation_lengths(cls, e: Symbolic, load: Expr, camber: Expr) -> tuple[Expr, Expr]:
         """Return the longitudinal and lateral relaxation length, m, of a tyre with the `own_states` `DEFLECTIONS`."""
         raise NotImplementedError
 
     @staticmethod
-    def unloaded_radius(e: Symbolic) -> Any:
+    def unloaded_radius(e: Symbolic) -> Expr:
         """Return the unloaded radius, m."""
         return e.radius
 
     @staticmethod
-    def carried(e: Symbolic, deflection: Any, rate: Any) -> Any:
+    def carried(e: Symbolic, deflection: Expr, rate: Expr) -> Expr:
         """Return the load at a positive deflection, N; negative values are replaced by zero."""
         return e.stiffness * deflection + e.damping * rate
 
     @staticmethod
-    def rim_contact(e: Symbolic, deflection: Any, contact: ContactPoint) -> tuple[Any, Any] | None:
+    def rim_contact(e: Symbolic, deflection: Expr, contact: ContactPoint) -> tuple[Expr, Expr] | None:
         """Return the rim's normal force on the road, N, and its overturning torque, N m, or None."""
         return None
 
     @classmethod
-    def belt_couple(cls, e: Symbolic, touch: Touch) -> Any:
+    def belt_couple(cls, e: Symbolic, touch: Touch) -> Expr:
         """Return the gyroscopic couple of the belt about the road's normal, N m; zero by default."""
         return 0
 
     @classmethod
-    def rolling_radius(cls, e: Symbolic, deflection: Any) -> Any:
+    def rolling_radius(cls, e: Symbolic, deflection: Expr) -> Expr:
         """Return the effective rolling radius, m: the unloaded radius less a third of the deflection."""
         from sympy import Rational
 
@@ -169,7 +169,7 @@ class Tyre(Force):
         return Touch(contact, deflection, load, slip, tangent, speed, rates)
 
     @classmethod
-    def _acting(cls, e: Symbolic) -> tuple[Any, Rolling, Any, Any]:
+    def _acting(cls, e: Symbolic) -> tuple[Expr, Rolling, Expr, Expr]:
         """Return the contact, the arguments of the law, the deflection, and forces and torques with the rim."""
         from sympy import atan
 
@@ -186,7 +186,7 @@ class Tyre(Force):
         return contact, rolling, touch.deflection, (fx, fy, normal, mx if rim is None else mx + rim[1], my, mz)
 
     @classmethod
-    def rates(cls, e: Symbolic) -> Any:
+    def rates(cls, e: Symbolic) -> Sequence[Expr]:
         """Return the rates of the contact patch deflections of a tyre with relaxation lengths."""
         return cls.touching(e).rates
 
@@ -203,7 +203,7 @@ class Tyre(Force):
         return [*zip(force, v, strict=True), *zip(torque, w, strict=True)]
 
     @classmethod
-    def measured(cls, e: Symbolic) -> list[Any]:
+    def measured(cls, e: Symbolic) -> list[Expr]:
         """Return the values of `channels`, in order."""
         _, rolling, deflection, (fx, fy, normal, mx, my, mz) = cls._acting(e)
         return [fx, fy, normal, mx, my, mz, rolling.slip, rolling.slip_angle, rolling.camber, deflection]

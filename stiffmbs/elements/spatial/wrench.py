@@ -6,36 +6,37 @@ angular momentum of two bodies are conserved.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
-from ..element import Symbolic
+from ..element import Expr, Matrix, Symbolic
 
-Pairs = list[tuple[Any, Any]]
+Pairs = list[tuple[Expr, Expr]]
 
 
-def velocity(e: Symbolic, marker: Any, point: Any) -> Any:
+def velocity(e: Symbolic, marker: Any, point: Matrix) -> Matrix:
     """Return the velocity of the point of a marker's body that coincides with a point of space."""
     return e.rate(marker.body.origin) + marker.omega.cross(point - marker.body.origin)
 
 
-def force_at(e: Symbolic, force: Any, i: Any, j: Any = None) -> Pairs:
+def force_at(e: Symbolic, force: Matrix, i: Any, j: Any = None) -> Pairs:
     """Return a force at i's point on i's body; with j the opposite on j's body at the same point of space."""
     rates = e.rate(i.point)
     return list(zip(force, rates if j is None else rates - velocity(e, j, i.point), strict=True))
 
 
-def torque_on(torque: Any, i: Any, j: Any = None) -> Pairs:
+def torque_on(torque: Matrix, i: Any, j: Any = None) -> Pairs:
     """Return a torque on i's body; with j the opposite on j's body."""
     return list(zip(torque, i.omega if j is None else i.omega - j.omega, strict=True))
 
 
-def along_axes(components: Any, axes: Any) -> Any:
+def along_axes(components: Sequence[Expr], axes: Sequence[Matrix]) -> Matrix:
     """Return the vector with the given components along three axes, such as a marker's."""
     (x, y, z), (along_x, along_y, along_z) = components, axes
     return x * along_x + y * along_y + z * along_z
 
 
-def seen_from(point: Any, marker: Any) -> Any:
+def seen_from(point: Matrix, marker: Any) -> Matrix:
     """Return the components of a point relative to a marker, along its axes."""
     from sympy import Matrix
 

@@ -8,7 +8,7 @@ from typing import Any, Literal
 from ...reading.formula.field import OfMotion, OfPosition
 from ...reading.marker import MarkerReference
 from ...reading.names import Names
-from ..element import Element, Symbolic
+from ..element import Element, Expr, Symbolic
 
 
 def own_state(element: str, state: str) -> str:
@@ -45,7 +45,7 @@ class FormulaOfRate(StateEquation):
     formula: OfMotion
 
     @staticmethod
-    def rate(e: Symbolic) -> Any:
+    def rate(e: Symbolic) -> Expr:
         return e.formula
 
 

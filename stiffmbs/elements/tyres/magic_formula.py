@@ -10,13 +10,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any
 
 from sympy import Expr, Float, Rational, atan, cos, exp, pi, sin, sqrt, tan
 
+from ..element import Symbolic
 from ..roads.road import above_zero, magnitude
 
-Name = Callable[[Any], Any]
+Name = Callable[[Expr], Expr]
 LEAST_LOAD = Float("1e-12")
 """Offset of loads in divisors, N, for a tyre without contact; it is below rounding for a tyre on the road."""
 
@@ -62,46 +62,46 @@ class Curve:
 class Torque:
     """Aligning torque, N m, with pneumatic trail, m, and residual torque, N m."""
 
-    whole: Any
-    trail: Any
-    residual: Any
+    whole: Expr
+    trail: Expr
+    residual: Expr
 
 
 @dataclass(frozen=True)
 class Forces:
     """Forces (N) and torques (N m) at the contact point, the curves of pure slip, and the aligning torque's parts."""
 
-    fx: Any
-    fy: Any
-    mx: Any
-    my: Any
-    mz: Any
+    fx: Expr
+    fy: Expr
+    mx: Expr
+    my: Expr
+    mz: Expr
     x: Curve
     y: Curve
     torque: Torque
 
     @property
-    def wrench(self) -> tuple[Any, Any, Any, Any, Any]:
+    def wrench(self) -> tuple[Expr, Expr, Expr, Expr, Expr]:
         """Fx, Fy, Mx, My, Mz."""
         return self.fx, self.fy, self.mx, self.my, self.mz
 
 
-def magic(b: Any, x: Any, c: Any, curvature: Any) -> Any:
+def magic(b: Expr, x: Expr, c: Expr, curvature: Expr) -> Expr:
     """Return the argument of sine or cosine: C atan(B x - E (B x - atan(B x)))."""
     return c * atan(b * x - curvature * (b * x - atan(b * x)))
 
 
-def sign(x: Any) -> Any:
+def sign(x: Expr) -> Expr:
     """Return the sign of a number, 0 at zero."""
     return x / magnitude(x)
 
 
-def at_most_one(x: Any) -> Any:
+def at_most_one(x: Expr) -> Expr:
     """Return min(x, 1)."""
     return 1 - above_zero(1 - x)
 
 
-def longitudinal(p: Any, s: Slip, dfz: Any, f: Name) -> Curve:
+def longitudinal(p: Symbolic, s: Slip, dfz: Expr, f: Name) -> Curve:
     """Return the force of pure longitudinal slip."""
     gamma = s.gamma * p.LGAX
     shift = f((p.PHX1 + p.PHX2 * dfz) * p.LHX * s.moving)
@@ -116,7 +116,7 @@ def longitudinal(p: Any, s: Slip, dfz: Any, f: Name) -> Curve:
     return Curve(force, K, B, C, mu, shift, vertical)
 
 
-def lateral(p: Any, s: Slip, dfz: Any, f: Name) -> Curve:
+def lateral(p: Symbolic, s: Slip, dfz: Expr, f: Name) -> Curve:
     """Return the force of pure lateral slip."""
     gamma = f(s.gamma * p.LGAY)
     shift = f(((p.PHY1 + p.PHY2 * dfz) * p.LHY + p.PHY3 * gamma) * s.moving)
@@ -134,12 +134,12 @@ def lateral(p: Any, s: Slip, dfz: Any, f: Name) -> Curve:
     return Curve(force, K, B, C, mu, shift, vertical)
 
 
-def weight(b: Any, slip: Any, shift: Any, c: Any, curvature: Any, f: Name) -> Any:
+def weight(b: Expr, slip: Expr, shift: Expr, c: Expr, curvature: Expr, f: Name) -> Expr:
     """Return a weight of combined slip, 1 for zero slip."""
     return f(cos(magic(b, f(slip + shift), c, curvature)) / cos(magic(b, shift, c, curvature)))
 
 
-def combined(p: Any, s: Slip, x: Curve, y: Curve, dfz: Any, f: Name) -> tuple[Any, Any, Any]:
+def combined(p: Symbolic, s: Slip, x: Curve, y: Curve, dfz: Expr, f: Name) -> tuple[Expr, Expr, Expr]:
     """Return Fx, Fy, and the lateral force induced by longitudinal slip."""
     over_alpha = f(p.RBX1 * cos(atan(p.RBX2 * s.kappa)) * p.LXAL)
     E = at_most_one(p.REX1 + p.REX2 * dfz)
@@ -152,7 +152,7 @@ def combined(p: Any, s: Slip, x: Curve, y: Curve, dfz: Any, f: Name) -> tuple[An
     return fx, f(y.force * lessened + induced), induced
 
 
-def aligning(p: Any, s: Slip, x: Curve, y: Curve, forces: tuple[Any, Any, Any], dfz: Any, f: Name) -> Torque:
+def aligning(p: Symbolic, s: Slip, x: Curve, y: Curve, forces: tuple[Expr, Expr, Expr], dfz: Expr, f: Name) -> Torque:
     """Return the aligning torque: pneumatic trail, residual torque, and the arm of Fx."""
     fx, fy, induced = forces
     gamma, R = f(s.gamma * p.LGAZ), p.UNLOADED_RADIUS
@@ -178,7 +178,7 @@ def aligning(p: Any, s: Slip, x: Curve, y: Curve, forces: tuple[Any, Any, Any], 
     return Torque(-trail * (fy - induced) + residual + arm * fx, trail, residual)
 
 
-def equivalent(alpha: Any, driving: Any) -> Any:
+def equivalent(alpha: Expr, driving: Expr) -> Expr:
     """Return the magnitude of the equivalent slip angle of both slips.
 
     Trail and residual torque are even functions of it, and its sign would cause a discontinuity.
@@ -186,7 +186,7 @@ def equivalent(alpha: Any, driving: Any) -> Any:
     return atan(sqrt(tan(alpha) ** 2 + driving + Float("1e-60")))
 
 
-def wrench(p: Any, s: Slip, f: Name, ellipse: str = "") -> Forces:
+def wrench(p: Symbolic, s: Slip, f: Name, ellipse: str = "") -> Forces:
     """Return forces and torques at the contact point.
 
     `ellipse`: name in `ELLIPSES` if there are no weights of combined slip; empty with weights.
@@ -199,7 +199,7 @@ def wrench(p: Any, s: Slip, f: Name, ellipse: str = "") -> Forces:
     return Forces(*forces[:2], mx, my, torque.whole, x, y, torque)
 
 
-def uncombined(p: Any, s: Slip, f: Name) -> tuple[Any, Any, Any, Any, Any]:
+def uncombined(p: Symbolic, s: Slip, f: Name) -> tuple[Expr, Expr, Expr, Expr, Expr]:
     """Return Fx, Fy, Mx, My, Mz of separate slips: Fx, My by the longitudinal, the others by the slip angle."""
     dfz, none = increment(p, s.load, f), Rational(0)
     x, y = longitudinal(p, s, dfz, f), lateral(p, s, dfz, f)
@@ -212,14 +212,16 @@ class Formula:
     """Functions of a version: forces and torques of combined slip, and those of separate slips."""
 
     wrench: Callable[..., Forces]
-    uncombined: Callable[..., tuple[Any, Any, Any, Any, Any]]
+    uncombined: Callable[..., tuple[Expr, Expr, Expr, Expr, Expr]]
 
 
 FORMULA = Formula(wrench, uncombined)
 """MF-Tyre 5.2 and PAC2002."""
 
 
-def of_mode(formula: Formula, mode: str, p: Any, s: Slip, f: Name, ellipse: str) -> tuple[Any, Any, Any, Any, Any]:
+def of_mode(
+    formula: Formula, mode: str, p: Symbolic, s: Slip, f: Name, ellipse: str
+) -> tuple[Expr, Expr, Expr, Expr, Expr]:
     """Return the forces and torques selected by the last digit of USE_MODE, with zero for the others."""
     if mode in COMBINED_MODES:
         return formula.wrench(p, s, f, ellipse).wrench
@@ -227,7 +229,7 @@ def of_mode(formula: Formula, mode: str, p: Any, s: Slip, f: Name, ellipse: str)
     return tuple(x if name in wanted else Rational(0) for name, x in zip(OF_MODES["3"].split(), found, strict=True))  # type: ignore[return-value]
 
 
-def relaxation_lengths(p: Any, load: Any, gamma: Any, f: Name) -> tuple[Any, Any]:
+def relaxation_lengths(p: Symbolic, load: Expr, gamma: Expr, f: Name) -> tuple[Expr, Expr]:
     """Return the longitudinal and lateral relaxation length, m, by the equations of MF-Tyre 5.2."""
     dfz, R = increment(p, load, f), p.UNLOADED_RADIUS
     along = load * (p.PTX1 + p.PTX2 * dfz) * exp(-p.PTX3 * dfz) * R / p.FNOMIN * p.LSGKP
@@ -235,13 +237,13 @@ def relaxation_lengths(p: Any, load: Any, gamma: Any, f: Name) -> tuple[Any, Any
     return along, p.PTY1 * by_load * (1 - p.PKY3 * magnitude(gamma * p.LGAY)) * R * p.LFZO * p.LSGAL
 
 
-def increment(p: Any, load: Any, f: Name) -> Any:
+def increment(p: Symbolic, load: Expr, f: Name) -> Expr:
     """Return dfz, the relative deviation from the nominal load."""
     nominal = p.FNOMIN * p.LFZO
     return f((load - nominal) / nominal)
 
 
-def torques(p: Any, s: Slip, fx: Any, fy: Any, f: Name) -> tuple[Any, Any]:
+def torques(p: Symbolic, s: Slip, fx: Expr, fy: Expr, f: Name) -> tuple[Expr, Expr]:
     """Return the overturning and the rolling resistance torque."""
     R = p.UNLOADED_RADIUS
     mx = R * s.load * (p.QSX1 * p.LVMX + (-p.QSX2 * s.gamma + p.QSX3 * fy / p.FNOMIN) * p.LMX)
@@ -249,7 +251,7 @@ def torques(p: Any, s: Slip, fx: Any, fy: Any, f: Name) -> tuple[Any, Any]:
     return mx, -R * s.load * resistance * p.LMY * s.direction
 
 
-def on_ellipse(s: Slip, x: Curve, y: Curve, f: Name) -> tuple[Any, Any, Any]:
+def on_ellipse(s: Slip, x: Curve, y: Curve, f: Name) -> tuple[Expr, Expr, Expr]:
     """Return Fx and Fy of pure slips, scaled down to the ellipse of mu_x N and mu_y N if they exceed it."""
     most_x, most_y = x.mu * s.load + LEAST_LOAD, y.mu * s.load + LEAST_LOAD
     beyond = f(magnitude(x.force / most_x, y.force / most_y))
@@ -257,7 +259,7 @@ def on_ellipse(s: Slip, x: Curve, y: Curve, f: Name) -> tuple[Any, Any, Any]:
     return f(x.force * less), f(y.force * less), Rational(0)
 
 
-def within_ellipse(s: Slip, x: Curve, y: Curve, f: Name) -> tuple[Any, Any, Any]:
+def within_ellipse(s: Slip, x: Curve, y: Curve, f: Name) -> tuple[Expr, Expr, Expr]:
     """Return Fx and Fy of combined slip by the friction ellipse of MSC Adams/Tire, PAC2002.
 
     With kappa_c and alpha* = sin(alpha_c), the slips from those without force, and the friction that is used, mu_act:
@@ -278,7 +280,7 @@ ELLIPSES = {"limit": on_ellipse, "pac2002": within_ellipse}
 """Combined slip without weights: a limit of both forces, and the friction ellipse of PAC2002."""
 
 
-def rolling_radius(p: Any, deflection: Any, f: Name) -> Any:
+def rolling_radius(p: Symbolic, deflection: Expr, f: Name) -> Expr:
     """Return the effective rolling radius, m, by BREFF, DREFF and FREFF."""
     nominal = f(p.FNOMIN / p.VERTICAL_STIFFNESS)
     part = f(deflection / nominal)

@@ -10,10 +10,10 @@ ISO axes; Besselink, Schmeitz, Pacejka, An improved Magic Formula/Swift tyre mod
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any
 
 from sympy import Float, Rational, atan, cos, exp, pi, sin, sqrt, tan
 
+from ..element import Expr, Symbolic
 from ..roads.road import above_zero, magnitude
 from .magic_formula import (
     COMBINED_MODES,
@@ -48,33 +48,33 @@ class PressedSlip(Slip):
     phi_t is the yaw rate over the speed V of the contact point, positive in a turn to the left; None without turn slip.
     """
 
-    dpi: Any = ZERO
-    turn: Any = None
-    rolling: Any = ZERO
+    dpi: Expr = ZERO
+    turn: Expr = None
+    rolling: Expr = ZERO
 
 
 @dataclass(frozen=True)
 class Spin:
     """Factors zeta of turn slip, shift of the side force, residual torque and its shape; neutral without turn slip."""
 
-    of_fx: Any = ONE
-    of_fy: Any = ONE
-    of_stiffness: Any = ONE
-    of_trail: Any = ONE
-    of_residual: Any = ONE
-    of_camber: Any = ONE
-    shape: Any = ONE
-    torque: Any = ZERO
-    phi: Any = None
+    of_fx: Expr = ONE
+    of_fy: Expr = ONE
+    of_stiffness: Expr = ONE
+    of_trail: Expr = ONE
+    of_residual: Expr = ONE
+    of_camber: Expr = ONE
+    shape: Expr = ONE
+    torque: Expr = ZERO
+    phi: Expr = None
 
 
-def scaled_friction(p: Any, s: PressedSlip, scale: Any, f: Name) -> Any:
+def scaled_friction(p: Symbolic, s: PressedSlip, scale: Expr, f: Name) -> Expr:
     """Return lambda*_mu: the scale factor on the road's friction, which decays with the sliding speed (4.E7)."""
     sliding = s.speed * magnitude(s.kappa, tan(s.alpha))
     return f(scale * s.friction / (1 + p.LMUV * sliding))
 
 
-def spin_of(p: Any, s: PressedSlip, dfz: Any, f: Name) -> Spin:
+def spin_of(p: Symbolic, s: PressedSlip, dfz: Expr, f: Name) -> Spin:
     """Return the influence of turn slip on the curves (4.76 to 4.79, 4.90, 4.91, 4.102, 4.105)."""
     if s.turn is None:
         return Spin()
@@ -94,18 +94,18 @@ def spin_of(p: Any, s: PressedSlip, dfz: Any, f: Name) -> Spin:
     )
 
 
-def camber_reduction(p: Any, dfz: Any) -> Any:
+def camber_reduction(p: Symbolic, dfz: Expr) -> Expr:
     """Return epsilon_gamma (4.90)."""
     return p.PECP1 * (1 + p.PECP2 * dfz)
 
 
-def slip_stiffness(p: Any, load: Any, dpi: Any, dfz: Any) -> Any:
+def slip_stiffness(p: Symbolic, load: Expr, dpi: Expr, dfz: Expr) -> Expr:
     """Return Kxk, N (4.E15)."""
     pressure = 1 + p.PPX1 * dpi + p.PPX2 * dpi**2
     return load * (p.PKX1 + p.PKX2 * dfz) * exp(p.PKX3 * dfz) * pressure * p.LKX
 
 
-def cornering_stiffness(p: Any, load: Any, dpi: Any, gamma: Any) -> Any:
+def cornering_stiffness(p: Symbolic, load: Expr, dpi: Expr, gamma: Expr) -> Expr:
     """Return Kya, N/rad (4.E25)."""
     nominal = p.FNOMIN * p.LFZO
     peak = (p.PKY2 + p.PKY5 * gamma**2) * (1 + p.PPY2 * dpi)
@@ -113,17 +113,17 @@ def cornering_stiffness(p: Any, load: Any, dpi: Any, gamma: Any) -> Any:
     return p.PKY1 * nominal * (1 + p.PPY1 * dpi) * (1 - p.PKY3 * magnitude(gamma)) * shape * p.LKY
 
 
-def camber_stiffness(p: Any, load: Any, dpi: Any, dfz: Any) -> Any:
+def camber_stiffness(p: Symbolic, load: Expr, dpi: Expr, dfz: Expr) -> Expr:
     """Return Kyg0, N/rad (4.E30)."""
     return load * (p.PKY6 + p.PKY7 * dfz) * (1 + p.PPY5 * dpi) * p.LKYC
 
 
-def divisor(stiffness: Any) -> Any:
+def divisor(stiffness: Expr) -> Expr:
     """Return a stiffness to divide by, which is not zero for a tyre without load."""
     return stiffness + sign(stiffness) * LEAST_LOAD + LEAST_LOAD**2
 
 
-def longitudinal(p: Any, s: PressedSlip, dfz: Any, spin: Spin, f: Name) -> Curve:
+def longitudinal(p: Symbolic, s: PressedSlip, dfz: Expr, spin: Spin, f: Name) -> Curve:
     """Return the force of pure longitudinal slip (4.E9 to 4.E18)."""
     shift = f((p.PHX1 + p.PHX2 * dfz) * p.LHX * s.moving)
     kappa, friction = f(s.kappa + shift), scaled_friction(p, s, p.LMUX, f)
@@ -137,7 +137,7 @@ def longitudinal(p: Any, s: PressedSlip, dfz: Any, spin: Spin, f: Name) -> Curve
     return Curve(f(D * sin(magic(B, kappa, C, E)) + vertical), K, B, C, mu, shift, vertical)
 
 
-def lateral(p: Any, s: PressedSlip, dfz: Any, spin: Spin, f: Name) -> Curve:
+def lateral(p: Symbolic, s: PressedSlip, dfz: Expr, spin: Spin, f: Name) -> Curve:
     """Return the force of pure lateral slip (4.E19 to 4.E30)."""
     gamma, friction = s.gamma, scaled_friction(p, s, p.LMUY, f)
     K = f(cornering_stiffness(p, s.load, s.dpi, gamma) * spin.of_stiffness)
@@ -160,7 +160,7 @@ def lateral(p: Any, s: PressedSlip, dfz: Any, spin: Spin, f: Name) -> Curve:
     return Curve(f(D * sin(magic(B, alpha, C, E)) + vertical), K, B, C, mu, shift, vertical)
 
 
-def spin_shift(p: Any, s: PressedSlip, dfz: Any, spin: Spin, thrust: Any, f: Name) -> Any:
+def spin_shift(p: Symbolic, s: PressedSlip, dfz: Expr, spin: Spin, thrust: Expr, f: Name) -> Expr:
     """Return the shift of the slip angle by spin, S_Hy,phi (4.80 to 4.89)."""
     C, D = p.PHYP1, f(p.PHYP2 + p.PHYP3 * dfz)
     upright = cornering_stiffness(p, s.load, s.dpi, ZERO) * spin.of_stiffness
@@ -169,7 +169,9 @@ def spin_shift(p: Any, s: PressedSlip, dfz: Any, spin: Spin, thrust: Any, f: Nam
     return f(D * sin(magic(ONE, x, C, at_most_one(p.PHYP4))))
 
 
-def combined(p: Any, s: PressedSlip, x: Curve, y: Curve, dfz: Any, spin: Spin, f: Name) -> tuple[Any, Any, Any]:
+def combined(
+    p: Symbolic, s: PressedSlip, x: Curve, y: Curve, dfz: Expr, spin: Spin, f: Name
+) -> tuple[Expr, Expr, Expr]:
     """Return Fx, Fy, and the factor G_yk on the side force (4.E50 to 4.E67)."""
     over_alpha = f((p.RBX1 + p.RBX3 * s.gamma**2) * cos(atan(p.RBX2 * s.kappa)) * p.LXAL)
     E = at_most_one(p.REX1 + p.REX2 * dfz)
@@ -182,7 +184,7 @@ def combined(p: Any, s: PressedSlip, x: Curve, y: Curve, dfz: Any, spin: Spin, f
     return fx, f(y.force * lessened + induced), lessened
 
 
-def with_torque(p: Any, s: PressedSlip, y: Curve, lessened: Any, dfz: Any, spin: Spin, f: Name) -> Spin:
+def with_torque(p: Symbolic, s: PressedSlip, y: Curve, lessened: Expr, dfz: Expr, spin: Spin, f: Name) -> Spin:
     """Return the spin with its residual torque and its shape, D_r,phi and zeta_7 (4.93 to 4.99, 4.103, 4.104)."""
     if spin.phi is None:
         return spin
@@ -200,7 +202,7 @@ def with_torque(p: Any, s: PressedSlip, y: Curve, lessened: Any, dfz: Any, spin:
 
 
 def aligning(
-    p: Any, s: PressedSlip, x: Curve, y: Curve, forces: tuple[Any, Any, Any], dfz: Any, spin: Spin, f: Name
+    p: Symbolic, s: PressedSlip, x: Curve, y: Curve, forces: tuple[Expr, Expr, Expr], dfz: Expr, spin: Spin, f: Name
 ) -> Torque:
     """Return the aligning torque (4.E33 to 4.E49, 4.E71 to 4.E78; A54 to A60)."""
     fx, fy, lessened = forces
@@ -228,7 +230,7 @@ def aligning(
     return Torque(-trail * upright * lessened + residual + arm * fx, trail, residual)
 
 
-def overturning(p: Any, s: PressedSlip, fy: Any, f: Name) -> Any:
+def overturning(p: Symbolic, s: PressedSlip, fy: Expr, f: Name) -> Expr:
     """Return the overturning torque (P draft eq. 49, MF-Tyre 6.2)."""
     R, gamma, part, side = p.UNLOADED_RADIUS, s.gamma, f(s.load / p.FNOMIN), f(fy / p.FNOMIN)
     size = magnitude(gamma)
@@ -240,7 +242,7 @@ def overturning(p: Any, s: PressedSlip, fy: Any, f: Name) -> Any:
     return R * p.LMX * (s.load * by_load + fy * (p.QSX13 + p.QSX14 * size))
 
 
-def rolling_resistance(p: Any, s: PressedSlip, fx: Any, f: Name) -> Any:
+def rolling_resistance(p: Symbolic, s: PressedSlip, fx: Expr, f: Name) -> Expr:
     """Return the rolling resistance torque (A48)."""
     part = f(s.load / p.FNOMIN)
     cambered = (p.QSY5 + p.QSY6 * part) * s.gamma**2
@@ -249,7 +251,7 @@ def rolling_resistance(p: Any, s: PressedSlip, fx: Any, f: Name) -> Any:
     return -p.UNLOADED_RADIUS * p.FNOMIN * resistance * of_load * (1 + s.dpi) ** p.QSY8 * p.LMY * s.direction
 
 
-def slip_forces(p: Any, s: PressedSlip, f: Name, mode: str, ellipse: str) -> tuple[Any, Any]:
+def slip_forces(p: Symbolic, s: PressedSlip, f: Name, mode: str, ellipse: str) -> tuple[Expr, Expr]:
     """Return Fx and Fy, as selected by the last digit of USE_MODE."""
     dfz = increment(p, s.load, f)
     spin = spin_of(p, s, dfz, f)
@@ -261,15 +263,15 @@ def slip_forces(p: Any, s: PressedSlip, f: Name, mode: str, ellipse: str) -> tup
 
 
 def _combined(
-    p: Any, s: PressedSlip, x: Curve, y: Curve, dfz: Any, spin: Spin, f: Name, ellipse: str
-) -> tuple[Any, Any, Any]:
+    p: Symbolic, s: PressedSlip, x: Curve, y: Curve, dfz: Expr, spin: Spin, f: Name, ellipse: str
+) -> tuple[Expr, Expr, Expr]:
     if not ellipse:
         return combined(p, s, x, y, dfz, spin, f)
     fx, fy, _ = ELLIPSES[ellipse](s, x, y, f)
     return fx, fy, fy / divisor(y.force)
 
 
-def wrench(p: Any, s: PressedSlip, f: Name, ellipse: str = "") -> Forces:
+def wrench(p: Symbolic, s: PressedSlip, f: Name, ellipse: str = "") -> Forces:
     """Return forces and torques of combined slip."""
     dfz = increment(p, s.load, f)
     spin = spin_of(p, s, dfz, f)
@@ -280,7 +282,7 @@ def wrench(p: Any, s: PressedSlip, f: Name, ellipse: str = "") -> Forces:
     return Forces(fx, fy, overturning(p, s, fy, f), rolling_resistance(p, s, fx, f), torque.whole, x, y, torque)
 
 
-def uncombined(p: Any, s: PressedSlip, f: Name) -> tuple[Any, Any, Any, Any, Any]:
+def uncombined(p: Symbolic, s: PressedSlip, f: Name) -> tuple[Expr, Expr, Expr, Expr, Expr]:
     """Return Fx, Fy, Mx, My, Mz of separate slips: Fx, My by the longitudinal, the others by the slip angle."""
     dfz, spin = increment(p, s.load, f), Spin()
     x, y = longitudinal(p, s, dfz, spin, f), lateral(p, s, dfz, spin, f)
@@ -292,7 +294,7 @@ FORMULA = Formula(wrench, uncombined)
 """Versions 6.1 and 6.2."""
 
 
-def relaxation_lengths(p: Any, load: Any, dpi: Any, gamma: Any, f: Name) -> tuple[Any, Any]:
+def relaxation_lengths(p: Symbolic, load: Expr, dpi: Expr, gamma: Expr, f: Name) -> tuple[Expr, Expr]:
     """Return the longitudinal and lateral relaxation length, m, Kxk/Cx and Kya/Cy.
 
     Besselink, Schmeitz, Pacejka (2010), eq. 17 to 19.

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from ...errors import InputError
+from ..element import Expr
 
 STATE = ("load", "kappa", "alpha", "gamma", "speed", "direction", "friction", "dpi", "turn", "rolling")
 """Arguments of the compiled equations of forces."""
@@ -185,7 +186,7 @@ def _compiled(
     return lambda *values: dict(zip(outputs, function(*values), strict=True))
 
 
-def _force_outputs(p: Any, symbols: list[Any], turns: bool) -> dict[str, Any]:
+def _force_outputs(p: Any, symbols: list[Expr], turns: bool) -> dict[str, Any]:
     from . import magic_formula, magic_formula_6
 
     (*basic, dpi, turn, rolling), load, gamma = symbols, symbols[0], symbols[3]
@@ -209,7 +210,7 @@ def _force_outputs(p: Any, symbols: list[Any], turns: bool) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _load_outputs(p: Any, symbols: list[Any], turns: bool) -> dict[str, Any]:
+def _load_outputs(p: Any, symbols: list[Expr], turns: bool) -> dict[str, Any]:
     from .deflection_6 import deflection, stiffening
 
     loaded, free, spin, dpi, gamma, fx, fy = symbols
@@ -217,7 +218,7 @@ def _load_outputs(p: Any, symbols: list[Any], turns: bool) -> dict[str, Any]:
     return {"load": load, "slope": load.diff(loaded), "rho": deflection(p, loaded, free, gamma)}
 
 
-def _radius_outputs(p: Any, symbols: list[Any], turns: bool) -> dict[str, Any]:
+def _radius_outputs(p: Any, symbols: list[Expr], turns: bool) -> dict[str, Any]:
     if p.formula == "5.2":
         from .magic_formula import rolling_radius
 
@@ -229,5 +230,5 @@ def _radius_outputs(p: Any, symbols: list[Any], turns: bool) -> dict[str, Any]:
     return {"Re": effective_radius(p, load, dpi, free), "free": free}
 
 
-def _same(x: Any) -> Any:
+def _same(x: Expr) -> Expr:
     return x

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from pydantic import Field
 
-from ...element import Joint, Symbolic
+from ...element import Expr, Joint, Symbolic
 from ..marker import Marker
 from ..primitives import COINCIDE
 
@@ -29,7 +29,7 @@ class FlexibleInterface(Joint):
     rotations: tuple[float, ...] = Field(description="rotation by mode about x, y and z")
 
     @staticmethod
-    def position(e: Symbolic) -> Any:
+    def position(e: Symbolic) -> list[Expr]:
         modal = [mode.body.origin[k] for mode in e.modes for k in range(3)]
         along = []
         for row in range(6):

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Literal
 
 from pydantic import Field, model_validator
 
 from ....reading.formula.field import ForceOfMotion, TorqueOfMotion
-from ...element import Force, Symbolic
+from ...element import Expr, Force, Matrix, Symbolic
 from ..marker import Marker
 from ..wrench import Pairs, along_axes, force_at, torque_on
 
@@ -32,7 +32,7 @@ class Applied(Force):
         return self
 
     @staticmethod
-    def vector(e: Symbolic, components: Any) -> Any:
+    def vector(e: Symbolic, components: tuple[Expr, ...]) -> Matrix:
         """Return components along the element's axes as a vector in ground axes."""
         from sympy import Matrix
 
@@ -69,7 +69,7 @@ class AppliedForce(Applied):
         return force_at(e, cls.vector(e, e.force), e.i, e.j)
 
     @staticmethod
-    def potential(e: Symbolic) -> Any:
+    def potential(e: Symbolic) -> Expr:
         """Return minus the work of the force from the origin."""
         in_ground = e.axes == "ground" and e.frame is None
         if e.j is not None or not in_ground or not all(e.is_constant(component) for component in e.force):

@@ -8,7 +8,7 @@ from pydantic import Field, field_validator, model_validator
 
 from ....reading.fields import Measured
 from ....reading.units import si
-from ...element import Symbolic
+from ...element import Expr, Symbolic
 from ...forces.bushing import check_symmetric, stored
 from ..elastic import NO_MATRIX, NO_ROW, Damping, Elastic, pull_back, six_rows, without_zeros
 
@@ -73,13 +73,13 @@ class Beam(Elastic):
         )  # fmt: skip
 
     @staticmethod
-    def strain(e: Symbolic) -> list[Any]:
+    def strain(e: Symbolic) -> list[Expr]:
         """Return the displacement and rotation of marker i from its unloaded pose."""
         along, *others = Beam.deformation(e)
         return [along - e.length, *others]
 
     @classmethod
-    def elastic(cls, e: Symbolic) -> list[Any]:
+    def elastic(cls, e: Symbolic) -> list[Expr]:
         """Return -K s."""
         return pull_back(cls.stiffness(e), cls.strain(e), NO_ROW)
 
@@ -91,11 +91,11 @@ class Beam(Elastic):
         return [[part if part is None else e.damping_ratio * part for part in row] for row in cls.stiffness(e)]
 
     @staticmethod
-    def potential(e: Symbolic) -> Any:
+    def potential(e: Symbolic) -> Expr:
         return stored(Beam.stiffness(e), Beam.strain(e), NO_ROW)
 
 
-def _bending(rigidity: Any, length: Any, shear: Any) -> tuple[Any, Any, Any]:
+def _bending(rigidity: Expr, length: Expr, shear: Expr) -> tuple[Expr, Expr, Expr]:
     """Return force over deflection, force over angle, and moment over angle at a beam's end."""
     stiff = rigidity / (1 + shear)
     return 12 * stiff / length**3, 6 * stiff / length**2, (4 + shear) * stiff / length

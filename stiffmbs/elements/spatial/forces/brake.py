@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated
 
 from pydantic import Field
 
 from ....reading.fields import Measured
 from ....reading.formula.field import TorqueOfMotion
 from ....reading.units import si
-from ...element import Symbolic
+from ...element import Expr, Symbolic
 from ...roads.road import above_zero, magnitude
 from ..wrench import Pairs
 from .wheel_torque import AxleForce
@@ -42,7 +42,7 @@ class Brake(AxleForce):
         return ("part",)
 
     @classmethod
-    def _of_spin(cls, e: Symbolic) -> tuple[Any, Any]:
+    def _of_spin(cls, e: Symbolic) -> tuple[Expr, Expr]:
         """Return the rate of z, and the braking torque."""
         (z,), w = e.own, cls.spin(e)
         speed = magnitude(w)
@@ -51,7 +51,7 @@ class Brake(AxleForce):
         return rate, e.named(above_zero(e.named(e.torque)) * (z + damping * rate))
 
     @classmethod
-    def rates(cls, e: Symbolic) -> Any:
+    def rates(cls, e: Symbolic) -> list[Expr]:
         return [cls._of_spin(e)[0]]
 
     @classmethod
@@ -59,6 +59,6 @@ class Brake(AxleForce):
         return [(-cls._of_spin(e)[1], cls.spin(e))]
 
     @classmethod
-    def measured(cls, e: Symbolic) -> Any:
+    def measured(cls, e: Symbolic) -> list[Expr]:
         """Return the braking torque."""
         return [cls._of_spin(e)[1]]

@@ -7,7 +7,7 @@ from typing import Any, Literal
 from pydantic import Field
 
 from ....reading.formula.field import ForceOfDeflection, TorqueOfDeflection
-from ...element import Symbolic
+from ...element import Expr, Matrix, Symbolic
 from ...forces.bushing import stored_with_laws
 from ..elastic import NO_ROW, Connection, Preload, pull_back
 
@@ -72,24 +72,24 @@ class Bushing(Connection):
         return [has or law is not None for has, law in zip(super().resisted(e), laws, strict=True)]
 
     @classmethod
-    def frame(cls, e: Symbolic) -> list[Any]:
+    def frame(cls, e: Symbolic) -> list[Matrix]:
         from sympy import eye
 
         return [eye(3)[:, k] for k in range(3)] if e.axes == "ground" else super().frame(e)
 
     @classmethod
-    def drift(cls, e: Symbolic) -> Any:
+    def drift(cls, e: Symbolic) -> Matrix:
         return e.rate(e.i.point - e.j.point) if e.axes == "ground" else super().drift(e)
 
     @classmethod
-    def elastic(cls, e: Symbolic) -> list[Any]:
+    def elastic(cls, e: Symbolic) -> list[Expr]:
         """Return preload - K s - law(s)."""
         s = cls.deformation(e)
         linear = pull_back(e.stiffness, s, e.preload)
         return [f - (law(x) if law is not None else 0) for f, law, x in zip(linear, _laws(e), s, strict=True)]
 
     @classmethod
-    def potential(cls, e: Symbolic) -> Any:
+    def potential(cls, e: Symbolic) -> Expr:
         return stored_with_laws(e, cls.deformation(e), _laws(e))
 
 

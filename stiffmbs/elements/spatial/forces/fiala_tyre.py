@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from pydantic import Field
 
 from ....reading.units import si
-from ...element import Symbolic
+from ...element import Expr, Symbolic
 from ...roads.road import above_zero, clipped, magnitude
 from ..relaxation import DEFLECTIONS
 from ..tyre import Rolling, Tyre
@@ -51,12 +49,12 @@ class FialaTyre(Tyre):
         return DEFLECTIONS if self.relaxation else ()
 
     @classmethod
-    def relaxation_lengths(cls, e: Symbolic, load: Any, camber: Any) -> tuple[Any, Any]:
+    def relaxation_lengths(cls, e: Symbolic, load: Expr, camber: Expr) -> tuple[Expr, Expr]:
         along, across = e.relaxation
         return along, across
 
     @staticmethod
-    def law(e: Symbolic, rolling: Rolling) -> tuple[Any, Any, Any, Any, Any]:
+    def law(e: Symbolic, rolling: Rolling) -> tuple[Expr, Expr, Expr, Expr, Expr]:
         """Return forces and moments by Fiala's formulas."""
         from sympy import Float, Rational, tan
 
@@ -76,6 +74,6 @@ class FialaTyre(Tyre):
         return fx, fy, 0, -e.rolling_resistance * rolling.load * rolling.direction, mz
 
 
-def larger(e: Symbolic, x: Any, least: Any) -> Any:
+def larger(e: Symbolic, x: Expr, least: Expr) -> Expr:
     """Return the absolute value of a number, at least `least`; smooth at zero, and without rounding."""
     return e.named(least + above_zero(e.named(magnitude(x) - least)))

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from pydantic import Field
 
 from ....reading.units import si
-from ...element import Symbolic
+from ...element import Expr, Symbolic
 from ...forces.bushing import stored
 from ..elastic import NO_ROW, Connection, Preload, pull_back
 
@@ -39,16 +37,16 @@ class FieldForce(Connection):
     )
 
     @staticmethod
-    def strain(e: Symbolic) -> list[Any]:
+    def strain(e: Symbolic) -> list[Expr]:
         """Return s - s0."""
         free = e.free if e.free is not None else (0,) * 6
         return [x - x0 for x, x0 in zip(FieldForce.deformation(e), free, strict=True)]
 
     @classmethod
-    def elastic(cls, e: Symbolic) -> list[Any]:
+    def elastic(cls, e: Symbolic) -> list[Expr]:
         """Return preload - K (s - s0)."""
         return pull_back(e.stiffness, cls.strain(e), e.preload)
 
     @staticmethod
-    def potential(e: Symbolic) -> Any:
+    def potential(e: Symbolic) -> Expr:
         return stored(e.stiffness, FieldForce.strain(e), e.preload)

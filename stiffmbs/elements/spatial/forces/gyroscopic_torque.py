@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any
 
 from ....reading.marker import MarkerReference
 from ....reading.units import si
-from ...element import Force, Symbolic
+from ...element import Expr, Force, Symbolic
 from ..body import Body
 
 
@@ -32,7 +31,7 @@ class GyroscopicTorque(Force):
         return {"i": "body"}
 
     @classmethod
-    def powers(cls, e: Symbolic) -> list[tuple[Any, Any]]:
+    def powers(cls, e: Symbolic) -> list[tuple[Expr, Expr]]:
         """Return the three torques on the body's angular velocities."""
         (a, b, c), (p, q, r) = e.moments, e.i.body.u[3:6]
         x, y, z = e.i.body.followed

@@ -9,7 +9,7 @@ from typing import Any, Literal
 from pydantic import Field, model_validator
 
 from ....reading.units import si
-from ...element import Symbolic
+from ...element import Expr, Symbolic
 from ...roads.envelope import Envelope
 from ...roads.road import above_zero, magnitude
 from ...tyres.coefficients import AnyProperties, TyreProperties
@@ -127,24 +127,24 @@ class MagicFormulaTyre(Tyre):
         return bool(e.properties.mode == "5" if e.turn_slip is None else e.turn_slip)
 
     @classmethod
-    def relaxation_lengths(cls, e: Symbolic, load: Any, camber: Any) -> tuple[Any, Any]:
+    def relaxation_lengths(cls, e: Symbolic, load: Expr, camber: Expr) -> tuple[Expr, Expr]:
         """Return the relaxation lengths of 5.2, by PTX1 to PTX3, and by PTY1, PTY2 and PKY3."""
         from ...tyres.magic_formula import relaxation_lengths
 
         return relaxation_lengths(e.properties, load, camber, e.named)
 
     @staticmethod
-    def unloaded_radius(e: Symbolic) -> Any:
+    def unloaded_radius(e: Symbolic) -> Expr:
         return e.properties.UNLOADED_RADIUS
 
     @staticmethod
-    def carried(e: Symbolic, deflection: Any, rate: Any) -> Any:
+    def carried(e: Symbolic, deflection: Expr, rate: Expr) -> Expr:
         p = e.properties
         spring = p.deflection_load or (lambda x: p.VERTICAL_STIFFNESS * x)
         return spring(deflection) + p.VERTICAL_DAMPING * rate
 
     @staticmethod
-    def rim_contact(e: Symbolic, deflection: Any, contact: ContactPoint) -> tuple[Any, Any] | None:
+    def rim_contact(e: Symbolic, deflection: Expr, contact: ContactPoint) -> tuple[Expr, Expr] | None:
         """Return the force of the rim and its overturning torque."""
         p, rim = e.properties, e.properties.bottoming
         if rim is None:
@@ -156,7 +156,7 @@ class MagicFormulaTyre(Tyre):
         return bottomed(e, rim, depth, contact.camber)
 
     @classmethod
-    def belt_couple(cls, e: Symbolic, touch: Touch) -> Any:
+    def belt_couple(cls, e: Symbolic, touch: Touch) -> Expr:
         """Return the gyroscopic couple of the belt, as the lateral deflection turns it about the heading.
 
         M = QTZ1 LGYR MBELT V dy/dt, with the rolling speed V and the deflection y; MSC Adams/Tire, PAC2002. Pacejka, Tire and
@@ -169,14 +169,14 @@ class MagicFormulaTyre(Tyre):
         return belt * rolling * touch.contact.spin * e.named(touch.rates[1])
 
     @classmethod
-    def rolling_radius(cls, e: Symbolic, deflection: Any) -> Any:
+    def rolling_radius(cls, e: Symbolic, deflection: Expr) -> Expr:
         """Return the effective rolling radius of 5.2 by BREFF, DREFF and FREFF of the property file."""
         from ...tyres.magic_formula import rolling_radius
 
         return rolling_radius(e.properties, deflection, e.named)
 
     @classmethod
-    def law(cls, e: Symbolic, rolling: Rolling) -> tuple[Any, Any, Any, Any, Any]:
+    def law(cls, e: Symbolic, rolling: Rolling) -> tuple[Expr, Expr, Expr, Expr, Expr]:
         """Return forces and moments by the Magic Formula."""
         from ...tyres.magic_formula import FORMULA, Slip, of_mode
         from ...tyres.magic_formula_6 import FORMULA as LATER
@@ -202,7 +202,7 @@ class MagicFormulaTyre(Tyre):
         return fx, hand * fy, hand * mx, my, hand * mz
 
     @staticmethod
-    def hand_of(e: Symbolic) -> Any:
+    def hand_of(e: Symbolic) -> Expr:
         """Return -1 for a tyre that is mirrored, by `hand`, by its side, or by the sign of USE_MODE, else 1."""
         other_side = e.side is not None and e.properties.side in ("left", "right") and e.side != e.properties.side
         return e.hand if other_side == e.properties.is_mirrored else -e.hand
@@ -212,7 +212,7 @@ NO_WIDTH = "1e-30"
 """Offset of divisors that contain half the difference of penetrations, m."""
 
 
-def bottomed(e: Symbolic, rim: Any, depth: Any, camber: Any) -> tuple[Any, Any]:
+def bottomed(e: Symbolic, rim: Any, depth: Expr, camber: Expr) -> tuple[Expr, Expr]:
     """Return the force of the rim (N) and its torque about the longitudinal axis (N m).
 
     The rim is a cylinder of the tyre's width W. With the penetration d at mid-width and the camber gamma, the

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from pydantic import Field
 
 from ....reading.units import si
-from ...element import Symbolic
+from ...element import Expr, Matrix, Symbolic
 from ...forces.contact import PressedSurfaces
 from ...roads.field import AnyRoad
 from ...roads.road import FlatRoad
@@ -19,10 +19,10 @@ from ..wrench import Pairs, velocity
 class Touch(NamedTuple):
     """Gap, m; outward normal of the road; velocity at the contact point relative to the road, m/s; factor on friction."""
 
-    gap: Any
-    normal: Any
-    velocity: Any
-    factor: Any
+    gap: Expr
+    normal: Matrix
+    velocity: Matrix
+    factor: Expr
 
 
 class RoadContact(PressedSurfaces):
@@ -64,11 +64,11 @@ class RoadContact(PressedSurfaces):
         return Touch(e.named(below - e.radius), n, e.named(v), e.road.factor(along, across))
 
     @classmethod
-    def gap(cls, e: Symbolic) -> Any:
+    def gap(cls, e: Symbolic) -> Expr:
         return cls.touch(e).gap
 
     @classmethod
-    def opening(cls, e: Symbolic) -> Any:
+    def opening(cls, e: Symbolic) -> Expr:
         """Return the velocity out of the road, m/s."""
         touch = cls.touch(e)
         return touch.velocity.dot(touch.normal)

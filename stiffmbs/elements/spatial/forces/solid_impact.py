@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Literal
 
 from pydantic import Field
 
 from ....reading.units import si
-from ...element import Symbolic
+from ...element import Expr, Matrix, Symbolic
 from ..impact import Impact, Touch
 from ..marker import Marker
 from ..wrench import along_axes, seen_from
@@ -29,14 +30,14 @@ class RoundSolid:
     Theory (2014), sec. 1.7 and 3.5. `ellipsoids`: squares of their semi-axes, m^2. `least`: half the smallest size, m.
     """
 
-    ellipsoids: list[list[Any]]
-    least: Any
+    ellipsoids: list[list[Expr]]
+    least: Expr
 
-    def support(self, n: Any) -> Any:
+    def support(self, n: Matrix) -> Expr:
         """Return the support function for a unit vector along its axes."""
         return sum(_reach(squares, n) for squares in self.ellipsoids)
 
-    def point(self, e: Symbolic, n: Any) -> Any:
+    def point(self, e: Symbolic, n: Matrix) -> Matrix:
         """Return the surface point with the normal n, from its centre, along its axes."""
         from sympy import Matrix
 
@@ -46,7 +47,7 @@ class RoundSolid:
         return Matrix([sum(along) for along in zip(*by_part, strict=True)])
 
 
-def round_solid(e: Symbolic, shape: Shape, size: Any) -> RoundSolid:
+def round_solid(e: Symbolic, shape: Shape, size: Expr) -> RoundSolid:
     """Return a solid with the given full sizes along its axes; the axis of a cylinder is z."""
     from sympy import Min
 
@@ -63,7 +64,7 @@ def round_solid(e: Symbolic, shape: Shape, size: Any) -> RoundSolid:
     return RoundSolid([[along[k] if k == row else edge**2 for k in range(3)] for row in range(3)], least)
 
 
-def _reach(squares: list[Any], n: Any) -> Any:
+def _reach(squares: list[Expr], n: Matrix) -> Expr:
     from sympy import sqrt
 
     return sqrt(sum(square * way**2 for square, way in zip(squares, n, strict=True)))
@@ -100,7 +101,7 @@ class SolidImpact(Impact):
         axes = e.named([own.dot(other) for own in e.j.axes for other in e.i.axes])
         n = e.common_normal(way, axes, first.ellipsoids, second.ellipsoids)
 
-        def distance(n: Any) -> Any:
+        def distance(n: Matrix) -> Expr:
             turned = [sum(n[row] * axes[3 * row + column] for row in range(3)) for column in range(3)]
             along = sum(part * own for part, own in zip(way, n, strict=True))
             return along - first.support(turned) - second.support(n)
@@ -110,7 +111,7 @@ class SolidImpact(Impact):
         return [Touch(gap, e.j.point + along_axes(local, e.j.axes), e.named(along_axes(n, e.j.axes)))]
 
     @classmethod
-    def limits(cls, e: Symbolic) -> Any:
+    def limits(cls, e: Symbolic) -> Sequence[Expr]:
         """Return an expression that is positive up to a penetration of a quarter of the smallest size."""
         from sympy import Min
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Literal
 
 from pydantic import Field, model_validator
 
 from ....reading.units import si
-from ...element import Symbolic
+from ...element import Matrix, Symbolic
 from ...forces.contact import ContactLaw
 from ..marker import Marker
 from ..wrench import Pairs, velocity
@@ -50,11 +50,11 @@ class SphereContact(ContactLaw):
         return self
 
     @staticmethod
-    def out_of(e: Symbolic) -> Any:
+    def out_of(e: Symbolic) -> Matrix:
         return e.j.z
 
     @classmethod
-    def normal(cls, e: Symbolic) -> Any:
+    def normal(cls, e: Symbolic) -> Matrix:
         """Return the outward unit normal of j's surface at the contact point."""
         outward = cls.outward(e)
         if not outward:

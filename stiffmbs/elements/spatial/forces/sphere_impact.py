@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Sequence
 
 from pydantic import Field
 
 from ....reading.units import si
-from ...element import Symbolic
+from ...element import Expr, Symbolic
 from ...forces.friction import magnitude
 from ..impact import Impact, Touch
 from ..marker import Marker
@@ -17,14 +17,14 @@ LEAST_DISTANCE = 1e-9
 """Offset of distances in quadrature, m, for finite derivatives at zero."""
 
 
-def above(x: Any) -> Any:
+def above(x: Expr) -> Expr:
     """Return max(x, 0)."""
     from sympy import Max
 
     return Max(x, 0)
 
 
-def length(*parts: Any) -> Any:
+def length(*parts: Expr) -> Expr:
     """Return the length of a vector, with a finite derivative at zero."""
     return magnitude(*parts, tiny=LEAST_DISTANCE**2)
 
@@ -42,7 +42,7 @@ class SphereImpact(Impact):
     radius: si.PositiveLength = Field(description="of the sphere, m")
 
     @classmethod
-    def way(cls, e: Symbolic) -> Any:
+    def way(cls, e: Symbolic) -> list[Expr]:
         """Return the vector from the nearest point of the solid to the sphere's centre, along the axes of j."""
         raise NotImplementedError
 
@@ -55,7 +55,7 @@ class SphereImpact(Impact):
         return [Touch(distance - e.radius, e.i.point - e.radius * normal, normal)]
 
     @classmethod
-    def limits(cls, e: Symbolic) -> Any:
+    def limits(cls, e: Symbolic) -> Sequence[Expr]:
         """Return the distance of the centre from the solid, less a thousandth of the radius."""
         return (length(*cls.way(e)) - e.radius / 1000,)
 
@@ -73,7 +73,7 @@ class SphereSphereImpact(SphereImpact):
     other_radius: si.PositiveLength = Field(description="of the sphere about j, m")
 
     @classmethod
-    def way(cls, e: Symbolic) -> Any:
+    def way(cls, e: Symbolic) -> list[Expr]:
         """Return the vector from the centre of j to that of i, along the axes of j."""
         return e.named(seen_from(e.i.point, e.j))
 
@@ -99,7 +99,7 @@ class SphereBoxImpact(SphereImpact):
     z: si.PositiveLength = Field(description="along z, m")
 
     @classmethod
-    def way(cls, e: Symbolic) -> Any:
+    def way(cls, e: Symbolic) -> list[Expr]:
         """Return the vector from the nearest point of the box to the sphere's centre, along the axes of j."""
         from sympy import sign
 
@@ -123,7 +123,7 @@ class SphereCylinderImpact(SphereImpact):
     cylinder_length: si.PositiveLength = Field(description="m")
 
     @classmethod
-    def way(cls, e: Symbolic) -> Any:
+    def way(cls, e: Symbolic) -> list[Expr]:
         """Return the vector from the nearest point of the cylinder to the sphere's centre, along the axes of j."""
         from sympy import sign
 

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
 
-from ...element import Symbolic
+from ...element import Expr, Symbolic
 from ...forces.torsion_spring import AngleSpring
 from ...initial_pose import InitialPose
 from ..branches import initially_without_axis
@@ -30,5 +29,5 @@ class TorsionSpring(AngleSpring[Marker]):
         yield from initially_without_axis(pose.model, self.i, self.j)
 
     @staticmethod
-    def angle(e: Symbolic) -> Any:
+    def angle(e: Symbolic) -> Expr:
         return SpatialJoint.angle(e)

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from pydantic import Field
 
 from ....reading.units import si
-from ...element import Symbolic
+from ...element import Expr, Symbolic
 from ..tyre import Rolling, Tyre
 
 
@@ -24,5 +22,5 @@ class VerticalTyre(Tyre):
     damping: si.Damping = Field(0.0, description="radial, N s/m")
 
     @staticmethod
-    def law(e: Symbolic, rolling: Rolling) -> tuple[Any, Any, Any, Any, Any]:
+    def law(e: Symbolic, rolling: Rolling) -> tuple[Expr, Expr, Expr, Expr, Expr]:
         return 0, 0, 0, 0, 0

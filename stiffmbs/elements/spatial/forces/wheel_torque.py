@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from pydantic import Field
 
 from ....reading.formula.field import TorqueOfMotion
-from ...element import Force, Symbolic
+from ...element import Expr, Force, Symbolic
 from ..marker import Marker
 from ..wrench import Pairs
 
@@ -24,7 +22,7 @@ class AxleForce(Force):
         return {"i": "along y", "j": "body"}
 
     @staticmethod
-    def spin(e: Symbolic) -> Any:
+    def spin(e: Symbolic) -> Expr:
         """Return the angular velocity of the wheel relative to j's body about its axle, rad/s; positive forward."""
         return e.named((e.i.omega - e.j.omega).dot(e.i.y))
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any, Literal, Self
+from typing import TYPE_CHECKING, Literal, Self
 
 from pydantic import Field
 
-from ...element import Symbolic
+from ...element import Expr, Symbolic
 from ...initial_pose import InitialPose
 from ..branches import initially_twisted
 from ..marker import Marker
@@ -50,6 +50,6 @@ class ConstantVelocity(SpatialJoint):
         yield from initially_twisted(pose.model, self.i, self.j, self.at_initial_pose(pose.model).axes == "opposite")
 
     @staticmethod
-    def position(e: Symbolic) -> Any:
+    def position(e: Symbolic) -> list[Expr]:
         first, second = e.i.x.dot(e.j.y), e.i.y.dot(e.j.x)
         return [*coincide(e.i, e.j), first - second if e.axes == "same" else first + second]

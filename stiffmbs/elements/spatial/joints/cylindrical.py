@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from pydantic import Field
 
-from ...element import Symbolic
+from ...element import Expr, Symbolic
 from ...forces.friction import Loads, magnitude
 from ..branches import initially_apart
 from ..marker import Marker
@@ -35,7 +35,7 @@ class Cylindrical(SpatialJoint):
         return {"i": "z", "j": "z"}
 
     @staticmethod
-    def position(e: Symbolic) -> Any:
+    def position(e: Symbolic) -> list[Expr]:
         return [*on_axis(e.i, e.j), *align(e.i, e.j)]
 
     @staticmethod

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from collections.abc import Sequence
+from typing import ClassVar
 
-from ...element import Symbolic
+from ...element import Expr, Symbolic
 from ..branches import initially_rotated
 from ..primitives import ORIENT, SpatialJoint, orient
 
@@ -28,5 +29,5 @@ class Orientation(SpatialJoint):
     initially: ClassVar = staticmethod(initially_rotated)
 
     @staticmethod
-    def position(e: Symbolic) -> Any:
+    def position(e: Symbolic) -> Sequence[Expr]:
         return orient(e.i, e.j)

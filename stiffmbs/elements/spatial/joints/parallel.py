@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import ClassVar
 
-from ...element import Symbolic
+from ...element import Expr, Symbolic
 from ..branches import initially_apart
 from ..primitives import ALIGN, SpatialJoint, align
 
@@ -25,5 +25,5 @@ class Parallel(SpatialJoint):
     initially: ClassVar = staticmethod(initially_apart)
 
     @staticmethod
-    def position(e: Symbolic) -> Any:
+    def position(e: Symbolic) -> list[Expr]:
         return align(e.i, e.j)

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import ClassVar
 
-from ...element import Symbolic
+from ...element import Expr, Symbolic
 from ..branches import initially_aligned
 from ..primitives import ACROSS, SpatialJoint, perpendicular
 
@@ -23,5 +23,5 @@ class Perpendicular(SpatialJoint):
     initially: ClassVar = staticmethod(initially_aligned)
 
     @staticmethod
-    def position(e: Symbolic) -> Any:
+    def position(e: Symbolic) -> list[Expr]:
         return [perpendicular(e.i.z, e.j.z)]

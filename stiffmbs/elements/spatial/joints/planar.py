@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from pydantic import Field
 
-from ...element import Symbolic
+from ...element import Expr, Symbolic
 from ..branches import initially_apart
 from ..marker import Marker
 from ..primitives import ALIGN, IN_PLANE, SpatialJoint, align, along
@@ -31,5 +31,5 @@ class Planar(SpatialJoint):
     j: Marker = Field(description="marker whose xy plane is the one to slide on")
 
     @staticmethod
-    def position(e: Symbolic) -> Any:
+    def position(e: Symbolic) -> list[Expr]:
         return [along(e.i, e.j, e.j.z), *align(e.i, e.j)]

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Self
+from collections.abc import Sequence
+from typing import Annotated, Self
 
 from pydantic import Field, field_validator, model_validator
 
 from ....reading.formula.field import FormulaOf
 from ....reading.formula.formula import Formula
 from ....reading.table import Table
-from ...element import Symbolic
+from ...element import Expr, Symbolic
 from ...joints.point_on_curve import CAM, SLOT, Curve, repeating
 from ..marker import Marker
 from ..primitives import IN_PLANE, along
@@ -54,7 +55,7 @@ class PointOnCurve(Curve[Marker]):
         return self
 
     @staticmethod
-    def position(e: Symbolic) -> Any:
+    def position(e: Symbolic) -> Sequence[Expr]:
         """Return y - Y(x) of a slot or rho - R(theta) of a cam, and the residual along z."""
         x, y, z = e.named([along(e.i, e.j, axis) for axis in (e.j.x, e.j.y, e.j.z)])
         if e.y is not None:

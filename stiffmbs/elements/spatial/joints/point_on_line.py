@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from pydantic import Field
 
-from ...element import Symbolic
+from ...element import Expr, Symbolic
 from ..marker import Marker
 from ..primitives import ON_AXIS, SpatialJoint, on_axis
 
@@ -32,5 +30,5 @@ class PointOnLine(SpatialJoint):
         return {"i": "point"}
 
     @staticmethod
-    def position(e: Symbolic) -> Any:
+    def position(e: Symbolic) -> list[Expr]:
         return on_axis(e.i, e.j)

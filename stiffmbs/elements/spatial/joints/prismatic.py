@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from pydantic import Field
 
-from ...element import Symbolic
+from ...element import Expr, Symbolic
 from ...forces.friction import Loads, magnitude
 from ..branches import initially_askew
 from ..marker import Marker
@@ -32,7 +32,7 @@ class Prismatic(SpatialJoint):
     j: Marker = Field(description="marker whose z axis is the line to slide along")
 
     @staticmethod
-    def position(e: Symbolic) -> Any:
+    def position(e: Symbolic) -> list[Expr]:
         return [*on_axis(e.i, e.j), *orient(e.i, e.j)]
 
     @staticmethod

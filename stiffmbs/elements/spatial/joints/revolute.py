@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import ClassVar
 
-from ...element import Symbolic
+from ...element import Expr, Symbolic
 from ...forces.friction import Loads, magnitude
 from ..branches import initially_apart
 from ..primitives import ALIGN, COINCIDE, SpatialJoint, align, coincide
@@ -29,7 +29,7 @@ class Revolute(SpatialJoint):
         return {"i": "z", "j": "z"}
 
     @staticmethod
-    def position(e: Symbolic) -> Any:
+    def position(e: Symbolic) -> list[Expr]:
         return [*coincide(e.i, e.j), *align(e.i, e.j)]
 
     @staticmethod

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from pydantic import Field
 
-from ...element import Symbolic
+from ...element import Expr, Symbolic
 from ...joints.distance import Rod
 from ..marker import Marker
 from ..primitives import IN_PLANE, along
@@ -31,11 +29,11 @@ class RevoluteSpherical(Rod[Marker]):
     j: Marker = Field(description="marker whose z axis is the hinge's")
 
     @staticmethod
-    def angle_1(e: Symbolic) -> Any:
+    def angle_1(e: Symbolic) -> Expr:
         """Return the angle of the rod about the hinge axis j.z, from j.x."""
         d = e.i.point - e.j.point
         return e.angle(d.dot(e.j.y), d.dot(e.j.x))
 
     @staticmethod
-    def position(e: Symbolic) -> Any:
+    def position(e: Symbolic) -> list[Expr]:
         return [*Rod.position(e), along(e.i, e.j, e.j.z)]

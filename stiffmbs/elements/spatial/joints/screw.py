@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any, ClassVar
+from typing import ClassVar
 
-from ...element import Symbolic
+from ...element import Expr, Symbolic
 from ...initial_pose import InitialPose
 from ..branches import initially_apart
 from ..primitives import ALIGN, ON_AXIS, SpatialJoint, align, on_axis
@@ -35,5 +35,5 @@ class Screw(Thread):
         yield from initially_apart(pose.model, self.i, self.j)
 
     @classmethod
-    def position(cls, e: Symbolic) -> Any:
+    def position(cls, e: Symbolic) -> list[Expr]:
         return [*on_axis(e.i, e.j), *align(e.i, e.j), *super().position(e)]

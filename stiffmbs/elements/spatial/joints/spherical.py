@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Sequence
 
-from ...element import Symbolic
+from ...element import Expr, Symbolic
 from ...forces.friction import Loads, magnitude
 from ..primitives import COINCIDE, SpatialJoint, coincide
 
@@ -26,7 +26,7 @@ class Spherical(SpatialJoint):
         return {"i": "point", "j": "point"}
 
     @staticmethod
-    def position(e: Symbolic) -> Any:
+    def position(e: Symbolic) -> Sequence[Expr]:
         return coincide(e.i, e.j)
 
     @staticmethod

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Sequence
 
-from ...element import Symbolic
+from ...element import Expr, Symbolic
 from ...joints.point_on_curve import Curve
 from ..marker import Marker
 from ..primitives import IN_PLANE, along, perpendicular
@@ -24,7 +24,7 @@ class TangentToCurve(Curve[Marker]):
     equations = (*Curve.equations, *IN_PLANE, "tangent")
 
     @staticmethod
-    def position(e: Symbolic) -> Any:
+    def position(e: Symbolic) -> Sequence[Expr]:
         """Return y - Y(x) or rho - R(theta), the distance from the plane, and x_i . n with its gradient n."""
         x, y = (e.variable(along(e.i, e.j, axis)) for axis in (e.j.x, e.j.y))
         curve = e.named(_curve(e, x, y))
@@ -32,7 +32,7 @@ class TangentToCurve(Curve[Marker]):
         return [curve, along(e.i, e.j, e.j.z), perpendicular(e.i.x, gradient)]
 
 
-def _curve(e: Symbolic, x: Any, y: Any) -> Any:
+def _curve(e: Symbolic, x: Expr, y: Expr) -> Expr:
     if e.y is not None:
         return y - e.y(x)
     from sympy import atan2, sqrt

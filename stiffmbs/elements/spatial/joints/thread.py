@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from pydantic import Field
 
 from ....reading.units import si
-from ...element import Symbolic
+from ...element import Expr, Symbolic
 from ...joints.relation import OffsetConstraint
 from ..marker import Marker
 from ..primitives import SpatialJoint
@@ -35,5 +35,5 @@ class Thread(OffsetConstraint):
     offset: si.Length | None = Field(None, description="s where the angle is zero, m; as drawn unless given")
 
     @staticmethod
-    def relation(e: Symbolic) -> Any:
+    def relation(e: Symbolic) -> Expr:
         return SpatialJoint.displacement(e) - e.pitch / (2 * math.pi) * SpatialJoint.angle(e) - e.offset

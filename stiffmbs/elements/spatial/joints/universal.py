@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from collections.abc import Sequence
+from typing import ClassVar
 
 from pydantic import Field
 
-from ...element import Symbolic
+from ...element import Expr, Symbolic
 from ..branches import initially_aligned
 from ..marker import Marker
 from ..primitives import ACROSS, COINCIDE, SpatialJoint, coincide, perpendicular
@@ -35,15 +36,15 @@ class Universal(SpatialJoint):
     j: Marker = Field(description="marker of the second body, z along its arm")
 
     @staticmethod
-    def angle_1(e: Symbolic) -> Any:
+    def angle_1(e: Symbolic) -> Expr:
         """Return the angle of the cross about the arm j.z, from j.x to i.z."""
         return e.angle(e.i.z.dot(e.j.y), e.i.z.dot(e.j.x))
 
     @staticmethod
-    def angle_2(e: Symbolic) -> Any:
+    def angle_2(e: Symbolic) -> Expr:
         """Return the angle of marker i about its arm i.z relative to the cross, from j.z to i.x."""
         return e.angle(-e.i.y.dot(e.j.z), e.i.x.dot(e.j.z))
 
     @staticmethod
-    def position(e: Symbolic) -> Any:
+    def position(e: Symbolic) -> Sequence[Expr]:
         return [*coincide(e.i, e.j), perpendicular(e.i.z, e.j.z)]
