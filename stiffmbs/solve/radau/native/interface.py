@@ -76,7 +76,7 @@ def _stepped(x):
     """Take a step, up to just before an event if the change of law makes its error estimate invalid.
 
     The tolerance of the estimate, of order s, is that of smooth solutions. A step over a jump has to stay within the part
-    of the requested tolerance that Newton's iteration may leave, because its estimate is then no bound of the error.
+    of the requested tolerance that the iteration may leave. Its estimate does not bound its error.
     """
     for _ in range(MOST_RETAKEN):
         begin = x.t
