@@ -19,14 +19,13 @@ from ..linear_analysis.stability import lowest
 from ..linear_analysis.state_space import state_matrix
 from ..linear_analysis.tangent_space import linearised
 from ..results.scales import ROUNDING
+from .far_away import far_away
 
 MOST_FOR_EIGENVALUES = 1500
 """Largest number of velocities for eigenvalues (dense matrices)."""
 BRANCH = 1e-3
 """Move along an unstable direction, relative to the mechanism's size, or rad, from which a stable pose is sought."""
 MOST_BRANCHES = 3
-FAR = 0.2
-"""Distance from the described pose, relative to the mechanism's size, above which a note reports it."""
 SAME_MOTION = 1e-8
 """Singular value of free motions, relative to the largest, up to which they are linearly dependent."""
 LARGE_PART = 0.5
@@ -109,20 +108,6 @@ def moving_in_equilibrium(dynamics: Dynamics, start: InitialValues, t: float) ->
     return replace(start, q=found.q, u=state.u.copy(), acceleration=acceleration, lam=lam, moved=(), notes=notes)
 
 
-def far_away(dynamics: Dynamics, start: InitialValues, found: Equilibrium) -> Iterator[str]:
-    """Yield a note if the equilibrium is far from the described pose, as of a car that has rolled there."""
-    system, of_body = dynamics.system, dynamics.system.of_body
-    pose = slice(0, of_body.n_q * len(system.bodies))
-    places, described = (q[pose].reshape(-1, of_body.n_q)[:, : of_body.linear] for q in (found.q, start.q))
-    moved = np.linalg.norm(places - described, axis=1)
-    body = int(np.argmax(moved))
-    if moved[body] > FAR * system.size:
-        yield (
-            f"the equilibrium that the run starts in lies {moved[body]:.3g} m away from the described pose ({system.bodies[body]}): "
-            "where that matters, as on a road with bumps, describe the bodies where they come to lie right"
-        )
-
-
 def _settled(found: Equilibrium, start: InitialValues, notes: Sequence[str], free: Sequence[str] = ()) -> Settled:
     resting = replace(
         start, q=found.q, u=found.u, acceleration=found.acceleration, lam=found.lam, moved=(), notes=tuple(notes)
@@ -156,7 +141,7 @@ def _growth(dynamics: Dynamics, t: float) -> Iterator[str]:
 def _is_conservative(dynamics: Dynamics, t: float) -> bool:
     """Return True if no force depends on velocities and the stiffness is symmetric."""
     stiffness = balance_at(dynamics, t, at_rest(dynamics.system.of_body.dimensions)).stiffness
-    if np.any(forces_by_velocity(dynamics).data):
+    if abs(forces_by_velocity(dynamics)).max():
         return False
     return bool(abs(stiffness - stiffness.T).max() <= ROUNDING * abs(stiffness).max())
 

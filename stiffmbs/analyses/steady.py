@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,11 +19,13 @@ from ..equilibria.found_speeds import with_found_spins
 from ..equilibria.parameters import EQUILIBRIA
 from ..equilibria.steady_motion import SteadyMotion
 from ..errors import InputError, SolverError
-from ..linear_analysis.stability import eigenvalues_beside
 from ..model.model_data import ModelData
 from ..model.settings import SteadyMotion as Described
 from ..reading.did_you_mean import did_you_mean
-from .settled import GROWING, MOST_FOR_EIGENVALUES, Settled, far_away
+from .far_away import far_away
+
+if TYPE_CHECKING:
+    from .settled import Settled
 
 MOTION_AHEAD = 1e-3
 """Distance along a motion, rad or parts of the mechanism's size, after which the balance of forces is checked."""
@@ -39,6 +42,8 @@ def settled_in_motion(
     determine. Raises InputError if the motion has another number of dimensions, or a body cannot spin. Raises
     SolverError if none is found, a joint prevents the motion, or the forces do not stay in balance.
     """
+    from .settled import Settled  # a run that starts in the motion does not load linear analyses
+
     found = _found(model, dynamics, start, t, described)
     values = _eigenvalues(dynamics, t, found)
     notes = (_stability(values, dynamics.system.n_u),)
@@ -104,6 +109,9 @@ def _moving(start: InitialValues, found: Equilibrium, notes: tuple[str, ...]) ->
 
 def _eigenvalues(dynamics: Dynamics, t: float, found: Equilibrium) -> np.ndarray | None:
     """Return the eigenvalues of perturbations of the steady motion, or None if they cannot be computed."""
+    from ..linear_analysis.stability import eigenvalues_beside
+    from .settled import MOST_FOR_EIGENVALUES
+
     if dynamics.system.n_u > MOST_FOR_EIGENVALUES:
         return None
     state = dynamics.state
@@ -113,6 +121,8 @@ def _eigenvalues(dynamics: Dynamics, t: float, found: Equilibrium) -> np.ndarray
 
 
 def _stability(values: np.ndarray | None, n_u: int) -> str:
+    from .settled import GROWING, MOST_FOR_EIGENVALUES
+
     if values is None:
         reason = f"it has {n_u} velocities" if n_u > MOST_FOR_EIGENVALUES else "its equations change along the motion"
         return f"whether the steady motion is stable was not looked at: {reason}"

@@ -24,11 +24,12 @@ if TYPE_CHECKING:
     from .elimination.eliminated import Eliminated
 
 T = TypeVar("T")
-ASSEMBLE, CORRECT_VELOCITIES, ACCELERATE, CONTRADICTING, OUTPUT_POINTS, ENERGIES = together(
+ASSEMBLE, CORRECT_VELOCITIES, ACCELERATE, FACTOR_AND_SOLVE, CONTRADICTING, OUTPUT_POINTS, ENERGIES = together(
     "stiffmbs.dynamics.native.dynamics",
     assemble="int64(float64, float64, int64, int64*)",
     correct_velocities="int64(float64, int64*)",
     accelerate="int64(float64, float64*, int64*)",
+    factor_and_solve="int64(float64*, int64*)",
     contradicting="int64(int64, float64*, float64*, float64, float64*, float64*, float64*, float64, float64*, float64, float64, float64*, int64*, int64*)",
     output_points="int64(int64, float64*, int64, float64, int64, float64*, float64*, float64*, float64*, float64*, float64*, int64*)",
     energies="void(int64, int64, float64*, float64*, int64, float64*, int64, int64*, int64, int64*, int64, int64*, float64*, float64*, float64*)",

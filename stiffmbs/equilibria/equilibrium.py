@@ -16,13 +16,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import block_array, csc_array, diags_array, hstack
-from scipy.sparse.linalg import splu
 
 from ..compile.system import System
 from ..dynamics.dynamics import Dynamics
 from ..errors import SolverError
 from .force_balance import Balance, balance_at, moved, way
+from .matrices import diagonal, joined, solution, zeros
 from .parameters import EQUILIBRIA
 from .steady_motion import SteadyMotion, at_rest
 
@@ -139,24 +138,33 @@ def moved_on(dynamics: Dynamics, t: float, known: Balance, q: np.ndarray, move: 
 def newton_move(dynamics: Dynamics, shift: float, known: Balance, whole: np.ndarray) -> np.ndarray:
     """Return Newton's move in a step with the displacement `whole` so far; `shift` is sqrt(s), speeds come last."""
     system, jacobian, n = dynamics.system, known.jacobian, len(known.left)
-    inertia = diags_array(np.append(shift**2 * system.mass, np.where(system.algebraic, 0.0, shift)))
+    inertia = diagonal(system, np.append(shift**2 * system.mass, np.where(system.algebraic, 0.0, shift)))
     if system.states:
-        dragged = block_array(
-            [[csc_array((system.n_u, n))], [hstack([known.dragged, csc_array((n - system.n_u,) * 2)])]]
+        n_u, n_states = system.n_u, len(system.states)
+        inertia = inertia - shift * joined(
+            [
+                [zeros(system, n_u, n_u), zeros(system, n_u, n_states)],
+                [known.dragged, zeros(system, n_states, n_states)],
+            ]
         )
-        inertia = csc_array(inertia - shift * dragged)
-    changes, held = inertia + known.stiffness, jacobian
-    if known.speeds is not None:
-        inertia = csc_array(hstack([inertia, shift * known.speeds.momentum]))
-        changes = hstack([changes, known.speeds.effect + shift * known.speeds.momentum])
-        held = block_array([[jacobian, None], [known.speeds.held, csc_array((len(known.speeds.sizes),) * 2)]])
-    matrix = block_array([[changes, known.reactions], [held, None]], format="csc")
-    right = np.concatenate([known.left - inertia @ whole, np.zeros(held.shape[0])])
-    try:
-        found: np.ndarray = splu(matrix).solve(right)[: held.shape[1]]
-    except RuntimeError:  # exactly singular: a larger shift is needed
-        return np.full(held.shape[1], np.inf)
-    return found
+    changes, rows = inertia + known.stiffness, jacobian.shape[0]
+    right = known.left - inertia @ whole[:n]
+    if known.speeds is None:
+        matrix = joined([[changes, known.reactions], [jacobian, zeros(system, rows, rows)]])
+    else:
+        momentum = shift * known.speeds.momentum
+        right -= momentum @ whole[n:]
+        matrix = joined(
+            [
+                [changes, known.reactions, known.speeds.effect + momentum],
+                [jacobian, None, None],
+                [known.speeds.held, None, np.zeros((len(whole) - n,) * 2)],
+            ]
+        )
+    found = solution(dynamics, matrix, np.append(right, np.zeros(rows + len(whole) - n)), n)
+    if found is None:  # a larger shift is needed
+        return np.full(len(whole), np.inf)
+    return np.append(found[:n], found[n + rows :])
 
 
 def _polished(dynamics: Dynamics, t: float, known: Balance) -> tuple[Balance, int]:

@@ -5,15 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.sparse import block_array, csc_array, diags_array, vstack
-from scipy.sparse.linalg import splu
 
 from ..compile.system import System
-from ..compile.terms import TERM_AXES
 from ..dynamics.algebraic_states import failure
 from ..dynamics.dynamics import Dynamics
 from ..errors import SolverError
 from .found_speeds import FoundSpeeds, found_speeds
+from .matrices import Matrix, diagonal, joined, matrix_of, product, scaled, solution, term_matrix, zeros
 from .parameters import EQUILIBRIA
 from .steady_motion import SteadyMotion
 
@@ -39,10 +37,10 @@ class Balance:
     lam: np.ndarray
     largest: float
     allowed: np.ndarray
-    stiffness: csc_array
-    jacobian: csc_array
-    reactions: csc_array
-    dragged: csc_array
+    stiffness: Matrix
+    jacobian: Matrix
+    reactions: Matrix
+    dragged: Matrix
     motion: SteadyMotion
     negligible: np.ndarray | float
     speeds: FoundSpeeds | None = None
@@ -84,7 +82,7 @@ def balance_at(dynamics: Dynamics, t: float, motion: SteadyMotion) -> Balance:
     roots = np.sqrt(system.mass)  # the balance is a projection in this metric, which does not increase rounding
     passed_on = np.minimum(roots * np.max(rounding / roots, initial=0.0), EQUILIBRIA.passed_on * largest)
     negligible = system.mass * system.per_velocity(system.size, 1.0) * EQUILIBRIA.slowest**2
-    left = system.mass * _beside_the_constraints(acceleration - steady, system.mass, jacobian)
+    left = system.mass * _beside_the_constraints(dynamics, acceleration - steady, jacobian)
     found = Balance(
         left,
         lam,
@@ -93,7 +91,7 @@ def balance_at(dynamics: Dynamics, t: float, motion: SteadyMotion) -> Balance:
         stiffness,
         jacobian,
         jacobian.T,
-        csc_array((0, len(left))),
+        zeros(system, 0, len(left)),
         motion,
         negligible,
     )
@@ -104,14 +102,16 @@ def balance_at(dynamics: Dynamics, t: float, motion: SteadyMotion) -> Balance:
     return replace(found, speeds=found_speeds(dynamics, motion, forces_by_velocity(dynamics)))
 
 
-def _beside_the_constraints(acceleration: np.ndarray, mass: np.ndarray, jacobian: csc_array) -> np.ndarray:
+def _beside_the_constraints(dynamics: Dynamics, acceleration: np.ndarray, jacobian: Matrix) -> np.ndarray:
     """Remove accelerations that constraints impose, such as those of a drive that accelerates at the start."""
-    asked = jacobian @ acceleration
+    asked, mass = jacobian @ acceleration, dynamics.system.mass
     if np.all(np.abs(asked) <= EQUILIBRIA.no_effect * (abs(jacobian) @ np.abs(acceleration))):
         return acceleration
-    matrix = block_array([[diags_array(mass), jacobian.T], [jacobian, None]], format="csc")
-    found: np.ndarray = splu(matrix).solve(np.concatenate([mass * acceleration, 0.0 * asked]))
-    return found[: len(mass)]
+    matrix = joined(
+        [[diagonal(dynamics.system, mass), jacobian.T], [jacobian, zeros(dynamics.system, *(asked.shape * 2))]]
+    )
+    found = solution(dynamics, matrix, np.concatenate([mass * acceleration, 0.0 * asked]), len(mass))
+    return np.full(len(mass), np.nan) if found is None else found[: len(mass)]
 
 
 def with_states(dynamics: Dynamics, known: Balance, rates: np.ndarray, motion: SteadyMotion, t: float) -> Balance:
@@ -120,16 +120,16 @@ def with_states(dynamics: Dynamics, known: Balance, rates: np.ndarray, motion: S
     own, active = slice(system.first_state, None), np.flatnonzero(system.active)
     by_velocity = _position_rates(dynamics)
     of_rates, of_states = (
-        sparse_term(dynamics, "rate_q")[own],
-        (sparse_term(dynamics, "f_q") - sparse_term(dynamics, "G_lam"))[:, own],
+        term_matrix(dynamics, "rate_q")[own],
+        (term_matrix(dynamics, "f_q") - term_matrix(dynamics, "G_lam"))[:, own],
     )
-    by_pose, of_velocities = -of_rates @ by_velocity, sparse_term(dynamics, "rate_u")[own]
-    if not motion.is_rest:
+    by_pose, of_velocities = -product(of_rates, by_velocity), term_matrix(dynamics, "rate_u")[own]
+    if motion.changes_with_pose(system):
         velocity, _ = motion.derivatives(dynamics, t, by_velocity)
-        by_pose = by_pose - of_velocities @ velocity
+        by_pose = by_pose - product(of_velocities, velocity)
     stiffness = [[known.stiffness, -of_states], [by_pose, -of_rates[:, own]]]
-    by_states = sparse_term(dynamics, "C_x")[active][:, own]
-    reactions = [[known.reactions], [-sparse_term(dynamics, "rate_lam")[own][:, active]]]
+    by_states = term_matrix(dynamics, "C_x")[active][:, own]
+    reactions = [[known.reactions], [-term_matrix(dynamics, "rate_lam")[own][:, active]]]
     sizes = system.per_coordinate(system.size, 1.0)
     sizes[own] = system.state_scales
     allowed = EQUILIBRIA.balanced * (abs(of_rates) @ np.maximum(sizes, np.abs(q)) + EQUILIBRIA.slow_state * sizes[own])
@@ -138,25 +138,25 @@ def with_states(dynamics: Dynamics, known: Balance, rates: np.ndarray, motion: S
         known,
         left=np.append(known.left, rates),
         allowed=np.append(np.maximum(known.allowed, rounding), allowed),
-        stiffness=block_array(stiffness, format="csc"),
-        jacobian=block_array([[known.jacobian, by_states]], format="csc"),
-        reactions=block_array(reactions, format="csc"),
-        dragged=csc_array(diags_array(np.where(system.algebraic, 0.0, 1.0)) @ of_velocities),
+        stiffness=joined(stiffness),
+        jacobian=joined([[known.jacobian, by_states]]),
+        reactions=joined(reactions),
+        dragged=scaled(np.where(system.algebraic, 0.0, 1.0), of_velocities),
         negligible=0.0,
     )
 
 
-def forces_by_velocity(dynamics: Dynamics) -> csc_array:
+def forces_by_velocity(dynamics: Dynamics) -> Matrix:
     """Return derivatives of forces and rates of states (set ``tangent``) by velocities, shape (n_u + states, n_u)."""
-    of_rates = sparse_term(dynamics, "rate_u")[slice(dynamics.system.first_state, None)]
-    return csc_array(vstack([sparse_term(dynamics, "f_u"), of_rates]))
+    of_rates = term_matrix(dynamics, "rate_u")[slice(dynamics.system.first_state, None)]
+    return joined([[term_matrix(dynamics, "f_u")], [of_rates]])
 
 
-def _position_rates(dynamics: Dynamics) -> csc_array:
+def _position_rates(dynamics: Dynamics) -> Matrix:
     """Return Z of q' = Z u for all coordinates."""
     system = dynamics.system
     q, u = system.straight
-    return sparse_term(dynamics, "Z") + csc_array((np.ones(len(q)), (q, u)), shape=(system.n_q, system.n_u))
+    return term_matrix(dynamics, "Z") + matrix_of(system, np.ones(len(q)), q, u, (system.n_q, system.n_u))
 
 
 def way(system: System, start: np.ndarray, there: np.ndarray) -> np.ndarray:
@@ -171,23 +171,14 @@ def moved(system: System, q: np.ndarray, move: np.ndarray) -> np.ndarray:
     return there
 
 
-def _derivatives(dynamics: Dynamics, t: float, motion: SteadyMotion, lam: np.ndarray) -> tuple[csc_array, csc_array]:
+def _derivatives(dynamics: Dynamics, t: float, motion: SteadyMotion, lam: np.ndarray) -> tuple[Matrix, Matrix]:
     """Return the stiffness -f_q + d(J^T lam)/dq with velocity and inertia terms, and J of the independent equations."""
     system, state = dynamics.system, dynamics.state
     state.lam[: system.n_c] = lam
     state.evaluate("tangent", t)
     rates = _position_rates(dynamics)
-    stiffness = (sparse_term(dynamics, "G_lam") - sparse_term(dynamics, "f_q")) @ rates
-    if not motion.is_rest:
+    stiffness = product(term_matrix(dynamics, "G_lam") - term_matrix(dynamics, "f_q"), rates)
+    if motion.changes_with_pose(system):
         velocity, acceleration = motion.derivatives(dynamics, t, rates)
-        stiffness = stiffness - sparse_term(dynamics, "f_u") @ velocity + diags_array(system.mass) @ acceleration
-    return csc_array(stiffness), sparse_term(dynamics, "J")[np.flatnonzero(system.active)]
-
-
-def sparse_term(dynamics: Dynamics, name: str) -> csc_array:
-    """Return a matrix term of the set ``tangent`` from its last evaluation."""
-    system = dynamics.system
-    term = system.term("tangent", name)
-    axes = TERM_AXES[name]
-    shape = system.extent(axes[0]), system.extent(axes[1])
-    return csc_array((dynamics.state.values["tangent"][term.source], (term.row, term.column)), shape=shape)
+        stiffness = stiffness - product(term_matrix(dynamics, "f_u"), velocity) + scaled(system.mass, acceleration)
+    return stiffness, term_matrix(dynamics, "J")[np.flatnonzero(system.active)]

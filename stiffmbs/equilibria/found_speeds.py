@@ -9,9 +9,9 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.sparse import csc_array
 
 from ..dynamics.dynamics import Dynamics
+from .matrices import Matrix, dense
 from .parameters import EQUILIBRIA
 from .steady_motion import SteadyMotion
 
@@ -32,19 +32,19 @@ class FoundSpeeds:
     sizes: np.ndarray
 
 
-def with_found_spins(dynamics: Dynamics, motion: SteadyMotion, by_velocity: csc_array) -> SteadyMotion:
+def with_found_spins(dynamics: Dynamics, motion: SteadyMotion, by_velocity: Matrix) -> SteadyMotion:
     """Return a motion whose spins are unknown if forces or states, but no rolling constraints, depend on them.
 
     `by_velocity` of shape (n_u + states, n_u): derivatives of the forces and of the rates of states.
     """
     if motion.is_rest or not len(motion.spinning):
         return motion
-    effects = abs(by_velocity).max(axis=0).toarray().ravel()
+    effects = dense(abs(by_velocity).max(axis=0)).ravel()
     depends = effects[motion.spinning] > EQUILIBRIA.no_effect * np.max(effects, initial=0.0)
     return replace(motion, found=np.flatnonzero(depends & ~motion.told_by_rolling(dynamics)))
 
 
-def found_speeds(dynamics: Dynamics, motion: SteadyMotion, by_velocity: csc_array) -> FoundSpeeds:
+def found_speeds(dynamics: Dynamics, motion: SteadyMotion, by_velocity: Matrix) -> FoundSpeeds:
     """Return the derivatives of the balance by the unknown speeds; parameters as for `with_found_spins`."""
     mass, by = dynamics.system.mass[:, None], motion.by_speeds(dynamics)
     others = np.zeros((by_velocity.shape[0] - len(by), by.shape[1]))

@@ -12,11 +12,11 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from scipy.sparse import block_diag, csc_array
 
 from ..compile.quaternions import CONJUGATE, rotated
 from ..compile.system import System
 from ..dynamics.dynamics import Dynamics
+from .matrices import Matrix, block_diagonal, dense, matrix_of, zeros
 from .parameters import EQUILIBRIA
 
 
@@ -55,6 +55,11 @@ class SteadyMotion:
     def is_rest(self) -> bool:
         """True if all velocities are zero."""
         return not (np.any(self.velocity) or np.any(self.rotation) or np.any(self.spins))
+
+    def changes_with_pose(self, system: System) -> bool:
+        """Return True if velocities or accelerations depend on the pose: the bodies rotate, or rolling makes them spin."""
+        rolls = len(self.spinning) > 0 and not np.all(system.holonomic)
+        return not self.is_rest and (rolls or bool(np.any(self.rotation)))
 
     @property
     def n_found(self) -> int:
@@ -150,11 +155,11 @@ class SteadyMotion:
                 spins[rolls] -= np.linalg.lstsq(across[:, rolls], missing, rcond=EQUILIBRIA.no_effect)[0]
             state.u[self.spinning] += spins
 
-    def turning(self, system: System) -> csc_array:
+    def turning(self, system: System) -> Matrix:
         """Return W x for displacements and rotations of all bodies in ground axes, shape (n_u, n_u)."""
         turn = _matrix(self.rotation)
         of_body = [turn, np.zeros((1, 1))] if system.of_body.linear == 2 else [turn, turn]
-        return csc_array(block_diag(of_body * len(system.bodies)))
+        return block_diagonal(system, of_body * len(system.bodies))
 
     def acceleration(self, dynamics: Dynamics) -> np.ndarray:
         """Return u' of the current pose and velocities."""
@@ -170,51 +175,51 @@ class SteadyMotion:
             found[:, linear:] = np.cross(own, rates[:, linear:] - own)
         return found.ravel()
 
-    def derivatives(self, dynamics: Dynamics, t: float, rates: csc_array) -> tuple[csc_array, csc_array]:
-        """Return derivatives of velocities and accelerations by displacements, shapes (n_u, n_u).
+    def derivatives(self, dynamics: Dynamics, t: float, rates: Matrix) -> tuple[Matrix, Matrix]:
+        """Return derivatives of velocities and accelerations by displacements, shapes (n_u, n_u), if there are any.
 
         `rates` of shape (n_q, n_u): Z of q' = Z u.
         """
         system, u = dynamics.system, dynamics.state.u
         turning, by_move = _matrix(self.rotation), self.by_move(dynamics)
-        if not np.any(self.rotation) and (np.all(system.holonomic) or not len(self.spinning)):
-            return by_move, by_move
         if system.of_body.linear == 2:
-            return by_move, csc_array(by_move @ by_move)
+            return by_move, by_move @ by_move
         own, whole = self._own(dynamics), u.reshape(-1, 6)[:, 3:]
-        accelerated = csc_array(
-            block_diag(
-                [p for w, v in zip(own, whole, strict=True) for p in (turning @ turning, _matrix(w - v) @ _matrix(w))]
-            )
+        accelerated = block_diagonal(
+            system,
+            [p for w, v in zip(own, whole, strict=True) for p in (turning @ turning, _matrix(w - v) @ _matrix(w))],
         )
         if not len(self.spinning):
             return by_move, accelerated
         spins = self._spins_by_move(dynamics, t, rates, by_move)
-        into = csc_array((np.ones(len(self.spinning)), (self.spinning, np.arange(len(self.spinning)))), (system.n_u, len(self.spinning)))  # fmt: skip
-        gyroscopic = csc_array(block_diag([part for w in own for part in (np.zeros((3, 3)), _matrix(w))]))
-        return csc_array(by_move + into @ spins), csc_array(accelerated + gyroscopic @ into @ spins)
+        count = len(self.spinning)
+        into = matrix_of(system, np.ones(count), self.spinning, np.arange(count), (system.n_u, count))
+        gyroscopic = block_diagonal(system, [part for w in own for part in (np.zeros((3, 3)), _matrix(w))])
+        return by_move + into @ spins, accelerated + gyroscopic @ into @ spins
 
-    def by_move(self, dynamics: Dynamics) -> csc_array:
+    def by_move(self, dynamics: Dynamics) -> Matrix:
         """Return W x for displacements in ground axes and rotations in body axes, shape (n_u, n_u).
 
         It is the derivative of velocities by displacements without those of spins, and of accelerations by velocities.
         """
         if not np.any(self.rotation):
-            return csc_array((dynamics.system.n_u,) * 2)
+            return zeros(dynamics.system, dynamics.system.n_u, dynamics.system.n_u)
         turning, own = _matrix(self.rotation), self._own(dynamics)
         if dynamics.system.of_body.linear == 2:
-            return csc_array(block_diag([block_diag([turning, np.zeros((1, 1))])] * len(own)))
-        return csc_array(block_diag([part for w in own for part in (turning, _matrix(w))]))
+            return block_diagonal(dynamics.system, [turning, np.zeros((1, 1))] * len(own))
+        return block_diagonal(dynamics.system, [part for w in own for part in (turning, _matrix(w))])
 
-    def _spins_by_move(self, dynamics: Dynamics, t: float, rates: csc_array, by_move: csc_array) -> csc_array:
+    def _spins_by_move(self, dynamics: Dynamics, t: float, rates: Matrix, by_move: Matrix) -> Matrix:
         """Return derivatives of the spins that rolling determines by displacements."""
         state = dynamics.state
         state.evaluate("tangent", t)
         rows, across = self._rolling(dynamics, "tangent")
-        missing = (
-            state.matrix("tangent", "V_q")[~dynamics.system.holonomic] @ rates.toarray() + rows @ by_move.toarray()
-        )
-        return csc_array(-np.linalg.lstsq(across, missing, rcond=EQUILIBRIA.no_effect)[0]) if len(rows) else csc_array((len(self.spinning), missing.shape[1]))  # fmt: skip
+        if not len(rows):
+            return zeros(dynamics.system, len(self.spinning), dynamics.system.n_u)
+        missing = state.matrix("tangent", "V_q")[~dynamics.system.holonomic] @ dense(rates) + rows @ dense(by_move)
+        spins = -np.linalg.lstsq(across, missing, rcond=EQUILIBRIA.no_effect)[0]
+        row, column = np.indices(spins.shape).reshape(2, -1)
+        return matrix_of(dynamics.system, spins.ravel(), row, column, spins.shape)
 
     def _rolling(self, dynamics: Dynamics, term_set: str = "motion") -> tuple[np.ndarray, np.ndarray]:
         """Return the rows of the nonholonomic constraints in J, and their columns of the spins."""
@@ -229,6 +234,8 @@ class SteadyMotion:
         of_body, count = dynamics.system.of_body, len(dynamics.system.bodies)
         if of_body.linear == 2:
             return np.full((count, 1), self.rotation[0])
+        if not np.any(self.rotation):
+            return np.zeros((count, 3))
         turned = dynamics.state.q[: of_body.n_q * count].reshape(count, -1)[:, of_body.linear :]
         return rotated(CONJUGATE * turned, np.broadcast_to(self.rotation, (count, 3)))
 

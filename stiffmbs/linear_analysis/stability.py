@@ -9,6 +9,7 @@ from scipy.sparse import block_array, csc_array, diags_array
 from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigs, splu
 
 from ..dynamics.dynamics import Dynamics
+from ..equilibria.matrices import Matrix, dense
 from ..equilibria.steady_motion import SteadyMotion
 from .eigenvalues import CLOSE
 from .state_space import null_space, state_matrix
@@ -52,7 +53,7 @@ class Lowest:
         return self.shapes[:, np.abs(self.squares) <= self.none]
 
 
-def lowest(stiffness: csc_array, jacobian: csc_array, mass: np.ndarray, scale: np.ndarray, left: np.ndarray) -> Lowest:
+def lowest(stiffness: Matrix, jacobian: Matrix, mass: np.ndarray, scale: np.ndarray, left: np.ndarray) -> Lowest:
     """Return the lowest w^2 of an equilibrium.
 
     `stiffness` of shape (n_u, n_u): K: negative derivative of forces, with the reactions, by displacements. `jacobian`
@@ -63,7 +64,7 @@ def lowest(stiffness: csc_array, jacobian: csc_array, mass: np.ndarray, scale: n
         squares, shapes = _all(stiffness, jacobian, mass, scale)
         of_eigenvalues = STIFFNESS_ROUNDING * len(mass) * float(np.max(np.abs(squares), initial=0.0))
     else:
-        squares, shapes = _near(stiffness, jacobian, mass, scale)
+        squares, shapes = _near(csc_array(stiffness), csc_array(jacobian), mass, scale)
         of_eigenvalues = 0.0
     inertia = np.sum(shapes * (mass[:, None] * shapes), axis=0)
     sizes = np.abs(shapes)
@@ -74,10 +75,8 @@ def lowest(stiffness: csc_array, jacobian: csc_array, mass: np.ndarray, scale: n
     return Lowest(squares[real].real, shapes[:, real], none[real])
 
 
-def _all(
-    stiffness: csc_array, jacobian: csc_array, mass: np.ndarray, scale: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    free = null_space(jacobian.toarray() * scale) * scale[:, None]
+def _all(stiffness: Matrix, jacobian: Matrix, mass: np.ndarray, scale: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    free = null_space(dense(jacobian) * scale) * scale[:, None]
     if not free.shape[1]:
         return np.zeros(0, dtype=complex), np.zeros((len(mass), 0))
     values, vectors = np.linalg.eig(np.linalg.solve(free.T @ (mass[:, None] * free), free.T @ (stiffness @ free)))

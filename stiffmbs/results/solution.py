@@ -223,7 +223,9 @@ def channel_ranges(solution: Solution) -> dict[str, dict[str, float]]:
     """Return the first, last, least and greatest value of every channel, with times of the extremes; else nan."""
     ranges = {}
     for name, values in solution.channels.items():
-        low, high = (0, 0) if np.isnan(values).all() else (int(np.nanargmin(values)), int(np.nanargmax(values)))
+        low, high = int(values.argmin()), int(values.argmax())
+        if np.isnan(values[low]):  # argmin finds the first NaN
+            low, high = (0, 0) if np.isnan(values).all() else (int(np.nanargmin(values)), int(np.nanargmax(values)))
         ranges[name] = {
             "first": float(values[0]), "last": float(values[-1]),
             "min": float(values[low]), "max": float(values[high]),

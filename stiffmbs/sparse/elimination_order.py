@@ -9,6 +9,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..compile.equations import ABSENT, Equations
+from ..compile.system import System
+from ..compile.terms import TERM_AXES
 
 
 class EliminationOrder(NamedTuple):
@@ -56,6 +58,40 @@ def elimination_order(equations: Equations) -> EliminationOrder:
         fill += size[node] * height
         updates += size[node] * height * height
     return EliminationOrder(np.concatenate([np.empty(0, dtype=np.int64), *order]), fill, updates)
+
+
+COUPLING = ("f_q", "f_u", "G_lam", "J", "C_x", "rate_q", "rate_u")
+"""Terms of a balance of forces that couple bodies, states and joints."""
+
+
+def order_by_blocks(system: System) -> EliminationOrder:
+    """Return a minimum degree order of the velocities, states and multipliers of a balance of forces."""
+    width, n_bodies, n_states = system.of_body, len(system.bodies), len(system.states)
+    sizes = [width.n_u] * n_bodies + [1] * n_states + np.diff(system.joint_start).tolist()
+    of_coordinates = np.full(system.n_q, -1)  # revolution counters are no unknowns
+    of_coordinates[: system.n_pose] = np.arange(system.n_pose) // width.n_q
+    of_coordinates[system.first_state :] = n_bodies + np.arange(n_states)
+    blocks = {
+        "u": np.arange(system.n_u) // width.n_u,
+        "q": of_coordinates,
+        "c": np.repeat(np.arange(n_bodies + n_states, len(sizes)), np.diff(system.joint_start)),
+    }
+    neighbours: list[set[int]] = [set() for _ in sizes]
+    for name in COUPLING:
+        term, axes = system.term("tangent", name), TERM_AXES[name]
+        pairs = np.unique(np.stack([blocks[axes[0]][term.row], blocks[axes[1]][term.column]]), axis=1)
+        for a, b in pairs[:, pairs.min(axis=0) >= 0].T.tolist():
+            if a != b:
+                neighbours[a].add(b)
+                neighbours[b].add(a)
+    starts = np.cumsum([0, *sizes]).tolist()
+    order, fill, updates = [np.empty(0, dtype=np.int64)], 0, 0
+    for node, around in _least_degree(neighbours, sizes, n_bodies + n_states):
+        order.append(np.arange(starts[node], starts[node + 1]))
+        height = sizes[node] + sum(sizes[other] for other in around)
+        fill += sizes[node] * height
+        updates += sizes[node] * height * height
+    return EliminationOrder(np.concatenate(order), fill, updates)
 
 
 def factors_of(n: int, rows: np.ndarray, columns: np.ndarray, order: EliminationOrder) -> dict[str, Any]:

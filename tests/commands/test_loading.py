@@ -5,6 +5,21 @@ import os
 import subprocess
 import sys
 
+import pytest
+
+from ..conftest import EXAMPLES
+
+
+@pytest.mark.parametrize("scene", ["car", "half_car"])
+def test_a_run_does_not_load_scipy(scene):
+    """Loading it takes longer than the search for the steady motion in which the car starts."""
+    program = (
+        "import sys, stiffmbs; "
+        f"stiffmbs.run({str(EXAMPLES / f'{scene}.yaml')!r}, duration=0.1); print('scipy' in sys.modules)"
+    )
+    found = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert found.stdout.split() == ["False"]
+
 
 def test_the_garbage_collector_waits_for_the_command_to_be_loaded_and_for_nothing_else():
     program = (

@@ -7,7 +7,11 @@ import stiffmbs
 from stiffmbs import SteadyMotion
 from stiffmbs.analyses.run import prepare
 from stiffmbs.analyses.steady import _motion
+from stiffmbs.equilibria.equilibrium import find_equilibrium
 from stiffmbs.equilibria.force_balance import _position_rates, balance_at, moved
+from stiffmbs.equilibria.matrices import dense
+from stiffmbs.equilibria.steady_motion import at_rest
+from stiffmbs.tuning import in_use
 
 from ..conftest import EXAMPLES
 
@@ -47,8 +51,15 @@ CASES = {
 }  # fmt: skip
 
 
+@pytest.fixture(params=[True, False], ids=["dense", "sparse"], scope="module")
+def storage(request):
+    """Matrices are dense, as in small systems, or sparse, as in large ones."""
+    with in_use({} if request.param else {"equilibria": {"most_dense": 0}}):
+        yield
+
+
 @pytest.fixture(params=CASES, scope="module")
-def case(request):
+def case(request, storage):
     text, described = CASES[request.param]
     job = prepare(stiffmbs.read_scene(text), presolve=False)
     dynamics = job.dynamics
@@ -80,7 +91,7 @@ def test_velocities_and_accelerations_of_a_steady_motion(case):
     expected = differences(dynamics, q, both)
     motion.put(dynamics, 0.0)
     dynamics.state.evaluate("tangent", 0.0)
-    found = np.vstack([part.toarray() for part in motion.derivatives(dynamics, 0.0, _position_rates(dynamics))])
+    found = np.vstack([dense(part) for part in motion.derivatives(dynamics, 0.0, _position_rates(dynamics))])
     np.testing.assert_allclose(found, expected, atol=1e-7 * max(1.0, np.abs(expected).max()))
 
 
@@ -101,7 +112,7 @@ def test_stiffness_of_the_balance(case):
 
     expected = -differences(dynamics, q, left)
     np.testing.assert_allclose(
-        known.stiffness.toarray(),
+        dense(known.stiffness),
         expected,
         atol=1e-7 * max(1.0, np.abs(expected).max(), np.abs(known.lam).max(initial=0)),
     )
@@ -122,3 +133,34 @@ forces: {spring: {type: force, i: weight, force: [0, "-100*weight.y"]}}
         assert known.largest == pytest.approx(19.62)
         assert known.imbalance == pytest.approx(1 - part)
         assert known.imbalance * known.largest == pytest.approx(np.abs(known.left).max())
+
+
+def chain(count):
+    """Return a hanging chain of equal links."""
+    bodies = "\n".join(f"  b{k}: {{mass: 1, inertia: 0.1, position: [{k + 0.5}, 0]}}" for k in range(count))
+    ends = ["ground", *(f"{{body: b{k}, point: [0.5, 0]}}" for k in range(count - 1))]
+    joints = "\n".join(
+        f"  j{k}: {{type: revolute, i: {{body: b{k}, point: [-0.5, 0]}}, j: {end}}}" for k, end in enumerate(ends)
+    )
+    return f"gravity: [0.3, -9.81]\nbodies:\n{bodies}\njoints:\n{joints}\n"
+
+
+@pytest.mark.parametrize(
+    ("links", "most", "kept_dense"), [(70, 400, True), (70, 200, False), (90, 400, False), (90, 800, True)]
+)
+def test_matrices_are_dense_up_to_a_number_of_unknowns(links, most, kept_dense):
+    """A link has three velocities and two equations: 350 or 450 unknowns, about the default limit of 400."""
+    dynamics = prepare(stiffmbs.read_scene(chain(links)), presolve=False).dynamics
+    with in_use({"equilibria": {"most_dense": most}} if most != 400 else {}):
+        known = balance_at(dynamics, 0.0, at_rest(2))
+    assert isinstance(known.stiffness, np.ndarray) == kept_dense
+
+
+def test_dense_and_sparse_matrices_lead_to_the_same_equilibrium():
+    poses = []
+    for most in (400, 0):
+        job = prepare(stiffmbs.read_scene(chain(9)), presolve=False)
+        with in_use({"equilibria": {"most_dense": most}}):
+            poses.append(find_equilibrium(job.dynamics, 0.0).q)
+    np.testing.assert_allclose(poses[0], poses[1], atol=1e-9)
+    assert np.arctan2(poses[0][1], poses[0][0]) == pytest.approx(np.arctan2(-9.81, 0.3))

@@ -6,7 +6,7 @@ from math import sqrt
 
 from stiffmbs.compile.machine.native.access import compiled, factors_view, floats, shifted, state_view
 from stiffmbs.compile.machine.native.evaluate import MOTION, OUTPUT, POSITION, call_kernels, evaluate, share_turns
-from stiffmbs.compile.machine.native.factors import log_determinant
+from stiffmbs.compile.machine.native.factors import DONE, equilibrate, factor, log_determinant, scale, solve
 from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.orientation import take_unit_length
 from stiffmbs.compile.machine.native.statuses import SINGULAR
@@ -46,6 +46,16 @@ def accelerate(t, acceleration, dynamics):
     for k in range(s.n_u):
         acceleration[k] = factors_view(m.acceleration_factors).b[k]
     return status
+
+
+def factor_and_solve(b, factors):
+    """Overwrite b by the solution of A x = b; return 0, or a negative status if the matrix is singular."""
+    equilibrate(factors_view(factors))
+    scale(factors_view(factors))
+    if factor(factors) != DONE:
+        return SINGULAR
+    solve(factors_view(factors), b)
+    return 0
 
 
 def contradicting(count, begin, end, apart, q, u, mass, rtol, atol, part, tolerances, rate, found, dynamics):

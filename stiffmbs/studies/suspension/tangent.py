@@ -17,6 +17,7 @@ from ...dynamics.dynamics import Dynamics
 from ...elements.forces.spring_damper import LineSpring, Spring
 from ...elements.forces.torsion_spring import AngleSpring
 from ...equilibria.force_balance import balance_at
+from ...equilibria.matrices import dense
 from ...equilibria.steady_motion import at_rest
 from ...errors import SolverError
 from ...linear_analysis.state_space import Constraints
@@ -57,8 +58,8 @@ class Tangent:
         system = dynamics.system
         self._model, self._system, self._q = model, system, dynamics.state.q.copy()
         self._scale = np.append(system.per_velocity(system.size, 1.0), system.state_scales)
-        self._stiffness = known.stiffness.toarray()
-        self._jacobian, self._reactions = known.jacobian.toarray(), known.reactions.toarray()
+        self._stiffness = dense(known.stiffness)
+        self._jacobian, self._reactions = dense(known.jacobian), dense(known.reactions)
         self._lam = known.lam[system.active]
         self._joints = [joint for (joint, _), active in zip(system.equations, system.active, strict=True) if active]
 
