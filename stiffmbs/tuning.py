@@ -100,7 +100,7 @@ def _reader(value: Callable[[Any], Any]) -> Callable[[Tuned], Any]:
     return read
 
 
-def parameters_of(found: Any) -> Any:
+def parameters_of(found: object) -> Any:
     """Return the instance in use of registered parameters, and any other object as it is."""
     if not isinstance(found, Tuned):
         return found

@@ -217,7 +217,7 @@ def _parts(values: Mapping[str, Any], model: Compilable, data: ElementData) -> t
     return tuple((name, _shape(value, model, data)) for name, value in values.items())
 
 
-def _shape(value: Any, model: Compilable, data: ElementData) -> Shape:
+def _shape(value: object, model: Compilable, data: ElementData) -> Shape:
     """Return the shape of a field's value; append its data to `data`."""
     match value:
         case MarkerReference():

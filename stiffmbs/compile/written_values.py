@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any
 
 import numpy as np
 
@@ -70,7 +69,7 @@ def table_notes(data: Described) -> Iterator[str]:
         yield f"{', '.join(dict.fromkeys(names))}: {note}"
 
 
-def _tables(value: Any, label: str) -> Iterator[tuple[str, Table]]:
+def _tables(value: object, label: str) -> Iterator[tuple[str, Table]]:
     """Yield the tables in a field, with their names in the scene or the name of the field."""
     match value:
         case Table():

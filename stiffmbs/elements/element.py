@@ -138,7 +138,7 @@ class Element(Described):
 
     @model_validator(mode="before")
     @classmethod
-    def _of_its_kind(cls, found: Any) -> Any:
+    def _of_its_kind(cls, found: object) -> Any:
         return typed(cls.kind, found)
 
     @classmethod

@@ -67,7 +67,7 @@ def initial_element(element: Element, model: ModelData) -> Any:
     return SimpleNamespace(**fields, angle=math.atan2)
 
 
-def _drawn(value: Any, model: ModelData) -> Any:
+def _drawn(value: object, model: ModelData) -> Any:
     match value:
         case MarkerReference():
             return model.initial_marker(value)

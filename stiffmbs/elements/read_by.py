@@ -29,8 +29,8 @@ class ReadBy:
     read: Callable[[Any, Context], Any]
     schema: Callable[[Callable[[type[BaseModel]], JsonSchema]], JsonSchema]
 
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> Any:
-        def read(found: Any, info: ValidationInfo) -> Any:
+    def __get_pydantic_core_schema__(self, source: object, handler: GetCoreSchemaHandler) -> Any:
+        def read(found: object, info: ValidationInfo) -> Any:
             return self.read(found, info.context)
 
         return core_schema.with_info_plain_validator_function(read)

@@ -57,11 +57,11 @@ class OneFor:
     def __init__(self, times: int | None = None) -> None:
         self.times = times
 
-    def listed(self, found: Any) -> Any:
+    def listed(self, found: object) -> Any:
         """Return an entry of a scene as a list."""
         return found if isinstance(found, list | tuple) else (found,) * (self.times or 1)
 
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> Any:
+    def __get_pydantic_core_schema__(self, source: object, handler: GetCoreSchemaHandler) -> Any:
         return core_schema.no_info_before_validator_function(self.listed, handler(source))
 
     def __get_pydantic_json_schema__(self, schema: Any, handler: GetJsonSchemaHandler) -> dict[str, Any]:
@@ -105,7 +105,7 @@ def one_of(expected: str, *kinds: type[Described]) -> ReadBy:
     """
     by_name = {kind.model_fields["type"].default: kind for kind in kinds}
 
-    def read(found: Any, context: Context) -> Any:
+    def read(found: object, context: Context) -> Any:
         if isinstance(found, kinds):
             return found
         if not isinstance(found, dict):

@@ -163,7 +163,7 @@ class UpTo(Described):
 
     @field_validator("up_to", mode="before")
     @classmethod
-    def _cycles(cls, found: Any) -> Any:
+    def _cycles(cls, found: object) -> Any:
         if isinstance(found, str) and NOT_CYCLES.search(found):
             raise ValueError(f"found '{found}', expected a frequency in Hz")
         return found
@@ -211,7 +211,7 @@ class FlexibleBody(Described):
 
     @field_validator("modes", mode="before")
     @classmethod
-    def _count_or_frequency(cls, found: Any, info: ValidationInfo) -> Any:
+    def _count_or_frequency(cls, found: object, info: ValidationInfo) -> Any:
         if isinstance(found, dict):
             try:
                 return UpTo.model_validate(found, context=info.context)

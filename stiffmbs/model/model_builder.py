@@ -139,7 +139,7 @@ class ModelBuilder(Sections[Data, Body, BodyHandle]):
             raise InputError(f"{name}: found {marker!r}, expected a marker with a point on ground")
         self.markers[name] = placement
 
-    def add_input(self, name: str, value: Any) -> None:
+    def add_input(self, name: str, value: object) -> None:
         """Add an input: a named value for formulas, which every run can set.
 
         Parameters

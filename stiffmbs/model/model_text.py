@@ -44,7 +44,9 @@ def model_text(data: ModelData) -> str:
     return scene_text({name: parts[name] for name in order if parts[name]})
 
 
-def written(value: Any, marker: Callable[[Any], Any] | None = None, formula: Callable[[Any], Any] | None = None) -> Any:
+def written(
+    value: object, marker: Callable[[Any], Any] | None = None, formula: Callable[[Any], Any] | None = None
+) -> Any:
     """Return a value in the form of a scene file.
 
     `marker`, `formula`: forms of markers and of formulas; by default those that they have.
@@ -87,7 +89,7 @@ def _marker(found: MarkerReference) -> Any:
     return found.label if fields.keys() <= {"body", "marker"} else fields
 
 
-def _formulas(value: Any) -> Iterator[Any]:
+def _formulas(value: object) -> Iterator[Any]:
     """Yield the formulas in a value, also nested ones."""
     if hasattr(value, "expanded"):
         yield value

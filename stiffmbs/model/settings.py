@@ -115,7 +115,7 @@ class RunSettings(Described):
 
     @field_validator("tuning", mode="before")
     @classmethod
-    def _known_parameters(cls, found: Any, info: ValidationInfo) -> Any:
+    def _known_parameters(cls, found: object, info: ValidationInfo) -> Any:
         from .tuning import checked  # few runs have it
 
         return checked(found, lambda entry: Measured("number").read(entry, info))

@@ -16,7 +16,7 @@ Read = Callable[[Any], float]
 """Conversion of an entry to a number; raises a ValueError for other entries."""
 
 
-def checked(found: Any, read: Read) -> dict[str, dict[str, Any]]:
+def checked(found: object, read: Read) -> dict[str, dict[str, Any]]:
     """Return changed parameters by subsystem and name.
 
     ValueError if a name is unknown, or a value has another type than the default, or is out of its range.
@@ -32,19 +32,19 @@ def checked(found: Any, read: Read) -> dict[str, dict[str, Any]]:
     return changes
 
 
-def _entries(found: Any, names: str) -> list[tuple[Any, Any]]:
+def _entries(found: object, names: str) -> list[tuple[Any, Any]]:
     if not isinstance(found, Mapping):
         raise ValueError(f"found {written(found)}, expected a mapping of {names} to values")
     return list(found.items())
 
 
-def _refuse_unknown(where: str, what: str, found: Any, known: Mapping[str, Any]) -> None:
+def _refuse_unknown(where: str, what: str, found: object, known: Mapping[str, Any]) -> None:
     if found not in known:
         near = did_you_mean(found, known)
         raise ValueError(f"{where}found the unknown {what} '{quoted(found)}'{near}, expected one of {', '.join(known)}")
 
 
-def _checked(where: str, found: Any, usual: Any, read: Read) -> Any:
+def _checked(where: str, found: object, usual: Any, read: Read) -> Any:
     """Return a value with the type of the default, in its range."""
     if isinstance(usual, tuple):
         if not isinstance(found, list | tuple) or len(found) != len(usual):

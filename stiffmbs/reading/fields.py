@@ -110,7 +110,7 @@ class Described(_Base):
 
     @model_validator(mode="before")
     @classmethod
-    def _no_unknown_key(cls, found: Any) -> Any:
+    def _no_unknown_key(cls, found: object) -> Any:
         if isinstance(found, dict):
             known = _keys(cls)
             for key in found:
@@ -125,7 +125,7 @@ class Described(_Base):
 
     @model_validator(mode="before")
     @classmethod
-    def _arrays_as_lists(cls, found: Any) -> Any:
+    def _arrays_as_lists(cls, found: object) -> Any:
         """Convert NumPy arrays and numbers to Python objects."""
         if not isinstance(found, dict):
             return found
@@ -175,7 +175,7 @@ class Measured:
                 raise FormulaError(f"found {quoted(found)}, expected {one(self.dimension)} {words.format(limit)}")
         return value
 
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> Any:
+    def __get_pydantic_core_schema__(self, source: object, handler: GetCoreSchemaHandler) -> Any:
         return core_schema.with_info_plain_validator_function(
             self.read, serialization=core_schema.plain_serializer_function_ser_schema(lambda value: value)
         )
@@ -189,7 +189,7 @@ class Measured:
         return {"anyOf": [{"type": "number", **number, **excluded}, text], "description": f"{self.dimension}, {unit}"}
 
 
-def named_entries(section: str, found: Any, values: str) -> Iterator[tuple[str, Any]]:
+def named_entries(section: str, found: object, values: str) -> Iterator[tuple[str, Any]]:
     """Yield the entries of a section of a scene.
 
     `found`: the section as written. `values`: kind of the entries, for messages. Raises InputError if the section is
@@ -255,7 +255,7 @@ def _reason(fault: Any) -> str:
             return f"found {written(found)}, expected {fault['msg'].removeprefix('Input should be ')}"
 
 
-def typed(kind: str, found: Any) -> Any:
+def typed(kind: str, found: object) -> Any:
     """Return an entry with its type filled in; raise a ValueError if it has another type than this kind."""
     if not isinstance(found, dict):
         return found

@@ -54,7 +54,7 @@ class Handle:
             )
         return getattr(self.body, field)
 
-    def __setattr__(self, field: str, value: Any) -> None:
+    def __setattr__(self, field: str, value: object) -> None:
         body = self.body
         if field in self._symbols() and field in self.fields:
             raise InputError(

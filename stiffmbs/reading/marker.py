@@ -54,7 +54,7 @@ class MarkerReference(Described):
 
     @model_validator(mode="before")
     @classmethod
-    def _from_reference(cls, found: Any, info: ValidationInfo) -> Any:
+    def _from_reference(cls, found: object, info: ValidationInfo) -> Any:
         names = names_of(info)
         if isinstance(found, Handle):
             return {"body": found.name}

@@ -49,7 +49,7 @@ class PythonFunction:
         return cls(found)
 
     @classmethod
-    def __get_pydantic_core_schema__(cls, source: Any, handler: GetCoreSchemaHandler) -> Any:
+    def __get_pydantic_core_schema__(cls, source: object, handler: GetCoreSchemaHandler) -> Any:
         return core_schema.no_info_plain_validator_function(cls.read)
 
     @classmethod

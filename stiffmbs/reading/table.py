@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterable, Mapping
-from typing import Any, Literal
+from typing import Literal
 
 from pydantic import Field, ModelWrapValidatorHandler, PrivateAttr, ValidationInfo, field_validator, model_validator
 
@@ -54,7 +54,7 @@ class Table(Described):
 
     @model_validator(mode="wrap")
     @classmethod
-    def _measured(cls, found: Any, handler: ModelWrapValidatorHandler[Table], info: ValidationInfo) -> Table:
+    def _measured(cls, found: object, handler: ModelWrapValidatorHandler[Table], info: ValidationInfo) -> Table:
         table = handler(found)
         if isinstance(found, dict):
             parameters = (info.context or {}).get("parameters") or {}

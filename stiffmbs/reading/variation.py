@@ -122,7 +122,7 @@ def variation(name: str, found: str | Range | Variation | Sequence[Any] | ArrayL
     return Variation(name, values)
 
 
-def _plain(value: Any) -> Any:
+def _plain(value: object) -> Any:
     return value.tolist() if hasattr(value, "tolist") else value
 
 
@@ -198,7 +198,7 @@ def _listed(place: str, name: str, given: str) -> Variation:
     return Variation(name, tuple(_asnumber(value) for value in found))
 
 
-def _asnumber(value: Any) -> Any:
+def _asnumber(value: object) -> Any:
     """Convert text such as ``1e5``, which YAML does not read as a number."""
     if isinstance(value, list):
         return [_asnumber(part) for part in value]

@@ -224,7 +224,7 @@ def compiled(output: Output) -> Callable[[Instant], float]:
     terms = {placeholder(k): term for k, term in enumerate(output.terms)}
     constants: dict[str, Any] = {"power": _power}
 
-    def kept(value: Any) -> ast.expr:
+    def kept(value: object) -> ast.expr:
         name = f"k{len(constants)}"
         constants[name] = value
         return ast.Name(name, ast.Load())

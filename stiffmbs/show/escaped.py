@@ -83,6 +83,6 @@ def console(**options: Any) -> Console:
     return EscapingConsole(markup=False, emoji=False, **options)
 
 
-def page_text(found: Any) -> Any:
+def page_text(found: object) -> Any:
     """Return a value for a page: text is escaped, scripts and other values are unchanged."""
     return escaped(found) if type(found) is str else found

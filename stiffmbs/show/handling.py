@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -72,7 +72,7 @@ def _title(name: str, one: Tested) -> str:
     return f"{TESTS[name].title} ({', '.join(told)})"
 
 
-def _number(value: Any) -> str:
+def _number(value: object) -> str:
     if isinstance(value, tuple):
         return " ".join(map(_number, value))
     return f"{value:.4g}" if isinstance(value, float) else str(value)

@@ -70,7 +70,7 @@ def read_by(read: Callable[[Arguments, Units], Any], *names: str, expressions: b
     return field(metadata={"read": read, "names": names, "expressions": expressions})
 
 
-def constant(value: Any) -> Any:
+def constant(value: object) -> Any:
     """Declare a field with one value, which no argument sets."""
     return read_by(lambda *_: value)
 

@@ -127,7 +127,7 @@ def _written(node: ast.expr) -> str:
     return known
 
 
-def _number(value: Any) -> Any:
+def _number(value: object) -> Any:
     """Return numbers as NumPy scalars, which divide by zero without an exception."""
     return np.float64(value) if isinstance(value, float) else value
 

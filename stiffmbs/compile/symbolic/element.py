@@ -25,6 +25,9 @@ COINCIDENT = sp.Float("1e-200")
 """Added under the root of a distance, so that a spring without free length is defined at coincident points."""
 
 
+Terms = Any
+"""Expression, or a matrix or list of expressions, and the same of its results."""
+
 Work = tuple[sp.Expr, sp.Expr]
 """Effort, and the quantity it does work on: a function of the pose, or its rate."""
 
@@ -121,7 +124,7 @@ class SymbolicElement:
         """Symbols by which functions of the velocities are differentiated."""
         return [symbol for frame in self.frames for symbol in frame.velocities]
 
-    def read(self, x: Any) -> sp.Expr:
+    def read(self, x: sp.Expr) -> sp.Expr:
         """Return an expression of an element's equations in the form for kernels; record its breakpoints."""
         return read(x, self._note)
 
@@ -129,7 +132,7 @@ class SymbolicElement:
         if breakpoint not in self.breakpoints:
             self.breakpoints.append(breakpoint)
 
-    def rate(self, x: Any) -> Any:
+    def rate(self, x: Terms) -> Terms:
         """Return the total time derivative of an expression, or of each in a matrix, at constant velocities."""
         if isinstance(x, sp.MatrixBase):
             return x.applyfunc(self.rate)
@@ -151,7 +154,7 @@ class SymbolicElement:
         rates |= dict(zip(self.states, self.state_rates, strict=False)) | {self.t: sp.Integer(1)}
         return self.derivatives.along(self.derivatives.along(x, rates), rates)
 
-    def acceleration(self, x: Any) -> sp.Expr:
+    def acceleration(self, x: sp.Expr) -> sp.Expr:
         """Return the second total time derivative of an expression of the pose and time."""
         return self.by_accelerations(self.rate(x)) + self.second_rate(self.read(x))
 
@@ -168,17 +171,17 @@ class SymbolicElement:
                 rates[symbol] = rates.get(symbol, sp.Integer(0)) + a * much
         return {symbol: self.named(rate) for symbol, rate in rates.items()}
 
-    def named(self, x: Any) -> Any:
+    def named(self, x: Terms) -> Terms:
         """Name an expression, or each in a matrix or list; named expressions are derived much faster."""
         if isinstance(x, sp.MatrixBase):
             return x.applyfunc(self.named)
         return [self.named(part) for part in x] if isinstance(x, list) else self.derivatives.named(self.read(x))
 
-    def variable(self, x: Any) -> sp.Symbol:
+    def variable(self, x: sp.Expr) -> sp.Symbol:
         """Return a symbol for an expression by which others can be differentiated (`slope`, `composed`)."""
         return self.derivatives.variable(self.read(x), self._state)
 
-    def slope(self, x: Any, variable: sp.Symbol) -> sp.Expr:
+    def slope(self, x: sp.Expr, variable: sp.Symbol) -> sp.Expr:
         """Return the derivative of an expression by a symbol from `variable`, other variables held constant."""
         return self.derivatives.partial(self.read(x), variable)
 
@@ -292,6 +295,8 @@ class SymbolicElement:
         values = dict(zip(variables, at, strict=True))
         return self.derivatives.at_extremum(self.read(function(variables)), values, self._state)
 
-    def at_root(self, residual: Callable[[sp.Symbol], Any], value: Any, variables: Sequence[sp.Symbol]) -> sp.Symbol:
+    def at_root(
+        self, residual: Callable[[sp.Symbol], sp.Expr], value: sp.Expr, variables: Sequence[sp.Symbol]
+    ) -> sp.Symbol:
         """Return a symbol for the zero of a function, computed as `value`, differentiated through few variables."""
         return self.derivatives.at_root(lambda x: self.read(residual(x)), self.read(value), variables, self._state)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import reduce
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import sympy as sp
 
@@ -140,12 +140,12 @@ class Step5(Step):
     native = "step5"
 
 
-def step(x: Any, x0: Any, h0: Any, x1: Any, h1: Any) -> sp.Expr:
+def step(x: sp.Expr, x0: sp.Expr, h0: sp.Expr, x1: sp.Expr, h1: sp.Expr) -> sp.Expr:
     """Return Adams' STEP: a cubic from h0 at x0 to h1 at x1 with zero end slopes."""
     return Step(x, x0, h0, x1, h1, 0)
 
 
-def step5(x: Any, x0: Any, h0: Any, x1: Any, h1: Any) -> sp.Expr:
+def step5(x: sp.Expr, x0: sp.Expr, h0: sp.Expr, x1: sp.Expr, h1: sp.Expr) -> sp.Expr:
     """Return Adams' STEP5: a quintic from h0 at x0 to h1 at x1 with zero end slopes and curvatures."""
     return Step5(x, x0, h0, x1, h1, 0)
 

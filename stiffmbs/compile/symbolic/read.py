@@ -46,7 +46,7 @@ NO_NUMBER = frozenset((sp.nan, sp.zoo, sp.oo, -sp.oo, sp.I))
 UNDONE = (sp.Derivative, sp.Integral, sp.Sum, sp.Product, sp.Subs)
 
 
-def read(x: Any, note: Callable[[sp.Expr], None]) -> sp.Expr:
+def read(x: sp.Expr, note: Callable[[sp.Expr], None]) -> sp.Expr:
     """Return an expression in the form for kernels.
 
     `note`: called with the expression that is zero at each breakpoint. Raises InputError if it is not a real

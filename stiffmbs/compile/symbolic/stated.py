@@ -165,7 +165,7 @@ class _Asked:
         except Exception as error:
             raise InputError(f"{self.element.__name__}.{name}: {type(error).__name__}: {error}") from error
 
-    def _read(self, name: str, x: Any) -> sp.Expr:
+    def _read(self, name: str, x: sp.Expr) -> sp.Expr:
         try:
             return self.e.read(x)
         except (InputError, sp.SympifyError) as error:

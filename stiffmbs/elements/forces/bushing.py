@@ -14,7 +14,7 @@ from ...reading.units import si
 from ..element import Expr, Force, Symbolic
 
 
-def from_diagonal(found: Any) -> Any:
+def from_diagonal(found: object) -> Any:
     """Return the rows of a diagonal matrix, with None for uncoupled directions; other values are unchanged."""
     if not isinstance(found, list | tuple) or any(isinstance(part, list | tuple) for part in found):
         return found
@@ -111,7 +111,7 @@ class Bushing(Force):
 
     @field_validator("stiffness", "damping", mode="before")
     @classmethod
-    def _rows(cls, found: Any) -> Any:
+    def _rows(cls, found: object) -> Any:
         if isinstance(found, list | tuple) and len(found) != 3:
             raise ValueError(f"found {len(found)} entries, expected 3, or 3 rows of a symmetric matrix")
         return from_diagonal(found)

@@ -29,7 +29,7 @@ class UserConstraint(Joint):
 
     @field_validator("zero", mode="before")
     @classmethod
-    def _one_or_more(cls, found: Any) -> Any:
+    def _one_or_more(cls, found: object) -> Any:
         return tuple(found) if isinstance(found, list | tuple) else (found,)
 
     @field_validator("zero")

@@ -79,7 +79,7 @@ def _owner_and_name(node: ast.expr) -> tuple[str, str]:
 _NAMES = FormulaOf(coordinates=True, velocities=True)
 
 
-def read_output(family: OutputNames, found: Any, context: Context) -> Any:
+def read_output(family: OutputNames, found: object, context: Context) -> Any:
     """Return the checked formula of an entry, with its parameters and tables. Raises FormulaError."""
     if isinstance(found, Output):
         return found
@@ -116,7 +116,7 @@ def _others(tree: ast.expr, parameters: Mapping[str, Quantity]) -> Iterator[str]
                 yield name
 
 
-def read_request(family: OutputNames, found: Any, context: Context) -> Any:
+def read_request(family: OutputNames, found: object, context: Context) -> Any:
     """Return the formula of a request, or several by component; errors as for `read_output`."""
     if not isinstance(found, Mapping):
         return read_output(family, found, context)

@@ -66,7 +66,7 @@ def _schema(schema_of: Callable[[type[Road]], JsonSchema]) -> JsonSchema:
 AnyRoad = Annotated[Road, ReadBy(read_road, _schema)]
 
 
-def read_roads(found: Any, context: Mapping[str, Any]) -> dict[str, Road]:
+def read_roads(found: object, context: Mapping[str, Any]) -> dict[str, Road]:
     """Read the roads of a scene, which its tyres use by name.
 
     Raises InputError if a name is not an identifier, or a road cannot be read.

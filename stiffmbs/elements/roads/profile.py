@@ -30,7 +30,7 @@ class TableRoad(Road):
 
     @field_validator("profile", "left", "right", mode="before")
     @classmethod
-    def _by_name(cls, found: Any, info: ValidationInfo) -> Any:
+    def _by_name(cls, found: object, info: ValidationInfo) -> Any:
         if not isinstance(found, str):
             return found
         tables = (info.context or {}).get("tables") or {}

@@ -50,7 +50,7 @@ class Road(Component):
 
     @model_validator(mode="before")
     @classmethod
-    def _of_its_kind(cls, found: Any) -> Any:
+    def _of_its_kind(cls, found: object) -> Any:
         return typed(cls.kind, found)
 
     @model_validator(mode="after")

@@ -132,7 +132,7 @@ def heights_of(table: Table, x: np.ndarray) -> np.ndarray:
     return np.asarray(found(inside) + found(inside, 1) * (x - inside))
 
 
-def of_arrays(value: Any) -> Any:
+def of_arrays(value: object) -> Any:
     """Return a field of a road with functions of arrays for tables and formulas."""
     match value:
         case Table():

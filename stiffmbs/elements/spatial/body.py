@@ -65,7 +65,7 @@ class Body(Described):
 
     @field_validator("inertia", mode="before")
     @classmethod
-    def _diagonal(cls, found: Any) -> Any:
+    def _diagonal(cls, found: object) -> Any:
         """Return the tensor of three moments without products of inertia."""
         if not isinstance(found, list | tuple) or any(np.ndim(part) for part in found):
             return found

@@ -47,7 +47,7 @@ NO_ROW = (None,) * 6
 NO_MATRIX = (NO_ROW,) * 6
 
 
-def six_rows(found: Any) -> Any:
+def six_rows(found: object) -> Any:
     """Return the 6 x 6 entries of a diagonal of six numbers, or of two blocks of three numbers or 3 x 3."""
     if not isinstance(found, list | tuple):
         raise ValueError(f"found {written(found)}, expected {FORMS}")
@@ -57,7 +57,7 @@ def six_rows(found: Any) -> Any:
     return rows
 
 
-def without_zeros(found: Any) -> Any:
+def without_zeros(found: object) -> Any:
     """Replace zeros by None: a direction without stiffness requires no computation, and its rotation is unlimited."""
     if isinstance(found, tuple):
         return tuple(without_zeros(part) for part in found)

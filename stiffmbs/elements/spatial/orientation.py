@@ -87,7 +87,7 @@ def about(axis: int, angle: float) -> Quaternion:
 class OrientationField:
     """Marker of a field for an orientation: a quaternion, a matrix, Euler angles, or one or two axes."""
 
-    def read(self, found: Any, info: ValidationInfo) -> Quaternion:
+    def read(self, found: object, info: ValidationInfo) -> Quaternion:
         """Return the unit quaternion of an entry of a scene."""
         parameters = (info.context or {}).get("parameters")
         match found:
@@ -107,7 +107,7 @@ class OrientationField:
             "such as {z: [..], x: [..]}"
         )
 
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> Any:
+    def __get_pydantic_core_schema__(self, source: object, handler: GetCoreSchemaHandler) -> Any:
         return core_schema.with_info_plain_validator_function(
             self.read, serialization=core_schema.plain_serializer_function_ser_schema(lambda value: value)
         )
@@ -132,7 +132,7 @@ Orientation = Annotated[Quaternion, OrientationField()]
 """Unit quaternion (w, x, y, z), given directly or by a matrix, by body-fixed Euler angles, or by axes."""
 
 
-def _listed(found: Any, count: int) -> Any:
+def _listed(found: object, count: int) -> Any:
     if not isinstance(found, list | tuple | np.ndarray) or len(found) != count:
         raise FormulaError(f"found {written(found)} in an orientation, expected a list of {count} numbers")
     return found

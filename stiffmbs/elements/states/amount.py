@@ -35,7 +35,7 @@ class Amount(float):
 AMOUNT = {"anyOf": [{"type": "number"}, {"type": "string"}], "description": "a number, or a formula with units"}
 
 
-def read_amount(found: Any, context: Context) -> Amount:
+def read_amount(found: object, context: Context) -> Amount:
     """Return the number given in a scene or in Python."""
     if isinstance(found, Amount):
         return found
@@ -56,7 +56,7 @@ def positive(amount: Amount) -> Amount:
     return amount
 
 
-def stated_dimension(found: Any, parameters: Any) -> Known:
+def stated_dimension(found: object, parameters: Any) -> Known:
     """Return the known dimension of an entry before its validation; unknown if it cannot be read."""
     try:
         return known_of(quantity(found, parameters)) if isinstance(found, str) else UNKNOWN
@@ -67,7 +67,7 @@ def stated_dimension(found: Any, parameters: Any) -> Known:
 TABLE = "values"
 
 
-def _read(found: Any, context: Context) -> Amount | Table:
+def _read(found: object, context: Context) -> Amount | Table:
     """Return the value of an input: a number, or a table of time."""
     if isinstance(found, Table | dict):
         return found if isinstance(found, Table) else Table.model_validate(found, context=context)

@@ -25,7 +25,7 @@ KINDS: dict[str, type[StateEntry]] = {
 """Kinds of entries by a key that only they have."""
 
 
-def _read(found: Any, context: Context) -> StateEntry:
+def _read(found: object, context: Context) -> StateEntry:
     """Return an entry of the section, whose keys select its kind."""
     if isinstance(found, StateEntry):
         return found
@@ -51,7 +51,7 @@ def _schema(schema_of: Callable[[type[Any]], JsonSchema]) -> JsonSchema:
 AnyState = Annotated[Any, ReadBy(_read, _schema)]
 
 
-def dimensions_of_entry(name: str, entry: Any, parameters: Any) -> dict[str, Known]:
+def dimensions_of_entry(name: str, entry: object, parameters: Any) -> dict[str, Known]:
     """Return the names that an entry defines for formulas, with their known dimensions, before its validation."""
     outputs = entry.get("outputs") if isinstance(entry, dict) else getattr(entry, "outputs_", None)
     if isinstance(outputs, list | tuple) and outputs:

@@ -167,7 +167,7 @@ def _refuse_other_dimension(field: str, formula: Formula, start: Amount, expecte
         )
 
 
-def dimension_of_state(entry: Any, parameters: Any) -> Known:
+def dimension_of_state(entry: object, parameters: Any) -> Known:
     """Return the known dimension of a state before its validation; unknown if its start cannot be read."""
     start = getattr(entry, "start", None)
     if isinstance(start, Amount):

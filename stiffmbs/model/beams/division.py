@@ -49,7 +49,7 @@ class Elements:
 class ElementsField:
     """Marker of a field that is a number, a number for each interval, ``auto``, or ``{tolerance: 1 mm}``."""
 
-    def read(self, found: Any, info: ValidationInfo) -> Elements:
+    def read(self, found: object, info: ValidationInfo) -> Elements:
         """Return an entry of a scene; raise a ValueError if it is none of these."""
         match found:
             case Elements():
@@ -64,7 +64,7 @@ class ElementsField:
                 return Elements(counts=tuple(_whole(each, info) for each in found))
         return Elements(_whole(found, info))
 
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> Any:
+    def __get_pydantic_core_schema__(self, source: object, handler: GetCoreSchemaHandler) -> Any:
         return core_schema.with_info_plain_validator_function(self.read)
 
     def __get_pydantic_json_schema__(self, schema: Any, handler: GetJsonSchemaHandler) -> dict[str, Any]:
@@ -73,7 +73,7 @@ class ElementsField:
         return {"anyOf": [number, {"type": "array", "items": number}, {**tolerance, "additionalProperties": False}]}
 
 
-def _whole(found: Any, info: ValidationInfo) -> int:
+def _whole(found: object, info: ValidationInfo) -> int:
     number = _NUMBER.read(found, info)
     if number != round(number):
         raise ValueError(f"found {number:g}, expected a whole number of elements")

@@ -20,7 +20,7 @@ def same(element: Element, angles: Angles, **others: Any) -> Written:
     return {"type": element.kind, **own, **{name: value for name, value in others.items() if value is not None}}
 
 
-def plain(value: Any, angles: Angles) -> Any:
+def plain(value: object, angles: Angles) -> Any:
     """Return a value as written in a spatial scene."""
     return written(value, marker, partial(formula, angles=angles))
 

@@ -30,7 +30,7 @@ _LOOP = re.compile(r"^\s*([A-Za-z_]\w*)\s+in\s+(.+?)\s*\.\.\s*(.+?)\s*$")
 _BRACES = re.compile(r"\{([^{}]*)\}")
 
 
-def set_value(scene: dict[str, Any], path: str, value: Any) -> None:
+def set_value(scene: dict[str, Any], path: str, value: object) -> None:
     """Set the value at a path such as ``bodies.cart.mass``, ``run.rtol`` or the bare name of a parameter.
 
     Raises InputError if the path passes through a value that has no keys.
@@ -54,7 +54,7 @@ def set_value(scene: dict[str, Any], path: str, value: Any) -> None:
         raise InputError(f"--set {path}: found no such place in the scene")
 
 
-def unshared(found: Any) -> Any:
+def unshared(found: object) -> Any:
     """Return a deep copy in which YAML aliases are independent copies."""
     match found:
         case dict():
@@ -105,7 +105,7 @@ def refuse_unused_parameters(
             )
 
 
-def read_parameters(found: Any, replaced: Mapping[str, Quantity] | None = None) -> dict[str, Quantity]:
+def read_parameters(found: object, replaced: Mapping[str, Quantity] | None = None) -> dict[str, Quantity]:
     """Read the parameters of a scene; each may use the ones above it.
 
     `replaced`: original values of parameters set from outside: a plain number takes the SI unit of the value that it
@@ -120,7 +120,7 @@ def read_parameters(found: Any, replaced: Mapping[str, Quantity] | None = None) 
 
 
 def read_parameter(
-    name: str, value: Any, above: Mapping[str, Quantity], replaced: Mapping[str, Quantity] | None = None
+    name: str, value: object, above: Mapping[str, Quantity], replaced: Mapping[str, Quantity] | None = None
 ) -> Quantity:
     """Read one parameter, given the ones above it; errors as for `read_parameters`."""
     with located(f"parameters.{name}"):
@@ -139,7 +139,7 @@ def replaced_parameters(scene: dict[str, Any], changes: Sequence[tuple[str, Any]
         return {}
 
 
-def read_tables(found: Any, parameters: Mapping[str, Quantity]) -> dict[str, Table]:
+def read_tables(found: object, parameters: Mapping[str, Quantity]) -> dict[str, Table]:
     """Read the tables of a scene, which its formulas can call as functions.
 
     Raises InputError if a name is not an identifier or has a meaning in formulas, or a table cannot be read.
@@ -181,7 +181,7 @@ def repeat_entries(section: str, entries: Any, parameters: Mapping[str, Quantity
     return expanded
 
 
-def _loop(where: str, text: Any, parameters: Mapping[str, Quantity]) -> tuple[str, int, int]:
+def _loop(where: str, text: object, parameters: Mapping[str, Quantity]) -> tuple[str, int, int]:
     match = _LOOP.match(text) if isinstance(text, str) else None
     if match is None:
         raise InputError(f"{where}.for: found {written(text)}, expected a loop such as 'k in 1..N'")
@@ -197,7 +197,7 @@ def _loop(where: str, text: Any, parameters: Mapping[str, Quantity]) -> tuple[st
     return variable, round(first), round(last)
 
 
-def _filled(where: str, value: Any, names: Mapping[str, Quantity], variable: str = "") -> Any:
+def _filled(where: str, value: object, names: Mapping[str, Quantity], variable: str = "") -> Any:
     """Return a value with ``{...}`` and the loop variable replaced by numbers."""
     if isinstance(value, dict):
         return {key: _filled(where, item, names, variable) for key, item in value.items()}

@@ -131,7 +131,7 @@ def _following(parameters: Mapping[str, Any], changed: set[str]) -> set[str]:
     return found
 
 
-def _texts(entry: Any) -> str:
+def _texts(entry: object) -> str:
     """Return all texts of an entry, concatenated."""
     match entry:
         case str():

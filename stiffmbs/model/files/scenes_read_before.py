@@ -101,7 +101,7 @@ def _pickled(scene: Scene) -> bytes | None:
 class _Pickler(pickle.Pickler):
     """Pickler for scenes, which refuses classes and functions of other packages."""
 
-    def reducer_override(self, found: Any) -> Any:
+    def reducer_override(self, found: object) -> Any:
         """Refuse classes and functions of other packages, and pickle `Unchanged` with its content."""
         if isinstance(found, type | FunctionType) and found.__module__.partition(".")[0] not in OF_SCENES:
             raise pickle.PicklingError(f"found {found!r}, expected what is of this package")

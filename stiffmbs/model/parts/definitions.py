@@ -88,7 +88,7 @@ class Definitions:
         found = self.written(part)
         return choices_of(found, f"parts.{part}.{OPTIONS}") if isinstance(found, dict) else {}
 
-    def use(self, where: str, entry: Any, parameters: Mapping[str, Quantity]) -> tuple[Use, dict[str, Any]]:
+    def use(self, where: str, entry: object, parameters: Mapping[str, Quantity]) -> tuple[Use, dict[str, Any]]:
         """Return an entry of ``use``, and its chosen words."""
         if not isinstance(entry, dict):
             raise InputError(f"{where}: found {written(entry)}, expected a mapping with 'part'")

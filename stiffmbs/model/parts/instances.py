@@ -153,7 +153,7 @@ class Instances:
         if used:
             self.read(used, own, instance, depth + 1)
 
-    def _count(self, where: str, found: Any) -> None:
+    def _count(self, where: str, found: object) -> None:
         self.values += _size(found, MOST_VALUES)
         if self.values > MOST_VALUES:
             raise InputError(f"{where}: found parts of more than {MOST_VALUES} values in all, expected fewer")
@@ -197,7 +197,7 @@ def _check_sections(part: str, sections: Mapping[str, Any], inner: Sequence[str]
                 seen[name] = section
 
 
-def _size(found: Any, most: int) -> int:
+def _size(found: object, most: int) -> int:
     """Return the number of values with aliases expanded, limited to one above `most`."""
     count, waiting = 0, [found]
     while waiting and count <= most:

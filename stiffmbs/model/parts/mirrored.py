@@ -162,7 +162,7 @@ class Mirror:
             f"found '{joint}.{channel}' in a mirrored part, expected a displacement, or an angle about one axis"
         )
 
-    def _image(self, value: Any, signs: Any, law: bool) -> Any:
+    def _image(self, value: object, signs: Any, law: bool) -> Any:
         """Return a value with its signs applied; laws also change the sign of their argument."""
         match value:
             case tuple() if value and isinstance(value[0], tuple):

@@ -53,7 +53,7 @@ def with_chosen(found: dict[str, Any], words: Any, where: str) -> dict[str, Any]
     return merged
 
 
-def words_chosen(found: Any, where: str = CHOOSE) -> dict[str, Any]:
+def words_chosen(found: object, where: str = CHOOSE) -> dict[str, Any]:
     """Return the choices of a scene. Raises InputError if they are not a mapping of choices to words."""
     if found is None:
         return {}

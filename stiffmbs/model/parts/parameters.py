@@ -19,7 +19,7 @@ from .vectors import COMPONENTS
 COMPONENT_ENDS = tuple(f"_{axis}" for axis in COMPONENTS)
 
 
-def parameters_of(use: Use, where: str, found: Any, outside: Mapping[str, Quantity]) -> dict[str, Quantity]:
+def parameters_of(use: Use, where: str, found: object, outside: Mapping[str, Quantity]) -> dict[str, Quantity]:
     """Return the parameters of an instance: outer ones, its own, and the values set by its use.
 
     A plain number takes the SI unit of the value that it replaces. `where`: path of the use in the scene. `found`:
@@ -61,11 +61,11 @@ def _vector(name: Any, own: Mapping[Any, Any]) -> str:
     return start if is_component else str(name)
 
 
-def _quantity(given: Any, names: Mapping[str, Quantity]) -> Quantity:
+def _quantity(given: object, names: Mapping[str, Quantity]) -> Quantity:
     return quantity(given, names) if isinstance(given, str) else Quantity(in_si(given, "number"))
 
 
-def _dimension(given: Any, names: Mapping[str, Quantity]) -> Any:
+def _dimension(given: object, names: Mapping[str, Quantity]) -> Any:
     """Return the dimension of the replaced value; None if it cannot be read."""
     try:
         return _quantity(given, names).dimension
@@ -73,7 +73,7 @@ def _dimension(given: Any, names: Mapping[str, Quantity]) -> Any:
         return None
 
 
-def mounts_of(found: Any, use: Use, where: str) -> dict[str, str]:
+def mounts_of(found: object, use: Use, where: str) -> dict[str, str]:
     """Return the bodies of the further mounts of a part: the rack of a tie rod, the arm of a strut.
 
     ``mounts: {rack: mount}`` in a part defines the local name ``rack``, and the part's mount as the default body. A use

@@ -81,7 +81,7 @@ def with_parts(
     return raw, context
 
 
-def _keys(found: Any) -> list[str]:
+def _keys(found: object) -> list[str]:
     return [name for name in found if isinstance(name, str)] if isinstance(found, dict) else []
 
 
@@ -232,7 +232,7 @@ class _Placed:
         body = self._body(on)
         self.raw["bodies"][on] = body.model_copy(update={"markers": {**body.markers, **markers}})
 
-    def _put(self, section: str, instance: Instance, name: str, value: Any) -> None:
+    def _put(self, section: str, instance: Instance, name: str, value: object) -> None:
         full, entries = f"{instance.name}.{name}", self._entries(section)
         if full in entries:
             raise InputError(f"{section}.{full}: found a name that a part makes too, expected another")

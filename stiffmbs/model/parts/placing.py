@@ -46,7 +46,7 @@ def as_written(message: str, parts: Any) -> str:
     return f"parts{message.removeprefix('use')}" if placed else message
 
 
-def _is_placed(entry: Any) -> bool:
+def _is_placed(entry: object) -> bool:
     return isinstance(entry, dict) and isinstance(entry.get("use"), str)
 
 

@@ -58,7 +58,7 @@ def parameters_in_components(parameters: Any, vectors: Vectors, where: str) -> A
     return found
 
 
-def in_components(found: Any, vectors: Vectors) -> Any:
+def in_components(found: object, vectors: Vectors) -> Any:
     """Return content of a part with each formula of vectors replaced by the list of its components.
 
     Raises FormulaError if a formula multiplies vectors, or adds a number to one.

@@ -141,7 +141,7 @@ def _add(
 
 
 def _own(
-    path: tuple[Any, ...], place: dict[str, Any], name: Any, value: Any, source: str,
+    path: tuple[Any, ...], place: dict[str, Any], name: Any, value: object, source: str,
     owners: dict[tuple[Any, ...], str], where: str,
 ) -> None:  # fmt: skip
     if name in place and not (len(path) == 1 and place[name] == value):  # equal values may be repeated

@@ -59,7 +59,7 @@ class _Walk:
             self._packages.add(_module_of(each).partition(".")[0])
             self._visit(each)
 
-    def _visit(self, found: Any) -> None:
+    def _visit(self, found: object) -> None:
         if isinstance(found, staticmethod | classmethod | MethodType):
             self._visit(found.__func__)
         elif isinstance(found, property):
@@ -100,10 +100,10 @@ class _Walk:
             self._visit(value)
             self._add(found, f"{name} = {_plain(value)}")
 
-    def _add(self, found: Any, text: str) -> None:
+    def _add(self, found: object, text: str) -> None:
         self.parts[_file_of(found)].append(text)
 
-    def _is_own(self, found: Any) -> bool:
+    def _is_own(self, found: object) -> bool:
         return self._is_own_module(_module_of(found))
 
     def _is_own_module(self, name: str) -> bool:
@@ -122,7 +122,7 @@ def _installed() -> tuple[Path, ...]:
     return tuple({Path(sysconfig.get_paths()[name]) for name in ("stdlib", "platstdlib", "purelib", "platlib")})
 
 
-def _module_of(found: Any) -> str:
+def _module_of(found: object) -> str:
     return str(getattr(found, "__module__", None) or "")
 
 

@@ -53,7 +53,7 @@ def read_yaml_file(text: str, source: str, file: Path | None) -> Any:
     return found
 
 
-def _is_plain(found: Any) -> bool:
+def _is_plain(found: object) -> bool:
     """Return True if JSON preserves a value exactly, unlike dates, sets, and keys that are numbers."""
     if type(found) is dict:
         return all(type(name) is str for name in found) and all(map(_is_plain, found.values()))

@@ -89,7 +89,7 @@ def _listed(field: str, owners: list[str]) -> str:
     return f"{field} of {listed(named)}" if named else field
 
 
-def _same(value: Any, default: Any) -> bool:
+def _same(value: object, default: Any) -> bool:
     """Return True for two texts of the same number or word, and for equal numbers or sequences."""
     texts = [[str(part).strip().lower() for part in _parts(x)] for x in (value, default)]
     return len(texts[0]) == len(texts[1]) and all(a == b or _equal(a, b) for a, b in zip(*texts, strict=True))

@@ -68,7 +68,7 @@ class Unchanged:
                 }
         return found
 
-    def _same(self, section: str, name: str, entry: Any, changed: set[str]) -> bool:
+    def _same(self, section: str, name: str, entry: object, changed: set[str]) -> bool:
         names = self._names.get((section, name))
         if names is None or names & changed:
             return False
@@ -90,12 +90,12 @@ class Unchanged:
             changed |= more
 
 
-def names_in(entry: Any) -> frozenset[str]:
+def names_in(entry: object) -> frozenset[str]:
     """Return the words in the texts of an entry."""
     return frozenset(_names(entry))
 
 
-def _names(entry: Any) -> Iterator[str]:
+def _names(entry: object) -> Iterator[str]:
     """Yield every word in the texts of an entry."""
     match entry:
         case str():

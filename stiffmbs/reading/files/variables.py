@@ -17,7 +17,7 @@ from .quoted import written
 
 
 def read_variables(
-    found: Any, parameters: Mapping[str, Quantity], tables: Collection[str], states: Any = None, inputs: Any = None
+    found: object, parameters: Mapping[str, Quantity], tables: Collection[str], states: Any = None, inputs: Any = None
 ) -> dict[str, ast.expr]:
     """Return the syntax trees of a scene's variables by name; `states` and `inputs` are sections of the scene.
 

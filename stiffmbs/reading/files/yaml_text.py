@@ -136,7 +136,7 @@ class _Walk:
     extents: dict[int, _Extent | None] = field(default_factory=dict)
     written: int = 0
 
-    def extent(self, found: Any, level: int) -> _Extent:
+    def extent(self, found: object, level: int) -> _Extent:
         """Return the extent of a value at a level."""
         if not isinstance(found, dict | list | tuple | set | frozenset):
             _check_scalar(found)
@@ -163,7 +163,7 @@ class _Walk:
         return extent
 
 
-def check_content(found: Any, source: str) -> None:
+def check_content(found: object, source: str) -> None:
     """Refuse content that is too large or too deeply nested for a scene.
 
     Raises InputError for recursive or too many aliases, deep nesting, integers beyond 1e308, and control characters.
@@ -177,7 +177,7 @@ def check_content(found: Any, source: str) -> None:
         raise InputError(f"{source}: {fault}") from None
 
 
-def _check_scalar(found: Any) -> None:
+def _check_scalar(found: object) -> None:
     if isinstance(found, int) and abs(found) > sys.float_info.max:
         raise _Refused("found a whole number beyond 1e308, expected a smaller one")
     if isinstance(found, str) and (sign := _NO_TEXT.search(found)):

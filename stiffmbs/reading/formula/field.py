@@ -32,7 +32,7 @@ READ_BEFORE = "formulas"
 """Key in the validation context: formulas read before with the same names, by text, variables and use of velocities."""
 
 
-def formula_text(found: Any, expected: str = "a formula") -> str:
+def formula_text(found: object, expected: str = "a formula") -> str:
     """Return the text of a formula given as text, number or SymPy expression; raise a FormulaError for any other value."""
     if isinstance(found, Real) and not isinstance(found, bool):
         return repr(as_float(found))
@@ -83,7 +83,7 @@ class FormulaOf:
     table: bool = False
     states: bool = False
 
-    def read(self, found: Any, info: ValidationInfo) -> Formula | Table:
+    def read(self, found: object, info: ValidationInfo) -> Formula | Table:
         """Return the checked formula or table of an entry of a scene."""
         if isinstance(found, Formula):
             self._check(found)
@@ -118,7 +118,7 @@ class FormulaOf:
 
     def _made(
         self,
-        found: Any,
+        found: object,
         parameters: Mapping[str, Quantity],
         tables: Mapping[str, Table],
         variables: Mapping[str, ast.expr],
@@ -211,7 +211,7 @@ class FormulaOf:
             raise FormulaError(f"found {used[0]} in '{formula.text}', expected a formula without coordinates")
         check_dimension(f"'{quoted(formula.text)}', which is", formula.dimension, self.dimension)
 
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> Any:
+    def __get_pydantic_core_schema__(self, source: object, handler: GetCoreSchemaHandler) -> Any:
         return core_schema.with_info_plain_validator_function(self.read)
 
     def __get_pydantic_json_schema__(self, schema: Any, handler: GetJsonSchemaHandler) -> dict[str, Any]:

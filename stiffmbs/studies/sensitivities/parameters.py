@@ -147,7 +147,7 @@ def _found(scene: Scene, name: str) -> tuple[str, tuple[int, ...], Any]:
     return name, (), at
 
 
-def _is_number(found: Any) -> bool:
+def _is_number(found: object) -> bool:
     return isinstance(found, int | float) and not isinstance(found, bool)
 
 
