@@ -15,7 +15,7 @@ from ..elements.element import Joint
 from ..elements.spatial.body import Body
 from ..elements.spatial.flexible.bodies import FloatingFrame, ModalCoordinates
 from ..elements.spatial.flexible.interface import FlexibleInterface
-from ..elements.spatial.flexible.layout import COUPLING
+from ..elements.spatial.flexible.layout import COUPLINGS, components, numbers_of
 from ..elements.spatial.joints.orientation import Orientation as HeldAxes
 from ..elements.spatial.joints.point_on_line import PointOnLine
 from ..elements.spatial.joints.point_on_plane import PointOnPlane
@@ -236,9 +236,8 @@ class _Parts:
         stiffened = self._body.is_stiffened
         if stiffened:
             second_moments[:own, :own], second_first[:own, :own] = mass * terms.moments, mass * terms.first
-        stretch = np.zeros((len(terms.stretch), 1 + n, n))
-        stretch[:, 0, :own] = terms.static.T
-        stretch[:, 1 : 1 + own, :own] = np.sqrt(mass) * terms.stretch
+        static, Gamma = np.zeros((len(terms.stretch), n)), np.zeros((len(terms.stretch), n, n))
+        static[:, :own], Gamma[:, :own, :own] = terms.static.T, np.sqrt(mass) * terms.stretch
         for point, marker in zip(reduced.points - reduced.centre, reduced.markers, strict=True):
             shape = self._by_coordinates(marker.T)[:, :3]
             offset -= self._share * point
@@ -248,27 +247,26 @@ class _Parts:
             pairs -= self._share * np.einsum("la,kb->lkab", shape, shape)
         for k in range(own, n):  # unused coordinates: unit modal mass
             pairs[k, k] += np.eye(3) * reduced.mass / 3
-        elastic = np.zeros((n, n, COUPLING))
-        stiffness, damping = self._stiffness_and_damping(n)
-        for k, values in enumerate((stiffness, damping)):
-            elastic[:own, :own, k] = self._basis.T @ (values[:own, None] * self._basis)
-            values[:own] = elastic[:own, :own, k].diagonal()
-            np.fill_diagonal(elastic[..., k], 0.0)
-        of_modes = np.column_stack(
-            [stiffness, damping, first @ to_axes.T, np.einsum("ia,jb,kab->kij", to_axes, to_axes, second).reshape(n, 9)]
+        coupling = np.zeros((COUPLINGS, n, n))
+        of_modes = self._stiffness_and_damping(n)
+        for between, values in zip(coupling, of_modes, strict=True):
+            between[:own, :own] = self._basis.T @ (values[:own, None] * self._basis)
+            values[:own] = between[:own, :own].diagonal()
+            np.fill_diagonal(between, 0.0)
+        square, second, pairs, second_moments = (
+            np.einsum("ia,jb,...ab->...ij", to_axes, to_axes, each) for each in (square, second, pairs, second_moments)
         )
-        pairs, second_moments = (
-            np.einsum("ia,jb,lkab->lkij", to_axes, to_axes, each) for each in (pairs, second_moments)
-        )
-        axial = np.stack([pairs[..., i, j] - pairs[..., j, i] for i, j in ((1, 2), (2, 0), (0, 1))], axis=-1)
-        of_pairs = [
-            (pairs + second_moments).reshape(n, n, 9), axial, np.trace(pairs, axis1=2, axis2=3)[..., None],
-            second_first @ to_axes.T,
-        ]  # fmt: skip
-        return np.concatenate([
-            np.zeros(3), to_axes @ offset, (to_axes @ square @ to_axes.T).ravel(), frame.principal_moments(),
-            [reduced.mass, len(stretch) if stiffened else 0, len(stretch), int(stiffened) if self._body.mesh else -1, n if self._turned else 0], of_modes.ravel(), np.concatenate(of_pairs, axis=-1).ravel(), elastic.ravel(), stretch.ravel(),
-        ])  # fmt: skip
+        modal_mass = np.trace(pairs, axis1=2, axis2=3) - mass * np.eye(n)
+        (X, _), of_Y, of_pairs = components(square), components(second), components(pairs + second_moments)
+        found: dict[str, Any] = {
+            "d0": to_axes @ offset, "X": X, "moments": frame.principal_moments(), "modal_mass": mass,
+            "stretch": len(static) if stiffened else 0, "known": len(static), "gravity": 0.0,
+            "stiffened": int(stiffened) if self._body.mesh else -1, "coupled": n if self._turned else 0,
+            "Y_symmetric": of_Y[0], "Y_axial": of_Y[1], "S": first @ to_axes.T, "stiffness": of_modes[0][:, None], "damping": of_modes[1][:, None],
+            "symmetric": of_pairs[0], "axial": of_pairs[1], "T": second_first @ to_axes.T, "of_Z": components(pairs)[1],
+            "mass": modal_mass, "coupling": coupling, "static": static, "Gamma": Gamma,
+        }  # fmt: skip
+        return numbers_of(found, n)
 
     def _stiffness_and_damping(self, n: int) -> tuple[np.ndarray, np.ndarray]:
         rates = np.full(n, 2 * np.pi * self._reduced.frequencies.max(initial=1.0))

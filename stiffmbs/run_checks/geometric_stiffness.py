@@ -9,7 +9,7 @@ import numpy as np
 from ..compile.quaternions import rotated
 from ..compile.system import System
 from ..dynamics.dynamics import OutputRows
-from ..elements.spatial.flexible.layout import parts
+from ..elements.spatial.flexible.layout import components, parts
 from .parameters import RUN_CHECKS
 
 REMEDY = "use a body of type: beam, or divide the body into several"
@@ -98,15 +98,16 @@ def _ratios(numbers: dict[str, np.ndarray], rows: OutputRows, places: np.ndarray
         rows.q[chosen, pose + 3 : pose + 7],
         rows.u[chosen, motion + 3 : motion + 6],
     )
-    stiffness, static, Gamma, n = numbers["stiffness"][:, 0], numbers["static"], numbers["Gamma"], len(modal)
+    stiffness, static, Gamma = numbers["stiffness"][:, 0], numbers["static"], numbers["Gamma"]
     p = y
     if numbers["stretch"][0]:
         p = y + np.einsum("ikl,tk,tl->ti", Gamma, y, y, optimize=True) @ static / 2
     square = np.einsum("ta,tb->tab", spin, spin) - np.einsum("ta,ta->t", spin, spin)[:, None, None] * np.eye(3)
+    of_rotation = components(square)[0] * ([1.0] * 3 + [0.5] * 3)
     field = rotated(turn * [1, -1, -1, -1], rows.acceleration[chosen, motion : motion + 3] - numbers["gravity"])
     changed = (
         np.einsum("ti,ikl->tkl", (p * stiffness) @ static.T, Gamma)
-        + np.einsum("tab,klab->tkl", square, numbers["ZW"].reshape(n, n, 3, 3), optimize=True)
+        + np.einsum("tc,klc->tkl", of_rotation, numbers["symmetric"])
         + np.einsum("ta,kla->tkl", field, numbers["T"])
     )
     scale = 1 / np.sqrt(stiffness)

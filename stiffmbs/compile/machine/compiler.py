@@ -90,7 +90,7 @@ def _compiled_source(source: str, name: str, signature: str, of: Description) ->
 def _called(with_geometry: bool) -> str:
     """Return a digest of the modules that generated sources call, and of what these read."""
     here = Path(__file__).parent
-    names = ("access", "nonsmooth", "spline", "rotation_vector", "python_call")
+    names = ("access", "nonsmooth", "quads", "spline", "rotation_vector", "python_call")
     files = [here / "native" / f"{name}.py" for name in names]
     files += [file for folder in ("flexible", "beams") for file in python_files(here / "native" / folder)]
     elements = here.parents[1] / "elements"

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 from ....reading.marker import MarkerReference
 from ...element import CompiledTerms, Force
 from .bodies import FloatingFrame
-from .layout import BODY, work_size
+from .layout import BODY, width, work_size
 
 NATIVE = "stiffmbs.compile.machine.native"
 
@@ -22,11 +22,11 @@ KERNELS = {
 """Compiled functions by their modules."""
 SUMS = "take_sums({n}, {own}, {at}, {u}, work)"
 CALLS = {
-    "f": "add_forces({n}, {own}, {gravity}, {pose}, {u}, work, {to})",
-    "inertia": "add_inertia({n}, {own}, {pose}, {u}, work, {to})",
-    "kinetic": "{to}[0] = kinetic_energy({n}, {own}, {pose}, {u}, work)",
-    "potential": "{to}[0] = potential_energy({n}, {own}, {gravity}, {pose}, work)",
-    "power": "{to}[0] = dissipated_power({n}, {own}, {at}, {u}, work)",
+    "f": "add_forces({n}, {own}, {gravity}, {frame}, {u}, work, {to})",
+    "inertia": "add_inertia({n}, {own}, {turned}, work, {to})",
+    "kinetic": "{to}[0] = kinetic_energy({n}, {own}, {frame}, {u}, work)",
+    "potential": "{to}[0] = potential_energy({n}, {own}, {gravity}, {turned}, work)",
+    "power": "{to}[0] = dissipated_power({n}, {own}, work)",
 }
 """Computation of the terms without their slopes."""
 CHANGES = {
@@ -61,9 +61,8 @@ class FlexibleInertia(Force):
         rows = [0, 1, 2, *angular, *velocities]
         inertia = [(i, c) for c in angular for i in range(3)] + [(c, i) for c in angular for i in range(3)]
         inertia += [(i, j) for i in angular for j in angular]
-        for k in velocities:
-            for of_frame in ([0, 1, 2], angular):
-                inertia += [*((i, k) for i in of_frame), *((k, i) for i in of_frame)]
+        of_frame = [0, 1, 2, *angular]
+        inertia += [(i, k) for i in of_frame for k in velocities] + [(k, i) for i in of_frame for k in velocities]
         inertia += [(k, l) for k in velocities for l in velocities]
         by_pose = [(row, column) for row in rows for column in (*turning, *coordinates)]
         patterns = {
@@ -85,14 +84,14 @@ class _Form:
 
     def source(self, places: Mapping[str, int]) -> str:
         """Return the source of a kernel with some of the terms, by their places."""
-        to, n, pose = self._to(places), self.n, "row, q, turned"
-        words = {"own": "own", "gravity": "own", "pose": pose, "at": "row, q", "u": "u"}
+        to, n = self._to(places), self.n
+        words = {"own": "own", "gravity": "own", "at": "row, q", "frame": "row, turned", "turned": "turned", "u": "u"}
         calls = [f"{name} = {to[name]}" for name in places]
         calls += self._calls(places, words, {name: name for name in places})
         if "f_q" in places:
-            calls.append(f"add_force_slopes({n}, own, {pose}, u, work, f_q, f_u)")
+            calls.append(f"add_force_slopes({n}, own, row, turned, u, work, f_q, f_u)")
         if "inertia_q" in places:
-            calls.append(f"add_inertia_slopes({n}, own, {pose}, a, work, inertia_q)")
+            calls.append(f"add_inertia_slopes({n}, own, row, turned, a, work, inertia_q)")
         return self._kernel("", calls)
 
     def along(self, places: Mapping[str, int]) -> str:
@@ -102,16 +101,30 @@ class _Form:
         size = max((len(self.patterns[name]) for name in smooth), default=1)
         rooms = {
             "none": 1, "places": 2 * bodies, "q_m": 7 * bodies, "turn_m": 14 * bodies, "u_m": 6 * bodies, "gravity_m": 3,
-            "found": size, "changes": 3 * n,
+            "found": size, "changes": 4 * width(n),
         }  # fmt: skip
-        moved = {"own": "own", "gravity": "gravity_m", "pose": "places, q_m, turn_m", "at": "places, q_m", "u": "u_m"}
-        of_numbers = {"own": "own_d", "gravity": "own", "pose": "row, q, turned", "at": "row, q", "u": "u"}
+        moved = {
+            "own": "own",
+            "gravity": "gravity_m",
+            "at": "places, q_m",
+            "frame": "places, turn_m",
+            "turned": "turn_m",
+            "u": "u_m",
+        }
+        of_numbers = {
+            "own": "own_d",
+            "gravity": "own",
+            "at": "row, q",
+            "frame": "row, turned",
+            "turned": "turned",
+            "u": "u",
+        }
         lines = [
             *(f"{name} = room({count})" for name, count in rooms.items()),
             f"own_d = shifted(number_d, row[{2 * bodies}] + int(numbers[0]))",
             *(f"{name} = {pointer}" for name, pointer in to.items()),
             *self._calls(smooth, of_numbers, {name: name for name in smooth}),
-            *(CHANGES[name].format(changed=f"{n}, own, own_d, row, q, u, work, changes", to=name) for name in smooth if name in CHANGES),
+            *(CHANGES[name].format(changed=f"{n}, own, own_d, work, changes", to=name) for name in smooth if name in CHANGES),
             f"h = step_size({n}, own, row, u, own_d, q_d, u_d)",
             "for k in range(4 if h > 0.0 else 0):",
             "    side = -2.0 if k == 0 else (-1.0 if k == 1 else (1.0 if k == 2 else 2.0))",

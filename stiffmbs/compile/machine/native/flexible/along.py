@@ -12,9 +12,23 @@ from math import sqrt
 
 from stiffmbs.compile.machine.native.access import compiled, shifted
 from stiffmbs.compile.machine.native.beams.along import STEP
-from stiffmbs.compile.machine.native.flexible.elastic import along, elastic_forces, shape
-from stiffmbs.compile.machine.native.flexible.sums import body_view, coordinate, mode, mode_view, pair, velocity
-from stiffmbs.elements.spatial.flexible.layout import COUPLING
+from stiffmbs.compile.machine.native.flexible.elastic import elastic_forces, rank
+from stiffmbs.compile.machine.native.flexible.sums import (
+    DAMPING,
+    STIFFNESS,
+    along,
+    body_view,
+    clear,
+    combine,
+    coordinate,
+    coupling,
+    elastic,
+    of_modes,
+    shape,
+    stretched,
+    velocity,
+    width,
+)
 
 
 @compiled
@@ -43,85 +57,97 @@ def step_size(n, number, index, u, gravity_d, q_d, u_d):
 @compiled
 def coupled(n, number_d, x, place, k):
     """Return row k of the derivative of the stiffness (place 0) or damping matrix (place 1) times x."""
-    of_mode = mode_view(mode(number_d, k))
-    total = of_mode.stiffness[0] * x[k] if place == 0 else of_mode.damping[0] * x[k]
-    row = shifted(pair(n, number_d, n, 0), COUPLING * n * k)
-    for l in range(n):
-        total += row[COUPLING * l + place] * x[l]
-    return total
+    return of_modes(n, number_d, STIFFNESS + place)[k] * x[k] + along(n, coupling(n, number_d, place, k), x)
 
 
 @compiled
 def strain_changes(n, number, number_d, work, to):
     """Compute the derivatives of p and p' by the numbers, and of the modal forces e, after `elastic_forces`.
 
-    `to` has three vectors of n numbers: p_d, p'_d and e_d.
+    `to` has four rows: p_d, p'_d and e_d, and one for Gamma_i y by the derivative of Gamma_i.
     """
-    y, rate, p, dp, v = work, shifted(work, n), shifted(work, 2 * n), shifted(work, 3 * n), shifted(work, 7 * n)
-    p_d, dp_d, e_d = to, shifted(to, n), shifted(to, 2 * n)
-    for k in range(n):
-        p_d[k] = 0.0
-        dp_d[k] = 0.0
-    for i in range(int(body_view(number).stretch[0])):
-        b, b_d = shape(n, number, i), shape(n, number_d, i)
-        much, quick, much_d, quick_d = 0.5 * along(n, shifted(v, n * i), y), along(n, shifted(v, n * i), rate), 0.0, 0.0
-        for k in range(n):
-            stretched = along(n, shifted(b_d, n + n * k), y)
-            much_d += 0.5 * y[k] * stretched
-            quick_d += rate[k] * stretched
-        for k in range(n):
+    y, rate, p, dp = elastic(n, work, 0), elastic(n, work, 1), elastic(n, work, 2), elastic(n, work, 3)
+    p_d, dp_d, e_d, of_y, row = to, elastic(n, to, 1), elastic(n, to, 2), elastic(n, to, 3), width(n)
+    stiffness, damping = of_modes(n, number, STIFFNESS), of_modes(n, number, DAMPING)
+    clear(2 * row, p_d)
+    for i in range(rank(number)):
+        b, b_d, v = shape(n, number, i), shape(n, number_d, i), stretched(n, work, i)
+        changed_stretch(n, number, number_d, i, y, of_y)
+        much, quick, much_d, quick_d = (
+            0.5 * along(n, v, y),
+            along(n, v, rate),
+            0.5 * along(n, of_y, y),
+            along(n, of_y, rate),
+        )
+        for k in range(row):
             p_d[k] += b_d[k] * much + b[k] * much_d
             dp_d[k] += b_d[k] * quick + b[k] * quick_d
     for k in range(n):
-        of_mode = mode_view(mode(number, k))
-        e_d[k] = of_mode.stiffness[0] * p_d[k] + of_mode.damping[0] * dp_d[k]
+        e_d[k] = stiffness[k] * p_d[k] + damping[k] * dp_d[k]
         e_d[k] += coupled(n, number_d, p, 0, k) + coupled(n, number_d, dp, 1, k)
+
+
+@compiled
+def changed_stretch(n, number, number_d, i, y, to):
+    """Compute the product of the derivative of Gamma_i and y."""
+    known = int(body_view(number).known[0])
+    clear(width(n), to)
+    for l in range(n):
+        row = shifted(shape(n, number_d, known), width(n) * (known * l + i))
+        combine(n, 1, shifted(y, l), 1, row, to)
 
 
 @compiled
 def linear(n, number_d, x, place):
     """Return the sum of the derivatives of the stiffness (place 0) or damping (place 1) of the modes times squares of x."""
-    total = 0.0
+    total, of_mode = 0.0, of_modes(n, number_d, STIFFNESS + place)
     for k in range(n):
-        of_mode = mode_view(mode(number_d, k))
-        total += (of_mode.stiffness[0] if place == 0 else of_mode.damping[0]) * x[k] * x[k]
+        total += of_mode[k] * x[k] * x[k]
     return total
 
 
 @compiled
-def add_elastic_change(n, number, number_d, index, q, u, work, to, f):
+def add_elastic_change(n, number, number_d, work, to, f):
     """Add the part of the derivative of the elastic forces by the numbers that is not linear in these."""
-    elastic_forces(n, number, index, q, u, work)
+    elastic_forces(n, number, work)
     strain_changes(n, number, number_d, work, to)
-    e, e_d, v = shifted(work, 4 * n), shifted(to, 2 * n), shifted(work, 7 * n)
+    y, rate, e, e_d, of_y = (
+        elastic(n, work, 0),
+        elastic(n, work, 1),
+        elastic(n, work, 4),
+        elastic(n, to, 2),
+        elastic(n, to, 3),
+    )
+    stiffness_d, damping_d = of_modes(n, number_d, STIFFNESS), of_modes(n, number_d, DAMPING)
     for l in range(n):
-        of_mode = mode_view(mode(number_d, l))
-        f[6 + l] -= e_d[l] - of_mode.stiffness[0] * work[l] - of_mode.damping[0] * work[n + l]
-    for i in range(int(body_view(number).stretch[0])):
-        b, b_d = shape(n, number, i), shape(n, number_d, i)
+        f[6 + l] -= e_d[l] - stiffness_d[l] * y[l] - damping_d[l] * rate[l]
+    for i in range(rank(number)):
+        b, b_d, v = shape(n, number, i), shape(n, number_d, i), stretched(n, work, i)
         much, much_d = along(n, b, e), along(n, b, e_d) + along(n, b_d, e)
+        changed_stretch(n, number, number_d, i, y, of_y)
         for l in range(n):
-            f[6 + l] -= v[n * i + l] * much_d + along(n, shifted(b_d, n + n * l), work) * much
+            f[6 + l] -= v[l] * much_d + of_y[l] * much
 
 
 @compiled
-def energy_change(n, number, number_d, index, q, u, work, to):
+def energy_change(n, number, number_d, work, to):
     """Return the part of the derivative of the strain energy by the numbers that is not linear in these."""
-    elastic_forces(n, number, index, q, u, work)
+    elastic_forces(n, number, work)
     strain_changes(n, number, number_d, work, to)
-    p, total = shifted(work, 2 * n), -0.5 * linear(n, number_d, work, 0)
+    p, total, stiffness = elastic(n, work, 2), -0.5 * linear(n, number_d, work, 0), of_modes(n, number, STIFFNESS)
     for k in range(n):
-        total += p[k] * (mode_view(mode(number, k)).stiffness[0] * to[k] + 0.5 * coupled(n, number_d, p, 0, k))
+        total += p[k] * (stiffness[k] * to[k] + 0.5 * coupled(n, number_d, p, 0, k))
     return total
 
 
 @compiled
-def power_change(n, number, number_d, index, q, u, work, to):
+def power_change(n, number, number_d, work, to):
     """Return the part of the derivative of the power of damping by the numbers that is not linear in these."""
-    elastic_forces(n, number, index, q, u, work)
+    elastic_forces(n, number, work)
     strain_changes(n, number, number_d, work, to)
-    dp, total = shifted(work, 3 * n), linear(n, number_d, shifted(work, n), 1)
+    dp, dp_d, total, damping = (
+        elastic(n, work, 3), elastic(n, to, 1), linear(n, number_d, elastic(n, work, 1), 1), of_modes(n, number, DAMPING)
+    )  # fmt: skip
     for k in range(n):
-        of_mode = mode_view(mode(number, k))
-        total -= dp[k] * (2.0 * of_mode.damping[0] * to[n + k] + coupled(n, number_d, dp, 1, k))
+        total -= dp[k] * (2.0 * damping[k] * dp_d[k] + coupled(n, number_d, dp, 1, k))
     return total

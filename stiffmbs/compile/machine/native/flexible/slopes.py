@@ -9,30 +9,33 @@ from __future__ import annotations
 from stiffmbs.compile.machine.native.access import compiled, room, shifted
 from stiffmbs.compile.machine.native.flexible.elastic import add_elastic_slopes
 from stiffmbs.compile.machine.native.flexible.sums import (
-    axial,
+    ACCELERATIONS,
+    AXIAL,
+    AXIAL_RATE,
+    AXIAL_RATE_OF_Z,
+    FIRST,
+    FIRST_RATE,
+    along,
     body_view,
+    by_accelerations,
+    by_coordinates,
+    by_velocities,
     centrifugal,
+    clear,
+    column,
+    combine,
     cross,
-    dot,
-    first_moment,
-    first_moment_of_mode,
-    first_rate,
+    elastic,
     inertia_by_mode,
-    mode_with_rates,
     moment_of_rotation,
-    moment_rate_of_mode,
-    of_mode,
-    pair,
-    pair_view,
+    moments,
+    moments_view,
+    pairs,
     rigid_momentum,
-    second_moments,
-    sum_of_mode,
-    sums,
     take_acceleration_sums,
     times,
-    trace,
     transposed_times,
-    velocity,
+    width,
 )
 
 
@@ -51,9 +54,9 @@ def by_quaternion(turn, j, y):
 
 
 @compiled
-def _by_rotation(n, number, turn, d, of_frame, field, sign, work, to):
+def _by_rotation(n, turn, d, of_frame, field, sign, work, to):
     """Compute the derivatives by the quaternion of a rotated vector A `of_frame` and of moments by a field in ground axes."""
-    x, y, z, turned, D = room(3), room(3), room(3), room(3), room(3)
+    x, y, z, turned, D = room(3), room(3), room(3), room(3), by_coordinates(n, work, FIRST)
     times(turn, of_frame, z)
     h = room(3)
     for i in range(3):
@@ -68,8 +71,8 @@ def _by_rotation(n, number, turn, d, of_frame, field, sign, work, to):
             to[(4 + n) * i + j] = y[i]
             to[(4 + n) * (3 + i) + j] = z[i]
         for k in range(n):
-            first_moment_of_mode(n, k, number, work, D)
-            to[(4 + n) * (6 + k) + j] = dot(D, turned)
+            along_D = D[k] * turned[0] + D[width(n) + k] * turned[1] + D[2 * width(n) + k] * turned[2]
+            to[(4 + n) * (6 + k) + j] = along_D
 
 
 @compiled
@@ -98,104 +101,114 @@ def _by_angular_velocity(n, A, w, d, s, I, K, f_u):
 
 
 @compiled
-def _of_frame_by_mode(n, l, number, index, A, u, w, g, work, f_q, f_u):
+def _mode_with_rates(n, number, l, rates, P):
+    """Compute the derivative of sum m r u'^T by a modal coordinate, from modal velocities or accelerations."""
+    for i in range(9):
+        P[i] = along(n, shifted(pairs(n, number, l), width(n) * i), rates)
+
+
+@compiled
+def _of_frame_by_mode(n, l, number, A, w, g, work, f_q, f_u):
     """Compute the derivatives of the forces on the frame by a modal coordinate and its velocity."""
-    N, P, D, s, x, y, z, turned = room(9), room(9), room(3), room(3), room(3), room(3), room(3), room(3)
-    first_moment_of_mode(n, l, number, work, D)
-    rates = pair_view(of_mode(sums(n, work, 1), l))
+    N, P, D, T, s, x, y, z, turned = (
+        room(9), room(9), room(3), room(3), room(3), room(3), room(3), room(3), room(3)
+    )  # fmt: skip
+    column(n, 3, by_coordinates(n, work, FIRST), l, D)
+    column(n, 3, by_velocities(n, work, FIRST_RATE), l, T)
     cross(w, D, x)
     for i in range(3):
-        z[i] = x[i] + 2.0 * rates.T[i]
-        s[i] = rates.T[i] + x[i]
+        z[i] = x[i] + 2.0 * T[i]
+        s[i] = T[i] + x[i]
     cross(w, z, y)
     times(A, y, z)
     times(A, s, turned)
     for i in range(3):
         f_q[(4 + n) * i + 4 + l] = -z[i]
         f_u[(3 + n) * i + 3 + l] = -2.0 * turned[i]
-    sum_of_mode(n, l, number, work, N)
+    column(n, 9, by_coordinates(n, work, 0), l, N)
     inertia_by_mode(N, w, x)
     cross(w, x, y)
     cross(D, g, z)
-    mode_with_rates(n, l, number, index, u, P)
+    _mode_with_rates(n, number, l, elastic(n, work, 1), P)
     moment_of_rotation(P, w, x)
     moment_of_rotation(N, w, turned)
-    moment_rate_of_mode(n, l, work, s)
+    column(n, 3, by_velocities(n, work, AXIAL_RATE), l, s)
+    column(n, 3, by_velocities(n, work, AXIAL_RATE_OF_Z), l, T)
     for i in range(3):
         f_q[(4 + n) * (3 + i) + 4 + l] = -y[i] - 2.0 * x[i] + z[i]
-        f_u[(3 + n) * (3 + i) + 3 + l] = -2.0 * (turned[i] + s[i])
+        f_u[(3 + n) * (3 + i) + 3 + l] = -2.0 * (turned[i] + s[i] - T[i])
 
 
 @compiled
 def _of_mode(n, l, number, w, g, work, f_q, f_u):
     """Compute the derivatives of all modal inertial forces by a modal coordinate and its velocity, and of one by w."""
-    N = room(9)
-    sum_of_mode(n, l, number, work, N)
-    x = pair_view(of_mode(sums(n, work, 1), l)).axial
+    N, x, axial, c, twice, row = room(9), room(3), room(3), room(6), room(3), elastic(n, work, 2)
+    column(n, 9, by_coordinates(n, work, 0), l, N)
+    inertia_by_mode(N, w, x)
+    column(n, 3, by_velocities(n, work, AXIAL_RATE_OF_Z), l, axial)
     for i in range(3):
-        total = 2.0 * w[i] * trace(N) - 2.0 * x[i]
-        for j in range(3):
-            total -= w[j] * (N[3 * i + j] + N[3 * j + i])
-        f_u[(3 + n) * (6 + l) + i] = total
+        f_u[(3 + n) * (6 + l) + i] = x[i] - 2.0 * axial[i]
+        twice[i] = -2.0 * w[i]
+    centrifugal(w, c)
+    of_pairs = pairs(n, number, l)
+    clear(2 * width(n), row)
+    combine(n, 6, c, 1, of_pairs, row)
+    combine(n, 3, g, 1, shifted(of_pairs, FIRST * width(n)), row)
+    combine(n, 3, twice, 1, shifted(of_pairs, (FIRST + 3) * width(n)), shifted(row, width(n)))
     for k in range(n):
-        of_pair = pair_view(pair(n, number, l, k))
-        f_q[(4 + n) * (6 + k) + 4 + l] = centrifugal(of_pair.ZW, w) + dot(of_pair.T, g)
-        f_u[(3 + n) * (6 + k) + 3 + l] = -2.0 * dot(w, of_pair.axial)
+        f_q[(4 + n) * (6 + k) + 4 + l] = row[k]
+        f_u[(3 + n) * (6 + k) + 3 + l] = row[width(n) + k]
 
 
 @compiled
-def add_force_slopes(n, number, index, q, turn, u, work, f_q, f_u):
+def add_force_slopes(n, number, index, turn, u, work, f_q, f_u):
     """Compute the derivatives of the forces by the pose and by velocities."""
-    w, gravity = shifted(u, int(index[1]) + 3), body_view(number).gravity
-    d, s, g, x, y, I, K = room(3), room(3), room(3), room(3), room(3), room(9), room(9)
-    first_moment(n, number, index, q, work, d)
-    first_rate(n, number, index, u, work, s)
+    w, gravity, m = shifted(u, int(index[1]) + 3), body_view(number).gravity, moments_view(moments(n, work))
+    s, g, x, y = room(3), room(3), room(3), room(3)
     transposed_times(turn, gravity, g)
-    second_moments(n, number, index, q, u, work, I, K)
     for i in range(3):
-        s[i] *= 2.0
-    rigid_momentum(w, d, s, x)
+        s[i] = 2.0 * m.rate[i]
+    rigid_momentum(w, m.d, s, x)
     cross(w, x, y)
-    for k in range(n):
-        T = pair_view(of_mode(sums(n, work, 1), k)).T
-        for i in range(3):
-            y[i] += u[velocity(index, k)] * T[i]
-    _by_rotation(n, number, turn, d, y, gravity, -1.0, work, f_q)
-    _by_angular_velocity(n, turn, w, d, s, I, K, f_u)
+    for i in range(3):
+        y[i] += along(n, by_velocities(n, work, FIRST_RATE + i), elastic(n, work, 1))
+    _by_rotation(n, turn, m.d, y, gravity, -1.0, work, f_q)
+    _by_angular_velocity(n, turn, w, m.d, s, m.I, m.symmetric, f_u)
     for l in range(n):
-        _of_frame_by_mode(n, l, number, index, turn, u, w, g, work, f_q, f_u)
+        _of_frame_by_mode(n, l, number, turn, w, g, work, f_q, f_u)
         _of_mode(n, l, number, w, g, work, f_q, f_u)
-    add_elastic_slopes(n, number, index, q, u, work, f_q, f_u)
+    add_elastic_slopes(n, number, work, f_q, f_u)
 
 
 @compiled
-def add_inertia_slopes(n, number, index, q, turn, a, work, m_q):
+def add_inertia_slopes(n, number, index, turn, a, work, m_q):
     """Compute the derivatives by the pose of this mass matrix times accelerations."""
-    v, w = shifted(a, int(index[1])), shifted(a, int(index[1]) + 3)
-    d, s, b, x, y, z, N, P = room(3), room(3), room(3), room(3), room(3), room(3), room(9), room(9)
+    v, w, m = shifted(a, int(index[1])), shifted(a, int(index[1]) + 3), moments_view(moments(n, work))
+    s, b, x, y, z, N, P, D, T = room(3), room(3), room(3), room(3), room(3), room(9), room(9), room(3), room(3)
     take_acceleration_sums(n, number, index, a, work)
-    first_moment(n, number, index, q, work, d)
-    first_rate(n, number, index, a, work, s)
+    rates, row = elastic(n, work, ACCELERATIONS), elastic(n, work, 2)
+    for i in range(3):
+        s[i] = along(n, by_coordinates(n, work, FIRST + i), rates)
     transposed_times(turn, v, b)
-    rigid_momentum(w, d, s, x)
-    _by_rotation(n, number, turn, d, x, v, 1.0, work, m_q)
-    D = room(3)
+    rigid_momentum(w, m.d, s, x)
+    _by_rotation(n, turn, m.d, x, v, 1.0, work, m_q)
     for l in range(n):
-        first_moment_of_mode(n, l, number, work, D)
-        T = pair_view(of_mode(sums(n, work, 2), l)).T
+        column(n, 3, by_coordinates(n, work, FIRST), l, D)
+        column(n, 3, by_accelerations(n, work), l, T)
         cross(w, D, x)
         for i in range(3):
             x[i] += T[i]
         times(turn, x, y)
         cross(D, b, z)
-        sum_of_mode(n, l, number, work, N)
+        column(n, 9, by_coordinates(n, work, 0), l, N)
         inertia_by_mode(N, w, x)
-        mode_with_rates(n, l, number, index, a, P)
+        _mode_with_rates(n, number, l, rates, P)
+        of_pairs = pairs(n, number, l)
+        clear(width(n), row)
+        combine(n, 3, w, 1, shifted(of_pairs, AXIAL * width(n)), row)
+        combine(n, 3, b, 1, shifted(of_pairs, FIRST * width(n)), row)
         for k in range(n):
-            of_pair = pair_view(pair(n, number, l, k))
-            Z = of_pair.ZW
-            by_q = w[0] * axial(Z, 0) + w[1] * axial(Z, 1) + w[2] * axial(Z, 2)
-            m_q[(4 + n) * (6 + k) + 4 + l] = by_q + dot(of_pair.T, b)
+            m_q[(4 + n) * (6 + k) + 4 + l] = row[k]
         for i in range(3):
             m_q[(4 + n) * i + 4 + l] = y[i]
-            m_q[(4 + n) * (3 + i) + 4 + l] = z[i] + x[i] + axial(P, i)
+            m_q[(4 + n) * (3 + i) + 4 + l] = z[i] + x[i] + P[AXIAL + i]

@@ -7,30 +7,78 @@ second order T_lk = sum m theta_lk and W_lk = sum m x theta_lk^T. The kinetic en
 theta; the modal mass is constant. Each is less the part of the rigid frame and of the unit modal masses, which the
 diagonal of the mass matrix contains.
 
-The layout of the numbers of a body is in `stiffmbs.elements.spatial.flexible.layout`. Vectors are in body axes, apart
-from gravity. Matrices have nine entries by rows.
+The layout of the numbers of a body, and the components of matrices N = sum m r psi^T, are in
+`stiffmbs.elements.spatial.flexible.layout`. Vectors are in body axes, apart from gravity. Other matrices have nine
+entries by rows. Loops run over the modes of a row, so that the compiler uses SIMD instructions.
+
+The array `work` has nine rows for elastic forces (`stiffmbs.compile.machine.native.flexible.elastic`), the modal
+accelerations, and the vectors Gamma_i y and Gamma_i y'. Sums over the first mode of numbers of pairs follow. Those by
+modal coordinates are N_k and D_k. Those by modal velocities are the rates of the axial vectors of N_k and Z, and of D_k.
+Those by accelerations are of D_k. Last are the moments of `moments_view`.
 """
 
 from __future__ import annotations
 
 from stiffmbs.compile.machine.native.access import compiled, parts_of, room, shifted
-from stiffmbs.elements.spatial.flexible.layout import BODY, MODE, MODES, OF_MODE, OF_PAIR, PAIR
+from stiffmbs.compile.machine.native.quads import add_products, plus_product, quad, spread, sum_of
+from stiffmbs.elements.spatial.flexible.layout import BODY, COUPLINGS, MODES, OF_MODE, OF_PAIR
 
+BY_COORDINATE, BY_VELOCITY, BY_ACCELERATION = 12, 9, 3
+"""Rows of the sums, consecutive rows of `PAIR`."""
+AXIAL, FIRST = 6, 9
+"""First row of the axial vector of N and of D in the sums by modal coordinates, as in `MODE` and `PAIR`."""
+AXIAL_RATE, FIRST_RATE, AXIAL_RATE_OF_Z = 0, 3, 6
+"""First rows of the sums by modal velocities."""
+ACCELERATIONS = 9
+"""Row of the modal accelerations."""
+STIFFNESS, DAMPING = 12, 13
+"""Rows of a body's modes."""
 body_view = parts_of("FlexibleBody", BODY)
-mode_view = parts_of("FlexibleMode", MODE)
-pair_view = parts_of("FlexiblePair", PAIR)
+moments_view = parts_of("Moments", {"d": 3, "rate": 3, "I": 9, "symmetric": 6, "axial": 3})
+"""First moment d and its rate, the inertia tensor without the moments of the frame, and sum m (x + u) u'^T."""
 
 
 @compiled
-def mode(number, k):
-    """Return the numbers of a mode."""
-    return shifted(number, MODES + OF_MODE * k)
+def width(n):
+    """Return the length of a row."""
+    return 4 * ((n + 3) // 4)
 
 
 @compiled
-def pair(n, number, l, k):
-    """Return the numbers of a pair of modes."""
-    return shifted(number, MODES + OF_MODE * n + OF_PAIR * (n * l + k))
+def of_modes(n, number, row):
+    """Return a row of numbers of modes."""
+    return shifted(number, MODES + width(n) * row)
+
+
+@compiled
+def pairs(n, number, l):
+    """Return the rows of pairs of mode l."""
+    return shifted(number, MODES + width(n) * (OF_MODE + OF_PAIR * l))
+
+
+@compiled
+def modal_mass(n, number, l):
+    """Return row l of the modal mass matrix, less its diagonal part."""
+    return shifted(pairs(n, number, n), width(n) * l)
+
+
+@compiled
+def coupling(n, number, place, l):
+    """Return row l of the coupling of modes by stiffness (place 0) or damping (place 1)."""
+    return shifted(modal_mass(n, number, n), width(n) * (n * place + l))
+
+
+@compiled
+def shape(n, number, i):
+    """Return b_i of the stretch of second order."""
+    return shifted(coupling(n, number, COUPLINGS, 0), width(n) * i)
+
+
+@compiled
+def stretches(n, number, l):
+    """Return the rows l of all Gamma_i."""
+    known = int(body_view(number).known[0])
+    return shifted(shape(n, number, known), width(n) * known * l)
 
 
 @compiled
@@ -74,33 +122,12 @@ def dot(a, b):
 
 
 @compiled
-def axial(N, c):
-    """Return entry c of sum m r x psi from sum m r psi^T."""
-    if c == 0:
-        return N[5] - N[7]
-    if c == 1:
-        return N[6] - N[2]
-    return N[1] - N[3]
-
-
-@compiled
-def trace(N):
-    """Return the trace of a matrix."""
-    return N[0] + N[4] + N[8]
-
-
-@compiled
-def sums(n, work, which):
-    """Return the sums over the first mode of all numbers of pairs, by the second mode: times modal coordinates (0),
-    velocities (1) or accelerations (2)."""
-    return shifted(work, 7 * n + 2 * n * n + OF_PAIR * n * which)
-
-
-@compiled
-def add_row(count, y, row, to):
-    """Add y times some numbers to others."""
-    for j in range(count):
-        to[j] += y * row[j]
+def along(n, a, b):
+    """Return the product of two rows."""
+    total = spread(0.0)
+    for k in range(0, n, 4):
+        total = plus_product(total, quad(a, k), quad(b, k))
+    return sum_of(total)
 
 
 @compiled
@@ -111,140 +138,148 @@ def clear(count, to):
 
 
 @compiled
+def copy(count, of, to):
+    """Copy some numbers."""
+    for j in range(count):
+        to[j] = of[j]
+
+
+@compiled
+def add_rows(x, rows, stride, count, to):
+    """Add the products of three coordinates and rows of some numbers."""
+    two, three, a, b, c = shifted(rows, stride), shifted(rows, 2 * stride), x[0], x[1], x[2]
+    for j in range(count):
+        to[j] = plus_product(plus_product(plus_product(to[j], a, rows[j]), b, two[j]), c, three[j])
+
+
+@compiled
+def combine(n, count, factors, step, rows, to):
+    """Add a combination of consecutive rows to a row; the factors are `step` numbers apart."""
+    for k in range(0, n, 4):
+        add_products(1, 1, shifted(to, k), 0, factors, step, shifted(rows, k), width(n), count)
+
+
+@compiled
+def column(n, count, rows, k, to):
+    """Copy the numbers of mode k from consecutive rows."""
+    for i in range(count):
+        to[i] = rows[width(n) * i + k]
+
+
+@compiled
+def elastic(n, work, row):
+    """Return a row for elastic forces, or of accelerations."""
+    return shifted(work, width(n) * row)
+
+
+@compiled
+def stretched(n, work, i):
+    """Return Gamma_i y, or from i = n on Gamma_i y'."""
+    return elastic(n, work, ACCELERATIONS + 1 + i)
+
+
+@compiled
+def by_coordinates(n, work, row):
+    """Return a row of the sums by modal coordinates."""
+    return stretched(n, work, 2 * n + row)
+
+
+@compiled
+def by_velocities(n, work, row):
+    """Return a row of the sums by modal velocities."""
+    return by_coordinates(n, work, BY_COORDINATE + row)
+
+
+@compiled
+def by_accelerations(n, work):
+    """Return the rows of the sums by modal accelerations."""
+    return by_velocities(n, work, BY_VELOCITY)
+
+
+@compiled
+def moments(n, work):
+    """Return the moments of mass."""
+    return shifted(by_accelerations(n, work), width(n) * BY_ACCELERATION)
+
+
+@compiled
 def take_sums(n, number, index, q, u, work):
-    """Compute the sums by modal coordinates and velocities."""
-    of_q, of_u = sums(n, work, 0), sums(n, work, 1)
-    clear(2 * OF_PAIR * n, of_q)
-    for l in range(n):
-        row = pair(n, number, l, 0)
-        add_row(OF_PAIR * n, q[coordinate(index, l)], row, of_q)
-        add_row(OF_PAIR * n, u[velocity(index, l)], row, of_u)
+    """Compute the sums by modal coordinates and velocities, and the moments."""
+    y, rate, row = elastic(n, work, 0), elastic(n, work, 1), width(n)
+    clear(2 * row, y)
+    for k in range(n):
+        y[k] = q[coordinate(index, k)]
+        rate[k] = u[velocity(index, k)]
+    of_q, of_u = by_coordinates(n, work, 0), by_velocities(n, work, 0)
+    copy(BY_COORDINATE * row, of_modes(n, number, 0), of_q)
+    clear(BY_VELOCITY * row, of_u)
+    for l in range(0, n, 3):
+        rows = pairs(n, number, l)
+        add_rows(shifted(y, l), rows, OF_PAIR * row, BY_COORDINATE * row, of_q)
+        add_rows(shifted(rate, l), shifted(rows, AXIAL * row), OF_PAIR * row, BY_VELOCITY * row, of_u)
+    take_moments(n, number, work)
+
+
+@compiled
+def take_moments(n, number, work):
+    """Compute the moments of mass from the sums."""
+    y, rate, b, m, J = (
+        elastic(n, work, 0),
+        elastic(n, work, 1),
+        body_view(number),
+        moments_view(moments(n, work)),
+        room(6),
+    )
+    for i in range(3):
+        D, N = by_coordinates(n, work, FIRST + i), by_coordinates(n, work, AXIAL + i)
+        m.d[i] = b.d0[i] + 0.5 * (along(n, of_modes(n, number, FIRST + i), y) + along(n, D, y))
+        m.rate[i] = along(n, D, rate)
+        m.axial[i] = along(n, N, rate)
+    for i in range(6):
+        N = by_coordinates(n, work, i)
+        J[i] = b.X[i] + along(n, of_modes(n, number, i), y) + along(n, N, y)
+        m.symmetric[i] = along(n, N, rate)
+    I = m.I
+    I[0], I[4], I[8] = J[1] + J[2] - b.moments[0], J[0] + J[2] - b.moments[1], J[0] + J[1] - b.moments[2]
+    I[1], I[2], I[5] = -0.5 * J[5], -0.5 * J[4], -0.5 * J[3]
+    I[3], I[6], I[7] = I[1], I[2], I[5]
 
 
 @compiled
 def take_acceleration_sums(n, number, index, a, work):
-    """Compute the sums by modal accelerations."""
-    of_a = sums(n, work, 2)
-    clear(OF_PAIR * n, of_a)
-    for l in range(n):
-        add_row(OF_PAIR * n, a[velocity(index, l)], pair(n, number, l, 0), of_a)
-
-
-@compiled
-def of_mode(s, k):
-    """Return the numbers of a mode in the sums."""
-    return shifted(s, OF_PAIR * k)
-
-
-@compiled
-def sum_of_mode(n, k, number, work, N):
-    """Compute N_k = sum m r psi_k(q)^T, the derivative of sum m r r^T / 2 by a modal coordinate."""
-    Y, Z = mode_view(mode(number, k)).Y, pair_view(of_mode(sums(n, work, 0), k)).ZW
-    for i in range(9):
-        N[i] = Y[i] + Z[i]
-
-
-@compiled
-def mode_with_rates(n, l, number, index, rate, P):
-    """Compute the derivative of sum m r u'^T by a modal coordinate, from modal velocities or accelerations."""
-    for i in range(9):
-        P[i] = 0.0
+    """Compute the sums by modal accelerations, and the accelerations as a row."""
+    rates, of_a, row = elastic(n, work, ACCELERATIONS), by_accelerations(n, work), width(n)
+    clear(row, rates)
     for k in range(n):
-        Z = pair_view(pair(n, number, l, k)).ZW
-        y = rate[velocity(index, k)]
-        for i in range(9):
-            P[i] += y * Z[i]
-
-
-@compiled
-def first_moment_of_mode(n, k, number, work, D):
-    """Compute D_k = S_k + sum T_kl q_l, the derivative of the first moment by a modal coordinate."""
-    S, T = mode_view(mode(number, k)).S, pair_view(of_mode(sums(n, work, 0), k)).T
-    for i in range(3):
-        D[i] = S[i] + T[i]
-
-
-@compiled
-def moment_rate_of_mode(n, k, work, s):
-    """Compute the axial vector of sum W_kl rate_l of modal velocities."""
-    rates = pair_view(of_mode(sums(n, work, 1), k))
-    for i in range(3):
-        s[i] = axial(rates.ZW, i) - rates.axial[i]
-
-
-@compiled
-def first_moment(n, number, index, q, work, d):
-    """Compute the first moment of mass d = d0 + sum S_k q_k + 1/2 sum T_kl q_k q_l."""
-    b, D = body_view(number), room(3)
-    for i in range(3):
-        d[i] = b.d0[i]
-    for k in range(n):
-        S = mode_view(mode(number, k)).S
-        first_moment_of_mode(n, k, number, work, D)
-        for i in range(3):
-            d[i] += 0.5 * (S[i] + D[i]) * q[coordinate(index, k)]
-
-
-@compiled
-def first_rate(n, number, index, rate, work, s):
-    """Compute sum D_k rate_k of modal velocities or accelerations."""
-    D = room(3)
-    for i in range(3):
-        s[i] = 0.0
-    for k in range(n):
-        first_moment_of_mode(n, k, number, work, D)
-        for i in range(3):
-            s[i] += D[i] * rate[velocity(index, k)]
-
-
-@compiled
-def second_moments(n, number, index, q, u, work, I, K):
-    """Compute the inertia tensor without the moments of the frame, and K = sum m (x + u) u'^T."""
-    b = body_view(number)
-    N, J = room(9), room(9)
-    for i in range(9):
-        J[i] = b.X[i]
-        K[i] = 0.0
-    for k in range(n):
-        sum_of_mode(n, k, number, work, N)
-        Y = mode_view(mode(number, k)).Y
-        y, rate = q[coordinate(index, k)], u[velocity(index, k)]
-        for i in range(3):
-            for j in range(3):
-                J[3 * i + j] += y * (Y[3 * j + i] + N[3 * i + j])
-                K[3 * i + j] += rate * N[3 * i + j]
-    for i in range(3):
-        for j in range(3):
-            I[3 * i + j] = -0.5 * (J[3 * i + j] + J[3 * j + i])
-        I[4 * i] += trace(J) - b.moments[i]
+        rates[k] = a[velocity(index, k)]
+    clear(BY_ACCELERATION * row, of_a)
+    for l in range(0, n, 3):
+        rows = shifted(pairs(n, number, l), FIRST * row)
+        add_rows(shifted(rates, l), rows, OF_PAIR * row, BY_ACCELERATION * row, of_a)
 
 
 @compiled
 def moment_of_rotation(N, w, y):
-    """Compute y = sum m r x (w x psi) = w tr N - N^T w from N = sum m r psi^T."""
-    for i in range(3):
-        y[i] = w[i] * trace(N) - (N[i] * w[0] + N[3 + i] * w[1] + N[6 + i] * w[2])
+    """Compute y = sum m r x (w x psi) = w tr N - N^T w from the components of N = sum m r psi^T."""
+    cross(w, shifted(N, AXIAL), y)
+    y[0] = 0.5 * (y[0] + 2.0 * (N[1] + N[2]) * w[0] - N[5] * w[1] - N[4] * w[2])
+    y[1] = 0.5 * (y[1] + 2.0 * (N[0] + N[2]) * w[1] - N[5] * w[0] - N[3] * w[2])
+    y[2] = 0.5 * (y[2] + 2.0 * (N[0] + N[1]) * w[2] - N[4] * w[0] - N[3] * w[1])
 
 
 @compiled
 def inertia_by_mode(N, w, y):
     """Compute the derivative of I w by a modal coordinate: 2 w tr N - (N + N^T) w."""
-    for i in range(3):
-        both = 0.0
-        for j in range(3):
-            both += (N[3 * i + j] + N[3 * j + i]) * w[j]
-        y[i] = 2.0 * trace(N) * w[i] - both
+    y[0] = 2.0 * (N[1] + N[2]) * w[0] - N[5] * w[1] - N[4] * w[2]
+    y[1] = 2.0 * (N[0] + N[2]) * w[1] - N[5] * w[0] - N[3] * w[2]
+    y[2] = 2.0 * (N[0] + N[1]) * w[2] - N[4] * w[0] - N[3] * w[1]
 
 
 @compiled
-def centrifugal(N, w):
-    """Return sum m psi . (w x (w x r)) with opposite sign: w . w tr N - w . N w."""
-    total = 0.0
-    for i in range(3):
-        total += w[i] * w[i] * trace(N)
-        for j in range(3):
-            total -= w[i] * w[j] * N[3 * i + j]
-    return total
+def centrifugal(w, c):
+    """Compute the factors of the symmetric part of N in sum m psi . (w x (w x r)) with opposite sign."""
+    c[0], c[1], c[2] = w[1] * w[1] + w[2] * w[2], w[0] * w[0] + w[2] * w[2], w[0] * w[0] + w[1] * w[1]
+    c[3], c[4], c[5] = -w[1] * w[2], -w[2] * w[0], -w[0] * w[1]
 
 
 @compiled
