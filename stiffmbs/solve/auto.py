@@ -8,6 +8,7 @@ The criteria are in `stiffmbs.solve.auto_decisions`.
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -29,18 +30,17 @@ from .auto_decisions import (
     loss_of_trial,
     saving_by_return,
     since,
-    stability_limits,
-    starts_for_first_trial,
-    trial_goes_on,
+    steps_of_decay,
+    tolerable_loss,
 )
-from .error_control.newton import stiffness_at
+from .error_control.newton import Stiffness, stiffness_at
 from .error_control.tolerances import absolute_tolerances
 from .events.restart import just_after, just_before, restarted
 from .explicit import DOP853
 from .explicit.adaptive import AdaptiveRun, Leaving
 from .explicit.integration import Integration
 from .explicit.projected import TRAITS
-from .explicit.stable_step import fastest_rate
+from .explicit.stable_step import NOT_ASKED, fastest_rate
 from .ida.engine import Reached
 from .integrator import Integrator
 from .radau import radau
@@ -106,26 +106,41 @@ class _Implicit:
     Attributes
     ----------
     name : str
-        ``bdf`` or ``radau``; empty before the integrator exists.
+        ``bdf`` or ``radau``; empty before it is chosen.
     cost : ImplicitCost
-        Cost with the chosen linear solver, or a lower bound before the integrator exists.
+        Cost of the chosen integrator with its linear solver, or a lower bound before it exists.
     """
 
     def __init__(self, dynamics: Dynamics, settings: RunSettings) -> None:
         self._dynamics, self._settings = dynamics, settings
-        self.name = ""
-        self.cost = cost.ImplicitCost.of(dynamics)
+        self.name, self._created = "", False
 
-    def create(self, parameters: AutoParameters, t: float, q: np.ndarray, u: np.ndarray) -> None:
-        """Choose and create the integrator by the stiffness of a state, unless it exists, and estimate its cost."""
-        if self.name:
-            return
-        self._dynamics.state.q[:], self._dynamics.state.u[:] = q, u
-        self.name = implicit_solver(parameters, self._settings.rtol, stiffness_at(self._dynamics, t).damping_ratio)
-        create = radau.radau_integrator if self.name == "radau" else Integrator
-        self.integrator = create(self._dynamics, self._settings)
-        of_bdf = cost.ImplicitCost.of(self._dynamics, self.integrator.factors)
+    def choose(self, stiffness: Stiffness) -> None:
+        """Choose the integrator by the stiffness of a state, unless one exists."""
+        if not self._created:
+            self.name = implicit_solver(stiffness.damping_ratio)
+            self._estimate(None)
+
+    def create(self) -> None:
+        """Create the chosen integrator, unless it exists, and estimate its cost."""
+        if not self._created:
+            create = radau.radau_integrator if self.name == "radau" else Integrator
+            self.integrator, self._created = create(self._dynamics, self._settings), True
+            self._estimate(self.integrator.factors)
+
+    def _estimate(self, factors: float | None) -> None:
+        of_bdf = cost.ImplicitCost.of(self._dynamics, factors)
         self.cost = radau.of_radau(of_bdf) if self.name == "radau" else of_bdf
+
+    @property
+    def growth(self) -> float:
+        """Cost of the small steps after a start or a breakpoint."""
+        return -math.log10(self._settings.rtol) * self.cost.start_steps * self.cost.step
+
+    @property
+    def start(self) -> float:
+        """Cost of a switch to these steps, including the small ones."""
+        return self.cost.memory + self.growth
 
     def traits(self) -> Traits:
         """Return the traits of the solver."""
@@ -133,6 +148,8 @@ class _Implicit:
 
     def steps(self, t: float) -> ImplicitSteps:
         """Return the steps of all segments, the last of which has reached the time t."""
+        if not self.integrator.steps():
+            return ImplicitSteps(t, 0, 0.0)
         counted = self.integrator.statistics()
         restarts = int(counted["breakpoints"]) + int(counted["events"])
         return ImplicitSteps(t, restarts, self.cost.work(int(counted["residuals"]), int(counted["factorizations"])))
@@ -149,7 +166,7 @@ class _ExplicitCheck:
 
     def __init__(self, run: _AutoRun, t: float) -> None:
         self._run = run
-        self._counted = ExplicitSteps(t, 0, 0, 0)
+        self._counted = ExplicitSteps(t, 0, 0, 0.0)
         self.switch: _Switch | None = None
 
     def __call__(self, work: Integration) -> bool:
@@ -157,8 +174,11 @@ class _ExplicitCheck:
         accepted = work.count("steps")
         if accepted == self._counted.accepted:  # a return at output points only
             return False
-        counted = ExplicitSteps(work.t, accepted, accepted + work.count("rejected"), work.count("stiff_steps"))
+        spent = self._run.explicit_step * work.count("accelerations") / DOP853.stages
+        counted = ExplicitSteps(work.t, accepted, work.count("stiff_steps"), spent)
         steps, self._counted = since(self._counted, counted), counted
+        if NOT_ASKED < work.stable < work.h:  # the bound holds the steps below what the integrator counts as limited
+            steps = steps._replace(limited=steps.accepted)
         self.switch = self._run.returned(steps, work.t) or self._run.later_trial(steps, counted, work)
         return self.switch is not None
 
@@ -168,8 +188,6 @@ class _ImplicitCheck:
 
     Attributes
     ----------
-    every : int
-        Steps between two checks.
     rate : float
         Cost of implicit steps per second of the motion in the last interval.
     loss : float
@@ -178,24 +196,29 @@ class _ImplicitCheck:
 
     def __init__(self, run: _AutoRun, implicit: _Implicit, t: float) -> None:
         self._run, self._implicit = run, implicit
-        every = run.parameters.check_cost * implicit.cost.memory / implicit.cost.step
-        self.every = max(int(every), run.parameters.fewest_steps)
-        self._counted, self._next = implicit.steps(t), implicit.integrator.steps() + self.every
+        self._counted = implicit.steps(t)
         self.rate, self.loss = np.inf, 0.0
+        self._wait(t)
 
     def __call__(self, reached: Reached) -> bool:
         """Add the loss since the last check; return True if the implicit integrator is kept."""
-        steps = self._implicit.integrator.steps()
-        if steps < self._next or self._run.is_breakpoint(reached.t):  # an event between two checks
-            return True
-        self._next = steps + self.every
+        if self._implicit.integrator.steps() < self._next or self._run.is_breakpoint(reached.t):
+            return True  # an event between two checks
         counted = self._implicit.steps(reached.t)
         taken, self._counted = since(self._counted, counted), counted
         self.rate = taken.cost / taken.time if taken.time else np.inf
         self.loss = loss_of_trial(self.loss, taken.cost, self._run.explicit_cost(taken.time, taken.restarts))
-        return trial_goes_on(
-            self.loss, self._implicit.cost.start, self._run.thresholds.loss, self._run.explicit_cost_from(reached.t)
-        )
+        return self._wait(reached.t) > 0.0
+
+    def _wait(self, t: float) -> float:
+        """Set the next check, before which average steps do not exceed the tolerable loss; return what is left of that."""
+        following = self._run.explicit_cost(self._run.remaining(t), 0)
+        left = tolerable_loss(self._implicit.start, self._run.thresholds.loss, following) - self.loss
+        integrator = self._implicit.integrator
+        every = max(int(left / self._implicit.cost.step), self._run.parameters.fewest_steps)
+        self._next = integrator.steps() + every
+        integrator.engine.pause_after(every)
+        return left
 
 
 class _AutoRun:
@@ -226,10 +249,11 @@ class _AutoRun:
         self._dynamics, self._grid, self._watch, self.parameters = dynamics, grid, watch, parameters
         self._settings = settings.model_copy(update={"scheme": "dop853", "projection": True})
         self._implicit = _Implicit(dynamics, self._settings)
-        self._explicit_step = cost.of_explicit_step(dynamics)
+        self._breakpoints = dynamics.input_features(grid.start, grid.end).breakpoints
+        self.explicit_step = cost.of_explicit_step(dynamics)
         self._explicit_rate = np.inf  # cost per second of the motion
         self._implicit_rate = np.inf  # the same of implicit steps, before they were left
-        self.thresholds = Thresholds.of(parameters)
+        self.thresholds = Thresholds()
         self._segments: list[Segment] = []
         self._messages: list[str] = []
 
@@ -266,10 +290,15 @@ class _AutoRun:
         t = self._grid.start
         fastest = fastest_rate(self._dynamics, t, start.q, start.u)
         rate = self._stable_rate(fastest)
-        starts = starts_for_first_trial(self.parameters, self._excitation(start, fastest))
-        breakpoints = self._dynamics.input_features(t, self._grid.end).breakpoints
-        of_radau = self.parameters.trial_starts_at_rest + 1 + int(np.sum(breakpoints > t))  # long steps in each piece
-        if not self._pays(rate, t, start.q, start.u, starts, min(starts, of_radau)):
+        pieces = 1 + self._breakpoints_after(t)
+        explicit_cost = self.remaining(t) * rate + (pieces - 1) * cost.COSTS.restart_steps * self.explicit_step
+        stiffness = self._stiffness(t, start.q, start.u)
+        self._implicit.choose(stiffness)
+        if not explicit_cost > pieces * self._implicit.growth:
+            return None
+        decay = steps_of_decay(self.parameters, self._excitation(start, fastest), fastest, stiffness.of_velocities)
+        self._implicit.create()
+        if not explicit_cost > pieces * self._implicit.growth + decay * self._implicit.cost.step:
             return None
         return _Switch(f"{self._implicit.name}, as the fastest rate is {fastest:.3g} 1/s", rate, self.thresholds)
 
@@ -284,36 +313,36 @@ class _AutoRun:
             Steps of the whole segment.
         work : Integration
         """
-        if not stability_limits(self.parameters, steps):
+        if not steps.limited or segment.cost < self.thresholds.penalty:
             return None
-        if segment.attempted * self._explicit_step < self.thresholds.penalty:
+        self._implicit.choose(self._stiffness(work.t, work.q, work.u))
+        share = steps.limited / steps.accepted
+        saving = share * steps.cost * self.remaining(work.t) / steps.time
+        if not saving > self._justifying(work.t):
             return None
-        following = (self._grid.end - work.t) / steps.time
-        starts = self.parameters.trial_starts
-        if following * steps.attempted * self._explicit_step <= starts * self._implicit.cost.start:
-            return None  # these include rejected and short steps, which cost more than the rate indicates
         fastest = fastest_rate(self._dynamics, work.t, work.q, work.u)
         rate = self._stable_rate(fastest)
-        if not self._pays(rate, work.t, work.q, work.u, starts, starts):
+        self._implicit.create()
+        if not min(saving, self.remaining(work.t) * rate) > self._justifying(work.t):
             return None
         reason = (
-            f"{self._implicit.name} from t = {work.t:.4g} s on, as stability held back {100 * steps.limited / steps.accepted:.0f} % of the "
+            f"{self._implicit.name} from t = {work.t:.4g} s on, as stability held back {100 * share:.0f} % of the "
             f"steps (fastest rate {fastest:.3g} 1/s)"
         )
-        return _Switch(reason, rate, self.thresholds)
+        return _Switch(reason, rate, self.thresholds.of_trial(share))
 
     def returned(self, steps: ExplicitSteps, t: float) -> _Switch | None:
         """Return the decision to resume the implicit integrator, because explicit steps cost more than its own did; None to go on with these."""
-        rate = steps.attempted * self._explicit_step / steps.time
+        rate = steps.cost / steps.time
         saving = saving_by_return(rate, self._implicit_rate, self.thresholds.return_ratio, self._grid.end - t)
-        if not saving > self._implicit.cost.start:
+        if not saving > self._implicit.start:
             return None
         reason = f"{self._implicit.name} from t = {t:.4g} s on, as explicit steps cost more than its own had"
-        return _Switch(reason, rate, self.thresholds.after_return(self.parameters))
+        return _Switch(reason, rate, self.thresholds.after_return())
 
     def _stable_rate(self, fastest: float) -> float:
         """Return the cost of explicit steps per second if stability limits them, for a fastest rate in 1/s."""
-        return self._explicit_step * fastest / DOP853.stability
+        return self.explicit_step * fastest / DOP853.stability
 
     def _excitation(self, start: InitialValues, fastest: float) -> float:
         """Return the largest change of a velocity in a step limited by stability, in tolerances."""
@@ -324,31 +353,31 @@ class _AutoRun:
         change = np.abs(start.acceleration) * (DOP853.stability / fastest)
         return float((change / (tolerances[system.n_q :] + settings.rtol * np.abs(start.u))).max(initial=0.0))
 
-    def _pays(
-        self, explicit_rate: float, t: float, q: np.ndarray, u: np.ndarray, starts: float, of_radau: float
-    ) -> bool:
-        """Return True if explicit steps from t to the end cost more than a number of starts of bdf or of radau.
+    def _stiffness(self, t: float, q: np.ndarray, u: np.ndarray) -> Stiffness:
+        """Return the stiffness of a state."""
+        self._dynamics.state.q[:], self._dynamics.state.u[:] = q, u
+        return stiffness_at(self._dynamics, t)
 
-        If they cost more than by the lower bound of a start, the integrator is created for a better estimate.
-        """
-        explicit_cost = (self._grid.end - t) * explicit_rate
-        if not explicit_cost > min(starts, of_radau) * self._implicit.cost.start:
-            return False
-        self._implicit.create(self.parameters, t, q, u)
-        return explicit_cost > (of_radau if self._implicit.name == "radau" else starts) * self._implicit.cost.start
+    def _breakpoints_after(self, t: float) -> int:
+        """Return the number of input breakpoints after a time."""
+        return int(np.sum(self._breakpoints > t))
+
+    def _justifying(self, t: float) -> float:
+        """Return the saving that justifies a switch to implicit steps, with small steps after each breakpoint."""
+        small = self._implicit.start + self._breakpoints_after(t) * self._implicit.growth
+        return self.parameters.trial_margin * small
+
+    def remaining(self, t: float) -> float:
+        """Return the time of the motion after t, s."""
+        return self._grid.end - t
 
     def explicit_cost(self, duration: float, restarts: int) -> float:
         """Return the cost of explicit steps over a time of the motion, s, with restarts."""
-        return duration * self._explicit_rate + restarts * cost.COSTS.restart_steps * self._explicit_step
-
-    def explicit_cost_from(self, t: float) -> float:
-        """Return the cost of explicit steps from t to the end, without restarts."""
-        return (self._grid.end - t) * self._explicit_rate
+        return duration * self._explicit_rate + restarts * cost.COSTS.restart_steps * self.explicit_step
 
     def is_breakpoint(self, t: float) -> bool:
         """Return True if t is within rounding of an input breakpoint, where no integrator can start."""
-        breakpoints = self._dynamics.input_features(self._grid.start, self._grid.end).breakpoints
-        return bool(np.any((breakpoints >= just_before(t)) & (breakpoints <= just_after(t))))
+        return bool(np.any((self._breakpoints >= just_before(t)) & (self._breakpoints <= just_after(t))))
 
     def _explicit_segment(self, start: InitialValues, t: float) -> _Left | None:
         """Integrate explicitly from t; return the state at which implicit steps are to follow, or None at the end of the run.
@@ -360,7 +389,7 @@ class _AutoRun:
         """
         run = AdaptiveRun(DOP853, self._dynamics, start, self._rest(t), self._settings, self._watch)
         check = _ExplicitCheck(self, t)
-        trajectory = run.integrate(Leaving(self.parameters.check_after, check))
+        trajectory = run.integrate(Leaving(self._first_check(), check))
         stopped = trajectory.outcome is Outcome.STOPPED
         if run.left and stopped and not has_fault(self._dynamics.system):
             raise _ExplicitFailure(trajectory.message)
@@ -371,18 +400,21 @@ class _AutoRun:
         self._switch(check.switch)
         return _Left(run.work.t, run.work.q.copy(), run.work.u.copy())
 
+    def _first_check(self) -> int:
+        """Return the explicit steps of a segment that cost as much as a switch."""
+        return max(int(self._implicit.start / self.explicit_step), 1)
+
     def _implicit_segment(self, start: InitialValues, t: float) -> _Left | None:
         """Integrate with the implicit integrator from t; return the state at which explicit steps follow, or None at the end of the run."""
         integrator = self._implicit.integrator
         check = _ImplicitCheck(self, self._implicit, t)
-        integrator.engine.pause_after(check.every)
         trajectory = bdf.integrated(integrator, start, self._rest(t), self._watch, check)
         self._segments.append(Segment(replace(trajectory, solver=self._implicit.name), self._implicit.traits()))
         reached = integrator.reached
         if trajectory.outcome is not Outcome.DONE or reached is None or reached.t >= self._grid.end:
             return None
         self._implicit_rate = check.rate
-        self.thresholds = self.thresholds.after_failed_trial(self.parameters, self._implicit.cost.start + check.loss)
+        self.thresholds = self.thresholds.after_failed_trial(self._implicit.start + check.loss)
         self._messages.append(
             f"projected again from t = {reached.t:.4g} s on, as {self._implicit.name} took shorter steps than they pay for"
         )
@@ -390,7 +422,7 @@ class _AutoRun:
 
     def _rerun_implicit(self, start: InitialValues, message: str) -> None:
         """Integrate the whole run with the implicit integrator, because explicit steps have failed."""
-        self._implicit.create(self.parameters, self._grid.start, start.q, start.u)
+        self._implicit.create()
         trajectory = bdf.integrated(self._implicit.integrator, start, self._grid, self._watch)
         self._segments = [Segment(replace(trajectory, solver=self._implicit.name), self._implicit.traits())]
         self._messages = [f"{self._implicit.name}, as explicit steps {message}"]

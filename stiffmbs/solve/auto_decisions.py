@@ -5,6 +5,7 @@ They are functions of measured costs. Costs are in the unit of `stiffmbs.solve.c
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple, TypeVar
 
@@ -15,52 +16,21 @@ from ..tuning import tuned
 class AutoParameters:
     """Parameters of the choice between explicit and implicit steps.
 
-    Source: run times of ``python -m tests.bench car_choice`` and of the scenes in ``tests/solve/test_auto.py``.
+    Source: run times of ``python -m tests.bench.solvers.choice`` and of the scenes in ``tests/solve/test_auto.py``.
 
     Attributes
     ----------
-    light_damping : float
-        Damping ratio of the stiffest vibration below which a lightly damped one is assumed.
-    radau_rtol, radau_rtol_lightly_damped : float
-        Relative tolerance below which the implicit integrator is `radau`. At loose tolerances the low orders of BDF
-        damp stiff vibrations; at tight ones BDF follows them.
-    check_after : int
-        Explicit steps of a segment before its first check.
-    stiff_fraction : float
-        Fraction of explicit steps limited by stability from which on a trial of implicit steps is considered.
-    trial_starts : float
-        Explicit cost up to the end of the run that justifies a trial of implicit steps, in their starts.
-    at_rest : float
-        Velocity change in an explicit step, in tolerances, below which a start excites no vibration.
-    trial_starts_at_rest : float
-        Value of `trial_starts` for such a start, from which implicit steps soon grow. For `radau`, in addition to one start for each piece between breakpoints.
-    check_cost : float
-        Cost of the implicit steps between two checks, in their starts without their small steps.
+    steps_per_radian : float
+        Implicit steps per radian of a vibration that the start excites, until it has decayed to the tolerances.
+    trial_margin : float
+        Saving that justifies a later trial of implicit steps, in costs of their start and of their small steps.
     fewest_steps : int
         Fewest steps between two checks.
-    first_loss : float
-        Fraction of the remaining explicit cost that the first trial may cost in excess of explicit steps and a start.
-        Vibrations that the start excites shorten implicit steps until they are damped.
-    return_ratio : float
-        Ratio of the explicit cost to the implicit one before at which implicit steps are resumed. It is multiplied by itself at each
-        return.
-    penalty : float
-        Explicit cost before the next trial, in costs of a failed trial. It doubles with each further trial.
     """
 
-    light_damping: float = 0.1
-    radau_rtol: float = 3e-5
-    radau_rtol_lightly_damped: float = 3e-4
-    check_after: int = 32
-    stiff_fraction: float = 0.05
-    trial_starts: float = 7.0
-    at_rest: float = 1e-4
-    trial_starts_at_rest: float = 1.5
-    check_cost: float = 3.0
+    steps_per_radian: float = 0.5
+    trial_margin: float = 3.0
     fewest_steps: int = 10
-    first_loss: float = 0.45
-    return_ratio: float = 1.5
-    penalty: float = 3.0
 
 
 AUTO = tuned("auto", AutoParameters())
@@ -69,14 +39,14 @@ AUTO = tuned("auto", AutoParameters())
 class ExplicitSteps(NamedTuple):
     """Numbers of explicit steps.
 
-    `time`: time of the motion, s: at the count, or covered by the steps after an earlier count. `accepted`,
-    `attempted`: attempts include rejected steps. `limited`: accepted steps limited by stability.
+    `time`: time of the motion, s: at the count, or covered by the steps after an earlier count. `accepted`: accepted
+    steps, `limited` of which were limited by stability. `cost`: that of all attempts, including those that an event ended.
     """
 
     time: float
     accepted: int
-    attempted: int
     limited: int
+    cost: float
 
 
 class ImplicitSteps(NamedTuple):
@@ -115,45 +85,40 @@ class Thresholds:
         Explicit cost of a segment before the next trial of implicit steps.
     """
 
-    return_ratio: float
-    loss: float
-    penalty: float
+    return_ratio: float = 1.0
+    loss: float = 1.0
+    penalty: float = 0.0
 
-    @classmethod
-    def of(cls, parameters: AutoParameters) -> Thresholds:
-        """Return the thresholds at the start of a run."""
-        return cls(parameters.return_ratio, parameters.first_loss, 0.0)
+    def of_trial(self, share: float) -> Thresholds:
+        """Return the thresholds in a trial that can save a share of the explicit cost."""
+        return replace(self, loss=min(self.loss, share))
 
-    def after_return(self, parameters: AutoParameters) -> Thresholds:
+    def after_return(self) -> Thresholds:
         """Return the thresholds after implicit steps were resumed because explicit steps cost more."""
-        return replace(self, return_ratio=parameters.return_ratio * self.return_ratio)
+        return replace(self, return_ratio=2.0 * self.return_ratio)
 
-    def after_failed_trial(self, parameters: AutoParameters, cost: float) -> Thresholds:
+    def after_failed_trial(self, cost: float) -> Thresholds:
         """Return the thresholds after a trial of implicit steps that cost `cost` in excess of explicit steps."""
-        return replace(self, loss=0.0, penalty=max(parameters.penalty * cost, 2.0 * self.penalty))
+        return replace(self, loss=0.0, penalty=max(cost, 2.0 * self.penalty))
 
 
-def implicit_solver(parameters: AutoParameters, rtol: float, damping_ratio: float) -> str:
+def implicit_solver(damping_ratio: float) -> str:
     """Return the name of the implicit integrator, ``bdf`` or ``radau``.
 
     `damping_ratio`: damping ratio of the stiffest vibration; BDF is taken for overdamped motions.
     """
-    light = damping_ratio < parameters.light_damping
-    loosest = parameters.radau_rtol_lightly_damped if light else parameters.radau_rtol
-    return "radau" if damping_ratio < 1.0 and rtol < loosest else "bdf"
+    return "radau" if damping_ratio < 1.0 else "bdf"
 
 
-def starts_for_first_trial(parameters: AutoParameters, excitation: float) -> float:
-    """Return the explicit cost of a run that justifies beginning with implicit steps, in their starts.
+def steps_of_decay(parameters: AutoParameters, excitation: float, fastest: float, damping: float) -> float:
+    """Return the implicit steps in which a vibration decays to the tolerances; infinite without damping.
 
-    `excitation`: largest change of a velocity in an explicit step, in tolerances.
+    `excitation`: largest change of a velocity in an explicit step, in tolerances. `fastest`: fastest rate, 1/s.
+    `damping`: twice the rate of decay, 1/s.
     """
-    return parameters.trial_starts_at_rest if excitation < parameters.at_rest else parameters.trial_starts
-
-
-def stability_limits(parameters: AutoParameters, steps: ExplicitSteps) -> bool:
-    """Return True if stability, not accuracy, limits a significant part of the explicit steps."""
-    return steps.limited / steps.accepted >= parameters.stiff_fraction
+    if excitation <= 1.0:
+        return 0.0
+    return parameters.steps_per_radian * math.log(excitation) * 2.0 * fastest / damping if damping > 0.0 else math.inf
 
 
 def saving_by_return(explicit_rate: float, implicit_rate: float, ratio: float, remaining: float) -> float:
@@ -170,6 +135,6 @@ def loss_of_trial(before: float, implicit_cost: float, explicit_cost: float) -> 
     return max(before + implicit_cost - explicit_cost, 0.0)
 
 
-def trial_goes_on(loss: float, start: float, allowed: float, remaining_cost: float) -> bool:
-    """Return True if the loss of a trial of implicit steps is below a start and a fraction of the remaining explicit cost."""
-    return loss <= start + allowed * remaining_cost
+def tolerable_loss(start: float, allowed: float, remaining_cost: float) -> float:
+    """Return the loss up to which a trial of implicit steps goes on: a start and a fraction of the remaining explicit cost."""
+    return start + allowed * remaining_cost

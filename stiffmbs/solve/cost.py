@@ -31,7 +31,7 @@ class CostParameters:
     - `step_residuals`, `step_matrices`: average numbers of residuals and of iteration matrices in a BDF step.
     - `start`, `start_unknown`: consistent initial values and integrator memory at a switch of integrator: fixed, and
       per unknown.
-    - `start_steps`: small BDF steps from order 1 up to the regular step size.
+    - `start_steps`: small BDF steps from order 1 up to the regular step size, per digit of the relative tolerance.
     - `restart_steps`: explicit steps, including rejected ones, that a breakpoint or an event adds to those that
       stability requires.
     """
@@ -51,7 +51,7 @@ class CostParameters:
     step_matrices: float = 0.2
     start: float = 250.0
     start_unknown: float = 3.5
-    start_steps: int = 40
+    start_steps: float = 10.0
     restart_steps: int = 27
 
 
@@ -67,7 +67,7 @@ class ImplicitCost:
     - `memory`: cost of a start, excluding its small steps.
     - `step_residuals`, `step_matrices`: average numbers of residuals and of real iteration matrices in a step; those
       of BDF by default.
-    - `start_steps`: small steps up to the regular step size.
+    - `start_steps`: small steps up to the regular step size, per digit of the relative tolerance.
     """
 
     residual: float
@@ -75,12 +75,12 @@ class ImplicitCost:
     memory: float
     step_residuals: float = field(default_factory=lambda: COSTS.step_residuals)
     step_matrices: float = field(default_factory=lambda: COSTS.step_matrices)
-    start_steps: int = field(default_factory=lambda: COSTS.start_steps)
+    start_steps: float = field(default_factory=lambda: COSTS.start_steps)
 
     @classmethod
     def of(cls, dynamics: Dynamics, factors: float | None = None) -> ImplicitCost:
         """Return the cost for a scene; `factors` is the estimated time of the linear solver, None if unknown."""
-        n = unknowns(dynamics)
+        n = dynamics.kept("unknowns", None, lambda: unknowns(dynamics))
         factors = COSTS.least_solver * n if factors is None else factors
         return cls(
             COSTS.residual + COSTS.residual_unknown * n,
@@ -96,11 +96,6 @@ class ImplicitCost:
     def step(self) -> float:
         """Average cost of a step."""
         return self.work(self.step_residuals, self.step_matrices)
-
-    @property
-    def start(self) -> float:
-        """Cost of a start, including its small steps."""
-        return self.memory + self.start_steps * self.step
 
 
 def of_explicit_step(dynamics: Dynamics) -> float:
