@@ -24,7 +24,7 @@ from ..interrupts import uncollected
 from .formula_shape import Shape
 from .kind import Kind, with_place
 from .machine import cache as store
-from .machine.compiler import Compiled, Description, compiled_source
+from .machine.compiler import FULL, GEOMETRY, LOW, Compiled, Description, compiled_source
 from .terms import KERNEL_SIGNATURE, TERM_SETS
 
 if TYPE_CHECKING:
@@ -32,6 +32,9 @@ if TYPE_CHECKING:
 
 RARE = ("effort", "effort_tangent", "all_levels", "all_levels_tangent")
 """Term sets of Radau methods and of the formulation index1 only; derived on first use, as they are expensive."""
+
+LONG = ("tangent", "output", "effort_tangent", "all_levels_tangent")
+"""Term sets with long kernels without loops, which LLVM's higher levels of optimisation do not make faster."""
 
 _INDENTED_IMPORT = re.compile(r"^[ \t]+from (\.+)(\w[\w.]*) import", re.MULTILINE)
 
@@ -134,7 +137,10 @@ def source_of(kind: Kind, term_set: str) -> str | None:
 def kernel_of(kind: Kind, term_set: str, place: str = "") -> Compiled | None:
     """Return the compiled kernel of a kind for a set of terms, or None; `place` as for `record_of`."""
     source = source_of(kind, term_set)
-    return compiled_source(source, "kernel", KERNEL_SIGNATURE, with_place(kind, place)) if source else None
+    if source is None:
+        return None
+    straight = term_set in LONG and GEOMETRY not in source and not hasattr(kind.element, "compiled_terms")
+    return compiled_source(source, "kernel", KERNEL_SIGNATURE, with_place(kind, place), LOW if straight else FULL)
 
 
 def compile_usual(kind: Kind) -> None:
@@ -261,15 +267,16 @@ def _equations(kind: Kind) -> list[str]:
 def _helpers(elements: list[type]) -> set[Path]:
     """Return the files of functions and classes that elements' equations may call: members of their modules from this
     package, and imports inside functions of their modules and of these members' modules."""
-    found = set()
-    for module in {element.__module__ for element in elements}:
-        package = module.partition(".")[0]
-        for member in vars(sys.modules[module]).values():
-            called = inspect.isfunction(member) or inspect.isclass(member)
-            if called and member.__module__.partition(".")[0] == package:
-                found |= {Path(inspect.getfile(member)), *_imported_later(member.__module__)}
-        found |= _imported_later(module)
-    return found
+    return set().union(*(_called_by(module) for module in {element.__module__ for element in elements}))
+
+
+@cache
+def _called_by(module: str) -> frozenset[Path]:
+    package = module.partition(".")[0]
+    members = [x for x in vars(sys.modules[module]).values() if inspect.isfunction(x) or inspect.isclass(x)]
+    own = [member for member in members if member.__module__.partition(".")[0] == package]
+    later = (_imported_later(name) for name in {module, *(member.__module__ for member in own)})
+    return frozenset(map(Path, {inspect.getfile(member) for member in own})).union(*later)
 
 
 @cache

@@ -62,7 +62,8 @@ class LoopEquations:
     def scale_rows(self, matrices: list[SparseMatrix]) -> None:
         """Scale rows so that the largest norm of each in the given scaled matrices is one."""
         norms = np.max([J.norms() for J in matrices], axis=0)
-        self.row_scale /= np.maximum(norms, REDUNDANCY.rounding * np.median(norms) or 1.0)
+        middle = np.sort(norms)[(len(norms) - 1) // 2 : len(norms) // 2 + 1].mean()  # np.median loads numpy.ma
+        self.row_scale /= np.maximum(norms, REDUNDANCY.rounding * middle or 1.0)
 
     def pose(self, q: np.ndarray, t: float) -> Pose:
         """Return the equations at given coordinates of the loop's bodies."""

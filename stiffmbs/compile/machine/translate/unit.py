@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -105,9 +105,10 @@ class Unit:
     ) -> str | None:  # fmt: skip
         """Translate one function for the kinds of `values`; return the kind of its result."""
         wider: dict[str, str] = {}
+        given_once = _given_once(tree)
         while True:
             code = Code(self)
-            expressions = Expressions(code, outside, wider, _given_once(tree))
+            expressions = Expressions(code, outside, wider, given_once)
             statements = Statements(code, expressions)
             try:
                 declared = parameters([argument.arg for argument in tree.args.args], values, expressions)
@@ -137,9 +138,17 @@ def _parts(value: Operand) -> Sequence[Value]:
 
 def _given_once(tree: ast.FunctionDef) -> set[str]:
     """Return the parameters never assigned, and the names assigned by one statement, which need no memory."""
-    stored = (node.id for node in ast.walk(tree) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store))
-    counts = Counter([*(argument.arg for argument in tree.args.args), *stored])
+    counts = Counter([*(argument.arg for argument in tree.args.args), *_stored(tree.body)])
     return {name for name, count in counts.items() if count == 1}
+
+
+def _stored(body: Sequence[ast.stmt]) -> Iterator[str]:
+    """Yield the names that statements assign; their expressions assign none."""
+    for statement in body:
+        for target in getattr(statement, "targets", None) or filter(None, [getattr(statement, "target", None)]):
+            yield from (node.id for node in ast.walk(target) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store))  # fmt: skip
+        for part in ("body", "orelse"):
+            yield from _stored(getattr(statement, part, ()))
 
 
 def _tree(function: Callable[..., Any]) -> ast.FunctionDef:
