@@ -30,7 +30,7 @@ LINE = LineAtError()
 
 
 def value_at_error(points: Iterable[tuple[float, float]], target: float) -> float | None:
-    """Return the value at an error: on a line through several points about it, or between two neighbours.
+    """Return the value at an error: on a line through several points on both sides of it, or between two neighbours.
 
     A point with a smaller error and a smaller value than the line counts with its own value.  Looser settings may take
     longer where stability, not the error, limits steps; they make no solver slower. `points`: errors and values, each
@@ -40,7 +40,7 @@ def value_at_error(points: Iterable[tuple[float, float]], target: float) -> floa
     if not own or own[0][0] > target:
         return None
     near = [point for point in own if target / LINE.window <= point[0] <= target * LINE.window]
-    if len(near) < LINE.fewest:
+    if len(near) < LINE.fewest or not near[0][0] <= target <= near[-1][0]:
         near = [point for pair in itertools.pairwise(own) if pair[0][0] <= target < pair[1][0] for point in pair]
     values = [value for error, value in own if error <= target]
     if near and near[0][0] <= target <= near[-1][0]:

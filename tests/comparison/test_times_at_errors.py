@@ -142,6 +142,13 @@ def test_a_line_goes_through_the_points_within_a_decade_and_a_half():
     assert value_at_error([*steep, (2e-4, 1e-6)], 1e-5) == pytest.approx(1.0)
 
 
+def test_a_line_through_points_on_one_side_of_the_error_is_not_extended_to_it():
+    """The only smaller error is beyond the window: the line runs between the neighbours of the target."""
+    points = [(1e-5 * ratio, 1 / ratio) for ratio in (1 / 40, 2.5, 5, 10, 20)]
+    assert value_at_error(points, 1e-5) == pytest.approx(1.0)
+    assert value_at_error(points[1:], 1e-5) is None
+
+
 @pytest.mark.parametrize(("seconds", "again"), [(0.15, True), (0.25, False)])
 def test_a_solution_of_a_fifth_of_a_second_is_timed_once(examples, monkeypatch, seconds, again):
     scene = stiffmbs.load_scene(examples / "cart_pendulum.yaml")

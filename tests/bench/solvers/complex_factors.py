@@ -14,7 +14,10 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 from stiffmbs.analyses.job import prepare
+from stiffmbs.dynamics.dynamics import Dynamics
+from stiffmbs.model.settings import RunSettings
 from stiffmbs.solve.ida.native_engine import NativeEngine
+from stiffmbs.solve.radau.memory import Radau
 from stiffmbs.solve.radau.radau import radau_integrator
 
 from ..costs import SCENES
@@ -37,22 +40,27 @@ def least(call: Callable[..., Any], *arguments: Any) -> float:
     return 1e6 * min(times)
 
 
-def rows(name: str) -> Iterator[str]:
-    """Yield a line of the table."""
-    whole = prepare(SCENES[name](), solver="radau", rtol=RTOL, duration=DURATION)
-    whole.integrate()
-    job = (whole.subsystems or [whole])[0]
-    engine = radau_integrator(job.dynamics, whole.settings).engine
+def factors_of(dynamics: Dynamics, settings: RunSettings) -> tuple[Radau, list[list[float]]]:
+    """Return the formula after a run, and the times of factorisations and of solutions, real and complex, us."""
+    engine = radau_integrator(dynamics, settings).engine
     assert isinstance(engine, NativeEngine)
     ida = engine._ida
     formula: Any = ida._formula
     values, solvers = formula._kept
     nothing = least(OF_TYPE(ida._session.libraries.address("SUNLinSolGetType")), solvers[0].solver)
-    factors, solutions = [], []
+    times: list[list[float]] = [[], []]
     for solver, vectors in zip(solvers, (("at_x", "at_b"), ("at_pair_x", "at_pair_b")), strict=False):
         given = solver.solver, solver.matrix
-        factors.append(least(OF_SETUP(values["setup"]), *given) - nothing)
-        solutions.append(least(OF_SOLUTION(values["solve"]), *given, *(values[at] for at in vectors), 0.0) - nothing)
+        times[0].append(least(OF_SETUP(values["setup"]), *given) - nothing)
+        times[1].append(least(OF_SOLUTION(values["solve"]), *given, *(values[at] for at in vectors), 0.0) - nothing)
+    return formula, times
+
+
+def rows(name: str) -> Iterator[str]:
+    """Yield a line of the table."""
+    whole = prepare(SCENES[name](), solver="radau", rtol=RTOL, duration=DURATION)
+    whole.integrate()
+    formula, (factors, solutions) = factors_of((whole.subsystems or [whole])[0].dynamics, whole.settings)
     ratios = [pair / real for real, pair in (factors, solutions)]
     yield f"{name:24} {formula._equations.n:8d} {factors[0]:8.2f} {factors[1]:8.2f} {ratios[0]:8.2f} {solutions[0]:8.2f} {solutions[1]:8.2f} {ratios[1]:8.2f} {formula.pair_cost:8.2f}"
 

@@ -150,21 +150,22 @@ def factored(x, c, h, t, y, yp, renewed):
     if total != 0.0 or not _set_up(x, 0):
         return False
     for pair in range(c.pairs):
-        add_entries(e, values, c.alpha[pair] / h, a)
         into = _filled(x, pair + 1)
         for k in range(x.n_slots):
             into[x.re_re[k]] = a[k]
             into[x.im_im[k]] = a[k]
-        imaginary = c.beta[pair] / h
         for k in range(x.n_imaginary):
             into[x.im_re[k]] = 0.0
             into[x.re_im[k]] = 0.0
         for k in range(e.n_constant, e.n_entries):
             if e.m_cj[k] != 0.0:
-                at = x.imaginary_of[e.m_slot[k]]
-                part = values[e.m_source[k]] * e.m_cj[k] * imaginary
-                into[x.im_re[at]] += part
-                into[x.re_im[at]] -= part
+                slot = e.m_slot[k]
+                at = x.imaginary_of[slot]
+                part = values[e.m_source[k]] * e.m_cj[k] / h
+                into[x.re_re[slot]] += (c.alpha[pair] - c.gamma) * part
+                into[x.im_im[slot]] += (c.alpha[pair] - c.gamma) * part
+                into[x.im_re[at]] += c.beta[pair] * part
+                into[x.re_im[at]] -= c.beta[pair] * part
         if not _set_up(x, pair + 1):
             return False
     x.h_factored = h
