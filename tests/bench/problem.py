@@ -9,6 +9,7 @@ import numpy as np
 
 from .benchmark import Row
 from .contestant import Contestant
+from .peers.flexible.tasks import HungBeam, HungBody
 from .peers.mounted.mounted import Shaken
 from .peers.trees.tree import Tree
 from .sweep import Point, at_target, points
@@ -38,7 +39,7 @@ class Problem:
     task : callable, optional
         A planar problem as it is put to other tools.
     in_space : callable, optional
-        The same of links on hinges, or of bodies on bushings, in space.
+        The same of links on hinges, of bodies on bushings, or of flexible bodies.
     """
 
     name: str
@@ -48,7 +49,7 @@ class Problem:
     per_decade: int = 4
     rounds: int = 9
     task: Callable[[], Task] | None = None
-    in_space: Callable[[], Tree | Shaken] | None = None
+    in_space: Callable[[], Tree | Shaken | HungBeam | HungBody] | None = None
 
     def measured(self, target: float = 1e-6) -> list[Row]:
         """All contestants at tolerances whose errors are about a target.

@@ -62,14 +62,17 @@ def contestants(task: Task) -> Iterator[Contestant]:
             yield contestant(f"Exudyn {name}", lambda: Bodies(m), getattr(kinds, name), explicit)
 
 
-def marching(built: Built, method: Any, times: np.ndarray, step: float, newton: tuple[float, float]) -> Solve:
-    """Steps of one length; rows at the output times that they meet, nan at the others."""
+def marching(
+    built: Built, method: Any, times: np.ndarray, step: float, newton: tuple[float, float], modified: bool = False
+) -> Solve:
+    """Steps of one length; rows at the output times that they meet, nan at the others. `modified`: Newton's iteration."""
     exu, duration = module(), float(times[-1] - times[0])
     settings = exu.SimulationSettings()
     integration = settings.timeIntegration
     integration.endTime, integration.numberOfSteps = duration, round(duration / step)
     integration.adaptiveStep = integration.automaticStepSize = False
     integration.newton.relativeTolerance, integration.newton.absoluteTolerance = newton
+    integration.newton.useModifiedNewton = modified
     integration.explicit.computeEndOfStepAccelerations = False
     small = built.mbs.systemData.ODE2Size() <= FULL_MATRIX_UP_TO
     kinds = exu.LinearSolverType

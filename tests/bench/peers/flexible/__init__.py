@@ -1,0 +1,1 @@
+"""Beams and a reduced flexible body, as they are put to other tools."""
