@@ -110,9 +110,7 @@ class Beam(_Recorded):
             "axialStiffness": EA, "shearStiffness": GA,
         }  # fmt: skip
         return nodes, [
-            self.mbs.AddObject(
-                items.ObjectBeamGeometricallyExact2D(nodeNumbers=nodes[k : k + 2], length=1 / n, **law)
-            )
+            self.mbs.AddObject(items.ObjectBeamGeometricallyExact2D(nodeNumbers=nodes[k : k + 2], length=1 / n, **law))
             for k in range(n)
         ]
 
