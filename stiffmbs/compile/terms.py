@@ -9,7 +9,7 @@ TERM_SETS: dict[str, tuple[str, ...]] = {
     "position": ("C", "C_q", "continuous_angle"),
     "motion": ("C", "V", "C_q", "J", "f", "Z", "rate", "inertia"),
     "tangent": (*_OF_CONSTRAINTS, "G_mu", *_OF_FORCES_AND_STATES),
-    "acceleration": ("J", "gamma", "f", "f_lam", "angle_rate", "rate", "f_alg", "rate_alg", "rate_lam", "inertia"),
+    "acceleration": ("J", "gamma", "f_lam", "angle_rate", "f", "f_alg", "rate", "inertia", "rate_alg", "rate_lam"),
     "output": ("reaction", "potential", "power", "measured", "signal", "kinetic"),
     "event_function": ("event_function", "limit", "argument"),
     "effort": ("effort", "lever"),
@@ -17,7 +17,8 @@ TERM_SETS: dict[str, tuple[str, ...]] = {
     "all_levels": ("C", "V", "J", "gamma", "f", "Z", "rate", "inertia"),
     "all_levels_tangent": (*_OF_CONSTRAINTS, "A_q", "gamma_u", *_OF_FORCES_AND_STATES),
 }
-"""Terms requested together, so that common subexpressions are computed once.
+"""Terms requested together, so that common subexpressions are computed once. f, rate and inertia have the same places in
+motion and acceleration: most forces and states share one kernel.
 
 - C: constraints; C_q = dC/dq of bodies; C_x = dC/dx of user states; G_mu = d(C_q^T mu)/dq.
 - V: velocity level, C_q u + C_t and nonholonomic equations; J = dV/du; V_q = dV/dq; G_lam = d(J^T lam)/dq.

@@ -298,10 +298,18 @@ def power_of_force(stated: Stated, symbols: Symbols, may_keep: bool = True) -> t
     if not may_keep:
         return work if potential == 0 else work + e.rate(potential), None
     if potential == 0:
-        vanishes = not work.has(sp.Function) and sp.expand(work) == 0  # products cancel, as in a gyroscopic torque
-        return (sp.Integer(0), []) if vanishes else (work, None)
+        return (sp.Integer(0), []) if _vanishes(work) else (work, None)
     losses = _losses(symbols, [Q for Q, _ in powers])
     return (sp.Integer(0) if losses == [] else work + e.rate(potential)), losses
+
+
+def _vanishes(work: sp.Expr) -> bool:
+    """Return True if an expression without functions is zero, as its products cancel: the power of a gyroscopic torque."""
+    if work.has(sp.Function):
+        return False
+    names = sorted(work.free_symbols, key=str)
+    value = work.xreplace({name: sp.Integer(2 * k + 3) for k, name in enumerate(names)})  # expansion takes far longer
+    return not (value.is_Rational and value != 0) and sp.expand(work) == 0
 
 
 def _losses(symbols: Symbols, efforts: list[sp.Expr]) -> list[int] | None:
