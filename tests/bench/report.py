@@ -10,10 +10,10 @@ from typing import Any
 from stiffmbs.comparison.machine import machine
 
 from .benchmark import Row
-from .decades import SET_UP, TARGETS, races
+from .decades import SET_UP, TARGETS, Race, races
 from .sweep import at_target_rows
 
-REFERENCE, OWN = "yardstick", ("bdf", "dop853")
+REFERENCE, OWN, AUTO = "yardstick", ("bdf", "dop853"), "auto"
 COLUMN = 9
 
 
@@ -46,8 +46,8 @@ def table(problem: str, rows: Sequence[Row]) -> Iterator[str]:
         ratio = f"{seconds / at_target[REFERENCE]:8.2f}" if REFERENCE in at_target else ""
         yield f"  {solver:22} {seconds * 1e3:10.3f} ms {ratio}"
     best = min((at_target[solver] for solver in OWN if solver in at_target), default=None)
-    if best and "auto" in at_target:
-        yield f"  auto takes {at_target['auto'] / best:.2f} times as long as the better of bdf and dop853"
+    if best and AUTO in at_target:
+        yield f"  auto takes {at_target[AUTO] / best:.2f} times as long as the better of bdf and dop853"
 
 
 def _decades_table(problem: str, rows: Sequence[Row]) -> Iterator[str]:
@@ -63,8 +63,17 @@ def _decades_table(problem: str, rows: Sequence[Row]) -> Iterator[str]:
     if found:
         ratios = [f"{found[target].ratio:.2f}" if target in found else "-" for target in TARGETS]
         yield _line("best peer / best own", [*ratios, ""])
+        if any(AUTO in race.seconds for race in found.values()):
+            yield _line("best peer / auto", [*(_of_auto(found.get(target)) for target in TARGETS), ""])
         for race in found.values():
             yield f"  {race.error:.0e}: {race.best_own} beside {race.best_peer}"
+
+
+def _of_auto(race: Race | None) -> str:
+    """Return the time of the best peer over that of the package's own choice."""
+    if race is None or AUTO not in race.seconds:
+        return "-"
+    return f"{race.seconds[race.best_peer] / race.seconds[AUTO]:.2f}"
 
 
 def _line(name: str, cells: Sequence[str]) -> str:
