@@ -13,7 +13,7 @@ from ..dynamics.initial import InitialValues
 from ..errors import ChatteringError, SolverError
 from ..model.settings import RunSettings
 from ..solve.events.chattering import Chattering
-from ..solve.events.restart import INDISTINCT
+from ..solve.events.native.parameters import INDISTINCT
 from ..solve.ida.engine import Reached
 from ..solve.ida.native_engine import NativeEngine
 from ..solve.integrator import Integrator

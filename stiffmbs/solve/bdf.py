@@ -11,9 +11,10 @@ from ..dynamics.initial import InitialValues
 from ..errors import InputError, SolverError
 from ..model.settings import RunSettings
 from .error_control.error_test import ErrorControl
-from .error_control.precision import PRECISION, governed_by_rounding, too_fine
+from .error_control.precision import governed_by_rounding, too_fine
 from .error_control.relaxation import RELAXATION, refuse_drift
 from .events.refusals import DIVERGENCE, refuse_beyond_sense
+from .explicit.native.parameters import CONTROL
 from .formulations import FORMULATIONS, READ_BY_FORMULATIONS
 from .ida.engine import Reached
 from .integrator import Integrator
@@ -108,7 +109,7 @@ def integrated(
 
 def _failure(integrator: Integrator, reached: Reached) -> str:
     """Return the reason why the run ends at this state, or an empty string."""
-    by_rounding = integrator.steps() > PRECISION.slow and governed_by_rounding(integrator.statistics())
+    by_rounding = integrator.steps() > CONTROL.enough_steps and governed_by_rounding(integrator.statistics())
     if not (by_rounding or reached.failure):
         return ""
     q, u = integrator.split(reached.y)

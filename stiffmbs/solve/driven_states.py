@@ -13,6 +13,7 @@ from ..dynamics.dynamics import Dynamics
 from ..dynamics.initial import InitialValues
 from ..errors import SolverError
 from ..tuning import tuned
+from .events.chattering import CHATTERING
 
 
 @dataclass(frozen=True)
@@ -43,7 +44,7 @@ def states_after(dynamics: Dynamics, before: Instant, t: float) -> np.ndarray:
     with dynamics.state.unchanged():
         found = solve_ivp(
             along.rates, (before.t, t), states[changing], method="Radau", jac=along.jacobian,
-            rtol=KINEMATIC.state_tolerance, atol=KINEMATIC.state_tolerance * system.state_scales[changing], t_eval=[t],
+            rtol=KINEMATIC.tolerance, atol=KINEMATIC.tolerance * system.state_scales[changing], t_eval=[t],
         )  # fmt: skip
     if not found.success:
         raise SolverError(f"stopped after t = {before.t:.9g} s: the states could not be integrated: {found.message}")
@@ -74,7 +75,7 @@ class _Along:
 
     def _look_at_pace(self, t: float) -> None:
         way, self._looked_at = t - self._looked_at, t
-        if (self._end - t) * KINEMATIC.evaluations > KINEMATIC.too_many * max(way, 0.0):
+        if (self._end - t) * KINEMATIC.evaluations > CHATTERING.too_many * max(way, 0.0):
             raise SolverError(
                 f"stopped at t = {t:.9g} s: the states could not be integrated: the last {KINEMATIC.evaluations} evaluations have covered {way:.3g} s; "
                 "expected rates that change less, or fewer digits in what they follow from"
@@ -124,7 +125,7 @@ class IntegratedMotion:
         from scipy.integrate import solve_ivp
 
         found: Any = solve_ivp(
-            self._rates, (self.t, end), self.q, method="DOP853", rtol=KINEMATIC.place_tolerance, atol=KINEMATIC.place_tolerance, t_eval=[end],
+            self._rates, (self.t, end), self.q, method="DOP853", rtol=KINEMATIC.tolerance, atol=KINEMATIC.tolerance, t_eval=[end],
             first_step=min(end - self.t, self._longest) / 8, max_step=self._longest,
         )  # fmt: skip
         if not found.success:
@@ -180,14 +181,11 @@ class KinematicParameters:
     """Shortest step, as a fraction of the duration. A shorter one that fails means that the mechanism locks."""
     most_moves: int = 12
     """Largest number of Newton moves of a step; the step is shortened beyond it."""
-    place_tolerance: float = 1e-11
-    """Relative tolerance of integrated positions, and absolute one, m and rad."""
-    state_tolerance: float = 1e-10
-    """Relative tolerance of user-defined states, and absolute tolerance in their scales."""
+    tolerance: float = 1e-11
+    """Relative tolerance of integrated positions and user-defined states, and absolute one, m, rad and in the scales of
+    states."""
     evaluations: int = 5_000
     """Evaluations of the rates of states between two checks of the progress."""
-    too_many: float = 3e6
-    """Estimated remaining evaluations that stop the integration."""
 
 
 KINEMATIC = tuned("kinematic", KinematicParameters())

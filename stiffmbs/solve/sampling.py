@@ -23,8 +23,10 @@ from ..dynamics.initial import InitialValues
 from ..dynamics.storage import FAILURES
 from ..errors import SolverError
 from ..model.settings import RunSettings
+from ..reading.files.quoted import MOST_LISTED
 from ..tuning import tuned
 from .events.restart import just_after, restarted
+from .ida.native.parameters import LOOP
 from .trajectory import Ending, Grid, History, Outcome, ProgressCallback, Solver, Trajectory, summed
 
 
@@ -33,11 +35,7 @@ class SamplingParameters:
     """Parameters of sampled states."""
 
     same_time: float = 1e-9
-    """Difference of two times, in periods, up to which they are the same sample."""
-    most_at_once: int = 64
-    """Largest number of intervals that are integrated at once while no value changes that acts."""
-    most_notes: int = 3
-    """Notes of the intervals that the run reports."""
+    """Difference of two times, in periods or fixed steps, up to which they are the same."""
 
 
 SAMPLING = tuned("sampling", SamplingParameters())
@@ -70,7 +68,7 @@ def solved_between_samples(
             values = next_values(dynamics, left[0], start.q, start.u)
             now, t = _restarted(dynamics, left.pop(0).t, start.q, start.u, values, settings)
         while left:
-            ahead = left[: min(max(idle, 1), SAMPLING.most_at_once) if grid.times is not None else 1]
+            ahead = left[: min(max(idle, 1), LOOP.most_passed) if grid.times is not None else 1]
             found = solve(dynamics, now, _up_to(grid, t, [sample.t for sample in ahead]), settings, watch)
             row, values = 0, now.q[own]
             for number, sample in enumerate(ahead, 1):
@@ -201,7 +199,7 @@ def _joined(parts: list[Trajectory], start: InitialValues, grid: Grid, ending: E
         t, q, u, ending.outcome, ending.message,
         summed([{"steps": 0, "seconds": 0.0}, *(part.statistics for part in parts)]),
         History(np.concatenate([*times, np.empty(0)]), np.concatenate([*orders, np.empty(0, dtype=int)])),
-        "; ".join([*dict.fromkeys(part.note for part in parts if part.note)][: SAMPLING.most_notes]),
+        "; ".join([*dict.fromkeys(part.note for part in parts if part.note)][: MOST_LISTED]),
         ", ".join(dict.fromkeys(part.solver for part in parts if part.solver)),
         tuple(steps for part in parts for steps in part.long_steps),
         np.sum(known, axis=0) if known else None,

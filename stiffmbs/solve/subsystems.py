@@ -20,6 +20,7 @@ from ..presolve.relations import independent_coordinates
 from .auto import begins_implicit
 from .cost import COSTS, ImplicitCost, of_explicit_step
 from .events.restart import restarted
+from .explicit.native.fastest_rate import ITERATIONS, MOVE
 from .settings import may_presolve, traits_of
 from .trajectory import Grid, History, Outcome, ProgressCallback, Solver, Trajectory, summed
 
@@ -150,10 +151,6 @@ def _merged(histories: Sequence[History]) -> History:
     return History(t[sequence], order[sequence] if len(order) == len(t) else order)
 
 
-ITERATIONS = 5
-"""Iterations of the power method, as in `stiffmbs.solve.explicit.native.fastest_rate`."""
-MOVE = 1e-7
-"""Largest perturbation of a coordinate or velocity in the difference quotient, m, rad, m/s, rad/s."""
 IMPLICIT_STEPS, EXPLICIT_STEPS = 30.0, 2.0
 """Steps of BDF and of DOP853 per radian of the motion, at rtol 1e-6."""
 

@@ -11,14 +11,15 @@ from ..compile.system import System
 from ..compile.written_values import writer
 from ..dynamics.dynamics import Dynamics
 from ..tuning import tuned
+from .events.native.parameters import EPSILON, SEARCH
 
 
 @dataclass(frozen=True)
 class SuspectParameters:
     """Parameters of the search."""
 
-    beyond: tuple[float, ...] = (0.0, 1e-12, 1e-9, 1e-6)
-    """Times after the last state, relative to the time, at which undefined values are searched for."""
+    beyond: float = 1e-6
+    """Largest time after the last state, relative to the time, at which undefined values are searched for."""
     locked: float = 1e-5
     """Violation of a constraint, m or rad, from which on a mechanism counts as locked."""
 
@@ -34,7 +35,7 @@ def suspect(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> str:
     It is an element with an undefined value at or just after a state, else an open joint, else the element with the
     largest acceleration of a body. `t`: s. `q`, `u`: last state that was reached.
     """
-    for ahead in SUSPECT.beyond:
+    for ahead in _ahead():
         later = ahead * max(1.0, abs(t))
         _move(dynamics, dynamics.system.of_body.moved(q, later * u), u)
         for term_set in TERM_SETS:
@@ -44,6 +45,15 @@ def suspect(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> str:
                 return f"; '{name}' has no finite value {'beyond' if ahead else 'at'} that instant"
     _move(dynamics, q, u)
     return _open(dynamics, t) or _hardest(dynamics, t)
+
+
+def _ahead() -> Iterator[float]:
+    """Yield times after a state, relative to the time: zero, then growing from its rounding."""
+    yield 0.0
+    ahead = EPSILON
+    while ahead < SUSPECT.beyond:
+        yield ahead
+        ahead *= SEARCH.longer
 
 
 def _move(dynamics: Dynamics, q: np.ndarray, u: np.ndarray) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 from ...compile.equations import Equations
 from ...model.settings import RunSettings
 from ...tuning import tuned
+from .native.parameters import EXCLUDED
 from .tolerances import independent_tolerances
 
 
@@ -38,7 +39,7 @@ class ErrorControl:
     """
 
     margin: float = 0.3
-    multipliers: float = 1e15
+    multipliers: float = EXCLUDED
     newton: float | None = None
     renewal: float = 0.05
     growth: float = 2.0

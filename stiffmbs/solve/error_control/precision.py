@@ -12,6 +12,7 @@ from ...compile.system import System
 from ...dynamics.dynamics import Dynamics
 from ...model.settings import RunSettings
 from ...tuning import tuned
+from ..explicit.native.parameters import CONTROL
 
 
 @dataclass(frozen=True)
@@ -26,8 +27,6 @@ class PrecisionParameters:
     only."""
     noise_of_positions: float = 0.05
     """The same for a position, whose tolerance grows with it."""
-    slow: int = 20_000
-    """Steps after which a run is checked."""
     failed: float = 0.2
     """Fraction of failed error tests that indicates rounding."""
 
@@ -109,4 +108,4 @@ def _known_too_little(system: System, settings: RunSettings, q: np.ndarray) -> s
 def governed_by_rounding(statistics: Mapping[str, Any]) -> bool:
     """Return True if a long run fails the error test so often that rounding governs it."""
     steps, rejected = int(statistics["steps"]), int(statistics.get("rejected", 0))
-    return steps > PRECISION.slow and rejected > PRECISION.failed * steps
+    return steps > CONTROL.enough_steps and rejected > PRECISION.failed * steps

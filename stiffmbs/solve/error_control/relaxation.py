@@ -13,7 +13,7 @@ from ...dynamics.storage import CACHED, blocks, release
 from ...errors import SolverError
 from ...model.settings import RunSettings
 from ...tuning import tuned
-from ..events.restart import INDISTINCT
+from ..events.native.parameters import INDISTINCT
 from ..suspect import suspect
 from ..trajectory import Trajectory
 from .tolerances import absolute_tolerances
@@ -33,9 +33,8 @@ class RelaxationParameters:
     short_chain: int = 100
     """Number of bodies beyond which relaxations decrease with the square of that number: drift accumulates along
     chains."""
-    tightest: float = 1e-3
-    loosest: float = 1e3
-    """Bounds of the factor by which a tolerance other than 1e-8 scales the relaxations."""
+    largest_factor: float = 1e3
+    """Largest factor by which a tolerance other than 1e-8 scales the relaxations, or its inverse."""
     followed_steps: int = 1000
     """Steps before the drift is checked during a run."""
     refused: float = 1e6
@@ -109,7 +108,7 @@ def lightness(dynamics: Dynamics) -> np.ndarray:
 
 
 def _factor(settings: RunSettings) -> float:
-    return min(max(settings.rtol / 1e-8, RELAXATION.tightest), RELAXATION.loosest)
+    return min(max(settings.rtol / 1e-8, 1 / RELAXATION.largest_factor), RELAXATION.largest_factor)
 
 
 def _heaviest(system: System) -> np.ndarray:

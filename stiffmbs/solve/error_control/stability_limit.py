@@ -23,6 +23,7 @@ from ...compile.machine.routines import Routine
 from ...model.settings import RunSettings
 from ...tuning import tuned
 from ..ida.native.parameters import LOOP
+from .native.parameters import A_STABLE_ORDER
 from .tolerances import independent_tolerances
 
 CUBIC = Routine(
@@ -32,8 +33,8 @@ CUBIC = Routine(
 )
 FIRST_COMPARED = 5
 """Number of samples compared first; they usually suffice to show that the motion is far from a cubic."""
-A_STABLE_ORDER, HIGHEST_ORDER = 2, 5
-"""Highest A-stable order, and highest order of BDF."""
+HIGHEST_ORDER = 5
+"""Highest order of BDF."""
 ERROR_CONSTANT = 2 / 9
 """Error constant of BDF of order 2."""
 

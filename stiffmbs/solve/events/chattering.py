@@ -25,10 +25,9 @@ class ChatteringParameters:
 
     window: int = 250
     """Events over which their rate is measured."""
-    trusted_events: int = 1000
-    """Number of events above which the growth of their rate is trusted."""
     too_many: float = 1e6
-    """Expected further events at which a run is stopped."""
+    """Expected further events, steps governed by rounding, or evaluations at which a run is stopped, and steps that
+    periodic laws may require."""
     at_least: float = 1e4
     """Their least number at which growth is considered."""
     least_power: float = 0.8
@@ -41,8 +40,8 @@ class ChatteringParameters:
     """Expected further steps at which it is stopped."""
     stays_within: float = 1e3
     """Distance from a jump at which a state is taken to stay there, relative to rtol."""
-    stays_within_at_most: float = 1e-2
-    """Upper bound of that distance."""
+    stays_within_at_most: float = 0.1
+    """Upper bound of that distance, and of the change of a velocity in a fixed step, m/s and rad/s."""
 
 
 CHATTERING = tuned("chattering", ChatteringParameters())
@@ -118,7 +117,7 @@ class Chattering:
         With a rate f ~ N of events N, their number grows as exp(f t/N).
         """
         steady = (self._end - self._events[-1]) / max(last, 1e-300) * CHATTERING.window
-        if steady < CHATTERING.at_least or self._count < CHATTERING.trusted_events or last <= 0.0:
+        if steady < CHATTERING.at_least or last <= 0.0:
             return steady
         power = math.log(before / last) / math.log(
             (self._count - 0.5 * CHATTERING.window) / (self._count - 1.5 * CHATTERING.window)
@@ -146,14 +145,11 @@ class MaskingParameters:
     """Parameters that decide when an event function is masked, and for how many steps."""
 
     few_steps: int = 4
-    """Steps after a start within which an event is attributed to rounding."""
-    times_the_wait: int = 4
-    """The same as a multiple of the preceding wait."""
+    """Steps after a start within which an event is attributed to rounding, also as a multiple of the preceding wait; factor
+    of the wait for each further event."""
     first_wait: int = 8
     """Steps for which an event function is masked after its second such event. A single repetition may be an event that
     is detected twice, because the start is projected onto constraints."""
-    longer: int = 4
-    """Factor of the wait for each further event."""
     most_in_succession: int = 5
     """Largest number of events that count."""
     telling: int = 3
@@ -188,7 +184,7 @@ class MaskedEvents:
         since, self._steps = steps - self._steps, steps
         if self._quiet and since > MASKING.few_steps:  # none is masked, and the event is not soon after the last
             return
-        left_behind = since > MASKING.times_the_wait * self.steps + MASKING.few_steps
+        left_behind = since > MASKING.few_steps * (self.steps + 1)
         self._in_succession[left_behind] = 0
         again = np.array(
             [event_function for event_function in fired if not left_behind[event_function]], dtype=np.int64
@@ -198,7 +194,7 @@ class MaskedEvents:
         if len(telling):
             self._chattering.refuse(t, np.intersect1d(telling, jumping(self._dynamics, t, q, u)))
         self.steps = np.where(
-            self._in_succession > 1, MASKING.first_wait * MASKING.longer ** np.maximum(self._in_succession - 2, 0), 0
+            self._in_succession > 1, MASKING.first_wait * MASKING.few_steps ** np.maximum(self._in_succession - 2, 0), 0
         )
         self._quiet = not self._in_succession.any()
 

@@ -10,8 +10,9 @@ import numpy as np
 from ...compile.machine.layout import address, addresses
 from ...compile.machine.routines import together
 from ...dynamics.dynamics import Dynamics
+from ...reading.files.quoted import MOST_LISTED
 from ...tuning import tuned
-from .native.parameters import SEARCH
+from .native.parameters import BISECTIONS
 
 
 @dataclass(frozen=True)
@@ -20,11 +21,10 @@ class JumpParameters:
 
     larger_move: float = 1e-6
     smaller_move: float = 1e-9
-    """Sizes of moves to both sides, relative to the state and to at least 1 m, rad, m/s or rad/s."""
+    """Sizes of moves to both sides, relative to the state and to at least 1 m, rad, m/s or rad/s. The smaller one is the
+    least jump too, m/s^2 or rad/s^2."""
     jumps: float = 0.1
     """Least jump of accelerations over the smaller move, relative to that over the larger one."""
-    least_jump: float = 1e-9
-    """Least jump, m/s^2, rad/s^2."""
     rate_interval: float = 1e-4
     """Time over which the rate of an event function is computed, s."""
 
@@ -101,7 +101,7 @@ class _Beside:
         """Return the states near the zero of an event function, by bisection between moves of -reach and reach."""
         low, high = -reach, reach
         above = self.values(high)[event_function] > 0.0
-        for _ in range(SEARCH.bisections):
+        for _ in range(BISECTIONS):
             middle = 0.5 * (low + high)
             if (self.values(middle)[event_function] > 0.0) == above:
                 high = middle
@@ -129,7 +129,7 @@ def jumping(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> np.nd
             float(np.max(np.abs(a.acceleration - b.acceleration), initial=0.0))
             for a, b in (beside.sides(size) for size in (JUMP.larger_move, JUMP.smaller_move))
         )
-    return crossed if near > max(JUMP.jumps * far, JUMP.least_jump) else crossed[:0]
+    return crossed if near > max(JUMP.jumps * far, JUMP.smaller_move) else crossed[:0]
 
 
 def sliding(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, reach: float | None = None) -> np.ndarray:
@@ -183,7 +183,7 @@ def _slides(beside: _Beside, reach: float, event_function: int) -> bool:
         values.append(abs(sides[0].values[event_function] - sides[1].values[event_function]))
         rates.append(abs(sides[0].rates[event_function] - sides[1].rates[event_function]))
     continuous = values[1] <= JUMP.jumps * values[0]
-    return bool(continuous and rates[1] > max(JUMP.jumps * rates[0], JUMP.least_jump))
+    return bool(continuous and rates[1] > max(JUMP.jumps * rates[0], JUMP.smaller_move))
 
 
 def direction_of(dynamics: Dynamics) -> tuple[np.ndarray, np.ndarray]:
@@ -204,8 +204,6 @@ class VelocityJumpParameters:
 
     least: float = 1e-2
     """Velocity change at a breakpoint, relative to the largest velocity, above which it is a jump."""
-    most_messages: int = 3
-    """Largest number of jumps reported one by one."""
 
 
 VELOCITY_JUMP = tuned("velocity_jumps", VelocityJumpParameters())
@@ -236,7 +234,5 @@ class VelocityJumps:
 
     def sentence(self) -> str:
         """Return a sentence on the jumps for the user; empty if there are none."""
-        more = len(self._messages) - VELOCITY_JUMP.most_messages
-        return "; ".join(
-            [*self._messages[: VELOCITY_JUMP.most_messages], *([f"and {more} more such jumps"] if more > 0 else [])]
-        )
+        more = len(self._messages) - MOST_LISTED
+        return "; ".join([*self._messages[:MOST_LISTED], *([f"and {more} more such jumps"] if more > 0 else [])])

@@ -11,12 +11,12 @@ from ...compile.state import State
 from ...compile.system import System
 from ...compile.terms import TERM_SETS
 from ...compile.written_values import writer
+from .chattering import CHATTERING
+from .long_steps import WHOLE
 from .native.layouts import EVENT_SEARCH, STEP_BOUND
 
-MOST_STEPS = 1_000_000
-"""Steps that periodic laws may require of a run; more are reported."""
-NODES = 8
-"""Interpolation nodes of a step: the interpolant of DOP853 has degree 7, that of BDF at most 5."""
+NODES = len(WHOLE)
+"""Number of interpolation nodes of a step."""
 
 
 class EventSearch:
@@ -45,7 +45,6 @@ class EventSearch:
             return  # no search: its arrays are not read
         zones = zones_of(system)
         self._overlap = zones.overlap.copy()
-        place = np.arange(NODES) * np.pi / (NODES - 1)
         weight = (-1.0) ** np.arange(NODES)
         weight[[0, -1]] /= 2  # barycentric weights of Chebyshev points of the second kind
         angles = system.turning
@@ -54,7 +53,7 @@ class EventSearch:
             "longest": np.inf, "passage": np.inf, "first": np.inf, "n_turns": len(zones.turns), "turn": zones.turns, "radians": zones.radians, "lands": self._lands, "n_zoned": zones.zoned,
             "n": n, "n_event_functions": n_event_functions, "masked": self.masked,
             "first_edge": zones.first, "edges": zones.edges, "overlap": self._overlap, "period": zones.period, **{name: np.zeros(n) for name in work}, "found": self.found,
-            "n_state": n_state, "n_nodes": NODES, "node": (1 - np.cos(place)) / 2, "weight": weight,
+            "n_state": n_state, "n_nodes": NODES, "node": WHOLE, "weight": weight,
             **_calls(system), "row": np.zeros((NODES + 1) * n_state), "n_angles": len(angles), "angle": angles,
         }  # fmt: skip
         fill(self.table, EVENT_SEARCH, self._arrays)
@@ -74,7 +73,7 @@ class EventSearch:
     def resolve(self, duration: float) -> None:
         """Forget the last run; the periods of laws limit the steps of a run of this duration, s."""
         for cell, value in (
-            ("least", duration / MOST_STEPS),
+            ("least", duration / CHATTERING.too_many),
             ("duration", duration),
             ("longest", np.inf),
             ("unresolved", 0),

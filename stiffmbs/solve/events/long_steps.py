@@ -13,6 +13,7 @@ from ...compile.machine.layout import packed
 from ...compile.system import System
 from ...dynamics.dynamics import Dynamics
 from ...tuning import tuned
+from ..ida.native.parameters import LOOP
 from .native.layouts import LONG_STEPS
 
 
@@ -30,8 +31,6 @@ class LongStepParameters:
     """Ratio of a long step to the usual one, and number of steps over which the usual one is averaged."""
     most_steps: int = 1000
     """Largest number of steps stored of one run."""
-    most_values: int = 1_000_000
-    """Largest number of values stored of one run."""
 
 
 LONG_STEP = tuned("long_steps", LongStepParameters())
@@ -110,7 +109,7 @@ class LongStepLog:
         places = WHOLE if system.has_functions else np.array([0.5 - LONG_STEP.from_middle, 0.5 + LONG_STEP.from_middle])
         ratio, remembered = LONG_STEP.for_functions if system.has_functions else LONG_STEP.for_others
         row = 2 + len(places) * width
-        room = min(LONG_STEP.most_steps, LONG_STEP.most_values // row) if system.has_laws else 0
+        room = min(LONG_STEP.most_steps, LOOP.most_kept // row) if system.has_laws else 0
         self._rows, self._shape = np.empty((room, row)), (len(places), width)
         self._arrays = {"n_nodes": len(places), "node": places, "width": width, "row": self._rows}
         self.table = packed(LONG_STEPS, {**self._arrays, "ratio": ratio, "remembered": remembered, "room": room})

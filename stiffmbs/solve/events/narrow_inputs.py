@@ -8,11 +8,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...compile.inputs.ends import InputEnd
-from ...compile.inputs.features import InputFeatures
+from ...compile.inputs.features import INSTANTS, InputFeatures
 from ...compile.inputs.of_time import Input
 from ...dynamics.dynamics import Dynamics
 from ...tuning import tuned
 from ..trajectory import Grid, Outcome, Trajectory
+from .native.parameters import SEARCH
 
 
 @dataclass(frozen=True)
@@ -21,12 +22,8 @@ class NarrowInputParameters:
 
     hidden: float = 0.05
     """Height of a peak between output times, relative to the input's change, above which it is reported."""
-    samples: int = 8
-    """Samples of an input between two output times."""
     most_samples: int = 5000
     """Samples in all of its narrow features."""
-    stands: float = 1e-9
-    """Change of an input, relative to its values, that may be rounding."""
 
 
 NARROW_INPUTS = tuned("narrow_inputs", NarrowInputParameters())
@@ -45,7 +42,7 @@ def narrower_than_output(features: InputFeatures, spacing: float) -> str:
 
 def hidden_peak(inputs: Sequence[Input], features: InputFeatures, times: np.ndarray) -> str:
     """Return a sentence on an input with a peak between output times; empty if there is none."""
-    parts = times[:-1, None] + np.diff(times)[:, None] * np.arange(NARROW_INPUTS.samples) / NARROW_INPUTS.samples
+    parts = times[:-1, None] + np.diff(times)[:, None] * np.arange(INSTANTS) / INSTANTS
     narrow = features.instants(
         times[0], times[-1], float(np.max(np.diff(times), initial=0.0)), NARROW_INPUTS.most_samples
     )
@@ -59,7 +56,7 @@ def hidden_peak(inputs: Sequence[Input], features: InputFeatures, times: np.ndar
         change, size = max(high, np.max(values)) - min(low, np.min(values)), np.max(np.abs(values))
         beyond = np.maximum(values - high, low - values)
         k = int(np.argmax(beyond))
-        if beyond[k] > NARROW_INPUTS.hidden * change and change > NARROW_INPUTS.stands * size:
+        if beyond[k] > NARROW_INPUTS.hidden * change and change > SEARCH.noise * size:
             return (
                 f"'{given.text}' has a peak of {values[k]:.3g} at t = {between[k]:.6g} s, between output points, which show "
                 f"it from {low:.3g} to {high:.3g}: shorter output spacing or --verify shows it"

@@ -21,8 +21,8 @@ class DivergenceParameters:
 
     unbounded: float = 1e4
     """Largest displacement of a motion that grows exponentially, in sizes of the mechanism or rad."""
-    decades: tuple[float, float, float] = (1e-4, 1e-2, 1.0)
-    """Fractions of the largest displacement between which times are compared."""
+    fraction: float = 1e-2
+    """Fraction of the largest displacement, and of that fraction, between which times are compared."""
     faster: float = 2.5
     """Largest ratio of these times that indicates exponential growth. It is 10 for a constant force, 3.2 for a force
     that grows as time squared, and 1 for an exponential."""
@@ -89,7 +89,8 @@ def exponential(t: np.ndarray, reached: np.ndarray) -> bool:
 
     `t` of shape (n,): times, s. `reached` of shape (n,): largest displacement up to each time.
     """
-    first, second, last = (int(np.argmax(reached >= part * reached[-1])) for part in DIVERGENCE.decades)
+    parts = (DIVERGENCE.fraction**power for power in (2, 1, 0))
+    first, second, last = (int(np.argmax(reached >= part * reached[-1])) for part in parts)
     if not first < second - 1 < last:
         return False
     return bool(t[last] - t[second - 1] < DIVERGENCE.faster * (t[second - 1] - t[first]))

@@ -14,6 +14,7 @@ from ...dynamics.dynamics import Dynamics
 from ...dynamics.initial import InitialValues
 from ...errors import SolverError
 from ...tuning import tuned
+from .native.parameters import INDISTINCT
 
 
 @dataclass(frozen=True)
@@ -36,8 +37,6 @@ GONE_PAST = Routine(
     "gone_past",
     "float64(float64, float64, int64, float64*, float64*, int64*)",
 )
-INDISTINCT = 4 * float(np.finfo(float).eps)
-"""Relative difference up to which two times are the same, for IDA and for breakpoints, whose rounding is as large."""
 
 
 def just_before(t: float) -> float:

@@ -16,10 +16,11 @@ from ...dynamics.initial import InitialValues
 from ...errors import SolverError
 from ...model.settings import RunSettings
 from ...tuning import tuned
-from ..events.chattering import jump_sentence
+from ..events.chattering import CHATTERING, jump_sentence
 from ..events.discontinuity import JUMP, sliding
 from ..events.narrow_inputs import narrower_than_steps
 from ..events.refusals import refuse_beyond_limits
+from ..sampling import SAMPLING
 from ..trajectory import Ending, Grid, ProgressCallback, Rows, Trajectory
 from .integration import REASONS, Integration
 from .scheme import Scheme
@@ -31,12 +32,6 @@ class FixedStepParameters:
 
     checks: int = 50
     """Checks of a run for chattering forces."""
-    largest_chatter: float = 0.1
-    """Largest velocity change in a step that counts as chattering, m/s and rad/s."""
-    rounding: float = 1e-9
-    """Largest deviation of an output time from a whole number of steps, in steps."""
-    cut: float = 1e-6
-    """Relative reduction of the step from which on it is reported."""
 
 
 FIXED_STEP = tuned("fixed_steps", FixedStepParameters())
@@ -100,7 +95,7 @@ def solve_with_fixed_steps(
     apart = max(1, len(times) // FIXED_STEP.checks)
     with Ending() as ending:
         for row, (t, end) in enumerate(itertools.pairwise(times), 1):
-            count = max(1, math.ceil((end - t) / settings.step - FIXED_STEP.rounding))
+            count = max(1, math.ceil((end - t) / settings.step - SAMPLING.same_time))
             longest = max(longest, (end - t) / count)
             status = stepper.take(t, (end - t) / count, count)
             if status < 0:
@@ -126,18 +121,18 @@ def _jumps(dynamics: Dynamics, stepper: Stepper, t: float, step: float) -> str:
     q, u = stepper.q.copy(), stepper.u.copy()
     dynamics.state.q[:], dynamics.state.u[:] = q, u
     change = 2.0 * step * float(np.max(np.abs(dynamics.accelerate(t)[1]), initial=0.0))
-    found = sliding(dynamics, t, q, u, min(max(change, JUMP.larger_move), FIXED_STEP.largest_chatter))
+    found = sliding(dynamics, t, q, u, min(max(change, JUMP.larger_move), CHATTERING.stays_within_at_most))
     stepper.q[:], stepper.u[:] = q, u
     return f"at t = {t:.6g} s and before, {jump_sentence(dynamics, int(found[0]))}" if len(found) else ""
 
 
 def _cut(longest: float, settings: RunSettings) -> str:
     """Return a sentence if every step is shorter than the given one, else an empty string."""
-    if "step" not in settings.model_fields_set or longest >= settings.step * (1 - FIXED_STEP.cut):
+    if "step" not in settings.model_fields_set or longest >= settings.step * (1 - SAMPLING.same_time):
         return ""
     return f"step = {settings.step:.6g} s was cut to {longest:.6g} s, the longest that divides the time between output points"
 
 
 def _own_steps(grid: Grid, step: float) -> np.ndarray:
-    count = max(1, math.ceil((grid.end - grid.start) / step - FIXED_STEP.rounding))
+    count = max(1, math.ceil((grid.end - grid.start) / step - SAMPLING.same_time))
     return grid.start + (grid.end - grid.start) * np.arange(count + 1) / count

@@ -18,8 +18,10 @@ from ...compile.machine.layout import address
 from ...dynamics.dynamics import Dynamics
 from ...dynamics.elimination.eliminated import ATTEMPT
 from ...tuning import tuned
+from ..events.chattering import CHATTERING
 from ..suspect import acceleration_name, suspect
 from .integration import Integration
+from .native.parameters import ENDS
 
 
 @dataclass(frozen=True)
@@ -36,17 +38,10 @@ class RoundingParameters:
     """Sample times of the check for jumps."""
     within: float = 0.01
     """Fraction of a step that contains the sample times, over which a resolved force law is linear."""
-    loses: float = 0.05
-    """Velocity change over a step by errors of the elimination, in tolerances, from which on the LU replaces it."""
-    steps_ahead: float = 1e6
-    """Remaining steps from which on jumps are checked."""
     jumps: int = 8
     """Rank of the second difference that must be large; a breakpoint of a force law causes two."""
     part: float = 1e-3
     """Smallest jump, relative to the largest acceleration, so that rounding of large accelerations is excluded."""
-    governs: float = 0.03
-    """Velocity change over a step by a jump of its acceleration, in tolerances, from which on jumps govern the
-    steps."""
 
 
 ROUNDING = tuned("explicit_rounding", RoundingParameters())
@@ -72,7 +67,7 @@ class Rounding:
         if pace and work.eliminates and self._loses_digits(work, pace):
             work.eliminates = False
         pace = self._later.pace(work)
-        return self._jumping(work, pace) if pace and self._end - work.t > ROUNDING.steps_ahead * pace else ""
+        return self._jumping(work, pace) if pace and self._end - work.t > CHATTERING.too_many * pace else ""
 
     def _loses_digits(self, work: Integration, pace: float) -> bool:
         """Return True if errors of the elimination are large enough to shorten the steps."""
@@ -81,13 +76,13 @@ class Rounding:
             if ATTEMPT.call(t, address(found), address(self._dynamics.eliminated.table)):
                 off.append(np.abs(found - self._dynamics.accelerate(t)[1]))
         self._dynamics.forget_pivots()
-        return bool(off) and bool(np.any(pace * np.max(off, axis=0) > ROUNDING.loses * self._tolerance(work)))
+        return bool(off) and bool(np.any(pace * np.max(off, axis=0) > ENDS.harmful * self._tolerance(work)))
 
     def _jumping(self, work: Integration, pace: float) -> str:
         """Return a sentence on the acceleration whose jumps govern the steps, or an empty string."""
         jumps, tolerance = self._jumps(work, ROUNDING.within * pace), self._tolerance(work)
         k = int(np.argmax(jumps / tolerance))
-        if not jumps[k] * pace > ROUNDING.governs * tolerance[k]:
+        if not jumps[k] * pace > ENDS.harmful * tolerance[k]:
             return ""
         likely = suspect(self._dynamics, work.t, work.q.copy(), work.u.copy())
         return (

@@ -13,6 +13,7 @@ from ...compile.machine.layout import packed
 from ...compile.machine.routines import together
 from ...dynamics.dynamics import POSITION_TOLERANCE, Dynamics
 from ..error_control.native.layouts import ACCUMULATED_ERRORS
+from ..ida.native.parameters import LOOP
 from .native.layouts import EXPLICIT, SCHEME
 
 Row = Mapping[int, float]
@@ -97,8 +98,6 @@ ADVANCE, END_AT_EVENT = together(
     advance="int64(float64, int64, int64, int64, int64*)",
     end_at_event="int32(int64*)",
 )
-MOST_STEPS, MOST_VALUES = 1024, 300_000
-"""Limits of one call of compiled code: steps, and numbers in the stored rows."""
 WATCH, STEP_BOUND, LONG_STEPS = (list(EXPLICIT).index(name) for name in ("watch", "step_bound", "long_steps"))
 """Columns of the table that each run sets."""
 
@@ -122,7 +121,7 @@ class StepMemory:
     def __init__(self, scheme: Scheme, dynamics: Dynamics, n_times: int) -> None:
         system, eliminated = dynamics.system, dynamics.eliminated
         n, events = system.n_q + system.n_u, system.n_event_functions
-        self.capacity = capacity = max(1, min(MOST_STEPS, MOST_VALUES // max(n, 1)))
+        self.capacity = capacity = max(1, min(LOOP.most_steps, LOOP.most_kept // max(n, 1)))
         self.y, self.lam, self.atol, self.times = np.zeros(n), np.zeros(system.n_c), np.zeros(n), np.zeros(n_times)
         self.row_t, self.row_y, self.ends = np.empty(capacity), np.empty((capacity, n)), np.empty(capacity)
         stages = np.zeros((scheme.extended, n))

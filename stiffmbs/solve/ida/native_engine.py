@@ -182,7 +182,7 @@ class NativeEngine(Engine):
     def by_steps(self, stop: float) -> Iterator[Reached]:
         status = Status.GOING
         while status is Status.GOING:
-            times, rows = np.empty(LOOP.rows), np.empty((LOOP.rows, self._width))
+            times, rows = np.empty(LOOP.most_steps), np.empty((LOOP.most_steps, self._width))
             served, status = self._ida.steps(stop, times, rows)
             yield self._reached(times[:served], rows[:served], status)
             if status is Status.GOING:

@@ -20,18 +20,15 @@ from ..error_control.newton import Stiffness
 from ..trajectory import History
 from .engine import Engine, Reached
 from .native.layouts import IDA
+from .native.parameters import LOOP
 
 
 @dataclass(frozen=True)
 class FallbackParameters:
     """Parameters of IDA by scikit-sundae's callbacks."""
 
-    most_ends: int = 200_000
-    """Largest number of stored step ends."""
     dense_up_to: int = 90
     """Number of unknowns up to which the dense linear solver is used."""
-    steps_at_once: int = 20_000
-    """Steps after which a call returns."""
     together: int = 20
     """Number of output times reported together, because a report costs more than a step."""
 
@@ -63,12 +60,12 @@ class Callbacks:
         state.load("event_function")
         rows, columns = equations.pattern
         slots = rows * equations.n + columns if dense else None
-        self._ends = np.zeros(FALLBACK.most_ends)
+        self._ends = np.zeros(LOOP.most_kept)
         n_event_functions = state.system.n_event_functions
         self._signs, self.masked = np.zeros(n_event_functions), np.zeros(n_event_functions, dtype=np.int64)
         self._equations_table, slot_of_entry = equations.table(slots)
         fields = {
-            "state": state.table, "equations": self._equations_table, "n_ends": FALLBACK.most_ends, "ends": self._ends,
+            "state": state.table, "equations": self._equations_table, "n_ends": LOOP.most_kept, "ends": self._ends,
             "array_header": object.__basicsize__, "n_event_functions": n_event_functions, "signs": self._signs, "masked": self.masked,
         }  # fmt: skip
         table = packed(IDA, fields)
@@ -126,7 +123,7 @@ class SundaeEngine(Engine):
             warnings.filterwarnings("ignore", message="Custom sparse Jacobian")  # issued for any jacfn with sparsity
             self._ida = SundialsIda(
                 self.callbacks.residual, jacfn=self.callbacks.jacobian, rtol=rtol, atol=atol,
-                max_num_steps=FALLBACK.steps_at_once, max_step=max_step, max_order=max_order, **options,
+                max_num_steps=LOOP.most_steps, max_step=max_step, max_order=max_order, **options,
             )  # fmt: skip
         self._before = {"residuals": 0, "jacobians": 0}
         self._since = {"residuals": 0, "jacobians": 0}

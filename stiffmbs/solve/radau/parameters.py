@@ -18,7 +18,7 @@ class RadauParameters:
     safety : float
         Safety factor of the step size control.
     least_factor, largest_factor : float
-        Bounds of the ratio of successive steps.
+        Bounds of the ratio of successive steps; the first is the factor of a first step after a failed error test too.
     keep_matrix : float
         Convergence rate of Newton's iteration below which the matrices are kept for the next step, if they cost as much as
         an iteration; in proportion to their cost otherwise.
@@ -37,8 +37,6 @@ class RadauParameters:
         tolerance is the requested one.
     after_failure : float
         Factor of the step after a failed iteration.
-    loosest : float
-        Largest part of the tolerance that Newton's iteration may leave.
     """
 
     tolerance: float = 0.01
@@ -53,7 +51,6 @@ class RadauParameters:
     slowest: float = 0.3
     converging: float = 0.25
     after_failure: float = 0.5
-    loosest: float = 0.03
 
 
 RADAU = tuned("radau", RadauParameters())

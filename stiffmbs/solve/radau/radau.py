@@ -14,6 +14,7 @@ from ...tuning import tuned
 from ..bdf import integrated, refuse_untested_reactions
 from ..cost import ImplicitCost
 from ..error_control.error_test import ErrorControl
+from ..error_control.stability_limit import HIGHEST_ORDER
 from ..formulations import READ_BY_FORMULATIONS
 from ..ida.choice import chosen, natural
 from ..ida.engine import Engine
@@ -83,7 +84,7 @@ def driven_by_radau(
 class Unlimited:
     """Order without a limit (`stiffmbs.solve.ida.native_engine.OrderLimit`)."""
 
-    order, held = 5, False
+    order, held = HIGHEST_ORDER, False
 
     def forget(self) -> None:
         """Do nothing."""

@@ -23,8 +23,6 @@ class NewtonParameters:
     and thereby a velocity error that has to stay below the tolerance too."""
     precision: float = 1e-13
     """Least relative change of a coordinate that the iteration can resolve with an ill-conditioned matrix."""
-    negligible: float = 1e-8
-    """Size of a correction, relative to the tolerance, that converges at any rate, as in IDA."""
     unknown: float = 20.0
     """Largest error after a correction, relative to it, as in IDA with a new matrix."""
     diverging: float = 0.9
@@ -32,7 +30,8 @@ class NewtonParameters:
     slowest: float = 0.1
     """Rate above which a matrix is replaced."""
     trusted: int = 20
-    """Number of nonlinear solves after which a rate is measured again."""
+    """Number of nonlinear solves, or of corrected states, after which a rate, or the effect of closing joints, is measured
+    again."""
     least: float = 0.1
     """Least fraction of a measured rate that is attributed to the age of the matrix."""
     last: int = 3
@@ -71,13 +70,17 @@ class PolishingParameters:
     """Fraction of the allowed imbalance in mid-step below which states are skipped."""
     most_unseen: int = 7
     """Largest number of skipped states."""
-    trusted: int = 10
-    """Number of states for which a measured rate, or the effect of closing joints, is used."""
     worse: float = 3.0
     """Safety factor of measured values: they depend on the direction of the residual."""
 
 
 POLISHING = tuned("polishing", PolishingParameters())
+
+
+EXCLUDED = 1e15
+"""Absolute tolerance that excludes an unknown from error tests."""
+A_STABLE_ORDER = 2
+"""Highest A-stable order of BDF."""
 
 
 @dataclass(frozen=True)
@@ -88,19 +91,15 @@ class ErrorFilterParameters:
     """
 
     fades_low: float = 0.99
-    """Factor of the failure count in each step, at orders up to `low`."""
+    """Factor of the failure count in each step, at A-stable orders."""
     fades: float = 0.8
     """The same at higher orders."""
-    low: int = 2
-    """Highest low order."""
     troubled: float = 7.0
     """Failure count above which estimates are filtered."""
     lasts: int = 1000
     """Number of steps for which they are."""
     before_a_rise: int = 3
     """Equal steps at order 1 before IDA may raise it."""
-    never: float = 1e9
-    """Step growth that no estimate allows."""
     no_estimate: float = 1e12
     """Filtered norm above which a vector is not an error estimate: IDA also uses the norm for a rounding test."""
 

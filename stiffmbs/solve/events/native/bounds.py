@@ -11,7 +11,8 @@ from math import floor, isfinite, sqrt, tau
 from stiffmbs.compile.machine.native.access import compiled, view_of
 from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.solve.events.native.layouts import EVENT_SEARCH
-from stiffmbs.solve.events.native.parameters import SEARCH
+from stiffmbs.solve.events.native.parameters import INDISTINCT, SEARCH
+from stiffmbs.solve.events.native.step_bound import STRETCHED
 
 LOOKED_AT, ALSO_AT = 1.0 / (1.0 + sqrt(2.0)), sqrt(3.0) - 1.0
 """Places in a part of a step at which a function is compared with a cubic; no simple fractions of a period."""
@@ -80,7 +81,7 @@ def noted_rates(rate, value, nearby, ahead, count):
 @compiled
 def time_of_difference(w, h, t):
     """Return the time over which rates at t, the end of a step of length h, are computed."""
-    return max(SEARCH.difference * h, SEARCH.least_difference * w.duration, SEARCH.rounding * abs(t))
+    return max(SEARCH.difference * h, SEARCH.least_difference * w.duration, INDISTINCT * abs(t))
 
 
 @compiled
@@ -181,7 +182,7 @@ def repeats(w, t, passing):
 @compiled
 def bounded_by_feature(w):
     """Return True if a feature limits the next step of IDA more than arguments of sines do."""
-    return w.longest * fastest_turn(w, w.rate_before) < SEARCH.bounded * SEARCH.turned
+    return w.longest * fastest_turn(w, w.rate_before) * STRETCHED < SEARCH.turned  # not by rounding
 
 
 @compiled
@@ -219,7 +220,7 @@ def _note_apart(w, h):
         start, end = w.value_before[k], w.value_after[k]
         start_rate, end_rate = h * w.rate_before[k], h * w.rate_after[k]
         missed = abs(w.m[k] - cubic(start, start_rate, end, end_rate, LOOKED_AT))
-        beyond = SEARCH.wider * (abs(end - start) + abs(start_rate) + abs(end_rate)) + SEARCH.unknown * missed
+        beyond = abs(end - start) + abs(start_rate) + abs(end_rate) + SEARCH.unknown * missed
         below, above = min(start, end) - beyond - w.zone_low[k], w.zone_high[k] - max(start, end) - beyond
         w.apart[k] = min(below, above)
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from sys import float_info
+
 from stiffmbs.compile.machine.native.access import compiled
 from stiffmbs.solve.events.native.parameters import SEARCH
 
-JUST_BEYOND = 1e-300
+JUST_BEYOND = float_info.min
 """Value of a function that is zero at the start of a step, with the sign that it takes."""
 
 

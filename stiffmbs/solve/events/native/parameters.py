@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import log2
 from sys import float_info
 
 from ....tuning import tuned
 
 EPSILON = float_info.epsilon
 """Relative rounding of a number."""
+INDISTINCT = 4 * EPSILON
+"""Relative difference up to which two times are the same, for IDA and for breakpoints, whose rounding is as large."""
+BISECTIONS = round(-log2(INDISTINCT))
+"""Bisections of a step after which its parts are indistinct."""
 
 
 @dataclass(frozen=True)
@@ -21,16 +26,13 @@ class EventSearchParameters:
     margin: float = 0.1
     """Margin of a function's bounds between the ends of a step, relative to their range."""
     unknown: float = 8.0
-    """Factor of the deviation from the cubic elsewhere, relative to that at the compared place."""
+    """Factor of the deviation from the cubic elsewhere, relative to that at the compared place. It is the factor of the
+    rounding of rates too, relative to their change with the time of difference."""
     steep: float = 8.0
     """Ratio of an end rate to the change between the ends above which a function has an extremum."""
-    wider: float = 2.0
-    """Factor of the change and rates in a step by which any bound is at most outside its end values."""
     turned: float = 1.0
     """Rotation of a body, or change of a sine's argument, in a step above which the step is searched, rad; no simple
     fraction of a period. Explicit steps with twice that are repeated."""
-    bounded: float = 0.99
-    """Fraction of the longest step by rotations below which a feature bounds the step; the rest is rounding."""
     clear: float = 4.0
     """Distance of a function from its breakpoints, relative to its change in the step and by its initial rate, above
     which it is far from them."""
@@ -40,42 +42,31 @@ class EventSearchParameters:
     """Allowed deviation from the cubic, relative to the range of values there."""
     noise: float = 1e-9
     """Rounding of values and rates, relative to the largest number in the state."""
-    repeated: float = 8.0
-    """Allowed deviation from the cubic, relative to the change of a rate with its time of difference: in steps of
-    nanoseconds, rates are rounding."""
     shallow: float = 1e-5
     """Depth below zero, relative to that rounding, that is no event: rounding changes the sign of a closed contact."""
     well: float = 0.03
     """Relative deviation from the cubic below which the next part is doubled (it has order four)."""
     least_part: float = 1e-4
     """Shortest part of a step that is searched."""
-    most_parts: int = 5000
-    """Largest number of parts."""
     few_parts: int = 100
     """Largest number of parts if arguments of sines cannot be followed."""
     difference: float = 1e-6
     """Fraction of a step, or of a part, over which rates are computed."""
     least_difference: float = 1e-9
-    """Least time over which rates at the end of a step are computed, relative to the duration: shorter differences are
-    rounding."""
+    """Least time over which rates are computed: at the end of a step relative to the duration, at a start relative to the
+    time to the next stop. Shorter differences are rounding."""
     refined: float = 0.02
     """Fraction of a part over which a parabola is fitted at an extremum."""
     refinements: int = 5
     """Number of such fits, each over a tenth of the last."""
-    bisections: int = 50
-    """Bisections to find an event."""
     behind: float = 1e-9
     """Distance after an event, relative to the step, at which the new law holds."""
     longest: float = 1e-3
     """Largest fraction of a step over which the motion is extrapolated to find the sign of a function that is zero."""
     longer: float = 4.0
-    """Factor between successive extrapolations."""
+    """Factor between successive extrapolations: longer ones leave a zero, shorter ones approach a sign change."""
     held: int = 3
     """Number of successive equal signs that such a function must have: a single one may be rounding."""
-    shorter: float = 0.125
-    """Factor by which an extrapolation past an event is shortened while it passes as many sign changes."""
-    rounding: float = 1e-15
-    """Time, relative to the time since zero, below which two events count as simultaneous."""
 
 
 SEARCH = tuned("event_search", EventSearchParameters())
@@ -101,13 +92,8 @@ class NextStepParameters:
     resolve an interval. Larger fractions save steps, and miss more narrow features."""
     first_step: float = 1e-3
     """Largest first step of IDA, relative to the time to the next stop."""
-    start_difference: float = 1e-9
-    """Time over which rates of event functions are computed at a start, and least passage, relative to the time to the
-    next stop."""
     soon: float = 1e-2
     """Passage relative to the time to the next stop above which IDA's first steps are short enough."""
-    bisections: int = 6
-    """Bisections to find the end of a passage."""
     passage_steps: float = 16.0
     """Least number of steps of a passage with periodic laws."""
     first_part: float = 0.125

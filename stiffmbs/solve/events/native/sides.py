@@ -8,7 +8,7 @@ from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.orientation import add_rates, take_unit_length
 from stiffmbs.dynamics.native.consistent import consistent_accelerations
 from stiffmbs.dynamics.native.views import dynamics_view
-from stiffmbs.solve.events.native.parameters import SEARCH
+from stiffmbs.solve.events.native.parameters import INDISTINCT, SEARCH
 from stiffmbs.solve.explicit.native.stages import add_rates_behind
 
 
@@ -142,11 +142,11 @@ def moved_past(s, m, t, most, count, q, values):
         return 0.0
     ahead = most
     while (
-        ahead * SEARCH.shorter > SEARCH.rounding * abs(t)
-        and _passed(s, m, t, ahead * SEARCH.shorter, q, count, values) == passed
+        ahead > SEARCH.longer * INDISTINCT * abs(t)
+        and _passed(s, m, t, ahead / SEARCH.longer, q, count, values) == passed
     ):
-        ahead *= SEARCH.shorter
-    ahead = min(ahead / (SEARCH.shorter * SEARCH.shorter), most)  # closer, rounding may show the change too early
+        ahead /= SEARCH.longer
+    ahead = min(ahead * SEARCH.longer * SEARCH.longer, most)  # closer, rounding may show the change too early
     _passed(s, m, t, ahead, q, count, values)
     return ahead
 

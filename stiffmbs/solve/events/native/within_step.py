@@ -30,7 +30,7 @@ from stiffmbs.solve.events.native.bounds import (
     turned_arguments,
     zone,
 )
-from stiffmbs.solve.events.native.parameters import SEARCH
+from stiffmbs.solve.events.native.parameters import BISECTIONS, SEARCH
 
 INFINITE = float("inf")
 
@@ -97,7 +97,7 @@ def _note_noise(w, s, begun, h, end, part):
     apart = 2.0 * SEARCH.difference * part
     nearby = _values(w, s, begun, h, end - apart)
     for k in range(w.n):
-        w.noise[k] = SEARCH.repeated * part * abs((w.b[k] - nearby[k]) / apart - w.b_rate[k])
+        w.noise[k] = SEARCH.unknown * part * abs((w.b[k] - nearby[k]) / apart - w.b_rate[k])
 
 
 @compiled
@@ -197,7 +197,7 @@ def _change(w, s, begun, h, k):
     """Return the place at which a function leaves its initial interval."""
     here = zone(w, k, w.value_before[k])
     low, high = w.left_low[k], w.left_high[k]
-    for _ in range(SEARCH.bisections):
+    for _ in range(BISECTIONS):
         middle = 0.5 * (low + high)
         if zone(w, k, _values(w, s, begun, h, middle)[k]) != here:
             high = middle
@@ -250,11 +250,9 @@ def first_event(w, s, begun, h):
     longest = _longest_part(w)
     part = max(min(longest, SEARCH.turned / max(fastest_turn(w, w.a_rate), SEARCH.turned)), SEARCH.least_part)
     parts = 0
-    most_parts = (
-        SEARCH.most_parts
-        if turned_arguments(w, w.value_before, w.value_after) <= SEARCH.most_parts * SEARCH.turned
-        else SEARCH.few_parts
-    )
+    most_parts = 1.0 / SEARCH.least_part
+    if turned_arguments(w, w.value_before, w.value_after) > most_parts * SEARCH.turned:
+        most_parts = SEARCH.few_parts
     noise = 0.0
     for i in range(w.n_state):
         noise = max(noise, SEARCH.noise * abs(w.row[i]))

@@ -39,7 +39,7 @@ def _error_of(x, c, h):
     if c.n_errors == 1:
         return h * sqrt(first)
     both = first + 0.01 * _squares(x, c, 1)
-    return h * max(first / sqrt(both), sqrt(first) / CONTROL.most_below) if both != 0.0 else 0.0
+    return h * max(first / sqrt(both), sqrt(first) / CONTROL.astray) if both != 0.0 else 0.0
 
 
 @compiled
@@ -84,5 +84,5 @@ def trusted_error(x, c, h):
     astray = _squared(x, x.y_stage)
     if not astray > x.n or not astray > _squared(x, x.y_before):
         return error
-    unseen = c.n_errors == 2 or error * error * x.n < CONTROL.unseen * CONTROL.unseen * astray
+    unseen = c.n_errors == 2 or error * error * x.n * CONTROL.astray * CONTROL.astray < astray
     return max(error, CONTROL.untrusted) if unseen or _sees_other_laws(x, h) else error

@@ -29,7 +29,7 @@ from stiffmbs.solve.events.native.from_zero import (
     note_sides,
 )
 from stiffmbs.solve.events.native.nearby import note_zones
-from stiffmbs.solve.events.native.parameters import EPSILON, SEARCH
+from stiffmbs.solve.events.native.parameters import BISECTIONS, EPSILON, INDISTINCT, SEARCH
 from stiffmbs.solve.events.native.within_step import first_event, keep_row
 from stiffmbs.solve.explicit.native.attempt import arrive, attempt
 from stiffmbs.solve.explicit.native.error_estimate import trusted_error
@@ -101,7 +101,7 @@ def _note_sides_at_start(x, s):
         return
     load_state(s, x.y_before)
     begin_sides(w.m, w.m2, count)
-    ahead = max(EPSILON * x.span, LOCATION.rounding * abs(x.t))
+    ahead = max(EPSILON * x.span, INDISTINCT * abs(x.t))
     while ahead <= SEARCH.longest * x.span and note_sides(x.signs, _values_ahead(x, s, ahead), w.m, w.m2, count) > 0:
         ahead *= SEARCH.longer
 
@@ -179,7 +179,7 @@ def _event_within(x, c, s, m, changed):
     """
     w = event_search_view(x.watch)
     h = x.span
-    if not h > LOCATION.rounding * abs(x.t):
+    if not h > INDISTINCT * abs(x.t):
         w.ready = 0
         return 0.0
     small = SEARCH.difference * h
@@ -199,14 +199,14 @@ def _event_within(x, c, s, m, changed):
         _load(x, s, x.y_stage, x.t_before + w.node[node] * h)
         keep_row(w, s, node)
     event = first_event(w, s, x.t_before, h)
-    return event * h if LOCATION.rounding * abs(x.t) < event * h < h else 0.0
+    return event * h if INDISTINCT * abs(x.t) < event * h < h else 0.0
 
 
 @compiled
 def _first_change(x, c, s, high):
     """Return the time from the step's start, up to `high`, at which the interpolant first shows a sign change."""
     low = 0.0
-    for _ in range(LOCATION.bisections):
+    for _ in range(BISECTIONS):
         middle = 0.5 * (low + high)
         interpolated(x, c, middle / x.span, x.y_stage)
         if _changed(x, _values(x, s, x.y_stage, x.t_before + middle)):
@@ -327,7 +327,7 @@ def end_at_event(explicit):
 @compiled
 def _ended_at_event(x, c, s, m):
     h = x.span
-    behind = max(LOCATION.behind * h, LOCATION.rounding * abs(x.t))
+    behind = max(LOCATION.behind * h, INDISTINCT * abs(x.t))
     status = _taken_to_event(x, c, s, m, h, behind)
     w = event_search_view(x.watch)
     if status == NO_EVENT:

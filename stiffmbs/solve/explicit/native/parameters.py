@@ -17,11 +17,9 @@ class StepControlParameters:
     safety: float = 0.9
     """Safety factor of the step size, as in DOPRI5."""
     least_factor: float = 0.2
-    """Least ratio of successive steps."""
+    """Least ratio of successive steps, and factor of the step after an attempt without a result."""
     largest_factor: float = 10.0
     """Largest ratio of successive steps."""
-    after_failure: float = 0.25
-    """Factor of the step after an attempt without a result."""
     smallest_error: float = 1e-4
     """Smallest previous error in the PI step control, as in DOPRI5."""
     far_beyond: float = 2.0
@@ -29,22 +27,18 @@ class StepControlParameters:
     estimate limits remain closer."""
     stiff_part: float = 0.1
     """Fraction of steps limited by stability from which on a run may be given up, and the summary recommends bdf."""
-    enough_steps: int = 10_000
-    """Number of steps before a run may be given up."""
+    enough_steps: int = 20_000
+    """Number of steps before a run may be given up, because of stiffness, or of a tolerance below rounding."""
     too_many_steps: float = 1e9
     """Expected steps times state variables at which it is."""
     untrusted: float = 1e3
     """Error assigned to a step with an invalid estimate, in tolerances."""
-    unseen: float = 1e-2
-    """Estimated error relative to the distance of the last stage from the end, below which the estimate is invalid."""
-    most_below: float = 100.0
-    """Largest ratio of the better embedded error to the estimate: the formula of orders 3 and 5 assumes smooth
-    motion."""
     hardly_off: float = 0.3
     """Error of an interpolant without additional stages, in tolerances, up to which it is used."""
     astray: float = 100.0
-    """Ratio of the stages' terms of the interpolant to those of the ends above which they are invalid; 0.1 to 10 for
-    smooth motions."""
+    """Ratio of two sizes of the same order, such as the terms of an interpolant, above which one of them is invalid; it is
+    0.1 to 10 for smooth motions: the stages' terms of the interpolant to those of the ends, the better embedded error to
+    the estimate of orders 3 and 5, the distance of the last stage from the end to the estimate."""
     shortest: float = 1e-12
     """Shortest step, as a fraction of the run."""
 
@@ -57,18 +51,12 @@ class FirstStepParameters:
     """Parameters of the first step (Hairer, Norsett, Wanner I, ch. II.4, "starting step size")."""
 
     part: float = 0.01
-    """Fraction of the state changed by the first explicit Euler step, and size of the highest-order term in
-    tolerances."""
+    """Fraction of the state changed by the first explicit Euler step, size of the highest-order term in tolerances, and
+    least ratio of the trial step to the step."""
     small: float = 1e-5
     """Sizes of states and rates, in tolerances, below which they do not determine a step."""
     short: float = 1e-6
     """Trial step without information, s."""
-    no_rate: float = 1e-15
-    """Rate, in tolerances, below which the step is unbounded."""
-    longer_at_rest: float = 1e-3
-    """Least fraction of the trial step then."""
-    longest_factor: float = 100.0
-    """Largest ratio of the step to the trial step."""
     farthest: float = 1e3
     """Shortest steps within which the motion must leave a zero of an event function."""
 
@@ -85,14 +73,10 @@ class LocationParameters:
 
     behind: float = 1e-10
     """Distance from an event to the end of a step, relative to the step."""
-    rounding: float = 2e-15
-    """The same relative to the time since zero."""
     farthest_past: float = 1e-6
     """Fraction of the step up to which the motion is extrapolated until a sign change exceeds rounding."""
     most_retaken: int = 8
     """Largest number of steps to one event."""
-    bisections: int = 40
-    """Bisections to find a sign change on the interpolant."""
 
 
 LOCATION = tuned("explicit_events", LocationParameters())
@@ -104,8 +88,9 @@ class UncertainEndParameters:
 
     close: float = 1e-2
     """Relative size d^2 of the pivots of J M^-1 J^T below which an end is checked."""
-    harmful: float = 0.01
-    """Velocity change by acceleration errors in a step, in tolerances, above which a step should not end there."""
+    harmful: float = 0.03
+    """Velocity change by errors of accelerations in a step, in tolerances, above which they shorten steps: a step should
+    not end there, the LU replaces the elimination, or rounding governs the run."""
     most_moved: int = 3
     """Number of times that the end of a step is moved back."""
     shorter: float = 0.55

@@ -136,7 +136,7 @@ def _step(x, c, s, m, end):
                 return 0
         x.rejected += 1
         most = 1.0
-        h *= CONTROL.after_failure if status < 0 else max(CONTROL.least_factor, CONTROL.safety * error**-c.exponent)
+        h *= CONTROL.least_factor if status < 0 else max(CONTROL.least_factor, CONTROL.safety * error**-c.exponent)
         if h < x.shortest:
             copied(x.y, x.y_before, x.n)
             return status if status < 0 else STEP_TOO_SMALL

@@ -10,8 +10,8 @@ from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.orientation import add_rates
 from stiffmbs.solve.events.native.bounds import event_search_view
 from stiffmbs.solve.events.native.from_zero import at_zero, begin_sides, keep_sides, note_sides
-from stiffmbs.solve.events.native.parameters import SEARCH
-from stiffmbs.solve.explicit.native.parameters import FIRST_STEP, LOCATION
+from stiffmbs.solve.events.native.parameters import INDISTINCT, SEARCH
+from stiffmbs.solve.explicit.native.parameters import FIRST_STEP
 from stiffmbs.solve.explicit.native.stages import add_rates_behind, load_state, rates
 
 
@@ -52,7 +52,7 @@ def _leave_zeros(x, s, m, k):
     """
     w = event_search_view(x.watch)
     count = x.n_event_functions
-    later, ahead = shifted(x.k, x.n), max(x.shortest, LOCATION.rounding * abs(x.t))
+    later, ahead = shifted(x.k, x.n), max(x.shortest, INDISTINCT * abs(x.t))
     begin_sides(w.m, w.m2, count)
     zeros = at_zero(x.signs, count)
     undecided = zeros
@@ -101,9 +101,5 @@ def first_step(x, c, s, m, end):
     largest = max(of_rate, _size(x, x.difference) / h)
     if not isfinite(largest):
         return h
-    longer = (
-        (FIRST_STEP.part / largest) ** (1.0 / c.order)
-        if largest > FIRST_STEP.no_rate
-        else max(FIRST_STEP.short, FIRST_STEP.longer_at_rest * h)
-    )
-    return min(min(FIRST_STEP.longest_factor * h, longer), end - x.t)
+    longer = (FIRST_STEP.part / largest) ** (1.0 / c.order) if largest > 0.0 else h
+    return min(min(h / FIRST_STEP.part, longer), end - x.t)

@@ -30,7 +30,7 @@ from stiffmbs.compile.machine.native.access import (
 )
 from stiffmbs.compile.machine.native.calls import call_address, call_float, call_int
 from stiffmbs.compile.machine.native.statuses import NORM_TABLE, OK, OPERATIONS
-from stiffmbs.solve.error_control.native.parameters import FILTER
+from stiffmbs.solve.error_control.native.parameters import A_STABLE_ORDER, FILTER
 from stiffmbs.solve.ida.native.iteration import iteration_view
 from stiffmbs.solve.ida.native.layouts import ERROR_NORM
 
@@ -67,7 +67,7 @@ def _look(c):
         c.trouble = 0.0
         c.until = 0
     call_int(c.order_of, (c.memory, address_of(c.order)))
-    fades = FILTER.fades_low if c.order <= FILTER.low else FILTER.fades
+    fades = FILTER.fades_low if c.order <= A_STABLE_ORDER else FILTER.fades
     for _ in range(steps):
         c.trouble *= fades
     c.trouble += max(failures, 0)
@@ -75,7 +75,7 @@ def _look(c):
         c.until = c.steps + FILTER.lasts
         if failures > 0 and c.order == 1:
             c.equal_until = c.steps + FILTER.before_a_rise
-            call_int(c.set_growth, (c.memory, 1.0, FILTER.never))
+            call_int(c.set_growth, (c.memory, 1.0, float("inf")))
 
 
 @compiled

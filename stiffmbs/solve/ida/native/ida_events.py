@@ -22,7 +22,7 @@ from stiffmbs.solve.events.native.bounds import (
 )
 from stiffmbs.solve.events.native.from_zero import at_zero, begin_sides, leave_zero, note_sides
 from stiffmbs.solve.events.native.nearby import near_an_event, note_mean_rates, note_near
-from stiffmbs.solve.events.native.parameters import EPSILON, NEXT_STEP, SEARCH
+from stiffmbs.solve.events.native.parameters import EPSILON, INDISTINCT, NEXT_STEP, SEARCH
 from stiffmbs.solve.events.native.within_step import first_event, first_event_or_change, keep_row
 from stiffmbs.solve.ida.native.ida_memory import array_of, native_ida_view
 from stiffmbs.solve.ida.native.passage import bound_passage, go_ahead, go_straight
@@ -38,8 +38,8 @@ def _note_sides(c, w, s, toward):
     for k in range(count):
         w.a[k] = float(w.value_before[k] > 0.0) - float(w.value_before[k] < 0.0)
     begin_sides(w.m, w.m2, count)
-    most = NEXT_STEP.start_difference / NEXT_STEP.first_step * (toward - c.returned)
-    ahead = max(EPSILON * (toward - c.returned), SEARCH.rounding * abs(c.returned))
+    most = SEARCH.least_difference / NEXT_STEP.first_step * (toward - c.returned)
+    ahead = max(EPSILON * (toward - c.returned), INDISTINCT * abs(c.returned))
     while ahead <= most:
         go_ahead(c, s, ahead)
         if note_sides(w.a, evaluate(s, SWITCH, c.returned + ahead), w.m, w.m2, count) == 0:
@@ -58,7 +58,7 @@ def look_at_start(toward, stop, ida):
     if not w.ready:
         w.ready = 1
         w.begun = c.returned
-        ahead = max(NEXT_STEP.start_difference * (toward - c.returned), time_of_difference(w, 0.0, c.returned))
+        ahead = max(SEARCH.least_difference * (toward - c.returned), time_of_difference(w, 0.0, c.returned))
         s = state_view(c.state)
         load(s, equations_view(c.equations), array_of(c, c.y), array_of(c, c.yp))
         c.seen = UNSEEN
@@ -177,7 +177,7 @@ def _aim(c, w, s, ahead):
     place = first_event_or_change(w, s, t, ahead)
     for k in range(w.n):
         w.found[k] = 0
-    least = max(NEXT_STEP.short_of * w.longest, 10.0 * SEARCH.rounding * abs(t))
+    least = max(NEXT_STEP.short_of * w.longest, 10.0 * INDISTINCT * abs(t))
     if 3.0 * least < ahead * place < ahead:
         w.target = t + ahead * place - max(least, NEXT_STEP.unsure * ahead * place)
 
@@ -196,7 +196,7 @@ def look_within(ida):
     w = event_search_view(c.watch)
     begun = w.begun
     h = c.returned - begun
-    if not h > SEARCH.rounding * abs(begun):
+    if not h > INDISTINCT * abs(begun):
         return int32(0)
     s = state_view(c.state)
     e = equations_view(c.equations)
@@ -227,7 +227,7 @@ def look_within(ida):
             load(s, e, c.output, array_of(c, c.yp))
             keep_row(w, s, node)
         event = begun + h * first_event(w, s, begun, h)
-        if begun + SEARCH.rounding * abs(begun) < event < c.returned:
+        if begun + INDISTINCT * abs(begun) < event < c.returned:
             call_int(c.interpolate, (c.memory, event, int32(0), c.y))
             call_int(c.interpolate, (c.memory, event, int32(1), c.yp))
             c.returned = event

@@ -8,6 +8,7 @@ from stiffmbs.compile.machine.native.evaluate import SWITCH, add_entries, add_pr
 from stiffmbs.compile.machine.native.statuses import OK, ONE_STEP, RECOVERABLE, ROOT_RETURN, STOP_RETURN
 from stiffmbs.solve.error_control.native.accumulated_errors import accumulated_errors_view, displace_by, is_due
 from stiffmbs.solve.events.native.bounds import bounded_by_feature, event_search_view, repeats
+from stiffmbs.solve.events.native.parameters import EPSILON
 from stiffmbs.solve.events.native.step_bound import (
     STRETCHED,
     is_to_be_kept,
@@ -94,7 +95,7 @@ def _longest_to_see(c, bound, t):
             longest = min(longest, w.passage if c.size > 0.0 else w.first)
             if c.one_step:
                 longest = min(longest, w.passed - t)
-    return max(longest, LOOP.most_tiny * LOOP.tiny * abs(t))
+    return max(longest, LOOP.most_tiny**2 * EPSILON * abs(t))
 
 
 @compiled
@@ -217,7 +218,7 @@ def _accumulate(c):
 
 @compiled
 def _stalled(c):
-    c.tiny = c.tiny + 1 if abs(c.size) < LOOP.tiny * abs(c.internal) else 0
+    c.tiny = c.tiny + 1 if abs(c.size) < LOOP.most_tiny * EPSILON * abs(c.internal) else 0
     return c.tiny >= LOOP.most_tiny
 
 

@@ -71,8 +71,6 @@ def _first(c, size, enough):
     age = c.age
     rate = _predicted(c)
     c.first = size
-    if size <= NEWTON.negligible * enough:
-        return SETTLED
     slow = c.slow == 1 and age > 0
     c.slow = 0
     if slow:

@@ -17,7 +17,7 @@ from stiffmbs.compile.machine.native.statuses import OK
 from stiffmbs.dynamics.native.block_systems import MOST_MOVES, to_position_constraints
 from stiffmbs.dynamics.native.layouts import POSITION_TOLERANCE
 from stiffmbs.dynamics.native.views import dynamics_view
-from stiffmbs.solve.error_control.native.parameters import POLISHING
+from stiffmbs.solve.error_control.native.parameters import NEWTON, POLISHING
 from stiffmbs.solve.ida.native.layouts import OUTPUT_CORRECTION
 
 INFINITE = float("inf")
@@ -86,7 +86,7 @@ def _by_closing(b, s, e, t, opening):
     for k in range(e.n):
         b.correction[k] -= b.defect[k]
     b.local = _unbalanced(b, b.correction) / opening
-    b.judged = POLISHING.trusted
+    b.judged = NEWTON.trusted
     return part
 
 
@@ -139,7 +139,7 @@ def _corrected(b, e):
 def _predicted(b, t):
     """Return the rate for the first correction, in proportion to the age of the factors; 1 if not measured."""
     b.since += 1
-    known = b.growth >= 0.0 and b.since <= POLISHING.trusted
+    known = b.growth >= 0.0 and b.since <= NEWTON.trusted
     return POLISHING.worse * b.growth * (t - b.made) if known else 1.0
 
 

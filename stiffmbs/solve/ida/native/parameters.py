@@ -12,26 +12,23 @@ class LoopParameters:
     """Parameters of the loop over IDA's steps, and of its memory."""
 
     most_steps: int = 2048
-    """Largest number of steps of a call up to a breakpoint."""
+    """Largest number of steps of a call."""
     samples: int = 16
     """Number of stored samples of time and reported unknowns."""
     steps_apart: int = 4
     """Steps between two samples."""
     most_tiny: int = 100
-    """Number of successive tiny steps at which the run stops: IDA would continue forever."""
-    tiny: float = 2e-14
-    """Fraction of the time below which a step is tiny."""
+    """Number of successive tiny steps at which the run stops: IDA would continue forever. A step below as many roundings
+    of the time is tiny."""
     longest_call: float = 0.1
     """Time of a call, s, for progress and interruption."""
     step_time: float = 1e-7
     """Estimated time of a step per unknown, s. A clock would make results depend on the load of the machine, because
     calls affect Newton's iteration."""
     most_passed: int = 64
-    """Largest number of breakpoints at which IDA may restart in a call."""
+    """Largest number of breakpoints, or of samples that change nothing that acts, in a call."""
     most_kept: int = 1_000_000
-    """Largest number of stored steps; later ones are only counted."""
-    rows: int = 1000
-    """Number of rows for one call that reports every step."""
+    """Largest number of stored steps, which are only counted afterwards, or of numbers in stored states."""
 
 
 LOOP = tuned("loop", LoopParameters())

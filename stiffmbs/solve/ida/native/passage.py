@@ -12,7 +12,7 @@ from stiffmbs.compile.machine.native.calls import call_int
 from stiffmbs.compile.machine.native.evaluate import SWITCH, add_products, evaluate, load
 from stiffmbs.compile.machine.native.orientation import add_rates
 from stiffmbs.solve.events.native.bounds import zone
-from stiffmbs.solve.events.native.parameters import NEXT_STEP
+from stiffmbs.solve.events.native.parameters import NEXT_STEP, SEARCH
 from stiffmbs.solve.ida.native.ida_memory import array_of
 
 
@@ -44,7 +44,7 @@ def bound_passage(c, w, s, toward, stop):
 @compiled
 def _passage(c, w, s, toward, stop):
     """Return the time after which the motion leaves a law; 0 if it does not soon."""
-    ahead = NEXT_STEP.start_difference * (toward - c.returned)
+    ahead = SEARCH.least_difference * (toward - c.returned)
     most = stop - c.returned if w.n_turns > 0 else NEXT_STEP.soon * (toward - c.returned)
     if c.one_step:
         most = min(max(most, c.next_size), stop - c.returned)
@@ -53,7 +53,7 @@ def _passage(c, w, s, toward, stop):
     if not ahead < most:
         return 0.0
     low = 0.5 * ahead
-    for _ in range(NEXT_STEP.bisections):
+    while ahead - low > NEXT_STEP.first_part / NEXT_STEP.passage_steps * ahead:  # the first step
         middle = 0.5 * (low + ahead)
         if _another_side(c, w, s, middle):
             ahead = middle

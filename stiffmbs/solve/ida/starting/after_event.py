@@ -12,7 +12,7 @@ from ....compile.system import System
 from ....dynamics.dynamics import Dynamics
 from ...error_control.native.parameters import POLISHING
 from ...events.discontinuity import JUMP, VELOCITY_JUMP, direction_of
-from ...events.restart import INDISTINCT
+from ...events.native.parameters import INDISTINCT
 from ..connection import Connection
 from ..native.layouts import ANEW, RESTART
 from .starts import Starts, integers

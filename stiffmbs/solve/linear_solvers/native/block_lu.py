@@ -29,12 +29,11 @@ from stiffmbs.solve.linear_solvers.native.pair_factors import (
 )
 from stiffmbs.solve.linear_solvers.native.paired_columns import paired_view
 from stiffmbs.solve.linear_solvers.native.parameters import PIVOTS
+from stiffmbs.sparse import block_updates
+from stiffmbs.sparse.blocks import CACHE_LINE
 
 LU = list(BLOCK_LU).index("lu")
-CACHE_LINE = 64
-"""Equal to `stiffmbs.sparse.blocks.CACHE_LINE`, bytes."""
-SHAPES = 16
-"""Length of `stiffmbs.sparse.block_updates.SHAPES`."""
+SHAPES = len(block_updates.SHAPES)
 
 block_view = view_of("BlockLU", BLOCK_LU)
 

@@ -14,12 +14,11 @@ from stiffmbs.solve.ida.native.output_correction import output_correction_view
 from stiffmbs.solve.radau.native.memory import collocation_view, polynomial, polynomial_rates
 from stiffmbs.solve.radau.native.newton import add_efforts, residual, size_in_tolerances, solved_real, store_misfit
 
-MOST_CORRECTIONS, MISFIT, ROUNDING = 5, 1.0, 1e-11
-"""Largest number of corrections of a state, misfit that remains, in rtol of the largest effort, and relative size of
-corrections that are rounding."""
+MOST_CORRECTIONS, ROUNDING = 5, 1e-11
+"""Largest number of corrections of a state, and relative size of corrections that are rounding."""
 MOST_MOVED, MOST_MOVED_WITHIN = 0.5, 30.0
 """Largest changes of the state at the end of a step and of states within it, in tolerances."""
-AGREED, CLOSED, OPEN = 0, 1, 2
+AGREED, CLOSED, OPEN = range(3)
 FEW = 2
 """Outputs of a step that are corrected one by one."""
 
@@ -49,7 +48,7 @@ def closed(x, t, most):
     allowed = 0.0
     for k in range(x.n, x.n_all):
         allowed = max(allowed, abs(x.y_stage[k]))
-    allowed *= MISFIT * x.rtol
+    allowed *= x.rtol
     first = 0.0
     before = 0.0
     size = 0.0

@@ -8,15 +8,16 @@ from stiffmbs.compile.machine.native.access import compiled, floats, ints
 from stiffmbs.compile.machine.native.calls import call_address, call_int, int32
 from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.statuses import OK, ROOT_RETURN, STOP_RETURN
+from stiffmbs.solve.error_control.native.parameters import EXCLUDED, NEWTON
+from stiffmbs.solve.events.native.parameters import BISECTIONS, INDISTINCT
+from stiffmbs.solve.events.native.step_bound import STRETCHED
+from stiffmbs.solve.explicit.native.parameters import LOCATION
 from stiffmbs.solve.radau.native.between_steps import dense_output
 from stiffmbs.solve.radau.native.memory import collocation_view, polynomial, polynomial_rates, radau_view
-from stiffmbs.solve.radau.native.steps import EXCLUDED, first_step, set_weights, step
+from stiffmbs.solve.radau.native.steps import SMALLEST, first_step, set_weights, step
 
 BAD_ORDER, BAD_TIME = -25, -26
 """IDA_BAD_K and IDA_BAD_T."""
-BISECTIONS = 60
-MOST_RETAKEN, BEFORE_EVENT, ROUNDINGS = 12, 0.99, 1e-14
-"""Number of attempts to end a step before an event, fraction of the way to it, and least step relative to the time."""
 
 
 @compiled
@@ -48,7 +49,7 @@ def _root(x, begin):
     high = 1.0
     for _ in range(BISECTIONS):
         middle = 0.5 * (low + high)
-        if middle <= low or middle >= high or (high - low) * x.h_past < 1e-15 * abs(x.t):
+        if middle <= low or middle >= high or (high - low) * x.h_past < INDISTINCT * abs(x.t):
             break
         polynomial(x, middle, x.n, x.y_stage)
         _event_functions(x, begin + middle * x.h_past, x.y_stage, x.yp, x.within)
@@ -73,12 +74,12 @@ def _step_back(x, begin, h):
 
 @compiled
 def _stepped(x):
-    """Take a step, up to just before an event if the change of law makes its error estimate invalid.
+    """Take a step, up to shortly before an event if the change of law makes its error estimate invalid.
 
     The tolerance of the estimate, of order s, is that of smooth solutions. A step over a jump has to stay within the part
     of the requested tolerance that the iteration may leave. Its estimate does not bound its error.
     """
-    for _ in range(MOST_RETAKEN):
+    for _ in range(LOCATION.most_retaken):
         begin = x.t
         flag = step(x)
         if flag < 0 or x.n_functions == 0:
@@ -87,8 +88,8 @@ def _stepped(x):
         relaxed = collocation_view(ints(x.methods[x.method_past])).relaxed
         if x.error_size * relaxed <= x.newton or _changed(x, x.before, x.after) == 0:
             return flag
-        h = BEFORE_EVENT * _root(x, begin) * x.h_past
-        if not h > ROUNDINGS * abs(begin):
+        h = _root(x, begin) * x.h_past / STRETCHED
+        if not h > SMALLEST * abs(begin):
             return flag
         _step_back(x, begin, h)
     return flag
@@ -199,7 +200,7 @@ def set_longest_step(memory, h):
 def set_newton(memory, part):
     """Set the part of the requested tolerance that Newton's iteration may leave (IDASetNonlinConvCoef)."""
     x = radau_view(ints(memory))
-    x.part = min(part, x.loosest)
+    x.part = min(part, NEWTON.loosest)
     return int32(OK)
 
 

@@ -21,7 +21,7 @@ RADAU = Layout({
     "n_slopes": INT, "slope_source": INDICES, "slope_effort": INDICES, "slope_unknown": INDICES, "slope_factor": FLOATS, "slope": FLOATS, "misfit": FLOATS, "at_b": INT, "b": FLOATS, "at_x": INT, "x": FLOATS, "at_pair_b": INT, "pair_b": FLOATS, "at_pair_x": INT, "pair_x": FLOATS,
     "output_correction": INTS, "error_norm": INTS,
     "y": FLOATS, "yp": FLOATS, "y_stage": FLOATS, "yp_stage": FLOATS, "z": FLOATS, "r": FLOATS, "d": FLOATS, "past": FLOATS, "y_past": FLOATS, "error": FLOATS, "weight": FLOATS,
-    "atol": FLOATS, "rtol": FLOAT_CELL, "newton": FLOAT_CELL, "part": FLOAT_CELL, "loosest": FLOAT_CELL, "longest": FLOAT_CELL, "first": FLOAT_CELL, "stop": FLOAT_CELL, "stops": INT_CELL,
+    "atol": FLOATS, "rtol": FLOAT_CELL, "newton": FLOAT_CELL, "part": FLOAT_CELL, "longest": FLOAT_CELL, "first": FLOAT_CELL, "stop": FLOAT_CELL, "stops": INT_CELL,
     "t": FLOAT_CELL, "h": FLOAT_CELL, "h_past": FLOAT_CELL, "method": INT_CELL, "method_past": INT_CELL, "begun": INT_CELL,
     "h_factored": FLOAT_CELL, "method_factored": INT_CELL, "current": INT_CELL, "rate_kept": INT_CELL, "rejected": INT_CELL, "failures": INT_CELL, "renewed": INT_CELL, "error_size": FLOAT_CELL, "left": FLOAT_CELL, "closing": FLOAT_CELL, "suggested": FLOAT_CELL,
     "corrections": FLOATS, "n_corrections": INT_CELL, "suffice": INT_CELL, "outputs": INT_CELL,

@@ -21,21 +21,21 @@ from stiffmbs.compile.machine.native.evaluate import (
     load,
 )
 from stiffmbs.compile.machine.native.statuses import OK
+from stiffmbs.solve.error_control.native.parameters import NEWTON
+from stiffmbs.solve.events.native.parameters import INDISTINCT
 from stiffmbs.solve.ida.native.output_correction import output_correction_view
 from stiffmbs.solve.radau.native.memory import basis, collocation_view
 
 MOST_ITERATIONS = 7
 """Largest number of iterations with three stages; each further stage adds two and a half."""
-ROUNDINGS = 4e-16
-"""Distance of the last stage from a stop time, relative to the time."""
 DIVERGING, SHORTER, MOST_LEFT = 0.99, 0.8, 20.0
 """As in RADAU5: ratio of corrections that ends the iteration; factor of a step whose iteration is too slow, and most
 that counts of what it would leave."""
 LATER = 5.0
 """Factor of the allowed remainder for corrections after the second, whose rate is better known."""
-NEGLIGIBLE, ROUNDING = 1e-6, 1e-14
-"""Sizes of a correction that ends the iteration without a rate of convergence: in tolerances, and relative."""
-CONVERGED, SLOW, DIVERGED, NOT_FINITE_STAGE = 0, 1, 2, 3
+NEGLIGIBLE = 1e-6
+"""Size of a correction, in tolerances, that ends the iteration without a rate of convergence."""
+CONVERGED, SLOW, DIVERGED, NOT_FINITE_STAGE = range(4)
 
 
 @compiled
@@ -204,7 +204,7 @@ def extrapolated(x, c, h):
 @compiled
 def stage_time(x, t):
     """Return the time of a stage, before the stop time, where laws may change."""
-    return min(t, x.stop - ROUNDINGS * abs(x.stop)) if x.stops else t
+    return min(t, x.stop - INDISTINCT * abs(x.stop)) if x.stops else t
 
 
 @compiled
@@ -313,7 +313,7 @@ def most_iterations(c):
 def iterated(x, c, t, h):
     """Solve the stages of a step; CONVERGED, or a reason with the suggested factor of the step in `x.suggested`."""
     most = most_iterations(c)
-    negligible = min(x.newton, max(NEGLIGIBLE, ROUNDING / x.rtol))
+    negligible = min(x.newton, max(NEGLIGIBLE, NEWTON.precision / x.rtol))
     before = 0.0
     ratio_before = 0.0
     x.suggested = x.after_failure

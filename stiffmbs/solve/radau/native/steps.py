@@ -6,6 +6,10 @@ from math import isfinite, sqrt
 
 from stiffmbs.compile.machine.native.access import compiled, ints, shifted
 from stiffmbs.compile.machine.native.memory import copied
+from stiffmbs.solve.error_control.native.parameters import EXCLUDED, NEWTON
+from stiffmbs.solve.events.native.parameters import INDISTINCT
+from stiffmbs.solve.events.native.step_bound import STRETCHED
+from stiffmbs.solve.explicit.native.parameters import FIRST_STEP
 from stiffmbs.solve.ida.native.error_norm import error_norm_view
 from stiffmbs.solve.ida.native.output_correction import output_correction_view
 from stiffmbs.solve.radau.native.between_steps import close_end
@@ -28,19 +32,12 @@ from stiffmbs.solve.radau.native.newton import (
 
 ERROR_TEST_FAILED, NO_CONVERGENCE, NO_FACTORS = -3, -4, -6
 """Flags of IDA: IDA_ERR_FAIL, IDA_CONV_FAIL, IDA_LSETUP_FAIL."""
-MOST_FAILURES = 50
-SMALLEST = 4e-15
+SMALLEST = 4 * INDISTINCT
 """Least step, relative to the time."""
-EXCLUDED = 1e10
-"""Absolute tolerance above which an unknown is in no norm."""
-PART, NEGLIGIBLE, SHORT = 0.01, 1e-5, 1e-6
-"""Relative change of the state in a first step; sizes in tolerances that say nothing; first step without information, s."""
-STRETCHED = 1.01
-"""Factor by which a step may be longer, to end at the stop time."""
 ROUNDING = 1e-10
 """Least estimated error."""
-FIRST_REJECTED, LEAST_ERROR = 0.1, 1e-2
-"""Factor of the first step after a failed error test, and least error in the predictive control."""
+LEAST_ERROR = 1e-2
+"""Least error in the predictive control."""
 
 
 @compiled
@@ -123,10 +120,10 @@ def first_step(x):
         return x.first
     of_state = size_in_tolerances(x, x.y)
     of_rates = size_in_tolerances(x, x.yp)
-    if min(of_state, of_rates) <= NEGLIGIBLE:
-        return SHORT
+    if min(of_state, of_rates) <= FIRST_STEP.small:
+        return FIRST_STEP.short
     order = collocation_view(ints(x.methods[0])).stages
-    return min(PART * of_state / of_rates, (PART / of_rates) ** (1.0 / (1.0 + order)))
+    return min(FIRST_STEP.part * of_state / of_rates, (FIRST_STEP.part / of_rates) ** (1.0 / (1.0 + order)))
 
 
 @compiled
@@ -191,7 +188,7 @@ def _accept(x, c, t, h):
 def _choose_unknowns(x):
     """Make the efforts of stiff forces unknowns if the step is long for these forces."""
     acting = x.n_efforts if x.h > output_correction_view(x.output_correction).long else 0
-    x.newton = x.loosest if acting > 0 else x.part
+    x.newton = NEWTON.loosest if acting > 0 else x.part
     if acting > 0 and (x.acting == 0 or x.h_past == 0.0):
         x.acting = acting
         store_efforts(x, x.t)
@@ -305,7 +302,7 @@ def step(x):
         at_stop = x.stops and x.t + STRETCHED * h >= x.stop
         if at_stop:
             h = x.stop - x.t
-        if not h > SMALLEST * abs(x.t) or x.failures > MOST_FAILURES:
+        if not h > SMALLEST * abs(x.t):
             return ERROR_TEST_FAILED if x.rejected else NO_CONVERGENCE
         x.failures += 1
         if not _has_matrices(x, c, h):
@@ -327,7 +324,7 @@ def step(x):
             continue
         x.rejected = 1
         x.error_failures += 1
-        h *= FIRST_REJECTED if first and x.failures == 1 else _growth(x, c, error)
+        h *= x.least_factor if first and x.failures == 1 else _growth(x, c, error)
         x.renewed = 1 if not x.current and x.rate_kept == 0 else 0
     x.error_size = error
     _choose_next(x, c, h, x.h, at_stop)
