@@ -15,7 +15,7 @@ from ..model.settings import RunSettings
 from ..reading.did_you_mean import did_you_mean
 from ..reading.files.quoted import written
 from ..reading.table import Table
-from ..solve.settings import output_grid
+from ..solve.settings import DEFAULT_POINTS, output_grid
 
 Given: TypeAlias = float | Callable[[float], float] | tuple[Any, Any] | Table
 """Constant, function of t in s, or times and values with linear interpolation."""
@@ -25,8 +25,6 @@ FOLLOWED = 1e-11
 """Tolerated error of that spline halfway between its points, relative to the largest value."""
 JUMP, ROUNDINGS = 0.5, 1e-12
 """Part of a change that remains at a jump; distance of both sides of a jump, relative to the time."""
-SAMPLES = 1001
-"""Number of samples of a function if a run reports its own steps."""
 
 
 def with_inputs(data: ModelData, inputs: Mapping[str, Given] | None, settings: RunSettings) -> ModelData:
@@ -67,7 +65,7 @@ def _followed(name: str, given: Callable[[float], float], settings: RunSettings)
     from scipy.interpolate import CubicSpline
 
     grid = output_grid(settings)
-    outputs = grid.times if grid.times is not None else np.linspace(grid.start, grid.end, SAMPLES)
+    outputs = grid.times if grid.times is not None else np.linspace(grid.start, grid.end, DEFAULT_POINTS)
     times = np.linspace(grid.start, grid.end, max(FEWEST, len(outputs)))
     values = np.array([_number(name, given(float(t))) for t in times])
     while len(times) < MOST:

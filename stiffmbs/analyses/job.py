@@ -17,6 +17,7 @@ from ..compile.compile_model import compile_model
 from ..compile.system import System
 from ..dynamics.dynamics import POSITION_TOLERANCE, Dynamics
 from ..dynamics.initial import InitialValues, consistent_values, initial_values
+from ..dynamics.native.block_systems import MOST_MOVES
 from ..dynamics.turns import counted_angles, take_nearest_turns
 from ..errors import AssemblyError, InputError, StiffmbsError
 from ..model.beams.entries import GROUND_AXES
@@ -38,8 +39,6 @@ from ..tuning import described, in_use
 from .load_scene import load_scene
 from .start_from import StartFrom, started_from, starting_at, state_to_start_from
 
-MOST_MOVES = 20
-"""Largest number of moves of flexible bodies before they are deformed."""
 DEPENDENT = 1e-9
 """Singular value of equations that depend on others, relative to the largest."""
 

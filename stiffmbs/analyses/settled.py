@@ -32,8 +32,8 @@ LARGE_PART = 0.5
 """Size of a velocity, relative to the largest in free motions, above which the first such velocity names the motion."""
 GROWING = 1e-6
 """Real part above which a motion grows, relative to the largest eigenvalue: the accuracy of double zeros."""
-GROWING_OF_ITS_OWN, ROUNDED = 1e-6, 1e-10
-"""Real part above which an eigenvalue is unstable, relative to its own magnitude and to the largest magnitude."""
+ROUNDED = 1e-10
+"""Real part above which an eigenvalue is unstable, relative to the largest magnitude, in addition to `GROWING` of its own."""
 
 
 @dataclass(frozen=True)
@@ -131,7 +131,7 @@ def _growth(dynamics: Dynamics, t: float) -> Iterator[str]:
         return
     values, _, _ = eigen(state.matrix, state.n_poses, state.n_states)
     sizes = np.abs(values)
-    growing = values[values.real > GROWING_OF_ITS_OWN * sizes + ROUNDED * np.max(sizes, initial=0.0)]
+    growing = values[values.real > GROWING * sizes + ROUNDED * np.max(sizes, initial=0.0)]
     if len(growing):
         fastest = growing[np.argmax(growing.real)]
         how = f" and oscillate at {abs(fastest.imag) / (2 * np.pi):.3g} Hz" if fastest.imag else ""

@@ -12,6 +12,7 @@ from ..analyses.run import solved
 from ..errors import SolverError
 from ..model.model_data import ModelData
 from ..model.settings import RunSettings
+from ..reading.files.quoted import listed
 from ..results.scales import kind_of, scales
 from ..results.solution import Solution
 from ..solve.settings import changed, traits_of
@@ -36,7 +37,7 @@ RESOLVED = 3.0
 """Ratio of the smallest resolved error to the difference of the two integrators."""
 ROUNDING_OF_A_RUN = 1e-11
 """Rounding error over a run, relative to the size of a measure."""
-NAMED = 4
+
 Tell = Callable[[str], None]
 
 
@@ -91,7 +92,7 @@ class Reference:
         agree = ", ".join(f"{self.agreement[name]:.1e} {MEASURES[name].unit} ({name})" for name in self.agreement)
         told = [f"reference: {self.names[0]} and {self.names[1]} agree within {agree}"]
         if self.left_out:
-            told.append(f"not compared, as rigid bodies do not determine them: {_few(self.left_out)}")
+            told.append(f"not compared, as rigid bodies do not determine them: {listed(self.left_out)}")
         return [*told, *self.notes]
 
 
@@ -235,8 +236,3 @@ def _agreed(pair: _Pair) -> Reference:
     return Reference(
         pair.explicit, pair.names, channels, agreement, pair.part("positions"), pair.explicit.not_unique, tuple(notes)
     )
-
-
-def _few(names: tuple[str, ...]) -> str:
-    more = len(names) - NAMED
-    return ", ".join(names[:NAMED]) + (f" and {more} more" if more > 0 else "")

@@ -16,13 +16,12 @@ from ..compile.system import System
 from ..dynamics.dynamics import OutputRows
 from ..dynamics.storage import with_gaps
 from ..model.settings import RunSettings
+from ..reading.files.quoted import MOST_LISTED
 from ..solve.settings import traits_of
 from .energy_balance import BROKEN, Balance, potentials
 
 ACTING = "load"
 """Channel that is zero if the element does not act; its other channels are then ignored."""
-MOST_NAMED = 5
-"""Number of channels, or cases of a study, that are named in messages; others are counted."""
 
 
 def range_notes(
@@ -58,12 +57,12 @@ def undefined_values(rows: OutputRows, channels: Mapping[str, np.ndarray]) -> It
     time = rows.t[solved]
     found = {name: ~np.isfinite(values[solved]) for name, values in with_gaps(channels).items()}
     found = {name: bad for name, bad in found.items() if np.any(bad)}
-    for name in list(found)[:MOST_NAMED]:
+    for name in list(found)[:MOST_LISTED]:
         bad = found[name]
         first = float(time[np.argmax(bad)])
         yield f"{name} is no finite number at {np.count_nonzero(bad)} of {len(time)} output times, first at t = {first:.9g} s"
-    if len(found) > MOST_NAMED:
-        yield f"the same holds for {len(found) - MOST_NAMED} other channels"
+    if len(found) > MOST_LISTED:
+        yield f"the same holds for {len(found) - MOST_LISTED} other channels"
 
 
 FINER = ("rtol", "max_step", "step")

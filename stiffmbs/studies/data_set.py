@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..errors import InputError, needs
-from ..results.energy_balance_notes import MOST_NAMED
+from ..reading.files.quoted import MOST_LISTED
 from .case_solver import Row
 from .cases import Cases
 from .outputs import Output
@@ -155,11 +155,11 @@ def text(data: xarray.Dataset) -> str:
             low, high = (_at(data, name, extreme) for extreme in (np.nanargmin, np.nanargmax))
             lines.append(f"  {name}: {low} to {high}")
     failed = np.flatnonzero(data[STATUS].values.ravel() != "done")
-    for k in failed[:MOST_NAMED]:
+    for k in failed[:MOST_LISTED]:
         where = ", ".join(f"{name} = {value}" for name, value in _case(data, int(k)).items())
         lines.append(f"  not solved: {where}: {data[MESSAGE].values.ravel()[k]}")
-    if len(failed) > MOST_NAMED:
-        lines.append(f"  not solved: {len(failed) - MOST_NAMED} more")
+    if len(failed) > MOST_LISTED:
+        lines.append(f"  not solved: {len(failed) - MOST_LISTED} more")
     return "\n".join(lines)
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Any, Generic, TypeVar
 
 from ...errors import InputError
+from ...reading.files.quoted import MOST_LISTED, listed
 from ...reading.files.requested import unused_notes
 from .bodies import Marker, Part
 from .changes import Changes, Key, key_of
@@ -32,7 +33,7 @@ from .keywords import (
 from .outputs import Array, Request, Spline, Variable
 from .sensor import Sensor
 from .systems import Differential, Matrix
-from .text import MOST_TOLD, ZERO_BYTE, DatasetFault, Statement, raise_all, statements, untitled
+from .text import ZERO_BYTE, DatasetFault, Statement, raise_all, statements, untitled
 from .units import Units, read_units
 
 NO_CHANGES = Changes()
@@ -131,7 +132,7 @@ def read_dataset(text: str, changes: Changes = NO_CHANGES) -> Dataset:
     units, gravity = _single(named)
     data, faults = _data(named, units)
     if unread:
-        raise InputError("; ".join([unread, *map(str, faults[:MOST_TOLD])]))
+        raise InputError("; ".join([unread, *map(str, faults[:MOST_LISTED])]))
     raise_all(faults)
     graphics = {key_of(statement)[1]: statement for name, statement in named if name == "GRAPHICS"}
     solids = {number for contact in data.get("CONTACT", {}).values() for pair in contact.pairs for number in pair}
@@ -230,10 +231,9 @@ def _unread(named: list[tuple[str | None, Statement]]) -> str:
     ]
     if not unread:
         return ""
-    listed = ", ".join(f"{label} (line {line})" for label, line in unread[:MOST_TOLD])
-    more = f" and {len(unread) - MOST_TOLD} more" if len(unread) > MOST_TOLD else ""
+    named_lines = listed([f"{label} (line {line})" for label, line in unread])
     return (
-        f"found statements that are not read here: {listed}{more}; expected {', '.join((*SINGLE, *READERS))}, or "
+        f"found statements that are not read here: {named_lines}; expected {', '.join((*SINGLE, *READERS))}, or "
         "graphics, output and analysis settings, which are left out"
     )
 
@@ -262,8 +262,7 @@ def _notes(named: list[tuple[str | None, Statement]], ended: bool, without_title
         if name in LEFT_OUT or name in REFUSED:  # only a GSE reaches this point
             kinds.setdefault(name or "", []).append(statement.line)
     for name, lines in kinds.items():
-        listed = ", ".join(map(str, lines[:MOST_TOLD]))
-        more = f" and {len(lines) - MOST_TOLD} more" if len(lines) > MOST_TOLD else ""
-        yield f"{name} (line{'s' if len(lines) > 1 else ''} {listed}{more}) is left out: {LEFT_OUT.get(name, UNREAD_SYSTEM)}"
+        places = listed([*map(str, lines)])
+        yield f"{name} (line{'s' if len(lines) > 1 else ''} {places}) is left out: {LEFT_OUT.get(name, UNREAD_SYSTEM)}"
     if not ended:
         yield "the dataset has no END, and may have been cut off"

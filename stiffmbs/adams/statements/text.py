@@ -13,10 +13,10 @@ from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
 from ...errors import InputError
+from ...reading.files.quoted import MOST_LISTED
 from ...reading.files.requested import Fields
 from ...reading.files.text_file import lines
 
-MOST_TOLD = 8
 Thing = TypeVar("Thing")
 
 
@@ -50,8 +50,8 @@ def raise_all(faults: Sequence[DatasetFault]) -> None:
     if not faults:
         return
     first, *others = faults
-    told = [first.reason, *map(str, others[: MOST_TOLD - 1])]
-    more = f"; and {len(faults) - MOST_TOLD} more" if len(faults) > MOST_TOLD else ""
+    told = [first.reason, *map(str, others[: MOST_LISTED - 1])]
+    more = f"; and {len(faults) - MOST_LISTED} more" if len(faults) > MOST_LISTED else ""
     raise DatasetFault(first.line, first.label, "; ".join(told) + more)
 
 

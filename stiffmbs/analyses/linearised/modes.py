@@ -15,6 +15,7 @@ from ...linear_analysis.modes import Mode, Motion, natural_modes
 from ...linear_analysis.state_space import StateMatrix, state_matrix
 from ...linear_analysis.tangent_space import linearised
 from ...model.settings import RunSettings, Settings, takes_settings
+from ...reading.files.quoted import MOST_LISTED
 from ...results.energy_balance import energy_balance
 from ...results.solution import Solution
 from ...solve.sampling import held
@@ -25,9 +26,6 @@ from .sides import AtState, Kink, at_state, kink_at
 
 AT_REST = 1e-6
 """Acceleration below which a state counts as an equilibrium, relative to gravity (to 1 m/s^2 without gravity)."""
-
-MOST_LISTED = 6
-"""Number of eigenvalues that a note lists for each side of a breakpoint."""
 
 
 @dataclass(frozen=True)

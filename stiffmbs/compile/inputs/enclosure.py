@@ -87,7 +87,7 @@ def wave(x: Range, top: float) -> Range:
     return np.where(np.isfinite(x).all(axis=0), [low, high], [[-1.0], [1.0]])
 
 
-ROUNDING = 1e-15
+ROUNDING = 5 * float(np.finfo(float).eps)
 """Relative rounding error of a value."""
 Outer = Callable[[int], Range]
 """Function that returns the range of the k-th Taylor coefficient of a function over the range of its argument."""

@@ -91,7 +91,7 @@ class InputFeatures:
 
 
 INSTANTS = 8
-"""Times that resolve a narrow feature."""
+"""Times that resolve a narrow feature, or an input between two output times."""
 NO_FEATURES = InputFeatures()
 """Features of a system without formulas and tables of time."""
 

@@ -16,7 +16,7 @@ MOST_STRETCHES = 1_000_000
 """Number of intervals at which the search is given up."""
 MANY_STRETCHES = 4 * FIRST_STRETCHES
 """Number of intervals above which those are dropped where the formula equals a level up to rounding."""
-RANGE_ROUNDING = 3e-16
+RANGE_ROUNDING = 1.5 * float(np.finfo(float).eps)
 """Rounding of ranges of a formula, relative to its values."""
 
 Values = Callable[[np.ndarray], np.ndarray]

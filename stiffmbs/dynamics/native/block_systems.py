@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import isfinite
+from sys import float_info
 
 from stiffmbs.compile.machine.native.access import compiled, equations_view, factors_view
 from stiffmbs.compile.machine.native.evaluate import ACCELERATION, MOTION, POSITION, add_entries, add_products, evaluate
@@ -21,7 +22,7 @@ MOST_MOVES = 20
 """Largest number of Newton steps of the projection from a nearby state."""
 MOST_FROZEN_MOVES = 3
 """Largest number of moves with the factors of another state; one usually suffices nearby."""
-ROUNDING = 9e-16
+ROUNDING = 4 * float_info.epsilon
 """Smallest detectable violation relative to the largest coordinate or velocity: four roundings."""
 ENTRY_ROUNDING = ROUNDING / 2
 """Difference of two entries in block matrices with unit diagonal that is rounding: two roundings of 1."""
