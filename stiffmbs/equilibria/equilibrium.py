@@ -20,12 +20,13 @@ import numpy as np
 from ..compile.system import System
 from ..dynamics.dynamics import Dynamics
 from ..errors import SolverError
+from ..reading.units.quantity import LARGEST
 from .force_balance import Balance, balance_at, moved, way
 from .matrices import diagonal, joined, solution, zeros
 from .parameters import EQUILIBRIA
 from .steady_motion import SteadyMotion, at_rest
 
-FAR = 1e100
+FAR = LARGEST
 """Move in place of an infinite one, m or rad, whose products with forces are finite."""
 
 

@@ -56,8 +56,6 @@ class EquilibriumParameters:
     """Largest number of moves to the nearest equilibrium."""
     most_halvings: int = 12
     """Largest number of halvings of such a move."""
-    most_dense: int = 400
-    """Largest number of velocities, states and multipliers for dense matrices, up to which loading SciPy takes longer."""
     no_effect: float = 1e-9
     """Relative effect of a velocity on forces, rates or constraints that counts as zero; also the rank tolerance of spins."""
 

@@ -11,13 +11,15 @@ from pydantic import Field, ValidationInfo, field_validator, model_validator
 from ..reading.fields import Described, Measured
 from ..reading.given import Number
 from ..reading.units import si
+from ..reading.units.quantity import LARGEST
+from ..reading.variation import MOST_VALUES
 from ..solver_names import CHOICES, FormulationName, SchemeName, SolverName
 
-MOST_OUTPUTS = 10_000_000
+MOST_OUTPUTS = MOST_VALUES
 """Largest number of output times of a run."""
 FEWEST_APART, ROUNDINGS_APART = 1000, 2e-14
 """Smallest number of distinguishable time intervals of a run, and their smallest length relative to the time itself."""
-SHORTEST = 1e-100
+SHORTEST = 1 / LARGEST
 """Shortest duration, s; products of shorter steps underflow."""
 UNCOUNTED = 1e300
 

@@ -28,7 +28,7 @@ class RunCheckParameters:
     drifted: float = 1e-2
     """The same with drift."""
     most_instants: int = 400
-    """Largest number of checked output times."""
+    """Largest number of checked output times, and of poses to check in an interval."""
     unfollowed_part: float = 1e-2
     """Violation of a velocity equation, relative to its terms, that no tolerance explains."""
     unfollowed_velocity: float = 1e-3
@@ -69,8 +69,6 @@ class RunCheckParameters:
     """Steps of inverse iteration."""
     few_rows: int = 60
     """Largest number of equations for which all singular values are computed by a dense decomposition."""
-    most_poses: int = 400
-    """Largest number of poses to check in an interval."""
     usual_poses: int = 20
     """Number in the whole motion."""
     effort: float = 5e8

@@ -93,7 +93,7 @@ class PosesOnTheWay:
         """Return the most nearly singular pose between two times, s, or None."""
         inside = np.flatnonzero((self._t >= start) & (self._t <= end))
         effort = max(1, len(self._rows) ** 2 * self._system.n_u)
-        most = int(np.clip(RUN_CHECKS.effort / effort, RUN_CHECKS.usual_poses, RUN_CHECKS.most_poses))
+        most = int(np.clip(RUN_CHECKS.effort / effort, RUN_CHECKS.usual_poses, RUN_CHECKS.most_instants))
         inside = inside[:: max(1, len(inside) // most)]
         distances = [self.distance(int(k)) for k in inside]
         if not distances or min(distances) > RUN_CHECKS.nearly_singular:

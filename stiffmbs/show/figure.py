@@ -12,6 +12,7 @@ import numpy as np
 
 from ..errors import InputError, refuse_missing
 from ..model.scene import Figure
+from ..reading.units.quantity import LARGEST
 from ..results.files import refuse_path, written_whole
 from ..results.solution import Solution
 from .style import dress, legend_below, new_sheet, stroke
@@ -25,8 +26,6 @@ SIZE = (8, 5)
 TOTAL_ENERGY = Figure(title="total energy", y=("energy.total",))
 MOST_PLOTS = 6
 """Number of units above which all lines share one plot, with the units in the legend."""
-LARGEST = 1e100
-"""Largest value for which matplotlib finds ticks of an axis."""
 
 
 def check_figure(option: str, path: Path) -> None:

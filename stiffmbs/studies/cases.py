@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 
 from ..errors import InputError
-from ..reading.variation import Variation
+from ..reading.variation import MOST_VALUES, Variation
 
 SAMPLES = ("random", "lhs", "sobol")
-MOST_CASES = 10_000_000
+MOST_CASES = MOST_VALUES
 
 
 @dataclass(frozen=True)

@@ -20,8 +20,6 @@ class VerificationParameters:
     """Parts of an interval between two times, for implicit steps (order up to 5)."""
     parts: int = 4
     """The same for explicit steps (order 8)."""
-    most_of_inputs: int = 5000
-    """Largest number of times that resolve inputs."""
     most_values: float = 3e7
     """Largest number of values of a run, limited by memory."""
     most_products: float = 3e9
@@ -43,7 +41,7 @@ class VerificationParameters:
     sensitive: float = 2.0
     """Smallest factor of time by which a tighter tolerance delays the divergence of a motion that is not sensitive."""
     tightest_rtol: float = 1e-13
-    """Relative tolerance below which steps fail by rounding."""
+    """Relative tolerance below which steps fail by rounding, and rounding of a channel, relative to its scale."""
     clearly_tighter: float = 2.0
     """Smallest ratio of tolerances that makes a comparison useful."""
     more_steps: int = 4
@@ -77,8 +75,6 @@ class VerificationParameters:
     """Their minimum, times the number of unknowns."""
     other_of_fixed: float = 1e-10
     """Relative tolerance of the other solver if the first has fixed steps."""
-    channel_rounding: float = 1e-13
-    """Rounding of a channel, relative to its scale."""
 
 
 VERIFICATION = tuned("verification", VerificationParameters())

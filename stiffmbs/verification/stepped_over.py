@@ -27,6 +27,7 @@ from ..results.frames import from_own_axes
 from ..results.scales import ROUNDING, kind_of
 from ..results.solution import Solution
 from ..run_checks.singular_poses import PosesOnTheWay
+from ..solve.events.narrow_inputs import NARROW_INPUTS
 from ..solve.events.restart import restarted
 from ..solve.missing_rows import reported
 from ..solve.settings import changed, near_constraints, traits_of
@@ -246,9 +247,7 @@ def more_instants(first: Solution, features: InputFeatures) -> np.ndarray:
     most = int(VERIFICATION.most_values / len(first))
     found = reported
     start, end = float(reported[0]), float(reported[-1])
-    narrow = features.instants(
-        start, end, float(np.max(np.diff(reported))), min(most // 4, VERIFICATION.most_of_inputs)
-    )
+    narrow = features.instants(start, end, float(np.max(np.diff(reported))), min(most // 4, NARROW_INPUTS.most_samples))
     ends = own[(own > reported[0]) & (own < reported[-1])]
     if len(found) + len(ends) <= most:
         found = np.union1d(found, apart(ends, found))

@@ -261,7 +261,7 @@ class _Verification:
                 self._first[name],
                 [run.reported(name) for run in runs],
                 self._dense.fine(name) if self._dense else None,
-                VERIFICATION.channel_rounding * self._sizes[name],
+                VERIFICATION.tightest_rtol * self._sizes[name],
             )
             for name in self._first
             if name not in self._first.not_unique and not name.startswith("constraint.")

@@ -17,6 +17,7 @@ from stiffmbs.compile.machine.native.statuses import (
     NOT_FINITE,
     SINGULAR,
 )
+from stiffmbs.dynamics.native.layouts import POSITION_TOLERANCE
 
 MOST_MOVES = 20
 """Largest number of Newton steps of the projection from a nearby state."""
@@ -31,9 +32,9 @@ FRICTION_TOLERANCE = 1e-13
 """Change of multipliers, relative to the largest multiplier or force, at which the friction iteration converges."""
 ROUNDED_OFF = 1e-9
 """Change that is accepted after the last iteration."""
-STATE_TOLERANCE, STATE_ROUNDED_OFF, SLOW = 1e-12, 1e-7, 0.25
-"""Change of algebraic states, relative to values or scales, at which Newton's iteration converges; larger change that
-is accepted if it is at least the third number times its predecessor."""
+STATE_ROUNDED_OFF, SLOW = 1e-7, 0.25
+"""Change of algebraic states, relative to values or scales, that is accepted above `POSITION_TOLERANCE` if it is at least the
+second number times its predecessor."""
 
 
 @compiled
@@ -179,7 +180,7 @@ def to_accelerations(s, m, t):
             return _algebraic_back(s, m, NO_BALANCE if iterated and status == SINGULAR else status)
         before = moved
         moved = _algebraic_moved(s, m, e, f)
-        found = moved <= STATE_TOLERANCE or (moved <= STATE_ROUNDED_OFF and moved >= SLOW * before)
+        found = moved <= POSITION_TOLERANCE or (moved <= STATE_ROUNDED_OFF and moved >= SLOW * before)
         change = 0.0
         largest = _largest_force(s, e, values) if iterated else 0.0
         for k in range(s.n_c):

@@ -23,7 +23,7 @@ class NarrowInputParameters:
     hidden: float = 0.05
     """Height of a peak between output times, relative to the input's change, above which it is reported."""
     most_samples: int = 5000
-    """Samples in all of its narrow features."""
+    """Samples in all narrow features of inputs."""
 
 
 NARROW_INPUTS = tuned("narrow_inputs", NarrowInputParameters())
