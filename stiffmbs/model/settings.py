@@ -15,6 +15,8 @@ from ..reading.units.quantity import LARGEST
 from ..reading.variation import MOST_VALUES
 from ..solver_names import CHOICES, FormulationName, SchemeName, SolverName
 
+DEFAULT_RTOL = 1e-6
+"""Relative tolerance of a run without settings."""
 MOST_OUTPUTS = MOST_VALUES
 """Largest number of output times of a run."""
 FEWEST_APART, ROUNDINGS_APART = 1000, 2e-14
@@ -71,7 +73,7 @@ class RunSettings(Described):
         description="of projected: euler_cromer and rk4 have fixed steps, dopri5 and dop853 adaptive ones; dop853 by default, euler_cromer with a step",
     )
     rtol: Annotated[float, Measured("number", at_least=1e-14, at_most=0.1)] = Field(
-        1e-6, description="relative error tolerance of bdf, radau and the adaptive schemes"
+        DEFAULT_RTOL, description="relative error tolerance of bdf, radau and the adaptive schemes"
     )
     atol: si.PositiveNumber | None = Field(
         None,

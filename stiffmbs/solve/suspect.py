@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..compile.state import LEFT_OPEN
 from ..compile.system import System
 from ..compile.written_values import writer
 from ..dynamics.dynamics import Dynamics
@@ -20,8 +21,6 @@ class SuspectParameters:
 
     beyond: float = 1e-6
     """Largest time after the last state, relative to the time, at which undefined values are searched for."""
-    locked: float = 1e-5
-    """Violation of a constraint, m or rad, from which on a mechanism counts as locked."""
 
 
 SUSPECT = tuned("suspect", SuspectParameters())
@@ -71,7 +70,7 @@ def _open(dynamics: Dynamics, t: float) -> str:
     system, state = dynamics.system, dynamics.state
     state.evaluate("motion", t)
     gaps = np.abs(state.vector("motion", "C")) * system.active
-    if not len(gaps) or gaps.max() < SUSPECT.locked:
+    if not len(gaps) or gaps.max() < LEFT_OPEN:
         return ""
     joint, equation = system.equations[int(np.argmax(gaps))]
     return f"; joint '{joint}' (equation {equation}) is open by {gaps.max():.3g}"

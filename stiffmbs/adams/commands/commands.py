@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 
+from ...model.settings import DEFAULT_RTOL
 from ..statements.arguments import Arguments
 from ..statements.changes import Changes, Key, alters, key_of
 from ..statements.keywords import keyword
@@ -33,8 +34,6 @@ METHODS = (
 )  # fmt: skip
 NUMBERS = ("ERROR", "HMAX", "HMIN", "HINIT", "KMAX", "MAXIT", "PATTERN", "ADAPTIVITY", "BETA", "GAMMA", "ALPHA")
 OTHERS = ("CORRECTOR", "INTERPOLATE", "FIXIT", "HRATIO", "SCALE", "THREADS")
-USUAL_ERROR = 1e-6
-"""Default relative tolerance of a run; a looser ERROR, such as Adams' default 1e-3, does not change it."""
 NAMED_FIRST = 2
 """Number of first lines that may answer the prompts of Adams/Solver for file names."""
 
@@ -94,7 +93,7 @@ def read_commands(text: str, known: Collection[Key] = (), read: Read | None = No
                 segments.append(Segment(simulation, changes, dict(settings)))
         elif name == "INTEGRATOR":
             settings |= _integrator_settings(command)
-            left_out.append(f"INTEGRATOR (line {command.line}) but for HMAX, and ERROR below {USUAL_ERROR:g}")
+            left_out.append(f"INTEGRATOR (line {command.line}) but for HMAX, and ERROR below {DEFAULT_RTOL:g}")
         elif name == "LINEAR":
             linear.append(_linear_note(command, bool(segments)))
         elif name in SETTINGS:
@@ -185,7 +184,7 @@ def _integrator_settings(statement: Statement) -> dict[str, float]:
     found = Arguments(statement, "INTEGRATOR", (*METHODS, *NUMBERS, *OTHERS))
     error, longest = found.positive("ERROR"), found.positive("HMAX")
     settings = {}
-    if error is not None and error < USUAL_ERROR:
+    if error is not None and error < DEFAULT_RTOL:  # a looser one, such as Adams' default 1e-3, does not change it
         settings["rtol"] = max(error, 1e-14)
     if longest is not None:
         settings["max_step"] = longest

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...compile.system import System
-from ...model.settings import RunSettings
+from ...model.settings import DEFAULT_RTOL, RunSettings
 from ...tuning import tuned
 from .tolerances import absolute_tolerances
 
@@ -21,7 +21,7 @@ class AccumulatedErrors:
     """
 
     tolerances: float = 100.0
-    usual_rtol: float = 1e-6
+    usual_rtol: float = DEFAULT_RTOL
 
     def counted(self, system: System, settings: RunSettings) -> tuple[np.ndarray, float]:
         """Return absolute, shape (n_u,), m and rad, and relative tolerance of the displacement along each velocity."""
