@@ -219,7 +219,13 @@ def test_derivatives_of_the_kernels(folder):
     for name in ("stiffness", "damping"):
         named[name][:] = random.uniform(1, 2, (n, 1))  # soft: differences keep their digits
     assert named["stretch"] == len(named["Gamma"]) == 6
-    for name, half in (("symmetric", 1.0), ("axial", 1.0), ("T", 1.0), ("Gamma", 0.5), ("static", 0.5)):  # symmetric by pairs
+    for name, half in (
+        ("symmetric", 1.0),
+        ("axial", 1.0),
+        ("T", 1.0),
+        ("Gamma", 0.5),
+        ("static", 0.5),
+    ):  # symmetric by pairs
         second = random.standard_normal(named[name].shape)
         pairs = (-2, -1) if name == "Gamma" else (0, 1)
         named[name][:] += half * (second if name == "static" else second + second.swapaxes(*pairs))
