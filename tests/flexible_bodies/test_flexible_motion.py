@@ -219,16 +219,12 @@ def test_derivatives_of_the_kernels(folder):
     for name in ("stiffness", "damping"):
         named[name][:] = random.uniform(1, 2, (n, 1))  # soft: differences keep their digits
     assert named["stretch"] == len(named["Gamma"]) == 6
-    for name, half in (
-        ("symmetric", 1.0),
-        ("axial", 1.0),
-        ("T", 1.0),
-        ("Gamma", 0.5),
-        ("static", 0.5),
-    ):  # symmetric by pairs
-        second = random.standard_normal(named[name].shape)
+    for name in ("symmetric", "axial", "of_Z", "T", "Gamma", "static"):  # of one size: all are seen in the matrices
+        values = random.standard_normal(named[name].shape)
         pairs = (-2, -1) if name == "Gamma" else (0, 1)
-        named[name][:] += half * (second if name == "static" else second + second.swapaxes(*pairs))
+        mirrored = 0.0 if name == "static" else values.swapaxes(*pairs)
+        named[name][:] = values - mirrored if name == "of_Z" else values + mirrored  # Z is that of outer products
+    named["axial"][:] += named["of_Z"]
     q, u, a = (random.standard_normal(len(each)) for each in (state.q, state.u, state.a))
     q[3:7] /= np.linalg.norm(q[3:7])
 
