@@ -3,9 +3,11 @@
 import math
 
 import numpy as np
+import pytest
 
 import stiffmbs
-from stiffmbs import AppliedForce, Body, Model
+from stiffmbs import AppliedForce, Body, Model, Prismatic
+from stiffmbs.solve.trajectory import Outcome
 
 STIFFNESS, HEIGHT, G = 1e4, 0.1, 9.81
 
@@ -33,3 +35,15 @@ def test_a_mass_that_bounces_on_a_spring_keeps_to_the_tolerance():
         errors.append(np.abs(found["mass.y"] - [height(t) for t in found.t]).max() / rtol)
     assert np.median(errors) < 0.2
     assert np.max(errors) < 10
+
+
+@pytest.mark.parametrize("before", [0.0, 1.6e-15, 3e-15, 4e-15, 1e-14])
+def test_events_within_rounding_of_the_end(before):
+    """A step from such an event to the end would be shorter than the least step."""
+    model = Model(gravity=(0, 0))
+    model.add("a", Body(mass=1, inertia=1, velocity=(1, 0)))
+    model.add("rail", Prismatic(i="a", j="ground"))
+    model.add("stop", AppliedForce(i="a", force=(f"branch(a.x - {1.0 - before!r}, 0, 0, -1e6)", 0)))
+    solution = stiffmbs.run(model, solver="radau", duration=1.0, rtol=1e-6)
+    assert solution.outcome is Outcome.DONE, solution.message
+    assert solution["a.x"][-1] == pytest.approx(1.0, abs=1e-9)

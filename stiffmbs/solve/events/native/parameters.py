@@ -95,13 +95,14 @@ class NextStepParameters:
     soon: float = 1e-2
     """Passage relative to the time to the next stop above which IDA's first steps are short enough."""
     passage_steps: float = 16.0
-    """Least number of steps of a passage with periodic laws."""
+    """Least number of steps of BDF in a passage with periodic laws."""
     first_part: float = 0.125
     """First step of order 1, as a fraction of such a step."""
     lifted: float = 1e-6
     """Initial fraction of a run in which every step of a passage is limited."""
     inside: float = 0.4
-    """Place within a passage at which forces are compared with those at the start; not 0.5, the centre of symmetry."""
+    """Place within a passage at which forces are compared with those at the start, and longest step of a one-step method;
+    not 0.5, the centre of symmetry."""
 
 
 NEXT_STEP = tuned("next_step", NextStepParameters())

@@ -32,8 +32,8 @@ def bound_passage(c, w, s, toward, stop):
     ahead = _passage(c, w, s, toward, stop)
     if ahead > 0.0:
         w.passed = c.returned + ahead
-        if w.n_turns > 0 or not w.under_way:
-            w.passage = ahead / NEXT_STEP.passage_steps
+        if w.n_turns > 0 or not w.under_way:  # stages of a step resolve a part of the passage each
+            w.passage = NEXT_STEP.inside * ahead if c.one_step else ahead / NEXT_STEP.passage_steps
             w.first = NEXT_STEP.first_part * w.passage
         elif _matters(c, w, s, ahead):
             w.first = NEXT_STEP.inside * ahead

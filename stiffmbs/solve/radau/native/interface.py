@@ -98,7 +98,8 @@ def _stepped(x):
 def solve(memory, toward, returned, y, yp, task):
     """Take one step (IDASolve in the mode IDA_ONE_STEP)."""
     x = radau_view(ints(memory))
-    if x.stops and x.t >= x.stop:
+    if x.stops and x.stop - x.t <= SMALLEST * abs(x.t):
+        x.t = x.stop
         returned[0] = x.t
         copied(_data(x, y), x.y, x.n)
         copied(_data(x, yp), x.yp, x.n)
