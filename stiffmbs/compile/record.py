@@ -151,12 +151,12 @@ def compile_usual(kind: Kind) -> None:
 
 
 def _rare_source(kind: Kind, term_set: str) -> str:
-    from .symbolic.generate import kernel_source
-
     entry = _entry(kind, term_set)
     stored = store.read(entry) if entry else None
     if stored is not None:
         return stored.decode()
+    from .symbolic.generate import kernel_source  # loads SymPy
+
     source = kernel_source(term_set, _terms(kind), "kernel")
     if entry:
         store.write(entry, source.encode())
