@@ -26,7 +26,7 @@ NEARLY_ALL, SMALLEST = 0.98, 0.3
 """A peak in a thousand may be outside, as two runs have its error by accident: one of the 83 of a half car at times."""
 IN_DOUBT = {
     "cam_follower": ("less certain",), "chain": ("between the output",),
-    "car": ("take a smaller output",), "leaf_sprung_car": ("take a smaller output",),
+    "car": ("take a smaller output",),
     "robot_arm": ("take a smaller output",),
 }  # fmt: skip
 """Examples that are no clean scenes: impacts that magnify all errors, whips, elastic vibrations and small parts on
