@@ -12,8 +12,8 @@ import sys
 from collections.abc import Iterator
 from typing import Any, NoReturn
 
-INTERRUPTED = 130
-"""Exit status of a command that is interrupted before it has results: 128 + SIGINT."""
+INTERRUPTED = 128 + signal.SIGINT.value
+"""Exit status of a command that is interrupted before it has results, as of shells."""
 NEW_OBJECTS = 200_000
 """Number of new objects after which the garbage collector runs; more than a short run creates."""
 

@@ -15,13 +15,11 @@ from ..reading.did_you_mean import did_you_mean
 from ..reading.fields import Described, sentence
 from ..reading.files.quoted import written
 from ..reading.units import si
-from .finite_elements import FiniteElements
+from .finite_elements import PRECISION, FiniteElements
 from .interfaces import POINT, Interface
 
 Point = tuple[si.Length, si.Length, si.Length]
 Direction = tuple[si.Number, si.Number, si.Number]
-NEAR = 1e-6
-"""Default distance of nodes from a plane, relative to the size of the body."""
 NOT_CYCLES = re.compile(r"\b(rpm|rad|deg|rev)\b")
 
 
@@ -142,7 +140,7 @@ class InterfaceOfNodes(Described):
         if self.sphere is not None:
             return np.flatnonzero(np.linalg.norm(model.nodes - self.sphere.center, axis=1) <= self.sphere.radius)
         if self.plane is not None:
-            within = self.plane.within or NEAR * np.ptp(model.nodes, axis=0).max()
+            within = self.plane.within or PRECISION * np.ptp(model.nodes, axis=0).max()
             across = np.array(self.plane.normal) / np.linalg.norm(self.plane.normal)
             return np.flatnonzero(np.abs((model.nodes - self.plane.point) @ across) <= within)
         assert self.nodes is not None

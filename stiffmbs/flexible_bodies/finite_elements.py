@@ -14,10 +14,9 @@ from .solid import Solid
 
 SYMMETRY = 1e-8
 """Tolerance of symmetry, relative to the largest entry."""
-SAME_IN_ALL = 1e-6
-"""Tolerance of a mass along x, y and z, relative to the largest entry."""
-RIGID = 1e-6
-"""Largest force of a rigid displacement, relative to the force of a displacement of each node alone."""
+PRECISION = 1e-6
+"""Relative precision of the data of a model. Places of nodes refer to the size of the body, or of a line of them. A mass
+along x, y and z refers to the largest entry, and the force of a rigid displacement to that of each node alone."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,7 +108,7 @@ class FiniteElements:
             for b in range(3):
                 block = self.mass[a::3, b::3]
                 off = np.abs((block - along_x if a == b else block).data).max(initial=0.0)
-                if off > SAME_IN_ALL * largest:
+                if off > PRECISION * largest:
                     raise InputError(
                         f"mass: found entries of {off / largest:.2g} of the largest that depend on the direction "
                         f"({'xyz'[a]}, {'xyz'[b]}), expected the mass matrix of solid elements, not reduced"
@@ -123,7 +122,7 @@ class FiniteElements:
         rigid = self.rigid_modes(centre)
         rigid[:, 3:] /= size
         force = np.abs(self.stiffness @ rigid).max(axis=0) / np.abs(self.stiffness.diagonal()).max()
-        if force.max() > RIGID:
+        if force.max() > PRECISION:
             motions = [f"{motion} {axis}" for motion in ("translation along", "rotation about") for axis in "xyz"]
             raise InputError(
                 f"stiffness: found a force of {force.max():.2g} of the largest stiffness under a rigid "

@@ -7,11 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import InputError
-from .finite_elements import FiniteElements, rigid_displacements
+from .finite_elements import PRECISION, FiniteElements, rigid_displacements
 
 RIGID, AVERAGE, POINT = "rigid", "average", "point"
-FLAT = 1e-6
-"""Extent across a line of nodes below which an interface has no rotation about it, relative to its length."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +66,7 @@ def check_interfaces(interfaces: list[Interface], model: FiniteElements) -> None
                 raise InputError(f"interfaces.{name}: found {len(nodes)} nodes, expected one for type: point")
         else:
             extent = np.linalg.svd(model.nodes[nodes] - model.nodes[nodes].mean(axis=0), compute_uv=False)
-            if len(nodes) < 3 or extent[1] <= FLAT * extent[0]:
+            if len(nodes) < 3 or extent[1] <= PRECISION * extent[0]:
                 count = f"{len(nodes)} node{'s' if len(nodes) > 1 else ''}{' on one line' if len(nodes) > 1 else ''}"
                 raise InputError(
                     f"interfaces.{name}: found {count}, expected three or more that are not on one line, "

@@ -13,7 +13,7 @@ from scipy.sparse import csr_array
 from scipy.spatial import cKDTree
 
 from ..errors import InputError, needs
-from .finite_elements import FiniteElements
+from .finite_elements import PRECISION, FiniteElements
 from .mesh_files import refuse_ignored, sets_of_sets
 from .solid import Solid
 
@@ -26,8 +26,6 @@ SOLIDS = {
 }
 """Geometry, element of scikit-fem and order of quadrature by element type of meshio."""
 CORNERS = {"tetra": 4, "tetra10": 4, "hexahedron": 8, "hexahedron20": 8, "hexahedron27": 8}
-APART = 1e-6
-"""Largest distance of a node from its place in the element, relative to the size of the body."""
 FLAT = 1e-9
 """Smallest volume of an element, relative to the product of its edges, and smallest density of volume relative to the largest."""
 HARMLESS = {"vertex", "line", "line3", "triangle", "triangle6", "quad", "quad8", "quad9"}
@@ -143,7 +141,7 @@ def _assembled(
         _check_jacobians(of_skfem, scalar, order, cells)
         basis = skfem.Basis(of_skfem, skfem.ElementVector(scalar), intorder=order)
     distance, node = cKDTree(nodes).query(basis.doflocs.T)
-    if distance.max() > APART * np.ptp(nodes, axis=0).max():
+    if distance.max() > PRECISION * np.ptp(nodes, axis=0).max():
         raise InputError(
             f"found a node {distance.max():.3g} m off the straight edge of its element, expected elements of type "
             f"{kind} with straight edges, or hexahedron27"

@@ -15,15 +15,14 @@ import numpy as np
 from scipy.linalg import block_diag, eigh, null_space
 
 from ..errors import InputError
-from .finite_elements import SAME_IN_ALL, FiniteElements, rigid_displacements
+from .finite_elements import PRECISION, FiniteElements, rigid_displacements
 from .interfaces import Interface, check_interfaces
 from .second_order import SecondOrder, second_order
 from .static_solver import StaticSolver
 
 DEPENDENT = 1e-10
-"""Eigenvalue of the mass matrix of unit-mass modes below which a combination of modes is dependent and left out."""
-HELD = 1e-10
-"""Singular value below which an equation of a held interface is dependent, relative to the largest."""
+"""Relative bound below which a combination of unit-mass modes, or an equation of a held interface, is dependent. It is the
+ratio of an eigenvalue of the mass matrix, or of a singular value, to the largest."""
 ZERO = 10.0
 """Frequency of the lowest elastic mode that is refused as zero, relative to the highest of the rigid modes."""
 MORE_MODES = 20
@@ -127,7 +126,7 @@ class ReducedBody:
             size = self.sizes[k]
             of_rigid = np.vstack([rigid_displacements((self.points[k] - self.centre)[None]), np.eye(6)[3:]])
             rows.append(np.hstack([of_rigid, self.markers[k]])[:size])
-        free = null_space(np.vstack([np.empty((0, 6 + len(self.frequencies))), *rows]), rcond=HELD)
+        free = null_space(np.vstack([np.empty((0, 6 + len(self.frequencies))), *rows]), rcond=DEPENDENT)
         mass = block_diag(self.mass * np.eye(3), self.inertia, np.eye(len(self.frequencies)))
         stiffness = np.append(np.zeros(6), (2 * np.pi * self.frequencies) ** 2)
         squares = eigh(free.T @ (stiffness[:, None] * free), free.T @ mass @ free, eigvals_only=True)
@@ -193,7 +192,7 @@ def rigid_body(model: FiniteElements) -> tuple[float, np.ndarray, np.ndarray]:
     rigid = model.rigid_modes(about)
     block = rigid.T @ (model.mass @ rigid)
     mass = float(np.trace(block[:3, :3])) / 3
-    if mass <= 0 or np.abs(block[:3, :3] - mass * np.eye(3)).max() > SAME_IN_ALL * mass:
+    if mass <= 0 or np.abs(block[:3, :3] - mass * np.eye(3)).max() > PRECISION * mass:
         along = ", ".join(f"{part:.6g}" for part in np.diagonal(block[:3, :3]))
         raise InputError(f"mass: found {along} kg along x, y and z, expected one positive mass")
     first = block[3:, :3]  # m times the cross-product matrix of the centre

@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+from zlib import Z_BEST_SPEED
 
 import numpy as np
 
@@ -30,8 +31,6 @@ from ..studies.case_solver import CaseSolver, Task
 Numbers = Mapping[str, str]
 """Parameters with other values than in the text, such as ``{"L": "0.7 m"}``."""
 NOTHING = "scene: type or paste a scene here; Ctrl-Space lists what may stand at the cursor"
-FAST = 1
-"""Level of compression of numbers that go to a browser on the same machine."""
 _LINE, _LINE_FIRST = re.compile(r"line (\d+)"), re.compile(r"^line \d+[,:] ")
 
 
@@ -147,7 +146,7 @@ def shown(found: Solved, channels: Sequence[str]) -> dict[str, Any]:
     figure = solution.figure.y if solution.figure else ()
     wanted = [name for name in channels if name in solution.channels] or list(figure) or ["energy.total"]
     poses = poses_of(scene, solution.time, solution.channels)
-    page = page_data(drawing_of(scene, along=poses), {"": poses}, solution, wanted, only=wanted, level=FAST)
+    page = page_data(drawing_of(scene, along=poses), {"": poses}, solution, wanted, only=wanted, level=Z_BEST_SPEED)
     told = verdict(solution)
     return {
         "status": told.status, "message": told.headline, "notes": list(told.to_check), "digits": told.digits_words,
@@ -160,7 +159,7 @@ def preview(scene: ModelData) -> dict[str, str]:
     """Return the bodies of a scene as described, for a page that waits for the first solution."""
     poses = described_poses(scene)
     poses = poses.at(np.zeros(2, dtype=int))
-    return page_data(drawing_of(scene, along=poses), {"": poses}, level=FAST)
+    return page_data(drawing_of(scene, along=poses), {"": poses}, level=Z_BEST_SPEED)
 
 
 def parameters_of(scene: ModelData) -> list[dict[str, Any]]:

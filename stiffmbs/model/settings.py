@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Mapping, Sequence
+from sys import float_info
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypedDict, TypeVar, Unpack, get_args
 
 from pydantic import Field, ValidationInfo, field_validator, model_validator
@@ -23,7 +24,6 @@ FEWEST_APART, ROUNDINGS_APART = 1000, 2e-14
 """Smallest number of distinguishable time intervals of a run, and their smallest length relative to the time itself."""
 SHORTEST = 1 / LARGEST
 """Shortest duration, s; products of shorter steps underflow."""
-UNCOUNTED = 1e300
 
 
 class Settings(TypedDict, total=False):
@@ -133,7 +133,7 @@ class RunSettings(Described):
         asked = self.duration / self.output if self.output is not None else self.points
         if isinstance(asked, int | float) and asked > MOST_OUTPUTS:
             raise ValueError(
-                f"found {min(asked, UNCOUNTED):.3g} output times, expected at most {MOST_OUTPUTS:.0e}: a pinned body takes 2 GB for so many"
+                f"found {min(asked, float_info.max):.3g} output times, expected at most {MOST_OUTPUTS:.0e}: a pinned body takes 2 GB for so many"
             )
         return self
 

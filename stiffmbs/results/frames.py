@@ -65,7 +65,6 @@ def _seen_from(u: np.ndarray, axes: np.ndarray) -> np.ndarray:
 Vector = tuple[float, float, float]
 Matrix = tuple[Vector, Vector, Vector]
 """Rows."""
-AT_REST: Vector = (0.0, 0.0, 0.0)
 
 
 def cross(a: Vector, b: Vector) -> Vector:

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from ..results.flexible_motion import FlexibleMotion
 
 MOST_FREQUENCIES = 12
+"""Number of modes that are shown, the slowest first."""
 LARGE_CONDITION = 1e12
 """Condition number above which a note advises fewer modes."""
 

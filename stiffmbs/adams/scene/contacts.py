@@ -10,13 +10,13 @@ from typing import Any
 
 import numpy as np
 
+from ...elements.forces.friction import AT_REST
 from ...elements.spatial.number_format import plain
 from ..functions.translate import Translation
 from ..statements.contact import BOX, CYLINDER, ELLIPSOID, PLANE, SPHERE, Contact, Friction, Shape, read_shape
 from ..statements.text import of_each
 from ..statements.units import Units
 from .forces import TORQUE
-from .friction import SLOW
 from .mechanism import Mechanism
 
 PAIRS = {
@@ -184,7 +184,7 @@ def _on_plane(
 def _drag(friction: Friction, x: str, y: str, normal: str) -> str:
     """Return -mu N divided by the sliding speed."""
     slow, fast = friction.stiction_velocity, friction.friction_velocity
-    speed = f"SQRT({x}**2 + {y}**2 + {(SLOW * slow) ** 2!r})"
+    speed = f"SQRT({x}**2 + {y}**2 + {(AT_REST * slow) ** 2!r})"
     mu = (
         f"(STEP({speed}, {-slow!r}, {-friction.static!r}, {slow!r}, {friction.static!r}) + "
         f"STEP({speed}, {slow!r}, 0, {fast!r}, {friction.dynamic - friction.static!r}))"

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from ...elements.forces.friction import TINY
+from ...elements.forces.friction import AT_REST, TINY
 from ..functions.translate import Translation
 from ..statements.constraints import TRANSLATIONAL, Joint
 from ..statements.friction import JointFriction
@@ -20,8 +20,6 @@ from .mechanism import Mechanism, Place
 from .relations import initial_displacement
 
 AXES = "XYZ"
-SLOW = 1e-6
-"""Fraction of the stiction velocity that regularises the sliding direction at rest."""
 
 
 def frictions(mechanism: Mechanism, translation: Translation) -> dict[str, Any]:
@@ -168,7 +166,7 @@ class _Rubbing:
 
     def _speed(self, *parts: str) -> str:
         squares = " + ".join(f"{part}**2" for part in parts)
-        return f"SQRT({squares} + {(SLOW * self._f.stiction_velocity) ** 2!r})"
+        return f"SQRT({squares} + {(AT_REST * self._f.stiction_velocity) ** 2!r})"
 
     def _overlap(self) -> str:
         f = self._f

@@ -7,11 +7,10 @@ from typing import Any
 
 from .arguments import Arguments
 from .declared import Numbered, ident, read_by
+from .outputs import FEWEST_POINTS
 from .text import DatasetFault, Statement
 from .units import Units
 
-CUBIC = 4
-"""Default ORDER of a curve: polynomial degree plus one."""
 VELOCITIES = ("VELOCITY", "VX", "VY", "VZ")
 UNSUPPORTED = "the velocities of the parts instead"
 
@@ -23,7 +22,7 @@ def _unread(found: Arguments, _: Units) -> str:
         return "found CONTROL_POINTS"
     if "MATRIX" not in found:
         return "found no MATRIX"
-    return "" if (found.number("ORDER") or CUBIC) == CUBIC else f"found ORDER = {found.text('ORDER')}"
+    return "" if (found.number("ORDER") or FEWEST_POINTS) == FEWEST_POINTS else f"found ORDER = {found.text('ORDER')}"
 
 
 @dataclass(frozen=True)

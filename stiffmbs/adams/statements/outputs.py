@@ -13,7 +13,7 @@ from .declared import Numbered, given, number, one_of, read_by
 from .units import Units
 
 FEWEST_POINTS = 4
-"""Smallest number of points of a spline or a curve."""
+"""Smallest number of points of a spline or a curve, which are cubic: degree plus one, the ORDER of a curve."""
 SORTS = ("DISPLACEMENT", "VELOCITY", "ACCELERATION", "FORCE")
 COLUMNS = tuple(f"F{k}" for k in range(1, 9))
 FUNCTIONS = (*COLUMNS, "FUNCTION")

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-FINEST = 2.5
-"""Distance between the stations of a curve, m, on short curves."""
+SPACING = 2.5
+"""Distance between the stations of a curve, on short ones, and between the points of a path through lanes, m."""
 MOST_STATIONS = 2000
 """Largest number of stations of a curve."""
 SAMPLES = 8
@@ -75,7 +75,7 @@ def curve_through(points: np.ndarray, closed: bool = False) -> Curve:
     parameter = np.concatenate([[0.0], np.cumsum(chords)])
     ends = "periodic" if closed else "natural" if len(points) < 4 else "not-a-knot"
     curve = CubicSpline(parameter, points, bc_type=ends)
-    count = int(np.clip(np.ceil(parameter[-1] / FINEST), 40, MOST_STATIONS))
+    count = int(np.clip(np.ceil(parameter[-1] / SPACING), 40, MOST_STATIONS))
     fine = np.linspace(0.0, parameter[-1], SAMPLES * count + 1)
     speed = np.linalg.norm(curve(fine, 1), axis=1)
     middle = np.linalg.norm(curve((fine[1:] + fine[:-1]) / 2, 1), axis=1)
@@ -104,7 +104,7 @@ def circle(radius: float, entry: float, transition: float, turns: float) -> Curv
     transition, m; `turns` counts turns on the circle.
     """
     length = entry + transition + 2 * np.pi * turns * abs(radius)
-    s = np.linspace(0.0, length, int(np.clip(np.ceil(length / FINEST), 40, MOST_STATIONS)) + 1)
+    s = np.linspace(0.0, length, int(np.clip(np.ceil(length / SPACING), 40, MOST_STATIONS)) + 1)
 
     def heading(at: np.ndarray) -> np.ndarray:
         along = np.clip(at - entry, 0.0, transition)

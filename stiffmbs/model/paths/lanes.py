@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-SPACING = 2.5
-"""Distance between the points of a path through lanes, m."""
+from .curves import SPACING
+
 ROUGHNESS = 30.0
 """Length below which a change of curvature costs more than curvature itself, m: steering stays below 1 Hz at 30 m/s."""
 ANCHOR = 1e-3

@@ -9,6 +9,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib.resources import files
 from typing import TYPE_CHECKING, Any
+from zlib import Z_BEST_COMPRESSION
 
 import numpy as np
 
@@ -30,8 +31,6 @@ POSE_VALUES = 240_000
 CHANNEL_VALUES = 450_000
 """Largest number of values of channels."""
 MOST_INSTANTS = 2000
-SMALLEST = 9
-"""Level of compression of files."""
 LEVELS = int(np.iinfo(np.uint16).max)
 
 
@@ -53,20 +52,20 @@ class Packed:
         start, self.length = self.length, self.length + len(values)
         return {"start": start, "length": len(values), "low": low, "step": step}
 
-    def text(self, level: int = SMALLEST) -> str:
+    def text(self, level: int = Z_BEST_COMPRESSION) -> str:
         """Return all columns, compressed, as text."""
         content = np.concatenate(self.columns) if self.columns else np.zeros(0, dtype=np.uint16)
         return packed_text(content.astype("<u2").tobytes(), level)
 
 
-def packed_text(content: bytes, level: int = SMALLEST) -> str:
+def packed_text(content: bytes, level: int = Z_BEST_COMPRESSION) -> str:
     """Return bytes, compressed, as text that is harmless in a page."""
     return base64.b64encode(gzip.compress(content, level, mtime=0)).decode("ascii")
 
 
 def page_data(
     drawing: Drawing, runs: Mapping[str, Poses], solution: Solution | None = None, shown: Sequence[str] = (),
-    traces: Sequence[Anchor] = (), only: Sequence[str] | None = None, level: int = SMALLEST, choose: str = "",
+    traces: Sequence[Anchor] = (), only: Sequence[str] | None = None, level: int = Z_BEST_COMPRESSION, choose: str = "",
 ) -> dict[str, str]:  # fmt: skip
     """Return the two texts of a page: ``head``, JSON, and ``numbers``, both compressed.
 

@@ -13,10 +13,9 @@ from ...results.solution import Solution
 from ..drawing.deformed import true_to_scale
 from ..drawing.derive import drawing_of
 from ..drawing.poses import poses_of
+from ..flexible_body import MOST_FREQUENCIES
 from .data import moving_page, page_data
 
-MOST = 12
-"""Number of modes that are shown, the slowest first."""
 POINTS = 31
 """Instants of one period."""
 AMPLITUDE = 0.05
@@ -30,7 +29,7 @@ def modes_data(found: Modes, amplitude: float = AMPLITUDE) -> dict[str, str] | N
     """
     shapes: dict[str, Solution] = {}
     for number, mode in enumerate(found.modes, start=1):
-        if len(shapes) == MOST or mode.motion is Motion.RIGID:
+        if len(shapes) == MOST_FREQUENCIES or mode.motion is Motion.RIGID:
             continue
         try:
             shape = found.shape(number, amplitude, POINTS)

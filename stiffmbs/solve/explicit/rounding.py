@@ -21,7 +21,7 @@ from ...tuning import tuned
 from ..events.chattering import CHATTERING
 from ..suspect import acceleration_name, suspect
 from .integration import Integration
-from .native.parameters import ENDS
+from .native.parameters import CONTROL, ENDS
 
 
 @dataclass(frozen=True)
@@ -30,8 +30,6 @@ class RoundingParameters:
 
     soon: int = 1000
     """Steps between two checks of the elimination."""
-    apart: int = 20_000
-    """Steps between two checks for jumps."""
     few: int = 4
     """Sample times of the check of the elimination."""
     instants: int = 64
@@ -55,7 +53,7 @@ class Rounding:
 
     def __init__(self, dynamics: Dynamics, rtol: float, start: float, end: float) -> None:
         self._dynamics, self._rtol, self._end = dynamics, rtol, end
-        self._soon, self._later = _Stretch(start, ROUNDING.soon), _Stretch(start, ROUNDING.apart)
+        self._soon, self._later = _Stretch(start, ROUNDING.soon), _Stretch(start, CONTROL.enough_steps)
 
     def look(self, work: Integration) -> str:
         """Check the current state if a check is due; return why the run ends there, or an empty string.
@@ -86,7 +84,7 @@ class Rounding:
             return ""
         likely = suspect(self._dynamics, work.t, work.q.copy(), work.u.copy())
         return (
-            f"rounding governs the steps, {ROUNDING.apart} of which cover {ROUNDING.apart * pace:.3g} s: the last digits of the coordinates change "
+            f"rounding governs the steps, {CONTROL.enough_steps} of which cover {CONTROL.enough_steps * pace:.3g} s: the last digits of the coordinates change "
             f"{acceleration_name(self._dynamics.system, k)} by {jumps[k]:.2g}{likely}; expected constraints that either repeat each "
             "other exactly or differ clearly, or solver bdf"
         )

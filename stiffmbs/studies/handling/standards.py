@@ -178,13 +178,13 @@ def of_constant_radius(known: Known, test: ConstantRadius, runs: list[Run]) -> M
     return found | {"largest lateral error": (float(np.max(np.abs(run["handling_driver.lateral_error"]))), "m")}
 
 
-STEP_BEGIN = 1.0
+STEER_BEGIN = 1.0
 
 
 def step_steer(known: Known, test: StepSteer) -> list[Manoeuvre]:
     """Return a step of steering to a lateral acceleration."""
-    steer, end = known.steer_for(test.lateral_acceleration), STEP_BEGIN + test.rise
-    return [Manoeuvre(test.speed, end + 4.85, f"step5(t, {STEP_BEGIN}, 0, {end!r}, {steer!r})", output=0.005)]
+    steer, end = known.steer_for(test.lateral_acceleration), STEER_BEGIN + test.rise
+    return [Manoeuvre(test.speed, end + 4.85, f"step5(t, {STEER_BEGIN}, 0, {end!r}, {steer!r})", output=0.005)]
 
 
 def of_step_steer(known: Known, test: StepSteer, runs: list[Run]) -> Metrics:
@@ -231,24 +231,21 @@ def of_frequency(known: Known, test: FrequencySweep, runs: list[Run]) -> Metrics
     }
 
 
-DWELL_BEGIN = 1.0
-
-
 def dwell_end(test: SineWithDwell) -> float:
     """Return the end of steering, s."""
-    return DWELL_BEGIN + 1 / test.frequency + test.dwell
+    return STEER_BEGIN + 1 / test.frequency + test.dwell
 
 
 def dwell_formula(amplitude: float, test: SineWithDwell) -> str:
     """Return the steering of ISO 19365: a sine with a dwell at its second peak."""
     first, third = 0.75 / test.frequency, 0.75 / test.frequency + test.dwell
-    time = f"min(t - {DWELL_BEGIN}, {first!r}) + max(t - {DWELL_BEGIN + third!r}, 0)"
+    time = f"min(t - {STEER_BEGIN}, {first!r}) + max(t - {STEER_BEGIN + third!r}, 0)"
     return f"({amplitude!r})*sin(2*pi*{test.frequency!r}*min(max({time}, 0), {1 / test.frequency!r}))"
 
 
 def dwell(known: Known, test: SineWithDwell) -> list[Manoeuvre]:
     """Return the series of amplitudes with the throttle released."""
-    unit, lifted = known.steer_for(test.lateral_acceleration), {"releases": DWELL_BEGIN}
+    unit, lifted = known.steer_for(test.lateral_acceleration), {"releases": STEER_BEGIN}
     formulas = [dwell_formula(factor * unit, test) for factor in test.factors]
     return [Manoeuvre(test.speed, dwell_end(test) + 2.2, formula, lifted) for formula in formulas]
 
@@ -263,7 +260,7 @@ def of_dwell(known: Known, test: SineWithDwell, runs: list[Run]) -> Metrics:
             run[STEER + "_seen"] * known.ratio,
             run["vehicle.yaw_rate"],
             run["vehicle.y"],
-            DWELL_BEGIN,
+            STEER_BEGIN,
             dwell_end(test),
         )
         found[f"yaw rate ratio after 1 s, {factor:g} A"] = 100 * one.ratio_1, "%"

@@ -23,13 +23,14 @@ from ...solve.settings import changed
 from ...solve.trajectory import Grid, Outcome
 from ...tuning import in_use
 from ..outputs import outputs_of
+from ..stepping import FINEST
 from .channels import changed_channels, changed_requests
 from .formulas import Formula
 from .parameters import Parameter, Scenes, with_weights
 from .set_up import SetUp, breakpoint_rates
 
-TIGHTER, TIGHTEST = 1e-6, 1e-12
-"""Ratio of the run's rtol to the requested one, and the least rtol.
+TIGHTER = 1e-6
+"""Ratio of the run's rtol to the requested one, down to `FINEST`.
 
 Derivatives of forces in stiff bushings and of vibrations are less accurate than the motion.
 """
@@ -170,7 +171,7 @@ def differentiated(scenes: Scenes, names: Sequence[str], asked: RunSettings, few
     A run that stops because a force chatters is not repeated, as no tolerance resolves chattering.
     """
     scenes = with_weights(scenes, names)
-    for rtol in (min(asked.rtol, max(TIGHTER * asked.rtol, TIGHTEST)), asked.rtol):
+    for rtol in (min(asked.rtol, max(TIGHTER * asked.rtol, FINEST)), asked.rtol):
         job = prepare(scenes.known, differentiable(changed(asked, {"rtol": rtol}), fewest))
         run = DifferentiatedRun(scenes, names, job)
         if run.success or run.chatters:

@@ -32,6 +32,10 @@ COUPLINGS = 2
 """Names and lengths of consecutive numbers or rows."""
 MODES, OF_MODE, OF_PAIR = sum(BODY.values()), sum(MODE.values()), sum(PAIR.values())
 """Number of the first mode, and rows of each mode and pair."""
+ROW_OF_MODE, ROW_OF_PAIR = (
+    {name: sum(list(rows.values())[:k]) for k, name in enumerate(rows)} for rows in (MODE, PAIR)
+)
+"""First row of each part."""
 QUAD = 4
 """Numbers of a SIMD vector."""
 

@@ -28,7 +28,8 @@ class StepControlParameters:
     stiff_part: float = 0.1
     """Fraction of steps limited by stability from which on a run may be given up, and the summary recommends bdf."""
     enough_steps: int = 20_000
-    """Number of steps before a run may be given up, because of stiffness, or of a tolerance below rounding."""
+    """Number of steps before a run may be given up, because of stiffness, or of a tolerance below rounding, and between two
+    checks for jumps by rounding."""
     too_many_steps: float = 1e9
     """Expected steps times state variables at which it is."""
     untrusted: float = 1e3

@@ -21,6 +21,7 @@ from stiffmbs.compile.machine.native.quads import (
     set_quad,
     spread,
 )
+from stiffmbs.sparse.block_updates import ROWS
 
 
 @compiled
@@ -103,7 +104,6 @@ def _inverted(s, d, stride, width, size):
         line[j] = inverse
 
 
-ROWS = (4, 3, 2, 1)
 add_two_quads = by_case(add_products, {rows: (rows, 2) for rows in ROWS})
 add_one_quad = by_case(add_products, {rows: (rows, 1) for rows in ROWS})
 """Products for one to four rows of two quads, and of one."""

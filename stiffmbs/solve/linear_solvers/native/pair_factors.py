@@ -19,7 +19,8 @@ from stiffmbs.compile.machine.native.quads import (
     sum_of,
     times_i,
 )
-from stiffmbs.solve.linear_solvers.native.node_factors import ROWS, rows_at_once
+from stiffmbs.solve.linear_solvers.native.node_factors import rows_at_once
+from stiffmbs.sparse.block_updates import ROWS
 
 add_two_quads_of_pairs = by_case(add_pair_products, {rows: (rows, 2) for rows in ROWS})
 add_one_quad_of_pairs = by_case(add_pair_products, {rows: (rows, 1) for rows in ROWS})

@@ -21,17 +21,26 @@ from __future__ import annotations
 
 from stiffmbs.compile.machine.native.access import compiled, parts_of, room, shifted
 from stiffmbs.compile.machine.native.quads import add_products, plus_product, quad, spread, sum_of
-from stiffmbs.elements.spatial.flexible.layout import BODY, COUPLINGS, MODES, OF_MODE, OF_PAIR
+from stiffmbs.elements.spatial.flexible.layout import (
+    BODY,
+    COUPLINGS,
+    MODES,
+    OF_MODE,
+    OF_PAIR,
+    PAIR,
+    ROW_OF_MODE,
+    ROW_OF_PAIR,
+)
 
-BY_COORDINATE, BY_VELOCITY, BY_ACCELERATION = 12, 9, 3
-"""Rows of the sums, consecutive rows of `PAIR`."""
-AXIAL, FIRST = 6, 9
+AXIAL, FIRST = ROW_OF_PAIR["axial"], ROW_OF_PAIR["T"]
 """First row of the axial vector of N and of D in the sums by modal coordinates, as in `MODE` and `PAIR`."""
-AXIAL_RATE, FIRST_RATE, AXIAL_RATE_OF_Z = 0, 3, 6
+BY_COORDINATE, BY_VELOCITY, BY_ACCELERATION = ROW_OF_PAIR["of_Z"], OF_PAIR - AXIAL, PAIR["T"]
+"""Rows of the sums: of `PAIR` up to T, from the axial vector on, and of T."""
+AXIAL_RATE, FIRST_RATE, AXIAL_RATE_OF_Z = 0, FIRST - AXIAL, ROW_OF_PAIR["of_Z"] - AXIAL
 """First rows of the sums by modal velocities."""
 ACCELERATIONS = 9
 """Row of the modal accelerations."""
-STIFFNESS, DAMPING = 12, 13
+STIFFNESS, DAMPING = ROW_OF_MODE["stiffness"], ROW_OF_MODE["damping"]
 """Rows of a body's modes."""
 body_view = parts_of("FlexibleBody", BODY)
 moments_view = parts_of("Moments", {"d": 3, "rate": 3, "I": 9, "symmetric": 6, "axial": 3})
