@@ -15,8 +15,8 @@ from ..compile.machine.native.tables import FACTORS
 from ..compile.system import System
 from ..compile.terms import TERM_AXES
 from ..dynamics.dynamics import FACTOR_AND_SOLVE, Dynamics
-from ..redundancy.parameters import REDUNDANCY
 from ..sparse.elimination_order import EliminationOrder, factors_of, order_by_blocks
+from ..sparse.parameters import MATRICES
 
 Matrix: TypeAlias = Any
 """ndarray, or sparse array of SciPy."""
@@ -24,7 +24,7 @@ Matrix: TypeAlias = Any
 
 def is_small(system: System) -> bool:
     """Return True if the matrices of a system's balances are dense."""
-    return system.n_u + len(system.states) + system.n_c <= REDUNDANCY.dense_up_to
+    return system.n_u + len(system.states) + system.n_c <= MATRICES.dense_up_to
 
 
 def matrix_of(system: System, value: np.ndarray, row: np.ndarray, column: np.ndarray, shape: tuple[int, int]) -> Matrix:

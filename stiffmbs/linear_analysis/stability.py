@@ -11,12 +11,11 @@ from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigs, splu
 from ..dynamics.dynamics import Dynamics
 from ..equilibria.matrices import Matrix, dense
 from ..equilibria.steady_motion import SteadyMotion
+from ..sparse.parameters import MATRICES
 from .eigenvalues import CLOSE
 from .state_space import null_space, state_matrix
 from .tangent_space import linearised
 
-MOST_DENSE = 300
-"""Largest number of velocities for which all w^2 are computed (dense matrices)."""
 STIFFNESS_ROUNDING = 2 * float(np.finfo(float).eps)
 """Error of w^2, relative to the sum of all contributions to a motion's stiffness."""
 BESIDE_IMBALANCE = 100.0
@@ -60,7 +59,7 @@ def lowest(stiffness: Matrix, jacobian: Matrix, mass: np.ndarray, scale: np.ndar
     of shape (n_c, n_u): J of independent equations. `mass` of shape (n_u,): the diagonal of M. `scale` of shape
     (n_u,): units of displacements. `left` of shape (n_u,): residual of the forces.
     """
-    if len(mass) <= MOST_DENSE:
+    if len(mass) <= MATRICES.dense_up_to:
         squares, shapes = _all(stiffness, jacobian, mass, scale)
         of_eigenvalues = STIFFNESS_ROUNDING * len(mass) * float(np.max(np.abs(squares), initial=0.0))
     else:

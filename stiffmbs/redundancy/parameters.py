@@ -49,9 +49,6 @@ class RedundancyParameters:
     shift/clearly_regular^2."""
     iterations: int = 4
     """Number of subspace iterations."""
-    dense_up_to: int = 400
-    """Largest number of rows, or of unknowns of an equilibrium, for dense factors, which need no import of SciPy's sparse
-    ones."""
     same_direction: float = 1e-5
     """Largest angle, rad, and relative perpendicular component of a force, for which directions count as equal."""
     well_chosen: float = 0.1

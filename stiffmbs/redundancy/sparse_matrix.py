@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from .parameters import REDUNDANCY
+from ..sparse.parameters import MATRICES
 
 
 @dataclass(frozen=True)
@@ -22,7 +22,7 @@ class SparseMatrix:
     @property
     def is_small(self) -> bool:
         """True if dense factors are used."""
-        return self.shape[0] <= REDUNDANCY.dense_up_to
+        return self.shape[0] <= MATRICES.dense_up_to
 
     @property
     def finite(self) -> bool:

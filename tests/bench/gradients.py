@@ -14,7 +14,8 @@ from stiffmbs.solve.settings import changed
 from stiffmbs.studies.case_solver import CaseSolver, Task, written_scene
 from stiffmbs.studies.outputs import outputs_of
 from stiffmbs.studies.sensitivities.parameters import Parameter, Scenes
-from stiffmbs.studies.sensitivities.sensitivities import HELD, TIGHTEST, differentiable, sensitivities
+from stiffmbs.studies.sensitivities.sensitivities import HELD, differentiable, sensitivities
+from stiffmbs.studies.stepping import FINEST
 
 from .benchmark import Row
 
@@ -58,7 +59,7 @@ class GradientRuns:
             abs(found.to[name] / slope - 1.0)
             for name, slope in ((name, self._difference(scene, name)) for name in parameters)
         )
-        converged = differentiable(changed(scene.run, {"rtol": TIGHTEST}))
+        converged = differentiable(changed(scene.run, {"rtol": FINEST}))
         works: dict[str, Callable[[], Any]] = {
             "as asked": lambda: run(scene),
             "converged": lambda: run(scene, converged),
@@ -74,7 +75,7 @@ class GradientRuns:
         ratios = " and ".join(f"{median['gradient'] / median[name]:.2f}" for name in ("converged", "as asked"))
         return [
             Row("run", f"rtol {scene.run.rtol:g}", 0.0, median["as asked"], True),
-            Row("run", f"rtol {TIGHTEST:g}, which the gradient follows", 0.0, median["converged"], True),
+            Row("run", f"rtol {FINEST:g}, which the gradient follows", 0.0, median["converged"], True),
             Row("gradient", f"{len(parameters)} parameters; {ratios} of these runs", error, median["gradient"], False),
         ]
 

@@ -54,7 +54,7 @@ CASES = {
 @pytest.fixture(params=[True, False], ids=["dense", "sparse"], scope="module")
 def storage(request):
     """Matrices are dense, as in small systems, or sparse, as in large ones."""
-    with in_use({} if request.param else {"redundancy": {"dense_up_to": 0}}):
+    with in_use({} if request.param else {"matrices": {"dense_up_to": 0}}):
         yield
 
 
@@ -151,7 +151,7 @@ def chain(count):
 def test_matrices_are_dense_up_to_a_number_of_unknowns(links, most, kept_dense):
     """A link has three velocities and two equations: 350 or 450 unknowns, about the default limit of 400."""
     dynamics = prepare(stiffmbs.read_scene(chain(links)), presolve=False).dynamics
-    with in_use({"redundancy": {"dense_up_to": most}} if most != 400 else {}):
+    with in_use({"matrices": {"dense_up_to": most}} if most != 400 else {}):
         known = balance_at(dynamics, 0.0, at_rest(2))
     assert isinstance(known.stiffness, np.ndarray) == kept_dense
 
@@ -160,7 +160,7 @@ def test_dense_and_sparse_matrices_lead_to_the_same_equilibrium():
     poses = []
     for most in (400, 0):
         job = prepare(stiffmbs.read_scene(chain(9)), presolve=False)
-        with in_use({"redundancy": {"dense_up_to": most}}):
+        with in_use({"matrices": {"dense_up_to": most}}):
             poses.append(find_equilibrium(job.dynamics, 0.0).q)
     np.testing.assert_allclose(poses[0], poses[1], atol=1e-9)
     assert np.arctan2(poses[0][1], poses[0][0]) == pytest.approx(np.arctan2(-9.81, 0.3))

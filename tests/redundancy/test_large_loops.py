@@ -15,8 +15,8 @@ from stiffmbs.tuning import parameters_of
 
 def dense_up_to(monkeypatch, rows):
     """Set the largest number of rows for dense factors."""
-    changed = replace(parameters_of(entries_module.REDUNDANCY), dense_up_to=rows)
-    monkeypatch.setattr(entries_module, "REDUNDANCY", changed)
+    changed = replace(parameters_of(entries_module.MATRICES), dense_up_to=rows)
+    monkeypatch.setattr(entries_module, "MATRICES", changed)
 
 
 @pytest.fixture(params=["dense", "sparse"])
