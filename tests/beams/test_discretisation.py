@@ -30,7 +30,7 @@ AT_REST = {
     ),
 }
 MOVING = {
-    "pendulum": (pendulum, dict(zip(ROD, (0.4365326, -0.8979798), strict=False))),
+    "pendulum": (pendulum, dict(zip(ROD, (0.4365307, -0.8979809), strict=False))),
     "pendulum in space": (
         lambda n: pendulum(n, 3),
         dict(zip(ROD, (0.1955840, 0.4683335, -0.8644481), strict=True)),
@@ -113,7 +113,7 @@ use: {a: {part: whip}}
 run: {duration: 0.4 s, points: 3, rtol: 1e-8, solver: radau}
 """
     found = stiffmbs.run(read_scene(part))
-    assert [found["a.rod.end.x"][-1], found["a.rod.end.y"][-1]] == pytest.approx([0.4365326, -0.8979798], abs=5e-3)
+    assert [found["a.rod.end.x"][-1], found["a.rod.end.y"][-1]] == pytest.approx([0.4365307, -0.8979809], abs=5e-3)
     assert "beam a.rod: " in " ".join(found.notes)
     assert found["a.rod.node2.x"][0] == pytest.approx(0.5)  # a quarter of the length each, whatever the number
 

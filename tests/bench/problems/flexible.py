@@ -37,7 +37,7 @@ SOLVERS: dict[str, dict[str, Any]] = {
     "radau": {"solver": "radau"},
     "dop853": {"solver": "projected", "scheme": "dop853"},
 }
-CONVERGED = (64, 128)
+CONVERGED = (128, 256)
 """Elements of the two beams whose extrapolation is the reference, for errors of second order with so many."""
 E, NU, DENSITY, DAMPING, NORMAL = 2e9, 0.3, 1200.0, 1e-4, 8
 BAR = f"""
