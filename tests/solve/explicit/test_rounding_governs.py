@@ -29,7 +29,7 @@ def test_auto_leaves_them_to_bdf():
 @pytest.mark.parametrize("scene", ["andrews", "elastic_bearing", "vehicles/half_car_at_rest", "stick_slip"])
 @pytest.mark.parametrize("rtol", [1e-6, 1e-10])
 def test_no_other_steps_are_taken_for_such(examples, scene, rtol, monkeypatch):
-    monkeypatch.setattr(rounding, "ROUNDING", replace(parameters_of(rounding.ROUNDING), apart=50))
+    monkeypatch.setattr(rounding, "CONTROL", replace(parameters_of(rounding.CONTROL), enough_steps=50))
     monkeypatch.setattr(rounding, "CHATTERING", replace(parameters_of(rounding.CHATTERING), too_many=0.0))
     solution = stiffmbs.run(examples / f"{scene}.yaml", solver="projected", scheme="dop853", duration=0.05, rtol=rtol)
     assert solution.outcome is Outcome.DONE
