@@ -36,6 +36,7 @@ SUBSYSTEMS = {
     "explicit_first_step": "solve.explicit.native.parameters:FIRST_STEP",
     "explicit_rounding": "solve.explicit.rounding:ROUNDING",
     "explicit_steps": "solve.explicit.native.parameters:CONTROL",
+    "fastest_rate": "solve.explicit.native.parameters:FASTEST_RATE",
     "fixed_steps": "solve.explicit.fixed:FIXED_STEP",
     "jumps": "solve.events.discontinuity:JUMP",
     "kinematic": "solve.driven_states:KINEMATIC",

@@ -17,7 +17,7 @@ from ..compile.compile_model import compile_model
 from ..compile.system import System
 from ..dynamics.dynamics import POSITION_TOLERANCE, Dynamics
 from ..dynamics.initial import InitialValues, consistent_values, initial_values
-from ..dynamics.native.block_systems import MOST_MOVES
+from ..dynamics.native.layouts import MOST_MOVES
 from ..dynamics.turns import counted_angles, take_nearest_turns
 from ..errors import AssemblyError, InputError, StiffmbsError
 from ..model.beams.entries import GROUND_AXES

@@ -17,6 +17,7 @@ from ..compile.terms import TERM_AXES
 from ..dynamics.dynamics import FACTOR_AND_SOLVE, Dynamics
 from ..sparse.elimination_order import EliminationOrder, factors_of, order_by_blocks
 from ..sparse.parameters import MATRICES
+from .parameters import EQUILIBRIA
 
 Matrix: TypeAlias = Any
 """ndarray, or sparse array of SciPy."""
@@ -139,4 +140,15 @@ def solution(dynamics: Dynamics, matrix: Matrix, right: np.ndarray, n: int) -> n
     order = EliminationOrder(np.argsort(at, kind="stable"), order.fill, order.updates)
     factors = factors_of(size, row, column, order) | {"a": value}
     table, found = packed_with_memory(FACTORS, factors), right.copy()
-    return found if FACTOR_AND_SOLVE.short_call(address(found), address(table)) == 0 else None
+    if FACTOR_AND_SOLVE.short_call(address(found), address(table)) == 0 and _solves(matrix, right, found):
+        return found
+    try:  # the fixed order of elimination may lack pivots where equations are nearly dependent
+        return np.linalg.solve(matrix, right)
+    except np.linalg.LinAlgError:
+        return None
+
+
+def _solves(matrix: np.ndarray, right: np.ndarray, found: np.ndarray) -> bool:
+    """Return True if the residual of a solution is small compared with its terms."""
+    terms = np.max(np.abs(matrix) @ np.abs(found) + np.abs(right), initial=0.0)
+    return bool(np.max(np.abs(matrix @ found - right), initial=0.0) <= EQUILIBRIA.no_effect * terms)

@@ -57,7 +57,8 @@ class EquilibriumParameters:
     most_halvings: int = 12
     """Largest number of halvings of such a move."""
     no_effect: float = 1e-9
-    """Relative effect of a velocity on forces, rates or constraints that counts as zero; also the rank tolerance of spins."""
+    """Relative effect of a velocity on forces, rates or constraints, and residual of a linear system, that count as zero;
+    also the rank tolerance of spins."""
 
 
 EQUILIBRIA = tuned("equilibria", EquilibriumParameters())

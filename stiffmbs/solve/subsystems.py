@@ -20,7 +20,7 @@ from ..presolve.relations import independent_coordinates
 from .auto import begins_implicit
 from .cost import COSTS, ImplicitCost, of_explicit_step
 from .events.restart import restarted
-from .explicit.native.fastest_rate import ITERATIONS, MOVE
+from .explicit.native.parameters import FASTEST_RATE
 from .settings import may_presolve, traits_of
 from .trajectory import Grid, History, Outcome, ProgressCallback, Solver, Trajectory, summed
 
@@ -258,8 +258,8 @@ def _growth(
     v = np.zeros(len(u))
     v[own] = np.sin(1.0 + 3.7 * own) / mass[own]
     growth = np.zeros(count)
-    for _ in range(ITERATIONS):
-        scale = MOVE / largest(v)
+    for _ in range(FASTEST_RATE.iterations):
+        scale = FASTEST_RATE.move / largest(v)
         move = np.zeros(len(u))
         move[own] = scale[of] * v[own]
         state.q[:], state.u[:] = (dynamics.system.of_body.moved(q, move), u) if of_pose else (q, u + move)

@@ -19,8 +19,6 @@ from stiffmbs.compile.machine.native.statuses import (
 )
 from stiffmbs.dynamics.native.layouts import POSITION_TOLERANCE
 
-MOST_MOVES = 20
-"""Largest number of Newton steps of the projection from a nearby state."""
 MOST_FROZEN_MOVES = 3
 """Largest number of moves with the factors of another state; one usually suffices nearby."""
 ROUNDING = 4 * float_info.epsilon

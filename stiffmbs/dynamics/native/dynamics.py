@@ -12,13 +12,13 @@ from stiffmbs.compile.machine.native.orientation import take_unit_length
 from stiffmbs.compile.machine.native.statuses import SINGULAR
 from stiffmbs.dynamics.elimination.native.eliminated import log_determinant_by_blocks
 from stiffmbs.dynamics.native.block_systems import (
-    MOST_MOVES,
     largest_of,
     to_accelerations,
     to_position_constraints,
     to_velocity_constraints,
 )
 from stiffmbs.dynamics.native.consistent import consistent_accelerations, from_row_to_row
+from stiffmbs.dynamics.native.layouts import MOST_MOVES
 from stiffmbs.dynamics.native.views import dynamics_view, eliminated_view
 
 AMPLIFIED, MOVED = 1e6, 1e-6

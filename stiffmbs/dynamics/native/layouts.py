@@ -30,5 +30,7 @@ and `by_pins` select the table `lists`.  `ready` is 1 if there are factors; `kep
 sizes of their pivots now and at most.  Then follow forces, M^-1/2, accelerations; addresses of routines; memory of a
 state; residuals of the block system, sizes of their terms, and the least allowed residual."""
 
+MOST_MOVES = 20
+"""Largest number of Newton steps of the projection from a nearby state."""
 POSITION_TOLERANCE = 1e-12
 """Largest violation after a projection onto the positions, apart from rounding, m or rad."""

@@ -8,13 +8,13 @@ from stiffmbs.compile.machine.native.orientation import add_rates, take_unit_len
 from stiffmbs.dynamics.elimination.native.eliminated import smallest_move
 from stiffmbs.dynamics.native.block_systems import (
     MOST_FROZEN_MOVES,
-    MOST_MOVES,
     ROUNDING,
     largest_of,
     largest_open,
     to_position_constraints,
     to_velocity_constraints,
 )
+from stiffmbs.dynamics.native.layouts import MOST_MOVES
 from stiffmbs.dynamics.native.views import eliminated_view
 
 

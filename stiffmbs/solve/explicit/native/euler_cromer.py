@@ -8,11 +8,11 @@ from stiffmbs.compile.machine.native.access import compiled, factors_view, state
 from stiffmbs.compile.machine.native.orientation import add_rates, take_unit_length
 from stiffmbs.compile.machine.native.statuses import NOT_FINITE
 from stiffmbs.dynamics.native.block_systems import (
-    MOST_MOVES,
     to_accelerations,
     to_position_constraints,
     to_velocity_constraints,
 )
+from stiffmbs.dynamics.native.layouts import MOST_MOVES
 from stiffmbs.dynamics.native.views import dynamics_view
 from stiffmbs.solve.explicit.native.stages import add_rates_behind
 

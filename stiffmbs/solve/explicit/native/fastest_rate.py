@@ -13,11 +13,7 @@ from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.orientation import add_rates
 from stiffmbs.dynamics.native.block_systems import largest_of
 from stiffmbs.dynamics.native.views import dynamics_view, eliminated_view
-
-ITERATIONS = 5
-"""Number of iterations; they give a lower bound close to the largest eigenvalue."""
-MOVE = 1e-7
-"""Largest change of a coordinate or velocity, m, rad, m/s, rad/s; small compared with the breakpoints of laws."""
+from stiffmbs.solve.explicit.native.parameters import FASTEST_RATE
 
 
 @compiled
@@ -50,8 +46,8 @@ def _growth(t, of_pose, mass, work, s, dynamics, accelerate):
     for k in range(n):
         v[k] = sin(1.0 + 3.7 * k) / mass[k]
     growth = 0.0
-    for _ in range(ITERATIONS):
-        scale = MOVE / largest_of(v, n)
+    for _ in range(FASTEST_RATE.iterations):
+        scale = FASTEST_RATE.move / largest_of(v, n)
         if of_pose:
             add_rates(s, v, scale, s.q)
         else:

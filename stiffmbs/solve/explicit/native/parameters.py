@@ -100,3 +100,16 @@ class UncertainEndParameters:
 
 
 ENDS = tuned("explicit_ends", UncertainEndParameters())
+
+
+@dataclass(frozen=True)
+class FastestRateParameters:
+    """Parameters of the fastest rate of the motion about a state, by power iteration on differences of accelerations."""
+
+    iterations: int = 5
+    """Number of iterations; they give a lower bound close to the largest eigenvalue."""
+    move: float = 1e-7
+    """Largest change of a coordinate or velocity, m, rad, m/s, rad/s; small compared with the breakpoints of laws."""
+
+
+FASTEST_RATE = tuned("fastest_rate", FastestRateParameters())

@@ -14,8 +14,8 @@ from stiffmbs.compile.machine.native.calls import call_int, copy_bytes, int32
 from stiffmbs.compile.machine.native.evaluate import add_entries, add_products, add_sizes, evaluate, load
 from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.statuses import OK
-from stiffmbs.dynamics.native.block_systems import MOST_MOVES, to_position_constraints
-from stiffmbs.dynamics.native.layouts import POSITION_TOLERANCE
+from stiffmbs.dynamics.native.block_systems import to_position_constraints
+from stiffmbs.dynamics.native.layouts import MOST_MOVES, POSITION_TOLERANCE
 from stiffmbs.dynamics.native.views import dynamics_view
 from stiffmbs.solve.error_control.native.parameters import NEWTON, POLISHING
 from stiffmbs.solve.ida.native.layouts import OUTPUT_CORRECTION

@@ -19,9 +19,8 @@ from stiffmbs.compile.machine.native.evaluate import ACCELERATION, MOTION, POSIT
 from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.compile.machine.native.orientation import add_rates
 from stiffmbs.compile.machine.native.statuses import OK, STOP_RETURN
-from stiffmbs.dynamics.native.block_systems import MOST_MOVES
 from stiffmbs.dynamics.native.consistent import consistent_accelerations, to_constraints
-from stiffmbs.dynamics.native.layouts import POSITION_TOLERANCE
+from stiffmbs.dynamics.native.layouts import MOST_MOVES, POSITION_TOLERANCE
 from stiffmbs.dynamics.native.views import dynamics_view
 from stiffmbs.solve.events.native.bounds import event_search_view
 from stiffmbs.solve.explicit.native.stages import add_rates_behind
