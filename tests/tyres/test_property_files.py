@@ -1,5 +1,6 @@
 """Files of tyre properties: units, notes, and clear errors with their lines."""
 
+import numpy as np
 import pytest
 from scipy import constants
 
@@ -254,8 +255,7 @@ IMPLAUSIBLE = {
     "LONGVL = 16700>LONGVL = 0": "line 10: found LONGVL = 0, 0 m/s by",
     "LONGVL = 16700>LONGVL = 16.7": "found LONGVL = 16.7, 0.0167 m/s by",
     "PKY1 = -14>PKY1 = 14": "line 28: found PKY1 = 14, the cornering stiffness of SAE axes, expected the sign of ISO axes",
-    "PKX1 = 21>PKX1 = -21": "line 24: found PKX1 = -21, expected a number above zero",
-    "PDY1 = 1.0>PDY1 = -1.0": "line 27: found PDY1 = -1.0, expected a number above zero",
+    "PKX1 = 21>PKX1 = -21": "line 24: found PKX1 = -21, expected a slip stiffness above zero",
 }
 
 
@@ -263,6 +263,15 @@ IMPLAUSIBLE = {
 def test_wrong_units_and_signs_are_refused_with_their_line(read, change):
     with pytest.raises(InputError, match=IMPLAUSIBLE[change]):
         read(FILE.replace(*change.split(">")))
+
+
+def test_a_negative_peak_has_the_forces_of_a_positive_one(read):
+    """D sin(C atan(B x)) with B = K/(C D) is even in D; Pacejka (2002), appendix 3, has p_Dy1 = -0.990."""
+    usual, negative = (read(FILE.replace("PDY1 = 1.0", f"PDY1 = {peak}")) for peak in ("1.0", "-1.0"))
+    slips = {"slip_angle": np.linspace(-0.2, 0.2, 9), "camber": 0.02}
+    expected = usual.wrench(4e3, **slips)
+    for name, values in negative.wrench(4e3, **slips).items():
+        np.testing.assert_allclose(values, expected[name], rtol=1e-12, atol=1e-9, err_msg=name)
 
 
 @pytest.mark.parametrize(
