@@ -25,20 +25,46 @@ from stiffmbs.sparse.block_updates import ROWS
 
 
 @compiled
-def _largest(line, k, size):
-    """Return the index of the largest magnitude in a line from the k-th number on."""
-    largest = k
-    for r in range(k + 1, size):
-        if abs(line[r]) > abs(line[largest]):
-            largest = r
-    return largest
+def magnitude(line, k, parts):
+    """Return the magnitude of number k of a line of numbers in parts: 1 for real, 2 for complex ones."""
+    found = abs(line[parts * k])
+    if parts == 2:
+        found += abs(line[parts * k + 1])
+    return found
 
 
 @compiled
-def _exchange(line, a, b):
-    kept = line[a]
-    line[a] = line[b]
-    line[b] = kept
+def _exchange(line, a, b, parts):
+    for part in range(parts):
+        kept = line[parts * a + part]
+        line[parts * a + part] = line[parts * b + part]
+        line[parts * b + part] = kept
+
+
+@compiled
+def in_natural_order(s, size):
+    """Begin a factorisation: no rows are exchanged."""
+    for k in range(size):
+        s.order[k] = k
+
+
+@compiled
+def pivoted(s, d, stride, t, width, size, k, parts):
+    """Exchange rows so that the largest of the numbers of column k from the k-th on is its pivot; return the column."""
+    line = shifted(d, k * stride)
+    largest = k
+    for r in range(k + 1, size):
+        if magnitude(line, r, parts) > magnitude(line, largest, parts):
+            largest = r
+    if largest != k:
+        for i in range(size):
+            _exchange(shifted(d, i * stride), k, largest, parts)
+        for i in range(k):
+            _exchange(shifted(t, s.order[i] * width), k, largest, parts)
+        kept = s.order[k]
+        s.order[k] = s.order[largest]
+        s.order[largest] = kept
+    return line
 
 
 @compiled
@@ -52,19 +78,9 @@ def _reduced(s, line, by, first, width):
 @compiled
 def _triangular(s, d, stride, t, width, size, first):
     """Factor a supernode's columns as L U with row pivoting; `t` becomes L^-1 P, later rows are multiplied by U^-1."""
+    in_natural_order(s, size)
     for k in range(size):
-        s.order[k] = k
-    for k in range(size):
-        line = shifted(d, k * stride)
-        largest = _largest(line, k, size)
-        if largest != k:
-            for i in range(size):
-                _exchange(shifted(d, i * stride), k, largest)
-            for i in range(k):
-                _exchange(shifted(t, s.order[i] * width), k, largest)
-            kept = s.order[k]
-            s.order[k] = s.order[largest]
-            s.order[largest] = kept
+        line = pivoted(s, d, stride, t, width, size, k, 1)
         pivot = line[k]
         s.pivot[first + k] = pivot
         inverse = spread(1.0 / pivot)

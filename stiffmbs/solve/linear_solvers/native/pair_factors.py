@@ -19,35 +19,12 @@ from stiffmbs.compile.machine.native.quads import (
     sum_of,
     times_i,
 )
-from stiffmbs.solve.linear_solvers.native.node_factors import rows_at_once
+from stiffmbs.solve.linear_solvers.native.node_factors import in_natural_order, magnitude, pivoted, rows_at_once
 from stiffmbs.sparse.block_updates import ROWS
 
 add_two_quads_of_pairs = by_case(add_pair_products, {rows: (rows, 2) for rows in ROWS})
 add_one_quad_of_pairs = by_case(add_pair_products, {rows: (rows, 1) for rows in ROWS})
 """Products for one to four rows of two quads, and of one."""
-
-
-@compiled
-def _size(line, r):
-    return abs(line[2 * r]) + abs(line[2 * r + 1])
-
-
-@compiled
-def _largest(line, k, size):
-    """Return the index of the largest number in a line from the k-th on."""
-    largest = k
-    for r in range(k + 1, size):
-        if _size(line, r) > _size(line, largest):
-            largest = r
-    return largest
-
-
-@compiled
-def _exchange(line, a, b):
-    for part in range(2):
-        kept = line[2 * a + part]
-        line[2 * a + part] = line[2 * b + part]
-        line[2 * b + part] = kept
 
 
 @compiled
@@ -63,20 +40,10 @@ def _reduced(s, line, k, first, width):
 @compiled
 def _triangular(s, d, stride, t, width, size, first):
     """Factor a supernode's columns as L U with row pivoting; `t` becomes L^-1 P, later rows are multiplied by U^-1."""
+    in_natural_order(s, size)
     for k in range(size):
-        s.order[k] = k
-    for k in range(size):
-        line = shifted(d, k * stride)
-        largest = _largest(line, k, size)
-        if largest != k:
-            for i in range(size):
-                _exchange(shifted(d, i * stride), k, largest)
-            for i in range(k):
-                _exchange(shifted(t, s.order[i] * width), k, largest)
-            kept = s.order[k]
-            s.order[k] = s.order[largest]
-            s.order[largest] = kept
-        pivot = _size(line, k)
+        line = pivoted(s, d, stride, t, width, size, k, 2)
+        pivot = magnitude(line, k, 2)
         s.pivot[2 * (first + k)] = pivot
         s.pivot[2 * (first + k) + 1] = pivot
         squared = line[2 * k] * line[2 * k] + line[2 * k + 1] * line[2 * k + 1]
