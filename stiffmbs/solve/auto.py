@@ -149,10 +149,13 @@ class _Implicit:
     def steps(self, t: float) -> ImplicitSteps:
         """Return the steps of all segments, the last of which has reached the time t."""
         if not self.integrator.steps():
-            return ImplicitSteps(t, 0, 0.0)
+            return ImplicitSteps(t, 0, 0, 0.0)
         counted = self.integrator.statistics()
         restarts = int(counted["breakpoints"]) + int(counted["events"])
-        return ImplicitSteps(t, restarts, self.cost.work(int(counted["residuals"]), int(counted["factorizations"])))
+        long = self.integrator.steps() if self.name == "radau" else 0
+        return ImplicitSteps(
+            t, restarts, long, self.cost.work(int(counted["residuals"]), int(counted["factorizations"]))
+        )
 
 
 class _ExplicitCheck:
@@ -165,7 +168,7 @@ class _ExplicitCheck:
     """
 
     def __init__(self, run: _AutoRun, t: float) -> None:
-        self._run = run
+        self._run, self._before = run, run.evaluations
         self._counted = ExplicitSteps(t, 0, 0, 0.0)
         self.switch: _Switch | None = None
 
@@ -174,7 +177,7 @@ class _ExplicitCheck:
         accepted = work.count("steps")
         if accepted == self._counted.accepted:  # a return at output points only
             return False
-        spent = self._run.explicit_step * work.count("accelerations") / DOP853.stages
+        spent = self._run.explicit_step * (self._run.evaluations - self._before) / DOP853.stages
         counted = ExplicitSteps(work.t, accepted, work.count("stiff_steps"), spent)
         steps, self._counted = since(self._counted, counted), counted
         if NOT_ASKED < work.stable < work.h:  # the bound holds the steps below what the integrator counts as limited
@@ -196,7 +199,7 @@ class _ImplicitCheck:
 
     def __init__(self, run: _AutoRun, implicit: _Implicit, t: float) -> None:
         self._run, self._implicit = run, implicit
-        self._counted = implicit.steps(t)
+        self._counted, self._begun = implicit.steps(t), implicit.integrator.steps()
         self.rate, self.loss = np.inf, 0.0
         self._wait(t)
 
@@ -207,7 +210,9 @@ class _ImplicitCheck:
         counted = self._implicit.steps(reached.t)
         taken, self._counted = since(self._counted, counted), counted
         self.rate = taken.cost / taken.time if taken.time else np.inf
-        self.loss = loss_of_trial(self.loss, taken.cost, self._run.explicit_cost(taken.time, taken.restarts))
+        self.loss = loss_of_trial(
+            self.loss, taken.cost, self._run.explicit_cost(taken.time, taken.restarts, taken.long)
+        )
         return self._wait(reached.t) > 0.0
 
     def _wait(self, t: float) -> float:
@@ -215,7 +220,8 @@ class _ImplicitCheck:
         following = self._run.explicit_cost(self._run.remaining(t), 0)
         left = tolerable_loss(self._implicit.start, self._run.thresholds.loss, following) - self.loss
         integrator = self._implicit.integrator
-        every = max(int(left / self._implicit.cost.step), self._run.parameters.fewest_steps)
+        taken = integrator.steps() - self._begun
+        every = max(int(left / self._implicit.cost.step), int(self._run.parameters.check_interval * taken), 1)
         self._next = integrator.steps() + every
         integrator.engine.pause_after(every)
         return left
@@ -367,13 +373,19 @@ class _AutoRun:
         small = self._implicit.start + self._breakpoints_after(t) * self._implicit.growth
         return self.parameters.trial_margin * small
 
+    @property
+    def evaluations(self) -> int:
+        """Return the number of evaluations of the equations so far, including those of event functions."""
+        return self._dynamics.state.evaluations
+
     def remaining(self, t: float) -> float:
         """Return the time of the motion after t, s."""
         return self._grid.end - t
 
-    def explicit_cost(self, duration: float, restarts: int) -> float:
-        """Return the cost of explicit steps over a time of the motion, s, with restarts."""
-        return duration * self._explicit_rate + restarts * cost.COSTS.restart_steps * self.explicit_step
+    def explicit_cost(self, duration: float, restarts: int, fewest: int = 0) -> float:
+        """Return the cost of explicit steps over a time of the motion, s, with restarts: `fewest` steps, or as stability requires."""
+        of_steps = max(duration * self._explicit_rate, fewest * self.explicit_step)
+        return of_steps + restarts * cost.COSTS.restart_steps * self.explicit_step
 
     def is_breakpoint(self, t: float) -> bool:
         """Return True if t is within rounding of an input breakpoint, where no integrator can start."""

@@ -24,13 +24,13 @@ class AutoParameters:
         Implicit steps per radian of a vibration that the start excites, until it has decayed to the tolerances.
     trial_margin : float
         Saving that justifies a later trial of implicit steps, in costs of their start and of their small steps.
-    fewest_steps : int
-        Fewest steps between two checks.
+    check_interval : float
+        Least number of steps up to the next check of implicit steps, relative to those of the segment so far.
     """
 
     steps_per_radian: float = 0.5
     trial_margin: float = 3.0
-    fewest_steps: int = 10
+    check_interval: float = 0.25
 
 
 AUTO = tuned("auto", AutoParameters())
@@ -53,11 +53,12 @@ class ImplicitSteps(NamedTuple):
     """Cost of implicit steps.
 
     `time`: time of the motion, s: at the count, or covered by the steps after an earlier count. `restarts`: restarts at
-    breakpoints and events.
+    breakpoints and events. `long`: steps of `radau`, which those of DOP853, of similar order, do not exceed in length.
     """
 
     time: float
     restarts: int
+    long: int
     cost: float
 
 

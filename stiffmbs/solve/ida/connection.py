@@ -47,11 +47,14 @@ FUNCTIONS = {
 class Formula(Protocol):
     """Integration formula with the interface of IDA: BDF by IDA itself, or Radau methods.
 
-    `one_step`: true if a start needs no small steps, and the dense output satisfies the equations of stiff forces by
-    itself.
+    `repeat`: address of the function by which a one-step method repeats its last step; 0 for a multistep method. A
+    one-step method needs no small steps after a start, and its dense output satisfies the equations of stiff forces.
     """
 
-    one_step: bool
+    @property
+    def repeat(self) -> int:
+        """See above."""
+        ...
 
     def libraries(self) -> Libraries:
         """Return the functions of SUNDIALS and those of the formula under the names of IDA's."""
@@ -76,7 +79,7 @@ class BDF:
     `predicted_residual`: see `stiffmbs.solve.error_control.error_test.ErrorControl`.
     """
 
-    one_step = False
+    repeat = 0
 
     def __init__(self, matrix: Matrix, predicted_residual: bool = False) -> None:
         self._matrix, self._predicted_residual = matrix, predicted_residual
@@ -177,7 +180,7 @@ class Connection:
                 **functions,
                 "matrix": self._assembled.values, "pattern": self._assembled.pattern,
                 "n_event_functions": self.n_event_functions, "signs": self.signs, "masked": self.masked,
-                "memory": self.memory, "one_step": int(self._formula.one_step), "y": self.y_vector, "yp": self.yp_vector,
+                "memory": self.memory, "repeat": self._formula.repeat, "y": self.y_vector, "yp": self.yp_vector,
                 "at_output": self.output_vector, "output": self.output,
                 "n_reported": len(self.reported), "reported": self.reported,
                 "step_bound": self.step_bound.table, "history": history, "samples": self._samples,
@@ -195,7 +198,7 @@ class Connection:
 
     @property
     def _polished(self) -> bool:
-        return self._formula.one_step or self.output_correction.ready
+        return bool(self._formula.repeat) or self.output_correction.ready
 
     def address(self, function: str) -> int:
         """Return the address of a SUNDIALS function, for compiled code."""
@@ -248,7 +251,7 @@ class Connection:
 
     def correct_outputs(self, dynamics: Dynamics, long_step: float, part: float, balanced: float) -> None:
         """Correct states within steps longer than `long_step` (see `OutputCorrection.limit`)."""
-        if long_step < np.inf and not (self._formula.one_step or self.output_correction.ready):
+        if long_step < np.inf and not (self._formula.repeat or self.output_correction.ready):
             self.output_correction.make_ready(self._session, self._matrix, self.memory, self.y_vector, dynamics)
         self.output_correction.limit(long_step, part, balanced)
 

@@ -35,8 +35,9 @@ _SIGNATURES = {
     "step_failures_of": ("IDAGetNumStepSolveFails", _GET),
     "iterations_of": ("IDAGetNumNonlinSolvIters", _GET),
     "newton_failures_of": ("IDAGetNumNonlinSolvConvFails", _GET),
+    "repeat": ("repeat", "int32(int64, float64, float64)"),
 }
-"""Names of IDA's functions and signatures of those in `stiffmbs.solve.radau.native.interface`."""
+"""Names of IDA's functions, which has none for `repeat`, and signatures of those in `stiffmbs.solve.radau.native.interface`."""
 _ROUTINES = dict(
     zip(
         (name for name, _ in _SIGNATURES.values()),
@@ -46,6 +47,7 @@ _ROUTINES = dict(
         strict=True,
     )
 )
+REPEAT = _ROUTINES["repeat"]
 
 
 class RadauFunctions(Libraries):

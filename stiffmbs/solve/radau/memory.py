@@ -20,7 +20,7 @@ from ..ida.session import Session
 from ..linear_solvers.block_lu import BlockLU
 from .collocation import MOST_BETWEEN, Collocation, radau
 from .condensed import condensed_efforts
-from .interface import RadauFunctions
+from .interface import REPEAT, RadauFunctions
 from .native.layouts import COLLOCATION, RADAU
 from .parameters import RadauParameters
 
@@ -92,8 +92,6 @@ class Radau:
         Cost of a complex matrix, in real ones.
     """
 
-    one_step = True
-
     def __init__(
         self,
         equations: Equations,
@@ -117,6 +115,11 @@ class Radau:
         self._methods = methods
         self._most = max(methods)
         self._words = np.zeros(len(RADAU), dtype=np.int64)
+
+    @property
+    def repeat(self) -> int:
+        """Return the address of the function that repeats the last step."""
+        return REPEAT.address
 
     def libraries(self) -> Libraries:
         """Return the SUNDIALS functions, with those of IDA replaced."""

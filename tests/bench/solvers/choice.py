@@ -1,6 +1,6 @@
-"""Measure the time of auto over that of the best of bdf, dop853 and radau at an equal error, on the half car or the reference car.
+"""Measure the time of auto over that of the best of bdf, dop853 and radau at an equal error, on the half car, the reference car or any scene.
 
-    python -m tests.bench.solvers.choice half_car|car [--stiffness 1e6 1e8] [--damping 0.02] [--duration 1 10] [--rtol 1e-3 1e-5]
+    python -m tests.bench.solvers.choice half_car|car|SCENE [--stiffness 1e6 1e8] [--damping 0.02] [--duration 1 10] [--rtol 1e-3 1e-5]
 
 Errors are the largest of the bodies' coordinates, m or rad, against radau at rtol 1e-10. A motion is left out as chaotic if radau
 at 1e-9 differs from that by more than a tenth of the error of auto. Times are the least processor times of several integrations,
@@ -27,6 +27,8 @@ from .stiff_and_light import EXAMPLES, SOLVERS, measured
 TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7)
 EXACT, CHECK, RESOLVED = 1e-10, 1e-9, 0.1
 """Relative tolerances of the reference and of its check, and their largest difference, in errors of auto."""
+DURATIONS = (1.0, 3.0, 10.0)
+"""Times of the motion of the cars, s."""
 ROUNDS, LONGEST = 5, 4.0
 """Timings of each solver, and longest run, in the least time of the solvers before it."""
 
@@ -38,11 +40,10 @@ def model_of(name: str, stiffness: str, damping: str) -> Any:
     return CARS[0].model("sweep", **{CARS[0].stiffness: stiffness, "zeta": damping})
 
 
-def compared(model: Any, duration: float, rtols: list[float]) -> Iterator[str]:
+def compared(model: Any, duration: float | None, rtols: list[float]) -> Iterator[str]:
     """Yield a line for each tolerance of auto: time, error, and the ratio to the best of the others at this error."""
-    exact, check = (
-        prepare(model, rtol=rtol, duration=duration, solver="radau").integrate().q for rtol in (EXACT, CHECK)
-    )
+    settings = {} if duration is None else {"duration": duration}
+    exact, check = (prepare(model, rtol=rtol, **settings, solver="radau").integrate().q for rtol in (EXACT, CHECK))
     noise = float(np.abs(exact - check).max())
     seconds: dict[tuple[str, float], float] = {}
     errors: dict[tuple[str, float], float] = {}
@@ -52,7 +53,7 @@ def compared(model: Any, duration: float, rtols: list[float]) -> Iterator[str]:
             if seconds.get((name, rtol)) == math.inf:
                 continue
             longest = max(1.0, LONGEST * min(seconds.values(), default=math.inf))
-            least, found = measured(model, rtol, {**SOLVERS[name], "duration": duration}, longest, ROUNDS)
+            least, found = measured(model, rtol, {**SOLVERS[name], **settings}, longest, ROUNDS)
             seconds[name, rtol] = min(least, seconds.get((name, rtol), math.inf))
             if found is not None:
                 errors[name, rtol] = float(np.abs(found.q - exact).max())
@@ -71,13 +72,18 @@ def compared(model: Any, duration: float, rtols: list[float]) -> Iterator[str]:
 def main() -> None:
     """Print the ratios."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
-    parser.add_argument("model", choices=("half_car", "car"))
+    parser.add_argument("model", help="half_car, car, or the file of a scene, which has its own stiffness and damping")
     parser.add_argument("--stiffness", nargs="+", default=["1e5", "1e6", "1e7", "1e8", "1e9", "1e10"], help="N/m")
     parser.add_argument("--damping", nargs="+", default=["0.01", "0.05", "0.2"])
-    parser.add_argument("--duration", nargs="+", type=float, default=[1.0, 3.0, 10.0], help="s")
+    parser.add_argument("--duration", nargs="+", type=float, help="s; by default 1, 3 and 10, or that of the scene")
     parser.add_argument("--rtol", nargs="+", type=float, default=list(TOLERANCES[1:]))
     given = parser.parse_args()
-    for duration, stiffness, damping in product(given.duration, given.stiffness, given.damping):
+    if given.model not in ("half_car", "car"):
+        for duration in given.duration or [None]:
+            for line in compared(stiffmbs.load_scene(given.model), duration, given.rtol):
+                print(f"{given.model}, {line}", flush=True)
+        return
+    for duration, stiffness, damping in product(given.duration or DURATIONS, given.stiffness, given.damping):
         for line in compared(model_of(given.model, stiffness, damping), duration, given.rtol):
             print(f"{given.model}, {stiffness} N/m, damping {damping}, {duration:g} s, {line}", flush=True)
 

@@ -47,3 +47,37 @@ def test_events_within_rounding_of_the_end(before):
     solution = stiffmbs.run(model, solver="radau", duration=1.0, rtol=1e-6)
     assert solution.outcome is Outcome.DONE, solution.message
     assert solution["a.x"][-1] == pytest.approx(1.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("rtol", [1e-3, 1e-5])
+def test_an_interval_of_a_smooth_law_that_a_step_has_passed_is_resolved_without_a_restart(rtol):
+    """The work of a narrow force, compared with that of explicit steps."""
+    place = np.linspace(0.0, np.pi, 25)
+    bump = [
+        [0, 0],
+        *np.column_stack([0.4 + 0.06 / np.pi * place, np.sin(place) ** 4]).tolist(),
+        [0.6, 0],
+        [1, 0],
+        [2, 0],
+    ]
+    model = stiffmbs.read_scene(f"""
+gravity: [0, 0]
+tables: {{bump: {{table: {bump}, spline: true}}}}
+bodies: {{a: {{mass: 1, inertia: 1, velocity: [0.1, 0]}}}}
+joints: {{rail: {{type: prismatic, i: a, j: ground}}}}
+forces: {{push: {{type: force, i: a, force: [bump(a.x), 0]}}}}
+""")
+    found, exact = (
+        stiffmbs.run(model, duration=8.0, points=81, **how)
+        for how in ({"solver": "radau", "rtol": rtol}, {"solver": "projected", "scheme": "dop853", "rtol": 1e-12})
+    )
+    assert found["a.x"][-1] > 1.0 and found.solver["events"] == 0
+    assert found["a.vx"][-1] == pytest.approx(exact["a.vx"][-1], rel=rtol)
+
+
+def test_steps_over_a_rough_road_have_few_restarts(examples):
+    """The samples of the road divide its height into intervals; only the ends of the run-in are events."""
+    road = stiffmbs.load_scene(examples / "vehicles" / "quarter_car.yaml")
+    found, exact = (stiffmbs.run(road, solver="radau", duration=2.0, rtol=rtol) for rtol in (1e-3, 1e-8))
+    assert found.solver["events"] <= 3
+    assert np.abs(found["body.z"] - exact["body.z"]).max() < 1e-5

@@ -54,7 +54,7 @@ def edge(w, k, number):
 
 
 @compiled
-def _overlap(w, k, number):
+def overlap(w, k, number):
     """Return the overlap of the adjacent intervals `number` and `number` + 1 of function k."""
     first, count = w.first_edge[k], w.first_edge[k + 1] - w.first_edge[k]
     return w.overlap[first + (number % count if w.period[k] > 0.0 else min(max(number, 0), count - 1))]
@@ -65,9 +65,9 @@ def beyond(w, k, value, one, other, least):
     """Return True if a value is outside two intervals of a function by more than their overlap and `least`."""
     here, low, high = zone(w, k, value), min(one, other), max(one, other)
     if here > high:
-        return value - edge(w, k, high) > max(least, _overlap(w, k, high))
+        return value - edge(w, k, high) > max(least, overlap(w, k, high))
     if here < low:
-        return edge(w, k, low - 1) - value > max(least, _overlap(w, k, low - 1))
+        return edge(w, k, low - 1) - value > max(least, overlap(w, k, low - 1))
     return False
 
 

@@ -14,6 +14,7 @@ from stiffmbs.solve.events.native.bounds import (
     longest_by_turns,
     note_unresolved,
     noted_rates,
+    overlap,
     shift_ends,
     suspicious,
     time_of_difference,
@@ -24,6 +25,7 @@ from stiffmbs.solve.events.native.from_zero import at_zero, begin_sides, leave_z
 from stiffmbs.solve.events.native.nearby import near_an_event, note_mean_rates, note_near
 from stiffmbs.solve.events.native.parameters import EPSILON, INDISTINCT, NEXT_STEP, SEARCH
 from stiffmbs.solve.events.native.within_step import first_event, first_event_or_change, keep_row
+from stiffmbs.solve.explicit.native.parameters import LOCATION
 from stiffmbs.solve.ida.native.ida_memory import array_of, native_ida_view
 from stiffmbs.solve.ida.native.passage import bound_passage, go_ahead, go_straight
 
@@ -190,8 +192,23 @@ def _evaluate_near(w, s, t):
     return evaluate_some(s, SWITCH, t, w.near)
 
 
+@compiled
+def _passes_smoothly(w, h):
+    """Return True if the event found is a passed interval of a law that is smooth where a repeated step may end."""
+    others = 0
+    for k in range(w.n):
+        if w.found[k]:
+            number = zone(w, k, w.value_before[k])
+            smooth = min(overlap(w, k, number - 1), overlap(w, k, number))
+            farthest = max(
+                abs(w.value_after[k] - w.value_before[k]), h * max(abs(w.rate_before[k]), abs(w.rate_after[k]))
+            )
+            others += k < w.n_event_functions or w.lands[k] > 0 or smooth < LOCATION.farthest_past * farthest
+    return others == 0
+
+
 def look_within(ida):
-    """Set IDA's returned state to the first event within the last step; return 1 if there is one, else 0."""
+    """Set IDA's returned state to the first event within the last step; return 0 without one, 2 for a passed interval, else 1."""
     c = native_ida_view(ida)
     w = event_search_view(c.watch)
     begun = w.begun
@@ -232,7 +249,7 @@ def look_within(ida):
             call_int(c.interpolate, (c.memory, event, int32(1), c.yp))
             c.returned = event
             c.within = 1
-            return int32(1)
+            return int32(2 if _passes_smoothly(w, h) else 1)
         load(s, e, array_of(c, c.y), array_of(c, c.yp))
     _go_on(c, w, s)
     _look_ahead(c, w, s)

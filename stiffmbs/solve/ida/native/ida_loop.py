@@ -17,6 +17,7 @@ from stiffmbs.solve.events.native.step_bound import (
     next_row,
     step_bound_view,
 )
+from stiffmbs.solve.explicit.native.parameters import LOCATION
 from stiffmbs.solve.ida.native.error_norm import error_norm_view
 from stiffmbs.solve.ida.native.ida_memory import array_of, native_ida_view, watched
 from stiffmbs.solve.ida.native.iteration import MADE, iteration_view
@@ -25,6 +26,8 @@ from stiffmbs.solve.ida.native.output_correction import corrected, output_correc
 from stiffmbs.solve.ida.native.parameters import LOOP
 
 STALLED = -101
+NO_EVENT, EVENT, PASSED_INTERVAL = range(3)
+"""Results of `stiffmbs.solve.ida.native.ida_events.look_within`."""
 
 
 @compiled
@@ -93,7 +96,7 @@ def _longest_to_see(c, bound, t):
             longest = min(longest, w.target - t)
         if t < w.passed:
             longest = min(longest, w.passage if c.size > 0.0 else w.first)
-            if c.one_step:
+            if c.repeat:
                 longest = min(longest, w.passed - t)
     return max(longest, LOOP.most_tiny**2 * EPSILON * abs(t))
 
@@ -120,19 +123,45 @@ def _see_inputs(c, stop):
 
 
 @compiled
-def stepped(c, ida, toward, stop):
-    """Take one step; note its end, order and size in the history, and return IDA's flag."""
-    before = c.internal
-    begun = c.returned
-    c.within = 0
-    if c.look_at_start:
-        call_int(c.look_at_start, (toward, stop, ida))
+def _attempt(c, toward, stop):
+    """Take one step, and return IDA's flag."""
     _see_inputs(c, stop)
     flag = call_int(c.solve, (c.memory, toward, address_of(c.returned), c.y, c.yp, int32(ONE_STEP)))
     if flag == STOP_RETURN and c.returned < stop:
         flag = int32(OK)
     call_int(c.time_of, (c.memory, address_of(c.internal)))
     call_int(c.step_of, (c.memory, address_of(c.size)))
+    return flag
+
+
+@compiled
+def _seen(c, ida, flag):
+    """Return the event within the last step, if there is one."""
+    return call_int(c.look_within, (ida,)) if flag >= 0 and c.look_within else int32(NO_EVENT)
+
+
+@compiled
+def stepped(c, ida, toward, stop):
+    """Take one step; note its end, order and size in the history, and return IDA's flag.
+
+    A one-step method that has passed an interval of a law repeats the step into that interval: no restart is needed.
+    """
+    before = c.internal
+    begun = c.returned
+    c.within = 0
+    if c.look_at_start:
+        call_int(c.look_at_start, (toward, stop, ida))
+    flag = _attempt(c, toward, stop)
+    seen = _seen(c, ida, flag)
+    for _ in range(LOCATION.most_retaken):
+        if seen != PASSED_INTERVAL or not c.repeat:
+            break
+        call_int(c.repeat, (c.memory, begun, (1.0 + LOCATION.farthest_past) * (c.returned - begun)))
+        c.returned = begun
+        c.internal = begun
+        c.within = 0
+        flag = _attempt(c, toward, stop)
+        seen = _seen(c, ida, flag)
     if c.internal != before and flag >= 0:
         call_int(c.order_of, (c.memory, address_of(c.order)))
         row = shifted(c.history, STEP_WIDTH * c.recorded)
@@ -142,7 +171,7 @@ def stepped(c, ida, toward, stop):
         _accumulate(c)
     if flag >= 0 and _stalled(c):
         return STALLED
-    if flag >= 0 and c.look_within and call_int(c.look_within, (ida,)):
+    if seen != NO_EVENT:
         flag = int32(ROOT_RETURN)
     if flag >= 0:
         _keep_if_long(c, begun)

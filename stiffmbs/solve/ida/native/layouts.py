@@ -16,7 +16,7 @@ NATIVE_IDA = Layout({
     "n_event_functions": INT, "signs": FLOATS, "masked": INTS,
     "memory": INT, "y": INT, "yp": INT, "at_output": INT, "output": FLOATS, "n_reported": INT, "reported": INTS,
     "solve": INT, "interpolate": INT, "time_of": INT, "order_of": INT, "step_of": INT,
-    "stop_at": INT, "next_step_of": INT, "one_step": INT, "step_bound": INTS,
+    "stop_at": INT, "next_step_of": INT, "repeat": INT, "step_bound": INTS,
     "returned": FLOAT_CELL, "internal": FLOAT_CELL, "size": FLOAT_CELL, "next_size": FLOAT_CELL, "order": INT_CELL,
     "stopping": FLOAT_CELL, "served": INT_CELL, "tiny": INT_CELL, "within": INT_CELL,
     "recorded": INT_CELL, "history": FLOATS, "since_sample": INT_CELL, "next_sample": INT_CELL, "samples": FLOATS,
@@ -25,7 +25,8 @@ NATIVE_IDA = Layout({
     "trace": INT_CELL, "traced": INT_CELL, "n_places": INT_CELL, "places": INT_CELL, "seen": FLOAT_CELL,
 })  # fmt: skip
 """Memory of the callbacks and the loop of the native IDA (`stiffmbs.solve.ida.native.ida_loop`): addresses of SUNDIALS
-functions and objects, values and pattern of the matrix, and reported unknowns; 1 for a one-step method.
+functions and objects, values and pattern of the matrix, and reported unknowns; function by which a one-step method
+repeats its last step with another length, 0 for a multistep method.
 
 Cells: times of the returned state and of IDA's internal state; size (0 before the first) and order of its last step,
 size of the next attempt; last stop time; output times served, tiny steps in succession, 1 if the last event was found

@@ -24,7 +24,7 @@ def bound_passage(c, w, s, toward, stop):
     a passage is limited for periodic laws, because smaller changes add up over their periods.  The same holds at the
     beginning of a run, where closed contacts open and close by rounding.
     """
-    if c.one_step:
+    if c.repeat:
         call_int(c.next_step_of, (c.memory, address_of(c.next_size)))
     if c.returned < w.begins:
         w.begins = c.returned
@@ -33,7 +33,7 @@ def bound_passage(c, w, s, toward, stop):
     if ahead > 0.0:
         w.passed = c.returned + ahead
         if w.n_turns > 0 or not w.under_way:  # stages of a step resolve a part of the passage each
-            w.passage = NEXT_STEP.inside * ahead if c.one_step else ahead / NEXT_STEP.passage_steps
+            w.passage = NEXT_STEP.inside * ahead if c.repeat else ahead / NEXT_STEP.passage_steps
             w.first = NEXT_STEP.first_part * w.passage
         elif _matters(c, w, s, ahead):
             w.first = NEXT_STEP.inside * ahead
@@ -46,7 +46,7 @@ def _passage(c, w, s, toward, stop):
     """Return the time after which the motion leaves a law; 0 if it does not soon."""
     ahead = SEARCH.least_difference * (toward - c.returned)
     most = stop - c.returned if w.n_turns > 0 else NEXT_STEP.soon * (toward - c.returned)
-    if c.one_step:
+    if c.repeat:
         most = min(max(most, c.next_size), stop - c.returned)
     while ahead < most and not _another_side(c, w, s, ahead):
         ahead *= 2.0
@@ -68,7 +68,7 @@ def _another_side(c, w, s, ahead):
     go_ahead(c, s, ahead)
     values = evaluate(s, SWITCH, c.returned + ahead)
     others = 0
-    for k in range(w.n if w.n_turns > 0 or c.one_step else w.n_event_functions):
+    for k in range(w.n if w.n_turns > 0 or c.repeat else w.n_event_functions):
         others += zone(w, k, values[k]) != zone(w, k, w.value_before[k])
     return others > 0
 

@@ -134,6 +134,15 @@ def solve(memory, toward, returned, y, yp, task):
     return int32(OK)
 
 
+def repeat(memory, begin, h):
+    """Return to the beginning of the last step, which is repeated with another length."""
+    x = radau_view(ints(memory))
+    if begin < x.stop <= x.t:
+        x.stops = 1
+    _step_back(x, begin, h)
+    return int32(OK)
+
+
 def interpolate(memory, t, order, target):
     """Evaluate the polynomial of the last step, or its derivative (IDAGetDky)."""
     x = radau_view(ints(memory))
