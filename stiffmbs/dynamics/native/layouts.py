@@ -20,13 +20,13 @@ multipliers.  `algebraic` lists the algebraic states among the coordinates, with
 elimination is tried first (`stiffmbs.dynamics.native.consistent`), `by_elimination` if it gave the last accelerations."""
 
 ELIMINATED = Layout({
-    "state": INTS, "n_u": INT, "trees": INT, "by_blocks": INT, "by_pins": INT, "lists": INTS,
+    "state": INTS, "n_u": INT, "trees": INT, "by_pins": INT, "lists": INTS,
     "ready": INT_CELL, "kept": FLOAT_CELL, "most_kept": FLOAT_CELL,
     "n_f": INT, "f_source": INDICES, "f_row": INDICES, "scale": FLOATS, "a": FLOATS,
     "attempt": INT_CELL, "move": INT_CELL, "q_before": FLOATS, "u_before": FLOATS, "left": FLOATS, "sizes": FLOATS, "least": FLOAT_CELL,
 })  # fmt: skip
-"""Elimination of J M^-1 J^T (`stiffmbs.dynamics.elimination.eliminated`).  `trees` is 1 if no joint closes a loop; `by_blocks`
-and `by_pins` select the table `lists`.  `ready` is 1 if there are factors; `kept` and `most_kept` are the relative
+"""Elimination of J M^-1 J^T (`stiffmbs.dynamics.elimination.eliminated`).  `trees` is 1 if no joint closes a loop; `by_pins`
+tells the kind of the table `lists`.  `ready` is 1 if there are factors; `kept` and `most_kept` are the relative
 sizes of their pivots now and at most.  Then follow forces, M^-1/2, accelerations; addresses of routines; memory of a
 state; residuals of the block system, sizes of their terms, and the least allowed residual."""
 

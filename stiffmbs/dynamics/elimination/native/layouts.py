@@ -6,15 +6,6 @@ from typing import NamedTuple
 
 from stiffmbs.compile.machine.layout import FLOATS, INDICES, INT, INTS, Layout
 
-ENTRY_ELIMINATION = Layout({
-    "n": INT, "n_gamma": INT, "n_j": INT, "n_slots": INT, "gamma_source": INDICES, "gamma_row": INDICES,
-    "j_source": INDICES, "j_row": INDICES, "j_column": INDICES, "at_lam": INTS,
-    "product_end": INDICES, "product_first": INDICES, "product_second": INDICES,
-    "column_start": INDICES, "row": INDICES, "update_slot": INDICES,
-    "j_scale": FLOATS, "j": FLOATS, "s": FLOATS, "l": FLOATS, "diagonal": FLOATS, "b": FLOATS,
-})  # fmt: skip
-"""Matrix and factors by flat lists (`stiffmbs.dynamics.elimination.eliminated`)."""
-
 PIN_ELIMINATION = Layout({
     "n": INT, "n_beside": INT, "pin": INDICES, "inverse": FLOATS, "w": FLOATS, "product": INDICES, "mass": FLOATS,
     "start": INDICES, "later": INDICES, "update": INDICES,
