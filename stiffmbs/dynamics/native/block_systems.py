@@ -1,7 +1,5 @@
 """Solution of the block systems of a mechanism: projections of positions and velocities, accelerations."""
 
-from __future__ import annotations
-
 from math import isfinite
 from sys import float_info
 

@@ -4,8 +4,6 @@ The factors of the elimination belong to one pose.  Moves with them converge als
 both violations are checked again.
 """
 
-from __future__ import annotations
-
 from stiffmbs.compile.machine.native.access import compiled, equations_view, factors_view, floats, shifted, state_view
 from stiffmbs.compile.machine.native.calls import call_int
 from stiffmbs.compile.machine.native.evaluate import (

@@ -1,7 +1,5 @@
 """Dynamics of a state for Python: assembly, projections, accelerations and output rows."""
 
-from __future__ import annotations
-
 from math import sqrt
 
 from stiffmbs.compile.machine.native.access import compiled, factors_view, floats, shifted, state_view

@@ -1,7 +1,5 @@
 """Memory layouts of the dynamics and of elimination."""
 
-from __future__ import annotations
-
 from stiffmbs.compile.machine.layout import FLOAT_CELL, FLOATS, INDICES, INT, INT_CELL, INTS, Layout
 
 DYNAMICS = Layout({

@@ -1,7 +1,5 @@
 """Projection of an integrator's steps onto the constraints, by frozen factors if possible, or by Newton's iteration."""
 
-from __future__ import annotations
-
 from stiffmbs.compile.machine.native.access import compiled, shifted
 from stiffmbs.compile.machine.native.evaluate import MOTION, POSITION, evaluate
 from stiffmbs.compile.machine.native.orientation import add_rates, take_unit_length

@@ -1,7 +1,5 @@
 """Views of the tables of the dynamics for compiled code; apart from the layouts, as they load the translator."""
 
-from __future__ import annotations
-
 from stiffmbs.compile.machine.native.access import view_of
 from stiffmbs.dynamics.native.layouts import DYNAMICS, ELIMINATED
 

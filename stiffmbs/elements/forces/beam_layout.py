@@ -1,7 +1,5 @@
 """Layout of the arrays of a beam section in compiled loops."""
 
-from __future__ import annotations
-
 NODE = {
     "R": 9, "C": 9, "A": 9, "point": 3, "origin": 3, "v": 3, "w": 3, "carried": 3, "e": 4, "turned": 4, "twist": 6,
     "screw": 6, "inverse": 3, "margin": 1, "P": 36, "Q": 36,

@@ -1,7 +1,5 @@
 """Types of fields with dimensions: ``si.Length`` is a finite number in metres, or text with a unit of length."""
 
-from __future__ import annotations
-
 from typing import Annotated
 
 from ..fields import Measured

@@ -1,7 +1,5 @@
 """Work of a power given at output instants, and numbers of solver steps between these."""
 
-from __future__ import annotations
-
 from stiffmbs.compile.machine.native.access import compiled, shifted
 
 

@@ -1,7 +1,5 @@
 """Output rows between which velocity changes contradict the accelerations."""
 
-from __future__ import annotations
-
 from stiffmbs.compile.machine.native.access import compiled, shifted, state_view
 from stiffmbs.compile.machine.native.evaluate import POSITION, evaluate
 

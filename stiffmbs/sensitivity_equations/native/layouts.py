@@ -1,7 +1,5 @@
 """Tables of variational equations."""
 
-from __future__ import annotations
-
 from stiffmbs.compile.machine.layout import FLOAT_CELL, FLOATS, INDICES, INT, INT_CELL, INTS, Layout
 
 VARIATIONS = Layout({

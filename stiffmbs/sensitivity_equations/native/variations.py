@@ -9,8 +9,6 @@ r_y y' + r_y' y'' + r_t = 0, r_p + r_t dt_e/dp then replaces r_p.  The sum is sm
 of y' between the events of neighbouring motions.
 """
 
-from __future__ import annotations
-
 from stiffmbs.compile.machine.native.access import compiled, equations_view, floats, ints, shifted, state_view, view_of
 from stiffmbs.compile.machine.native.along import direction_view, evaluate_along
 from stiffmbs.compile.machine.native.calls import call_int, copy_bytes

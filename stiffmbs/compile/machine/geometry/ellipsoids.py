@@ -5,8 +5,6 @@ an array in the axes of the second solid: d, the matrix R with the axes of the f
 semi-axes of the three ellipsoids of each solid along its axes. A missing ellipsoid has zeros.
 """
 
-from __future__ import annotations
-
 from math import sqrt
 
 from ..native.access import compiled, room, shifted

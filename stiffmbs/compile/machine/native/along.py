@@ -1,7 +1,5 @@
 """Derivatives of all terms of a set in a direction (`stiffmbs.compile.directional`)."""
 
-from __future__ import annotations
-
 from .access import call_kernel, compiled, floats, ints, shifted, state_view, view_of
 from .orientation import TURN_STRIDE
 from .tables import CALL, DIRECTION

@@ -5,8 +5,6 @@
 with the previous pivots. If a pivot is too small relative to its column, it stops and a new pivot search is needed.
 """
 
-from __future__ import annotations
-
 from math import log, sqrt
 
 from .access import compiled, factors_view

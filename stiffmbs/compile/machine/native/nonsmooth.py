@@ -1,7 +1,5 @@
 """Nonsmooth functions and continuous angles in kernels (`stiffmbs.compile.symbolic`)."""
 
-from __future__ import annotations
-
 from math import atan2, cos, sin
 
 from .access import compiled

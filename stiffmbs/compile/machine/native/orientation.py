@@ -4,8 +4,6 @@ A = 2/|p|^2 (p_v p_v^T + p_0 [p_v] + p_0^2) - 1 is the rotation matrix for any l
 Dynamics of Multibody Systems (2013), sec. 2.3; Nikravesh, Computer-Aided Analysis of Mechanical Systems (1988), ch. 6.
 """
 
-from __future__ import annotations
-
 from math import sqrt
 
 from ...bodies import SPACE

@@ -1,7 +1,5 @@
 """Rotation vectors from quaternions, in kernels."""
 
-from __future__ import annotations
-
 from math import acos, sqrt
 
 from .access import compiled

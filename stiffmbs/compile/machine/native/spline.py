@@ -1,7 +1,5 @@
 """Evaluation of tables in kernels."""
 
-from __future__ import annotations
-
 from math import floor
 
 from .access import compiled

@@ -1,7 +1,5 @@
 """Layouts of the tables for compiled code: state and kernels, equations of a formulation, factors of a matrix."""
 
-from __future__ import annotations
-
 from stiffmbs.compile.machine.layout import FLOATS, INDICES, INT, INT_CELL, INTS, OWN_FLOATS, OWN_INTS, Layout
 
 STATE = Layout({

@@ -7,8 +7,6 @@ With j = J M^-1/2 and S = j j^T, a row of blocks of S is the panel of a joint.  
 diagonal block by its factors and the right blocks U by V = L^-1 U; D^-1 V, the `scaled` blocks, updates later panels.
 """
 
-from __future__ import annotations
-
 from stiffmbs.compile.machine.native.access import compiled, row_of, shifted, view_of
 from stiffmbs.compile.machine.native.joint_rows import add_rows, take_rows
 from stiffmbs.compile.machine.native.quads import (

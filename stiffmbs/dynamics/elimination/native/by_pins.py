@@ -5,8 +5,6 @@ is linear in the number of joints, as for the articulated-body algorithm (Feathe
 Algorithms, 2008, ch. 7).
 """
 
-from __future__ import annotations
-
 from stiffmbs.compile.machine.native.access import compiled, row_of, shifted, view_of
 from stiffmbs.compile.machine.native.quads import plus_product
 from stiffmbs.dynamics.elimination.native.digits import SMALL, keeps_digits

@@ -1,7 +1,5 @@
 """Accuracy test of the pivots of J M^-1 J^T, which makes pivoting unnecessary."""
 
-from __future__ import annotations
-
 from stiffmbs.compile.machine.native.access import compiled
 
 LOST = 1e-6

@@ -3,8 +3,6 @@
 The mass matrix is diagonal.  The method is far faster than the whole LU if bodies have few joints each.
 """
 
-from __future__ import annotations
-
 from math import log
 
 from stiffmbs.compile.machine.native.access import compiled, state_view

@@ -1,7 +1,5 @@
 """Spatial forces along the line between two points, identical to the planar ones."""
 
-from __future__ import annotations
-
 from ...forces.line_force import ForceAlongLine
 from ...forces.spring_damper import LineSpring
 from ..marker import Marker

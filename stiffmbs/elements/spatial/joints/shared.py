@@ -1,7 +1,5 @@
 """Joints common to the plane and space, with equations of distances, joint coordinates, or formulas."""
 
-from __future__ import annotations
-
 from ...joints.constraint_equation import ConstraintEquation
 from ...joints.coupler import Coupler
 from ...joints.distance import Rod

@@ -1,7 +1,5 @@
 """States and numbers of a beam section moved in a direction, for its directional derivatives by central differences."""
 
-from __future__ import annotations
-
 from math import cos, sin
 
 from stiffmbs.compile.machine.native.access import compiled, shifted

@@ -5,8 +5,6 @@ dual part of their product is n.u + m.theta. Memory holds the real part before t
 three, or two matrices of nine numbers by rows. Fischer, Dual-Number Methods in Kinematics, Statics and Dynamics (1999).
 """
 
-from __future__ import annotations
-
 from stiffmbs.compile.machine.native.access import compiled, shifted
 
 

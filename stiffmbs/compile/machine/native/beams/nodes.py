@@ -4,8 +4,6 @@ With H = H_m^-1 H_k from the reference m to node k, xi = log H and twists y in t
 with P = T(xi)^-1 and Q = -T(-xi)^-1. Twists are (omega, v), and wrenches (m, n). A planar model fills the same arrays.
 """
 
-from __future__ import annotations
-
 from math import cos, sqrt
 
 from stiffmbs.compile.machine.native.access import compiled, parts_of, room, shifted

@@ -5,8 +5,6 @@ cos)/theta^2 and c = (theta - sin)/theta^3. The inverse has b = -1/2 and c = e =
 Selig, Geometric Fundamentals of Robotics (2005), ch. 4; Sonneville, Cardona, Bruls (2014).
 """
 
-from __future__ import annotations
-
 from stiffmbs.compile.machine.native.access import compiled, room
 from stiffmbs.compile.machine.native.beams.dual import (
     add_cross,

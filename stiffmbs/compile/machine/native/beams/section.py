@@ -6,8 +6,6 @@ without load, the stiffness by rows, and the ratio of viscous to elastic stiffne
 section's forces: three translations and rotations, in the plane two and one.
 """
 
-from __future__ import annotations
-
 from stiffmbs.compile.machine.native.access import compiled, room, shifted
 from stiffmbs.compile.machine.native.beams.dual import clear, of_screws
 from stiffmbs.compile.machine.native.beams.nodes import (

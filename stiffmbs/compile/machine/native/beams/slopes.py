@@ -4,8 +4,6 @@ Matrices have a column for each velocity of the bodies: six, or three in the pla
 those by rotations about the axes of a body.
 """
 
-from __future__ import annotations
-
 from stiffmbs.compile.machine.native.access import compiled, room, shifted
 from stiffmbs.compile.machine.native.beams.dual import clear, of_screws, of_wrenches, set_number
 from stiffmbs.compile.machine.native.beams.nodes import node, node_view

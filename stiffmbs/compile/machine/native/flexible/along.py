@@ -6,8 +6,6 @@ apart from the stretch of second order: the terms of the derivatives of the numb
 derivatives. `add_elastic_change` adds the rest.
 """
 
-from __future__ import annotations
-
 from math import sqrt
 
 from stiffmbs.compile.machine.native.access import compiled, shifted

@@ -5,8 +5,6 @@ The strain energy is U = 1/2 sum stiffness_k p_k^2 with p = y + sum_i b_i y^T Ga
 forces, two more, and two of factors of the stretches.
 """
 
-from __future__ import annotations
-
 from stiffmbs.compile.machine.native.access import compiled, shifted
 from stiffmbs.compile.machine.native.flexible.sums import (
     DAMPING,

@@ -1,7 +1,5 @@
 """Forces, mass matrix and energies of a flexible body in a floating frame (`stiffmbs.compile.machine.native.flexible.sums`)."""
 
-from __future__ import annotations
-
 from stiffmbs.compile.machine.native.access import compiled, room, shifted
 from stiffmbs.compile.machine.native.flexible.elastic import add_coupling, elastic_forces, strain_rates, strains
 from stiffmbs.compile.machine.native.flexible.sums import (

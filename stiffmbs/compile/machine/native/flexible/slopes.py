@@ -4,8 +4,6 @@ Matrices are by rows: three of the frame's position, three of its rotation, and 
 4 + n columns, the quaternion and the modes; those by velocities 3 + n, the angular velocity and modal velocities.
 """
 
-from __future__ import annotations
-
 from stiffmbs.compile.machine.native.access import compiled, room, shifted
 from stiffmbs.compile.machine.native.flexible.elastic import add_elastic_slopes
 from stiffmbs.compile.machine.native.flexible.sums import (

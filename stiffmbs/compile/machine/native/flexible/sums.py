@@ -17,8 +17,6 @@ modal coordinates are N_k and D_k. Those by modal velocities are the rates of th
 Those by accelerations are of D_k. Last are the moments of `moments_view`.
 """
 
-from __future__ import annotations
-
 from stiffmbs.compile.machine.native.access import compiled, parts_of, room, shifted
 from stiffmbs.compile.machine.native.quads import add_products, plus_product, quad, spread, sum_of
 from stiffmbs.elements.spatial.flexible.layout import (
