@@ -182,7 +182,8 @@ def plot(
 
     Exit status: 0 done, 1 the file could not be written, 2 the input is wrong.
     """
-    from ..show.figure import check_plot, figure_of, plotted_runs, write_plot
+    from ..show.figure import check_plot, figure_of, plotted_runs
+    from ..show.style import write_sheet
 
     with refusing(source, as_json, output):
         check_plot(output)
@@ -197,7 +198,7 @@ def plot(
         figure = figure_of(runs, channels, against, title)
         sheet = plotted_runs(runs, figure, in_window=output is None)
         if output is not None:
-            write_plot(output, sheet)
+            write_sheet(output, sheet, dpi=130)
     _tell(source, figure, output, as_json)
     if output is None:
         _show_window()

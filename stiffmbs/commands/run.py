@@ -51,7 +51,8 @@ def run(
     input is wrong.
     """
     from ..results.files import check_output
-    from ..show.figure import check_figure, draw
+    from ..show.figure import check_figure, drawn
+    from ..show.style import write_sheet
 
     with refusing(scene, as_json):
         if output is not None:
@@ -66,7 +67,7 @@ def run(
     results, written = _write(scene, output, as_json, solution)
     if figure is not None:
         with refusing(scene, as_json):
-            written = is_written(figure, lambda: draw(figure, solution, loaded.figure)) and written
+            written = is_written(figure, lambda: write_sheet(figure, drawn(solution, loaded.figure))) and written
     from ..show import summary
 
     if as_json:

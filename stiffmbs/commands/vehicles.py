@@ -58,7 +58,8 @@ def kc(
     """
     from ..results.files import write_text
     from ..show.figure import check_figure
-    from ..show.suspension import draw_kc, kc_csv, kc_text
+    from ..show.style import write_sheet
+    from ..show.suspension import kc_csv, kc_figure, kc_text
     from ..studies.suspension.kinematics_and_compliance import kinematics_and_compliance
     from ..studies.suspension.vehicle import VehicleOptions
 
@@ -73,7 +74,7 @@ def kc(
             )
     written = output is None or is_written(output, lambda: write_text(output, kc_csv(found)))
     if figure is not None:
-        written = is_written(figure, lambda: draw_kc(figure, found)) and written
+        written = is_written(figure, lambda: write_sheet(figure, kc_figure(found))) and written
     click.echo(json.dumps(found.as_dict(scene)) if as_json else kc_text(scene, found))
     sys.exit(0 if written else Status.FAILED)
 
@@ -219,7 +220,8 @@ def tyre(
     from ..elements.tyres.written_file import property_text
     from ..results.files import refuse_path, write_text
     from ..show.figure import check_figure
-    from ..show.tyre import draw_tyre, tyre_text
+    from ..show.style import write_sheet
+    from ..show.tyre import tyre_figure, tyre_text
     from ..studies.tyre_curves import TyreSweep, tyre_curves, tyre_states
 
     with refusing(file, as_json):
@@ -238,7 +240,7 @@ def tyre(
     title = f"{file}: Magic Formula {properties.version}, camber {sweep.camber:.4g} rad"
     written = copy is None or is_written(copy, lambda: write_text(copy, text))
     if output is not None:
-        written = is_written(output, lambda: draw_tyre(output, title, curves)) and written
+        written = is_written(output, lambda: write_sheet(output, tyre_figure(title, curves))) and written
     notes = list(properties.notes())
     told = {
         "file": file, "version": properties.version, "camber": sweep.camber,

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..results.files import written_whole
-from ..show.style import dress, legend_below, new_sheet, stroke
+from ..show.style import dress, legend_below, new_sheet, stroke, write_sheet
 from .compare import Comparison
 from .comparison_over import ComparisonOver, logarithmic
 from .measures import MEASURES
@@ -22,9 +21,8 @@ def write_figure(path: Path, sheet: Sheet) -> None:
     """Write a figure; text in .svg stays text."""
     from matplotlib import rc_context
 
-    metadata = {"Date": None} if path.suffix == ".svg" else None
     with rc_context({"svg.fonttype": "none", "svg.hashsalt": "stiffmbs"}):
-        written_whole(path, lambda part: sheet.savefig(part, dpi=120, metadata=metadata))
+        write_sheet(path, sheet)
 
 
 def work_precision(comparison: Comparison) -> Sheet:

@@ -38,14 +38,7 @@ class MarkerMotion:
 
     def axis(self, k: int, other: MarkerMotion) -> np.ndarray:
         """Return the k-th axis of this marker in the axes of another, shape (n, 3)."""
-        w, x, y, z = self.relative(other).T
-        return np.column_stack(
-            (
-                (w * w + x * x - y * y - z * z, 2 * (x * y + w * z), 2 * (x * z - w * y)),
-                (2 * (x * y - w * z), w * w - x * x + y * y - z * z, 2 * (y * z + w * x)),
-                (2 * (x * z + w * y), 2 * (y * z - w * x), w * w - x * x - y * y + z * z),
-            )[k]
-        )
+        return rotated(self.relative(other), np.eye(3)[k])
 
     def relative(self, other: MarkerMotion) -> np.ndarray:
         """Return the quaternion of this marker's axes in those of another, shape (n, 4)."""

@@ -99,12 +99,12 @@ Entries = tuple[np.ndarray, np.ndarray, np.ndarray]
 """Row indices, column indices and values."""
 
 
-def saddle_solution(state: State, term_set: str, right: np.ndarray) -> np.ndarray:
+def saddle_solution(state: State, right: np.ndarray) -> np.ndarray:
     """Solve [M J^T; J 0] [x; w] = right, shape (n_u + n_c, k), at the state whose terms were just evaluated.
 
     Multipliers of redundant equations are zero.
     """
-    return _solved(state.system, list(_saddle(state, term_set)), right)
+    return _solved(state.system, list(_saddle(state, "motion")), right)
 
 
 def acceleration_solution(state: State, right: np.ndarray) -> np.ndarray:

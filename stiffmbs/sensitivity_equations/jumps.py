@@ -233,7 +233,7 @@ class Jumps:
         state.q[:], state.u[:] = left.q, left.u
         state.evaluate("motion", t)
         right = np.concatenate([np.zeros(system.n_u), -state.vector("motion", "V")])
-        correction, w = np.split(saddle_solution(state, "motion", right[:, None])[:, 0], [system.n_u])
+        correction, w = np.split(saddle_solution(state, right[:, None])[:, 0], [system.n_u])
         columns = []
         for direction, of_q, of_u, of_t in zip(self._motions, q, u, moved, strict=True):
             direction.q[:], direction.u[:] = of_q, of_u
@@ -241,7 +241,7 @@ class Jumps:
             force = -direction.numbers.mass * correction - direction.product("inertia", correction)
             force -= direction.product("J", w, True)
             columns.append(np.concatenate([force, -direction.vector("V") - direction.product("J", correction)]))
-        solved = saddle_solution(state, "motion", np.array(columns).T)
+        solved = saddle_solution(state, np.array(columns).T)
         return u + solved[: system.n_u].T
 
     def _counts(self, jump: np.ndarray, rates: np.ndarray) -> bool:

@@ -13,7 +13,7 @@ import numpy as np
 from ..errors import InputError, refuse_missing
 from ..model.scene import Figure
 from ..reading.units.quantity import LARGEST
-from ..results.files import refuse_path, written_whole
+from ..results.files import refuse_path
 from ..results.solution import Solution
 from .style import dress, legend_below, new_sheet, stroke
 
@@ -35,12 +35,6 @@ def check_figure(option: str, path: Path) -> None:
     """
     refuse_path(option, path, ENDINGS)
     refuse_missing("matplotlib", "'stiffmbs[plot]'", f"{option} {path}: ")
-
-
-def draw(path: Path, solution: Solution, figure: Figure | None) -> None:
-    """Draw a scene's own figure to a file; parameters and errors as for `drawn`."""
-    sheet = drawn(solution, figure)
-    written_whole(path, lambda part: sheet.savefig(part, dpi=120))
 
 
 def drawn(solution: Solution, figure: Figure | None) -> Sheet:
@@ -201,11 +195,6 @@ def plotted_runs(runs: Mapping[str, Solution], figure: Figure, in_window: bool =
     sheet = new_sheet((8.0, max(5.0, 3.4 * min(plots, 4))), in_window)
     draw_runs(sheet, runs, figure)
     return sheet
-
-
-def write_plot(path: Path, sheet: Sheet) -> None:
-    """Write a sheet to a file, completely or not at all."""
-    written_whole(path, lambda part: sheet.savefig(part, dpi=130))
 
 
 def show_live(solutions: Iterator[Solution], channels: Sequence[str], against: str, title: str = "") -> Figure:

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import base64
 import io
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+from ..results.files import written_whole
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Sheet
@@ -23,6 +26,12 @@ def new_sheet(size: tuple[float, float], on_screen: bool = False) -> Sheet:
     from matplotlib.figure import Figure as Sheet
 
     return Sheet(figsize=size, layout="constrained")
+
+
+def write_sheet(path: Path, sheet: Sheet, dpi: int = 120) -> None:
+    """Write a figure to a file, completely or not at all. Raises OSError if the file cannot be written."""
+    metadata = {"Date": None} if path.suffix == ".svg" else None
+    written_whole(path, lambda part: sheet.savefig(part, dpi=dpi, metadata=metadata))
 
 
 def data_url(sheet: Sheet, form: str, dpi: int) -> str:
@@ -44,7 +53,7 @@ def dress(axes: Any) -> None:
     axes.spines[["top", "right"]].set_visible(False)
 
 
-def legend_below(sheet: Any, axes: Any, columns: int = 3) -> None:
+def legend_below(sheet: Any, axes: Any) -> None:
     """Add the legend of all lines below the plots, where it hides nothing."""
     handles, labels = [], []
     for one in axes:
@@ -52,4 +61,4 @@ def legend_below(sheet: Any, axes: Any, columns: int = 3) -> None:
         handles += found[0]
         labels += found[1]
     if handles:
-        sheet.legend(handles, labels, loc="outside lower center", ncols=min(columns, len(handles)), frameon=False)
+        sheet.legend(handles, labels, loc="outside lower center", ncols=min(3, len(handles)), frameon=False)

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..results.files import written_whole
 from ..studies.suspension.kinematics_and_compliance import KinematicsAndCompliance
 from ..studies.suspension.road_loads import COMPONENTS, RoadLoads
 from .sections import Section, Table
@@ -168,12 +166,6 @@ def kc_figure(found: KinematicsAndCompliance) -> Sheet:
     )
     figure.suptitle(f"{found.name}: {found.axle.title} ({sides})")
     return figure
-
-
-def draw_kc(path: Path | str, found: KinematicsAndCompliance) -> None:
-    """Write the figure to a file. Raises OSError if the file cannot be written."""
-    sheet = kc_figure(found)
-    written_whole(Path(path), lambda part: sheet.savefig(part))
 
 
 def kc_section(found: KinematicsAndCompliance) -> Section:

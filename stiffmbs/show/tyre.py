@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..results.files import written_whole
 from ..studies.tyre_curves import CONSTANTS, TyreCurve
 from .style import dress, legend_below, new_sheet, stroke
 
@@ -44,12 +42,6 @@ def tyre_figure(title: str, curves: Sequence[TyreCurve]) -> Sheet:
 
 def _label(curve: TyreCurve) -> str:
     return f"{curve.load:.4g} N" + ("" if curve.pressure is None else f", {curve.pressure / 1e3:.4g} kPa")
-
-
-def draw_tyre(path: Path, title: str, curves: Sequence[TyreCurve]) -> None:
-    """Write the figure to a file. Raises OSError if the file cannot be written."""
-    sheet = tyre_figure(title, curves)
-    written_whole(path, lambda part: sheet.savefig(part, dpi=120))
 
 
 def tyre_text(title: str, curves: Sequence[TyreCurve], states: Sequence[dict[str, float]], notes: Sequence[str]) -> str:

@@ -98,29 +98,21 @@ class Forces:
         )
 
     @statements.register
-    def _spring(self, spring: SpringDamper) -> Iterator[str]:
-        if spring.spring_law is not None or spring.damper_law is not None:
-            yield self._by_laws(spring, spring.free_length, "TRANSLATIONAL")
+    def _spring(self, spring: SpringDamper | TorsionSpring) -> Iterator[str]:
+        if isinstance(spring, SpringDamper):
+            sort, free, names = "TRANSLATIONAL", spring.free_length, ("K", "C", "LENGTH", "FORCE")
+        else:
+            sort, free, names = "ROTATIONAL", spring.free_angle, ("KT", "CT", "ANGLE", "TORQUE")
+        if spring.spring_law is None and spring.damper_law is None:
+            given = dict(zip(names, (spring.stiffness, spring.damping, free, -spring.preload), strict=True))
+            yield statement("SPRINGDAMPER", next(self._numbers), sort, *self._numbering.ends(spring), *_given(given))
             return
-        given = {"K": spring.stiffness, "C": spring.damping, "LENGTH": spring.free_length, "FORCE": -spring.preload}
-        yield statement(
-            "SPRINGDAMPER", next(self._numbers), "TRANSLATIONAL", *self._numbering.ends(spring), *_given(given)
-        )
-
-    @statements.register
-    def _torsion(self, spring: TorsionSpring) -> Iterator[str]:
-        if spring.spring_law is not None or spring.damper_law is not None:
-            if not kept_parallel(self._scene, spring.i, spring.j):
-                raise Refusal(
-                    "found curves of a torsion spring between axes that no joints keep parallel, "
-                    "expected joints such as a revolute one about the same axis, or no curves"
-                )
-            yield self._by_laws(spring, spring.free_angle, "ROTATIONAL")
-            return
-        given = {"KT": spring.stiffness, "CT": spring.damping, "ANGLE": spring.free_angle, "TORQUE": -spring.preload}
-        yield statement(
-            "SPRINGDAMPER", next(self._numbers), "ROTATIONAL", *self._numbering.ends(spring), *_given(given)
-        )
+        if sort == "ROTATIONAL" and not kept_parallel(self._scene, spring.i, spring.j):
+            raise Refusal(
+                "found curves of a torsion spring between axes that no joints keep parallel, "
+                "expected joints such as a revolute one about the same axis, or no curves"
+            )
+        yield self._by_laws(spring, free, sort)
 
     def _by_laws(self, spring: SpringDamper | TorsionSpring, free: float, sort: str) -> str:
         """Return an SFORCE of the deflection s and its rate v: -(k s + law(s) + c v + law(v) + preload)."""

@@ -234,12 +234,6 @@ def unbounded(value: Range, order: int, slope: Range = EVERYWHERE) -> Enclosure:
     return Enclosure((value, np.broadcast_to(slope, value.shape), *[everywhere] * (order - 1)), order)
 
 
-def either(parts: list[Enclosure], jumps: bool) -> Enclosure:
-    """Return the hull of several alternatives; if they may jump, slopes are unbounded."""
-    value = hull(*(part.value for part in parts))
-    return unbounded(value, parts[0].order, EVERYWHERE if jumps else hull(*(part.slope for part in parts)))
-
-
 def exp(x: Enclosure) -> Enclosure:
     """Return the exponential; its Taylor coefficients are exp(x)/k!."""
     values = np.exp(x.value)
@@ -300,7 +294,8 @@ def branch(x: Any, below: Any, at: Any, above: Any) -> Enclosure:
     known = next(part for part in (x, below, at, above) if isinstance(part, Enclosure))
     sign_of, *values = (known.constant(part) for part in (x, below, at, above))
     settled = values[0].where(sign_of.value[1] < 0, values[2])
-    return either(values, jumps=True).where(around_zero(sign_of.value), settled)
+    jumping = unbounded(hull(*(value.value for value in values)), known.order)
+    return jumping.where(around_zero(sign_of.value), settled)
 
 
 def atan2(y: Any, x: Any) -> Enclosure:

@@ -13,7 +13,7 @@ from ...analyses.run import run
 from ...errors import InputError, refuse_missing
 from ...model.model_data import ModelData
 from ...reading.marker import MarkerReference
-from ...results.files import refuse_path, written_whole
+from ...results.files import refuse_path, write_text, written_whole
 from ...results.solution import Solution
 from ..page.data import moving_page, page_data
 from .derive import drawing_of
@@ -77,7 +77,7 @@ def write_animation(
         first = next(iter(runs.values()))
         figure = first.figure.y if first.figure else ()
         page = moving_page(drawing.name, page_data(drawing, poses, first, figure, anchors))
-        written_whole(path, lambda part: part.write_text(page, encoding="utf-8"))
+        write_text(path, page)
         return
     seen = view_named(view, drawing.dimensions, drawing.gravity)
     frames = pictures(drawing, poses, seen, pace, shown, anchors)

@@ -71,7 +71,7 @@ SAME_POINT = 1e-3
 """Distance below which points count as one, relative to the mechanism's size."""
 
 
-def given_shapes(name: str, body: Any, dimensions: int, size: float, wheel: float = 0.0) -> list[Part]:
+def given_shapes(name: str, body: Any, dimensions: int, wheel: float = 0.0) -> list[Part]:
     """Return the shapes of a body in its scene; cylinders of the radius of a drawn wheel are left out.
 
     Raises InputError if a mesh cannot be read.
@@ -81,7 +81,7 @@ def given_shapes(name: str, body: Any, dimensions: int, size: float, wheel: floa
     for k, shape in enumerate(body.geometry):
         if wheel and shape.type == "cylinder" and abs(shape.radius / wheel - 1) < SAME_WHEEL:
             continue
-        found, lines = _shape(shape, dimensions, f"bodies.{name}.geometry.{k}", size)
+        found, lines = _shape(shape, dimensions, f"bodies.{name}.geometry.{k}")
         point, axes = np.zeros(3), np.eye(3)
         if shape.type != "polyline":
             point[: len(shape.point)] = shape.point
@@ -98,7 +98,7 @@ def given_shapes(name: str, body: Any, dimensions: int, size: float, wheel: floa
     return parts
 
 
-def _shape(shape: Any, dimensions: int, where: str, size: float) -> Shapes:
+def _shape(shape: Any, dimensions: int, where: str) -> Shapes:
     """Return a shape in its own axes."""
     match shape.type:
         case "polyline":

@@ -45,8 +45,7 @@ def drawing_of(
     sites = _Sites(data, poses)
     wheels = _wheels(data)
     shaped = {
-        name: given_shapes(name, body, data.dimensions, 1.0, wheels.get(name, 0.0))
-        for name, body in data.bodies.items()
+        name: given_shapes(name, body, data.dimensions, wheels.get(name, 0.0)) for name, body in data.bodies.items()
     }
     of_interfaces, modal = interface_bodies(data), modal_bodies(data)
     for name, body in data.bodies.items():

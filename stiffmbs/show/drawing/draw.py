@@ -14,7 +14,8 @@ from ...analyses.linearised.sides import at_state
 from ...errors import refuse_missing
 from ...reading.names import owner_of
 from ...results.channels import channels_of
-from ...results.files import refuse_path, written_whole
+from ...results.files import refuse_path, write_text
+from ..style import write_sheet
 from .as_json import drawing_json, poses_json
 from .derive import drawing_of
 from .painted import largest_force
@@ -71,11 +72,10 @@ def write_drawing(path: Path, drawing: Drawing, poses: Poses, view: str, names: 
     """Write a drawing to a file, completely or not at all."""
     if path.suffix == ".json":
         text = json.dumps({"drawing": drawing_json(drawing), "poses": poses_json(poses)})
-        written_whole(path, lambda part: part.write_text(text, encoding="utf-8"))
+        write_text(path, text)
         return
     sheet = picture(drawing, poses, view_named(view, drawing.dimensions, drawing.gravity), Shown(names, forces))
-    plain: dict[str, Any] = {"metadata": {"Date": None}} if path.suffix == ".svg" else {}
-    written_whole(path, lambda part: sheet.savefig(part, dpi=130, **plain))
+    write_sheet(path, sheet, dpi=130)
 
 
 def draw(

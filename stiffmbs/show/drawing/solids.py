@@ -6,6 +6,7 @@ import math
 from dataclasses import replace
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from .scene_graph import Line, Solid
 
@@ -15,13 +16,7 @@ ALONG = 0.9
 
 def rotation(p: np.ndarray) -> np.ndarray:
     """Return the rotation matrices of unit quaternions, shape (..., 3, 3); their columns are the oriented axes."""
-    w, x, y, z = np.moveaxis(np.asarray(p, dtype=float), -1, 0)
-    rows = [
-        [w * w + x * x - y * y - z * z, 2 * (x * y - w * z), 2 * (x * z + w * y)],
-        [2 * (x * y + w * z), w * w - x * x + y * y - z * z, 2 * (y * z - w * x)],
-        [2 * (x * z - w * y), 2 * (y * z + w * x), w * w - x * x - y * y + z * z],
-    ]
-    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+    return Rotation.from_quat(np.asarray(p, dtype=float)[..., [1, 2, 3, 0]]).as_matrix()
 
 
 def across(direction: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -8,7 +8,7 @@ from pathlib import Path
 from ...analyses.linearised.modes import Modes
 from ...errors import InputError, SolverError, refuse_missing
 from ...linear_analysis.modes import Motion
-from ...results.files import refuse_path, written_whole
+from ...results.files import refuse_path, write_text
 from ...results.solution import Solution
 from ..drawing.deformed import true_to_scale
 from ..drawing.derive import drawing_of
@@ -56,4 +56,4 @@ def write_modes(path: Path, found: Modes, amplitude: float) -> None:
     if data is None:
         raise InputError(f"-o {path}: found no mode that can be shown, expected a vibration and a smaller --amplitude")
     page = moving_page(f"Modes of {found.name or 'the model'}", data)
-    written_whole(path, lambda part: part.write_text(page, encoding="utf-8"))
+    write_text(path, page)

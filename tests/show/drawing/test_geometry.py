@@ -144,7 +144,7 @@ def test_a_mesh_is_looked_for_beside_its_scene(tmp_path):
     binary_stl(tmp_path / "parts" / "t.stl")
     text = "{bodies: {a: {mass: 1, inertia: 1, geometry: {type: mesh, file: parts/t.stl, scale: 2}}}}"
     read = read_scene(text, file=tmp_path / "scene.yaml")
-    (part,) = given_shapes("a", read.bodies["a"], 2, 1.0)
+    (part,) = given_shapes("a", read.bodies["a"], 2)
     assert volume(part.solids[0]) == pytest.approx(8 / 6)
 
 
@@ -153,7 +153,7 @@ def test_shapes_in_space_are_placed_from_the_centre_of_mass():
         mass=1, inertia=(1, 1, 1), center_of_mass=(0, 0, 1),
         geometry={"type": "box", "size": (2, 4, 6), "point": (1, 0, 0), "orientation": {"z": (1, 0, 0)}},
     )  # fmt: skip
-    (part,) = given_shapes("a", body, 3, 1.0)
+    (part,) = given_shapes("a", body, 3)
     corners = part.solids[0].vertices
     assert corners.mean(axis=0) == pytest.approx([1, 0, -1])
     assert np.ptp(corners[:, 0]) == pytest.approx(6)
@@ -191,7 +191,7 @@ use: {{right: {{part: p}}, left: {{part: p, mirror: x}}}}
         turned = spatial_axes(body)
         origin = np.zeros(3)
         origin[:dimensions] = body.position
-        parts = given_shapes("a", body, dimensions, 1.0)
+        parts = given_shapes("a", body, dimensions)
         solids_found = [Solid(origin + s.vertices @ turned.T, s.faces, s.closed) for part in parts for s in part.solids]
         points = [origin + line.points @ turned.T for part in parts for line in part.lines]
         found[side] = solids_found, np.vstack([*(s.vertices for s in solids_found), *points])

@@ -18,13 +18,11 @@ def zigzag(width: float, shift: float = 0.0) -> list[tuple[float, float, float]]
     return [(0, shift, 0), (0.2, shift, 0), *teeth, (0.8, shift, 0), (1, shift, 0)]
 
 
-def coil(radius: float, shift: float = 0.0) -> list[tuple[float, float, float]]:
+def coil(radius: float) -> list[tuple[float, float, float]]:
     """A spatial spring."""
     turns = np.linspace(0, TURNS, TURNS * 14 + 1)
-    around = [
-        (0.15 + 0.7 * t / TURNS, shift + radius * np.cos(2 * np.pi * t), radius * np.sin(2 * np.pi * t)) for t in turns
-    ]
-    return [(0, shift, 0), (0.15, shift, 0), *around, (0.85, shift, 0), (1, shift, 0)]
+    around = [(0.15 + 0.7 * t / TURNS, radius * np.cos(2 * np.pi * t), radius * np.sin(2 * np.pi * t)) for t in turns]
+    return [(0, 0, 0), (0.15, 0, 0), *around, (0.85, 0, 0), (1, 0, 0)]
 
 
 def damper(width: float, shift: float = 0.0) -> list[list[tuple[float, float, float]]]:
