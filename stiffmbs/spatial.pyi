@@ -336,6 +336,7 @@ class ExactBeam(_ExactBeam):
         j: given.Marker,
         stiffness: given.Matrix,
         unloaded: given.Numbers = ...,
+        shear_centre: given.Numbers | None = ...,
         type: Literal["exact_beam"] = ...,
     ) -> None: ...
 

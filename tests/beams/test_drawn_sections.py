@@ -30,7 +30,7 @@ def test_a_drawn_rectangle_and_a_box_have_their_constants():
 def test_bad_drawings_are_reported():
     pytest.importorskip("sectionproperties")
     L = [[0, 0], [0.05, 0], [0.05, 0.005], [0.005, 0.005], [0.005, 0.05], [0, 0.05]]
-    U = [[0, 0], [0.05, 0], [0.05, 0.05], [0.045, 0.05], [0.045, 0.005], [0.005, 0.005], [0.005, 0.05], [0, 0.05]]
+    U = [[0, 0], [0.05, 0], [0.05, 0.005], [0.005, 0.005], [0.005, 0.045], [0.05, 0.045], [0.05, 0.05], [0, 0.05]]
     beam = "bodies: {s: {type: beam, start: [0, 0], end: [1, 0], elements: 2, section: {points: %s}, material: {E: 1e9, density: 1}}}"
     for points, expected in (
         (L, "bodies.s.section: found principal axes at "),

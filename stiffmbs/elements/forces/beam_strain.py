@@ -43,6 +43,11 @@ class BeamStrain(Force):
         screw = e.logarithm(e.i, e.j).vector
         return e.named([x / e.length - rest for x, rest in zip(screw, e.unloaded, strict=True)])  # type: ignore[no-any-return]
 
+    @staticmethod
+    def stretching(e: Symbolic, strain: list[Expr]) -> list[tuple[Expr, Expr, dict[int, Expr]]]:
+        """Return b, the strain x that stretches the axis by b/2 x^2, and its derivatives by components, of each such strain."""
+        return [(b, strain[k], {k: 1}) for k, b in enumerate(e.bowing, 1)]
+
     @classmethod
     def stress(cls, e: Symbolic) -> list[Expr]:
         """Return the section forces and moments, N and N m."""
@@ -50,8 +55,9 @@ class BeamStrain(Force):
         elastic = times(e.stiffness, cls.bowed(e, strain))
         if e.bowing is not None:
             axial = e.named(elastic[0])
-            for k, share in enumerate(e.bowing, 1):
-                elastic[k] += share * axial * strain[k]
+            for b, x, slopes in cls.stretching(e, strain):
+                for k, slope in slopes.items():
+                    elastic[k] += b * axial * x * slope
         if e.damping_ratio is None:
             return e.named(elastic)  # type: ignore[no-any-return]
         viscous = times(e.stiffness, e.named([rate / e.length for rate in e.logarithm(e.i, e.j).rates]))
@@ -62,8 +68,8 @@ class BeamStrain(Force):
         """Return the strain with the stretch of an axis that is bent to an S between the nodes, as the shear shows."""
         if e.bowing is None:
             return strain
-        shear = zip(e.bowing, strain[1:], strict=False)
-        return e.named([strain[0] + sum(share * x**2 for share, x in shear) / 2, *strain[1:]])  # type: ignore[no-any-return]
+        stretch = sum(b * x**2 for b, x, _ in cls.stretching(e, strain)) / 2
+        return e.named([strain[0] + stretch, *strain[1:]])  # type: ignore[no-any-return]
 
     @classmethod
     def condensed_powers(cls, e: Symbolic) -> list[tuple[Expr, Expr]]:

@@ -61,7 +61,9 @@ class Beam(LineBody):
     interpolation: Literal["pairs", "spectral"] = Field(
         "pairs", description="of the strain: constant between two nodes, or by polynomials through three to five nodes"
     )
-    section: AnySection | None = Field(None, description="cross section: circle, tube, rectangle, i, numbers or points")
+    section: AnySection | None = Field(
+        None, description="cross section: circle, tube, rectangle, i, l, u, numbers or points"
+    )
     section_end: AnySection | None = Field(
         None, description="cross section at the end, if it varies linearly along the beam: of the same type"
     )

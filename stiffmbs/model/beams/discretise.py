@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from itertools import pairwise
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from .division import AUTOMATIC, Divided, Elements
 from .interpolation import Group, group_sizes
 from .rigid_motion import adjoint, logarithm, tangent
 from .section import Material, Section
-from .stiffness import bowing, element_stiffness
+from .stiffness import bowing, element_stiffness, inverse
 
 LARGEST_ROTATION = 3.0
 """Largest rotation between the ends of an unloaded element, rad."""
@@ -22,6 +22,8 @@ SAME = 1e-12
 """Tolerance of the places of stations, relative to the length."""
 PLACES = 10
 """Decimals of fractions of the length at which nodes of two divisions coincide."""
+HEIGHT_IN_PLANE = [0, 2, 1, 3, 5, 4]
+"""Components of strain with axes 2 and 3 of the section exchanged."""
 Z = np.array([0.0, 0.0, 1.0])
 
 
@@ -59,11 +61,11 @@ class Node:
     radius: float = 0.0
 
     def lump(self, share: float, mass: float, inertia: np.ndarray, axes: np.ndarray) -> None:
-        """Add the mass of a length of the beam whose inertia per length is given along its axes."""
+        """Add the mass of a length of the beam whose inertia per length, shape (3, 3), is given along its axes."""
         R = self.axes.T @ axes
         self.share += share
         self.mass += share * mass
-        self.inertia = self.inertia + share * R @ np.diag(inertia) @ R.T
+        self.inertia = self.inertia + share * R @ inertia @ R.T
 
 
 @dataclass(frozen=True)
@@ -84,6 +86,8 @@ class Element:
         Shape (6, 6).
     bowing : ndarray
         Factors of the stretch by both shears; of elements between two nodes.
+    shear_centre : (float, float)
+        From the axis along axes 2 and 3, m; of elements between two nodes.
     reference : int
         Place of the reference node.
     shapes, slopes : ndarrays
@@ -96,6 +100,7 @@ class Element:
     unloaded: np.ndarray
     stiffness: np.ndarray
     bowing: np.ndarray = field(default_factory=lambda: np.zeros(2))
+    shear_centre: tuple[float, float] = (0.0, 0.0)
     reference: int = 0
     shapes: np.ndarray = field(default_factory=lambda: np.zeros(0))
     slopes: np.ndarray = field(default_factory=lambda: np.zeros(0))
@@ -110,34 +115,41 @@ class Line:
     divided: Divided
 
 
-@dataclass(frozen=True)
-class Constants:
-    """Constants of the cross sections along a beam.
+class Constants(NamedTuple):
+    """Constants of the cross section at a place of a beam.
 
     Attributes
     ----------
-    ends : tuple
-        Stiffness, shape (6,), mass per length, and inertia per length, shape (3,), or sections at both ends.
+    stiffness : ndarray, shape (6, 6)
+    mass : float
+        Per length, kg/m.
+    inertia : ndarray, shape (3, 3)
+        Per length, kg m.
+    shear_centre : (float, float)
+        From the axis along axes 2 and 3, m.
     """
 
-    beam: Any
-    length: float
-
-    def at(self, s: float) -> tuple[np.ndarray, float, np.ndarray]:
-        """Return stiffness, shape (6,), mass per length and inertia per length, shape (3,)."""
-        beam = self.beam
-        if beam.section is None:
-            return _direct(beam)
-        section = _between(beam.section, beam.section_end, s / self.length)
-        return _of_section(section, beam.material)
+    stiffness: np.ndarray
+    mass: float
+    inertia: np.ndarray
+    shear_centre: tuple[float, float] = (0.0, 0.0)
 
 
-def _direct(beam: Any) -> tuple[np.ndarray, float, np.ndarray]:
-    given, inertia = np.array(beam.stiffness, dtype=float), beam.inertia_per_length
-    if len(given) == 6:
-        return given, beam.mass_per_length, np.array(inertia, dtype=float)
-    EA, GA, EI = given
-    return np.array([EA, GA, GA, EI, EI, EI]), beam.mass_per_length, np.array([2 * inertia, inertia, inertia])
+def _constants(beam: Any, share: float) -> Constants:
+    """Return the constants at a fraction of the length; ValueError if the section of a planar beam is not symmetric."""
+    if beam.section is not None:
+        section: Section = _between(beam.section, beam.section_end, share)
+        material: Material = beam.material
+        of = section.properties(material.nu)
+        if beam.dimensions == 2 and (why := of.leaves_plane()):
+            raise ValueError(f"section: {why}")
+        K, density = of.stiffness(material.E, material.G), material.density
+        return Constants(K, density * of.A, of.inertia(density), of.shear_centre)
+    given, inertia = beam.stiffness, beam.inertia_per_length
+    if len(given) != 6:
+        EA, GA, EI = given
+        given, inertia = (EA, GA, GA, EI, EI, EI), (2 * inertia, inertia, inertia)
+    return Constants(np.diag(given), beam.mass_per_length, np.diag(inertia))
 
 
 def _between(start: Section, end: Section | None, share: float) -> Section:
@@ -152,12 +164,6 @@ def _between(start: Section, end: Section | None, share: float) -> Section:
     return start.model_copy(update=numbers)
 
 
-def _of_section(section: Section, material: Material) -> tuple[np.ndarray, float, np.ndarray]:
-    of, E, G, rho = section.properties(material.nu), material.E, material.G, material.density
-    stiffness = np.array([E * of.A, of.shear2 * G * of.A, of.shear3 * G * of.A, G * of.J, E * of.I2, E * of.I3])
-    return stiffness, rho * of.A, rho * np.array([of.I2 + of.I3, of.I2, of.I3])
-
-
 def discretise(beam: Any) -> Line:
     """Return the nodes and elements of a beam.
 
@@ -168,7 +174,10 @@ def discretise(beam: Any) -> Line:
     """
     pieces, planar = beam.pieces(), beam.dimensions == 2
     total = sum(piece.length for piece in pieces)
-    constants = Constants(beam, total)
+
+    def constants(s: float) -> Constants:
+        return _constants(beam, s / total)
+
     nodes: list[Node] = []
     elements: list[Element] = []
     intervals = list(_intervals(pieces, beam.stations, total))
@@ -234,7 +243,7 @@ class _Interval:
 
     piece: Piece
     first: float
-    constants: Constants
+    constants: Callable[[float], Constants]
     up: np.ndarray
     planar: bool
     nodes: list[Node]
@@ -249,21 +258,25 @@ class _Interval:
         self.nodes.extend(Node("", float(s), *pose) for s, pose in zip(where[1:], poses[1:], strict=True))
         own = self.nodes[-len(where) :]
         for node, s, (_, axes), weight in zip(own, where, poses, group.weights, strict=True):
-            _, mass, inertia = self.constants.at(float(s))
-            node.lump(float(weight) * (end - start), mass, inertia, axes)
+            of = self.constants(float(s))
+            node.lump(float(weight) * (end - start), of.mass, of.inertia, axes)
         turned = own[0].axes.T @ poses[0][1]
+        if group.sections and any(self.constants(start).shear_centre):
+            raise ValueError(
+                "interpolation: found spectral and a section with its shear centre off the centroid, expected pairs for it"
+            )
         if not group.sections:
             for k, pair in enumerate(pairwise(where)):
                 axes = turned if k == 0 else np.eye(3)
                 self.elements.append(self._single(own[k : k + 2], axes, pair, _screw(poses[k], poses[k + 1])))
             return
         relative = [_screw(poses[group.reference], pose) for pose in poses]
-        compliances = group.compliances(lambda share: 1 / self._stiffness(start + share * (end - start)))
+        compliances = group.compliances(lambda share: np.linalg.inv(self._stiffness(start + share * (end - start))))
         for (_, weight, shapes, slopes), compliance in zip(group.sections, compliances, strict=True):
             screw, slope = shapes @ relative, slopes @ relative / (end - start)
             strain = tangent(adjoint(screw)) @ slope
             unloaded = np.where(np.abs(strain) < 1e-13 * np.linalg.norm(strain), 0.0, strain)
-            K = np.diag(1 / compliance)
+            K = inverse(compliance)
             length = float(weight) * (end - start)
             self.elements.append(
                 Element(
@@ -287,7 +300,10 @@ class _Interval:
             raise ValueError("elements: found an element that turns by half a turn, expected more elements")
         unloaded = np.where(np.abs(screw) < 1e-14 * length, 0.0, screw) / length
         K = element_stiffness(unloaded, length, lambda share: self._stiffness(start + share * (end - start)))
-        return Element(nodes, turned, length, unloaded, K, bowing(K, self._stiffness((start + end) / 2)))
+        middle = (start + end) / 2
+        shear_centre = (0.0, 0.0) if self.planar else self.constants(middle).shear_centre
+        bow = bowing(K, self._stiffness(middle), shear_centre)
+        return Element(nodes, turned, length, unloaded, K, bow, shear_centre)
 
     def _pose(self, s: float) -> tuple[np.ndarray, np.ndarray]:
         point, along = self.piece.at(s - self.first)
@@ -297,8 +313,8 @@ class _Interval:
             raise ValueError(f"up: {error}") from None
 
     def _stiffness(self, s: float) -> np.ndarray:
-        K = self.constants.at(s)[0]
-        return K[[0, 2, 1, 3, 5, 4]] if self.planar else K
+        K = self.constants(s).stiffness
+        return K[np.ix_(HEIGHT_IN_PLANE, HEIGHT_IN_PLANE)] if self.planar else K
 
 
 def _screw(one: tuple[np.ndarray, np.ndarray], other: tuple[np.ndarray, np.ndarray]) -> np.ndarray:

@@ -5,18 +5,18 @@ from __future__ import annotations
 import math
 from functools import lru_cache
 
+from .section import Properties
+
 Loop = tuple[tuple[float, float], ...]
 ELEMENTS = 300
 """Triangles of the mesh: an error of 1e-4 of the torsion constant of a rectangle."""
-PRINCIPAL = 1e-6
-"""Largest product of inertia of principal axes, relative to the larger second moment."""
-CENTRED = 0.01
-"""Largest distance of the shear centre from the centroid, relative to the root of the area."""
+SYMMETRIC = 1e-3
+"""Offset of the shear centre over the root of the area, and coupling of both shears, that are errors of the mesh."""
 
 
 @lru_cache(maxsize=32)
-def constants_of(points: Loop, holes: tuple[Loop, ...]) -> tuple[float, float, float, float, float, float]:
-    """Return A, I2, I3, J and the shear factors along axes 2 and 3, the latter for a Poisson ratio of zero.
+def constants_of(points: Loop, holes: tuple[Loop, ...]) -> Properties:
+    """Return the constants, those of shear for a Poisson ratio of zero.
 
     The warping function is solved by finite elements (Pilkey, Analysis and Design of Elastic Beams, 2002).
 
@@ -29,7 +29,7 @@ def constants_of(points: Loop, holes: tuple[Loop, ...]) -> tuple[float, float, f
     Raises
     ------
     ValueError
-        If the package is missing, the outlines cross, or axes 2 and 3 are not principal axes through the shear centre.
+        If the package is missing or the outlines cross.
     """
     try:
         from sectionproperties.analysis import Section
@@ -47,15 +47,11 @@ def constants_of(points: Loop, holes: tuple[Loop, ...]) -> tuple[float, float, f
     section.calculate_warping_properties()
     A = float(section.get_area())
     I2, I3, product = (float(value) for value in section.get_ic())
-    if abs(product) > PRINCIPAL * max(I2, I3):
-        angle = math.degrees(math.atan2(-2 * product, I2 - I3) / 2)
-        raise ValueError(
-            f"found principal axes at {angle:.4g} deg from axes 2 and 3, expected none; turn the points by {-angle:.4g} deg, and 'up' of the beam"
-        )
-    away = math.dist(section.get_sc(), section.get_c())
-    if away > CENTRED * math.sqrt(A):
-        raise ValueError(
-            f"found a shear centre {away:.3g} m from the centroid, expected both at one point: bending would twist the beam"
-        )
+    y, z = (
+        float(a - b) if abs(a - b) > SYMMETRIC * math.sqrt(A) else 0.0
+        for a, b in zip(section.get_sc(), section.get_c(), strict=True)
+    )
     along2, along3 = (float(value) for value in section.get_as())
-    return A, I2, I3, float(section.get_j()), along2 / A, along3 / A
+    coupling = A / float(section.section_props.a_sxy or math.inf)
+    coupling = coupling if abs(coupling) > SYMMETRIC else 0.0
+    return Properties(A, I2, I3, float(section.get_j()), along2 / A, along3 / A, product, (y, z), coupling)

@@ -108,6 +108,7 @@ def _force(name: str, element: Element, beam: Any) -> dict[str, Any]:
             "type": "exact_beam",
             "stiffness": [[part or None for part in row] for row in K],
             "bowing": _numbers(element.bowing[: len(components) // 3]),
+            **({"shear_centre": [0.0, *_numbers(element.shear_centre)]} if any(element.shear_centre) else {}),
             **common,
             "i": i,
             "j": j,

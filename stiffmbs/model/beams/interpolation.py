@@ -44,17 +44,18 @@ class Group:
     def compliances(self, at: Callable[[float], np.ndarray]) -> np.ndarray:
         """Return the compliance of each section, so that they have the same moments along the axis as those of the beam.
 
-        `at` returns compliances, shape (m,), at a fraction of the length. The deflection of a tapered cantilever under
-        an end load then has no error from three elements on.
+        `at` returns the compliance, shape (m, m), at a fraction of the length. The deflection of a tapered cantilever
+        under an end load then has no error from three elements on.
         """
         points, weights = legendre.leggauss(QUADRATURE)
         values = np.array([at((1 + x) / 2) for x in points])
         places = np.array([2 * place - 1 for place, *_ in self.sections])
         basis = legendre.legvander(points, len(places) - 1) @ np.linalg.inv(legendre.legvander(places, len(places) - 1))
         own = np.array([2 * weight for _, weight, *_ in self.sections])
-        found = (basis * weights[:, None]).T @ values / own[:, None]
-        plain = np.array([at((1 + x) / 2) for x in places])
-        return cast(np.ndarray, np.where((found > 0).all(axis=0), found, plain))
+        found = np.tensordot((basis * weights[:, None]).T, values, 1) / own[:, None, None]
+        if np.linalg.eigvalsh(found).min() > 0:
+            return cast(np.ndarray, found)
+        return np.array([at((1 + x) / 2) for x in places])
 
     @property
     def reference(self) -> int:

@@ -9,14 +9,21 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Annotated, Any, Literal
+from itertools import pairwise
+from typing import Annotated, Any, Literal, cast
 
+import numpy as np
 from pydantic import Field, model_validator
 
 from ...elements.shape import one_of
 from ...reading.fields import Described, Measured
 from ...reading.units import si
+from .open_section import of_rectangles, of_walls
 
+PRINCIPAL = 1e-6
+"""Largest product of inertia of principal axes, relative to the larger second moment."""
+CENTRED = 0.01
+"""Largest distance of the shear centre from the plane of motion, relative to the root of the area."""
 Area = Annotated[float, Measured("area", above=0)]
 SecondMoment = Annotated[float, Measured("second moment of area", above=0)]
 Factor = Annotated[float, Measured("number", above=0)]
@@ -36,6 +43,12 @@ class Properties:
         Torsion constant, m^4.
     shear2, shear3 : float
         Shear factors: GA2 = shear2 G A.
+    I23 : float
+        Product of inertia, the integral of the product of the coordinates along axes 2 and 3, m^4.
+    shear_centre : (float, float)
+        From the centroid along axes 2 and 3, m.
+    shear23 : float
+        Inverse of a shear factor: the shear strain along axis 2 by a force along axis 3 is shear23 V/(G A).
     """
 
     A: float
@@ -44,6 +57,38 @@ class Properties:
     J: float
     shear2: float
     shear3: float
+    I23: float = 0.0
+    shear_centre: tuple[float, float] = (0.0, 0.0)
+    shear23: float = 0.0
+
+    def stiffness(self, E: float, G: float) -> np.ndarray:
+        """Return the matrix of the strains (Gamma, kappa) of the centroid, shape (6, 6).
+
+        Its shear block belongs to the strains of the shear centre, Gamma_2 - z kappa_1 and Gamma_3 + y kappa_1.
+        """
+        y, z = self.shear_centre
+        K = np.diag([E * self.A, 0.0, 0.0, G * self.J, E * self.I2, E * self.I3])
+        K[4, 5] = K[5, 4] = -E * self.I23
+        K[1:3, 1:3] = G * self.A * np.linalg.inv([[1 / self.shear2, self.shear23], [self.shear23, 1 / self.shear3]])
+        at_shear_centre = np.eye(6)
+        at_shear_centre[1:3, 3] = -z, y
+        return cast(np.ndarray, at_shear_centre.T @ K @ at_shear_centre)
+
+    def inertia(self, density: float) -> np.ndarray:
+        """Return the inertia per length about the centroid, shape (3, 3), kg m."""
+        J = density * np.diag([self.I2 + self.I3, self.I2, self.I3])
+        J[1, 2] = J[2, 1] = -density * self.I23
+        return cast(np.ndarray, J)
+
+    def leaves_plane(self) -> str:
+        """Return why a force along axis 3 moves the section out of the plane of axes 1 and 3; nothing if it does not."""
+        y, _ = self.shear_centre
+        if abs(self.I23) > PRINCIPAL * max(self.I2, self.I3):
+            angle = math.degrees(math.atan2(-2 * self.I23, self.I2 - self.I3) / 2)
+            return f"found principal axes at {angle:.4g} deg from axes 2 and 3, expected none in the plane: the beam would bend out of it"
+        if abs(y) > CENTRED * math.sqrt(self.A):
+            return f"found a shear centre {abs(y):.3g} m beside the plane, expected it in the plane: bending would twist the beam"
+        return ""
 
 
 class Section(Described):
@@ -115,6 +160,17 @@ class Rectangle(Section):
         return Properties(b * h, b * h**3 / 12, h * b**3 / 12, J, 5 / 6, 5 / 6)
 
 
+def _fit(profile: Any) -> Any:
+    """Return a profile with two flanges and a web, if these are within its width and height."""
+    if 2 * profile.flange >= profile.height:
+        raise ValueError(
+            f"flange: found {profile.flange:g} m, expected less than half the height of {profile.height:g} m"
+        )
+    if profile.web >= profile.width:
+        raise ValueError(f"web: found {profile.web:g} m, expected less than the width of {profile.width:g} m")
+    return profile
+
+
 class IProfile(Section):
     """I profile with two equal flanges; its web stands along the height."""
 
@@ -124,15 +180,7 @@ class IProfile(Section):
     flange: si.PositiveLength = Field(description="thickness of each flange, m")
     web: si.PositiveLength = Field(description="thickness of the web, m")
 
-    @model_validator(mode="after")
-    def _fits(self) -> IProfile:
-        if 2 * self.flange >= self.height:
-            raise ValueError(
-                f"flange: found {self.flange:g} m, expected less than half the height of {self.height:g} m"
-            )
-        if self.web >= self.width:
-            raise ValueError(f"web: found {self.web:g} m, expected less than the width of {self.width:g} m")
-        return self
+    _fits = model_validator(mode="after")(_fit)
 
     def properties(self, nu: float) -> Properties:
         """Thin-walled values: shear is carried by the web along axis 3 and by the flanges along axis 2."""
@@ -145,6 +193,59 @@ class IProfile(Section):
         return Properties(A, I2, I3, J, 5 / 6 * 2 * b * t / A, h * w / A)
 
 
+class Angle(Section):
+    """L profile; its legs extend from the corner along axes 2 and 3."""
+
+    type: Literal["l"] = "l"
+    width: si.PositiveLength = Field(description="of the leg along axis 2, m")
+    height: si.PositiveLength = Field(description="of the leg along axis 3, m")
+    thickness: si.PositiveLength = Field(description="of both legs, m")
+
+    @model_validator(mode="after")
+    def _fits(self) -> Angle:
+        if self.thickness >= min(self.width, self.height):
+            raise ValueError(
+                f"thickness: found {self.thickness:g} m, expected less than the legs of {self.width:g} and {self.height:g} m"
+            )
+        return self
+
+    def properties(self, nu: float) -> Properties:
+        """Exact moments of area, and the shear flow and torsion of thin walls."""
+        b, h, t = self.width, self.height, self.thickness
+        walls = ((b, t / 2), (t / 2, t / 2), (t / 2, h))
+        return _thin([(0, b, 0, t), (0, t, t, h)], walls, (t, t))
+
+
+class Channel(Section):
+    """U profile with two equal flanges; its web stands along the height, and the flanges extend along axis 2."""
+
+    type: Literal["u"] = "u"
+    width: si.PositiveLength = Field(description="of the flanges with the web, along axis 2, m")
+    height: si.PositiveLength = Field(description="overall, along axis 3, m")
+    flange: si.PositiveLength = Field(description="thickness of each flange, m")
+    web: si.PositiveLength = Field(description="thickness of the web, m")
+
+    _fits = model_validator(mode="after")(_fit)
+
+    def properties(self, nu: float) -> Properties:
+        """Exact moments of area, and the shear flow and torsion of thin walls."""
+        b, h, t, w = self.width, self.height, self.flange, self.web
+        walls = ((b, t / 2), (w / 2, t / 2), (w / 2, h - t / 2), (b, h - t / 2))
+        return _thin([(0, b, 0, t), (0, w, t, h - t), (0, b, h - t, h)], walls, (t, w, t))
+
+
+def _thin(
+    rectangles: list[tuple[float, float, float, float]], walls: tuple[tuple[float, float], ...], t: tuple[float, ...]
+) -> Properties:
+    A, centroid, moments = of_rectangles(rectangles)
+    centre, compliance = of_walls(walls, t)
+    J = sum(math.dist(a, b) * each**3 for (a, b), each in zip(pairwise(walls), t, strict=True)) / 3
+    (I3, I23), (_, I2) = moments.tolist()
+    (shear2, shear23), (_, shear3) = (A * compliance).tolist()
+    y, z = (centre - centroid).tolist()
+    return Properties(A, I2, I3, J, 1 / shear2, 1 / shear3, I23, (y, z), shear23)
+
+
 class Numbers(Section):
     """Section of any form, by its constants; in the plane I2 and shear3 are those of the plane."""
 
@@ -155,10 +256,22 @@ class Numbers(Section):
     J: SecondMoment | None = Field(None, description="torsion constant, m^4; I2 + I3 by default, as for a circle")
     shear2: Factor = Field(1.0, description="shear factor along axis 2")
     shear3: Factor = Field(1.0, description="shear factor along axis 3, or in the plane")
+    I23: Annotated[float, Measured("second moment of area")] = Field(
+        0.0, description="product of inertia, positive where the area is in the first and third quadrant, m^4"
+    )
+    shear_centre: tuple[si.Length, si.Length] = Field((0.0, 0.0), description="from the centroid along axes 2 and 3, m")
+
+    @model_validator(mode="after")
+    def _positive(self) -> Numbers:
+        limit = math.sqrt(self.I2 * (self.I2 if self.I3 is None else self.I3))
+        if abs(self.I23) >= limit:
+            raise ValueError(f"I23: found {self.I23:g} m^4, expected less than the root of I2 I3, {limit:g} m^4")
+        return self
 
     def properties(self, nu: float) -> Properties:
         I3 = self.I2 if self.I3 is None else self.I3
-        return Properties(self.A, self.I2, I3, self.I2 + I3 if self.J is None else self.J, self.shear2, self.shear3)
+        J = self.I2 + I3 if self.J is None else self.J
+        return Properties(self.A, self.I2, I3, J, self.shear2, self.shear3, self.I23, self.shear_centre)
 
 
 _Point = tuple[si.Length, si.Length]
@@ -176,12 +289,12 @@ class Drawn(Section):
         from .drawn_section import constants_of
 
         try:
-            return Properties(*constants_of(self.points, self.holes))
+            return constants_of(self.points, self.holes)
         except ValueError as error:
             raise ValueError(f"section: {error}") from None
 
 
-SECTIONS = (Circle, Tube, Rectangle, IProfile, Numbers, Drawn)
+SECTIONS = (Circle, Tube, Rectangle, IProfile, Angle, Channel, Numbers, Drawn)
 
 
 AnySection = Annotated[Any, one_of("a section such as {type: circle, diameter: 10 mm}", *SECTIONS)]

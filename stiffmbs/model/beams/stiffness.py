@@ -21,14 +21,19 @@ def element_stiffness(unloaded: np.ndarray, length: float, section: Callable[[fl
     The nodes of a linear beam under nodal loads then have no discretisation error.
 
     `unloaded` is (Gamma, kappa) without load, shape (6,); its first part is (1, 0, 0) for a tangent axis. `section`
-    returns the stiffness of the section, shape (6,), at a fraction of the length.
+    returns the stiffness of the section, shape (6, 6), at a fraction of the length.
     """
     bracket = adjoint(unloaded)
     symmetric = np.linalg.inv(half_sine(length * bracket))
     compliance = np.zeros((6, 6))
     for point, weight in zip(POINTS, WEIGHTS, strict=True):
         P = symmetric @ exponential(point * length / 2 * bracket)
-        compliance += weight / 2 * (P / section((1 + point) / 2)) @ P.T
+        compliance += weight / 2 * P @ np.linalg.solve(section((1 + point) / 2), P.T)
+    return inverse(compliance)
+
+
+def inverse(compliance: np.ndarray) -> np.ndarray:
+    """Return the stiffness of a compliance, with zeros in place of rounding."""
     found = np.linalg.inv(compliance)
     found = (found + found.T) / 2
     return cast(np.ndarray, np.where(np.abs(found) < 1e-13 * _scale(found), 0.0, found))
@@ -38,8 +43,8 @@ HERMITE = 6 / 5
 """Geometric stiffness for the rotation of both ends of a slender element, per axial force and length: 1/5 + 1."""
 
 
-def bowing(K: np.ndarray, section: np.ndarray) -> np.ndarray:
-    """Return the factors b of an `exact_beam` for its two shears.
+def bowing(K: np.ndarray, section: np.ndarray, shear_centre: tuple[float, float]) -> np.ndarray:
+    """Return the factors b of an `exact_beam` for the two shears of its shear centre.
 
     Without bowing, elements under a tension above 12 EI/L^2 would fold. The shear of a thick element is real, and does
     not stretch it: b is 6/5 times the square of the part of its compliance that stands for bending.
@@ -48,11 +53,16 @@ def bowing(K: np.ndarray, section: np.ndarray) -> np.ndarray:
     ----------
     K : ndarray, shape (6, 6)
         Stiffness of the element.
-    section : ndarray, shape (6,)
+    section : ndarray, shape (6, 6)
         That of its cross section.
+    shear_centre : (float, float)
+        From the centroid, along axes 2 and 3 of the element, m.
     """
-    compliance = np.diag(np.linalg.inv(K))[1:3]
-    bending = np.maximum(1 - 1 / (section[1:3] * compliance), 0.0)
+    y, z = shear_centre
+    shears = np.eye(6)[1:3]
+    shears[:, 3] = -z, y
+    compliance, of_shear = (np.diag(shears @ np.linalg.solve(each, shears.T)) for each in (K, section))
+    bending = np.maximum(1 - of_shear / compliance, 0.0)
     return cast(np.ndarray, HERMITE * np.where(bending > 1e-6, bending, 0.0) ** 2)
 
 

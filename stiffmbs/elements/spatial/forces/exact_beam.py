@@ -9,7 +9,7 @@ from pydantic import Field, field_validator
 
 from ....reading.fields import Measured
 from ....reading.units import si
-from ...element import Symbolic
+from ...element import Expr, Symbolic
 from ...forces.beam_section import BeamSectionLaw
 from ...forces.beam_strain import BeamStrain
 from ...forces.bushing import check_symmetric
@@ -44,7 +44,9 @@ class ExactBeam(BeamStrain):
 
     With `bowing`, the axial strain is Gamma_1 + 1/2 sum b Gamma_k^2, and an axial force stiffens or softens the shear. A
     slender element of a beam, whose shear stands for bending between its nodes, then neither folds under tension nor
-    buckles late. Its b is 6/5, as in the geometric stiffness matrix of beams (Przemieniecki 1968, ch. 15).
+    buckles late. Its b is 6/5, as in the geometric stiffness matrix of beams (Przemieniecki 1968, ch. 15). These shears
+    are those of the shear centre y, z (`shear_centre`), and torsion about it stretches the fibres of the section, on average
+    by r^2/2 kappa_1^2 with r^2 = (EI2 + EI3)/EA + y^2 + z^2 (Wagner 1929): tension stiffens torsion.
 
     n is the axial force and the two shear forces, m the torque and the two bending moments, along the axes of the
     section; they are reported as n1, n2, n3, m1, m2, m3. Its properties, limits and sources are those of the planar
@@ -56,8 +58,11 @@ class ExactBeam(BeamStrain):
     forms: ClassVar[tuple[Mapping[str, Any], ...]] = (
         {"stiffness": (1,) * 6},
         {"stiffness": (1,) * 6, "bowing": (1.2, 1.2)},
+        {"stiffness": (1,) * 6, "bowing": (1.2, 1.2), "shear_centre": (0, 1, 1)},
     )
-    reflected: ClassVar[dict[str, str] | None] = {"stiffness": "matrix", "unloaded": "components"}
+    reflected: ClassVar[dict[str, str] | None] = {
+        "stiffness": "matrix", "unloaded": "components", "shear_centre": "vector"
+    }  # fmt: skip
 
     i: Marker = Field(description="marker at the end, on whose body force and torque are reported")
     j: Marker = Field(description="marker at the beginning")
@@ -67,6 +72,10 @@ class ExactBeam(BeamStrain):
     unloaded: tuple[si.Number, si.Number, si.Number, _Curvature, _Curvature, _Curvature] = Field(
         STRAIGHT, description="strain without load: 1, 0, 0, and the torsion and curvatures of the axis, rad/m"
     )
+    shear_centre: tuple[si.Length, si.Length, si.Length] | None = Field(
+        None,
+        description="place of the shear centre from the axis, along axes 1, 2, 3 of the section, for the stretch, m",
+    )
 
     _six_rows = field_validator("stiffness", mode="before")(six_rows)
     _symmetric = field_validator("stiffness")(check_symmetric)
@@ -75,6 +84,18 @@ class ExactBeam(BeamStrain):
     def at_initial_pose(self, model: ModelData) -> Self:
         """Return the element with the sign of marker i's quaternion for an initial rotation below half a turn."""
         return self.model_copy(update={"i": nearest(model, self.i, self.j)})
+
+    @staticmethod
+    def stretching(e: Symbolic, strain: list[Expr]) -> list[tuple[Expr, Expr, dict[int, Expr]]]:
+        if e.shear_centre is None:
+            return BeamStrain.stretching(e, strain)
+        _, y, z = e.shear_centre
+        radius = (e.stiffness[4][4] + e.stiffness[5][5]) / e.stiffness[0][0] + y**2 + z**2
+        b2, b3 = e.bowing
+        return [
+            (b2, strain[1] - z * strain[3], {1: 1, 3: -z}), (b3, strain[2] + y * strain[3], {2: 1, 3: y}),
+            (e.named(radius), strain[3], {3: 1}),
+        ]  # fmt: skip
 
     @classmethod
     def powers(cls, e: Symbolic) -> Pairs:

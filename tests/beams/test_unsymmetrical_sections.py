@@ -1,0 +1,247 @@
+"""Sections whose shear centre is not the centroid, or whose axes are not principal axes, against closed forms."""
+
+import math
+
+import numpy as np
+import pytest
+
+import stiffmbs
+from stiffmbs import InputError, read_scene
+from stiffmbs.model.beams.section import Angle, Channel, Drawn
+
+from .scenes import at_rest
+
+E, G, L = 200e9, 80e9, 2.0
+U = "{type: u, width: 50 mm, height: 100 mm, flange: 5 mm, web: 4 mm}"
+LEGS = "{type: l, width: 50 mm, height: 80 mm, thickness: 5 mm}"
+WAYS = pytest.mark.parametrize("interpolation", ["pairs", "spectral"])
+
+
+def beam(section, loads, interpolation="pairs", n=4, more=""):
+    return f"""
+dimensions: 3
+bodies:
+  s: {{type: beam, start: [0, 0, 0], end: [{L}, 0, 0], elements: {n}, interpolation: {interpolation},
+       section: {section}, material: {{E: {E}, nu: 0.25, density: 7850}}{more}}}
+joints: {{clamp: {{type: fixed, i: s.start, j: ground}}}}
+forces: {{{loads}}}
+"""
+
+
+def channel():
+    return Channel(width=0.05, height=0.1, flange=0.005, web=0.004).properties(0.25)
+
+
+def turned(found, node="end"):
+    """Rotation vector of a node that is turned by little, from its quaternion."""
+    return np.array([2 * found[f"s.{node}.q{k}"] for k in (1, 2, 3)])
+
+
+def test_a_channel_that_is_loaded_at_its_centroid_twists():
+    """By F e L/(G J), and its shear centre by the deflection of a symmetrical beam."""
+    of, F = channel(), 1e-2
+    e = of.shear_centre[0]
+    found = at_rest(beam(U, f"F: {{type: force, i: s.end, force: [0, 0, {F}]}}"))
+    twist = turned(found)[0]
+    assert twist == pytest.approx(-F * e * L / (G * of.J), rel=1e-5)
+    bending = F * L**3 / (3 * E * of.I2) + F * L / (of.shear3 * G * of.A)
+    assert found["s.end.z"] + twist * e == pytest.approx(bending, rel=1e-5)
+
+
+def test_a_channel_that_is_loaded_at_its_shear_centre_does_not_twist():
+    of, F = channel(), 1e-2
+    e = of.shear_centre[0]
+    found = at_rest(beam(U, f"F: {{type: force, i: {{body: s.end, point: [0, {e!r}, 0]}}, force: [0, 0, {F}]}}"))
+    assert abs(turned(found)[0]) < 1e-6 * F * abs(e) * L / (G * of.J)
+    bending = F * L**3 / (3 * E * of.I2) + F * L / (of.shear3 * G * of.A)
+    assert found["s.end.z"] == pytest.approx(bending, rel=1e-5)
+
+
+def test_an_angle_bends_obliquely():
+    """Its end moves by F L^3/(3 E) I^-1, and the shear, in both directions (Timoshenko)."""
+    of = Angle(width=0.05, height=0.08, thickness=0.005).properties(0.25)
+    (y, z), F = of.shear_centre, 1e-2
+    load = f"F: {{type: force, i: {{body: s.end, point: [0, {y!r}, {z!r}]}}, force: [0, 0, {F}]}}"
+    found = at_rest(beam(LEGS, load))
+    D = of.I2 * of.I3 - of.I23**2
+    bending = F * L**3 / (3 * E) * np.array([-of.I23, of.I3]) / D
+    shear = F * L / (G * of.A) * np.array([of.shear23, 1 / of.shear3])
+    assert [found["s.end.y"], found["s.end.z"]] == pytest.approx(bending + shear, rel=1e-5)
+    assert abs(bending[0]) > 0.3 * bending[1]
+
+
+def test_a_channel_has_its_shear_centre_in_front_of_its_web():
+    """At 3 b^2 t/(6 b t + h w) from the middle of the web, with lengths between middle lines (Timoshenko)."""
+    for width, height, flange, web in ((0.05, 0.1, 1e-4, 2e-4), (0.08, 0.03, 3e-4, 1e-4)):
+        of = Channel(width=width, height=height, flange=flange, web=web).properties(0.3)
+        b, h = width - web / 2, height - flange
+        e = 3 * b**2 * flange / (6 * b * flange + h * web)
+        centroid = b**2 * flange / (2 * b * flange + h * web)
+        assert of.shear_centre == pytest.approx((-e - centroid, 0), abs=1e-6)
+        assert pytest.approx((2 * b * flange**3 + h * web**3) / 3) == of.J
+
+
+def test_an_angle_of_equal_legs_has_the_shear_centre_at_its_corner_and_five_sixths_of_each_leg():
+    b, t = 0.05, 1e-4
+    of = Angle(width=b, height=b, thickness=t).properties(0.3)
+    assert of.shear_centre == pytest.approx((-b / 4, -b / 4), abs=t)
+    assert pytest.approx(np.array([5, 5, -3]) * b**3 * t / 24, rel=1e-2) == (of.I2, of.I3, of.I23)
+    assert (of.shear2, of.shear3, of.shear23) == pytest.approx((5 / 12, 5 / 12, 0), rel=1e-3, abs=1e-3)
+
+
+@pytest.mark.long
+def test_drawn_profiles_have_the_constants_of_thin_walls():
+    pytest.importorskip("sectionproperties")
+    b, h, t = 0.05, 0.08, 0.0025
+    legs = ((0, 0), (b, 0), (b, t), (t, t), (t, h), (0, h))
+    outline = ((0, 0), (b, 0), (b, t), (t, t), (t, h - t), (b, h - t), (b, h), (0, h))
+    for points, thin in (
+        (legs, Angle(width=b, height=h, thickness=t)), (outline, Channel(width=b, height=h, flange=t, web=t))
+    ):  # fmt: skip
+        drawn, plain = Drawn(points=points).properties(0), thin.properties(0)
+        for name in ("A", "I2", "I3", "I23"):
+            assert getattr(drawn, name) == pytest.approx(getattr(plain, name), rel=1e-9, abs=1e-15)
+        assert pytest.approx(plain.J, rel=2e-2) == drawn.J
+        assert drawn.shear_centre == pytest.approx(plain.shear_centre, abs=2e-4)
+        found = np.linalg.inv(drawn.stiffness(E, G))[:4, :4]
+        expected = np.linalg.inv(plain.stiffness(E, G))[:4, :4]
+        assert found == pytest.approx(expected, rel=5e-2, abs=1e-2 * np.max(expected[:3, :3]))
+
+
+def random_section(rng, interpolation):
+    """Constants of a section with a random shear centre and product of inertia, as text and as stiffness."""
+    A, I2, I3, J = (rng.uniform([0.5, 0.1, 0.1, 0.1], [2, 3, 3, 3]) * [1e-3, 1e-6, 1e-6, 1e-7]).tolist()
+    I23 = rng.uniform(-0.9, 0.9) * math.sqrt(I2 * I3)
+    shear2, shear3, y, z = rng.uniform([0.3, 0.3, -0.05, -0.05], [1, 1, 0.05, 0.05]).tolist()
+    if interpolation == "spectral":
+        y = z = 0.0
+    text = (
+        f"{{type: numbers, A: {A!r}, I2: {I2!r}, I3: {I3!r}, J: {J!r}, shear2: {shear2!r}, shear3: {shear3!r}, "
+        f"I23: {I23!r}, shear_centre: [{y!r}, {z!r}]}}"
+    )
+    return text, (A, I2, I3, J, I23, shear2, shear3, y, z)
+
+
+def by_superposition(constants, force, torque, at):
+    """Displacement of the point `at` of the end section and its rotation, from first-order theory.
+
+    Bending about principal axes, shear and torsion about the shear centre are added: no matrix of the package.
+    """
+    A, I2, I3, J, I23, shear2, shear3, y, z = constants
+    (Fx, F2, F3), (M1, M2, M3) = force, torque
+    centre = np.array([0, y, z])
+    M1 = M1 + F3 * (at[2 - 1] - y) - F2 * (at[2] - z)
+    M2, M3 = M2 + Fx * at[2], M3 - Fx * at[1]
+    angle = math.atan2(-2 * I23, I2 - I3) / 2
+    c, s = math.cos(angle), math.sin(angle)
+    I_first = I2 * c * c + I3 * s * s - 2 * I23 * s * c
+    I_second = I2 * s * s + I3 * c * c + 2 * I23 * s * c
+    first, second = np.array([c, s]), np.array([-s, c])
+    F, M = np.array([F2, F3]), np.array([M2, M3])
+    shift, bend = np.zeros(2), np.zeros(2)
+    for along, across, moment, sign in ((first, second, I_first, 1), (second, first, I_second, -1)):
+        P, m = F @ across, M @ along  # bending about `along` by a force along `across`
+        shift += across * (P * L**3 / (3 * E * moment) - sign * m * L**2 / (2 * E * moment))
+        bend += along * (-sign * P * L**2 / (2 * E * moment) + m * L / (E * moment))
+    shift += F * L / (G * A) / np.array([shear2, shear3])
+    rotation = np.array([M1 * L / (G * J), *bend])
+    # The centroid stretches, the shear centre shears; every other point follows the rotation.
+    axial = Fx * L / (E * A)
+    moved = np.array([0, *shift]) + np.cross([rotation[0], 0, 0], np.array(at) - centre)
+    moved[0] = axial + np.cross(rotation, at)[0]
+    return moved, rotation
+
+
+@pytest.mark.parametrize("seed", range(6))
+@WAYS
+def test_random_sections_under_random_loads(seed, interpolation):
+    """Both kinds of elements are exact for small loads at the end."""
+    rng = np.random.default_rng(seed)
+    text, constants = random_section(rng, interpolation)
+    force, torque = rng.normal(size=3) * 0.1, rng.normal(size=3) * 0.01
+    at = np.array([0, *rng.uniform(-0.05, 0.05, 2)])
+    loads = (
+        f"F: {{type: force, i: {{body: s.end, point: {at.tolist()}}}, force: {force.tolist()}}}, "
+        f"M: {{type: torque, i: s.end, torque: {torque.tolist()}}}"
+    )
+    found = at_rest(beam(text, loads, interpolation, n=3))
+    moved, rotation = by_superposition(constants, force, torque, at)
+    assert turned(found) == pytest.approx(rotation, rel=1e-4, abs=1e-4 * np.max(np.abs(rotation)))
+    place = np.array([found[f"s.end.{axis}"] for axis in "xyz"]) - [L, 0, 0] + np.cross(turned(found), at)
+    assert place == pytest.approx(moved, rel=1e-4, abs=1e-4 * np.max(np.abs(moved)))
+
+
+def test_the_natural_frequencies_of_an_angle_are_those_of_its_principal_axes():
+    """First frequency of each plane, 1.8751^2 sqrt(E I/(m L^4)), with the shear centre at the centroid."""
+    A, I2, I3, I23 = 1e-3, 3e-7, 1e-7, 8e-8
+    section = f"{{type: numbers, A: {A}, I2: {I2}, I3: {I3}, J: 1e-6, I23: {I23}}}"
+    found = [mode.frequency for mode in stiffmbs.modes(read_scene(beam(section, "", "spectral", n=8))).modes]
+    principal = np.linalg.eigvalsh([[I2, -I23], [-I23, I3]])
+    expected = 1.87510407**2 * np.sqrt(E * principal / (7850 * A * L**4)) / math.tau
+    assert found[:2] == pytest.approx(expected, rel=2e-3)
+
+
+def test_elements_of_a_channel_twist_and_stay_straight_under_tension():
+    """Torsion about the shear centre does not shorten the axis, and tension of many times 12 EI/L^2 folds no element."""
+    of = channel()
+    y = of.shear_centre[0]
+    torsion = at_rest(beam(U, "M: {type: torque, i: s.end, torque: [10, 0, 0]}", n=2))
+    twist = 2 * math.asin(torsion["s.end.q1"])
+    wagner = ((of.I2 + of.I3) / of.A + y * y) * (twist / L) ** 2 / 2
+    assert twist == pytest.approx(10 * L / (G * of.J), rel=1e-3)
+    places = [L * (1 - wagner), y * (1 - math.cos(twist)), -y * math.sin(twist)]
+    assert [torsion[f"s.end.{axis}"] for axis in "xyz"] == pytest.approx(places, rel=1e-6)
+    pull, shear = E * of.A / 100, 1.0
+    assert pull > 3 * 12 * E * of.I3 / (L / 2) ** 2
+    found = at_rest(beam(U, f"F: {{type: force, i: s.end, force: [{pull!r}, {shear}, 0]}}", n=2))
+    k = math.sqrt(pull / (E * of.I3))
+    assert found["s.end.x"] == pytest.approx(1.01 * L, rel=1e-6)
+    assert found["s.end.y"] == pytest.approx(shear / pull * (L - math.tanh(k * L) / k), rel=0.1)
+
+
+def test_a_column_of_a_channel_buckles_by_bending_and_torsion():
+    """At the smaller root of r^2 (N2 - N) (N1 - N) = N^2 y^2, with N2 = pi^2 E I2/(4 L^2) and N1 = G J/r^2 (Vlasov)."""
+    section = "{type: numbers, A: 1e-3, I2: 3e-7, I3: 2e-6, J: 4e-9, shear_centre: [-0.03, 0]}"
+    r2, y = 2.3e-3 + 9e-4, -0.03
+    N2, N1 = math.pi**2 * E * 3e-7 / (4 * L**2), G * 4e-9 / r2
+    critical = min(np.roots([r2 - y * y, -r2 * (N1 + N2), r2 * N1 * N2]).tolist())
+    assert critical < 0.9 * min(N1, N2)
+    shares, squares = (0.98, 0.99), []
+    for share in shares:
+        scene = read_scene(beam(section, f"N: {{type: force, i: s.end, force: [{-share * critical!r}, 0, 0]}}", n=8))
+        rest = stiffmbs.equilibrium(scene)
+        squares.append(stiffmbs.modes(scene, start_from=rest.solution).modes[0].frequency ** 2)
+    slope = (squares[1] - squares[0]) / (shares[1] - shares[0])
+    assert shares[1] - squares[1] / slope == pytest.approx(1, abs=3e-3)
+
+
+def test_a_mirrored_section_moves_as_the_mirror_image():
+    load = "F: {type: force, i: s.end, force: [0, %s, 300]}"
+    text = "{type: numbers, A: 1e-3, I2: 2e-6, I3: 1e-6, J: 2e-8, I23: %s, shear_centre: [%s, 0.01]}"
+    one = at_rest(beam(text % (5e-7, -0.03), load % 100))
+    other = at_rest(beam(text % (-5e-7, 0.03), load % -100))
+    for axis, sign in (("x", 1), ("y", -1), ("z", 1), ("q1", -1), ("q2", 1), ("q3", -1)):
+        assert one[f"s.end.{axis}"] == pytest.approx(sign * other[f"s.end.{axis}"], rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("section", "expected"),
+    [
+        (U, "bodies.s.section: found a shear centre 0.0324 m beside the plane, expected it in the plane"),
+        (LEGS, "bodies.s.section: found principal axes at "),
+        ("{type: numbers, A: 1e-3, I2: 1e-6, I23: 2e-6}", "found 2e-06 m^4, expected less than the root of I2 I3"),
+        ("{type: u, width: 50 mm, height: 9 mm, flange: 5 mm, web: 4 mm}", "expected less than half the height"),
+        ("{type: l, width: 50 mm, height: 5 mm, thickness: 5 mm}", "expected less than the legs of 0.05 and 0.005 m"),
+    ],
+)  # fmt: skip
+def test_sections_that_leave_the_plane_are_refused_in_it(section, expected):
+    with pytest.raises(InputError) as found:
+        read_scene(
+            f"bodies: {{s: {{type: beam, start: [0, 0], end: [1, 0], section: {section}, elements: 2, material: {{E: 1e9, density: 1}}}}}}"
+        )
+    assert expected in str(found.value)
+
+
+def test_a_shear_centre_off_the_centroid_needs_pairs():
+    with pytest.raises(InputError, match="found spectral and a section with its shear centre off the centroid"):
+        read_scene(beam(U, "", "spectral"))
