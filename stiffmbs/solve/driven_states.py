@@ -14,6 +14,7 @@ from ..dynamics.initial import InitialValues
 from ..errors import SolverError
 from ..tuning import tuned
 from .events.chattering import CHATTERING
+from .explicit.native.parameters import CONTROL
 
 
 @dataclass(frozen=True)
@@ -66,7 +67,7 @@ class _Along:
         Raises SolverError when too many evaluations would remain.
         """
         self._evaluations += 1
-        if self._evaluations % KINEMATIC.evaluations == 0:
+        if self._evaluations % CONTROL.enough_steps == 0:
             self._look_at_pace(t)
         if not self._go_to(t, values):
             return np.full(len(values), np.nan)
@@ -75,9 +76,9 @@ class _Along:
 
     def _look_at_pace(self, t: float) -> None:
         way, self._looked_at = t - self._looked_at, t
-        if (self._end - t) * KINEMATIC.evaluations > CHATTERING.too_many * max(way, 0.0):
+        if (self._end - t) * CONTROL.enough_steps > CHATTERING.too_many * max(way, 0.0):
             raise SolverError(
-                f"stopped at t = {t:.9g} s: the states could not be integrated: the last {KINEMATIC.evaluations} evaluations have covered {way:.3g} s; "
+                f"stopped at t = {t:.9g} s: the states could not be integrated: the last {CONTROL.enough_steps} evaluations have covered {way:.3g} s; "
                 "expected rates that change less, or fewer digits in what they follow from"
             )
 
@@ -95,7 +96,7 @@ class _Along:
         state.q[system.n_pose : system.first_state] += h * before.turning
         state.q[self._places] = values
         state.u[:] = before.u + h * before.acceleration
-        if dynamics.assemble(t, most=KINEMATIC.most_moves) < 0 or dynamics.correct_velocities(t) < 0:
+        if dynamics.assemble(t) < 0 or dynamics.correct_velocities(t) < 0:
             return False
         return dynamics.accelerate(t)[0] == 0
 
@@ -151,7 +152,7 @@ class IntegratedMotion:
     def _take(self, t: float) -> None:
         """Project the current state onto the constraints and accept it."""
         dynamics = self._dynamics
-        moves = dynamics.assemble(t, most=KINEMATIC.most_moves)
+        moves = dynamics.assemble(t)
         status = min(moves, 0) or dynamics.correct_velocities(t)
         if status < 0:
             raise SolverError(self._stuck(status))
@@ -175,17 +176,9 @@ class KinematicParameters:
     """Largest distance from predicted to corrected positions, as a fraction of the step's displacement."""
     change: float = 0.5
     """Largest distance from predicted to corrected velocities, as a fraction of their norm."""
-    rotation: float = 2.0
-    """Largest rotation of a body in one step, rad; a pose does not determine whole turns."""
-    shortest: float = 1e-10
-    """Shortest step, as a fraction of the duration. A shorter one that fails means that the mechanism locks."""
-    most_moves: int = 12
-    """Largest number of Newton moves of a step; the step is shortened beyond it."""
     tolerance: float = 1e-11
     """Relative tolerance of integrated positions and user-defined states, and absolute one, m, rad and in the scales of
     states."""
-    evaluations: int = 5_000
-    """Evaluations of the rates of states between two checks of the progress."""
 
 
 KINEMATIC = tuned("kinematic", KinematicParameters())

@@ -17,9 +17,11 @@ from ..model.settings import RunSettings
 from ..tuning import parameters_of
 from .driven_states import KINEMATIC, Instant, IntegratedMotion, states_after
 from .events.narrow_inputs import hidden_peak, narrower_than_output
+from .events.native.parameters import SEARCH
 from .events.refusals import refuse_beyond_limits
+from .explicit.native.parameters import CONTROL
 from .solver import Traits
-from .trajectory import Ending, Grid, ProgressCallback, Rows, Trajectory
+from .trajectory import DEFAULT_POINTS, Ending, Grid, ProgressCallback, Rows, Trajectory
 
 
 def _length(vector: np.ndarray) -> float:
@@ -46,11 +48,11 @@ def solve(
     """
     _refuse_freedoms(dynamics)
     _refuse_followed_states(dynamics)
-    times = grid.times if grid.times is not None else np.linspace(grid.start, grid.end, 1001)
+    times = grid.times if grid.times is not None else np.linspace(grid.start, grid.end, DEFAULT_POINTS)
     system = dynamics.system
     rows = Rows(system.n_q, system.n_u, len(times))
     features = dynamics.input_features(grid.start, grid.end)
-    shortest = KINEMATIC.shortest * (grid.end - grid.start)
+    shortest = CONTROL.shortest * (grid.end - grid.start)
     motion: _Motion | IntegratedMotion
     if _by_velocities(dynamics):
         longest = float(np.min(features.longest, initial=np.inf))
@@ -145,7 +147,7 @@ class _Motion:
         state, t = self._dynamics.state, breakpoint + self._shortest
         state.q[:], state.u[:] = self.q, self.u
         self._status = min(
-            self._dynamics.assemble(t, most=self._parameters.most_moves), 0
+            self._dynamics.assemble(t), 0
         ) or self._dynamics.correct_velocities(t)
         if self._status < 0 or not self._take(t):
             raise SolverError(self._stuck())
@@ -155,12 +157,12 @@ class _Motion:
         state, dynamics = self._dynamics.state, self._dynamics
         step = h * self.u + h * h / 2 * self.a
         self._status = 0
-        if np.abs(step * self._turns).max() > self._parameters.rotation:
+        if np.abs(step * self._turns).max() > 2.0 * SEARCH.turned:
             return False
         predicted_q, predicted_u = dynamics.system.of_body.moved(self.q, step), self.u + h * self.a
         predicted_q[self._counters] += h * self._turning
         state.q[:], state.u[:] = predicted_q, predicted_u
-        moves = dynamics.assemble(t, most=self._parameters.most_moves)
+        moves = dynamics.assemble(t)
         self._status = min(moves, 0)
         if moves < 0 or not self._near(state.q, predicted_q, h):
             return False

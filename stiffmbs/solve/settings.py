@@ -12,9 +12,7 @@ from ..model.settings import RunSettings
 from ..tuning import changes_in_use
 from . import SOLVERS
 from .solver import Traits
-from .trajectory import Grid
-
-DEFAULT_POINTS = 1001
+from .trajectory import DEFAULT_POINTS, Grid
 
 
 def traits_of(settings: RunSettings) -> Traits:

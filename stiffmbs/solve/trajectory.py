@@ -30,6 +30,8 @@ if TYPE_CHECKING:
     from .events.long_steps import LongSteps
 
 ProgressCallback = Callable[[float], None]
+DEFAULT_POINTS = 1001
+"""Output times of a run without settings for them, and largest number of its states from which growth is estimated."""
 
 
 def unwatched(t: float) -> None:

@@ -29,13 +29,11 @@ from .tolerances import independent_tolerances
 CUBIC = Routine(
     "stiffmbs.solve.error_control.native.cubic",
     "cubic",
-    "void(int64, int64, float64*, float64, float64*, int64, int64*, float64, float64*, float64*)",
+    "void(int64, int64, float64*, float64, float64*, float64*, float64*)",
 )
-FIRST_COMPARED = 5
-"""Number of samples compared first; they usually suffice to show that the motion is far from a cubic."""
 HIGHEST_ORDER = 5
 """Highest order of BDF."""
-ERROR_CONSTANT = 2 / 9
+ERROR_CONSTANT = 1 / ((A_STABLE_ORDER + 1) * sum(1 / k for k in range(1, A_STABLE_ORDER + 1)))
 """Error constant of BDF of order 2."""
 
 
@@ -75,12 +73,9 @@ STABILITY_LIMIT = tuned("stability_limit", StabilityLimitParameters())
 class CubicFit:
     """Comparison of the last states with the best-fitting cubics, in units of the tolerance.
 
-    `least`: distance shown by the samples compared first. `distance`: largest RMS distance of one state; not computed
-    if `least` is not negligible. `third`: RMS of the cubic coefficients, with times scaled to -1 to 1; not computed
-    either in that case.
+    `distance`: largest RMS distance of one state. `third`: RMS of the cubic coefficients, with times scaled to -1 to 1.
     """
 
-    least: float
     distance: float
     third: float
 
@@ -107,7 +102,7 @@ class Limitation:
     faint: bool
 
 
-def cubic_fit(samples: np.ndarray, rtol: float, atol: np.ndarray, negligible: float) -> CubicFit:
+def cubic_fit(samples: np.ndarray, rtol: float, atol: np.ndarray) -> CubicFit:
     """Return the distances of states from the best-fitting cubics.
 
     Parameters
@@ -116,14 +111,11 @@ def cubic_fit(samples: np.ndarray, rtol: float, atol: np.ndarray, negligible: fl
         Times and states.
     rtol : float
     atol : ndarray, shape (n,)
-    negligible : float
-        Distance up to which all samples are compared.
     """
     count, n = len(samples), samples.shape[1] - 1
-    samples, work, found = np.ascontiguousarray(samples), np.empty(n + 6 * count + 8), np.zeros(3)
-    first = np.ceil(np.linspace(0, count - 1, FIRST_COMPARED)).astype(np.int64)
-    rows, at_atol, at_first, at_work, at_found = addresses(samples, atol, first, work, found)
-    CUBIC.short_call(count, n, rows, rtol, at_atol, FIRST_COMPARED, at_first, negligible, at_work, at_found)
+    samples, work, found = np.ascontiguousarray(samples), np.empty(n + 6 * count + 8), np.zeros(2)
+    rows, at_atol, at_work, at_found = addresses(samples, atol, work, found)
+    CUBIC.short_call(count, n, rows, rtol, at_atol, at_work, at_found)
     return CubicFit(*found.tolist())
 
 
@@ -138,8 +130,6 @@ def predicted_gain(fit: CubicFit, parameters: StabilityLimitParameters) -> float
 
 def limits_steps(fit: CubicFit, parameters: StabilityLimitParameters) -> bool:
     """Return True if a negligible vibration limits the steps by stability, and order 2 would lengthen them enough."""
-    if fit.least > parameters.negligible:
-        return False
     required = parameters.gain_if_faint if fit.distance < parameters.faint else parameters.gain
     vibrates = parameters.least_distance < fit.distance < parameters.negligible
     return vibrates and predicted_gain(fit, parameters) > required
@@ -213,7 +203,7 @@ class StabilityLimitDetection:
         if self.held:
             self._free(step, steps)
             return True
-        fit = cubic_fit(samples, self._settings.rtol, self._atol, self._parameters.negligible)
+        fit = cubic_fit(samples, self._settings.rtol, self._atol)
         if not limits_steps(fit, self._parameters):
             self._next_check = int(self._parameters.growth * steps)
             return False

@@ -145,11 +145,9 @@ class MaskingParameters:
     """Parameters that decide when an event function is masked, and for how many steps."""
 
     few_steps: int = 4
-    """Steps after a start within which an event is attributed to rounding, also as a multiple of the preceding wait; factor
-    of the wait for each further event."""
-    first_wait: int = 8
-    """Steps for which an event function is masked after its second such event. A single repetition may be an event that
-    is detected twice, because the start is projected onto constraints."""
+    """Steps after a start within which an event is attributed to rounding, also as a multiple of the preceding wait; half of
+    the wait after the second such event, and factor for each further one. A single repetition may be an event that is
+    detected twice, because the start is projected onto constraints."""
     most_in_succession: int = 5
     """Largest number of events that count."""
     telling: int = 3
@@ -194,7 +192,7 @@ class MaskedEvents:
         if len(telling):
             self._chattering.refuse(t, np.intersect1d(telling, jumping(self._dynamics, t, q, u)))
         self.steps = np.where(
-            self._in_succession > 1, MASKING.first_wait * MASKING.few_steps ** np.maximum(self._in_succession - 2, 0), 0
+            self._in_succession > 1, 2 * MASKING.few_steps ** np.maximum(self._in_succession - 1, 1), 0
         )
         self._quiet = not self._in_succession.any()
 

@@ -12,7 +12,7 @@ from ...dynamics.dynamics import Dynamics
 from ...errors import SolverError
 from ...tuning import tuned
 from ..suspect import suspect
-from ..trajectory import Rows
+from ..trajectory import DEFAULT_POINTS, Rows
 
 
 @dataclass(frozen=True)
@@ -28,8 +28,6 @@ class DivergenceParameters:
     that grows as time squared, and 1 for an exponential."""
     followed_steps: int = 100_000
     """Steps before a motion is checked."""
-    instants: int = 2000
-    """Largest number of stored states from which growth is estimated."""
 
 
 DIVERGENCE = tuned("divergence", DivergenceParameters())
@@ -52,7 +50,7 @@ def refuse_beyond_sense(dynamics: Dynamics, rows: Rows, t: float, q: np.ndarray,
             _sentence(dynamics, t, q, u, f"body '{body}' comes to {speed:.3g} m/s, beyond the speed of light")
         )
     times, places, _ = rows.stored
-    few = slice(None, None, 1 + len(times) // DIVERGENCE.instants)
+    few = slice(None, None, 1 + len(times) // DEFAULT_POINTS)
     far = np.max(np.abs(np.vstack([places[few], q]) - places[0]) * reaches(system), axis=1, initial=0.0)
     if far[-1] > DIVERGENCE.unbounded * system.size and exponential(
         np.append(times[few], t), np.maximum.accumulate(far)

@@ -18,6 +18,7 @@ from ...compile.machine.layout import address
 from ...dynamics.dynamics import Dynamics
 from ...dynamics.elimination.eliminated import ATTEMPT
 from ...tuning import tuned
+from ..error_control.relaxation import RELAXATION
 from ..events.chattering import CHATTERING
 from ..suspect import acceleration_name, suspect
 from .integration import Integration
@@ -28,8 +29,6 @@ from .native.parameters import CONTROL, ENDS
 class RoundingParameters:
     """Parameters of the checks for rounding that shortens explicit steps."""
 
-    soon: int = 1000
-    """Steps between two checks of the elimination."""
     few: int = 4
     """Sample times of the check of the elimination."""
     instants: int = 64
@@ -53,7 +52,7 @@ class Rounding:
 
     def __init__(self, dynamics: Dynamics, rtol: float, start: float, end: float) -> None:
         self._dynamics, self._rtol, self._end = dynamics, rtol, end
-        self._soon, self._later = _Stretch(start, ROUNDING.soon), _Stretch(start, CONTROL.enough_steps)
+        self._soon, self._later = _Stretch(start, RELAXATION.followed_steps), _Stretch(start, CONTROL.enough_steps)
 
     def look(self, work: Integration) -> str:
         """Check the current state if a check is due; return why the run ends there, or an empty string.

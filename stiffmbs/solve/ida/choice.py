@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,7 +21,7 @@ from .libraries import Unavailable, ida_libraries
 from .matrices import Dense, Matrix, Sparse
 from .native_engine import NativeEngine
 from .operations import replaceable
-from .sundae import SundaeEngine
+from .sundae import FALLBACK, SundaeEngine
 
 
 @dataclass(frozen=True)
@@ -30,12 +31,8 @@ class LinearSolverCosts:
     Source: measured on examples with 10 to 1000 unknowns (`tests.bench`, problem ``linear_algebra``).
     """
 
-    dense: tuple[float, float, float] = (0.045, 2.92, 80.0)
-    """For a multiplication of the LU, an entry, an unknown."""
-    superlu: tuple[float, float, float] = (0.15, 6.6, 664.0)
-    """For an update of full blocks, an entry of their factors, an unknown, of SuperLU_MT."""
     fixed: tuple[float, float, float] = (0.36, 6.05, 8.0)
-    """The same in a fixed order."""
+    """For an update of full blocks, an entry of their factors, an unknown, in a fixed order."""
     blocks: tuple[float, float, float, float] = (0.05, 0.32, 40.0, 138.0)
     """The same, and for a node."""
     cached_nodes: int = 3000
@@ -53,9 +50,8 @@ COSTS = tuned("linear_solver", LinearSolverCosts())
 
 
 def dense_cost(n: int) -> float:
-    """Return the estimated cost of a dense matrix."""
-    update, entry, unknown = COSTS.dense
-    return update * n**3 / 3 + entry * n**2 + unknown * n
+    """Return the estimated cost of a dense matrix: that of a single block."""
+    return block_cost(n, EliminationOrder(np.arange(n), fill=n**2, updates=n**3), n_nodes=1)
 
 
 def sparse_cost(n: int, order: EliminationOrder, costs: tuple[float, float, float]) -> float:
@@ -74,7 +70,7 @@ def block_cost(n: int, order: EliminationOrder, n_nodes: int) -> float:
 
 
 def cost_of(matrix: Matrix) -> float:
-    """Return the estimated cost of a linear solver."""
+    """Return the estimated cost of a linear solver; that of SuperLU_MT from entries without fill-in."""
     match matrix:
         case BlockLU():
             return block_cost(matrix.n, matrix.order, len(matrix.nodes))
@@ -84,32 +80,35 @@ def cost_of(matrix: Matrix) -> float:
             return dense_cost(matrix.n)
         case Sparse():
             entries = len(matrix.rows)
-            return sparse_cost(matrix.n, EliminationOrder(np.arange(matrix.n), entries, entries), COSTS.superlu)
+            return sparse_cost(matrix.n, EliminationOrder(np.arange(matrix.n), entries, entries), COSTS.fixed)
     raise TypeError(f"found {matrix.sentence()}, expected one of the linear solvers of this module")
 
 
 def chosen(equations: Equations) -> tuple[Equations, Matrix, float]:
-    """Return the equations, the linear solver of the least estimated cost, and that cost, ns."""
-    n, pattern, order = equations.n, equations.pattern, elimination_order(equations)
-    offers: list[tuple[float, Matrix]] = [
-        (dense_cost(n), Dense(n, *pattern)),
-        (sparse_cost(n, order, COSTS.superlu), Sparse(n, *pattern)),
-    ]
-    if replaceable(ida_libraries()):
-        blocks = BlockLU.of(equations, order)
-        offers.append((sparse_cost(n, order, COSTS.fixed), FixedOrder(n, *pattern, order)))
-        offers.append((block_cost(n, order, len(blocks.nodes)) + COSTS.worth_compiling, blocks))
-    cheapest_first = sorted(offers, key=lambda offer: offer[0])
-    return next((equations, matrix, cost) for cost, matrix in cheapest_first if _served(matrix))
+    """Return the equations, the linear solver of the least estimated cost, and that cost, ns.
+
+    Solvers of SUNDIALS are slower, and are used only if they cannot be replaced.
+    """
+    n, pattern = equations.n, equations.pattern
+    if not replaceable(ida_libraries()):
+        supplied = _supplied(n, pattern)
+        return equations, supplied, cost_of(supplied)
+    order = elimination_order(equations)
+    blocks, of_entries = BlockLU.of(equations, order), sparse_cost(n, order, COSTS.fixed)
+    of_blocks = block_cost(n, order, len(blocks.nodes)) + COSTS.worth_compiling
+    if of_entries <= of_blocks:
+        return equations, FixedOrder(n, *pattern, order), of_entries
+    return equations, blocks, of_blocks
 
 
-def _served(matrix: Matrix) -> bool:
-    """Return True if the libraries have the linear solver: scikit-sundae may be built without SuperLU_MT."""
-    try:
-        matrix.libraries()
-    except Unavailable:
-        return False
-    return True
+def _supplied(n: int, pattern: tuple[np.ndarray, np.ndarray]) -> Matrix:
+    """Return a linear solver of SUNDIALS; scikit-sundae may be built without SuperLU_MT."""
+    sparse = Sparse(n, *pattern)
+    if n > FALLBACK.dense_up_to:
+        with suppress(Unavailable):
+            sparse.libraries()
+            return sparse
+    return Dense(n, *pattern)
 
 
 def driven_natively(

@@ -112,7 +112,7 @@ class NativeIda(Connection):
         super().__init__(equations, state, matrix, np.arange(n) if reported is None else reported, session, formula)
         self._statistics = Statistics(session.libraries, self.memory)
         self._flag, self.begun = 0, False
-        self._pace = int(np.clip(LOOP.longest_call / (LOOP.step_time * n), 1, LOOP.most_steps))
+        self._pace = min(max(LOOP.most_kept // n, 1), LOOP.most_steps)
         self._look = self._usual_pace = self._pace
         self._trace = np.empty((0, 2 + 2 * n))
         self._set_tolerances(rtol, atol)

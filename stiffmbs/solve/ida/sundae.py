@@ -29,8 +29,6 @@ class FallbackParameters:
 
     dense_up_to: int = 90
     """Number of unknowns up to which the dense linear solver is used."""
-    together: int = 20
-    """Number of output times reported together, because a report costs more than a step."""
 
 
 FALLBACK = tuned("sundae", FallbackParameters())
@@ -164,7 +162,7 @@ class SundaeEngine(Engine):
         times = times[times <= stop]
         ends_there, served = len(times) > 0 and times[-1] == stop, 0
         while served < len(times):
-            reached = self._several(times[served : served + FALLBACK.together], stop)
+            reached = self._several(times[served : served + LOOP.most_passed], stop)
             served += len(reached.times)
             yield reached
             if self._interrupted:

@@ -15,8 +15,6 @@ class RadauParameters:
     ----------
     tolerance : float
         Factor c of the tolerance c rtol^((s + 1)/(2 s)) of the error estimate, whose order is s instead of 2 s - 1.
-    safety : float
-        Safety factor of the step size control.
     least_factor, largest_factor : float
         Bounds of the ratio of successive steps; the first is the factor of a first step after a failed error test too.
     keep_matrix : float
@@ -40,7 +38,6 @@ class RadauParameters:
     """
 
     tolerance: float = 0.01
-    safety: float = 0.9
     least_factor: float = 0.125
     largest_factor: float = 5.0
     keep_matrix: float = 5e-3

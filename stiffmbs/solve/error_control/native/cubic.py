@@ -8,26 +8,6 @@ from stiffmbs.compile.machine.native.access import compiled, shifted
 
 
 @compiled
-def _divided_difference(n, rows, x, places, count, scale, weights):
-    """Return the RMS of the highest divided difference of some states, relative to its sum of weights."""
-    sum_of_weights = 0.0
-    for a in range(count):
-        weights[a] = 1.0
-        for b in range(count):
-            if b != a:
-                weights[a] /= x[places[a]] - x[places[b]]
-        sum_of_weights += abs(weights[a])
-    total = 0.0
-    for k in range(n):
-        difference = 0.0
-        for a in range(count):
-            difference += weights[a] * rows[places[a] * (n + 1) + 1 + k]
-        difference /= sum_of_weights * scale[k]
-        total += difference * difference
-    return sqrt(total / n)
-
-
-@compiled
 def _polynomials(count, x, p, squares):
     """Compute monic orthogonal polynomials of degree 0 to 3 at the points x, and their sums of squares."""
     for degree in range(4):
@@ -49,12 +29,11 @@ def _polynomials(count, x, p, squares):
             squares[degree] += here[i] * here[i]
 
 
-def cubic(count, n, rows, rtol, atol, n_few, few, negligible, work, found):
+def cubic(count, n, rows, rtol, atol, work, found):
     """Compare `count` rows, a time and n values each, with the best-fitting cubics, in units of the tolerance.
 
-    `found` receives three numbers: the distance of the rows `few`, the largest RMS distance of any row, and the RMS of
-    the cubic coefficients, with times scaled to -1 to 1.  The last two are computed only if the first is at most
-    `negligible`.  `work` has space for n + 6 count + 8 numbers.
+    `found` receives two numbers: the largest RMS distance of any row, and the RMS of the cubic coefficients, with times
+    scaled to -1 to 1.  `work` has space for n + 6 count + 8 numbers.
     """
     scale, x, p = work, shifted(work, n), shifted(work, n + count)
     off, squares, part = shifted(work, n + 5 * count), shifted(work, n + 6 * count), shifted(work, n + 6 * count + 4)
@@ -63,9 +42,6 @@ def cubic(count, n, rows, rtol, atol, n_few, few, negligible, work, found):
         x[i] = (2.0 * rows[i * (n + 1)] - first - last) / (last - first)
     for k in range(n):
         scale[k] = rtol * abs(rows[(count - 1) * (n + 1) + 1 + k]) + atol[k]
-    found[0] = _divided_difference(n, rows, x, few, n_few, scale, off)
-    if found[0] > negligible:
-        return
     _polynomials(count, x, p, squares)
     for i in range(count):
         off[i] = 0.0
@@ -85,5 +61,5 @@ def cubic(count, n, rows, rtol, atol, n_few, few, negligible, work, found):
     largest = 0.0
     for i in range(count):
         largest = max(largest, off[i])
-    found[1] = sqrt(largest / n)
-    found[2] = sqrt(highest / n)
+    found[0] = sqrt(largest / n)
+    found[1] = sqrt(highest / n)

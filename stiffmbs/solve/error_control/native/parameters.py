@@ -17,7 +17,8 @@ class NewtonParameters:
     loosest: float = 0.03
     """Largest part of the error tolerance that the iteration may leave; IDA's own is 0.33."""
     tightest: float = 1e-6
-    """Least part of it; a tighter tolerance fails where the constraints are nearly dependent."""
+    """Least part of it; a tighter tolerance fails where the constraints are nearly dependent. It is the part left by a
+    correction that ends the iteration of radau without a rate of convergence too."""
     soft: float = 1.5e4
     """Squared fastest rate, 1/s^2, times the part of the tolerance that may be left. A position error makes a force,
     and thereby a velocity error that has to stay below the tolerance too."""
@@ -39,7 +40,8 @@ class NewtonParameters:
     long_steps: float = 200.0
     """cj, 1/s, up to which steps are long."""
     many_failures: float = 0.2
-    """Fraction of steps with a failed iteration above which its tolerance is relaxed."""
+    """Fraction of steps with a failed iteration above which its tolerance is relaxed, and of failed error tests that
+    indicates rounding."""
     eased: float = 100.0
     """Factor of that relaxation."""
     easiest: float = 0.33
@@ -63,7 +65,7 @@ class PolishingParameters:
     apart: float = 2.0
     """Ratio between cj of the factors and IDA's above which factors are replaced."""
     most_corrections: int = 8
-    """Largest number of corrections."""
+    """Largest number of corrections of a state, of radau too."""
     slowest: float = 0.3
     """Ratio of successive corrections above which factors are replaced, or the iteration fails."""
     far_below: float = 0.2

@@ -51,16 +51,16 @@ class EventSearchParameters:
     few_parts: int = 100
     """Largest number of parts if arguments of sines cannot be followed."""
     difference: float = 1e-6
-    """Fraction of a step, or of a part, over which rates are computed."""
+    """Fraction of a step, or of a part, over which rates are computed, and up to which the motion is extrapolated past an
+    event until a sign change exceeds rounding."""
     least_difference: float = 1e-9
     """Least time over which rates are computed: at the end of a step relative to the duration, at a start relative to the
-    time to the next stop. Shorter differences are rounding."""
+    time to the next stop. Shorter differences are rounding. It is the distance after an event, relative to the step, at
+    which the new law holds too."""
     refined: float = 0.02
     """Fraction of a part over which a parabola is fitted at an extremum."""
     refinements: int = 5
     """Number of such fits, each over a tenth of the last."""
-    behind: float = 1e-9
-    """Distance after an event, relative to the step, at which the new law holds."""
     longest: float = 1e-3
     """Largest fraction of a step over which the motion is extrapolated to find the sign of a function that is zero."""
     longer: float = 4.0
@@ -79,8 +79,6 @@ class NextStepParameters:
     Source: as for `EventSearchParameters`.
     """
 
-    turned: float = 3.0
-    """Largest change of a sine's argument in a step, rad."""
     short_of: float = 1e-8
     """Distance from the end of a step to a predicted event, relative to the longest step."""
     unsure: float = 1e-4

@@ -178,7 +178,7 @@ def _first_within(w, s, begun, h, low, part):
                     seen = place
         if (
             seen > 1.0
-            and not (low + part > 1.0 - SEARCH.behind and _seen_at_end(w, k))
+            and not (low + part > 1.0 - SEARCH.least_difference and _seen_at_end(w, k))
             and _visits(w, k, end, low, low + part)
         ):
             seen = 1.0
@@ -281,7 +281,7 @@ def first_event(w, s, begun, h):
             note_unresolved(w, begun, w.a, w.b)
         place = _first_within(w, s, begun, h, low, part)
         if place <= 1.0:
-            return min(1.0, place + SEARCH.behind)
+            return min(1.0, place + SEARCH.least_difference)
         copied(w.a, w.b, w.n)
         copied(w.a_rate, w.b_rate, w.n)
         low = end

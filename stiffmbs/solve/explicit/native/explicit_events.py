@@ -349,7 +349,7 @@ def _ended_at_event(x, c, s, m):
         if shorter >= x.shortest:
             return _gone_back(x, c, shorter)
     _note_repeats(x, w, 1)
-    _go_past(x, c, _way_past(x, c, s, 2.0 * behind, max(LOCATION.farthest_past * h, x.shortest)))
+    _go_past(x, c, _way_past(x, c, s, 2.0 * behind, max(SEARCH.difference * h, x.shortest)))
     x.at_event = IN_ANOTHER_ZONE if _goes_on(x, s) else AT_ANOTHER_LAW
     return 0
 

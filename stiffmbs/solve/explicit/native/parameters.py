@@ -74,8 +74,6 @@ class LocationParameters:
 
     behind: float = 1e-10
     """Distance from an event to the end of a step, relative to the step."""
-    farthest_past: float = 1e-6
-    """Fraction of the step up to which the motion is extrapolated until a sign change exceeds rounding."""
     most_retaken: int = 8
     """Largest number of steps to one event."""
 

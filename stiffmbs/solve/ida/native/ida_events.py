@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import pi
+
 from stiffmbs.compile.machine.native.access import compiled, equations_view, floats, state_view
 from stiffmbs.compile.machine.native.calls import call_int, int32
 from stiffmbs.compile.machine.native.evaluate import SWITCH, evaluate, evaluate_some, load
@@ -82,7 +84,7 @@ def _go_on(c, w, s):
     """Make the end of the step the start of the next, which arguments of sines limit."""
     if w.n_turns > 0:
         w.longest = longest_by_turns(w, w.rate_after, SEARCH.turned)
-        if w.longest == float("inf") and turned_arguments(w, w.value_before, w.value_after) > NEXT_STEP.turned:
+        if w.longest == float("inf") and turned_arguments(w, w.value_before, w.value_after) > pi:
             note_unresolved(w, w.begun, w.value_before, w.value_after)
     keep_row(w, s, 0)
     w.begun = c.returned

@@ -20,15 +20,13 @@ class LoopParameters:
     most_tiny: int = 100
     """Number of successive tiny steps at which the run stops: IDA would continue forever. A step below as many roundings
     of the time is tiny."""
-    longest_call: float = 0.1
-    """Time of a call, s, for progress and interruption."""
-    step_time: float = 1e-7
-    """Estimated time of a step per unknown, s. A clock would make results depend on the load of the machine, because
-    calls affect Newton's iteration."""
     most_passed: int = 64
-    """Largest number of breakpoints, or of samples that change nothing that acts, in a call."""
+    """Largest number of breakpoints, of samples that change nothing that acts, or of output times of scikit-sundae, in a
+    call."""
     most_kept: int = 1_000_000
-    """Largest number of stored steps, which are only counted afterwards, or of numbers in stored states."""
+    """Largest number of stored steps, which are only counted afterwards, of numbers in stored states, or of unknowns in
+    the steps of a call. These take about 0.1 s, for progress and interruption. A clock would make results depend on the
+    load of the machine, because calls affect Newton's iteration."""
 
 
 LOOP = tuned("loop", LoopParameters())

@@ -10,12 +10,13 @@ from __future__ import annotations
 from stiffmbs.compile.machine.native.access import compiled, equations_view, ints, shifted, state_view
 from stiffmbs.compile.machine.native.evaluate import EFFORT, evaluate, load
 from stiffmbs.compile.machine.native.memory import copied
+from stiffmbs.solve.error_control.native.parameters import POLISHING
 from stiffmbs.solve.ida.native.output_correction import output_correction_view
 from stiffmbs.solve.radau.native.memory import collocation_view, polynomial, polynomial_rates
 from stiffmbs.solve.radau.native.newton import add_efforts, residual, size_in_tolerances, solved_real, store_misfit
 
-MOST_CORRECTIONS, ROUNDING = 5, 1e-11
-"""Largest number of corrections of a state, and relative size of corrections that are rounding."""
+ROUNDING = 1e-11
+"""Relative size of corrections that are rounding."""
 MOST_MOVED, MOST_MOVED_WITHIN = 0.5, 30.0
 """Largest changes of the state at the end of a step and of states within it, in tolerances."""
 AGREED, CLOSED, OPEN = range(3)
@@ -54,7 +55,7 @@ def closed(x, t, most):
     size = 0.0
     moved = 0.0
     enough = False
-    for count in range(MOST_CORRECTIONS):
+    for count in range(POLISHING.most_corrections):
         _defects(x, t)
         apart = 0.0
         for k in range(x.n_efforts):

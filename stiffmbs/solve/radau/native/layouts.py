@@ -29,7 +29,7 @@ RADAU = Layout({
     "n_functions": INT, "functions": INT, "ida": INTS, "before": FLOATS, "after": FLOATS, "within": FLOATS, "fired": INTS,
     "steps": INT_CELL, "residuals": INT_CELL, "jacobians": INT_CELL, "factorizations": INT_CELL, "error_failures": INT_CELL,
     "step_failures": INT_CELL, "iterations": INT_CELL, "newton_failures": INT_CELL,
-    "safety": FLOAT_CELL, "least_factor": FLOAT_CELL, "largest_factor": FLOAT_CELL, "keep_matrix": FLOAT_CELL, "keep_high": FLOAT_CELL,
+    "least_factor": FLOAT_CELL, "largest_factor": FLOAT_CELL, "keep_matrix": FLOAT_CELL, "keep_high": FLOAT_CELL,
     "stages_after": INT_CELL, "gain": FLOAT_CELL, "slowest": FLOAT_CELL, "converging": FLOAT_CELL, "after_failure": FLOAT_CELL, "tolerance": FLOAT_CELL,
 })  # fmt: skip
 """Memory of an integration by Radau methods.

@@ -33,8 +33,6 @@ DIVERGING, SHORTER, MOST_LEFT = 0.99, 0.8, 20.0
 that counts of what it would leave."""
 LATER = 5.0
 """Factor of the allowed remainder for corrections after the second, whose rate is better known."""
-NEGLIGIBLE = 1e-6
-"""Size of a correction, in tolerances, that ends the iteration without a rate of convergence."""
 CONVERGED, SLOW, DIVERGED, NOT_FINITE_STAGE = range(4)
 
 
@@ -313,7 +311,7 @@ def most_iterations(c):
 def iterated(x, c, t, h):
     """Solve the stages of a step; CONVERGED, or a reason with the suggested factor of the step in `x.suggested`."""
     most = most_iterations(c)
-    negligible = min(x.newton, max(NEGLIGIBLE, NEWTON.precision / x.rtol))
+    negligible = min(x.newton, max(NEWTON.tightest, NEWTON.precision / x.rtol))
     before = 0.0
     ratio_before = 0.0
     x.suggested = x.after_failure

@@ -9,7 +9,7 @@ from stiffmbs.compile.machine.native.memory import copied
 from stiffmbs.solve.error_control.native.parameters import EXCLUDED, NEWTON
 from stiffmbs.solve.events.native.parameters import INDISTINCT
 from stiffmbs.solve.events.native.step_bound import STRETCHED
-from stiffmbs.solve.explicit.native.parameters import FIRST_STEP
+from stiffmbs.solve.explicit.native.parameters import CONTROL, FIRST_STEP
 from stiffmbs.solve.ida.native.error_norm import error_norm_view
 from stiffmbs.solve.ida.native.output_correction import output_correction_view
 from stiffmbs.solve.radau.native.between_steps import close_end
@@ -134,7 +134,7 @@ def _bounded(x, factor):
 @compiled
 def _cost_rate(x, c, h, error, longest):
     """Return the cost per time of steps of a method that has an error estimate in tolerances in a step of length h."""
-    following = min(h * _bounded(x, x.safety * max(error, ROUNDING) ** (-1.0 / (c.stages + 1.0))), longest)
+    following = min(h * _bounded(x, CONTROL.safety * max(error, ROUNDING) ** (-1.0 / (c.stages + 1.0))), longest)
     return (c.setup_cost + x.iterations_taken * c.iteration_cost) / following
 
 
@@ -258,7 +258,7 @@ def _error(x, c, h, first):
 def _growth(x, c, error):
     """Return the ratio of the next step to this one by its error."""
     most = most_iterations(c)
-    margin = min(x.safety, x.safety * (1.0 + 2.0 * most) / (x.iterations_taken + 2.0 * most))
+    margin = min(CONTROL.safety, CONTROL.safety * (1.0 + 2.0 * most) / (x.iterations_taken + 2.0 * most))
     return _bounded(x, margin * error ** (-1.0 / (c.stages + 1.0)))
 
 
@@ -268,7 +268,7 @@ def _predicted_growth(x, c, h, error):
     growth = _growth(x, c, error)
     if x.h_accepted == 0.0:
         return growth
-    predicted = x.safety * h / x.h_accepted * (x.last_error / (error * error)) ** (1.0 / (c.stages + 1.0))
+    predicted = CONTROL.safety * h / x.h_accepted * (x.last_error / (error * error)) ** (1.0 / (c.stages + 1.0))
     return min(growth, _bounded(x, predicted))
 
 
