@@ -27,7 +27,6 @@ from stiffmbs.solve.events.native.from_zero import at_zero, begin_sides, leave_z
 from stiffmbs.solve.events.native.nearby import near_an_event, note_mean_rates, note_near
 from stiffmbs.solve.events.native.parameters import EPSILON, INDISTINCT, NEXT_STEP, SEARCH
 from stiffmbs.solve.events.native.within_step import first_event, first_event_or_change, keep_row
-from stiffmbs.solve.explicit.native.parameters import LOCATION
 from stiffmbs.solve.ida.native.ida_memory import array_of, native_ida_view
 from stiffmbs.solve.ida.native.passage import bound_passage, go_ahead, go_straight
 
@@ -205,7 +204,7 @@ def _passes_smoothly(w, h):
             farthest = max(
                 abs(w.value_after[k] - w.value_before[k]), h * max(abs(w.rate_before[k]), abs(w.rate_after[k]))
             )
-            others += k < w.n_event_functions or w.lands[k] > 0 or smooth < LOCATION.farthest_past * farthest
+            others += k < w.n_event_functions or w.lands[k] > 0 or smooth < SEARCH.difference * farthest
     return others == 0
 
 

@@ -8,7 +8,7 @@ from stiffmbs.compile.machine.native.evaluate import SWITCH, add_entries, add_pr
 from stiffmbs.compile.machine.native.statuses import OK, ONE_STEP, RECOVERABLE, ROOT_RETURN, STOP_RETURN
 from stiffmbs.solve.error_control.native.accumulated_errors import accumulated_errors_view, displace_by, is_due
 from stiffmbs.solve.events.native.bounds import bounded_by_feature, event_search_view, repeats
-from stiffmbs.solve.events.native.parameters import EPSILON
+from stiffmbs.solve.events.native.parameters import EPSILON, SEARCH
 from stiffmbs.solve.events.native.step_bound import (
     STRETCHED,
     is_to_be_kept,
@@ -156,7 +156,7 @@ def stepped(c, ida, toward, stop):
     for _ in range(LOCATION.most_retaken):
         if seen != PASSED_INTERVAL or not c.repeat:
             break
-        call_int(c.repeat, (c.memory, begun, (1.0 + LOCATION.farthest_past) * (c.returned - begun)))
+        call_int(c.repeat, (c.memory, begun, (1.0 + SEARCH.difference) * (c.returned - begun)))
         c.returned = begun
         c.internal = begun
         c.within = 0
