@@ -277,8 +277,10 @@ def _start(data: ModelData, dynamics: Dynamics, t: float, state: SavedState | No
         return settled(dynamics, start, t).start
     if asked == "settled":
         from .settled import moving_in_equilibrium
+        from .steady import rotation_left_out
 
-        return moving_in_equilibrium(dynamics, start, t)
+        found = moving_in_equilibrium(dynamics, start, t)
+        return replace(found, notes=(*found.notes, *rotation_left_out(data, dynamics, start)))
     return start
 
 

@@ -60,6 +60,34 @@ def start_in_motion(
     return _moving(start, found, (unseen, *far_away(dynamics, start, found)))
 
 
+def rotation_left_out(model: ModelData, dynamics: Dynamics, start: InitialValues) -> tuple[str, ...]:
+    """Return a note if the described velocities are a rotation of all bodies as one, whose forces deform the mechanism."""
+    system = dynamics.system
+    d, gravity = system.of_body.dimensions, np.array(model.gravity)
+    still = SteadyMotion(np.zeros(d), np.zeros(2 * d - 3), np.zeros(d))
+    with dynamics.state.unchanged():
+        dynamics.state.q[:] = start.q
+        units = np.eye(3 * d - 3)
+        carried = [replace(still, velocity=unit[:d], rotation=unit[d:]).carried(dynamics) for unit in units]
+    motion, *_ = np.linalg.lstsq(np.array(carried).T, start.u, rcond=None)
+    velocity, rotation = np.append(motion[:d], np.zeros(3 - d)), np.append(np.zeros(6 - 2 * d), motion[d:])
+    rate = float(np.linalg.norm(rotation))
+    apart = np.max(np.abs(np.array(carried).T @ motion - start.u), initial=0.0)
+    steady = np.append(velocity @ rotation, np.cross(rotation, np.append(gravity, np.zeros(3 - d))))
+    if len(system.bodies) < 2 or not rate or apart > PRESCRIBED_BESIDE * rate or np.any(np.abs(steady) > apart):
+        return ()
+    about = _rounded(np.cross(rotation, velocity) / rate**2, system.size)[:d]
+    turn = _rounded(rotation, rate)
+    return (
+        "the run starts in the pose at rest, without the centrifugal forces of its rotation: for the equilibrium in "
+        f"rotation write start: {{rotation: {turn[2] if d == 2 else turn}, about: {about}}}",
+    )
+
+
+def _rounded(vector: np.ndarray, size: float) -> list[float]:
+    return [float(f"{x:.6g}") if abs(x) > PRESCRIBED_BESIDE * size else 0.0 for x in vector]
+
+
 def _found(model: ModelData, dynamics: Dynamics, start: InitialValues, t: float, described: Described) -> Equilibrium:
     if dynamics.system.has_coupled_inertia:
         raise InputError(

@@ -206,3 +206,37 @@ run: {duration: 0.2, rtol: 1e-9}
             changed = stiffmbs.read_scene(text, [(name, value * factor)])
             ends.append(solved(changed, rtol=1e-10)["s.end.y"][-1])
         assert found.to[name] == pytest.approx((ends[1] - ends[0]) / (2e-4 * value), rel=1e-3)
+
+
+ROTOR = """
+dimensions: 3
+gravity: [0, 0, -9.81]
+bodies:
+  arm: {type: beam, start: [0, 0, 0], end: [1, 0, 0], elements: 6, omega: [0, 0, 60],
+        section: {type: rectangle, width: 20 mm, height: 4 mm}, material: {E: 210 GPa, density: 7850}}
+joints:
+  hub: {type: revolute, i: arm.start, j: ground}
+start: {rotation: 60 rad/s}
+run: {duration: 50 ms, points: 51, rtol: 1e-8, solver: radau}
+"""
+
+
+def test_a_rotor_starts_in_the_pose_that_centrifugal_forces_stretch():
+    """A bar stretches by tan(k L)/k - L with k = rate sqrt(density/E), and does not oscillate."""
+    level = ROTOR.replace("-9.81", "0")
+    k = 60 * math.sqrt(7850 / 210e9)
+    for text, stretch in ((level, math.tan(k) / k - 1), (ROTOR, None)):
+        found = stiffmbs.run(stiffmbs.read_scene(text))
+        radius = np.hypot(found["arm.end.x"], found["arm.end.y"])
+        assert np.ptp(radius) < 1e-9 and np.ptp(found["arm.end.z"]) < 1e-9
+        assert stretch is None or radius[0] - 1 == pytest.approx(stretch, rel=1e-3)
+    assert -0.01 < found["arm.end.z"][0] < -0.001
+
+
+def test_a_rotor_that_starts_in_its_pose_at_rest_is_told_the_other_start():
+    settled = ROTOR.replace("{rotation: 60 rad/s}", "settled")
+    found = stiffmbs.run(stiffmbs.read_scene(settled), duration=1e-3)
+    assert "write start: {rotation: [0.0, 0.0, 60.0], about: [0.0, 0.0, 0.0]}" in found.notes[-1]
+    across = settled.replace("[0, 0, -9.81]", "[-9.81, 0, 0]")
+    for text in (across, settled.replace("omega: [0, 0, 60],", "")):
+        assert "write start" not in str(stiffmbs.run(stiffmbs.read_scene(text), duration=1e-3).notes)
