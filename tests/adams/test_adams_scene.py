@@ -404,7 +404,7 @@ SPLINE = "SPLINE/3, X=0,1,2,3,5, Y=0,2,1,4,4\n"
 def test_splines_are_tables_that_formulas_call():
     text = (
         SPLINE
-        + "SFORCE/1, TRANS, I=22, J=1, FUNC=10*AKISPL(DM(22,1),0,3,0)\nVARIABLE/1, FUNC=CUBSPL(TIME,0,3)+INTERP(TIME,0,1,3,0)"
+        + "SFORCE/1, TRANS, I=22, J=1, FUNC=10*AKISPL(DM(22,1),0,3,0)\nVARIABLE/1, FUNC=CUBSPL(TIME,0,3)+INTERP(TIME,1,3)"
     )
     found = made(text, "MILLIMETER")
     points = [[0, 0], [1, 2], [2, 1], [3, 4], [5, 4]]
@@ -416,12 +416,35 @@ def test_splines_are_tables_that_formulas_call():
     assert found["requests"]["VARIABLE_1"] == "CUBSPL_3(t) + LINE_3(t)"
 
 
+def test_interp_has_the_method_before_the_spline():
+    """INTERP(x, method, id, iord): a derivative is refused, not read as the number of another spline."""
+    text = SPLINE + "SPLINE/1, X=0,1,2,3, Y=0,1,2,3\nVARIABLE/1, FUNC="
+    assert made(text + "INTERP(TIME,3,1)")["requests"]["VARIABLE_1"] == "CUBSPL_1(t)"
+    assert made(text + "INTERP(TIME,1,3,0)")["requests"]["VARIABLE_1"] == "LINE_3(t)"
+    with pytest.raises(InputError, match="expected a spline's value"):
+        made(f"{text.partition('VARIABLE')[0]}SFORCE/1, TRANS, I=22, J=1, FUNC=INTERP(TIME,3,1,1)")
+
+
+def test_another_extrapolation_than_that_of_adams_is_noted():
+    """Adams continues a parabola through three points, with LINEAR_EXTRAPOLATE a line through two."""
+    linear = SPLINE.replace("/3", "/3, LINEAR_EXTRAPOLATE")
+
+    def noted(text):
+        return [note for note in made(text).get("notes", []) if "beyond its X" in note]
+
+    for statement, words in ((SPLINE, "parabola through its last three"), (linear, "line through its last two")):
+        (note,) = noted(statement + "VARIABLE/1, FUNC=AKISPL(TIME,0,3)")
+        assert note.startswith("SPLINE/3, AKISPL: ") and words in note
+    assert not noted(linear + "VARIABLE/1, FUNC=INTERP(TIME,1,3)")
+    assert noted(SPLINE + "VARIABLE/1, FUNC=INTERP(TIME,1,3)")
+
+
 @pytest.mark.parametrize(
     "text, words",
     [
         ("AKISPL(TIME,0,4)", "found the spline 4 in 'AKISPL"),
         ("AKISPL(TIME,0,3,1)", "expected a spline's value"),
-        ("INTERP(TIME,0,2,3,0)", "expected a spline's value"),
+        ("INTERP(TIME,2,3)", "expected a spline's value"),
     ],
 )
 def test_splines_that_are_not_there_are_told(text, words):

@@ -210,6 +210,25 @@ def test_a_field_without_symmetry_is_followed():
         np.testing.assert_allclose(found[f"PART_2.w{name}"], own[9 + k], atol=1e-9)
 
 
+def test_the_torque_of_a_field_without_symmetry_on_marker_j_is_about_that_marker():
+    """FIELD(id, 1, TX ..): -T - d x F, with d from J to I, also where J is off the origin of its part."""
+    stiffness = np.diag([4, 5, 6, 4, 5, 6.0])
+    stiffness[0, 4] = 1.0
+    text = (
+        "field\nUNITS/SYSTEM=MKS\nPART/1, GROUND\nMARKER/10, PART=1, QP=3,2,1\nPART/2, MASS=2, CM=21, IP=1,1.5,2\n"
+        f"MARKER/21, PART=2\nFIELD/1, I=21, J=10, KMATRIX={', '.join(map(repr, stiffness.T.ravel().tolist()))}\n"
+        + "".join(f"VARIABLE/{k}, FUNCTION=FIELD(1,{k // 6},{(2, 3, 4, 6, 7, 8)[k % 6]},0)\n" for k in range(12))
+        + "END\n"
+    )
+    found = stiffmbs.run(read_adams(text), duration=1e-6, points=2)
+    (force, torque), (force_on_j, torque_on_j) = np.reshape(
+        [found[f"VARIABLE_{k}"][0] for k in range(12)], (2, 2, 3)
+    )  # fmt: skip
+    np.testing.assert_allclose(force, [12, 10, 6], atol=1e-12)
+    np.testing.assert_allclose(force_on_j, -force, atol=1e-12)
+    np.testing.assert_allclose(torque_on_j, -torque - np.cross([-3, -2, -1], force), atol=1e-12)
+
+
 def test_all_faults_of_a_dataset_are_told_at_once():
     text = (
         SLIDER

@@ -141,7 +141,7 @@ class Functions:
 
     def _curve(self, name: str, table: Table, argument: str) -> str:
         way, ident = self._numbering.spline(name, table)
-        return f"INTERP({argument},0,1,{ident},0)" if way == "INTERP" else f"{way}({argument},0,{ident},0)"
+        return f"INTERP({argument},1,{ident})" if way == "INTERP" else f"{way}({argument},0,{ident},0)"
 
 
 def _nested(name: str) -> Callable[[list[str]], str]:

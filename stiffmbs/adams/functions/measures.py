@@ -6,13 +6,13 @@ another is then a distance between markers.
 JOINT(id, jflag, comp, rm), and JPRIM alike: scene formulas know the reaction on marker I in ground axes. Its component
 along an axis of another marker is the dot product with that axis.
 
-AKISPL and CUBSPL(x, z, id, order), INTERP(x, z, method, id, order) are tables of the scene.
+AKISPL and CUBSPL(x, z, id, order), INTERP(x, method, id, order) are tables of the scene.
 """
 
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any
 
 from ...elements.spatial.number_format import plain
@@ -122,11 +122,10 @@ def spline_value(
 
     Raises DatasetFault if the spline does not exist, or a derivative is requested.
     """
-    x, _, *rest = [*arguments, *[ast.Constant(0)] * 5][: max(4, len(arguments))]
+    x, second, *rest = [*arguments, *[ast.Constant(0)] * 4][: max(4, len(arguments))]
     if name == "INTERP":
-        name = {1: "LINE", 3: "CUBSPL"}.get(function.identifier(rest, 0), "")
-        rest = rest[1:]
-    ident, order = function.identifier(rest, 0), function.identifier(rest, 1) if len(rest) > 1 else 0
+        name = {1: "LINE", 3: "CUBSPL"}.get(function.identifier([second], 0), "")
+    ident, order = function.identifiers(rest, 2)
     spline = mechanism.dataset.splines.get(ident)
     if spline is None:
         raise function.fault(f"found the spline {ident} in '{quoted(function.text)}', expected the number of a SPLINE")
@@ -136,3 +135,16 @@ def spline_value(
     points = [[plain(a), plain(b)] for a, b in zip(spline.x, spline.y, strict=True)]
     mechanism.tables[table] = {"table": points, **CURVES[name]}
     return ast.Call(ast.Name(table), [translate(x)], [])
+
+
+def spline_notes(mechanism: Mechanism) -> Iterator[str]:
+    """Yield one sentence on the splines that Adams extrapolates otherwise than the scene."""
+    for table in mechanism.tables:
+        name, _, ident = table.rpartition("_")
+        spline = mechanism.dataset.splines[int(ident)] if name in CURVES else None
+        if spline is not None and not (name == "LINE" and spline.lines_outside):
+            by_adams = "line through its last two" if spline.lines_outside else "parabola through its last three"
+            yield (
+                f"{spline.label}, {name if name in ('AKISPL', 'CUBSPL') else 'INTERP'}: beyond its X it has the slope of its "
+                f"end, where Adams follows the {by_adams} points"
+            )

@@ -120,7 +120,7 @@ class Forces:
                 if factor
             ]
             laws.append(" + ".join(terms))
-        made = {"i": i.reference, "j": j.body, "frame": j.reference}
+        made = {"i": i.reference, "j": j.reference, "frame": j.reference}
         return {
             force.name: {"type": "force", **made, "force": laws[:3]},
             force.name + TORQUE: {"type": "torque", **made, "torque": laws[3:]},
