@@ -56,11 +56,9 @@ SUBSYSTEMS = {
     "relaxation": "solve.error_control.relaxation:RELAXATION",
     "restarts": "solve.events.restart:RESTARTS",
     "run_checks": "run_checks.parameters:RUN_CHECKS",
-    "sampling": "solve.sampling:SAMPLING",
     "stability_bound": "solve.explicit.stable_step:STABILITY_BOUND",
     "stability_limit": "solve.error_control.stability_limit:STABILITY_LIMIT",
     "sundae": "solve.ida.sundae:FALLBACK",
-    "suspect": "solve.suspect:SUSPECT",
     "velocity_jumps": "solve.events.discontinuity:VELOCITY_JUMP",
     "verification": "verification.parameters:VERIFICATION",
 }

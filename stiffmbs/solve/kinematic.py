@@ -146,9 +146,7 @@ class _Motion:
         self.go_to(breakpoint - self._shortest)
         state, t = self._dynamics.state, breakpoint + self._shortest
         state.q[:], state.u[:] = self.q, self.u
-        self._status = min(
-            self._dynamics.assemble(t), 0
-        ) or self._dynamics.correct_velocities(t)
+        self._status = min(self._dynamics.assemble(t), 0) or self._dynamics.correct_velocities(t)
         if self._status < 0 or not self._take(t):
             raise SolverError(self._stuck())
 

@@ -12,7 +12,7 @@ starts again.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -24,21 +24,10 @@ from ..dynamics.storage import FAILURES
 from ..errors import SolverError
 from ..model.settings import RunSettings
 from ..reading.files.quoted import MOST_LISTED
-from ..tuning import tuned
+from .events.native.parameters import SEARCH
 from .events.restart import just_after, restarted
 from .ida.native.parameters import LOOP
 from .trajectory import Ending, Grid, History, Outcome, ProgressCallback, Solver, Trajectory, summed
-
-
-@dataclass(frozen=True)
-class SamplingParameters:
-    """Parameters of sampled states."""
-
-    same_time: float = 1e-9
-    """Difference of two times, in periods or fixed steps, up to which they are the same."""
-
-
-SAMPLING = tuned("sampling", SamplingParameters())
 
 
 class Sample(NamedTuple):
@@ -110,13 +99,13 @@ def samples(system: System, grid: Grid) -> Iterator[Sample]:
     periods, offsets = system.sampling[system.sampled].T
     states = np.flatnonzero(system.sampled)
     outputs = np.array([grid.start, grid.end]) if grid.times is None else grid.times
-    number = np.ceil((grid.start - offsets) / periods - SAMPLING.same_time)
+    number = np.ceil((grid.start - offsets) / periods - SEARCH.least_difference)
     while True:
         times = offsets + number * periods
         time = float(np.min(times))
-        due = times <= time + SAMPLING.same_time * periods
-        near = np.searchsorted(outputs, time + SAMPLING.same_time * np.min(periods[due])) - 1
-        if time - outputs[near] <= SAMPLING.same_time * np.min(periods[due]):
+        due = times <= time + SEARCH.least_difference * periods
+        near = np.searchsorted(outputs, time + SEARCH.least_difference * np.min(periods[due])) - 1
+        if time - outputs[near] <= SEARCH.least_difference * np.min(periods[due]):
             time = float(outputs[near])
         if time >= grid.end:
             break

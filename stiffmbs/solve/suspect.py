@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -11,19 +10,7 @@ from ..compile.state import LEFT_OPEN
 from ..compile.system import System
 from ..compile.written_values import writer
 from ..dynamics.dynamics import Dynamics
-from ..tuning import tuned
 from .events.native.parameters import EPSILON, SEARCH
-
-
-@dataclass(frozen=True)
-class SuspectParameters:
-    """Parameters of the search."""
-
-    beyond: float = 1e-6
-    """Largest time after the last state, relative to the time, at which undefined values are searched for."""
-
-
-SUSPECT = tuned("suspect", SuspectParameters())
 
 TERM_SETS = ("motion", "acceleration")
 
@@ -50,7 +37,7 @@ def _ahead() -> Iterator[float]:
     """Yield times after a state, relative to the time: zero, then growing from its rounding."""
     yield 0.0
     ahead = EPSILON
-    while ahead < SUSPECT.beyond:
+    while ahead < SEARCH.difference:
         yield ahead
         ahead *= SEARCH.longer
 

@@ -51,12 +51,12 @@ class EventSearchParameters:
     few_parts: int = 100
     """Largest number of parts if arguments of sines cannot be followed."""
     difference: float = 1e-6
-    """Fraction of a step, or of a part, over which rates are computed, and up to which the motion is extrapolated past an
-    event until a sign change exceeds rounding."""
+    """Fraction of a step, or of a part, over which rates are computed. The motion is extrapolated up to it past an event,
+    until a sign change exceeds rounding. Relative to the time, it is the way past a failure on which its cause is found."""
     least_difference: float = 1e-9
     """Least time over which rates are computed: at the end of a step relative to the duration, at a start relative to the
-    time to the next stop. Shorter differences are rounding. It is the distance after an event, relative to the step, at
-    which the new law holds too."""
+    time to the next stop. Shorter differences are rounding. The new law holds this far after an event, relative to the
+    step. Two times are the same up to it, in periods or fixed steps."""
     refined: float = 0.02
     """Fraction of a part over which a parabola is fitted at an extremum."""
     refinements: int = 5

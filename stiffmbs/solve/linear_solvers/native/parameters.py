@@ -25,10 +25,8 @@ class PivotParameters:
     changed: float = 8.0
     """Factor by which a pivot must differ from that of the last trial to cause another trial."""
     serves: int = 50
-    """Factorisations after which a trial is always made."""
-    waits_for: int = 20
-    """Largest number of factorisations with pivoting before the next attempt without; it grows by one with each
-    refusal."""
+    """Factorisations after which a trial is always made, and largest number of those with pivoting before the next attempt
+    without, which grows by one with each refusal."""
 
 
 PIVOTS = tuned("pivots", PivotParameters())
