@@ -21,12 +21,15 @@ NEW_OBJECTS = 200_000
 def quiet_while_loading() -> None:
     """Prepare the command ``stiffmbs`` for a fast start: quiet Ctrl-C, no plugin search, no garbage collection.
 
-    SymPy's cache gets no size limit.  Nothing changes for programs that import the package.
+    SymPy's cache gets no size limit.  OpenBLAS gets one thread, unless the environment sets another number: the dense
+    matrices of a run are small, waiting threads cost more than they save, and rounding does not depend on the number of
+    processors.  Nothing changes for programs that import the package.
     """
     if not _is_the_command():
         return
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
     os.environ.setdefault("SYMPY_CACHE_SIZE", "None")
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     gc.disable()  # modules and classes stay alive: scanning them is wasted time
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
         signal.signal(signal.SIGINT, _end)

@@ -160,7 +160,7 @@ def _of_run(found: Examined) -> Report:
         try:
             start = assembled(found.data, dynamics, found.grid.start)
             free = idle_freedoms(dynamics, found.grid.start)
-            subsystems = presolved(found.data, dynamics, start, found.grid, found.settings)
+            subsystems = presolved(found.data, dynamics, start, found.grid, found.settings, lambda decide: decide())
             problems += [start.position_sentence(MOST_MOVES)] if start.moved_far else []
         except (AssemblyError, SolverError) as error:
             problems += [] if redundancy.extra_freedoms else [str(error)]

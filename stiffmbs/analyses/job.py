@@ -6,7 +6,7 @@ import logging
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import Any, NamedTuple, TypeAlias
 
@@ -36,6 +36,7 @@ from ..solve.settings import changed, near_constraints, output_grid
 from ..solve.subsystems import Subsystem, presolved, solve_subsystems
 from ..solve.trajectory import Grid, Outcome, ProgressCallback, Trajectory, unwatched
 from ..tuning import described, in_use
+from .found_before import FoundBefore
 from .load_scene import load_scene
 from .start_from import StartFrom, started_from, starting_at, state_to_start_from
 
@@ -203,11 +204,15 @@ def prepare(
         refuse_inconsistencies(found.redundancy)
     dynamics = found.dynamics()
     LOGGER.info("assembling %s", found.data.name)
+    before = FoundBefore(found.data, found.settings, found.start_from)
     with told_faults(dynamics.system), in_use(found.settings.tuning):
-        start = _start(found.data, dynamics, found.grid.start, found.start_from)
+        start = before.get("start", lambda: _start(found.data, dynamics, found.grid.start, found.start_from))
+        if before.name:
+            dynamics.place(start.q, start.u, start.lam)
         if isinstance(found.data, Scene) and found.data.start != "described":
             start = replace(start, notes=(*start.notes, *held(dynamics.system)))
-        subsystems = presolved(found.data, dynamics, start, found.grid, found.settings)
+        subsystems = presolved(found.data, dynamics, start, found.grid, found.settings, partial(before.get, "implicit"))
+    before.keep()
     dynamics.system.known_terms.clear()
     return Job(found.data, found.settings, found.grid, found.redundancy, dynamics, start, subsystems, found.start_from)
 

@@ -191,6 +191,12 @@ class Dynamics:
             vector[:] = 0.0
         state.relax(state.mu, state.lam)
 
+    def place(self, q: np.ndarray, u: np.ndarray, lam: np.ndarray) -> None:
+        """Set the state to a start, independently of how it was found: rounding does not depend on a cache."""
+        self.return_to_start()
+        self.forget_pivots()
+        self.state.q[:], self.state.u[:], self.state.lam[: len(lam)] = q, u, lam
+
     @cached_property
     def eliminated(self) -> Eliminated:
         """Elimination for accelerations, faster than the LU; explicit steps use it where it serves."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
@@ -53,18 +53,22 @@ def leave_out_coordinates(dynamics: Dynamics, t: float) -> None:
 
 
 def presolved(
-    model: ModelData, dynamics: Dynamics, start: InitialValues, grid: Grid, settings: RunSettings
-) -> tuple[Subsystem, ...]:
+    model: ModelData, dynamics: Dynamics, start: InitialValues, grid: Grid, settings: RunSettings,
+    decided: Callable[[Callable[[], bool]], bool],
+) -> tuple[Subsystem, ...]:  # fmt: skip
     """Return the mechanisms to solve in place of the whole system; empty if there is one only or presolve is off.
 
     For implicit solvers, dependent coordinates are eliminated from their dynamics or from those of the whole system.
     If steps are implicit from the start, the spin of axisymmetric bodies is removed from their quaternions. Explicit
-    steps would only come closer to their stability limit. `dynamics`: of the whole system, at its start.
+    steps would only come closer to their stability limit. `dynamics`: of the whole system, at its start. `decided`: returns
+    an earlier decision to begin with implicit steps, or calls the function that makes it.
     """
     if not may_presolve(settings):
         return ()
     traits = traits_of(settings)
-    implicit = traits.implicit and (not traits.switches or _begins_implicit(dynamics, start, grid, settings))
+    implicit = traits.implicit and (
+        not traits.switches or decided(partial(_begins_implicit, dynamics, start, grid, settings))
+    )
     way = (grid.end - grid.start) * start.u if implicit else None
     together = partial(alike, dynamics, start, (grid.start, grid.end), implicit)
     parts = parts_of(model, dynamics.system, way, together if grid.times is not None else None)

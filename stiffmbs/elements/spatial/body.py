@@ -16,7 +16,7 @@ from ...reading.units import si
 from ..body import check_names
 from .geometry import SpatialGeometry
 from .marker import ORIGIN, Marker, Placement, Point
-from .orientation import IDENTITY, Orientation, Quaternion, conjugate, from_matrix, product, rotated
+from .orientation import IDENTITY, Orientation, Quaternion, conjugate, from_matrix, product, rotated, unit_quaternion
 
 Row = tuple[si.Inertia, si.Inertia, si.Inertia]
 Inertia = Annotated[tuple[Row, Row, Row], WithJsonSchema({"type": "array", "minItems": 3, "maxItems": 3})]
@@ -138,7 +138,8 @@ class Body(Described):
         """Return a placement on the body relative to its centre of mass and principal axes."""
         turned = conjugate(self.principal_axes())
         x, y, z = rotated(turned, np.array(placed.point) - np.array(self.center_of_mass))
-        return Placement(point=(float(x), float(y), float(z)), orientation=product(turned, placed.orientation))
+        orientation = unit_quaternion(product(turned, placed.orientation))
+        return Placement.model_construct(point=(float(x), float(y), float(z)), orientation=orientation)
 
 
 class BodyHandle(Handle):

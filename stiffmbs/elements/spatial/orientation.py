@@ -99,7 +99,7 @@ class OrientationField:
                     for name, axis in found.items()
                 })  # fmt: skip
             case list() | tuple() if len(found) == 4:
-                return _checked(np.array([in_si(part, "number", parameters) for part in found]))
+                return unit_quaternion([in_si(part, "number", parameters) for part in found])
             case list() | tuple() if len(found) == 3:
                 return _from_rows([[in_si(part, "number", parameters) for part in _listed(row, 3)] for row in found])
         raise FormulaError(
@@ -143,12 +143,13 @@ def _unit(p: np.ndarray) -> Quaternion:
     return w, x, y, z
 
 
-def _checked(p: np.ndarray) -> Quaternion:
+def unit_quaternion(p: Sequence[float]) -> Quaternion:
+    """Return a given quaternion, normalized unless it is exact; raise a FormulaError if it is not one of length 1."""
     length = float(np.linalg.norm(p))
     if abs(length - 1) > ROUGH:
         raise FormulaError(f"found a quaternion of length {length:.6g}, expected one of length 1")
     w, x, y, z = (float(part) for part in p)
-    return (w, x, y, z) if abs(length - 1) < UNIT else _unit(p)
+    return (w, x, y, z) if abs(length - 1) < UNIT else _unit(np.asarray(p))
 
 
 def _from_rows(rows: list[list[float]]) -> Quaternion:

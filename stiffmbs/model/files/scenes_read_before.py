@@ -57,13 +57,12 @@ def _read(text: str, changes: Sequence[tuple[str, Any]], source: str, file: Path
         content = _pickled(scene)
         if content is not None and len(content) <= LARGEST:
             keep(name, json.dumps([digest(text), _reader(), others]).encode() + b"\n" + content)
+            return _unpickled(content) or scene  # the same objects are shared as in a later process
     return scene
 
 
 def _scene_in(stored: bytes, text: str) -> Scene | None:
     """Return the scene of an entry; None if anything that it was read from has changed."""
-    from ..scene import Scene
-
     head, _, content = stored.partition(b"\n")
     try:
         of_text, reader, others = json.loads(head)
@@ -71,8 +70,18 @@ def _scene_in(stored: bytes, text: str) -> Scene | None:
             return None
         if any(digest_of_file(file) != found for file, found in others.items()):
             return None
+    except Exception:  # of a damaged entry
+        return None
+    return _unpickled(content)
+
+
+def _unpickled(content: bytes) -> Scene | None:
+    """Return a pickled scene; None for anything else."""
+    from ..scene import Scene
+
+    try:
         scene = pickle.loads(content)  # may contain user code
-    except Exception:  # of a missing class or a damaged entry: unpickling may raise any error
+    except Exception:  # of a missing class: unpickling may raise any error
         return None
     return scene if isinstance(scene, Scene) else None
 
@@ -92,13 +101,13 @@ def _pickled(scene: Scene) -> bytes | None:
     """Return a scene as bytes; None if it contains objects of other packages."""
     content = io.BytesIO()
     try:
-        _Pickler(content, pickle.HIGHEST_PROTOCOL).dump(scene)
+        ScenePickler(content, pickle.HIGHEST_PROTOCOL).dump(scene)
     except (pickle.PicklingError, AttributeError, TypeError, RecursionError):
         return None
     return content.getvalue()
 
 
-class _Pickler(pickle.Pickler):
+class ScenePickler(pickle.Pickler):
     """Pickler for scenes, which refuses classes and functions of other packages."""
 
     def reducer_override(self, found: object) -> Any:

@@ -1,0 +1,89 @@
+"""Disk cache of starts in equilibrium: initial values, and whether the run begins with implicit steps.
+
+An entry belongs to the content of a scene, to settings and to a version of the package on one kind of processor.
+"""
+
+from __future__ import annotations
+
+import io
+import os
+import pickle
+from collections.abc import Callable
+from functools import cache
+from hashlib import sha256
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numpy as np
+
+from ..cache.source_files import files_within
+from ..compile.machine.cache import own_directory
+from ..model.files.scenes_read_before import ScenePickler
+from ..model.model_data import ModelData
+from ..model.scene import Scene
+from ..model.settings import RunSettings
+from ..reading.files.read_before import folder_of_files, keep
+from ..results.saved_state import SavedState
+
+Found = TypeVar("Found")
+START = "start"
+"""Prefix of the names of the entries."""
+PACKAGE = Path(__file__).parents[1]
+
+
+class FoundBefore:
+    """Findings of a job before it integrates, from the cache or new.
+
+    Described starts need no search, and code of other packages may change; both are computed each time.
+
+    Attributes
+    ----------
+    name : str
+        Name of the entry, or empty if there is none.
+    """
+
+    def __init__(self, data: ModelData, settings: RunSettings, state: SavedState | None) -> None:
+        searched = isinstance(data, Scene) and data.start != "described" and not data.at_start and state is None
+        self.name = _name(data, settings) if searched else ""
+        stored = folder_of_files().read(self.name) if self.name else None
+        self._found: dict[str, Any] = {} if stored is None else pickle.loads(stored)
+        self._stored = len(self._found)
+
+    def get(self, what: str, find: Callable[[], Found]) -> Found:
+        """Return a finding, or call the function that makes it."""
+        if what not in self._found:
+            self._found[what] = find()
+        found: Found = self._found[what]
+        return found
+
+    def keep(self) -> None:
+        """Store the findings if some are new."""
+        if self.name and len(self._found) > self._stored:
+            keep(self.name, pickle.dumps(self._found))
+
+
+def _name(data: ModelData, settings: RunSettings) -> str:
+    """Return the name of the entry; empty for data that cannot be pickled."""
+    content = io.BytesIO()
+    try:
+        _ByContent(content, pickle.HIGHEST_PROTOCOL).dump((data, settings))
+    except (pickle.PicklingError, AttributeError, TypeError, RecursionError):
+        return ""
+    return f"{START}-{sha256(_solver() + content.getbuffer()).hexdigest()[:40]}"
+
+
+class _ByContent(ScenePickler):
+    """Pickler whose bytes do not depend on the order of sets, which varies between processes."""
+
+    def persistent_id(self, found: object) -> Any:
+        return tuple(sorted(found, key=repr)) if isinstance(found, set | frozenset) else None
+
+
+@cache
+def _solver() -> bytes:
+    """Return what the rounding of a start depends on: files of the package, NumPy and its threads, compiler, processor."""
+    threads = os.cpu_count(), *map(os.environ.get, ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"))
+    files = [
+        (str(file), found.st_size, found.st_mtime_ns) for file in files_within(PACKAGE) for found in (file.stat(),)
+    ]
+    return repr((files, threads, np.__version__, own_directory().name)).encode()
