@@ -14,7 +14,6 @@ import numpy as np
 from ..errors import InputError
 from ..reading.variation import MOST_VALUES, Variation
 
-SAMPLES = ("random", "lhs", "sobol")
 MOST_CASES = MOST_VALUES
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import Any, Protocol
 
 import numpy as np
@@ -73,7 +73,11 @@ class Output:
         Raises InputError if the formula names an unknown channel.
         """
         with np.errstate(all="ignore"):
-            found = _value(parsed(self.text).body, solution)
+            found = evaluated(
+                parsed(self.text).body,
+                partial(_channel, solution),
+                lambda name, x: REDUCTIONS[name](solution.time, x),
+            )
         return np.asarray(found, dtype=float) if np.ndim(found) else float(found)
 
     def refuse_unknown(self, known: Collection[str]) -> None:
@@ -123,6 +127,16 @@ def channel_of(node: ast.AST) -> str | None:
             before = channel_of(owner)
             return f"{before}.{name}" if before else None
     return None
+
+
+def _channel(solution: Reported, name: str) -> np.ndarray:
+    """Return a channel of a solution, or the time."""
+    if name == TIME:
+        return solution.time
+    try:
+        return solution[name]
+    except ChannelError as error:
+        raise InputError(str(error)) from None
 
 
 def _channels(node: ast.AST) -> Iterator[str]:
@@ -176,22 +190,24 @@ def _is_series(node: ast.AST) -> bool:
     return channel_of(node) is not None
 
 
-def _value(node: ast.AST, solution: Reported) -> Any:
+def evaluated(node: ast.AST, channel: Callable[[str], Any], reduced: Callable[[str, Any], Any]) -> Any:
+    """Return the value of a formula in any algebra that ufuncs of NumPy accept.
+
+    `channel`: returns a channel or the time by name. `reduced`: returns a reduction of a value, given its name.
+    """
+
+    def of(part: ast.AST) -> Any:
+        return evaluated(part, channel, reduced)
+
     match node:
         case ast.Constant(value):
             return value
         case ast.Call(ast.Name(name), [argument], []) if name in REDUCTIONS:
-            return REDUCTIONS[name](solution.time, _value(argument, solution))
+            return reduced(name, of(argument))
         case ast.Call(ast.Name(name), [*arguments], []):
-            return FUNCTIONS[name](*(_value(argument, solution) for argument in arguments))
+            return FUNCTIONS[name](*map(of, arguments))
         case ast.BinOp(left, operator, right):
-            return OPERATORS[type(operator)](_value(left, solution), _value(right, solution))
+            return OPERATORS[type(operator)](of(left), of(right))
         case ast.UnaryOp(operator, operand):
-            return OPERATORS[type(operator)](_value(operand, solution))
-    name = channel_of(node) or ""
-    if name == TIME:
-        return solution.time
-    try:
-        return solution[name]
-    except ChannelError as error:
-        raise InputError(str(error)) from None
+            return OPERATORS[type(operator)](of(operand))
+    return channel(channel_of(node) or "")

@@ -81,7 +81,7 @@ def _components(text: str, vectors: Vectors) -> Any:
     if not used:
         return text
     counts = {vectors[each] for each in used}
-    if not _Ranks(used).of(parse(text)) or len(counts) > 1:
+    if not _is_vector(parse(text), used) or len(counts) > 1:
         raise FormulaError(f"found '{quoted(text)}', expected a formula whose value is a vector")
     return [name.sub(rf"\g<0>_{axis}", text) for axis in COMPONENTS[: counts.pop()]]
 
@@ -91,28 +91,27 @@ def _any_of(names: Vectors) -> re.Pattern[str]:
     return re.compile(rf"(?<![\w.])(?:{'|'.join(map(re.escape, names))})(?![\w.]|\s*\()")
 
 
-class _Ranks:
-    """Classification of a formula as a vector (True) or a number (False)."""
+def _is_vector(node: ast.expr, vectors: set[str]) -> bool:
+    """Return True for a formula of vectors whose value is a vector, False for one whose value is a number."""
 
-    def __init__(self, vectors: set[str]) -> None:
-        self.vectors = vectors
+    def of(part: ast.expr) -> bool:
+        return _is_vector(part, vectors)
 
-    def of(self, node: ast.expr) -> bool:
-        match node:
-            case ast.Name(id=name):
-                return name in self.vectors
-            case ast.UnaryOp(operand=operand):
-                return self.of(operand)
-            case ast.BinOp(left=left, op=ast.Add() | ast.Sub(), right=right):
-                if self.of(left) != self.of(right):
-                    raise FormulaError(f"found '{ast.unparse(node)}', expected both to be vectors or numbers")
-                return self.of(left)
-            case ast.BinOp(left=left, op=ast.Mult(), right=right):
-                if self.of(left) and self.of(right):
-                    raise FormulaError(f"found '{ast.unparse(node)}', expected at most one vector in a product")
-                return self.of(left) or self.of(right)
-            case ast.BinOp(left=left, op=ast.Div(), right=right) if not self.of(right):
-                return self.of(left)
-        if any(isinstance(part, ast.Name) and part.id in self.vectors for part in ast.walk(node)):
-            raise FormulaError(f"found '{ast.unparse(node)}', expected sums of vectors and their multiples")
-        return False
+    match node:
+        case ast.Name(id=name):
+            return name in vectors
+        case ast.UnaryOp(operand=operand):
+            return of(operand)
+        case ast.BinOp(left=left, op=ast.Add() | ast.Sub(), right=right):
+            if of(left) != of(right):
+                raise FormulaError(f"found '{ast.unparse(node)}', expected both to be vectors or numbers")
+            return of(left)
+        case ast.BinOp(left=left, op=ast.Mult(), right=right):
+            if of(left) and of(right):
+                raise FormulaError(f"found '{ast.unparse(node)}', expected at most one vector in a product")
+            return of(left) or of(right)
+        case ast.BinOp(left=left, op=ast.Div(), right=right) if not of(right):
+            return of(left)
+    if any(isinstance(part, ast.Name) and part.id in vectors for part in ast.walk(node)):
+        raise FormulaError(f"found '{ast.unparse(node)}', expected sums of vectors and their multiples")
+    return False

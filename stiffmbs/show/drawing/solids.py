@@ -134,20 +134,6 @@ def face_normal(points: np.ndarray) -> np.ndarray:
     return across / length if length > 0 else across
 
 
-def hull(points: np.ndarray) -> Solid:
-    """Return the convex hull of points that do not lie in a plane."""
-    from scipy.spatial import ConvexHull
-
-    found = ConvexHull(points)
-    middle = points[found.vertices].mean(axis=0)
-    faces = []
-    for simplex in found.simplices:
-        corners = points[simplex]
-        outward = face_normal(corners) @ (corners.mean(axis=0) - middle) >= 0
-        faces.append(simplex if outward else simplex[::-1])
-    return Solid(points, tuple(faces))
-
-
 def moved(solid: Solid, point: np.ndarray, axes: np.ndarray) -> Solid:
     """Transform a solid from a marker's axes to the axes in which the marker is given."""
     return replace(solid, vertices=point + solid.vertices @ axes.T)

@@ -19,7 +19,6 @@ from ...reading.did_you_mean import did_you_mean
 DRIVER = "handling_driver"
 STEER = "handling_steer"
 ROAD = "handling_road"
-CORNERS = ("front_left", "front_right", "rear_left", "rear_right")
 
 
 @dataclass(frozen=True)

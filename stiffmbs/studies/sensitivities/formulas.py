@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from ...errors import InputError, SolverError
-from ..outputs import FUNCTIONS, OPERATORS, REDUCTIONS, TIME, channel_of, parsed
+from ..outputs import REDUCTIONS, TIME, channel_of, evaluated, parsed
 
 SELECTED = {
     "peak": lambda x: _largest(np.abs(x)), "max": lambda x: _largest(x), "min": lambda x: _largest(-x),
@@ -45,13 +45,25 @@ def of_whole_time(text: str) -> bool:
 
 @dataclass(frozen=True)
 class Dual:
-    """Value with its derivatives; a series has them only at the required instants.
+    """Value with its derivatives, in ufuncs of `SLOPES`; a series has them only at the required instants.
 
-    `value` of shape (n,). `slope` of shape (directions,) or (n, directions).
+    `value` of shape (n,). `slope` of shape (directions,) or (n, directions); a number for no derivatives.
     """
 
     value: Any
     slope: Any
+
+    def __array_ufunc__(self, function: np.ufunc, method: str, *arguments: Any) -> Dual:
+        values = [np.asarray(x.value if isinstance(x, Dual) else x, dtype=float) for x in arguments]
+        with np.errstate(all="ignore"):
+            value = function(*values)
+            by = SLOPES[function](value, *values)
+        changes = [
+            _times(factor, x.slope)
+            for factor, x in zip(by, arguments, strict=True)
+            if isinstance(x, Dual) and np.ndim(x.slope)
+        ]
+        return Dual(value, sum(changes, 0.0))
 
 
 class Formula:
@@ -106,8 +118,7 @@ class Formula:
             return self._dual(self._tree, slopes)
 
     def _dual(self, node: ast.AST, slopes: Mapping[str, Any]) -> Dual:
-        name = channel_of(node)
-        if name is not None:
+        def channel(name: str) -> Dual:
             if name == TIME:
                 return Dual(self._time, 0.0)
             if name not in slopes:
@@ -115,21 +126,9 @@ class Formula:
                     f"of: found '{name}' in '{self.text}', which has no derivatives, expected another channel"
                 )
             return Dual(self._channels[name], slopes[name])
-        match node:
-            case ast.Constant(value):
-                return Dual(value, 0.0)
-            case ast.Call(ast.Name(function), [argument], []) if function in REDUCTIONS:
-                return self._reduced(function, self._dual(argument, slopes))
-            case ast.Call(ast.Name(function), arguments, []):
-                return _called(function, [self._dual(argument, slopes) for argument in arguments])
-            case ast.BinOp(left, operator, right):
-                return _operated(operator, self._dual(left, slopes), self._dual(right, slopes))
-            case ast.UnaryOp(ast.USub(), operand):
-                found = self._dual(operand, slopes)
-                return Dual(-found.value, -found.slope)
-            case ast.UnaryOp(_, operand):
-                return self._dual(operand, slopes)
-        raise InputError(f"of: found '{ast.unparse(node)}', expected a formula of channels")
+
+        found = evaluated(node, channel, self._reduced)
+        return found if isinstance(found, Dual) else Dual(found, 0.0)
 
     def _reduced(self, name: str, x: Dual) -> Dual:
         series, value = np.asarray(x.value, dtype=float), REDUCTIONS[name](self._time, x.value)
@@ -158,47 +157,18 @@ class Formula:
         return np.asarray(slopes[0])
 
 
-def _times(factor: Any, slope: Any) -> Any:
+def _times(factor: Any, slope: np.ndarray) -> np.ndarray:
     """Multiply a slope by a number, or by a series instant by instant."""
-    if np.ndim(slope) == 0:
-        return slope * 0.0
-    if np.ndim(factor) == 1:
-        return np.asarray(factor)[:, None] * slope
-    return factor * slope
+    return factor[:, None] * slope if np.ndim(factor) == 1 else factor * slope
 
 
-def _operated(operator: ast.operator, a: Dual, b: Dual) -> Dual:
-    value = OPERATORS[type(operator)](a.value, b.value)
-    match operator:
-        case ast.Add():
-            slope = a.slope + b.slope
-        case ast.Sub():
-            slope = a.slope - b.slope
-        case ast.Mult():
-            slope = _times(b.value, a.slope) + _times(a.value, b.slope)
-        case ast.Div():
-            slope = _times(1 / np.asarray(b.value), a.slope) - _times(value / np.asarray(b.value), b.slope)
-        case _:
-            x, n = np.asarray(a.value, dtype=float), np.asarray(b.value, dtype=float)
-            slope = _times(n * x ** (n - 1), a.slope)
-            if np.ndim(b.slope):
-                slope = slope + _times(value * np.log(x), b.slope)
-    return Dual(value, slope)
-
-
-SLOPES: dict[str, Any] = {
-    "abs": lambda x: np.where(np.abs(x) > _rounding(x), np.sign(x), 0.0), "sqrt": lambda x: 0.5 / np.sqrt(x), "exp": np.exp, "log": lambda x: 1 / x, "sin": np.cos,
-    "cos": lambda x: -np.sin(x), "tan": lambda x: 1 / np.cos(x) ** 2,
+SLOPES: dict[np.ufunc, Callable[..., tuple[Any, ...]]] = {
+    np.add: lambda y, a, b: (1.0, 1.0), np.subtract: lambda y, a, b: (1.0, -1.0), np.multiply: lambda y, a, b: (b, a),
+    np.divide: lambda y, a, b: (1 / b, -y / b), np.power: lambda y, a, b: (b * a ** (b - 1), y * np.log(a)),
+    np.negative: lambda y, x: (-1.0,), np.positive: lambda y, x: (1.0,),
+    np.absolute: lambda y, x: (np.where(y > _rounding(x), np.sign(x), 0.0),), np.sqrt: lambda y, x: (0.5 / y,),
+    np.exp: lambda y, x: (y,), np.log: lambda y, x: (1 / x,), np.sin: lambda y, x: (np.cos(x),),
+    np.cos: lambda y, x: (-np.sin(x),), np.tan: lambda y, x: (1 / np.cos(x) ** 2,),
+    np.arctan2: lambda y, a, b: (b / (a * a + b * b), -a / (a * a + b * b)), np.hypot: lambda y, a, b: (a / y, b / y),
 }  # fmt: skip
-"""Derivatives of the functions of one number; for ``abs`` near zero, the mean of both sides."""
-
-
-def _called(name: str, arguments: list[Dual]) -> Dual:
-    values = [np.asarray(argument.value, dtype=float) for argument in arguments]
-    value = FUNCTIONS[name](*values)
-    if name in SLOPES:
-        return Dual(value, _times(SLOPES[name](values[0]), arguments[0].slope))
-    a, b = values
-    square = a * a + b * b
-    by_a, by_b = (b / square, -a / square) if name == "atan2" else (a / value, b / value)
-    return Dual(value, _times(by_a, arguments[0].slope) + _times(by_b, arguments[1].slope))
+"""Derivatives by the arguments, from value and arguments; for ``abs`` near zero, the mean of both sides."""
