@@ -24,19 +24,22 @@ from stiffmbs.errors import StiffmbsError
 from stiffmbs.model.tuning import bounds
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
-NARROW = """
+SCENES = {
+    "narrow": """
 {bodies: {a: {mass: 1, inertia: 1}}, forces: {push: {type: force, i: a, force: ["1000*exp(-((t - 3.3)/0.004)^2)", 0]}}, run: {duration: 5 s}}
-"""
-SLIDING = """
+""",
+    "sliding": """
 {bodies: {a: {mass: 1, inertia: 1, velocity: [1, 0]}}, forces: {drag: {type: force, i: a, force: ["-2*sign(a.vx)", 0]}}, run: {duration: 1 s}}
-"""
-GROWING = """
+""",
+    "growing": """
 {bodies: {a: {mass: 1, inertia: 1, velocity: [1, 0]}}, forces: {push: {type: force, i: a, force: ["100*a.x^3", 0]}}, run: {duration: 20 s}}
-"""
-DAMPED = """
+""",
+    "damped": """
 {bodies: {a: {mass: 1e-4, inertia: 1e-6, position: [1, 0]}}, gravity: [0, -9.81], joints: {j: {type: prismatic, i: a, j: ground}},
  forces: {d: {type: force, i: a, force: ["1 - 1e4*a.vx - 1e3*(a.x - 0.5)", 0]}}, run: {duration: 1 s}}
-"""
+""",
+}
+"""Scenes of a few lines."""
 
 
 CHANGED = "run.tuning changes parameters"
@@ -44,10 +47,22 @@ CHANGED = "run.tuning changes parameters"
 
 
 class Case(NamedTuple):
-    """Short run of an example or of a scene's text, with changed settings."""
+    """Short run of an example or of a scene of a few lines, with changed settings."""
 
     scene: str
     settings: dict[str, Any]
+
+    @property
+    def name(self) -> str:
+        """The scene, and its settings without duration and points."""
+        chosen = {key: value for key, value in self.settings.items() if key not in ("duration", "points")}
+        return " ".join([self.scene, *(str(value) for value in chosen.values())])
+
+    def counts(self, changes: tuning.Values | None = None) -> dict[str, int]:
+        """Return the counters of a run and the number of its notes."""
+        found = stiffmbs.run(_scene(self.scene), tuning=changes or {}, **self.settings)
+        notes = sum(not note.startswith(CHANGED) for note in found.notes)
+        return {name: value for name, value in found.solver.items() if isinstance(value, int)} | {"notes": notes}
 
     def result(self, changes: tuning.Values | None = None) -> str:
         """Return a digest of everything that a run gives, or its error."""
@@ -65,7 +80,7 @@ class Case(NamedTuple):
 
 @cache
 def _scene(name: str) -> Any:
-    return stiffmbs.read_scene(name) if "{" in name else stiffmbs.load_scene(EXAMPLES / f"{name}.yaml")
+    return stiffmbs.read_scene(SCENES[name]) if name in SCENES else stiffmbs.load_scene(EXAMPLES / f"{name}.yaml")
 
 
 _RUNS: tuple[tuple[Any, ...], ...] = (
@@ -80,10 +95,10 @@ _RUNS: tuple[tuple[Any, ...], ...] = (
     ("simple_pendulum", 1.0, {"solver": "projected", "scheme": "rk4", "step": 3e-3}),
     ("dzhanibekov", 5.0, {}, {"solver": "projected"}, {"solver": "projected", "rtol": 1e-12}),
     ("heavy_top", 1.0, {}, {"solver": "radau"}),
-    (NARROW, 5.0, {}, {"solver": "projected"}),
-    (SLIDING, 1.0, {}, {"solver": "projected"}, {"solver": "projected", "scheme": "rk4"}),
-    (GROWING, 20.0, {}, {"solver": "projected"}),
-    (DAMPED, 1.0, {}, {"solver": "auto"}),
+    ("narrow", 5.0, {}, {"solver": "projected"}),
+    ("sliding", 1.0, {}, {"solver": "projected"}, {"solver": "projected", "scheme": "rk4"}),
+    ("growing", 20.0, {}, {"solver": "projected"}),
+    ("damped", 1.0, {}, {"solver": "auto"}),
     ("chain", 0.5, {}, {"solver": "projected"}),
     ("four_bars", 0.5, {}, {"solver": "radau"}),
     ("spatial_chain", 0.2, {}, {"solver": "projected"}),
@@ -126,7 +141,7 @@ def first_changed(name: str, field: str, value: Any) -> str:
     """Return the first case with another result if a parameter is changed; empty if none."""
     for number, case in enumerate(CASES):
         if case.result({name: {field: value}}) != usual(number):
-            return f"{case.scene.strip()[:20]} {case.settings}"
+            return case.name
     return ""
 
 
