@@ -71,6 +71,20 @@ def test_momentum_and_energy_of_a_flying_beam_are_kept():
     assert momentum[:, -1] == pytest.approx([8 * 2.5, 0], abs=1e-6)
 
 
+@pytest.mark.long
+def test_a_flying_beam_converges_to_finite_elements_of_high_order():
+    """The load starts and ends with a jump, so that extrapolations are wrong in the fourth digit.
+
+    The expected values are those of `python -m tests.beams.high_order 16 6`; 64 spectral elements agree to 1.3e-4.
+    """
+    text = flying(32, 10.0).replace("type: beam", "type: beam, interpolation: spectral")
+    found = solved(text)
+    expected = {5: (5.620177, 4.764298, 15.408506, 4.264528), 10: (25.408755, 4.790207, 15.624379, 4.151323)}
+    names = [f"rod.{end}.{axis}" for end in ("start", "end") for axis in "xy"]
+    for row, values in expected.items():
+        assert at(found, *names, row=row) == pytest.approx(values, abs=1.2e-3)
+
+
 def nodes_of(solution, name, n, length=10.0, mass_per_length=1.0):
     from stiffmbs.model.beams.stiffness import node_weights
 
