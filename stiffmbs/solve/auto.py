@@ -108,12 +108,14 @@ class _Implicit:
     name : str
         ``bdf`` or ``radau``; empty before it is chosen.
     cost : ImplicitCost
-        Cost of the chosen integrator with its linear solver, or a lower bound before it exists.
+        Cost of the chosen integrator with its linear solver. Before it exists, a lower bound; before it is chosen, that
+        of `bdf`, which is the least.
     """
 
     def __init__(self, dynamics: Dynamics, settings: RunSettings) -> None:
         self._dynamics, self._settings = dynamics, settings
         self.name, self._created = "", False
+        self._estimate(None)
 
     def choose(self, stiffness: Stiffness) -> None:
         """Choose the integrator by the stiffness of a state, unless one exists."""
@@ -298,6 +300,8 @@ class _AutoRun:
         rate = self._stable_rate(fastest)
         pieces = 1 + self._breakpoints_after(t)
         explicit_cost = self.remaining(t) * rate + (pieces - 1) * cost.COSTS.restart_steps * self.explicit_step
+        if not explicit_cost > pieces * self._implicit.growth:
+            return None
         stiffness = self._stiffness(t, start.q, start.u)
         self._implicit.choose(stiffness)
         if not explicit_cost > pieces * self._implicit.growth:

@@ -28,7 +28,7 @@ from .parameters import RADAU
 READ = ("formulation", "rtol", "atol", "max_step", "stages")
 """Settings that the solver reads."""
 CONTROL = tuned("error_test_of_radau", ErrorControl(margin=1.0))
-ITERATIONS, START_STEPS = 3, 5
+ITERATIONS, START_STEPS = 3, 4
 """Average number of Newton iterations in a step; small steps after a start per digit of the relative tolerance."""
 RESIDUAL, MATRIX = 1.4, 0.35
 """Costs of a residual with its share of the solutions, and of one of the matrices of a step, in those of bdf.

@@ -1,4 +1,4 @@
-"""Compare bdf, dop853, radau and auto on stiff, published and large problems: processor time and error at two tolerances.
+"""Compare bdf, dop853, radau and auto on stiff, published and large problems: processor time, error and steps at two tolerances.
 
     python -m tests.bench.solvers.stiff_and_light [PROBLEM ...] [--rtol 1e-4 1e-7] [--longest 20]
 
@@ -133,7 +133,7 @@ def measured(model: Any, rtol: float, how: dict[str, Any], longest: float, round
 
 
 def rows(name: str, rtols: list[float], longest: float) -> Iterator[str]:
-    """Yield a line for each tolerance of a problem: time, ms, and error of each solver."""
+    """Yield a line for each tolerance of a problem: time, ms, error and steps of each solver."""
     make, settings = PROBLEMS[name]
     model = make()
     for how in (SOLVERS["dop853"], SOLVERS["radau"]):
@@ -145,7 +145,10 @@ def rows(name: str, rtols: list[float], longest: float) -> Iterator[str]:
         for how in SOLVERS.values():
             seconds, found = measured(model, rtol, {**how, **settings}, longest, ROUNDS)
             error = math.nan if found is None or exact is None else float(np.abs(found.q - exact.q).max())
-            cells.append(f"{1e3 * seconds:9.2f} {error:8.1e}" if found is not None else f"{'-':>9} {'-':>8}")
+            steps = f"{found.statistics['steps']:7}" if found is not None else f"{'-':>7}"
+            cells.append(
+                f"{1e3 * seconds:9.2f} {error:8.1e} {steps}" if found is not None else f"{'-':>9} {'-':>8} {steps}"
+            )
         yield f"{name:28} {rtol:7.0e} " + "  ".join(cells)
 
 
@@ -158,7 +161,7 @@ def main() -> None:
     given = parser.parse_args()
     if unknown := [name for name in given.problems if name not in PROBLEMS]:
         parser.error(f"found the problem '{unknown[0]}', expected one of: {', '.join(PROBLEMS)}")
-    print(f"{'':28} {'rtol':>7} " + "  ".join(f"{name + ', ms':>9} {'error':>8}" for name in SOLVERS))
+    print(f"{'':28} {'rtol':>7} " + "  ".join(f"{name + ', ms':>9} {'error':>8} {'steps':>7}" for name in SOLVERS))
     for name in given.problems or PROBLEMS:
         for row in rows(name, given.rtol, given.longest):
             print(row, flush=True)
