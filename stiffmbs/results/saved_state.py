@@ -12,7 +12,6 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
-from xml.etree.ElementTree import ParseError
 from zipfile import BadZipFile
 
 import numpy as np
@@ -27,7 +26,7 @@ if TYPE_CHECKING:
 
 
 RAISED = (
-    BadZipFile, zlib.error, struct.error, tokenize.TokenError, ParseError, ArithmeticError, AssertionError, AttributeError,
+    BadZipFile, zlib.error, struct.error, tokenize.TokenError, ArithmeticError, AssertionError, AttributeError,
     EOFError, LookupError, NotImplementedError, RuntimeError, SyntaxError, TypeError,
 )  # fmt: skip
 """Exceptions that readers of archives, arrays, tables and XML raise for damaged content."""
