@@ -27,6 +27,12 @@ from .scene import (
 if TYPE_CHECKING:
     from rich.console import Console
 
+    from ..results.solution import Solution
+    from ..show.plain import PlainConsole
+
+READ_BY_RICH = "COLUMNS", "FORCE_COLOR", "TTY_COMPATIBLE", "TTY_INTERACTIVE", "JUPYTER_COLUMNS"
+"""Environment variables that change what rich writes to files and pipes."""
+
 
 @click.command(short_help="Solve a scene.")
 @click.argument("scene")
@@ -51,14 +57,14 @@ def run(
     input is wrong.
     """
     from ..results.files import check_output
-    from ..show.figure import check_figure, drawn
-    from ..show.style import write_sheet
 
     with refusing(scene, as_json):
         if output is not None:
             check_output(output)
             refuse_own_input("-o", scene, output)
         if figure is not None:
+            from ..show.figure import check_figure
+
             check_figure("--figure", figure)
             refuse_own_input("--figure", scene, figure)
         changes = changes_of(options)
@@ -66,6 +72,9 @@ def run(
         solution = solve_scene(scene, loaded, verify, **start_of(loaded, state, at, changes))
     results, written = _write(scene, output, as_json, solution)
     if figure is not None:
+        from ..show.figure import drawn
+        from ..show.style import write_sheet
+
         with refusing(scene, as_json):
             written = is_written(figure, lambda: write_sheet(figure, drawn(solution, loaded.figure))) and written
     from ..show import summary
@@ -73,7 +82,7 @@ def run(
     if as_json:
         click.echo(summary.as_json(scene, solution))
     else:
-        summary.print_summary(scene, solution, results, console(), all_loads)
+        summary.print_summary(scene, solution, results, _console_for(solution), all_loads)
     sys.exit(0 if solution.outcome.name == "DONE" and written else Status.FAILED)
 
 
@@ -92,6 +101,16 @@ def _write(scene: str, output: Path | None, as_json: bool, solution: Any) -> tup
             click.echo(f"stiffmbs: {reason}", err=True)
         return reason, output is None
     return str(path), True
+
+
+def _console_for(solution: Solution) -> Console | PlainConsole:
+    """Return a console without rich for files and pipes in Unicode, if rich would neither colour nor measure characters."""
+    from ..show.plain import PlainConsole
+    from ..show.summary import UNBROKEN
+
+    encoding = str(getattr(sys.stdout, "encoding", "")).lower()
+    of_rich = sys.stdout.isatty() or not encoding.startswith("utf") or not os.environ.keys().isdisjoint(READ_BY_RICH)
+    return console() if of_rich or not "".join(solution.channels).isascii() else PlainConsole(sys.stdout, UNBROKEN)
 
 
 def console() -> Console:

@@ -93,12 +93,27 @@ LOADS = Loads()
 
 
 def force_table(solution: Solution, most: int | None = None) -> Table:
-    """Return a table with a row for each element; in space one for its force, and one for its torque if it has any.
+    """Return the rows of `force_rows` as a table for a console of rich."""
+    return rich_table(*force_rows(solution, most))
+
+
+def rich_table(heads: Sequence[str], *rows: Sequence[str]) -> Table:
+    """Return rows as a table for a console of rich."""
+    from rich.table import Table
+
+    table = Table()
+    for k, head in enumerate(heads):
+        table.add_column(head, justify="right" if k else "left", no_wrap=k == 0, overflow="fold")
+    for row in rows:
+        table.add_row(*row)
+    return table
+
+
+def force_rows(solution: Solution, most: int | None = None) -> list[list[str]]:
+    """Return the heads, and a row for each element; in space one for its force, and one for its torque if it has any.
 
     `most`: number of elements, those of the largest loads in the order of the scene; all by default.
     """
-    from rich.table import Table
-
     ranges = channel_ranges(solution)
     components = reactions_of(solution)
     in_space = components == SPACE.reactions
@@ -122,18 +137,15 @@ def force_table(solution: Solution, most: int | None = None) -> Table:
         names = [f"{element}.{component}" for component in components]
         return any(_largest(ranges[name]) > noise or name in solution.not_unique for name in names)
 
-    table = Table()
-    table.add_column("element", no_wrap=True, overflow="fold")
-    for head in ("x", "y", "z") if in_space else components:
-        table.add_column(head, justify="right", overflow="fold")
+    rows = [["element", *(("x", "y", "z") if in_space else components)]]
     for element in elements:
         if not in_space:
-            table.add_row(element, *cells(element, components))
+            rows.append([element, *cells(element, components)])
             continue
-        table.add_row(element, *cells(element, components[:3]))
+        rows.append([element, *cells(element, components[:3])])
         if acts(element, components[3:]):
-            table.add_row("  torque", *cells(element, components[3:]))
-    return table
+            rows.append(["  torque", *cells(element, components[3:])])
+    return rows
 
 
 def elements_of(solution: Solution) -> list[str]:

@@ -16,7 +16,8 @@ from ..results.error_bars import UNKNOWN
 from ..results.solution import Solution, channel_ranges
 from ..solve.trajectory import Outcome
 from .escaped import console as escaping_console
-from .force_table import LOADS, NOT_UNIQUE, elements_of, force_table
+from .force_table import LOADS, NOT_UNIQUE, elements_of, force_rows, rich_table
+from .plain import PlainConsole, boxed
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -168,14 +169,16 @@ def summary(solution: Solution, all: bool = False) -> str:
     return text.getvalue().rstrip()
 
 
-def print_summary(scene: str, solution: Solution, results: str, console: Console, all: bool = False) -> None:
+def print_summary(
+    scene: str, solution: Solution, results: str, console: Console | PlainConsole, all: bool = False
+) -> None:
     """Print loads, energy balance, solver statistics, notes, and the file of the results."""
     line = _print(scene, solution, console, all)
     line("results", results)
 
 
 @np.errstate(all="ignore")  # sums of a diverged run overflow
-def _print(scene: str, solution: Solution, console: Console, all: bool) -> Callable[[str, str], None]:
+def _print(scene: str, solution: Solution, console: Console | PlainConsole, all: bool) -> Callable[[str, str], None]:
     """Print the summary; return the function that prints a further line of it."""
     say = partial(console.print, highlight=False, markup=False, emoji=False)  # names may contain markup
 
@@ -201,13 +204,16 @@ def _print(scene: str, solution: Solution, console: Console, all: bool) -> Calla
     return line
 
 
-def _print_loads(solution: Solution, console: Console, say: Callable[[str], None], all: bool) -> None:
+def _print_loads(solution: Solution, console: Console | PlainConsole, say: Callable[[str], None], all: bool) -> None:
     n_elements = len(elements_of(solution))
     most = None if all or n_elements <= LOADS.most + 1 else LOADS.most
-    table = force_table(solution, most)
-    if table.row_count:
+    heads, *rows = force_rows(solution, most)
+    if rows:
         largest = "" if most is None else f"the {most} largest of {n_elements} (--all shows all), "
         say(f"force and torque on the first body, {largest}min .. max (N, N m):")
-        console.print(table)
+        if isinstance(console, PlainConsole):
+            console.print(boxed([heads, *rows]))
+        else:
+            console.print(rich_table(heads, *rows))
     if solution.not_unique:
         say(f"{NOT_UNIQUE} not determined by rigid bodies: one of many possible values")

@@ -7,6 +7,8 @@ import sys
 
 import pytest
 
+from stiffmbs.commands.run import READ_BY_RICH
+
 from ..conftest import EXAMPLES
 
 
@@ -18,6 +20,20 @@ def test_a_run_of_compiled_kernels_loads_neither_scipy_nor_sympy(scene):
     for _ in range(2):  # the first may have to compile
         found = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert found.stdout.strip() == "set()"
+
+
+@pytest.mark.parametrize("environment", [{}, {"COLUMNS": "90"}, {"PYTHONIOENCODING": "ascii"}])
+def test_a_summary_in_a_file_loads_rich_only_where_it_changes_the_text(environment, tmp_path):
+    arguments = ["run", str(EXAMPLES / "cart_pendulum.yaml"), "-o", str(tmp_path / "out.npz"), "--duration", "0.1"]
+    program = f"import sys; sys.argv[1:] = {arguments}; from stiffmbs.commands.main import main; " + (
+        "import atexit; atexit.register(lambda: print('rich.console' in sys.modules)); main()"
+    )
+    given = {name: value for name, value in os.environ.items() if name not in READ_BY_RICH}
+    found = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, check=True,
+        env={**given, "PYTHONIOENCODING": "utf-8", **environment},
+    )  # fmt: skip
+    assert found.stdout.split()[-1] == str(bool(environment)).encode()
 
 
 def test_the_garbage_collector_waits_for_the_command_to_be_loaded_and_for_nothing_else():

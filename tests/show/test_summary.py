@@ -7,8 +7,10 @@ import numpy as np
 import pytest
 
 import stiffmbs
+from stiffmbs.results.error_bars import ErrorBar
 from stiffmbs.show.escaped import console
 from stiffmbs.show.force_table import force_table
+from stiffmbs.show.plain import PlainConsole
 from stiffmbs.show.summary import INDENT, print_summary
 
 LINKS = 14
@@ -82,3 +84,14 @@ def test_a_force_of_rounding_is_shown_as_zero(chain, part, is_zero):
     console(file=table, width=200).print(force_table(replace(chain, channels={**chain.channels, **element})))
     (row,) = [line for line in table.getvalue().splitlines() if line.startswith("│ b ")]
     assert (row.split("│")[2].strip() == "0 .. 0") == is_zero
+
+
+def test_a_file_gets_the_lines_that_rich_writes(chain):
+    """Without loading rich, which takes longer than printing; also with error bars, on two lines of a cell."""
+    barred = replace(
+        chain, errors={name: ErrorBar(1e-3, 2e-3, 3e-3, 2e-3, 3e-3) for name in chain.channels}, not_unique=("j3.fx",), name="±"
+    )
+    for solution in (chain, barred):
+        plain = io.StringIO()
+        print_summary("scene", solution, "out.npz", PlainConsole(plain, 1000), all=True)
+        assert plain.getvalue().splitlines() == printed(solution, 1000, all=True)
