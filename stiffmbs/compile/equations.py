@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 
@@ -16,22 +15,6 @@ from .terms import TERM_SETS
 
 ABSENT = FIXED
 """Position of a coordinate or multiplier that is not among the unknowns."""
-
-
-class AlongMotion(NamedTuple):
-    """Data for kinetic energy and damping along the motion.
-
-    `arrays`: arrays for compiled code (`stiffmbs.solve.error_control.native.layouts.ACCUMULATED_ERRORS`), each padded
-    by one number: places of the independent velocities, masses that move with them, and entries of f_u in the matrix
-    values. `n`, `n_damped`: number of independent velocities and of entries of f_u. `follows`, `ratio`: index of the
-    independent velocity that each velocity follows, and the ratio.
-    """
-
-    arrays: dict[str, np.ndarray]
-    n: int
-    n_damped: int
-    follows: np.ndarray
-    ratio: np.ndarray
 
 
 class Equations:
@@ -172,25 +155,6 @@ class Equations:
         slot[order] = np.cumsum(new) - 1
         self._slot, self._source = held_once(slot), held_once(source.astype(np.int32))
         self._constant, self._cj = held_once(constant.astype(float)), held_once(cj.astype(float))
-
-    @cached_property
-    def along_motion(self) -> AlongMotion:
-        """Data for kinetic energy and damping along the motion."""
-        independent_of, ratio = self.coordinates.relation("u")
-        place, term = self.at["u"], self.system.term(self.formulation.matrix_set, "f_u")
-        moving, independent = independent_of != FIXED, self.coordinates.independent_u
-        mass = np.zeros(len(place))
-        np.add.at(mass, independent_of[moving], (ratio**2 * self.system.mass)[moving])
-        kept = moving[term.row] & moving[term.column]
-        source, row, column = (np.append(part[kept], 0) for part in (term.source, term.row, term.column))
-        return AlongMotion(
-            {
-                "place": np.append(place[independent], 0), "mass": np.append(mass[independent], 0.0),
-                "damped_source": source.astype(np.int64), "damped_row": place[independent_of[row]],
-                "damped_column": place[independent_of[column]], "damped_factor": ratio[row] * ratio[column],
-            },
-            int(independent.sum()), int(kept.sum()), *self._leads["u"],
-        )  # fmt: skip
 
     @property
     def slots_with_rates(self) -> np.ndarray:

@@ -187,6 +187,22 @@ class System:
         turning = angular if flat else 4 * angular.min(axis=1, keepdims=True) * np.ones(4)
         return np.append(np.hstack([linear, turning]), np.zeros(self.n_q - self.n_pose))
 
+    @cached_property
+    def velocity_groups(self) -> np.ndarray:
+        """Group of each velocity, shape (n_u,): velocities connected by constraint equations.
+
+        The velocity of a body without constraints is one group, and its angular velocity another one.
+        """
+        group = (self.per_velocity(0, 1) + 2 * np.repeat(np.arange(len(self.bodies)), self.of_body.n_u)).astype(int)
+        least, of = np.arange(2 * len(self.bodies)), self.term("motion", "J")
+        while True:
+            of_equation, before = np.full(self.n_c, len(least)), least.copy()
+            np.minimum.at(of_equation, of.row, least[group[of.column]])
+            np.minimum.at(least, group[of.column], of_equation[of.row])
+            least = least[least]
+            if np.array_equal(least, before):
+                return np.asarray(least[group])
+
     def per_velocity(self, linear: float, angular: float) -> np.ndarray:
         """Return one number for centre-of-mass velocities, and another for angular velocities, shape (n_u,)."""
         return self._per_body(self.of_body.n_u, linear, angular)

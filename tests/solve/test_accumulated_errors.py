@@ -91,6 +91,45 @@ def test_a_mass_driven_over_many_periods_is_reported(solver, periods):
     assert "b.x" in note and " m " in note
 
 
+@pytest.mark.parametrize("solver, periods", [("bdf", 300), ("dopri5", 3000)])
+@pytest.mark.parametrize("held", ["", "joints: {h: {type: prismatic, i: w, j: {body: ground, point: [0, 1]}}}"])
+def test_a_fast_body_does_not_hide_the_errors_of_a_slow_one(solver, periods, held):
+    """A heavy body moves uniformly; the force on the other one depends on its position."""
+    rate = 2 * np.pi * periods
+    scene = stiffmbs.read_scene(f"""
+gravity: [0, 0]
+bodies:
+  b: {{mass: 1, inertia: 1}}
+  w: {{mass: 1e6, inertia: 1, position: [0, 1], velocity: [10, 0]}}
+{held}
+forces: {{f: {{type: force, i: b, force: ["{rate!r}*sin({rate / 10!r}*w.x)", 0]}}}}
+run: {{duration: 1, points: 2}}
+""")
+    solution = stiffmbs.run(scene, **SOLVERS[solver])
+    error = solution["b.x"][-1] - 1
+    assert abs(error) > 2e-4
+    displaced = estimated(scene, **SOLVERS[solver])
+    assert_near(displaced[0], error)
+    (note,) = noted(solution)
+    assert "b.x" in note
+
+
+def test_velocities_are_grouped_by_the_constraints_that_connect_them():
+    """The bodies of a chain have one group; a free body has one for its velocity and one for its angular velocity."""
+    scene = stiffmbs.read_scene("""
+gravity: [0, 0]
+bodies: {d: {mass: 1, inertia: 1}, a: {mass: 1, inertia: 1}, c: {mass: 1, inertia: 1}, b: {mass: 1, inertia: 1}}
+joints:
+  one: {type: revolute, i: {body: a, point: [1, 0]}, j: {body: b, point: [-1, 0]}}
+  two: {type: revolute, i: {body: b, point: [1, 0]}, j: {body: c, point: [-1, 0]}}
+run: {duration: 1}
+""")
+    groups = prepare(scene, presolve=False).dynamics.system.velocity_groups.reshape(4, 3)
+    assert len(np.unique(groups)) == 3
+    assert groups[0, 0] == groups[0, 1] != groups[0, 2]
+    assert len(np.unique(groups[1:])) == 1 and groups[1, 0] not in groups[0]
+
+
 @pytest.mark.long
 def test_the_published_settings_are_reported():
     for scene, channel, value in ((wheel(1000), "w.angle", 2000 * np.pi), (driven(10_000), "b.x", 1.0)):

@@ -106,7 +106,7 @@ class AdaptiveRun:
             history,
             note,
             long_steps=self.work.long_steps(),
-            displaced=self.work.displaced.copy(),
+            displaced=self.work.displaced(),
         )
 
     def _reason(self, status: int) -> str:

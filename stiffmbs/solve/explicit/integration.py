@@ -26,7 +26,7 @@ class Integration:
     - `q`, `u`: current positions and velocities.
     - `at`: address of the table for compiled code.
     - `atol` of shape (n_q + n_u,): absolute tolerances.
-    - `displaced` of shape (n_u,): estimated position errors, as displacements along velocities.
+    - `displaced`: function that returns the estimated position errors, shape (n_u,), as displacements along velocities.
     """
 
     def __init__(
@@ -50,7 +50,7 @@ class Integration:
         self.q, self.u, self.at = memory.y[:n_q], memory.y[n_q:], address(memory.table)
         self.atol = dynamics.kept("tolerances", settings, lambda: absolute_tolerances(dynamics.system, settings))
         memory.atol[:] = self.atol
-        self.displaced = memory.displaced
+        self.displaced = memory.error_sums.displaced
         if grid.times is not None:
             memory.times[:] = grid.times
         self._cells = cells = memory.cells

@@ -9,10 +9,12 @@ from typing import Any
 
 import numpy as np
 
+from ...compile.coordinates import all_independent
 from ...compile.machine.layout import packed
 from ...compile.machine.routines import together
+from ...compile.system import Term
 from ...dynamics.dynamics import POSITION_TOLERANCE, Dynamics
-from ..error_control.native.layouts import ACCUMULATED_ERRORS
+from ..error_control.accumulated_errors import ErrorSums
 from ..ida.native.parameters import LOOP
 from .native.layouts import EXPLICIT, SCHEME
 
@@ -111,8 +113,7 @@ class StepMemory:
     - `y`, `end_rates`, `lam` of shapes (n_q + n_u,), (n_q + n_u,), (n_c,): current state, its rates, and multipliers
       at a start.
     - `atol`, `times` of shapes (n_q + n_u,), (n_times,).
-    - `displaced` of shape (n_u,): estimated position errors
-      (`stiffmbs.solve.error_control.native.accumulated_errors`).
+    - `error_sums`: accumulated errors of the run.
     - `row_t`, `row_y`, `ends` of shapes (capacity,), (capacity, n_q + n_u), (capacity,).
     - `table`: addresses and cells (`stiffmbs.solve.explicit.native.layouts.EXPLICIT`).
     - `cells`: cells of the table by name.
@@ -128,15 +129,8 @@ class StepMemory:
         self.end_rates = stages[scheme.stages]
         searched = system.n_values("event_function") > 0
         nothing = np.zeros(1, dtype=np.int64)
-        self._sums = np.zeros((2, system.n_u))
-        self.displaced = self._sums[1]
-        self._of_errors = {
-            "n": system.n_u, "place": system.n_q + np.arange(system.n_u), "mass": np.ascontiguousarray(system.mass), "damped_source": nothing,
-            "damped_row": nothing, "damped_column": nothing, "damped_factor": np.zeros(1), "displaced": self._sums[0], "furthest": self._sums[1],
-            "n_damped": 0,
-        }  # fmt: skip
-        self._errors = packed(ACCUMULATED_ERRORS, self._of_errors)
-        self._new_errors = self._errors.copy()
+        velocities, no_entries = system.n_q + np.arange(system.n_u), Term(*np.zeros((3, 0), dtype=np.int64))
+        self.error_sums = ErrorSums(system, all_independent(system), velocities, no_entries)
         self._arrays = {
             "dynamics": dynamics.table, "eliminated": eliminated.table, "eliminates": eliminated.serves,
             "pivots_tell": eliminated.pivots_tell, "scheme": scheme.table, "n": n, "n_q": system.n_q,
@@ -146,7 +140,7 @@ class StepMemory:
             "weight": np.zeros(n), "polynomial": np.zeros((3 + len(scheme.dense), n)),
             "n_times": n_times, "times": self.times,
             "capacity": capacity, "row_t": self.row_t, "row_y": self.row_y, "ends": self.ends,
-            "accumulated": self._errors, "halved": np.zeros(3 * n),
+            "accumulated": self.error_sums.table, "halved": np.zeros(3 * n),
             "watch": nothing, "step_bound": nothing, "long_steps": nothing,
         }  # fmt: skip
         self.table = packed(EXPLICIT, self._arrays)
@@ -155,6 +149,5 @@ class StepMemory:
     def renew(self, watch: int, step_bound: int, long_steps: int) -> None:
         """Reset all cells for a new run, and set the addresses of its tables."""
         self.table[:] = self._new
-        self._errors[:] = self._new_errors
-        self._sums[:] = 0.0
+        self.error_sums.forget()
         self.table[[WATCH, STEP_BOUND, LONG_STEPS]] = watch, step_bound, long_steps

@@ -11,7 +11,7 @@ from ...compile.machine.layout import packed
 from ...compile.machine.routines import Routine, together
 from ...compile.state import State
 from ...dynamics.dynamics import Dynamics
-from ..error_control.native.layouts import ACCUMULATED_ERRORS
+from ..error_control.accumulated_errors import ErrorSums
 from ..events.event_functions import EventSearch, StepBound
 from ..events.long_steps import LongStepLog
 from ..events.native.layouts import LONG_STEPS
@@ -124,7 +124,7 @@ class Connection:
     - `cells`: results of the loop (`stiffmbs.solve.ida.native.layouts.NATIVE_IDA`).
     - `signs`, `masked` of shape (n_event_functions,): see `stiffmbs.solve.ida.native.ida_memory`.
     - `long_steps`: None for scenes without laws.
-    - `furthest`: accumulated displacement error along each independent velocity.
+    - `error_sums`: accumulated errors of the run.
     - `words`, `table`: table for compiled code, and its address.
     - `state_table`, `equations_table`: tables of the state and of the equations.
     """
@@ -166,12 +166,10 @@ class Connection:
         for term_set in (formulation.residual_set, formulation.matrix_set):
             self._state.load(term_set)
         self.equations_table, self._slots = self._equations.table(self._assembled.slots)
-        along = self._equations.along_motion
-        self._sums = np.zeros((2, along.n + 1))
-        self.furthest = self._sums[1]
-        sums = {"n": along.n, "n_damped": along.n_damped, "displaced": self._sums[0], "furthest": self._sums[1]}
-        self._errors = packed(ACCUMULATED_ERRORS, {**along.arrays, **sums})
-        self._new_errors = self._errors.copy()
+        system = self._equations.system
+        self.error_sums = ErrorSums(
+            system, self._equations.coordinates, self._equations.at["u"], system.term(formulation.matrix_set, "f_u")
+        )
         self.state_table, self._calls = self._state.restricted(self._equations.used())
         return packed(
             NATIVE_IDA,
@@ -187,7 +185,7 @@ class Connection:
                 "output_correction": self.output_correction.table, "iteration": self.iteration.table, "watch": self.watch.table,
                 "look_at_start": LOOK_AT_START.address if self.watch.n else 0, "look_within": LOOK_WITHIN.address if self.watch.n else 0,
                 "probe": self._probe, "residual": self._residual, "long_steps": self._long_steps,
-                "accumulated": self._errors, "error_norm": self.error_norm.table,
+                "accumulated": self.error_sums.table, "error_norm": self.error_norm.table,
             },
         )  # fmt: skip
 
@@ -225,7 +223,7 @@ class Connection:
         self.history.forget()
         if self.long_steps:
             self.long_steps.forget()
-        self._errors[:], self._sums[:] = self._new_errors, 0.0
+        self.error_sums.forget()
         self.output_correction.forget()
         self.error_norm.forget()
         self._formula.forget()

@@ -263,9 +263,7 @@ class NativeEngine(Engine):
         return log.kept() if log else None
 
     def displaced(self) -> np.ndarray:
-        along = self._equations.along_motion
-        found: np.ndarray = np.abs(along.ratio) * self._ida.furthest[along.follows]
-        return found
+        return self._ida.error_sums.displaced()
 
     def history(self) -> History:
         return History(self._ida.history.t, self._ida.history.order)

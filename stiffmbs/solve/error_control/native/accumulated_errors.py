@@ -1,8 +1,9 @@
-"""Local errors of velocities, accumulated along the motion.
+"""Local errors of velocities, accumulated along the motion of each group of velocities connected by constraints.
 
-With |u| = sqrt(u^T M u), a local error e of the velocities changes the speed by u^T M e / |u|.  Only damping reduces
-the speed error P, at the rate -u^T (df/du) u / |u|^2; P displaces positions by P u / |u| per second.  |u| is bounded
-below by its mean so far, because the direction of a mechanism at rest is rounding.
+Constraints distribute errors among velocities; other velocities keep their own errors, which those of faster bodies must
+not hide.  In each group, with |u| = sqrt(u^T M u), a local error e changes the speed by u^T M e / |u|.  Only damping
+reduces the speed error P, at the rate -u^T (df/du) u / |u|^2; P displaces positions by P u / |u| per second.  |u| is
+bounded below by its mean so far, because the direction of a mechanism at rest is rounding.
 """
 
 from __future__ import annotations
@@ -25,19 +26,19 @@ def is_due(a, h):
 
 
 @compiled
-def _energy(a, y):
-    """Return u^T M u; y has all unknowns."""
+def _energy(a, y, group):
+    """Return u^T M u of a group; y has all unknowns."""
     energy = 0.0
-    for k in range(a.n):
+    for k in range(a.first[group], a.first[group + 1]):
         u = y[a.place[k]]
         energy += a.mass[k] * u * u
     return energy
 
 
 @compiled
-def _power(a, y, error):
+def _power(a, y, error, group):
     power = 0.0
-    for k in range(a.n):
+    for k in range(a.first[group], a.first[group + 1]):
         power += a.mass[k] * y[a.place[k]] * error[a.place[k]]
     return power
 
@@ -48,32 +49,38 @@ def displace_by(a, y, error, values):
 
     The derivatives of forces in `values` give the damping.
     """
-    energy = _energy(a, y)
-    if energy > 0.0:
-        a.each = _power(a, y, error) / sqrt(energy)
-        damped = 0.0
-        for k in range(a.n_damped):
-            damped -= a.damped_factor[k] * values[a.damped_source[k]] * y[a.damped_row[k]] * y[a.damped_column[k]]
-        a.damping = damped / energy
-    _displace(a, y, energy)
+    a.time += a.span
+    for group in range(a.n_groups):
+        energy = _energy(a, y, group)
+        if energy > 0.0:
+            a.each[group] = _power(a, y, error, group) / sqrt(energy)
+            damped = 0.0
+            for k in range(a.first_damped[group], a.first_damped[group + 1]):
+                damped -= a.damped_factor[k] * values[a.damped_source[k]] * y[a.damped_row[k]] * y[a.damped_column[k]]
+            a.damping[group] = damped / energy
+        _displace(a, y, group, energy)
+    a.since = 0
+    a.span = 0.0
 
 
 @compiled
 def note_error(a, y, error):
     """Note the local error of a step that ends at y, used for each step until the next one is noted."""
-    energy = _energy(a, y)
-    a.each = _power(a, y, error) / sqrt(energy) if energy > 0.0 else 0.0
+    for group in range(a.n_groups):
+        energy = _energy(a, y, group)
+        a.each[group] = _power(a, y, error, group) / sqrt(energy) if energy > 0.0 else 0.0
 
 
 @compiled
 def note_damping(a, y, rate, faster_rate, part):
-    """Note the damping rate at y, from accelerations there and with velocities increased by the fraction `part`."""
-    power = 0.0
-    for k in range(a.n):
-        j = a.place[k]
-        power -= a.mass[k] * y[j] * (faster_rate[j] - rate[j])
-    energy = part * _energy(a, y)
-    a.damping = power / energy if energy > 0.0 else 0.0
+    """Note the damping rates at y, from accelerations there and with velocities increased by the fraction `part`."""
+    for group in range(a.n_groups):
+        power = 0.0
+        for k in range(a.first[group], a.first[group + 1]):
+            j = a.place[k]
+            power -= a.mass[k] * y[j] * (faster_rate[j] - rate[j])
+        energy = part * _energy(a, y, group)
+        a.damping[group] = power / energy if energy > 0.0 else 0.0
 
 
 @compiled
@@ -81,22 +88,25 @@ def displace(a, y, span):
     """Displace positions over one step that ends at y by the noted error."""
     a.since = 1
     a.span = span
-    _displace(a, y, _energy(a, y))
+    a.time += span
+    for group in range(a.n_groups):
+        _displace(a, y, group, _energy(a, y, group))
 
 
 @compiled
-def _displace(a, y, energy):
+def _displace(a, y, group, energy):
     span = a.span
-    gained = a.each * a.since
-    a.since = 0
-    a.span = 0.0
     speed = sqrt(energy)
-    a.path += speed * span
-    a.time += span
-    if not a.path > 0.0:
+    a.path[group] += speed * span
+    if not a.path[group] > 0.0:
         return
-    a.speed_error = (a.speed_error + gained) / (1.0 + max(a.damping, 0.0) * span)
-    moved = a.speed_error * span / max(speed, a.path / a.time)
-    for k in range(a.n):
+    gained = a.each[group] * a.since
+    error = a.speed_error[group] + gained
+    damping = a.damping[group]
+    if damping > 0.0:
+        error /= 1.0 + damping * span
+    a.speed_error[group] = error
+    moved = error * span / max(speed, a.path[group] / a.time)
+    for k in range(a.first[group], a.first[group + 1]):
         a.displaced[k] += moved * y[a.place[k]]
         a.furthest[k] = max(a.furthest[k], abs(a.displaced[k]))
