@@ -161,12 +161,15 @@ def lateral(p: Symbolic, s: PressedSlip, dfz: Expr, spin: Spin, f: Name) -> Curv
 
 
 def spin_shift(p: Symbolic, s: PressedSlip, dfz: Expr, spin: Spin, thrust: Expr, f: Name) -> Expr:
-    """Return the shift of the slip angle by spin, S_Hy,phi (4.80 to 4.89)."""
+    """Return the shift of the slip angle by spin, S_Hy,phi (4.80 to 4.89).
+
+    In reverse the same path has the opposite phi and the same side force.
+    """
     C, D = p.PHYP1, f(p.PHYP2 + p.PHYP3 * dfz)
     upright = cornering_stiffness(p, s.load, s.dpi, ZERO) * spin.of_stiffness
     stiffness = thrust / (1 - camber_reduction(p, dfz))
     x = f(stiffness / (C * D * divisor(f(upright)) + LEAST_LOAD**2) * spin.phi)
-    return f(D * sin(magic(ONE, x, C, at_most_one(p.PHYP4))))
+    return f(D * sin(magic(ONE, x, C, at_most_one(p.PHYP4))) * s.direction)
 
 
 def combined(
@@ -194,7 +197,8 @@ def with_torque(p: Symbolic, s: PressedSlip, y: Curve, lessened: Expr, dfz: Expr
     stiffness = s.load * R * (p.QDZ8 + p.QDZ9 * dfz + (p.QDZ10 + p.QDZ11 * dfz) * magnitude(s.gamma)) * p.LKZC
     x = f(stiffness / (C * D * (1 - camber_reduction(p, dfz)) + LEAST_SPIN) * spin.phi)
     torque = f(D * sin(magic(ONE, x, C, p.QDRP2)))
-    by_turn = most * 2 / pi * atan(p.QCRP2 * R * magnitude(s.turn)) * lessened
+    # G_yk is below zero at large slip where RCY1 > 1; the arccosine has no value there
+    by_turn = most * 2 / pi * atan(p.QCRP2 * R * magnitude(s.turn)) * above_zero(lessened)
     left = f(above_zero(f(1 - by_turn / (magnitude(torque) + LEAST_SPIN))))
     left = f(magnitude(left, ROUNDED) / magnitude(ONE, ROUNDED))
     angle = 2 * atan(sqrt(left / (2 - left)))  # arccos(1 - left)
