@@ -136,7 +136,11 @@ def notes_of(model: ModelData) -> tuple[str, ...]:
         components = (component for _, component in element.parts(Component))
         for note in (*element.own_notes(), *(note for component in components for note in component.notes())):
             told.setdefault(note, []).append(name)
-    own = model.notes if isinstance(model, Scene) else ()
+    own = list(model.notes) if isinstance(model, Scene) else []
+    if model.dimensions == 3 and len(model.forces) > 1:
+        from .mounted_tyres import mounted_alike
+
+        own += mounted_alike(model.bodies, model.forces)
     return (*own, *(f"{', '.join(names)}: {note}" for note, names in told.items()))
 
 

@@ -115,6 +115,10 @@ class Tyre(Force):
     def spins_with(self) -> dict[str, str]:
         return {"i": "y"}
 
+    def mounted_side(self) -> tuple[object, float, tuple[str, ...]]:
+        """Return the data of the tyre, 1 or -1 for a mirrored one, and what differs between left and right tyres."""
+        return None, 1.0, ()
+
     @staticmethod
     def law(e: Symbolic, rolling: Rolling) -> tuple[Expr, Expr, Expr, Expr, Expr]:
         """Return Fx, Fy, Mx, My, Mz on the tyre at the contact point, along the ISO axes, N and N m."""

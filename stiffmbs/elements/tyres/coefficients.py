@@ -19,7 +19,7 @@ from ...reading.table import Table
 from ..element import Component
 from ..read_by import Context, JsonSchema, ReadBy
 from ..roads.envelope import MOST_TRACKS, Envelope
-from .names import AS_BEFORE, COMBINED, LATER, OF_THE_FILE, RANGES, REASONS, REQUIRED, TURN_SLIP, home
+from .names import AS_BEFORE, COMBINED, LATER, OF_THE_FILE, ONE_SIDED, RANGES, REASONS, REQUIRED, TURN_SLIP, home
 from .plausible import check_numbers, missing_sections
 from .property_file import (
     NOMINAL_PRESSURE,
@@ -150,6 +150,13 @@ class TyreProperties(Component):
     def is_mirrored(self) -> bool:
         """True if USE_MODE is negative."""
         return self.use_mode is not None and self.use_mode < 0
+
+    @property
+    def one_sided(self) -> tuple[str, ...]:
+        """Coefficients that are not zero and differ between a left and a right tyre."""
+        lateral = self.use_mode is None or abs(self.use_mode) % WITH_LENGTHS > 1
+        has = self.coefficients.get
+        return tuple(name for name, scale in ONE_SIDED.items() if lateral and has(name, 0.0) and has(scale, 1.0))
 
     @property
     def nominal_pressure(self) -> float | None:

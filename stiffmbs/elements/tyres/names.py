@@ -93,6 +93,14 @@ DEFAULT_VALUES = {
 """Values of unused keys that have no effect."""
 
 
+ONE_SIDED = {
+    **dict.fromkeys(("PHY1", "PHY2"), "LHY"), **dict.fromkeys(("PVY1", "PVY2"), "LVY"), "PEY3": "LEY", "RHX1": "", "RBY3": "",
+    **dict.fromkeys(("RVY1", "RVY2"), "LVYKA"), **dict.fromkeys(("QHZ1", "QHZ2", "QBZ4", "QDZ3", "QEZ4"), ""),
+    **dict.fromkeys(("QDZ6", "QDZ7"), "LRES"), "SSZ1": "LS", "QSX1": "LVMX",
+}  # fmt: skip
+"""Coefficients of ply steer, conicity and other forces that a mirrored tyre has reversed, with their scale factors."""
+
+
 _HOMES = {
     "DIMENSION": _words("UNLOADED_RADIUS WIDTH ASPECT_RATIO RIM_RADIUS BOTTOMING_RADIUS"),
     "MODEL": _words("LONGVL FITTYP USE_MODE VXLOW"),

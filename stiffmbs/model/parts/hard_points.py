@@ -3,28 +3,40 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any
 
 from ...errors import InputError
+from ...reading.names import GROUND
 from ...reading.units.units import UNITS, Quantity
 from .frame import Use
 from .vectors import COMPONENTS, Vectors
 
 WHEEL = "wheel_centre"
 """Name of the point by which the others are checked; parts without it are not suspensions of a wheel."""
+SAME_PLACE = 1e-3
+"""Largest distance between two wheels in one place, m."""
 FARTHEST = 5.0
 """Largest distance of a hard point from the centre of its wheel, m; those in millimetres lie farther away."""
 
 
-def check_hard_points(use: Use, where: str, vectors: Vectors, own: Mapping[str, Quantity]) -> None:
-    """Refuse hard points that are far from the wheel, or that lie on the other side of the car.
+def check_hard_points(
+    use: Use, where: str, vectors: Vectors, own: Mapping[str, Quantity], default: Mapping[str, Quantity]
+) -> tuple[float, ...] | None:
+    """Return the centre of the wheel in the frame of a part; None for a part without one.
 
-    The sides of points that the use does not set are those of the part: a twist beam has points on both.
+    Hard points that are far from the wheel, or that lie on the other side of the car, are refused. The sides of points
+    that the use does not set are those of the part: a twist beam has points on both. `default`: parameters of the part.
     """
     points = dict(_points(vectors, own))
     wheel = points.get(WHEEL)
     if wheel is None:
-        return
+        return None
+    if wheel[1] * default[f"{WHEEL}_y"].value < 0:
+        raise InputError(
+            f"{where}.parameters.{WHEEL}: found ({', '.join(f'{x:g}' for x in wheel)}) m, on the other side of the car than "
+            f"in '{use.part}', expected the points of that side, and mirror: 'y' for the other one"
+        )
     for name, point in points.items():
         place = f"{where}.parameters.{name}: found ({', '.join(f'{x:g}' for x in point)}) m"
         centre = f"{WHEEL} ({', '.join(f'{x:g}' for x in wheel)}) m"
@@ -35,6 +47,32 @@ def check_hard_points(use: Use, where: str, vectors: Vectors, own: Mapping[str, 
         given = any(f"{name}_{axis}" in use.parameters for axis in COMPONENTS)
         if given and point[1] * wheel[1] < -(wheel[1] ** 2) / 2:
             raise InputError(f"{place}, on the other side of the car from {centre}, expected the side of the wheel")
+    return wheel
+
+
+def check_sides(wheels: Iterable[tuple[str, tuple[float, ...], str, Any]]) -> None:
+    """Refuse suspensions of the left side of a car on its right side without a mirror, and the reverse.
+
+    `wheels`: names of the instances, centres of the wheels in their frames, bodies that they are mounted on, and their
+    frames in the axes of these bodies.
+    """
+    seen: list[tuple[str, str, tuple[float, ...]]] = []
+    for name, wheel, body, frame in wheels:
+        place = frame.to_outside(wheel)
+        found = f"use.{name}: found the wheel at ({', '.join(f'{x:g}' for x in place)}) m on {body}"
+        for other, mount, taken in seen:
+            nested = name.startswith(f"{other}.")
+            if mount == body and math.dist(place, taken) < SAME_PLACE and not nested:
+                raise InputError(
+                    f"{found}, in the place of the wheel of {other}, expected another place: mirror: 'y' makes a left suspension a right one"
+                )
+        outwards = frame.turned((0.0, wheel[1], 0.0))
+        if body != GROUND and sum(a * b for a, b in zip(place, outwards, strict=True)) < -(wheel[1] ** 2) / 2:
+            raise InputError(
+                f"{found}, with its suspension on the outer side of the car, expected it on the inner side: "
+                "mirror: 'y' makes a left suspension a right one"
+            )
+        seen.append((name, body, place))
 
 
 def _points(vectors: Vectors, own: Mapping[str, Quantity]) -> Iterator[tuple[str, tuple[float, ...]]]:

@@ -16,7 +16,7 @@ from ..beams.entries import with_beams
 from ..files.expand import repeat_entries, set_value
 from .definitions import NAMED, Definitions, definition_in_components
 from .frame import Use
-from .hard_points import check_hard_points
+from .hard_points import WHEEL, check_hard_points
 from .options import OPTIONS, refuse_unknown_choices, with_chosen
 from .parameters import mounts_of, parameters_of
 from .vectors import Vectors, parameters_in_components, vectors_of
@@ -51,6 +51,8 @@ class Instance:
         Further bodies that it connects to, by local name.
     words : mapping of str to str
         Chosen words for it and for nested parts, by choice.
+    wheel : tuple of float or None
+        Centre of the wheel of a suspension in the part's frame, m.
     """
 
     name: str
@@ -62,6 +64,7 @@ class Instance:
     inner: tuple[str, ...] = ()
     mounts: Mapping[str, str] = field(default_factory=dict)
     words: Mapping[str, str] = field(default_factory=dict)
+    wheel: tuple[float, ...] | None = None
 
     @property
     def where(self) -> str:
@@ -137,7 +140,12 @@ class Instances:
         )
         definition = definition_in_components(definition, vectors, f"parts.{use.part}")
         own = parameters_of(use, where, definition.get("parameters"), parameters)
-        check_hard_points(use, where, vectors, own)
+        default = own
+        if f"{WHEEL}_y" in use.parameters:
+            default = parameters_of(
+                use.model_copy(update={"parameters": {}}), where, definition["parameters"], parameters
+            )
+        wheel = check_hard_points(use, where, vectors, own, default)
         sections = {
             section: repeat_entries(f"parts.{use.part}.{section}", definition[section], own) if section in REPEATED else definition[section]
             for section in (*NAMED, "markers") if definition.get(section) is not None
@@ -148,7 +156,7 @@ class Instances:
         _check_sections(use.part, sections, inner, vectors)
         mounts = mounts_of(definition.get("mounts"), use, where)
         self._count(where, sections)
-        instance = Instance(name, use.part, use, sections, own, outer, inner, mounts, words)
+        instance = Instance(name, use.part, use, sections, own, outer, inner, mounts, words, wheel)
         self.found.append(instance)
         if used:
             self.read(used, own, instance, depth + 1)

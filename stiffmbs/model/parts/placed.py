@@ -27,6 +27,7 @@ from ...reading.marker import MarkerReference
 from ...reading.names import GROUND, MOUNT, Names
 from ...reading.units.units import Quantity, in_text
 from .definitions import NAMED, Definitions
+from .hard_points import check_sides
 from .instances import Instance, Instances
 from .mirrored import Mirror
 
@@ -78,6 +79,7 @@ def with_parts(
     placed = _Placed(raw, scene, context)
     for instance in instances.found:
         placed.add(instance)
+    check_sides((one.name, one.wheel, *placed.mounts[one.name]) for one in instances.found if one.wheel is not None)
     return raw, context
 
 

@@ -110,6 +110,10 @@ class MagicFormulaTyre(Tyre):
         ranges = {name: range for name, range in self.properties.ranges.items() if name != "pressure"}
         return {"load": (-math.inf, math.inf), **ranges} if ranges else {}  # no range applies without contact
 
+    def mounted_side(self) -> tuple[object, float, tuple[str, ...]]:
+        """Return the properties, the hand, and the coefficients that differ between left and right tyres."""
+        return self.properties, float(self.hand_of(self)), self.properties.one_sided
+
     def own_states(self) -> tuple[str, ...]:
         transient = self.properties.is_transient if self.transient is None else self.transient
         return DEFLECTIONS if transient else ()

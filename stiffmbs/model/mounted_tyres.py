@@ -1,0 +1,57 @@
+"""Tyres of both sides of an axle that are mounted as tyres of one side."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..elements.spatial.orientation import matrix, rotated
+from ..elements.spatial.tyre import Tyre
+
+ALONG = 0.1
+"""Largest angle between the axles of two wheels, and of the line of their centres to these, on one axle, rad."""
+NAMED = 3
+"""Number of coefficients in a note."""
+
+
+@dataclass(frozen=True)
+class _Wheel:
+    name: str
+    tyre: Tyre
+    centre: np.ndarray
+    axis: np.ndarray
+
+    def to_the_left_of(self, other: _Wheel) -> float:
+        """Return the distance along the axle of the other wheel, m; 0 if they are not on one axle."""
+        between = self.centre - other.centre
+        along = float(between @ other.axis)
+        aside = np.linalg.norm(between - along * other.axis)
+        return along if self.axis @ other.axis > 1 - ALONG and aside < ALONG * abs(along) else 0.0
+
+
+def mounted_alike(bodies: Mapping[str, Any], forces: Mapping[str, Any]) -> Iterator[str]:
+    """Yield notes on axles whose outer tyres have the same hand, although left and right tyres differ."""
+    wheels = [_wheel(bodies, name, tyre) for name, tyre in forces.items() if isinstance(tyre, Tyre)]
+    for right in wheels:
+        beside = [right.to_the_left_of(other) for other in wheels]
+        if not any(beside) or max(beside) > 0:
+            continue  # not the rightmost one of an axle
+        left = wheels[int(np.argmin(beside))]
+        data, hand, differing = right.tyre.mounted_side()
+        if differing and (data, hand) == left.tyre.mounted_side()[:2]:
+            names = ", ".join(differing[:NAMED]) + (" and others" if len(differing) > NAMED else "")
+            yield (
+                f"{left.name} and {right.name} are on both sides of an axle and not mirrored to each other: side forces of "
+                f"ply steer and conicity ({names}) add up; hand: -1 mirrors one of them"
+            )
+
+
+def _wheel(bodies: Mapping[str, Any], name: str, tyre: Tyre) -> _Wheel:
+    reference = tyre.i
+    body = bodies[reference.body]
+    placed = body.markers[reference.marker] if reference.marker else reference.placement()
+    axes = matrix(body.orientation) @ matrix(placed.orientation)
+    return _Wheel(name, tyre, np.array(body.position) + rotated(body.orientation, placed.point), axes[:, 1])
