@@ -209,6 +209,14 @@ def test_explicit_steps_are_not_taken_to_be_longer_than_those_of_radau(examples)
     assert stiffmbs.run(road, solver="auto", rtol=1e-4).solver["name"] == "radau"
 
 
+def test_checks_of_implicit_steps_are_spaced_in_proportion_to_the_steps_taken(examples, monkeypatch):
+    """Each returns from compiled code and costs as much as several steps; 2000 steps have 10, and 7 or 15 at half or twice their density."""
+    checks, wait = [], auto._ImplicitCheck._wait
+    monkeypatch.setattr(auto._ImplicitCheck, "_wait", lambda check, t: checks.append(t) or wait(check, t))
+    stiffmbs.run(examples / "vehicles" / "quarter_car.yaml", solver="auto", rtol=1e-4)
+    assert 9 <= len(checks) <= 12
+
+
 @pytest.mark.long
 def test_radau_comes_back_where_explicit_steps_cost_more_than_its_own_had(examples):
     """Explicit steps over a rough road evaluate its height often, which the model of their cost does not tell."""
