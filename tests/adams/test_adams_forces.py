@@ -138,3 +138,35 @@ END
 
     exact = solve_ivp(rates, (0, 2), [0.7, 0], rtol=1e-11, atol=1e-11, t_eval=solution.t, max_step=0.01).y
     np.testing.assert_allclose(solution["PART_3.x"], exact[0], atol=1e-6)
+
+
+def test_the_force_between_two_markers_is_that_of_all_that_acts_there():
+    """FX .. TZ(i, j, rm) and REQUEST/FORCE: joint, motion of the joint, and forces; of FX(i) the elements of all markers."""
+    text = r"""MARKER/10, PART=1
+PART/2, MASS=1, CM=20, IP=1,1,1
+MARKER/20, PART=2
+MARKER/21, PART=2, QP=0,0,0.2
+JOINT/1, REVOLUTE, I=20, J=10
+MOTION/1, JOINT=1, ROTATIONAL, FUNCTION=0.5*TIME**2
+SFORCE/1, ROTATIONAL, I=20, J=10, FUNCTION=3
+SFORCE/2, TRANSLATIONAL, ACTIONONLY, I=21, J=10, FUNCTION=7
+REQUEST/1, FORCE, I=20, J=10
+VARIABLE/1, FUNCTION=TZ(20,10,10)
+VARIABLE/2, FUNCTION=TZ(10,20)
+VARIABLE/3, FUNCTION=TZ(20)
+VARIABLE/4, FUNCTION=TZ(10)
+VARIABLE/5, FUNCTION=FZ(10,21)
+VARIABLE/6, FUNCTION=FZ(21,10)
+VARIABLE/7, FUNCTION=FZ(10)
+"""
+    found = run(text, 0.1)
+    motion, all_torque = 1.0 - 3.0, 1.0  # the inertia is accelerated at 1 rad/s^2
+    np.testing.assert_allclose(found["MOTION_1.tz"], motion, atol=1e-9)
+    np.testing.assert_allclose(found["REQUEST_1.tz"], all_torque, atol=1e-9)
+    np.testing.assert_allclose(found["VARIABLE_1"], all_torque, atol=1e-9)
+    np.testing.assert_allclose(found["VARIABLE_3"], all_torque, atol=1e-9)
+    for name in ("VARIABLE_2", "VARIABLE_4"):
+        np.testing.assert_allclose(found[name], -all_torque, atol=1e-9)
+    np.testing.assert_allclose(found["VARIABLE_5"], 0.0, atol=1e-12)
+    np.testing.assert_allclose(found["VARIABLE_6"], 7.0, atol=1e-12)
+    np.testing.assert_allclose(found["VARIABLE_7"], -found["JOINT_1.fz"], atol=1e-9)

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator
 from ..scene.contacts import swapped
 from ..scene.forces import TORQUE
 from ..scene.joints import markers_of, rod
-from ..statements.constraints import GeneralConstraint
+from ..statements.constraints import GeneralConstraint, Motion
 from ..statements.contact import Contact
 from ..statements.curves import CurveOnCurve, PointOnCurve
 from ..statements.declared import Numbered
@@ -115,7 +115,7 @@ class OutputTranslation(Translation):
                 raise function.fault(
                     f"found the force of {found.label} on another marker than its I, expected it there"
                 )
-        if not acting and self.mechanism.dataset.inactive:
+        if not acting and (self.mechanism.dataset.inactive or self._action_only(i, j)):
             return number(0.0)
         if not acting:
             raise function.fault(f"found no joint and no force between the markers {i} and {j}, expected one at least")
@@ -128,8 +128,13 @@ class OutputTranslation(Translation):
                 first, others = self._ends(found)
                 if first == i and (not j or j in others):
                     yield found, False
-                elif i in others and j == first:
+                elif i in others and j in (0, first) and not (isinstance(found, SingleForce) and found.action_only):
                     yield found, True
+
+    def _action_only(self, i: int, j: int) -> bool:
+        """Return True if an action-only force acts on the second of two markers, and nothing on the first."""
+        forces = self.mechanism.dataset.statements.get("SFORCE", {}).values()
+        return any(found.action_only and found.j == i and j in (0, found.i) for found in forces)
 
     def _ends(self, found: object) -> tuple[int | None, tuple[int | None, ...]]:
         if isinstance(found, GeneralConstraint):
@@ -137,6 +142,8 @@ class OutputTranslation(Translation):
             return first, tuple(others)
         if isinstance(found, VectorForce | PointOnCurve | CurveOnCurve):
             return found.i, (found.floating,)
+        if isinstance(found, Motion) and found.joint is not None:  # acts between the markers of its joint
+            return self._ends(self.mechanism.dataset.joints.get(found.joint))
         if isinstance(found, Numbered) and found.keyword != "REQUEST":
             return getattr(found, "i", None), (getattr(found, "j", None),)
         return None, ()
