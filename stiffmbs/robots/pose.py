@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..elements.spatial.orientation import IDENTITY, conjugate, product, rotated
+from ..elements.spatial.orientation import IDENTITY, product, rotated
 from .robot import Link, LinkJoint, Robot
 
 
@@ -31,14 +31,6 @@ class Placed:
     def velocity_at(self, point: np.ndarray) -> np.ndarray:
         """Return the velocity of a point that moves with the frame, m/s."""
         return self.velocity + np.cross(self.omega, point - self.position)
-
-    def local(self, point: np.ndarray) -> np.ndarray:
-        """Return a point of the world in the frame, m."""
-        return rotated(conjugate(self.orientation), point - self.position)
-
-    def axes(self, orientation: tuple[float, ...]) -> tuple[float, ...]:
-        """Return an orientation in the world relative to the frame."""
-        return product(conjugate(self.orientation), orientation)
 
 
 WORLD = Placed(np.zeros(3), IDENTITY, np.zeros(3), np.zeros(3))
