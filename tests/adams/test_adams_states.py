@@ -217,7 +217,9 @@ def test_the_torque_of_a_field_without_symmetry_on_marker_j_is_about_that_marker
     text = (
         "field\nUNITS/SYSTEM=MKS\nPART/1, GROUND\nMARKER/10, PART=1, QP=3,2,1\nPART/2, MASS=2, CM=21, IP=1,1.5,2\n"
         f"MARKER/21, PART=2\nFIELD/1, I=21, J=10, KMATRIX={', '.join(map(repr, stiffness.T.ravel().tolist()))}\n"
+        ", FORCE=0,0,0,1,2,3\n"
         + "".join(f"VARIABLE/{k}, FUNCTION=FIELD(1,{k // 6},{(2, 3, 4, 6, 7, 8)[k % 6]},0)\n" for k in range(12))
+        + "VARIABLE/12, FUNCTION=FIELD(1,1,5,0)\n"
         + "END\n"
     )
     found = stiffmbs.run(read_adams(text), duration=1e-6, points=2)
@@ -227,6 +229,7 @@ def test_the_torque_of_a_field_without_symmetry_on_marker_j_is_about_that_marker
     np.testing.assert_allclose(force, [12, 10, 6], atol=1e-12)
     np.testing.assert_allclose(force_on_j, -force, atol=1e-12)
     np.testing.assert_allclose(torque_on_j, -torque - np.cross([-3, -2, -1], force), atol=1e-12)
+    np.testing.assert_allclose(found["VARIABLE_12"][0], np.linalg.norm(torque_on_j), atol=1e-12)
 
 
 def test_all_faults_of_a_dataset_are_told_at_once():

@@ -152,14 +152,11 @@ class OutputTranslation(Translation):
         self, component: str, acting: list[tuple[Numbered, bool]], axes: int, function: Function
     ) -> ast.expr:
         way = self.reference(axes, function) if axes else ""
-        if component[1] == "M" and len(acting) > 1:
+        parts = [(found, element, on_j) for found, on_j in acting for element in self._elements(found, component)]
+        if component[1] == "M" and len(parts) > 1:
             of_axes = [power(self._component(component[0] + axis, acting, axes, function), 2) for axis in "XYZ"]
             return call("sqrt", total(of_axes))
-        terms = [
-            self._term(component, found, element, on_j, way)
-            for found, on_j in acting
-            for element in self._elements(found, component)
-        ]
+        terms = [self._term(component, found, element, on_j, way) for found, element, on_j in parts]
         return total(terms) if terms else number(0.0)
 
     @staticmethod
