@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import cache
 from itertools import chain
-from random import Random
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -100,13 +99,12 @@ class _Directions:
 
     def _sampled(self) -> list[np.ndarray]:
         """Return the values of the forces at times and states of a run, at one pose."""
-        rng = Random(1)
+        rng = np.random.default_rng(1)
         system, q = self.system, self.state.q.copy()
         values = []
         for part in np.linspace(0.0, 1.0, REDUNDANCY.samples):
             self.state.q[:] = q
-            if part > 0:
-                self.state.q[system.first_state :] += [rng.uniform(-1.0, 1.0) for _ in q[system.first_state :]]
+            self.state.q[system.first_state :] += rng.uniform(-1.0, 1.0, system.n_q - system.first_state) * (part > 0)
             self.state.evaluate("motion", self._times[0] + part * (self._times[1] - self._times[0]))
             values.append(self.state.values["motion"].copy())
         self.state.q[:] = q

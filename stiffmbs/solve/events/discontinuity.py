@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from random import Random
 from typing import NamedTuple
 
 import numpy as np
@@ -194,9 +193,9 @@ def direction_of(dynamics: Dynamics) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _direction(n_q: int, n_u: int) -> tuple[np.ndarray, np.ndarray]:
-    random = Random(1)  # NumPy's generators take 10 ms to load
-    numbers = np.array([random.choice((-1.0, 1.0)) * random.uniform(0.5, 1.0) for _ in range(n_q + n_u)])
-    return numbers[:n_q], numbers[n_q:]
+    rng = np.random.default_rng(1)
+    first, second = (rng.choice((-1.0, 1.0), n) * rng.uniform(0.5, 1.0, n) for n in (n_q, n_u))
+    return first, second
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from random import Random
 from typing import Any, ClassVar
 
 import numpy as np
@@ -71,12 +70,13 @@ class BlockLU(FixedOrder):
             "node_start": blocks.node_starts, "place": blocks.places, "kind": self.kinds, "diagonal": diagonal,
             **blocks.quads("down", blocks.below), **blocks.quads("right", blocks.right),
         }  # fmt: skip
-        random = Random(SEED)
+        random = np.random.default_rng(SEED)
+        signs = random.choice([-1.0, 1.0], self.n)
         return {
             "n": self.n, "parts": self.parts, "pivots": 0, "last_flag": 0, "n_nodes": len(blocks.nodes), "n_diagonal": len(diagonal), "n_lu": int(blocks.starts[-1]),
             **{name: held_once(np.asarray(part, dtype=np.int64)) for name, part in lists.items()},
             **{name: held_once(part) for name, part in updates(blocks).items()},
-            "slot": held_once(blocks.slots(self.rows, self.columns)), "state": np.array([random.choice((-1.0, 1.0)) * random.uniform(0.5, 1.0) for _ in range(self.n)]),
+            "slot": held_once(blocks.slots(self.rows, self.columns)), "state": signs * random.uniform(0.5, 1.0, self.n),
         }  # fmt: skip
 
     def memory(self, array_of: int) -> Memory:
