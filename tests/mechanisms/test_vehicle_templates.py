@@ -230,3 +230,9 @@ def test_a_fifth_wheel_carries_roll_and_a_ball_does_not():
         hitch = {"use": "trailer_hitch", "on": "truck", "mounts": {"trailer": "trailer"}, "coupling": coupling}
         text = json.dumps({"dimensions": 3, "bodies": bodies, "joints": joints, "parts": {"hitch": hitch}})
         assert stiffmbs.check(stiffmbs.read_scene(text)).degrees_of_freedom == free
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", ["hatchback", "formula_student", "motorcycle", "truck", "car"])
+def test_it_starts_in_equilibrium_as_the_torques_of_its_wheels_balance(name):
+    assert stiffmbs.modes(scene(name)).notes == ()
