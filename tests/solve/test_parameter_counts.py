@@ -1,0 +1,100 @@
+"""Each parameter of a table changes a counter of a short run if it is halved or doubled.
+
+The quick test compares the counters of the default parameters with those of the table. A parameter that is halved or doubled moves
+them beyond the margin, which the long test shows: it compiles the routines that read the parameter.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+
+import pytest
+
+from stiffmbs import tuning
+from tests.parameters import CASES, changed
+
+TABLE = [
+    ("accumulation.halved_apart", "stick_slip projected", "accelerations", 35312, 35012, 34887),
+    ("error_filter.troubled", "stick_slip", "newton_failures", 18, 10, None),
+    ("error_test.growth", "cart_pendulum", "steps", 150, 180, 383),
+    ("error_test.margin", "half_car 1e-09", "steps", 3610, 3168, 2764),
+    ("error_test.renewal", "stick_slip", "newton_failures", 18, 10, 28),
+    ("error_test_in_space.growth", "dzhanibekov", "jacobians", 64, 54, 39),
+    ("error_test_in_space.margin", "dzhanibekov", "steps", 1203, 1077, 966),
+    ("error_test_in_space.renewal", "spatial_chain", "newton_failures", 3, 7, 11),
+    ("error_test_of_radau.margin", "bouncing_ball radau", "jacobians", 15, 12, 14),
+    ("event_search.longer", "bouncing_ball radau", "residuals", 675, 670, None),
+    ("explicit_events.most_retaken", "sliding projected", "accelerations", 1303, 1879, 3031),
+    ("explicit_first_step.part", "cart_pendulum radau", "factorizations", None, 56, 59),
+    ("explicit_first_step.part", "cart_pendulum radau", "residuals", 512, 468, None),
+    ("explicit_steps.astray", "cart_pendulum projected", "accelerations", None, 169, 160),
+    ("explicit_steps.hardly_off", "cart_pendulum projected", "accelerations", 178, 169, None),
+    ("explicit_steps.hardly_off", "chain projected", "accelerations", None, 680, 644),
+    ("explicit_steps.largest_factor", "bouncing_ball projected", "steps", 16, 20, None),
+    ("explicit_steps.largest_factor", "narrow projected", "accelerations", None, 313, 289),
+    ("explicit_steps.least_factor", "half_car auto", "rejected", 14, 17, 27),
+    ("explicit_steps.safety", "cart_pendulum projected", "steps", 48, 14, None),
+    ("explicit_steps.safety", "half_car auto", "steps", None, 302, 274),
+    ("explicit_steps.shortest", "sliding projected", "accelerations", None, 1879, 1771),
+    ("explicit_steps.smallest_error", "cart_pendulum projected", "accelerations", None, 169, 160),
+    ("newton.last", "andrews 0.001", "newton_failures", None, 27, 34),
+    ("newton.last", "cart_pendulum 1e-10", "jacobians", 62, 57, None),
+    ("newton.least", "stick_slip", "steps", 398, 373, 401),
+    ("newton.loosest", "stick_slip", "newton_failures", 22, 10, 15),
+    ("newton.slowest", "cart_pendulum", "jacobians", 42, 38, None),
+    ("newton.slowest", "cart_pendulum", "residuals", None, 251, 279),
+    ("newton.soft", "half_car radau", "factorizations", 170, 182, 179),
+    ("newton.tightest", "bouncing_ball radau", "residuals", 675, 670, None),
+    ("newton.trusted", "cart_pendulum 1e-10", "newton_failures", 24, 20, None),
+    ("newton.trusted", "cart_pendulum 1e-10", "steps", None, 669, 705),
+    ("newton.unknown", "sliding", "residuals", 110, 113, 116),
+    ("radau.after_failure", "bouncing_ball radau", "convergence_failures", 5, 8, 17),
+    ("radau.converging", "bouncing_ball radau", "residuals", 687, 670, 667),
+    ("radau.gain", "cart_pendulum radau", "jacobians", 19, 16, 14),
+    ("radau.keep_high", "half_car radau", "steps", 173, 179, 226),
+    ("radau.keep_matrix", "half_car radau", "jacobians", 33, 23, 12),
+    ("radau.largest_factor", "cart_pendulum radau", "jacobians", 23, 16, 14),
+    ("radau.least_factor", "bouncing_ball radau", "error_test_failures", 12, 16, 13),
+    ("radau.slowest", "cart_pendulum radau", "residuals", 463, 468, None),
+    ("radau.solution_cost", "half_car radau", "steps", None, 179, 185),
+    ("radau.stages_after", "half_car radau", "factorizations", 208, 182, 208),
+    ("radau.tolerance", "cart_pendulum radau", "jacobians", 21, 16, 13),
+    ("relaxation.largest_factor", "andrews 0.001", "rejected", 13, 15, 17),
+    ("relaxation.of_positions", "andrews 0.001", "newton_failures", 32, 27, 24),
+    ("relaxation.of_velocities", "andrews", "rejected", 17, 24, 15),
+    ("stability_bound.held_back", "stick_slip projected", "steps", 2864, 2869, 2884),
+    ("stability_bound.most_apart", "stick_slip projected", "rejected", 26, 28, 24),
+    ("stability_bound.soon", "stick_slip projected", "rejected", 26, 28, 26),
+    ("stability_bound.steep", "stick_slip projected", "steps", None, 2869, 2495),
+    ("stability_bound.worth", "half_car auto 0.001", "rejected", 18, 25, None),
+]
+"""Parameter, run, counter, and its values with the parameter halved, as it is, and doubled; None without a clear change."""
+RUNS = {case.name: case for case in CASES}
+ROWS = [pytest.param(*row, id=" ".join(row[:3])) for row in TABLE]
+
+
+@cache
+def usual(run):
+    return RUNS[run].counts()
+
+
+def margin(halved, expected, doubled):
+    """Return half of the smallest change by the parameter."""
+    return 0.5 * min(abs(value - expected) for value in (halved, doubled) if value is not None)
+
+
+@pytest.mark.parametrize(("parameter", "run", "counter", "halved", "expected", "doubled"), ROWS)
+def test_the_counters_are_those_of_the_default_parameters(parameter, run, counter, halved, expected, doubled):
+    assert abs(usual(run)[counter] - expected) < margin(halved, expected, doubled)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("parameter", "run", "counter", "halved", "expected", "doubled"), ROWS)
+def test_a_parameter_halved_or_doubled_moves_its_counter(parameter, run, counter, halved, expected, doubled):
+    name, field = parameter.split(".")
+    default = getattr(tuning.defaults_of(name), field)
+    for factor, value in ((0.5, halved), (2.0, doubled)):
+        if value is not None:
+            found = RUNS[run].counts({name: {field: changed(default, factor)}})[counter]
+            assert (found - expected) * (value - expected) > 0
+            assert abs(found - expected) > margin(halved, expected, doubled)
