@@ -12,7 +12,7 @@ from ...compile.machine.routines import together
 from ...dynamics.dynamics import Dynamics
 from ...reading.files.quoted import MOST_LISTED
 from ...tuning import tuned
-from .native.parameters import BISECTIONS
+from .native.parameters import BISECTIONS, SEARCH
 
 
 @dataclass(frozen=True)
@@ -20,9 +20,8 @@ class JumpParameters:
     """Parameters of the comparison of both sides of a state."""
 
     larger_move: float = 1e-6
-    smaller_move: float = 1e-9
-    """Sizes of moves to both sides, relative to the state and to at least 1 m, rad, m/s or rad/s. The smaller one is the
-    least jump too, m/s^2 or rad/s^2."""
+    """Size of the larger move to both sides, relative to the state and to at least 1 m, rad, m/s or rad/s. The smaller one is
+    the rounding `EventSearchParameters.noise`, which is the least jump too, m/s^2 or rad/s^2."""
     jumps: float = 0.1
     """Least jump of accelerations over the smaller move, relative to that over the larger one."""
     rate_interval: float = 1e-4
@@ -86,7 +85,7 @@ class _Beside:
     def crossed(self, reach: float | None = None) -> np.ndarray:
         """Return the event functions that differ in sign between the two sides of a move."""
         found = np.empty(self._count, dtype=np.int64)
-        reach = JUMP.smaller_move if reach is None else reach
+        reach = SEARCH.noise if reach is None else reach
         count = CROSSED.short_call(self.t, reach, *self._at, self._count, address(found), self._table)
         return found.nonzero()[0] if count else found[:0]
 
@@ -127,9 +126,9 @@ def jumping(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> np.nd
             return crossed
         far, near = (
             float(np.max(np.abs(a.acceleration - b.acceleration), initial=0.0))
-            for a, b in (beside.sides(size) for size in (JUMP.larger_move, JUMP.smaller_move))
+            for a, b in (beside.sides(size) for size in (JUMP.larger_move, SEARCH.noise))
         )
-    return crossed if near > max(JUMP.jumps * far, JUMP.smaller_move) else crossed[:0]
+    return crossed if near > max(JUMP.jumps * far, SEARCH.noise) else crossed[:0]
 
 
 def sliding(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray, reach: float | None = None) -> np.ndarray:
@@ -176,14 +175,14 @@ def _slides(beside: _Beside, reach: float, event_function: int) -> bool:
     """
     at_zero = beside.at_zero(reach, event_function)
     values, rates = [], []
-    for size in (JUMP.larger_move, JUMP.smaller_move):
+    for size in (JUMP.larger_move, SEARCH.noise):
         sides = at_zero.sides(size)
         if not _driven_back(sides, np.array([event_function]))[0]:
             return False
         values.append(abs(sides[0].values[event_function] - sides[1].values[event_function]))
         rates.append(abs(sides[0].rates[event_function] - sides[1].rates[event_function]))
     continuous = values[1] <= JUMP.jumps * values[0]
-    return bool(continuous and rates[1] > max(JUMP.jumps * rates[0], JUMP.smaller_move))
+    return bool(continuous and rates[1] > max(JUMP.jumps * rates[0], SEARCH.noise))
 
 
 def direction_of(dynamics: Dynamics) -> tuple[np.ndarray, np.ndarray]:

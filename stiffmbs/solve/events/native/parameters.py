@@ -47,7 +47,7 @@ class EventSearchParameters:
     well: float = 0.03
     """Relative deviation from the cubic below which the next part is doubled (it has order four)."""
     least_part: float = 1e-4
-    """Shortest part of a step that is searched."""
+    """Shortest part of a step that is searched, and least distance to a predicted event, relative to its distance."""
     few_parts: int = 100
     """Largest number of parts if arguments of sines cannot be followed."""
     difference: float = 1e-6
@@ -61,8 +61,6 @@ class EventSearchParameters:
     """Fraction of a part over which a parabola is fitted at an extremum."""
     refinements: int = 5
     """Number of such fits, each over a tenth of the last."""
-    longest: float = 1e-3
-    """Largest fraction of a step over which the motion is extrapolated to find the sign of a function that is zero."""
     longer: float = 4.0
     """Factor between successive extrapolations: longer ones leave a zero, shorter ones approach a sign change."""
     held: int = 3
@@ -80,16 +78,16 @@ class NextStepParameters:
     """
 
     short_of: float = 1e-8
-    """Distance from the end of a step to a predicted event, relative to the longest step."""
-    unsure: float = 1e-4
-    """The same relative to the event's distance."""
+    """Distance from the end of a step to a predicted event, relative to the longest step; that relative to the distance of
+    the event is `EventSearchParameters.least_part`."""
     growth: float = 2.0
     """Largest ratio of successive steps of IDA."""
     of_an_interval: float = 0.35
     """Fraction of an interval of a law that may be passed on each side of a place within a step: two or three steps
     resolve an interval. Larger fractions save steps, and miss more narrow features."""
     first_step: float = 1e-3
-    """Largest first step of IDA, relative to the time to the next stop."""
+    """Largest first step of IDA, relative to the time to the next stop. The motion is extrapolated over at most this fraction
+    of an explicit step to find the sign of a function that is zero."""
     soon: float = 1e-2
     """Passage relative to the time to the next stop above which IDA's first steps are short enough."""
     passage_steps: float = 16.0

@@ -29,7 +29,7 @@ from stiffmbs.solve.events.native.from_zero import (
     note_sides,
 )
 from stiffmbs.solve.events.native.nearby import note_zones
-from stiffmbs.solve.events.native.parameters import BISECTIONS, EPSILON, INDISTINCT, SEARCH
+from stiffmbs.solve.events.native.parameters import BISECTIONS, EPSILON, INDISTINCT, NEXT_STEP, SEARCH
 from stiffmbs.solve.events.native.within_step import first_event, keep_row
 from stiffmbs.solve.explicit.native.attempt import arrive, attempt
 from stiffmbs.solve.explicit.native.error_estimate import trusted_error
@@ -102,7 +102,9 @@ def _note_sides_at_start(x, s):
     load_state(s, x.y_before)
     begin_sides(w.m, w.m2, count)
     ahead = max(EPSILON * x.span, INDISTINCT * abs(x.t))
-    while ahead <= SEARCH.longest * x.span and note_sides(x.signs, _values_ahead(x, s, ahead), w.m, w.m2, count) > 0:
+    while (
+        ahead <= NEXT_STEP.first_step * x.span and note_sides(x.signs, _values_ahead(x, s, ahead), w.m, w.m2, count) > 0
+    ):
         ahead *= SEARCH.longer
 
 

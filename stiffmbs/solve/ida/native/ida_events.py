@@ -182,7 +182,7 @@ def _aim(c, w, s, ahead):
         w.found[k] = 0
     least = max(NEXT_STEP.short_of * w.longest, 10.0 * INDISTINCT * abs(t))
     if 3.0 * least < ahead * place < ahead:
-        w.target = t + ahead * place - max(least, NEXT_STEP.unsure * ahead * place)
+        w.target = t + ahead * place - max(least, SEARCH.least_part * ahead * place)
 
 
 @compiled
