@@ -89,7 +89,10 @@ def test_a_force_of_rounding_is_shown_as_zero(chain, part, is_zero):
 def test_a_file_gets_the_lines_that_rich_writes(chain):
     """Without loading rich, which takes longer than printing; also with error bars, on two lines of a cell."""
     barred = replace(
-        chain, errors={name: ErrorBar(1e-3, 2e-3, 3e-3, 2e-3, 3e-3) for name in chain.channels}, not_unique=("j3.fx",), name="±"
+        chain,
+        errors={name: ErrorBar(1e-3, 2e-3, 3e-3, 2e-3, 3e-3) for name in chain.channels},
+        not_unique=("j3.fx",),
+        name="±",
     )
     for solution in (chain, barred):
         plain = io.StringIO()
