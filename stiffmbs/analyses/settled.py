@@ -154,7 +154,7 @@ def _directions(dynamics: Dynamics, t: float) -> tuple[np.ndarray | None, list[s
     found = lowest(known.stiffness, known.jacobian, system.mass, scale, known.left)
     for shape in found.unstable.T:
         return shape / np.max(np.abs(shape / scale)), []
-    return None, [system.name_of(k, system.of_body.velocities) for k in _independent(found.free / scale[:, None])]
+    return None, system.names_of(_independent(found.free / scale[:, None]), system.of_body.velocities)
 
 
 def _independent(shapes: np.ndarray) -> Iterator[int]:

@@ -6,7 +6,7 @@ equation and coordinate of each.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -216,6 +216,10 @@ class System:
         """Return the displacement of the bodies between two poses as velocities times time, shape (n_u,)."""
         of_bodies = slice(self.n_pose)
         return self.of_body.move(q[of_bodies], there[of_bodies])
+
+    def names_of(self, places: Iterable[int], labels: tuple[str, ...]) -> list[str]:
+        """Return the names of coordinates or velocities; see `name_of`."""
+        return [self.name_of(k, labels) for k in places]
 
     def name_of(self, k: int, labels: tuple[str, ...]) -> str:
         """Return the name of a coordinate or velocity, such as ``cart.x``, from the labels of a body."""

@@ -114,7 +114,7 @@ def kink_at(found: AtState, state: StateMatrix, linear: Linearised, moves: Moves
     wide, narrow = (
         [_side(found, state, linear, sign * size * move) for sign in (-1.0, 1.0)] for size in (moves.wide, moves.narrow)
     )
-    names = [system.name_of(k, system.of_body.velocities) for k in range(system.n_u)]
+    names = system.names_of(range(system.n_u), system.of_body.velocities)
     states = [system.states[k] for k in np.flatnonzero(~system.without_rate)]
     rows = [*_moving(state, scale, names), *states]
     jump = np.abs(narrow[1].forces - narrow[0].forces)

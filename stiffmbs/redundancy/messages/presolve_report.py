@@ -62,28 +62,29 @@ def _left_out(dynamics: Dynamics) -> Iterator[str]:
     system, coordinates = dynamics.system, dynamics.coordinates
     still = np.flatnonzero(coordinates.independent_of == FIXED).tolist()
     if still:
-        names = list(dict.fromkeys(_coordinate(system, k) for k in still))
-        yield f"held still by constant equations: {listed(names)}"
+        yield f"held still by constant equations: {listed(list(dict.fromkeys(_names(system, still))))}"
     tied = np.flatnonzero((coordinates.independent_of != FIXED) & ~coordinates.independent).tolist()
     if tied:
-        yield f"tied in a constant ratio: {listed([_tie(system, coordinates, k) for k in tied])}"
+        yield f"tied in a constant ratio: {listed(_ties(system, coordinates, tied))}"
     rows = np.flatnonzero(coordinates.satisfied).tolist()
     if rows:
         yield f"their multipliers are computed afterwards: {listed([_equation(system, row) for row in rows])}"
 
 
-def _coordinate(system: System, k: int) -> str:
-    """Return its name; components of a quaternion are one orientation."""
-    body, place = divmod(k, system.of_body.n_q)
-    if system.of_body.n_q > system.of_body.n_u and place >= system.of_body.linear:
-        return f"{system.bodies[body]}.orientation"
-    return system.name_of(k, system.of_body.positions)
+def _names(system: System, coordinates: Sequence[int]) -> list[str]:
+    """Return the names of coordinates; components of a quaternion are one orientation."""
+    of_body, labels = system.of_body, system.of_body.positions
+    if of_body.n_q > of_body.n_u:
+        labels = (*labels[: of_body.linear], *["orientation"] * (of_body.n_q - of_body.linear))
+    return system.names_of(coordinates, labels)
 
 
-def _tie(system: System, coordinates: Coordinates, k: int) -> str:
-    return (
-        f"{_coordinate(system, k)} ({coordinates.ratio[k]:.6g} of {_coordinate(system, coordinates.independent_of[k])})"
-    )
+def _ties(system: System, coordinates: Coordinates, tied: list[int]) -> list[str]:
+    leaders = _names(system, coordinates.independent_of[tied].tolist())
+    return [
+        f"{name} ({ratio:.6g} of {leader})"
+        for name, ratio, leader in zip(_names(system, tied), coordinates.ratio[tied], leaders, strict=True)
+    ]
 
 
 def _equation(system: System, row: int) -> str:

@@ -26,7 +26,7 @@ class ErrorSums:
     """
 
     def __init__(self, system: System, coordinates: Coordinates, place: np.ndarray, f_u: Term) -> None:
-        leader, self._ratio = coordinates.relation("u")
+        leader, self._ratio = coordinates.u_independent_of, coordinates.u_ratio
         moving, group = leader != FIXED, system.velocity_groups
         independent = np.flatnonzero(coordinates.independent_u)
         order = independent[np.argsort(group[independent], kind="stable")]

@@ -150,12 +150,12 @@ class Connection:
         self.y_vector, self.yp_vector, self.output_vector = map(session.vector, (self.y, self.yp, self.output))
         self.output_correction, self.step_bound = OutputCorrection(equations), StepBound()
         self.iteration = Iteration(n, bool(equations.system.forces_by_reactions))
+        self.error_norm = ErrorNorm(n)
         self._matrix, self._assembled = matrix, matrix.assembled(session, self.y_vector)
         self.memory = formula.memory(session)
         self.watch = EventSearch(state)
         self.n_event_functions, self.masked = self.watch.n_event_functions, self.watch.masked
         self.signs = np.zeros(self.n_event_functions)
-        self.error_norm = ErrorNorm(n)
         self.words = self._packed()
         self.table, self.cells = self.words.ctypes.data, self.words.view(NATIVE_IDA.cells)[0]
         formula.connect(self, session, self._assembled)
