@@ -93,14 +93,14 @@ class BDF:
     def connect(self, connection: Connection, session: Session, assembled: Assembled) -> None:
         """Give IDA the callbacks, the matrix, and the norm of error estimates."""
         tables = connection.state_table, connection.equations_table
-        iteration = connection.iteration
+        iteration, residual, jacobian = connection.iteration, RESIDUAL.address, JACOBIAN.address
         connection.error_norm.take_place(
             session, connection.memory, connection.y_vector, tables, assembled, iteration.table
         )
-        connection.ask("IDAInit", RESIDUAL.address, 0.0, connection.y_vector, connection.yp_vector)
+        connection.ask("IDAInit", residual, 0.0, connection.y_vector, connection.yp_vector)
         connection.ask("IDASetUserData", connection.table)
         connection.ask("IDASetLinearSolver", assembled.solver, assembled.matrix)
-        connection.ask("IDASetJacFn", JACOBIAN.address)
+        connection.ask("IDASetJacFn", jacobian)
         connection.ask("IDASetMaxNumSteps", -1)  # IDASolve is called for one step at a time
         if connection.n_event_functions:
             connection.ask("IDARootInit", connection.n_event_functions, SWITCHES.address)
