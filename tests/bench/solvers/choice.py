@@ -42,7 +42,7 @@ def model_of(name: str, stiffness: str, damping: str) -> Any:
 
 def compared(model: Any, duration: float | None, rtols: list[float]) -> Iterator[str]:
     """Yield a line for each tolerance of auto: time, error, and the ratio to the best of the others at this error."""
-    settings = {} if duration is None else {"duration": duration}
+    settings: dict[str, Any] = {} if duration is None else {"duration": duration}
     exact, check = (prepare(model, rtol=rtol, **settings, solver="radau").integrate().q for rtol in (EXACT, CHECK))
     noise = float(np.abs(exact - check).max())
     seconds: dict[tuple[str, float], float] = {}
