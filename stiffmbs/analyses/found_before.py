@@ -11,6 +11,7 @@ import pickle
 from collections.abc import Callable
 from functools import cache
 from hashlib import sha256
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -81,9 +82,10 @@ class _ByContent(ScenePickler):
 
 @cache
 def _solver() -> bytes:
-    """Return what the rounding of a start depends on: files of the package, NumPy and its threads, compiler, processor."""
+    """Return what the rounding of a start depends on: files, libraries, threads, compiler, processor."""
     threads = os.cpu_count(), *map(os.environ.get, ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"))
     files = [
         (str(file), found.st_size, found.st_mtime_ns) for file in files_within(PACKAGE) for found in (file.stat(),)
     ]
-    return repr((files, threads, np.__version__, own_directory().name)).encode()
+    libraries = np.__version__, version("scipy"), version("sympy")
+    return repr((files, threads, libraries, own_directory().name)).encode()

@@ -43,7 +43,7 @@ def test_a_start_is_searched_once_and_comes_back_with_the_same_motion(scene, sea
     assert all(np.array_equal(first[name], again[name], equal_nan=True) for name in first.channels)
 
 
-@pytest.mark.parametrize("changed", ["value", "setting", "file", "numpy", "threads"])
+@pytest.mark.parametrize("changed", ["value", "setting", "file", "numpy", "library", "threads"])
 def test_anything_that_a_start_depends_on_makes_it_searched_anew(scene, searches, monkeypatch, changed):
     stiffmbs.run(scene)
     settings = {}
@@ -54,6 +54,8 @@ def test_anything_that_a_start_depends_on_makes_it_searched_anew(scene, searches
             settings["rtol"] = 1e-7
         case "numpy":
             monkeypatch.setattr(np, "__version__", "0")
+        case "library":
+            monkeypatch.setattr(found_before, "version", lambda name: "0")
         case "threads":
             monkeypatch.setenv("OPENBLAS_NUM_THREADS", "7")
         case "file":
