@@ -24,10 +24,9 @@ from ..dynamics.storage import FAILURES
 from ..errors import SolverError
 from ..model.settings import RunSettings
 from ..reading.files.quoted import MOST_LISTED
-from .events.native.parameters import SEARCH
 from .events.restart import just_after, restarted
 from .ida.native.parameters import LOOP
-from .trajectory import Ending, Grid, History, Outcome, ProgressCallback, Solver, Trajectory, summed
+from .trajectory import SAME_TIME, Ending, Grid, History, Outcome, ProgressCallback, Solver, Trajectory, summed
 
 
 class Sample(NamedTuple):
@@ -99,13 +98,13 @@ def samples(system: System, grid: Grid) -> Iterator[Sample]:
     periods, offsets = system.sampling[system.sampled].T
     states = np.flatnonzero(system.sampled)
     outputs = np.array([grid.start, grid.end]) if grid.times is None else grid.times
-    number = np.ceil((grid.start - offsets) / periods - SEARCH.least_difference)
+    number = np.ceil((grid.start - offsets) / periods - SAME_TIME)
     while True:
         times = offsets + number * periods
         time = float(np.min(times))
-        due = times <= time + SEARCH.least_difference * periods
-        near = np.searchsorted(outputs, time + SEARCH.least_difference * np.min(periods[due])) - 1
-        if time - outputs[near] <= SEARCH.least_difference * np.min(periods[due]):
+        due = times <= time + SAME_TIME * periods
+        near = np.searchsorted(outputs, time + SAME_TIME * np.min(periods[due])) - 1
+        if time - outputs[near] <= SAME_TIME * np.min(periods[due]):
             time = float(outputs[near])
         if time >= grid.end:
             break

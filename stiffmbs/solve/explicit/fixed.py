@@ -19,9 +19,8 @@ from ...tuning import tuned
 from ..events.chattering import CHATTERING, jump_sentence
 from ..events.discontinuity import JUMP, sliding
 from ..events.narrow_inputs import narrower_than_steps
-from ..events.native.parameters import SEARCH
 from ..events.refusals import refuse_beyond_limits
-from ..trajectory import Ending, Grid, ProgressCallback, Rows, Trajectory
+from ..trajectory import SAME_TIME, Ending, Grid, ProgressCallback, Rows, Trajectory
 from .integration import REASONS, Integration
 from .scheme import Scheme
 
@@ -95,7 +94,7 @@ def solve_with_fixed_steps(
     apart = max(1, len(times) // FIXED_STEP.checks)
     with Ending() as ending:
         for row, (t, end) in enumerate(itertools.pairwise(times), 1):
-            count = max(1, math.ceil((end - t) / settings.step - SEARCH.least_difference))
+            count = max(1, math.ceil((end - t) / settings.step - SAME_TIME))
             longest = max(longest, (end - t) / count)
             status = stepper.take(t, (end - t) / count, count)
             if status < 0:
@@ -128,11 +127,11 @@ def _jumps(dynamics: Dynamics, stepper: Stepper, t: float, step: float) -> str:
 
 def _cut(longest: float, settings: RunSettings) -> str:
     """Return a sentence if every step is shorter than the given one, else an empty string."""
-    if "step" not in settings.model_fields_set or longest >= settings.step * (1 - SEARCH.least_difference):
+    if "step" not in settings.model_fields_set or longest >= settings.step * (1 - SAME_TIME):
         return ""
     return f"step = {settings.step:.6g} s was cut to {longest:.6g} s, the longest that divides the time between output points"
 
 
 def _own_steps(grid: Grid, step: float) -> np.ndarray:
-    count = max(1, math.ceil((grid.end - grid.start) / step - SEARCH.least_difference))
+    count = max(1, math.ceil((grid.end - grid.start) / step - SAME_TIME))
     return grid.start + (grid.end - grid.start) * np.arange(count + 1) / count

@@ -56,7 +56,7 @@ class EventSearchParameters:
     least_difference: float = 1e-9
     """Least time over which rates are computed: at the end of a step relative to the duration, at a start relative to the
     time to the next stop. Shorter differences are rounding. The new law holds this far after an event, relative to the
-    step. Two times are the same up to it, in periods or fixed steps."""
+    step."""
     refined: float = 0.02
     """Fraction of a part over which a parabola is fitted at an extremum."""
     refinements: int = 5
