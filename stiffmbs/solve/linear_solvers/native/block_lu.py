@@ -122,7 +122,7 @@ def setup(solver, matrix):
         if trusted(s, f):
             return int32(OK)
         s.refused += 1
-        s.waits = min(s.refused, PIVOTS.serves)
+        s.waits = min(s.refused, PIVOTS.most_between_trials)
     s.pivoted = 1
     if not _has_pivots(s):
         s.last_flag = NOT_COMPILED

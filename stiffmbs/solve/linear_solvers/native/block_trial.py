@@ -77,7 +77,7 @@ def trusted(s, f):
         left = _left_after_solution(s, f)
     for k in range(f.n):
         s.tried[k] = 1.0 / s.pivot[k]
-    s.serves = PIVOTS.serves if left <= 1.0 else 0
+    s.serves = PIVOTS.most_between_trials if left <= 1.0 else 0
     return left <= 1.0
 
 

@@ -24,9 +24,9 @@ class PivotParameters:
     """Largest residual that a refinement can correct."""
     changed: float = 8.0
     """Factor by which a pivot must differ from that of the last trial to cause another trial."""
-    serves: int = 50
-    """Factorisations after which a trial is always made, and largest number of those with pivoting before the next attempt
-    without, which grows by one with each refusal."""
+    most_between_trials: int = 50
+    """Largest number of factorisations between two trials of the fixed order. After refusals it is the number of refusals,
+    if that is smaller."""
 
 
 PIVOTS = tuned("pivots", PivotParameters())
