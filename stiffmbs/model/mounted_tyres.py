@@ -12,7 +12,8 @@ from ..elements.spatial.orientation import matrix, rotated
 from ..elements.spatial.tyre import Tyre
 
 ALONG = 0.1
-"""Largest angle between the axles of two wheels, and of the line of their centres to these, on one axle, rad."""
+"""Limit for two wheels on one axle: offset of one from the axis of the other, relative to the distance along it. The cosine
+of the angle between their axes differs from 1 by less than the limit too."""
 NAMED = 3
 """Number of coefficients in a note."""
 
