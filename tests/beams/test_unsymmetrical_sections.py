@@ -57,6 +57,17 @@ def test_a_channel_that_is_loaded_at_its_shear_centre_does_not_twist():
     assert found["s.end.z"] == pytest.approx(bending, rel=1e-5)
 
 
+def test_a_taper_interpolates_the_shear_centre():
+    """A load at the centroid twists by F/(G J) times the integral of the distance, also from one end with none."""
+    J, F = 2e-8, 1e-2
+    start, end = (f"{{type: numbers, A: 1e-3, I2: 2e-6, I3: 1e-6, J: {J}, shear_centre: [{y}, 0]}}" for y in (0, -0.03))
+    tapered = f"{start}, section_end: {end}"
+    found = at_rest(beam(tapered, f"F: {{type: force, i: s.end, force: [0, 0, {F}]}}", n=8))
+    assert turned(found)[0] == pytest.approx(F * 0.015 * L / (G * J), rel=1e-4)
+    with pytest.raises(InputError, match="found spectral and a section with its shear centre off the centroid"):
+        read_scene(beam(tapered, "", "spectral"))
+
+
 def test_an_angle_bends_obliquely():
     """Its end moves by F L^3/(3 E) I^-1, and the shear, in both directions (Timoshenko)."""
     of = Angle(width=0.05, height=0.08, thickness=0.005).properties(0.25)

@@ -13,7 +13,7 @@ from .axis import Arc, Piece, frame, upward
 from .division import AUTOMATIC, Divided, Elements
 from .interpolation import Group, group_sizes
 from .rigid_motion import adjoint, logarithm, tangent
-from .section import Material, Section
+from .section import Material, Numbers, Section
 from .stiffness import bowing, element_stiffness, inverse
 
 LARGEST_ROTATION = 3.0
@@ -156,11 +156,14 @@ def _between(start: Section, end: Section | None, share: float) -> Section:
     """Return the section at a fraction of the length, with linearly interpolated numbers."""
     if end is None:
         return start
-    numbers = {
+    numbers: dict[str, Any] = {
         name: (1 - share) * a + share * getattr(end, name)
         for name in type(start).model_fields
         if isinstance(a := getattr(start, name), float) and getattr(end, name) is not None
     }
+    if isinstance(start, Numbers) and isinstance(end, Numbers):
+        pairs = zip(start.shear_centre, end.shear_centre, strict=True)
+        numbers["shear_centre"] = tuple((1 - share) * a + share * b for a, b in pairs)
     return start.model_copy(update=numbers)
 
 
@@ -261,7 +264,7 @@ class _Interval:
             of = self.constants(float(s))
             node.lump(float(weight) * (end - start), of.mass, of.inertia, axes)
         turned = own[0].axes.T @ poses[0][1]
-        if group.sections and any(self.constants(start).shear_centre):
+        if group.sections and any(any(self.constants(s).shear_centre) for s in (start, end)):
             raise ValueError(
                 "interpolation: found spectral and a section with its shear centre off the centroid, expected pairs for it"
             )
