@@ -13,6 +13,8 @@ from ..dynamics.dynamics import Dynamics
 from .events.native.parameters import EPSILON, SEARCH
 
 TERM_SETS = ("motion", "acceleration")
+FARTHEST = 1e-6
+"""Largest time after a state at which undefined values are searched, relative to the time."""
 
 
 def suspect(dynamics: Dynamics, t: float, q: np.ndarray, u: np.ndarray) -> str:
@@ -37,7 +39,7 @@ def _ahead() -> Iterator[float]:
     """Yield times after a state, relative to the time: zero, then growing from its rounding."""
     yield 0.0
     ahead = EPSILON
-    while ahead < SEARCH.difference:
+    while ahead < FARTHEST:
         yield ahead
         ahead *= SEARCH.longer
 

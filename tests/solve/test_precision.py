@@ -6,7 +6,8 @@ import pytest
 import stiffmbs
 from stiffmbs import Body, Marker, Model, Revolute
 from stiffmbs.analyses.job import prepare
-from stiffmbs.solve.error_control.precision import too_fine
+from stiffmbs.solve.error_control.precision import governed_by_rounding, too_fine
+from stiffmbs.solve.explicit.native.parameters import CONTROL
 from stiffmbs.solve.trajectory import Outcome
 
 
@@ -54,3 +55,9 @@ run: {{duration: 1, rtol: 1e-9}}
     sentence = too_fine(job.dynamics, job.settings, 0.0, job.start.q)
     assert sentence.startswith("rtol = 1e-09 asks for more digits than rounding leaves: 'flat' changes by 1e-09")
     assert f"moves these by {rounding / 1.4142e-9:.1g}" in sentence
+
+
+def test_rounding_governs_a_long_run_that_fails_a_fifth_of_its_error_tests():
+    steps = 10 * CONTROL.enough_steps
+    failed = [governed_by_rounding({"steps": steps, "rejected": int(part * steps)}) for part in (0.15, 0.25)]
+    assert failed == [False, True]

@@ -13,7 +13,6 @@ from ...dynamics.dynamics import Dynamics
 from ...model.settings import RunSettings
 from ...tuning import tuned
 from ..explicit.native.parameters import CONTROL
-from .native.parameters import NEWTON
 
 
 @dataclass(frozen=True)
@@ -28,6 +27,8 @@ class PrecisionParameters:
     only."""
     noise_of_positions: float = 0.05
     """The same for a position, whose tolerance grows with it."""
+    failed: float = 0.2
+    """Fraction of steps with a failed error test above which rounding governs a long run."""
 
 
 PRECISION = tuned("precision", PrecisionParameters())
@@ -107,4 +108,4 @@ def _known_too_little(system: System, settings: RunSettings, q: np.ndarray) -> s
 def governed_by_rounding(statistics: Mapping[str, Any]) -> bool:
     """Return True if a long run fails the error test so often that rounding governs it."""
     steps, rejected = int(statistics["steps"]), int(statistics.get("rejected", 0))
-    return steps > CONTROL.enough_steps and rejected > NEWTON.many_failures * steps
+    return steps > CONTROL.enough_steps and rejected > PRECISION.failed * steps

@@ -40,8 +40,7 @@ class NewtonParameters:
     long_steps: float = 200.0
     """cj, 1/s, up to which steps are long."""
     many_failures: float = 0.2
-    """Fraction of steps with a failed iteration above which its tolerance is relaxed, and of failed error tests that
-    indicates rounding."""
+    """Fraction of steps with a failed iteration above which its tolerance is relaxed."""
     eased: float = 100.0
     """Factor of that relaxation."""
     easiest: float = 0.33

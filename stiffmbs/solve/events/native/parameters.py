@@ -52,7 +52,7 @@ class EventSearchParameters:
     """Largest number of parts if arguments of sines cannot be followed."""
     difference: float = 1e-6
     """Fraction of a step, or of a part, over which rates are computed. The motion is extrapolated up to it past an event,
-    until a sign change exceeds rounding. Relative to the time, it is the way past a failure on which its cause is found."""
+    until a sign change exceeds rounding."""
     least_difference: float = 1e-9
     """Least time over which rates are computed: at the end of a step relative to the duration, at a start relative to the
     time to the next stop. Shorter differences are rounding. The new law holds this far after an event, relative to the
