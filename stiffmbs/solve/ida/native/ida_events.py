@@ -28,6 +28,7 @@ from stiffmbs.solve.events.native.nearby import near_an_event, note_mean_rates, 
 from stiffmbs.solve.events.native.parameters import EPSILON, INDISTINCT, NEXT_STEP, SEARCH
 from stiffmbs.solve.events.native.within_step import first_event, first_event_or_change, keep_row
 from stiffmbs.solve.ida.native.ida_memory import array_of, native_ida_view
+from stiffmbs.solve.ida.native.layouts import EVENT, NO_EVENT, PASSED_INTERVAL
 from stiffmbs.solve.ida.native.passage import bound_passage, go_ahead, go_straight
 
 UNSEEN = float("inf")
@@ -209,13 +210,13 @@ def _passes_smoothly(w, h):
 
 
 def look_within(ida):
-    """Set IDA's returned state to the first event within the last step; return 0 without one, 2 for a passed interval, else 1."""
+    """Set IDA's returned state to the first event within the last step; return `NO_EVENT`, `EVENT` or `PASSED_INTERVAL`."""
     c = native_ida_view(ida)
     w = event_search_view(c.watch)
     begun = w.begun
     h = c.returned - begun
     if not h > INDISTINCT * abs(begun):
-        return int32(0)
+        return int32(NO_EVENT)
     s = state_view(c.state)
     e = equations_view(c.equations)
     if c.seen != c.returned:
@@ -227,21 +228,21 @@ def look_within(ida):
     if not nearby:
         note_mean_rates(w, h)
         _go_on(c, w, s)
-        return int32(0)
+        return int32(NO_EVENT)
     ahead = -time_of_difference(w, h, c.returned)
     go_straight(c, s, ahead)
     noted_rates(w.rate_after, w.value_after, _evaluate_near(w, s, c.returned + ahead), ahead, w.n)
     note_mean_rates(w, h)
     place = begun + LOOKED_AT * h
     if call_int(c.interpolate, (c.memory, place, int32(0), c.at_output)) < 0:
-        return int32(0)
+        return int32(NO_EVENT)
     load(s, e, c.output, array_of(c, c.yp))
     copied(w.m, _evaluate_near(w, s, place), w.n)
     load(s, e, array_of(c, c.y), array_of(c, c.yp))
     if suspicious(w, h, w.row, s.q):
         for node in range(w.n_nodes):
             if call_int(c.interpolate, (c.memory, begun + w.node[node] * h, int32(0), c.at_output)) < 0:
-                return int32(0)
+                return int32(NO_EVENT)
             load(s, e, c.output, array_of(c, c.yp))
             keep_row(w, s, node)
         event = begun + h * first_event(w, s, begun, h)
@@ -250,8 +251,8 @@ def look_within(ida):
             call_int(c.interpolate, (c.memory, event, int32(1), c.yp))
             c.returned = event
             c.within = 1
-            return int32(2 if _passes_smoothly(w, h) else 1)
+            return int32(PASSED_INTERVAL if _passes_smoothly(w, h) else EVENT)
         load(s, e, array_of(c, c.y), array_of(c, c.yp))
     _go_on(c, w, s)
     _look_ahead(c, w, s)
-    return int32(0)
+    return int32(NO_EVENT)

@@ -21,13 +21,11 @@ from stiffmbs.solve.explicit.native.parameters import LOCATION
 from stiffmbs.solve.ida.native.error_norm import error_norm_view
 from stiffmbs.solve.ida.native.ida_memory import array_of, native_ida_view, watched
 from stiffmbs.solve.ida.native.iteration import MADE, iteration_view
-from stiffmbs.solve.ida.native.layouts import STEP_WIDTH
+from stiffmbs.solve.ida.native.layouts import NO_EVENT, PASSED_INTERVAL, STEP_WIDTH
 from stiffmbs.solve.ida.native.output_correction import corrected, output_correction_view
 from stiffmbs.solve.ida.native.parameters import LOOP
 
 STALLED = -101
-NO_EVENT, EVENT, PASSED_INTERVAL = range(3)
-"""Results of `stiffmbs.solve.ida.native.ida_events.look_within`."""
 
 
 @compiled

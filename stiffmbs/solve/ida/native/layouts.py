@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from stiffmbs.compile.machine.layout import FLOAT_CELL, FLOATS, INT, INT_CELL, INTS, Layout
 
+NO_EVENT, EVENT, PASSED_INTERVAL = range(3)
+"""Results of `stiffmbs.solve.ida.native.ida_events.look_within`."""
+
 IDA = Layout({
     "state": INTS, "equations": INTS, "array_header": INT, "n_event_functions": INT, "signs": FLOATS, "masked": INTS,
     "last_time": FLOAT_CELL, "steps": INT_CELL, "rejected": INT_CELL, "n_ends": INT, "ends": FLOATS,
